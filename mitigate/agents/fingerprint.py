@@ -21,9 +21,18 @@ from pathlib import PurePath
 from typing import Any
 
 import numpy as np
+import torch
 from torch import nn
 
-from mitigate.agents.state import State, array_sha, class_name, is_users, read_state
+from mitigate.agents.state import (
+    State,
+    array_sha,
+    class_name,
+    is_users,
+    plain_attributes,
+    plain_text,
+    read_state,
+)
 from mitigate.core.checkpoint import weights_sha
 from mitigate.core.checksums import DIGITS
 from mitigate.core.observation import Sensor
@@ -69,10 +78,11 @@ def contents(agent: Any, version: str | None = None) -> Contents:
     """Return what makes ``agent`` behave as it does.
 
     For every agent: its kind, ``settings()``, weights and buffers, the user's code, hooks that can
-    be read, and replaced methods. For an agent that is not one of ours also the classes inside its
-    networks. Without ``settings()`` also its plain attributes and arrays.
+    be read, and replaced methods. For one of ours also whatever differs from a new agent with the
+    same settings; for others the classes inside their networks. Without ``settings()`` also the
+    plain attributes and arrays.
     """
-    own = KIND in vars(type(agent))
+    shipped = KIND in vars(type(agent))
     has_settings = hasattr(agent, "settings")
     state = read_state(agent, attributes=not has_settings)
     settings = agent.settings if has_settings else {}
@@ -81,7 +91,8 @@ def contents(agent: Any, version: str | None = None) -> Contents:
         "code": code,
         "attributes": _lines(state.attributes),
         "behaviour": _lines(state.behaviour),
-        "networks": [] if own else _architecture(state),
+        "networks": [] if shipped else _architecture(state),
+        "changes": _changes(agent) if shipped else [],
         "arrays": [] if has_settings or not state.networks else _lines(state.arrays),
         "version": version,
         "unreadable": _lines(state.unreadable) if version is None else [],
@@ -180,6 +191,45 @@ def _architecture(state: State) -> list[str]:
             if name not in saved:
                 lines[f"{place}:{name}"] = array_sha(buffer)
     return _lines(lines)
+
+
+def _changes(agent: Any) -> list[str]:
+    """Return what differs between one of our agents and a new one with its settings, beside weights
+    and what it remembers of an episode: layers, buffers and plain attributes."""
+    with torch.random.fork_rng(devices=[]):
+        new = type(agent)(**agent.settings())
+    before = dict(new.named_modules())
+    changes = []
+    for place, module in agent.named_modules():
+        other = before.pop(place, None)
+        if type(module) is not type(other):
+            changes.append(f"{place}: {class_name(type(module))}")
+        if other is not None:
+            found, usual = _attributes(module, other), _attributes(other, other)
+            changes += [f"{place}.{n} = {v}" for n, v in found.items() if usual.get(n) != v]
+            changes += [f"{place}.{n} is missing" for n in usual if n not in found]
+    return sorted([*changes, *(f"{place} is missing" for place in before)])
+
+
+def _attributes(module: nn.Module, new: nn.Module) -> dict[str, str]:
+    """Return buffers that are not in the state dict, and attributes that ``new`` or the class has,
+    as text."""
+    known = {*vars(new), *dir(type(module))} - {*getattr(module, "run_state", ())}
+    found = {k: _text(v) for k, v in plain_attributes(module).items() if k in known}
+    buffers = {k: module._buffers[k] for k in module._non_persistent_buffers_set}
+    return found | {k: array_sha(v) for k, v in buffers.items() if v is not None}
+
+
+def _text(value: Any) -> str:
+    """An attribute as text: plain data and arrays by value, other objects by their class."""
+    if isinstance(value, dict):
+        return f"{{{', '.join(f'{key}: {_text(part)}' for key, part in value.items())}}}"
+    if isinstance(value, (list, tuple)):
+        return f"[{', '.join(map(_text, value))}]"
+    if isinstance(value, (torch.Tensor, np.ndarray)):
+        return array_sha(value)
+    text = plain_text(value)
+    return class_name(type(value)) if text is None else text
 
 
 def _plain(value: Any) -> Any:

@@ -22,17 +22,14 @@ from pathlib import Path
 from typing import Any
 
 import torch
-from omegaconf import OmegaConf
 from torch import nn
 
 from mitigate.agents import adapters, schema
 from mitigate.core import checkpoint, folders, seeding, settings
-from mitigate.core.build import build, located, plain
 from mitigate.core.checkpoint import CONFIG
 from mitigate.core.files import find, places, sha256
 from mitigate.core.json_files import read_object
 from mitigate.core.names import short, unknown
-from mitigate.core.options import values
 
 FORMAT = 2  # of a card; 1 is read, too (core/older_folders.py)
 CARD, README = "card.json", "README.md"
@@ -260,6 +257,7 @@ def _as_json(value: Any) -> Any:
 
 
 # an agent for a run: settings of its config and of the weights it begins from ---------------------
+# Hydra and OmegaConf are imported here alone: what is above needs neither, as users are promised.
 
 
 def build_agent(
@@ -267,6 +265,8 @@ def build_agent(
 ) -> nn.Module:
     """Return the agent of ``node``, its first weights drawn from ``seed`` or read from a file;
     ``parts``: of its ``parts()``, those that are read; None: all."""
+    from mitigate.core.build import build, plain
+
     weights = None if weights is None else str(find(weights))
     if is_ours(node["_target_"]):  # numbers that would take all memory, patterns for ever
         check_own(plain(node))
@@ -306,6 +306,10 @@ def settings_of(
     What the command line sets counts more (``overrides``: ``agent.blind=[rgb]``); ``agent=mine``
     names the class, and what the weights do not say.
     """
+    from omegaconf import OmegaConf
+
+    from mitigate.core.build import plain
+
     keys = [override.lstrip("+").partition("=")[0].split(".") for override in overrides]
     named = {key[1] for key in keys if key[0] == "agent" and len(key) > 1}
     found = plain(OmegaConf.merge(plain(node), carried(node, weights)))
@@ -319,6 +323,10 @@ def begun_from(node: Mapping[str, Any], weights: str | None) -> Mapping[str, Any
     """Return ``node`` with the settings that it leaves open (null, or not named: adapters, the
     vocabulary) as in the ``weights`` that a training begins from; None: as it is. Errors as of
     :func:`carried`."""
+    from omegaconf import OmegaConf
+
+    from mitigate.core.build import plain
+
     if weights is None:
         return node
     open_ = {k: v for k, v in carried(node, weights).items() if node.get(k) is None}
@@ -334,6 +342,8 @@ def carried(node: Mapping[str, Any], weights: str) -> dict[str, Any]:
         ValueError: The weights are those of another kind of agent than ``node``, or the file holds
             anything but plain data that the agent takes.
     """
+    from mitigate.core.build import located
+
     place = find(weights)
     if (place / LORA).is_file() and hasattr(located(node["_target_"]), "load"):
         return {}  # a language model says itself whose adapter it takes
@@ -364,6 +374,8 @@ def agent_option(options: Sequence[str], weights: str) -> list[str]:
 
 def with_kind(options: Sequence[str]) -> list[str]:
     """The ``options`` of an evaluation, with the kind of agent that its ``checkpoint=`` is of."""
+    from mitigate.core.options import values
+
     weights = values(options, "checkpoint")
     own = agent_option(options, weights[0]) if len(weights) == 1 else []
     return [*options, *own]

@@ -10,7 +10,7 @@ from typing import Any
 import torch
 from torch import Tensor, nn
 
-from mitigate.agents.state import in_eval_mode
+from mitigate.agents.networks import in_eval_mode
 
 Run = Callable[[int], Any]  # runs the encoder on so many frames
 MAP, TOKENS = "map", "tokens"

@@ -16,7 +16,7 @@ import sysconfig
 import types
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator
-from contextlib import contextmanager, suppress
+from contextlib import suppress
 from dataclasses import dataclass, field
 from datetime import date, datetime, timedelta
 from datetime import time as clock_time
@@ -30,8 +30,9 @@ from typing import Any
 import numpy as np
 import torch
 from torch import nn
+from torch.nn.modules import module as torch_module
 
-from mitigate.agents.hooks import hidden_behaviour
+from mitigate.agents.adapter_layers import Adapter
 from mitigate.core.checksums import DIGITS
 from mitigate.core.observation import Observation
 
@@ -44,12 +45,20 @@ _DATA = (
     *(*_SCALARS, PurePath, np.generic, np.dtype, torch.device, torch.dtype, torch.Size),
     *(range, slice, re.Pattern, bytearray, Decimal, datetime, date, clock_time, timedelta),
 )
+_GENERATORS: dict[type, Callable[[Any], Any]] = {
+    torch.Generator: lambda generator: generator.get_state().tolist(),
+    np.random.Generator: lambda generator: generator.bit_generator.state,
+    np.random.RandomState: lambda generator: generator.get_state(legacy=False),
+    random.Random: lambda generator: generator.getstate(),
+}
 _IGNORED = (np.ufunc, logging.Logger, types.ModuleType, Observation)
 _NAMED = (types.FunctionType, types.BuiltinFunctionType, np.ufunc, types.ModuleType, type)
 _BY_VERSION = ("mitigate", "torch")  # packages whose code is identified by their version
 _INSTALLED = frozenset(("site-packages", "dist-packages"))
 _OF_TORCH = frozenset((*vars(nn.Module()), "parametrizations"))
-_OF_ADAPTERS = frozenset(("_adapter_hook", "_statistics_before_adapters"))  # agents/attachment.py
+_OF_ADAPTERS = "_statistics_before_adapters"  # set by agents/adapters.py
+_OWN_HOOKS = "mitigate.agents.adapters"  # its adapters are modules: in state_dict()
+_HOOKS = ("_forward_pre_hooks", "_forward_hooks")
 
 
 @dataclass
@@ -98,7 +107,7 @@ def read_state(agent: Any, *, attributes: bool = True) -> State:
         item = waiting.popleft()
         value = item.value
         note = _noting(state, item, attributes)
-        text = _plain_text(value)
+        text = plain_text(value)
         if text is not None:
             note(item.place, text)
             continue
@@ -181,26 +190,55 @@ def _visit_network(
     """Note a network, and return its methods, hooks and whatever state_dict() does not hold."""
     net = item.value
     state.networks[item.place] = net
-    own = {k: v for k, v in vars(net).items() if k not in _OF_TORCH | _OF_ADAPTERS}
-    found = [_Item(_join(item.place, k), v) for k, v in own.items()] if whole else []
     kinds = dict.fromkeys(map(type, net.modules()))
-    found += [
-        _Item(_join(item.place, name), part) for kind in kinds for name, part in _methods(kind)
-    ]
-    hidden = hidden_behaviour(net)
-    state.behaviour |= {_join(item.place, place): text for place, text in hidden.readable.items()}
-    state.unreadable |= {_join(item.place, place): why for place, why in hidden.unreadable.items()}
-    found += [
-        _Item(_join(item.place, place), part, fixed=True, required=True)
-        for place, part in hidden.values.items()
-    ]
-    if attributes:
-        for name, module in net.named_modules():
-            plain = {k: v for k, v in vars(module).items() if k not in _OF_TORCH | _OF_ADAPTERS}
-            place = _join(item.place, name)
-            if not (whole and not name):
-                found += [_Item(_join(place, k), v) for k, v in plain.items()]
+    found = [_Item(_join(item.place, k), part) for kind in kinds for k, part in _methods(kind)]
+    if any(getattr(torch_module, f"_global{name}", None) for name in _HOOKS):
+        place = _join(item.place, "global hooks")
+        state.unreadable[place] = "a forward hook that is registered for all modules"
+    for name, module in net.named_modules():
+        place = _join(item.place, name)
+        found += _hidden(state, place, module)
+        if attributes or (whole and not name):
+            found += [_Item(_join(place, k), v) for k, v in plain_attributes(module).items()]
+    for name, value in net.state_dict().items():
+        if not isinstance(value, torch.Tensor):  # such as packed weights of a quantised layer
+            place = _join(item.place, f"state {name}")
+            found.append(_Item(place, value, fixed=True, required=True))
     return found
+
+
+def plain_attributes(module: nn.Module) -> dict[str, Any]:
+    """Return the attributes of ``module`` that neither torch nor the adapters have put there."""
+    ours = ("hook",) if isinstance(module, Adapter) else ()
+    left_out = _OF_TORCH | {_OF_ADAPTERS, *ours}
+    return {name: value for name, value in vars(module).items() if name not in left_out}
+
+
+def _hidden(state: State, place: str, module: nn.Module) -> Iterator[_Item]:
+    """Note hooks, and yield readable ones and replaced methods such as ``forward``.
+
+    A hook is readable if it is one of this project's adapters, an object with a ``fingerprint()``
+    method that returns plain data, or an object of torch such as a weight norm.
+    """
+    hooks = [hook for kind in _HOOKS for hook in (getattr(module, kind, None) or {}).values()]
+    for number, hook in enumerate(hooks):
+        name = _join(place, f"forward hook {number}")
+        origin = str(getattr(hook, "__module__", type(hook).__module__))
+        describe = getattr(hook, "fingerprint", None)
+        if origin == _OWN_HOOKS:
+            continue
+        if callable(describe):
+            state.behaviour[name] = f"{type(hook).__qualname__} {describe()!r}"
+        elif origin.startswith("torch.") and hasattr(hook, "__dict__") and vars(hook):
+            yield _Item(name, hook, fixed=True, required=True)
+        else:
+            kind = getattr(hook, "__qualname__", type(hook).__qualname__)
+            state.unreadable[name] = f"a forward hook, {kind}"
+    for name, value in vars(module).items():
+        if callable(value) and callable(getattr(type(module), name, None)):
+            yield _Item(_join(place, name), value, fixed=True, required=True)
+    if type(module).__module__.startswith("torch.jit"):
+        state.unreadable[place] = "a TorchScript module, whose program cannot be read"
 
 
 def _parts(value: Any) -> Iterable[tuple[str, Any]] | None:
@@ -290,56 +328,39 @@ def class_name(kind: type) -> str:
 def array_sha(array: Any) -> str:
     """Return the hash of an array's or tensor's type, shape and bytes; "" if it has no readable
     bytes (sparse, on the meta device, of objects)."""
+    kind = array.dtype if isinstance(array, torch.Tensor) else ""
     if isinstance(array, torch.Tensor):
         if array.layout != torch.strided or array.is_meta:
             return ""
-        scales = ""
-        if array.is_quantized:
-            scales = f" {array.qscheme()} {_scales(array)}"
-            array = array.int_repr()
-        raw = array.detach().cpu().contiguous().reshape(-1).view(torch.uint8).numpy().tobytes()
-        text = f"{array.dtype} {tuple(array.shape)}{scales}"
+        array = array.dequantize() if array.is_quantized else array
+        array = array.detach().cpu().contiguous()
+        text = f"{kind} {tuple(array.shape)}"
+        array = array.reshape(-1).view(torch.uint8).numpy()
     else:
         try:
-            values = np.asarray(array)
+            array = np.asarray(array)
         except Exception:  # of another library, such as one on a GPU
             return ""
-        if values.dtype.hasobject:
-            return ""
-        raw = values.tobytes()
-        text = f"{values.dtype} {tuple(values.shape)}"
-    return hashlib.sha256(text.encode() + raw).hexdigest()[:DIGITS]
+        text = f"{array.dtype} {tuple(array.shape)}"
+    if array.dtype.hasobject:
+        return ""
+    return hashlib.sha256(text.encode() + array.tobytes()).hexdigest()[:DIGITS]
 
 
-def _scales(tensor: torch.Tensor) -> str:
-    if tensor.qscheme() in (torch.per_tensor_affine, torch.per_tensor_symmetric):
-        return f"{tensor.q_scale()} {tensor.q_zero_point()}"
-    points = tensor.q_per_channel_zero_points().tolist()
-    return f"{tensor.q_per_channel_scales().tolist()} {points} {tensor.q_per_channel_axis()}"
-
-
-def _plain_text(value: Any) -> str | None:
+def plain_text(value: Any) -> str | None:
     """Plain data, or a flat container of it, as text that is equal in every process; else None."""
     if isinstance(value, Enum):
         return f"{type(value).__qualname__}.{value.name}"
-    if isinstance(value, torch.Generator):
-        return str(value.get_state().tolist())
-    if isinstance(value, np.random.Generator):
-        return str(value.bit_generator.state)
-    if isinstance(value, np.random.RandomState):
-        return str(value.get_state(legacy=False))
-    if isinstance(value, random.Random):
-        return str(value.getstate())
+    for kind, generator_state in _GENERATORS.items():
+        if isinstance(value, kind):
+            return str(generator_state(value))
     if isinstance(value, _DATA):
         return repr(value)
-    if type(value) in (list, tuple, deque) and all(type(part) in _SCALARS for part in value):
-        return repr(value)
-    if type(value) in (set, frozenset) and all(type(part) in _SCALARS for part in value):
-        return repr(sorted(map(repr, value)))
-    if type(value) is dict and all(
-        type(part) in _SCALARS for pair in value.items() for part in pair
-    ):
-        return repr(value)
+    if type(value) in (list, tuple, deque, set, frozenset, dict):
+        pairs = value.items() if isinstance(value, dict) else [(0, part) for part in value]
+        if all(type(part) in _SCALARS for pair in pairs for part in pair):
+            unordered = isinstance(value, (set, frozenset))
+            return repr(sorted(map(repr, value)) if unordered else value)
     return None
 
 
@@ -368,26 +389,3 @@ def _is_filled(cell: types.CellType) -> bool:
         return cell.cell_contents is not cell
     except ValueError:
         return False
-
-
-def networks(agent: Any) -> list[nn.Module]:
-    """The networks that ``agent`` is or holds."""
-    return [*read_state(agent, attributes=False).networks.values()]
-
-
-@contextmanager
-def in_eval_mode(agent: Any) -> Iterator[None]:
-    """Put every network of ``agent`` into eval mode by its own ``eval()``, which may do more;
-    afterwards each module has its former mode."""
-    tops = [net for net in networks(agent) if hasattr(net, "training")]  # frozen programs have none
-    modules = [module for net in tops for module in net.modules() if hasattr(module, "training")]
-    modes = {module: module.training for module in modules}
-    for net in tops:
-        net.eval()
-    try:
-        yield
-    finally:
-        for net in tops:
-            net.train(modes[net])
-        for module, training in modes.items():
-            module.training = training

@@ -16,11 +16,11 @@ from mitigate.bridge.cell import DONE, Cell, files_of, left_out, write_done
 from mitigate.bridge.events import EVENTS, LOCK, put_aside
 from mitigate.bridge.hook import mitigate_hook
 from mitigate.bridge.program import GRACE, Command
-from mitigate.bridge.recording import delete_left
 from mitigate.bridge.results import Told
 from mitigate.bridge.server import Listener
 from mitigate.core import output
 from mitigate.core.files import make_folder
+from mitigate.core.locks import delete_abandoned
 from mitigate.core.names import counted
 from mitigate.core.output import open_output
 from mitigate.core.signals import unbroken
@@ -80,7 +80,7 @@ class Attempt:
         if chosen is not None and not any(chosen.folder.glob(f"conditions/*/{DONE}")):
             chosen.forget()  # of a run that came to nothing
         if cell.recording is not None:
-            delete_left(cell.recording)
+            delete_abandoned(cell.recording.glob("*/.*.tmp"))
         self.files = files_of(cell.command)
         self.listener = Listener(cell.condition, folder, cell.patience).__enter__()
         words = self._words()
@@ -131,7 +131,7 @@ class Attempt:
         self._settle()
         self.kill()
         problem = self._problem(status)
-        if cell.clean is not None and cell.beyond():  # clean is no measure of this one
+        if cell.clean is not None and cell.extra_episodes():  # clean is no measure of this one
             (cell.clean / DONE).unlink(missing_ok=True)
         if not problem:
             entries = {**cell.settings, "condition": cell.corruption.name}
@@ -203,7 +203,7 @@ class Attempt:
             return (
                 f"a process of the command ended in the middle of episode {told.lost[0]}, and "
                 f"nothing was heard of any other for {silent:.0f} s; the command was stopped. "
-                f"{CRASH}{self.cell.said()}"
+                f"{CRASH}{self.cell.output_excerpt()}"
             )
         return None
 
@@ -215,7 +215,7 @@ class Attempt:
             return told.refused[0]
         if status:
             hint = f"\n{CRASH}" if told.lost else ""
-            return f"the command ended with status {status}.{self.cell.said()}{hint}"
+            return f"the command ended with status {status}.{self.cell.output_excerpt()}{hint}"
         if self.left and not told.lost:
             return self._ran_on()
         return self._unseen(told) or self._unfinished(told) or self._too_few(told)
@@ -228,7 +228,7 @@ class Attempt:
             f"the command ended, but {count} that it started "
             f"ran on: {names}. They were ended, and the condition is not finished. The command "
             "must wait for what it starts (without &, nohup or setsid), and must end its helpers "
-            f"itself. Change it, and run again.{self.cell.said()}"
+            f"itself. Change it, and run again.{self.cell.output_excerpt()}"
         )
 
     def _too_few(self, told: Told) -> str:
@@ -242,7 +242,8 @@ class Attempt:
         return (
             f"the command ended after {counted(len(told.ends), 'episode')}, and {who} {least}. Let "
             "it run all of them; if it is to run fewer, choose these by episodes=, or give "
-            f"wanted() these alone. Then run again; the condition is measured again.{cell.said()}"
+            f"wanted() these alone. Then run again; the condition is "
+            f"measured again.{cell.output_excerpt()}"
         )
 
     def _unseen(self, told: Told) -> str:
@@ -251,14 +252,14 @@ class Attempt:
             return (
                 "the command ended, but no Python process of it loaded the hook. Does a script "
                 "replace PYTHONPATH (let it append), does it run python with -E, -I or -S, or in a "
-                f"container (docs/bridge.md)?{self.cell.said()}"
+                f"container (docs/bridge.md)?{self.cell.output_excerpt()}"
             )
         if not told.hellos:
             return (
                 "the command ended, and its Python loaded the hook, but it imported neither "
                 "habitat-lab nor habitat-sim and never called mitigate_hook.connect, so that "
                 "nothing of it passed the bridge. A loop of your own calls three functions "
-                f"(docs/bridge.md).{self.cell.said()}"
+                f"(docs/bridge.md).{self.cell.output_excerpt()}"
             )
         if mitigate_hook.ADAPTERS in self.cell.environment and not told.adapted:
             return (
@@ -270,7 +271,7 @@ class Attempt:
                 "the command ended without an episode. Did it find results of an earlier run, or "
                 "of another condition? Delete them, and let it write to {out} in the command, "
                 f"which stands for {self.cell.folder}: of each condition one, empty as it starts."
-                f"{self.cell.said()}"
+                f"{self.cell.output_excerpt()}"
             )
         return ""
 
@@ -280,22 +281,22 @@ class Attempt:
         if told.lost:
             return (
                 f"the command ended, but {left_out(told)}. Run again; the condition is measured "
-                f"anew. {CRASH}{cell.said()}"
+                f"anew. {CRASH}{cell.output_excerpt()}"
             )
         if told.connected > 0:
             return (
                 "the command ended, but processes of it went on, and nobody knows what they left "
                 "in the middle: let it wait for them, and run again."
             )
-        missing = cell.missing()
+        missing = cell.missing_episodes()
         if missing:
             return (
-                f"{cell.lacking(missing)}, such as {missing[0]}: a process of it died or gave up "
-                "before its first step, or it draws its episodes at random (fix its seed, and "
-                "choose some by episodes=). Run again; the condition is measured anew. "
-                f"{CRASH}{cell.said()}"
+                f"{cell.describe_missing(missing)}, such as {missing[0]}: a process of it died or "
+                "gave up before its first step, or it draws its episodes at random (fix its seed, "
+                "and choose some by episodes=). Run again; the condition is measured anew. "
+                f"{CRASH}{cell.output_excerpt()}"
             )
-        beyond = cell.beyond()
+        beyond = cell.extra_episodes()
         if beyond:
             return (
                 f"{counted(len(beyond), 'episode')} ended under it that clean's run lacks, such as "

@@ -158,20 +158,23 @@ class Cell:
         return self.folder / LOG
 
     def entries(self) -> dict[str, Any] | None:
-        """What was recorded as it ended, None if it has not. Raises ValueError for damage."""
+        """Return the entries of ``done.json``; None if the condition is not finished.
+
+        Raises ValueError for a damaged file, and if the events are not those of the entries.
+        """
         return read_done(self.folder)
 
-    def others(self) -> list[str]:
-        """The settings with another value than it was finished with."""
+    def changed_settings(self) -> list[str]:
+        """Return the settings whose value is not the one that it was finished with."""
         entries = self.entries() or self.settings
         return [name for name, value in self.settings.items() if entries.get(name) != value]
 
     def is_done(self) -> bool:
-        """Whether it is finished and whole. Raises ValueError if it is with other settings."""
+        """Return whether it is finished and complete. Raises ValueError for other settings."""
         entries = self.entries()
         if entries is None:
             return False
-        if other := self.others():
+        if other := self.changed_settings():
             raise ValueError(
                 f"{self.folder} was run with another "
                 f"{', '.join(other)} ({entries.get(other[0])!r}, now {self.settings[other[0]]!r}). "
@@ -183,14 +186,14 @@ class Cell:
                 f"version. Move {self.folder} out of {self.folder.parent} and run the same command "
                 "again."
             )
-        return not self.why_anew()
+        return not self.reason_to_repeat()
 
-    def why_anew(self) -> str:
-        """Why it is measured anew, though it was finished; empty if it need not be."""
+    def reason_to_repeat(self) -> str:
+        """Return why a finished condition is measured again; empty if it need not be."""
         if self.entries() is None:
             return ""
-        if missing := self.missing():
-            return self.lacking(missing)
+        if missing := self.missing_episodes():
+            return self.describe_missing(missing)
         told = self.told()
         if told.lost:  # measured with another count_closed, or by an older version
             return left_out(told)
@@ -198,48 +201,50 @@ class Cell:
             return f"it was not recorded in {self.recording}, or not all of it"
         return ""
 
-    def changed(self, files: dict[str, Any]) -> list[str]:
-        """The files of the command that are not as in ``files``, if it is finished."""
+    def changed_files(self, files: dict[str, Any]) -> list[str]:
+        """Return the files of a finished condition's command that differ from ``files``."""
         before = (self.entries() or {}).get("files", {})
         return [name for name, told in before.items() if files.get(name) != told]
 
-    def missing(self) -> list[str]:
-        """Episodes of the clean condition that did not end under this one."""
-        return sorted(self.of_clean() - self.told().ends.keys())
+    def missing_episodes(self) -> list[str]:
+        """Return the episodes of the clean condition that did not end under this one."""
+        return sorted(self.clean_episodes() - self.told().ends.keys())
 
-    def of_clean(self) -> set[str]:
-        """The episodes that ended under the clean condition; empty for itself."""
+    def clean_episodes(self) -> set[str]:
+        """Return the episodes that ended under the clean condition; empty for that itself."""
         if self.clean is None:
             return set()
         return set(results.read(self.clean, self.count_closed).ends)
 
-    def beyond(self) -> list[str]:
-        """Episodes that ended under this condition and not under clean, whose run lost them."""
-        clean = self.of_clean()
+    def extra_episodes(self) -> list[str]:
+        """Return the episodes that ended under this condition but not under the clean one."""
+        clean = self.clean_episodes()
         return sorted(self.told().ends.keys() - clean) if clean else []
 
-    def said(self) -> str:
-        """What an error repeats of the command's output."""
+    def output_excerpt(self) -> str:
+        """Return what an error repeats of the command's output."""
         tail = self.tail()
         return f"\nThe end of {self.log}:\n{tail}" if tail else " It printed nothing."
 
     def tail(self) -> str:
-        """The last lines of the command's output."""
+        """Return the last lines of the command's output."""
         lines = self.log.read_text("utf-8", "replace").splitlines() if self.log.is_file() else []
         return "\n".join(f"  | {line}" for line in lines[-TAIL:])
 
     def told(self) -> Told:
-        """What its processes told so far."""
+        """Return what its processes reported so far."""
         return results.read(self.folder, self.count_closed)
 
     def rows(self) -> list[Row]:
-        """The result rows."""
+        """Return the result rows."""
         clean = None if self.clean is None else results.read(self.clean, self.count_closed)
         return results.rows(self.told(), self.corruption, self.label, self.rule, clean)
 
     def unjudged(self) -> str:
-        """What ``rule=`` needs to judge episodes of a condition and they do not tell; empty if it
-        can judge all: of some alone, success would be another."""
+        """Return why ``rule=`` cannot judge every episode; empty if it can.
+
+        The success rate of some episodes alone would be another one.
+        """
         told = self.told()
         missing = {} if self.rule is None else results.unjudged(told, self.rule)
         if not missing:
@@ -254,15 +259,16 @@ class Cell:
             own = ", or leave rule= out to count the told success"
         return f"rule={self.rule} needs to know {what}, which {who}: finish({unknown}=...){own}."
 
-    def lacking(self, missing: list[str]) -> str:
+    def describe_missing(self, missing: list[str]) -> str:
         """Return "3 of clean's 6 episodes are missing"."""
         verb = "is" if len(missing) == 1 else "are"
         return (
-            f"{len(missing)} of clean's {counted(len(self.of_clean()), 'episode')} {verb} missing"
+            f"{len(missing)} of clean's {counted(len(self.clean_episodes()), 'episode')} {verb} "
+            "missing"
         )
 
-    def strange(self) -> str:
-        """What is strange in what a condition's cameras read; empty if nothing is."""
+    def depth_warning(self) -> str:
+        """Return a warning of depth that may be normalised; empty if none may be."""
         names = near(self.told())
         if not names:
             return ""
@@ -272,7 +278,7 @@ class Cell:
         )
 
     def summary(self) -> str:
-        """How far it is: "41 episodes, success 58.5 (own: ...), 2 without a path ..."."""
+        """Return its progress: "41 episodes, success 58.5 (own: ...), 2 without a path ..."."""
         told, found = self.told(), self.rows()
         asks = "" if self.rule is None else str(RULES[self.rule])
         first = asks or (found[0]["rule"] if found else "")
@@ -296,7 +302,7 @@ class Cell:
         return ", ".join(said)
 
     def _asked(self, told: Told) -> str:
-        """Whether many more episodes were walked than were asked for, and why."""
+        """Return why many more episodes ran than were asked for; empty if they did not."""
         count = len(told.ends) if self.chosen is None else self.chosen.count
         if len(told.ends) <= 1.5 * count:
             return ""

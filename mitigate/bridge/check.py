@@ -5,6 +5,7 @@ Says what it sees and hears, which conditions of the suite apply, and draws what
 
 from __future__ import annotations
 
+import io
 import time
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -16,11 +17,11 @@ import numpy as np
 
 from mitigate.bridge.attempt import Attempt
 from mitigate.bridge.cameras import Group, Rig, corrupted
-from mitigate.bridge.condition import applicable, untold
+from mitigate.bridge.condition import Observer, applicable, untold
 from mitigate.bridge.config import RunConfig, check_options, name_of
 from mitigate.bridge.plan import Plan, cells
 from mitigate.bridge.results import NEAR, NORMALISED, Told
-from mitigate.core.files import write_atomically, write_bytes
+from mitigate.core.files import write_bytes
 from mitigate.core.observation import DEPTH, RGB
 from mitigate.core.output import output_folder
 from mitigate.core.pictures import depth_picture
@@ -36,14 +37,11 @@ TRIED = 40  # calls, until one is taken in which a corruption acts: some come an
 
 
 @dataclass
-class FirstLook:
+class FirstLook(Observer):
     """Keeps the frames of the first call in a file."""
 
     file: Path
-    kinds: ClassVar = (RGB, DEPTH)
-
-    def episode(self, told: Mapping[str, Any]) -> None:
-        """Nothing: the events tell of it."""
+    kinds: ClassVar[tuple[str, ...]] = (RGB, DEPTH)
 
     def frame(
         self, told: Mapping[str, Any], rig: Rig, memory: Any, offsets: Mapping[str, int]
@@ -53,18 +51,9 @@ class FirstLook:
             frames = {of(c.name): c.read(memory, offsets) for c in rig.cameras}
             heading = told.get("heading")
             frames[HEADING] = np.array([] if heading is None else [heading])
-            write_atomically(self.file, lambda path: _save(path, frames))
-
-    def end(self, told: Mapping[str, Any]) -> None:
-        """Nothing: one look is enough."""
-
-    def leave(self) -> None:
-        """Nothing: the look stays."""
-
-
-def _save(path: Path, frames: dict[str, np.ndarray]) -> None:
-    with open(path, "wb") as file:
-        np.savez(file, **frames)  # type: ignore[arg-type]
+            packed = io.BytesIO()
+            np.savez(packed, **frames)  # type: ignore[arg-type]
+            write_bytes(self.file, packed.getvalue())
 
 
 def check(config: RunConfig, command: Sequence[str]) -> Path | None:

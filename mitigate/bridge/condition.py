@@ -13,7 +13,7 @@ import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from mitigate.bridge.results import Told
 from mitigate.core.files import atomic_text
@@ -26,6 +26,9 @@ from mitigate.corruptions.language.tokens import VOCABULARY, Tokenizer, tokenize
 from mitigate.guards.guard import NO_GUARDS, EpisodeStart, Guards
 from mitigate.worlds.episodes import read_extras
 
+if TYPE_CHECKING:
+    from mitigate.bridge.cameras import Rig
+
 SETTLED = 4.0  # seconds without another environment, after which all are taken to be known (ours)
 NO_TOKENIZER = (
     "the agent's episodes hold instruction tokens beside the text, and no tokenizer was named, so "
@@ -35,13 +38,33 @@ NO_TOKENIZER = (
 )
 
 
+class Observer:
+    """Sees what passes before it is corrupted; the methods of this class do nothing."""
+
+    kinds: ClassVar[tuple[str, ...]] = ()  # of the cameras that it needs to see
+
+    def episode(self, told: Mapping[str, Any]) -> None:
+        """Take what is told of an episode that begins."""
+
+    def frame(
+        self, told: Mapping[str, Any], rig: Rig, memory: Any, offsets: Mapping[str, int]
+    ) -> None:
+        """Take the frames of a call, which lie in ``memory``."""
+
+    def end(self, told: Mapping[str, Any]) -> None:
+        """Take how the episode went."""
+
+    def leave(self) -> None:
+        """Take that the episode did not end."""
+
+
 @dataclass
 class Condition:
     """What a command meets: the corruption, its seed, and how it is applied.
 
     repeat: number of this run of the same condition; part of the keys where it is not 0. missing:
     metres that a hole reads. turn: where a growing yaw turns. guards: change words and
-    frames behind the corruption. observers: told of every episode and frame, before its
+    frames behind the corruption. observers: see every episode and frame, before its
     corruption (``recording.py``).
     """
 
@@ -53,7 +76,7 @@ class Condition:
     turn: str = "left"
     keep: Callable[[list[str], int], list[int]] | None = None
     guards: Guards = NO_GUARDS
-    observers: list[Any] = field(default_factory=list)
+    observers: list[Observer] = field(default_factory=list)
 
     def key(self, scene: str, episode: str, frame: int) -> Key:
         """Names the draw: seed, scene file and episode id, number of the call."""

@@ -18,7 +18,7 @@ from mitigate.cluster import launcher  # noqa: F401 - registers the kinds of con
 from mitigate.core import conf
 from mitigate.core.files import make_folder
 from mitigate.core.names import short, unknown
-from mitigate.evaluation import conditions  # noqa: F401 - registers the resolvers of conf/suite
+from mitigate.evaluation.conditions import suite_conditions
 from mitigate.evaluation.rows import allowed
 from mitigate.guards.text.addresses import check_choice
 from mitigate.worlds.measures import RULES
@@ -59,7 +59,7 @@ class RunConfig:
     @property
     def names(self) -> list[str]:
         """The conditions that are asked for, by name: clean first, each once."""
-        names = self.suite["conditions"] if self.conditions is None else self.conditions
+        names = suite_conditions(self.suite) if self.conditions is None else self.conditions
         if self.corruption is not None:
             names = [self.corruption]
         return list(dict.fromkeys(["clean", *names]))

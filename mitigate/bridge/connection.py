@@ -25,9 +25,6 @@ from mitigate.bridge.hook import mitigate_hook
 from mitigate.bridge.hook.mitigate_hook import BROKEN, LONGEST, receive, send
 from mitigate.core.names import short, unknown
 
-# of messages, behind "hello"
-KINDS = ("spec", "episode", "frame", "end", "dataset", "adapted", "stopped")
-
 
 def numbered(message: Mapping[str, Any], answer: dict[str, Any]) -> dict[str, Any]:
     """An answer with the number of its message, by which it is known for it."""
@@ -103,6 +100,15 @@ class Connection:
     ) -> None:
         self.channel, self.condition, self.folder = channel, condition, folder
         self.token, self.shared = token, SharedMemory(memory)
+        self.answers = {  # by the kind of a message, behind "hello"
+            "spec": self.on_spec,
+            "episode": self.on_episode,
+            "frame": self.on_frame,
+            "end": self.on_end,
+            "dataset": self.on_dataset,
+            "adapted": self.on_adapted,
+            "stopped": self.on_stopped,
+        }
         self.rig: Rig | None = None
         self.offsets: dict[str, int] = {}
         self.scene = self.episode = ""
@@ -136,9 +142,9 @@ class Connection:
     def _answer(self, message: Mapping[str, Any]) -> dict[str, Any]:
         kind = str(message.get("kind"))
         try:
-            if kind not in KINDS:
-                raise ValueError(unknown("kind of message", kind[:40], KINDS))
-            answer = getattr(self, f"on_{kind}")(message)
+            if kind not in self.answers:
+                raise ValueError(unknown("kind of message", kind[:40], self.answers))
+            answer = self.answers[kind](message)
             os.utime(self.folder / EVENTS)  # a sign of life
         except Exception as error:  # whatever it is, the agent must be told
             problem = _said(kind, error)

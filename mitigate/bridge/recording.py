@@ -22,9 +22,9 @@ import cv2
 import numpy as np
 
 from mitigate.bridge.cameras import Camera, Rig
+from mitigate.bridge.condition import Observer
 from mitigate.core import output
 from mitigate.core.files import RECORDING, atomic_text, write_bytes
-from mitigate.core.locks import is_alive
 from mitigate.core.observation import DEPTH, RGB
 from mitigate.core.output import open_output
 from mitigate.corruptions.frame_files import counts
@@ -34,7 +34,6 @@ CAMERAS = "cameras.json"
 LONGEST = 150  # characters of a name that are kept in a path (ours; a file name has 255 bytes)
 UNIT = 0.001  # metres of a count of 16-bit depth
 _PLAIN = re.compile(r"[^A-Za-z0-9._-]+")
-_LEFT = re.compile(r"\..+\.(\d+)\.tmp")  # the folder of an episode that a process is in
 
 
 def plain(name: str) -> str:
@@ -52,7 +51,7 @@ def part(name: str) -> str:
 
 
 @dataclass
-class Recorder:
+class Recorder(Observer):
     """Writes what passes into ``folder``; of an episode that comes again the one that ended last
     stays: until its end it lies in a folder beside."""
 
@@ -60,7 +59,7 @@ class Recorder:
     here: Path | None = None
     place: Path | None = None  # where it is put at its end
     cameras: dict[str, Any] = field(default_factory=dict)  # of the episode
-    kinds: ClassVar = (RGB, DEPTH)  # of the cameras that it needs to see
+    kinds: ClassVar[tuple[str, ...]] = (RGB, DEPTH)
 
     def episode(self, told: Mapping[str, Any]) -> None:
         """Begin the folder of an episode."""
@@ -116,14 +115,6 @@ class Recorder:
         if self.here is not None:
             shutil.rmtree(self.here, ignore_errors=True)
         self.here = self.place = None
-
-
-def delete_left(folder: Path) -> None:
-    """Delete the episodes in a recording that processes were in which are no more."""
-    for path in folder.glob("*/.*.tmp"):
-        found = _LEFT.fullmatch(path.name)
-        if found and not is_alive(int(found[1])):
-            shutil.rmtree(path, ignore_errors=True)
 
 
 def is_whole(folder: Path, ends: Iterable[Mapping[str, Any]]) -> bool:

@@ -102,8 +102,8 @@ def earlier(made: Sequence[Cell], out: Path) -> tuple[list[Cell], list[str]]:
             continue
         cell, reason = _cell(made[0], file), "by an older version, or of a corruption that is gone"
         if cell is not None:
-            reason = ", ".join(f"another {name}" for name in cell.others()) or cell.why_anew()
-            reason = reason or cell.unjudged()
+            reason = ", ".join(f"another {name}" for name in cell.changed_settings())
+            reason = reason or cell.reason_to_repeat() or cell.unjudged()
         if cell is None or reason:
             name = file.parent.name
             print(f"{name}: measured before, but not in the table: {reason}", flush=True)

@@ -79,7 +79,7 @@ def _measure(plan: Plan, made: Sequence[Cell]) -> Path:
     if problems:
         raise ValueError("\n".join(problems))
     _check_rule([clean])
-    strange = clean.strange()
+    strange = clean.depth_warning()
     if strange:
         print(strange, flush=True)  # before hours of the others, and at the end
     fitting, unheard = _fitting(made)
@@ -98,7 +98,7 @@ def _measure(plan: Plan, made: Sequence[Cell]) -> Path:
     _warn_of_changes([clean, *fitting], out, known if nothing else ())
     problems += _vanished(fitting, problems)
     if not clean.is_done():  # a condition showed that it is not whole
-        raise ValueError("\n".join(problems) or f"{clean.name}: {clean.why_anew()}")
+        raise ValueError("\n".join(problems) or f"{clean.name}: {clean.reason_to_repeat()}")
     try:
         write_report([clean, *fitting], out)
     except ValueError as error:  # conditions that failed are told first
@@ -153,7 +153,7 @@ def _warn_of_changes(made: Sequence[Cell], out: Path, known: Sequence[str] = ())
     changed: dict[str, list[str]] = {}
     now = files_of(made[0].command)
     for cell in made:
-        for file in cell.changed(now):
+        for file in cell.changed_files(now):
             changed.setdefault(file, []).append(cell.name)
     for file, names in changed.items():
         if file in known:
@@ -216,7 +216,7 @@ def _run_here(waiting: Sequence[Cell], jobs: int) -> list[str]:
 def _begin(attempt: Attempt) -> str:
     """Start an attempt; return why it cannot be, empty if it was."""
     cell = attempt.cell
-    again = f", measured anew: {why}" if (why := cell.why_anew()) else ""
+    again = f", measured anew: {why}" if (why := cell.reason_to_repeat()) else ""
     try:
         attempt.start()
     except ValueError as error:

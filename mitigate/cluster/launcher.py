@@ -4,54 +4,17 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
-from importlib import import_module
 from typing import Any
 
-from hydra.core.config_store import ConfigStore
 from omegaconf import DictConfig, OmegaConf
 
+from mitigate.cluster import ray_actors, slurm_jobs
+from mitigate.cluster.config import LauncherConfig, RayConfig, SlurmConfig
 from mitigate.core import workers
 from mitigate.core.progress import Progress
 from mitigate.core.workers import Task
 
-HOMES = {"ray": "ray_actors", "slurm": "slurm_jobs"}  # by the launcher's name
-
-
-@dataclass
-class LauncherConfig:
-    """Worker processes of this machine. The entries are explained in ``conf/launcher``."""
-
-    name: str = "local"
-
-
-@dataclass
-class RayConfig(LauncherConfig):
-    """Actors on a Ray cluster."""
-
-    name: str = "ray"
-    address: str | None = None
-    cpus: float = 1.0
-    memory: float | None = None
-    attempts: int = 3
-
-
-@dataclass
-class SlurmConfig(LauncherConfig):
-    """Jobs of a SLURM cluster, by submitit."""
-
-    name: str = "slurm"
-    cluster: str = "slurm"
-    folder: str = "runs/slurm"
-    processes: int = 4
-    minutes: int = 240
-    memory: float = 2.0
-    attempts: int = 3
-    options: dict[str, Any] = field(default_factory=dict)
-
-
-for _kind in (LauncherConfig, RayConfig, SlurmConfig):
-    ConfigStore.instance().store(group="launcher", name=f"{_kind.name}_schema", node=_kind)
+__all__ = ["LauncherConfig", "RayConfig", "SlurmConfig", "chosen", "count", "results"]
 
 
 def chosen(node: LauncherConfig | DictConfig) -> LauncherConfig:
@@ -63,14 +26,11 @@ def chosen(node: LauncherConfig | DictConfig) -> LauncherConfig:
         value = vars(launcher).get(name)
         if value is not None and not 0 < value < math.inf:
             raise ValueError(f"launcher.{name}={value:g} must be above 0, and no infinity.")
-    if launcher.name != "local":
-        _home(launcher).check(launcher)
+    if isinstance(launcher, RayConfig):
+        ray_actors.check(launcher)
+    if isinstance(launcher, SlurmConfig):
+        slurm_jobs.check(launcher)
     return launcher
-
-
-def _home(launcher: LauncherConfig) -> Any:
-    """The module of a launcher of other machines."""
-    return import_module(f"mitigate.cluster.{HOMES[launcher.name]}")
 
 
 def count(launcher: LauncherConfig, wanted: int | None, jobs: int, worth: int) -> int:
@@ -82,9 +42,10 @@ def count(launcher: LauncherConfig, wanted: int | None, jobs: int, worth: int) -
         raise ValueError(f"workers={wanted}: give 1 or more, or null.")
     if wanted is not None:
         return wanted
-    if launcher.name == "ray":
-        return _home(launcher).room(launcher)
-    return max(1, jobs // (worth * launcher.processes))  # type: ignore[attr-defined]
+    if isinstance(launcher, SlurmConfig):
+        return max(1, jobs // (worth * launcher.processes))
+    assert isinstance(launcher, RayConfig)
+    return ray_actors.room(launcher)
 
 
 def results(
@@ -97,14 +58,8 @@ def results(
     """As ``core.workers.results``, on ``started`` workers of the launcher: (number of the job, its
     result) as they come, each once, whatever dies. Raises WorkersDied when a group of jobs was lost
     too often, and what a job raises."""
-    if launcher.name == "local":
-        return workers.results(task, groups, started, progress)
-    return _home(launcher).results(task, groups, started, progress, launcher)
-
-
-def lost(what: str, attempts: int, done: int, total: int) -> workers.WorkersDied:
-    """The error for a group of jobs that no worker finished."""
-    return workers.WorkersDied(
-        f"{what} was lost with its worker {attempts} times. {done} of {total} jobs are finished. "
-        "Look at the nodes' logs; if memory ran out, reserve more (launcher.memory=4)."
-    )
+    if isinstance(launcher, RayConfig):
+        return ray_actors.results(task, groups, started, progress, launcher)
+    if isinstance(launcher, SlurmConfig):
+        return slurm_jobs.results(task, groups, started, progress, launcher)
+    return workers.results(task, groups, started, progress)

@@ -19,7 +19,7 @@ from typing import ClassVar
 
 from mitigate.cluster import launcher as launchers
 from mitigate.cluster import tied
-from mitigate.cluster.launcher import LauncherConfig
+from mitigate.cluster.config import LauncherConfig
 from mitigate.core.files import make_folder
 from mitigate.core.output import open_output
 from mitigate.core.progress import Progress

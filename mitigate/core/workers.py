@@ -12,6 +12,7 @@ import multiprocessing
 import os
 import pickle
 import signal
+import sys
 import time
 import traceback
 from collections import deque
@@ -53,13 +54,21 @@ class WorkersDied(ValueError):
     """Workers died more often than they are replaced; the results so far were handed out."""
 
 
+def lost(what: str, attempts: int, done: int, total: int) -> WorkersDied:
+    """The error for a group of jobs that no worker finished."""
+    return WorkersDied(
+        f"{what} was lost with its worker {attempts} times. {done} of {total} jobs are finished. "
+        "Look at the nodes' logs; if memory ran out, reserve more (launcher.memory=4)."
+    )
+
+
 def cores() -> int:
     """Processor cores that this process may use; the environment variable PYTHON_CPU_COUNT, which
     Python itself reads from 3.13 on, says another number."""
     told = os.environ.get("PYTHON_CPU_COUNT", "")
     if told.isdigit() and int(told) > 0:
         return int(told)
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    return len(os.sched_getaffinity(0)) if sys.platform == "linux" else os.cpu_count() or 1
 
 
 def count(wanted: int | None, jobs: int, worth: int) -> int:

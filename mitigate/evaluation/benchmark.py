@@ -15,8 +15,8 @@ from omegaconf.errors import OmegaConfBaseException
 
 from mitigate.agents.agent import as_agent
 from mitigate.agents.loading import agent_option
+from mitigate.agents.networks import in_eval_mode
 from mitigate.agents.observation import check_fits
-from mitigate.agents.state import in_eval_mode
 from mitigate.cluster.launcher import count
 from mitigate.core import conf, seeding
 from mitigate.core.build import located, maker

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from typing import TYPE_CHECKING
+from collections.abc import Iterable, Mapping
+from typing import TYPE_CHECKING, Any
 
 from omegaconf import OmegaConf
 
@@ -31,6 +31,13 @@ def unseen_of(half: str, *modalities: str) -> list[str]:
 
 OmegaConf.register_new_resolver("suite", suite_of, replace=True)
 OmegaConf.register_new_resolver("unseen", unseen_of, replace=True)
+
+
+def suite_conditions(suite: Mapping[str, Any]) -> list[str]:
+    """Return the names of a suite's conditions. Raises ValueError for a suite without them."""
+    if "conditions" not in suite:
+        raise ValueError("suite has no conditions. List them in its file: conditions: [clean, ...]")
+    return list(suite["conditions"])
 
 
 def conditions(names: list[str], severity: float, severity_depth: float | None) -> list:

@@ -22,8 +22,8 @@ from typing import Any, ClassVar
 import torch
 
 from mitigate.agents.agent import Agent, as_agent
+from mitigate.agents.networks import in_eval_mode, networks
 from mitigate.agents.observation import check_fits
-from mitigate.agents.state import in_eval_mode, networks
 from mitigate.cluster.launcher import LauncherConfig, count, results
 from mitigate.core import workers as processes
 from mitigate.core.checkpoint import check_finite, weights_sha

@@ -26,7 +26,7 @@ from mitigate.core.json_files import read_json
 from mitigate.core.locks import FolderLock
 from mitigate.core.names import name_of, short
 from mitigate.core.options import paths_and_overrides
-from mitigate.evaluation.conditions import conditions
+from mitigate.evaluation.conditions import conditions, suite_conditions
 from mitigate.guards.guard import NO_GUARDS, Guards
 
 DECISIONS, TABLE, SETTINGS = "decisions.jsonl", "table.md", "replay.json"
@@ -78,7 +78,7 @@ class ReplayConfig:
     @property
     def names(self) -> list[str]:
         """The conditions that are asked for, by name."""
-        return self.suite["conditions"] if self.conditions is None else self.conditions
+        return suite_conditions(self.suite) if self.conditions is None else self.conditions
 
 
 conf.register("replay", ReplayConfig)
@@ -193,7 +193,7 @@ def _settings(
     from mitigate.core.checkpoint import weights_sha
 
     kept = {key: value for key, value in asdict(config).items() if key not in UNSAVED}
-    kept["conditions"] = config.conditions or config.suite["conditions"]
+    kept["conditions"] = config.conditions or suite_conditions(config.suite)
     shas = {name: weights_sha(agent) for name, agent in agents.items()}
     return {**kept, "drives": [str(Path(path).resolve()) for path in paths], "weights": shas}
 

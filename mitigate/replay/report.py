@@ -9,7 +9,7 @@ import cv2
 import numpy as np
 from matplotlib.figure import Figure
 
-from mitigate.core.files import write_atomically, write_bytes
+from mitigate.core.files import write_bytes, write_figure
 from mitigate.core.markdown import markdown_of, markdown_table
 from mitigate.core.observation import DEPTH, RGB, VIEWS
 from mitigate.core.pictures import depth_picture, strip
@@ -108,9 +108,7 @@ def heatmap(found: Found, severity: float, path: Path) -> Path:
     axes.set_xticks(range(len(agents)), [*map(plain, agents)], rotation=25, ha="right", fontsize=9)
     axes.set_yticks(range(len(names)), [label(name) for name in names], fontsize=9)
     axes.set_title(f"changed decisions, %, severity {severity:g}", fontsize=10)
-    return write_atomically(
-        path, lambda draft: figure.savefig(draft, dpi=DPI, facecolor="white", format="png")
-    )
+    return write_figure(path, figure, dpi=DPI, facecolor="white")
 
 
 def spread(changed: Sequence[int]) -> list[int]:

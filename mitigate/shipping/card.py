@@ -219,6 +219,7 @@ def _cell(found: list[float | None]) -> str:
 
 
 def _use(card: dict[str, Any]) -> str:
+    listed = "card.json" if "files" in card else "manifest.json"  # of an older version, of today
     load = f'mitigate.load_hardened("checkpoints/hardened/{card["name"]}"'
     if not card.get("program", True):
         own = loading.is_ours(card.get("class", ""))
@@ -226,7 +227,7 @@ def _use(card: dict[str, Any]) -> str:
         return (
             f"## Use\n\n```python\nimport mitigate\n\nagent = {load}"
             f"{'' if own else ', agent=Mine(...)'})\n```\n\n{'' if own else built}Files are "
-            "compared with the sha256 in `card.json` first. A fresh process reloaded the folder "
+            f"compared with the sha256 in `{listed}` first. A fresh process reloaded the folder "
             f"and walked {card['checked']['walks']} episodes to the same measures."
         )
     times, checked = card["latency_ms"], card["checked"]
@@ -239,7 +240,7 @@ def _use(card: dict[str, Any]) -> str:
     table = markdown_table(["network", "fastest", "processor"], rows)
     return (
         f"## Use\n\n```python\nimport mitigate\n\nagent = {load})\n```\n\n"
-        "Files are compared with the sha256 in `card.json` first. `program.pt2` runs a decision "
+        f"Files are compared with the sha256 in `{listed}` first. `program.pt2` runs a decision "
         "without this code; `program.json` describes its inputs. Where `program.pt2` is missing, "
         "`mitigate export FOLDER --programs` writes it. Reloaded in a fresh process, "
         f"the outputs on a fixed probe were equal within {checked['reload_tolerance']:g} (agent) "

@@ -16,11 +16,15 @@ from torch.nn.utils.parametrizations import weight_norm
 
 from mitigate.agents.adapters import insert_adapters
 from mitigate.agents.fingerprint import contents, fingerprint, source_of
-from mitigate.agents.state import in_eval_mode
+from mitigate.agents.frontier import FrontierAgent
+from mitigate.agents.networks import in_eval_mode
+from mitigate.agents.recurrent import RecurrentAgent
 from mitigate.agents.text import WORDS
 from mitigate.agents.topological import TopologicalAgent
-from mitigate.core import seeding
-from mitigate.core.observation import cameras
+from mitigate.core import conf, seeding
+from mitigate.core.build import maker
+from mitigate.core.observation import STOP, cameras
+from mitigate.evaluation.episode_lists import episodes
 
 SMALL = {"heads": 2, "text_layers": 1, "layers": 1}
 
@@ -408,3 +412,86 @@ def test_kinds_of_agents_do_not_depend_on_module_paths(monkeypatch):
     for kind in (TopologicalAgent, Owner):
         monkeypatch.setattr(kind, "__module__", f"{kind.__module__}_moved")
     assert (fingerprint(agent(), {}), fingerprint(owner(), {})) == before
+
+
+SHIPPED = {
+    "topological": (TopologicalAgent, {"planner": SMALL}, "planner"),
+    "recurrent": (RecurrentAgent, {}, "policy"),
+    "frontier": (FrontierAgent, {}, "rgb_encoder"),
+}
+
+
+def shipped(kind: str) -> nn.Module:
+    seeding.seed_everything(0, "shipped")
+    made, settings, _ = SHIPPED[kind]
+    return made(**settings)
+
+
+def _other_activation(agent, part):
+    agent.rgb_encoder.stem[2] = nn.GELU()
+
+
+def _added_layer(agent, part):
+    getattr(agent, part).further = nn.Identity()
+
+
+def _changed_buffer(agent, part):
+    module = getattr(agent, part)
+    name, *_ = module._non_persistent_buffers_set
+    module._buffers[name] = module._buffers[name] + 1
+
+
+SHIPPED_CHANGES = {
+    "an activation": _other_activation,
+    "a layer": _added_layer,
+    "a layer's attribute": lambda agent, part: setattr(agent.rgb_encoder, "size", 32),
+    "an attribute": lambda agent, part: setattr(agent, "blind", ("rgb",)),
+    "a default of its class": lambda agent, part: setattr(agent, "tasks", ("vln", "ogn")),
+    "a non-persistent buffer": _changed_buffer,
+}
+
+
+@pytest.mark.parametrize("kind", SHIPPED)
+@pytest.mark.parametrize("change", SHIPPED_CHANGES)
+def test_fingerprint_of_a_shipped_agent_notices_changes_beside_its_weights(kind, change):
+    if (kind, change) == ("frontier", "a non-persistent buffer"):
+        pytest.skip("it has none")
+    before, changed = shipped(kind), shipped(kind)
+    assert "changes" not in contents(before).parts
+    SHIPPED_CHANGES[change](changed, SHIPPED[kind][2])
+    assert fingerprint(before, {}) == fingerprint(shipped(kind), {}) != fingerprint(changed, {})
+
+
+@pytest.mark.parametrize("kind", SHIPPED)
+def test_fingerprint_of_a_shipped_agent_stays_while_it_runs(kind):
+    cfg = conf.load_config("evaluate", [f"agent={kind}"])
+    world = maker(cfg.env.world)()
+    (episode,) = episodes(cfg.env, cfg.split, 1)
+    agent = shipped(kind).eval()
+    before = fingerprint(agent, {})
+    random_state = torch.random.get_rng_state()
+    with agent.remembering():
+        observation = world.reset(episode)
+        agent.reset(episode.instruction.text)
+        for _ in range(20):
+            action = agent.act(observation)
+            if action == STOP:
+                break
+            observation = world.step(action)
+        assert fingerprint(agent, {}) == before
+    assert fingerprint(agent, {}) == before
+    assert torch.equal(torch.random.get_rng_state(), random_state)
+
+
+@pytest.mark.parametrize("target", ["rgb_encoder.stages.0", "rgb_encoder.stem"])
+def test_adapters_are_read_completely(target):
+    settings = {"adapters": {"target_modules": [target]}}
+    made = [agent(**settings) for _ in range(2)]
+    assert not contents(made[0]).unreadable
+    assert fingerprint(made[0], {}) == fingerprint(made[1], {}) != fingerprint(agent(), {})
+    users = [owner() for _ in range(2)]
+    for one in users:
+        seeding.seed_everything(0, "adapters")
+        insert_adapters(one.net, ["4"])
+    assert fingerprint(users[0], {}) == fingerprint(users[1], {})
+    assert not contents(users[0]).unreadable

@@ -16,7 +16,8 @@ import torch
 from torch import nn
 
 from mitigate.agents.fingerprint import fingerprint
-from mitigate.agents.state import in_eval_mode, read_state
+from mitigate.agents.networks import in_eval_mode
+from mitigate.agents.state import read_state
 
 
 def net(weight: float = 1.0) -> nn.Linear:

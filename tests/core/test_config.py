@@ -9,6 +9,7 @@ import subprocess
 import sys
 import time
 from dataclasses import replace
+from pathlib import Path
 
 import pytest
 from hydra.utils import get_object
@@ -181,8 +182,9 @@ def test_an_evaluation_takes_the_agents_settings_of_the_command_line(monkeypatch
     table's column says so, because the weights' hash does not."""
     met = {}
 
-    def meet(agent, world, episodes, conditions, *, name, **others):
+    def meet(agent, world, episodes, conditions, *, name, out, **others):
         met[name] = agent
+        out.touch()
 
     monkeypatch.setattr("mitigate.evaluation.evaluator.evaluate", meet)
     monkeypatch.setattr(evaluate, "write_table", lambda *_: None)

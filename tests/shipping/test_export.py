@@ -440,7 +440,7 @@ def test_the_folder_agent_of_a_run_is_answered_with_the_run(place, tmp_path):
     [
         ("mitigate.encoders.model.Encoder", "docs/encoder.md"),
         ("mitigate.guards.frames.restorer.Restorer", "docs/restoration.md"),
-        ("mitigate.guards.text.reader.Reader", "docs/safeguard.md"),
+        ("mitigate.guards.text.language_models.model.LanguageModel", "docs/safeguard.md"),
     ],
 )
 @pytest.mark.parametrize("named", ["run", "run/agent"])
@@ -489,7 +489,7 @@ def test_a_name_is_one_folder(place, tmp_path, name):
 def test_what_does_not_reload_to_the_same_is_not_written(place, exported, tmp_path, monkeypatch):
     monkeypatch.setattr(programs, "export_programs", lambda *_: exported)
     monkeypatch.setattr(programs, "TIMED", 1)
-    monkeypatch.setattr(export, "_CHECK", "raise ValueError('differs')")
+    monkeypatch.setattr(export, "_RUN", "raise ValueError('differs')")
     with pytest.raises(ValueError, match="differs"):
         export.export(place / "runs/whole", "mine", out=tmp_path)
     assert not list(tmp_path.iterdir())
@@ -693,7 +693,8 @@ def test_export_writes_the_program_of_a_shipped_folder(name, tmp_path, monkeypat
     assert f"wrote {folder / loading.PROGRAM}" in capsys.readouterr().out
     agent = loading.load_hardened(folder, base=base_of(before))
     card = loading.read_card(folder)
-    assert card["agent"] == before["agent"] and loading.PROGRAM in card["files"]
+    assert card["agent"] == before["agent"]
+    assert loading.PROGRAM in folders.check(folder).files
     given = programs.probe(agent, SIZE)
     program = programs.load_programs(folder / loading.PROGRAM)
     wanted = programs.outputs(programs.networks(agent), given)

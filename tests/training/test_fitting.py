@@ -63,7 +63,6 @@ def refusal(folder, *options: str) -> str:
         ("dagger", "topological", ["stage policy", "no plain data", "recipe=imitation"]),
         ("encoder", "recurrent", ["stage encoder", "agent=efficientnet_lite0"]),
         ("restore", "frontier", ["stage rgb", "agent=restorer"]),
-        ("safeguard_tagger", "frontier", ["stage tagger", "agent=tagger"]),
         ("da_per_episode", "restorer", ["stage perception_rgb", "no labels, see"]),
     ],
 )
@@ -81,7 +80,7 @@ def test_a_recipe_names_what_the_agent_lacks_and_what_to_do(recipe):
     assert not TinyRecipe.misfit(TinyAgent())
 
 
-@pytest.mark.parametrize("recipe", ["dagger", "base", "safeguard_tagger"])
+@pytest.mark.parametrize("recipe", ["dagger", "base", "safeguard_lora"])
 def test_a_schedule_that_no_stage_draws_from_is_told(recipe, capsys):
     plan.warn_unused_schedule(load(f"recipe={recipe}"))
     assert not capsys.readouterr().out

@@ -108,7 +108,7 @@ def test_what_is_measured_can_be_chosen(tmp_path, option):
         ("+evaluations.mine=pairs", "evaluations.mine=pairs must be a list of options"),
         ('+evaluations.mine=["restore=nope"]', "Evaluation mine: There is no restorer at nope"),
         ('+evaluations.mine=["safeguard=nope"]', "Evaluation mine: There is no safeguard 'nope'"),
-        ('+evaluations.mine=["safeguard=tagger+rules"]', "mine: There is no safeguard"),
+        ('+evaluations.mine=["safeguard=reader+none"]', "mine: There is no safeguard"),
         ('+evaluations.mine=["out=x"]', "Evaluation mine: out=x is for the table.* may have suite"),
         ('+evaluations.mine=["name=x"]', "Evaluation mine: name=x is for the table"),
         ('+evaluations.mine=["seed=5"]', "Evaluation mine: seed=5 is for the table"),
@@ -120,7 +120,7 @@ def test_what_is_measured_can_be_chosen(tmp_path, option):
             '+columns.mine=["restore=checkpoints/restorer:pose"]',
             "Column mine: There are no weights at",
         ),
-        ('+columns.mine=["safeguard=ruls"]', "Column mine: .*Did you mean rules?"),
+        ('+columns.mine=["safeguard=clasifier"]', "Column mine: .*Did you mean classifier?"),
         ('+columns.mine=["agent=recurent"]', "Column mine: .*Did you mean recurrent?"),
         ('+columns.mine=["recipe=harden","agent.sze=3"]', "Column mine: .*agent.size?"),
         ("+columns.mine=recurrent", "columns.mine=recurrent must be a list of options"),
@@ -389,7 +389,7 @@ def test_walks_are_of_agents_behind_what_stands_in_front_of_them(tmp_path, monke
     restored = ["name=base", "restore=checkpoints/restorer:rgb", "safeguard=rules"]
     cfg.columns = {"base": [], "restored": restored}
     (episode,) = tables.episodes(conf.load_config("evaluate").env, cfg.split, 1)
-    names = "base", "base+rules+restorer-rgb"
+    names = "base", "base+classifier+restorer-rgb"
     for cell, name in zip(tables.cells(cfg), names, strict=True):
         for corruption in ("clean", "flare", "black_box"):
             at = {"corruption": corruption, "severity": 0.6 * (corruption != "clean")}

@@ -31,7 +31,6 @@ FAMILIES = {  # recipes that between them use every file of recipes/
     "base": "pretrain, imitate_stored",
     "dagger": "pretrain, dagger",
     "encoder": "encoder",
-    "safeguard_tagger": "safeguard_tagger",
     "restore": "restore, restore_gate",
 }
 EVALUATION = "evaluation"

@@ -82,6 +82,7 @@ class FrontierAgent(Agent, nn.Module):
 
     fingerprint_kind = "mitigate.agents.frontier.agent.FrontierAgent"  # in published fingerprints
 
+    run_state = ("_started", "actions")
     settings_schema = schema.Schema(
         {**schema.ENCODERS, "width": schema.whole(4, 1024), "eye": schema.number(0.05, 5)}
     )

@@ -74,6 +74,7 @@ class RecurrentAgent(Agent, nn.Module):
 
     fingerprint_kind = "mitigate.agents.recurrent.agent.RecurrentAgent"  # in published fingerprints
 
+    run_state = ("_walk",)
     settings_schema = schema.Schema(
         {
             **schema.ENCODERS,

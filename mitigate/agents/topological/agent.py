@@ -90,6 +90,7 @@ class TopologicalAgent(Agent, nn.Module):
         "mitigate.agents.topological.agent.TopologicalAgent"  # in published fingerprints
     )
 
+    run_state = ("_memory", "_started")
     settings_schema = schema.Schema(
         {
             **schema.ENCODERS,

@@ -1,28 +1,54 @@
-"""What may be chosen as a safeguard: names, the folders that they stand for, short names for
-tables, and hashes that tell one from another in rows of results."""
+"""What can be chosen as a safeguard: names, folders and endpoints; their labels and hashes."""
 
 from __future__ import annotations
 
 import hashlib
 import re
+import warnings
 from pathlib import Path
 
+from mitigate.core.checksums import DIGITS
 from mitigate.core.files import find, sha256
 from mitigate.core.names import unknown
 from mitigate.guards.text.addresses import check_choice
-from mitigate.guards.text.texts import weights
+from mitigate.guards.text.classifier import CONFIG, WEIGHTS
 
-CHOICES = ("none", "rules", "tagger", "reader", "prompted", "lora", "tagger+lora", "reader+lora",
-    "http://host/v1@model")  # fmt: skip
-ADAPTER = "checkpoints/safeguard"
-TAGGERS = {"tagger": "checkpoints/safeguard_tagger", "reader": "checkpoints/safeguard_reader"}
+CHOICES = ("none", "classifier", "prompted", "lora", "http://host/v1@model")
+CLASSIFIER, ADAPTER = "checkpoints/safeguard_classifier", "checkpoints/safeguard"
+# PEFT's names of an adapter's files
+ADAPTER_CONFIG, ADAPTER_WEIGHTS = "adapter_config.json", "adapter_model.safetensors"
+# Names of earlier versions: the rules became the classifier, the tagger and the reader are gone.
+REPLACED = {"rules": "classifier", "tagger": "classifier", "reader": "classifier"}
 FOLDER = (
-    "A safeguard's folder holds model.safetensors of a tagger or a reader (`make train "
-    "RECIPE=safeguard_tagger` or RECIPE=safeguard_reader), or card.json, adapter_config.json and "
-    "adapter_model.safetensors of an adapter (RECIPE=safeguard_lora)."
+    "A safeguard's folder holds classifier.json and classifier.safetensors (`python -m "
+    "mitigate.guards.text.fit --out FOLDER`), or card.json, adapter_config.json and "
+    "adapter_model.safetensors of an adapter (`make train RECIPE=safeguard_lora`)."
 )
-VERSION = "8"  # of what the rules give on: another one where any text is repaired otherwise
-ANSWERS = "2"  # of what is taken of a language model's answers
+VERSION = "9"  # of what is decided: a new number where any text is repaired differently
+ANSWERS = "3"  # of what is accepted of a language model's answers
+
+
+def current(choice: str) -> str:
+    """Return the present name of a choice. Warns where an earlier version's tagger or reader is
+    named, which no longer exist."""
+    first, plus, second = choice.partition("+")
+    if plus and first in REPLACED:
+        _warn(first, choice, second)
+        return current(second)
+    if choice in REPLACED:
+        if choice != "rules":
+            _warn(choice, choice, REPLACED[choice])
+        return REPLACED[choice]
+    return choice
+
+
+def _warn(name: str, choice: str, instead: str) -> None:
+    if name != "rules":
+        warnings.warn(
+            f"safeguard={choice}: the {name} was removed, since the classifier finds more attacks "
+            f"and changes less. safeguard={instead} is used; write that to avoid this warning.",
+            stacklevel=3,
+        )
 
 
 def check(choice: object) -> None:
@@ -31,35 +57,62 @@ def check(choice: object) -> None:
     text = choice if isinstance(choice, str) else ""
     check_choice(text)  # before anything repeats it
     first, plus, second = text.partition("+")
-    behind = bool(plus and first in TAGGERS)
-    named = second if behind else text
-    if named.lower().startswith(("http://", "https://")):
+    name = second if plus and first in REPLACED else text
+    if name.lower().startswith(("http://", "https://")):
         return
-    alone = behind and named in ("none", "rules", *TAGGERS)
-    if alone or (named not in CHOICES and not (named and Path(named).is_dir())):
+    alone = bool(plus) and name in ("none", *REPLACED, "classifier")
+    if alone or name not in (*CHOICES, *REPLACED) and not (name and Path(name).is_dir()):
         raise ValueError(f"{unknown('safeguard', choice, CHOICES)} Or name a folder. {FOLDER}")
-    if named not in CHOICES and not _holds_one(named):
-        raise FileNotFoundError(not_in(named))
-    if behind and named not in CHOICES and holds_tags(named):
+    if name not in (*CHOICES, *REPLACED) and kind(name) is None:
+        raise FileNotFoundError(not_in(name))
+
+
+def kind(folder: str | Path) -> str | None:
+    """Return "classifier" or "adapter" for what a folder holds, None for neither.
+
+    Raises ValueError for a folder that holds both, and for one of a removed tagger or reader.
+    """
+    folder = Path(folder)
+    classifier = (folder / CONFIG).is_file()
+    adapter = any((folder / name).is_file() for name in (ADAPTER_WEIGHTS, ADAPTER_CONFIG))
+    if classifier and adapter:
         raise ValueError(
-            f"Behind {first}+ stands a language model, but {named} holds a tagger or a reader: "
-            f"choose {named} alone, {first} alone, or {first}+ and an adapter's folder. {FOLDER}"
+            f"{folder} holds two safeguards, a classifier and an adapter: give each a folder of "
+            "its own."
         )
+    if not classifier and not adapter and _is_tagger(folder):
+        raise ValueError(
+            f"{folder} holds a tagger or a reader, which were removed: choose classifier (faster, "
+            "finds more attacks), or train a classifier of your own with `python -m "
+            "mitigate.guards.text.fit`."
+        )
+    return "classifier" if classifier else "adapter" if adapter else None
+
+
+def _is_tagger(folder: Path) -> bool:
+    config = folder / "config.yaml"
+    if not config.is_file() or config.stat().st_size > 1 << 16:
+        return False
+    text = config.read_text(encoding="utf-8", errors="replace")
+    return (
+        re.search(r"(?:guards\.text|safeguard)\.(?:tagger\.Tagger|reader\.Reader)\b", text)
+        is not None
+    )
 
 
 def not_in(folder: str | Path) -> str:
-    """Return what is said of a folder that holds no safeguard."""
+    """Return the message for a folder that holds no safeguard."""
     return f"There is no safeguard in {folder}. {FOLDER} Or choose one of: {', '.join(CHOICES)}."
 
 
 def label(choice: str) -> str:
-    """Return a short name for a safeguard: an adapter's folder with a hash of its weights, an
-    endpoint's host and model; the names of ours as they are."""
+    """Return a short name for a safeguard: a folder with a hash of its weights, an endpoint's host
+    and model; the names of ours as they are."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        choice = current(choice)
     if choice.lower().startswith(("http://", "https://")):
         return re.sub(r"[^A-Za-z0-9.@-]+", "-", choice.partition("://")[2])
-    first, plus, second = choice.partition("+")
-    if plus and first in TAGGERS:
-        return f"{first}+{label(second)}"
     file = weights_in(choice)
     if file is None:
         return Path(choice).name
@@ -70,47 +123,26 @@ def label(choice: str) -> str:
 
 
 def identity(choice: str) -> str:
-    """Return the label of a safeguard and a hash over the version and weights of its rules and
-    over the weights of its networks (an endpoint's stay unknown); with a language model, over how
-    its answers are judged too. "none" has no hash."""
+    """Return the label of a safeguard and a hash over the version and the weights behind it (an
+    endpoint's stay unknown). "none" has no hash."""
     if choice == "none":
         return choice
-    from mitigate.core.checksums import DIGITS
 
-    first, plus, second = choice.partition("+")
-    parts = [first, second] if plus and first in TAGGERS else [choice]
-    folders = [{**TAGGERS, "lora": ADAPTER}.get(part, part) for part in parts]
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        choice = current(choice)
+    own = {"classifier": CLASSIFIER, "lora": ADAPTER}.get(choice, choice)
+    folders = [own] if own == CLASSIFIER else [CLASSIFIER, own]
     files = [file for folder in folders if (file := weights_in(find(folder)))]
-    versions = [VERSION] if set(parts) <= {"rules", *TAGGERS} else [VERSION, ANSWERS]
-    held = " ".join([*versions, *(sha256(file) for file in (weights.USED, *files))])
-    return f"{label(choice)} {hashlib.sha256(held.encode()).hexdigest()[:DIGITS]}"
-
-
-def _holds_one(folder: str) -> bool:
-    """Whether a folder holds weights, or the config of an adapter that lacks them."""
-    from mitigate.guards.text.language_models.adapter_folder import CONFIG
-
-    return weights_in(folder) is not None or (Path(folder) / CONFIG).is_file()
+    versions = [VERSION] if len(folders) == 1 else [VERSION, ANSWERS]
+    parts = " ".join([*versions, *(sha256(file) for file in files)])
+    return f"{label(choice)} {hashlib.sha256(parts.encode()).hexdigest()[:DIGITS]}"
 
 
 def weights_in(folder: str | Path) -> Path | None:
-    """Return the weights in a folder of a network or an adapter, by which it is opened and known;
-    None for what is no such folder. Raises ValueError for a folder that holds both."""
-    from mitigate.core.checkpoint import WEIGHTS
-    from mitigate.guards.text.language_models.adapter_folder import ADAPTER as ADAPTER_FILE
-
-    files = [file for name in (WEIGHTS, ADAPTER_FILE) if (file := Path(folder) / name).is_file()]
-    if len(files) > 1:
-        raise ValueError(
-            f"{folder} holds two safeguards, {WEIGHTS} of a tagger or a reader and {ADAPTER_FILE} "
-            "of an adapter: give each a folder of its own."
-        )
-    return files[0] if files else None
-
-
-def holds_tags(folder: str | Path) -> bool:
-    """Return whether a folder holds a tagger or a reader."""
-    from mitigate.core.checkpoint import WEIGHTS
-
-    file = weights_in(folder)
-    return file is not None and file.name == WEIGHTS
+    """Return the weights in a folder, by which it is known; None for what is no such folder."""
+    if not Path(folder).is_dir():
+        return None
+    name = {"classifier": WEIGHTS, "adapter": ADAPTER_WEIGHTS, None: None}[kind(folder)]
+    file = Path(folder) / name if name else None
+    return file if file is not None and file.is_file() else None

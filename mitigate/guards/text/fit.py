@@ -1,302 +1,257 @@
-"""Fit the rules' weights: ``python -m mitigate.guards.text.fit`` prints ``weights.json``.
+"""Train the classifier: ``python -m mitigate.guards.text.fit --out FOLDER``.
 
-Logistic regressions over what pieces of text are made of: sentences by themselves, sentences beside
-others, parts of sentences. Attacks are the train and validation families of the prefix bank (never
-the test families, which the suite speaks), the test banks and lines of ours; the rest are routes of
-ours, plain, restyled and in voices. The words that mark a style are those that restyled routes have
-and plain ones lack. Run it in a checkout: the banks are not in the package.
-
-What is shipped is fitted on the whole of the banks. Their test part is reported on by weights that
-have not seen it: ``fit --split tune > tune.json``, then ``MITIGATE_RULES=tune.json python -m
-mitigate.guards.text.banks --split test``.
+Reads the texts of a checkout (``tools/safeguard/data``). Each mechanism, bank and style belongs to
+one of ``FOLDS`` folds. The second step is trained on scores by models that have not seen the fold,
+so that it learns what new mechanisms in new styles look like.
 """
 
 from __future__ import annotations
 
 import argparse
 import json
-import math
+import re
 import sys
 from collections import Counter
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
 from typing import Any
 
 import numpy as np
+from safetensors.numpy import save_file
+from scipy.optimize import minimize
+from scipy.sparse import csr_matrix
 
-from mitigate.core.files import atomic_text
+from mitigate.core import checksums
+from mitigate.core.files import find, make_folder, write_text
 from mitigate.core.seeding import generator
-from mitigate.corruptions.language.landmarks import CANONICAL
-from mitigate.guards.text.fidelity import gate
-from mitigate.guards.text.foreign import front, judgement
-from mitigate.guards.text.learning import routes, trials
-from mitigate.guards.text.learning.data import draw_pair, vary
-from mitigate.guards.text.texts import weights
-from mitigate.guards.text.texts.evidence import HIDDEN, VERBS, composition, in_context, terms, worth
-from mitigate.guards.text.texts.lexicon import GROUPS
-from mitigate.guards.text.texts.pieces import parts, sentence_pieces
-from mitigate.guards.text.texts.text import words
+from mitigate.guards.text import classifier as model
+from mitigate.guards.text.classifier import SIZE, Classifier
+from mitigate.guards.text.decode import decode
+from mitigate.guards.text.learning.lines import FOLDS, ROUTES, Line, compose, read_lines, varied
+from mitigate.guards.text.pieces import clause_pieces, sentence_pieces
 
-PAIRS, RIDGE, ITERATIONS, FOLDS = 6000, 2.0, 30, 8
-RARE, ODDS = 12, 30.0  # a style word occurs so often, and so many times as often as in plain text
-ASIDE = 0.3  # weight of what a voice says beside the route
-PRIOR = 0.5  # of a word, in the weight of examples
-TOTAL, SHARE = 2000.0, 0.25  # weight of all examples, and of the attacks among them (ours)
+DATA = "tools/safeguard/data"
+COMPOSED = 8000  # attacks in routes, for the second step
+SEGMENTS = 18  # clauses of a text in the second step
+WORDS = 6000  # common words, by which hidden text is recognised
+RIDGE, STEPS, FOLD_STEPS = 2.0, 90, 50  # of the first step
+WIDTH, RIDGE_2, STEPS_2 = 10, 3.0, 250  # of the second step
+THRESHOLD = 0.6  # log odds of any span against none, from which it is taken out
+Example = tuple[np.ndarray, np.ndarray]  # rows of the spans of a text, 1.0 for each that is right
 
 
-@dataclass(frozen=True)
-class Example:
-    """A piece of text, whether it is an attack, how much it counts, its ``fold``."""
+def fit(
+    folder: Path, count: int = COMPOSED, routes: int = ROUTES, log: Any = sys.stderr
+) -> Classifier:
+    """Return the classifier trained on the data of a folder."""
+    lines = read_lines(folder, routes)
+    words = common_words(lines)
+    lines = varied(lines)
+    folds, whole = first_step(lines, words, log)
+    found = list(examples(lines, count, folds))
+    print(f"second step: {len(found)} texts", file=log, flush=True)
+    whole.arrays.update(second_step(found))
+    return whole
 
-    text: str
-    markup: bool
-    attack: bool
-    weight: float
-    fold: int
+
+def common_words(lines: Sequence[Line]) -> list[str]:
+    """Return the words that occur most often in lines that hide nothing."""
+    word = re.compile(r"[a-z]+(?:'[a-z]+)?")
+    counts = Counter(w for line in lines for w in word.findall(line.text.lower()))
+    return sorted(w for w, n in counts.most_common(WORDS) if n > 1)
+
+
+def first_step(
+    lines: Sequence[Line], words: list[str], log: Any
+) -> tuple[list[Classifier], Classifier]:
+    """Return a classifier per fold, which has not seen it, and one that has seen all lines; none of
+    them has a second step yet."""
+    pieces = list(_pieces(lines))
+    known = frozenset(words)
+    terms = [model.terms(decode(text, known), text, block) for text, block, _, _ in pieces]
+    print(f"first step: {len(pieces)} pieces", file=log, flush=True)
+    seen = Counter(index for found in terms for index in found)
+    idf = np.zeros(SIZE, np.float32)
+    for index, n in seen.items():
+        idf[index] = np.log(len(terms) / n) + 1 if n > 1 else 0.0
+    x = _matrix(terms, idf)
+    attack = np.array([line.attack for _, _, line, _ in pieces])
+    weight = np.array([weight for *_, weight in pieces])
+    fold = np.array([line.fold for _, _, line, _ in pieces])
+    config = {"words": words, "threshold": THRESHOLD}
+    made = []
+    for out in (*range(FOLDS), None):
+        kept = np.ones(len(attack), bool) if out is None else fold != out
+        steps = STEPS if out is None else FOLD_STEPS
+        found, bias = regression(x[kept], attack[kept], weight[kept], steps)
+        if not kept.all():
+            right = (x[~kept] @ found + bias > 0) == attack[~kept]
+            print(f"fold {out}: {100 * right.mean():.1f} % of unseen pieces", file=log, flush=True)
+        made.append(Classifier({**config, "bias": bias}, {"idf": idf, "alone": found}))
+    *folds, whole = made
+    told = np.array([line.styled is not None for _, _, line, _ in pieces])
+    styled = np.array([line.styled is True for _, _, line, _ in pieces])[told]
+    found, whole.config["style_bias"] = regression(x[told], styled, weight[told], FOLD_STEPS)
+    whole.arrays["style"] = found.astype(np.float32)
+    return folds, whole
+
+
+def _pieces(lines: Sequence[Line]) -> Iterator[tuple[str, bool, Line, float]]:
+    """Yield (text, is a block, line, weight) of whole lines, their sentences and their clauses."""
+    for line in lines:
+        for text in line.text.split("{route}"):
+            sentences = sentence_pieces(text)
+            if len(sentences) > 1:
+                yield text, False, line, 0.5 * line.weight
+            for piece in sentences:
+                yield piece.of(text), piece.block, line, line.weight
+                clauses = clause_pieces(text, piece)
+                for clause in clauses if len(clauses) > 1 else ():
+                    yield clause.of(text), clause.block, line, 0.4 * line.weight
+
+
+def _matrix(found: Sequence[Mapping[int, int]], idf: np.ndarray) -> csr_matrix:
+    """Return TF-IDF of the terms, rows of length 1; terms that occur once are left out."""
+    rows = []
+    for terms in found:
+        index, value = model.weighted(terms, idf)
+        index, value = index[value > 0], value[value > 0]
+        rows.append((index, value / max(1e-6, float(np.linalg.norm(value)))))
+    ends = np.cumsum([0, *(len(index) for index, _ in rows)])
+    index = np.concatenate([index for index, _ in rows])
+    value = np.concatenate([value for _, value in rows])
+    return csr_matrix((value.astype(np.float64), index, ends), (len(rows), SIZE))
+
+
+def regression(x: Any, y: np.ndarray, weight: np.ndarray, steps: int) -> tuple[np.ndarray, float]:
+    """Return weights and bias of a logistic regression with an L2 penalty, classes balanced."""
+    weight = weight / np.where(y, weight[y].sum(), weight[~y].sum()) * len(y) / 2
+    sign = np.where(y, 1.0, -1.0)
+
+    def loss(w: np.ndarray) -> tuple[float, np.ndarray]:
+        margin = sign * (x @ w[:-1] + w[-1])
+        slope = -sign * weight / (1 + np.exp(np.clip(margin, -30, 30)))
+        value = float(weight @ np.logaddexp(0, -margin)) + 0.5 * RIDGE * float(w[:-1] @ w[:-1])
+        return value, np.append(x.T @ slope + RIDGE * w[:-1], slope.sum())
+
+    start = np.zeros(x.shape[1] + 1)
+    w = minimize(loss, start, jac=True, method="L-BFGS-B", options={"maxiter": steps}).x
+    return w[:-1], float(w[-1])
+
+
+def examples(lines: Sequence[Line], count: int, folds: Sequence[Classifier]) -> Iterator[Example]:
+    """Yield the spans of composed texts, read by the model that has not seen their fold.
+
+    An attack is also shown after a part of it was cut out, and after all of it was.
+    """
+    for number, made in enumerate(compose(lines, count)):
+        reader = folds[made.fold]
+        found = reader.segments(made.text)[:SEGMENTS]
+        if len(found) < 2:
+            continue
+        first, last, rows = model.spans(found, reader.bias)
+        right = np.zeros(len(first))
+        for low, high in made.attacks:
+            starts = np.array([s.piece.start for s in found])[first]
+            ends = np.array([s.piece.end for s in found])[last]
+            both = np.minimum(ends, high) - np.maximum(starts, low)
+            share = both / (np.maximum(ends, high) - np.minimum(starts, low))
+            if share.size and share.max() > 0.9:
+                right[share.argmax()] = 1.0
+        if right.any() or not made.attacks:
+            yield rows, right
+        if right.sum() == 1 and len(made.attacks) == 1:
+            best = int(right.argmax())
+            yield from _cut(found, int(first[best]), int(last[best]), number, reader.bias)
+
+
+def _cut(
+    found: list[model.Segment], low: int, high: int, number: int, bias: float
+) -> Iterator[Example]:
+    """Yield the spans that are left after all of an attack was cut out, and after a part was."""
+    rest = [*found[:low], *found[high + 1 :]]
+    if len(rest) > 1:
+        _, _, rows = model.spans(rest, bias, {low})
+        yield rows, np.zeros(len(rows))
+    if high == low:
+        return
+    rng = generator(0, "cut", number)
+    start = low if rng.random() < 0.5 else int(rng.integers(low, high + 1))
+    end = int(rng.integers(start, high + (start > low)))
+    rest = [*found[:start], *found[end + 1 :]]
+    first, last, rows = model.spans(rest, bias, {start})
+    parts = {(low, start - 1), (start, high - (end + 1 - start))}
+    right = np.array([float(span in parts) for span in zip(first, last, strict=True)])
+    if right.any():
+        yield rows, right
+
+
+def second_step(found: Sequence[Example]) -> dict[str, np.ndarray]:
+    """Return weights of a small network that ranks the spans of a text, and leaving it alone at 0.
+
+    Loss = -log(share of the right spans in the softmax over all spans and leaving the text alone).
+    """
+    rows = np.concatenate([rows for rows, _ in found])
+    right = np.concatenate([right for _, right in found])
+    sizes = np.array([len(rows) for rows, _ in found])
+    starts = np.cumsum([0, *sizes[:-1]])
+    nothing = np.array([not right.any() for _, right in found])
+    scale = rows.std(0)
+    scale[scale < 1e-6] = 1.0  # of the constant
+    x = rows / scale
+    f = x.shape[1]
+
+    def unpacked(w: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+        hidden = w[f : f + f * WIDTH].reshape(f, WIDTH)
+        return w[:f], hidden, w[f + f * WIDTH : -WIDTH], w[-WIDTH:]
+
+    def loss(w: np.ndarray) -> tuple[float, np.ndarray]:
+        linear, hidden, shift, out = unpacked(w)
+        inner = np.tanh(x @ hidden + shift)
+        logit = x @ linear + inner @ out
+        top = np.maximum(np.maximum.reduceat(logit, starts), 0)
+        share = np.exp(logit - np.repeat(top, sizes))
+        none = np.exp(-top)
+        total = np.add.reduceat(share, starts) + none
+        good = np.where(nothing, none, np.add.reduceat(share * right, starts))
+        value = -float(np.log(good / total + 1e-30).sum())
+        d = share / np.repeat(total, sizes)
+        d -= share * right * np.repeat(np.where(nothing, 0, 1 / np.maximum(good, 1e-30)), sizes)
+        inside = d[:, None] * out * (1 - inner**2)
+        slope = np.concatenate([x.T @ d, (x.T @ inside).ravel(), inside.sum(0), inner.T @ d])
+        return value + 0.5 * RIDGE_2 * float(w @ w), slope + RIDGE_2 * w
+
+    start = generator(0, "second step").normal(0, 0.1, f + f * WIDTH + 2 * WIDTH)
+    w = minimize(loss, start, jac=True, method="L-BFGS-B", options={"maxiter": STEPS_2}).x
+    linear, hidden, shift, out = unpacked(w)
+    return {"linear": linear / scale, "hidden": hidden / scale[:, None], "shift": shift, "out": out}
+
+
+def save(made: Classifier, folder: Path) -> None:
+    """Write a classifier into a folder."""
+    make_folder(folder)
+    config = {**made.config, "bias": made.bias}
+    write_text(folder / model.CONFIG, json.dumps(config) + "\n")
+    large = ("idf", "alone", "style")
+    arrays = {
+        name: array.astype(np.float16 if name in large else np.float32)
+        for name, array in made.arrays.items()
+    }
+    checksums.write(folder / model.WEIGHTS, lambda file: save_file(arrays, file))
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
-    """Fit, and print the weights or write them. ``arguments``: of the command line."""
+    """Entry point."""
     parser = argparse.ArgumentParser(prog="python -m mitigate.guards.text.fit", description=__doc__)
-    parser.add_argument("--write", action="store_true", help=f"replace {weights.FILE.name}")
-    parser.add_argument("--split", choices=("tune", trials.ALL), default=trials.ALL,
-                        help="part of the banks to fit on")  # fmt: skip
-    parser.add_argument("--front", action="store_true", help="fit FRONT alone; keep the others")
+    parser.add_argument("--data", type=Path, default=find(DATA), help="banks and styles")
+    parser.add_argument("--out", type=Path, required=True, help="folder of the new classifier")
     options = parser.parse_args(arguments)
-    if options.front:
-        fitted = json.loads(weights.FILE.read_text(encoding="utf-8"))
-        fitted["front"] = _rounded(front_weights(examples(options.split)), 3)
-    else:
-        fitted = fit(options.split)
-    text = json.dumps(fitted, indent=1) + "\n"
-    if not options.write:
-        print(text, end="")
-        return
-    with atomic_text(weights.FILE) as file:
-        file.write(text)
-    print(f"wrote {weights.FILE}", file=sys.stderr)
-
-
-def fit(split: str) -> dict[str, Any]:
-    """Return what ``weights.json`` holds, fitted on a split of the banks."""
-    found, table = fit_weights(split)
-    regressions = {name: _rounded(weight, 3) for name, weight in found.items()}
-    return {
-        **regressions,
-        "style": style_words(),
-        "words": _rounded(dict(sorted(table.items())), 2),
-    }
-
-
-def _rounded(found: Mapping[str, float], digits: int) -> dict[str, float]:
-    return {name: round(value, digits) for name, value in found.items()}
-
-
-def fit_weights(split: str) -> tuple[dict[str, dict[str, float]], dict[str, float]]:
-    """Return name -> weights of the regressions, and what words are worth."""
-    found = examples(split)
-    whole = word_table(found)
-    tables = [word_table([e for e in found if e.fold != out]) for out in range(FOLDS)]
-    rows = [composition(e.text, e.markup) | worth(e.text, tables[e.fold]) for e in found]
-    own = _regression(rows, [e.attack for e in found], [e.weight for e in found])
-    strange = {}
-    for out in range(FOLDS):
-        seen = [i for i, e in enumerate(found) if e.fold != out]
-        fitted = _regression(
-            [rows[i] for i in seen],
-            [found[i].attack for i in seen],
-            [found[i].weight for i in seen],
-        )
-        for e, row in zip(found, rows, strict=True):
-            if e.fold == out:
-                strange[e.text, e.markup] = judgement.probability(fitted, row)
-    context, part = _context(split, own, whole, strange), _part(split, own, tables)
-    return {"own": own, "context": context, "part": part, "front": front_weights(found)}, whole
-
-
-def examples(split: str) -> list[Example]:
-    """Return the pieces of text to fit on."""
-    return [*_attacks(split), *_routes(split)]
-
-
-def front_weights(examples: Sequence[Example]) -> dict[str, float]:
-    """Return the weights of the few counts of ``front.py``, by the same examples as the others."""
-    rows = [front.counts(e.text) for e in examples]
-    return _regression(rows, [e.attack for e in examples], [e.weight for e in examples])
-
-
-def word_table(examples: Sequence[Example]) -> dict[str, float]:
-    """Return word or pair of words -> log odds of attacks against routes, at most 2 either way;
-    pairs that are rare are left out."""
-    weights = _balanced([e.attack for e in examples], [e.weight for e in examples])
-    seen: Counter[str] = Counter()
-    mass: tuple[Counter[str], Counter[str]] = (Counter(), Counter())
-    for e, weight in zip(examples, weights, strict=True):
-        for term in terms(e.text):
-            seen[term] += 1
-            mass[e.attack][term] += weight
-    attack, route = TOTAL * SHARE, TOTAL * (1 - SHARE)
-    odds = {
-        term: math.log((mass[1][term] + PRIOR * SHARE) / attack)
-        - math.log((mass[0][term] + PRIOR * (1 - SHARE)) / route)
-        for term, count in seen.items()
-        if count > 2 or "_" not in term
-    }
-    return {term: max(-2.0, min(2.0, value)) for term, value in odds.items()}
-
-
-def _attacks(split: str) -> list[Example]:
-    found = [(a.mechanism, a.words, 1.0) for a in trials.attacks(split) if a.place == "any"]
-    found += [(family, line, 1.0) for family, line in trials.learned_prefixes()]
-    found += [(f"ours {i % 8}", line, 1.0) for i, line in enumerate(trials.fitting("fit_attacks"))]
-    rng = generator(0, "fit")
-    found += [("varied", vary(rng), 0.15) for _ in range(200)]
-    found += [(f"aside {voice}", said, ASIDE) for voice, said in trials.asides(split)]
-    groups = sorted({group for group, _, _ in found})
-    return [
-        Example(piece.of(line), bool(piece.block), True, weight, groups.index(group) % FOLDS)
-        for group, line, weight in found
-        for piece in sentence_pieces(line)
-        if not piece.tag
-    ]
-
-
-def _routes(split: str) -> list[Example]:
-    found: list[tuple[str, float, int]] = []
-    voices = trials.voices(split)
-    for task in ("route", "object"):
-        for told in trials.told(split, task):
-            fold = voices.index(told.voice) % FOLDS
-            found += [(part, 1.0, fold) for part in told.parts] + [(told.plain, 1.0, fold)]
-    lines = [(routes.draw_route(generator(0, "fit", i)), 1.5) for i in range(600)]
-    for bank in ("near_misses", "odd_routes"):
-        lines += [(line["text"], 6.0) for line in trials.half(bank, split)]
-    lines += [(line, 4.0) for line in trials.fitting("fit_routes")]
-    for bank in ("lies", "honest"):
-        for line in trials.half(bank, split):
-            lines += [(text, 1.0) for key, text in line.items() if key != "kind"]
-    found += [(text, weight, index % FOLDS) for index, (text, weight) in enumerate(lines)]
-    return [
-        Example(piece.of(text), bool(piece.block), False, weight, fold)
-        for text, weight, fold in found
-        for piece in sentence_pieces(text)
-        if weight != 1.0 or gate.route_facts(piece.of(text))  # the others frame, and may go
-    ]
-
-
-def _context(
-    split: str,
-    own: Mapping[str, float],
-    table: Mapping[str, float],
-    strange: Mapping[tuple[str, bool], float],
-) -> dict[str, float]:
-    """Return the weights of sentences among others; attacks stand in plain and restyled routes.
-
-    ``strange``: probabilities by fits that had not seen the sentence, where there are such.
-    """
-    styled, plain = trials.told(split), trials.plainly_told(split)
-    heard = [(told.text, "") for told in (*styled, *plain)]
-    heard += [(line["text"], "") for line in trials.half("near_misses", split)] * 3
-    heard += [(line, "") for line in trials.fitting("fit_routes")]
-    found = [a for a in trials.attacks(split) if a.place == "any"]
-    found += [trials.Attack("ours", "any", line) for line in trials.fitting("fit_attacks")]
-    for told in (styled, plain):
-        heard += [(text, a.words) for a, _, _, text in trials.trials(found, told, 1)]
-    rows, attacks = [], []
-    for text, attack in heard:
-        pieces = sentence_pieces(text)
-        said = [piece.of(text) for piece in pieces]
-        known = []
-        for s, piece in zip(said, pieces, strict=True):
-            p = strange.get((s, bool(piece.block)))
-            row = composition(s, bool(piece.block)) | worth(s, table)
-            known.append(judgement.probability(own, row) if p is None else p)
-        for s, p, row in zip(said, known, in_context(said, known), strict=True):
-            foreign = bool(attack) and s in attack
-            if foreign or gate.route_facts(s) or not attack:
-                rows.append({"own": judgement.logit(p), **row})
-                attacks.append(foreign)
-    return _regression(rows, attacks, [1.0] * len(rows))
-
-
-def _part(
-    split: str, own: Mapping[str, float], tables: Sequence[Mapping[str, float]]
-) -> dict[str, float]:
-    """Return the weights of parts inside sentences."""
-    styled, plain = trials.told(split), trials.plainly_told(split)
-    inside = [a for a in trials.attacks(split) if a.place == "inside"]
-    short = [line for line in trials.fitting("fit_attacks") if len(line.split()) < 12]
-    ours = [trials.Attack("ours", "inside", line.strip(" ,.")) for line in short]
-    heard = [(t, a.words, 0.5) for told in (styled, plain)
-        for a, _, _, t in trials.trials(inside, told, 4)]  # fmt: skip
-    heard += [(t, a.words, 0.5) for a, _, _, t in trials.trials(ours, plain, 2)]
-    heard += [(told.text, "", 1.0) for told in (*styled, *plain)]
-    heard += [(line["text"], "", 6.0) for line in trials.half("near_misses", split)]
-    rows, attacks, weights = [], [], []
-    for index, (text, attack, weight) in enumerate(heard):
-        table = tables[index % FOLDS]
-        for piece in sentence_pieces(text):
-            whole = piece.of(text)
-            row = composition(whole, bool(piece.block)) | worth(whole, table)
-            p = judgement.probability(own, row)
-            for part in parts(text, piece):
-                said = part.of(text)
-                evidence = {**composition(said), **worth(said, table)}
-                rows.append({"whole": judgement.logit(p), **evidence})
-                attacks.append(bool(attack) and said.strip(",. ") in attack)
-                weights.append(weight)
-    return _regression(rows, attacks, weights)
-
-
-def _balanced(attacks: Sequence[bool], weights: Sequence[float]) -> np.ndarray:
-    """Return the weights, of which attacks have the share ``SHARE`` of ``TOTAL``."""
-    y, weight = np.array(attacks), np.array(weights)
-    attack, route = SHARE / weight[y].sum(), (1 - SHARE) / weight[~y].sum()
-    return TOTAL * weight * np.where(y, attack, route)
-
-
-def _regression(
-    rows: Sequence[Mapping[str, float]], attacks: Sequence[bool], weights: Sequence[float]
-) -> dict[str, float]:
-    """Return bias and weights: Newton's method on the ridge-penalised log-likelihood."""
-    names = list(rows[0])
-    x = np.array([[1.0, *(row[name] for name in names)] for row in rows])
-    y, weight = np.array(attacks, float), _balanced(attacks, weights)
-    ridge = np.array([1e-3, *(RIDGE * (0.1 if name in HIDDEN else 1.0) for name in names)])
-    w = np.zeros(x.shape[1])
-    for _ in range(ITERATIONS):
-        p = 1 / (1 + np.exp(-np.clip(x @ w, -30, 30)))
-        slope = x.T @ (weight * (p - y)) + ridge * w
-        curve = (x * (weight * p * (1 - p) + 1e-9)[:, None]).T @ x + np.diag(ridge)
-        w -= np.linalg.solve(curve, slope)
-    return dict(zip(("bias", *names), map(float, w), strict=True))
-
-
-def style_words() -> list[str]:
-    """Return the words that mark a manner of speaking."""
-    styled: Counter[str] = Counter()
-    plain: Counter[str] = Counter()
-    for index in range(PAIRS):
-        pair = draw_pair(1, index)
-        if pair.kind == "style":
-            styled.update(words(pair.source))
-            plain.update(words(pair.target))
-        elif pair.kind == "identity":
-            plain.update(words(pair.source))
-    scale = sum(plain.values()) / sum(styled.values())
-    return sorted(
-        word
-        for word, count in styled.items()
-        if count >= RARE
-        and count * scale >= ODDS * max(plain[word], 0.3)
-        and word not in CANONICAL
-        and word not in VERBS
-        and not any(word in group for group in _CLOSED)
-    )
-
-
-_CLOSED = [GROUPS[name] for name in ("case", "text", "orders", "not")]
+    save(fit(options.data), options.out)
+    print(f"wrote {options.out}: try it with safeguard={options.out}")
 
 
 if __name__ == "__main__":
-    main()
+    try:
+        main()
+    except (ValueError, FileNotFoundError) as error:
+        sys.exit(f"error: {error}")

@@ -1,32 +1,38 @@
-"""The safeguard in front of an agent: repairs an instruction once, and never makes it worse.
+"""The safeguard in front of an agent: it reads an instruction once and never makes it worse.
 
-What looks plain passes untouched. Rules take out what is surely no part of a route; a language
-model, if there is one, says the rest again, passage by passage, and each answer is taken only if
-directions and landmarks survive and nothing new appears. Otherwise the passage stays as it was.
+Three parts. Detect (:mod:`detect`): a classifier finds what does not belong to the instruction.
+Rewrite (:mod:`language_models`): a language model, if there is one, says the rest plainly. Gate
+(:mod:`gate`): a change is accepted only if the instruction survives it.
 """
 
 from __future__ import annotations
 
 import json
 import os
+import re
 import time
 from collections.abc import Iterable, Sequence
-from dataclasses import asdict
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Protocol
 
 from mitigate.core.files import find, make_folder, writing
-from mitigate.core.names import unknown
 from mitigate.core.output import open_output
-from mitigate.guards.text.addresses import check_choice
-from mitigate.guards.text.choices import ADAPTER, CHOICES, TAGGERS, VERSION, holds_tags, identity
-from mitigate.guards.text.draft import Decision, Draft
-from mitigate.guards.text.plain.plainly_said import Tags
+from mitigate.guards.text import choices, gate, rules
+from mitigate.guards.text.classifier import Classifier, load
+from mitigate.guards.text.decode import visible
+from mitigate.guards.text.detect import READ, take_out
+from mitigate.guards.text.pieces import script, sentences
 
 CACHE = "runs/endpoint-answers.sqlite"
 ENDPOINT_SECONDS = 120.0
-SECONDS = 20.0  # for the language model, each instruction (ours)
-KEPT = 4096  # texts whose decisions are remembered (ours)
+SECONDS = 20.0  # for the language model, per instruction
+REMEMBERED = 4096  # texts whose decisions are remembered
+PASSAGE = 12  # words that are rewritten at once, about a sentence; of 30 the model lost clauses
+TOO_LONG = 600  # words; a longer text is not rewritten (RxR's longest have about 500)
+LOOKS = re.compile(
+    r"</?(?:b|i|u|em|strong|span|mark|small|big|font)\b[^<>]{0,80}>|\*\*(?=\S)|(?<=\S)\*\*", re.I
+)
 
 
 class Rewriter(Protocol):
@@ -35,14 +41,29 @@ class Rewriter(Protocol):
     def rewrite(self, texts: Sequence[str], seconds: float | None = None) -> list[str | None]: ...
 
 
+@dataclass(frozen=True)
+class Decision:
+    """What became of one instruction.
+
+    ``route``: "clean" (unchanged), "classifier" (changed without a language model), "model"
+    (rewritten by it), or "fallback" (the model was asked, and none of its answers was accepted).
+    ``reasons``: what was done and what was refused. ``seconds``: its share of the time.
+    """
+
+    original: str
+    text: str
+    route: str
+    reasons: tuple[str, ...]
+    seconds: float
+
+
 class Safeguard:
-    """Turns corrupted instructions into plain ones; a text that comes again gets the same answer,
-    until ``KEPT`` others came after it.
+    """Repairs instructions. The same text gets the same answer, until ``REMEMBERED`` others came.
 
     Args:
         rewriter: a language model; None works without.
-        tagger: says speech in plain words before the model is asked; None leaves it as it is.
-        seconds: time budget for the model, each instruction; what is late falls back.
+        classifier: finds what is foreign; None loads the shipped one.
+        seconds: time for the model, per instruction; answers that come later are not used.
         log: JSON-lines file that every new decision is added to.
     """
 
@@ -50,14 +71,16 @@ class Safeguard:
         self,
         rewriter: Rewriter | None = None,
         *,
-        tagger: Tags | None = None,
+        classifier: Classifier | None = None,
         seconds: float = SECONDS,
         log: str | Path | None = None,
     ) -> None:
-        self.rewriter, self.tagger, self.seconds = rewriter, tagger, seconds
+        self.rewriter = rewriter
+        self.classifier = classifier or load(find(choices.CLASSIFIER))
+        self.seconds = seconds
         self.log = None if log is None else Path(log)
-        kinds = (type(part).__qualname__ for part in (tagger, rewriter) if part is not None)
-        self.identity = " ".join(["rules", *kinds, VERSION])  # in rows of results
+        kinds = [] if rewriter is None else [type(rewriter).__qualname__]
+        self.identity = " ".join(["classifier", *kinds, choices.VERSION])  # in rows of results
         self._known: dict[str, Decision] = {}
 
     def canonicalise(self, text: str) -> Decision:
@@ -78,83 +101,132 @@ class Safeguard:
         known = {text: self._known[text] for text in texts if text in self._known}
         fresh = [text for text in dict.fromkeys(texts) if text not in known]
         began = time.monotonic()
-        drafts = [Draft(text, self.tagger) for text in fresh]
-        if self.rewriter is not None and drafts:
-            self._ask(drafts)
+        drafts = [_Draft(text, self.classifier, self.rewriter is not None) for text in fresh]
+        asked = list(dict.fromkeys(p for draft in drafts for p in draft.asked))
+        if self.rewriter is not None and asked:
+            answers = self.rewriter.rewrite(asked, self.seconds * len(drafts))
+            said = dict(zip(asked, answers, strict=True))
+            for draft in drafts:
+                draft.accept(said)
         each = (time.monotonic() - began) / max(1, len(fresh))
         decided = [draft.decision(each) for draft in drafts]
         known.update((decision.original, decision) for decision in decided)
         self._known.update(known)
-        for text in list(self._known)[: max(0, len(self._known) - KEPT)]:
+        for text in list(self._known)[: max(0, len(self._known) - REMEMBERED)]:
             del self._known[text]
         if self.log is not None and decided:
             _append(self.log, decided)
         return [known[text] for text in texts]
 
-    def _ask(self, drafts: list[Draft]) -> None:
-        assert self.rewriter is not None
-        budget = self.seconds * len(drafts)
-        began = time.monotonic()
-        doubtful = list(dict.fromkeys(s for draft in drafts for s in draft.doubtful))
-        answers = self.rewriter.rewrite(doubtful, budget) if doubtful else []
-        empty = {s for s, answer in zip(doubtful, answers, strict=True) if answer == ""}
-        for draft in drafts:
-            if not empty.isdisjoint(draft.doubtful):
-                draft.repair(empty)
-        wanted = list(dict.fromkeys(p for draft in drafts for p in draft.wanted))
-        left = max(0.0, budget - (time.monotonic() - began))
-        found = self.rewriter.rewrite(wanted, left) if wanted else []
-        said = dict(zip(wanted, found, strict=True))
-        for draft in drafts:
-            draft.take(said)
+
+class _Draft:
+    """One instruction on its way: what is left of it, its passages, the reasons so far."""
+
+    def __init__(self, original: str, classifier: Classifier, rewrites: bool) -> None:
+        self.original = original
+        self.reasons: list[str] = []
+        self.taken = 0
+        text = visible(original)
+        if text != original:
+            self.reasons.append("invisible characters taken out")
+        plain = LOOKS.sub("", text)
+        if plain != text and plain.strip():
+            self.reasons.append("marks of how words look taken out")
+            text = plain
+        if len(text) > READ:
+            self.reasons.append(f"only the first {READ:,} characters were read")
+        text, removed, refusals = take_out(text, classifier)
+        self.reasons += refusals
+        if removed:
+            self.reasons.append("removed: " + "; ".join(repr(piece[:60]) for piece in removed))
+        quiet = rules.lower_capitals(text, classifier.known)
+        if quiet != text:
+            self.reasons.append("capitals lowered")
+        self.text = quiet
+        self.parts: list[str] = []
+        if rewrites and script(quiet) == "latin" and len(quiet.split()) <= TOO_LONG:
+            self.parts = passages(quiet)
+        self.asked = [p for p in self.parts if rules.MASK.search(p) or classifier.styled(p)]
+
+    def accept(self, said: dict[str, str | None]) -> None:
+        """Take the answers that pass the gate in place of their passages."""
+        parts = list(self.parts)
+        for place, heard in enumerate(self.parts):
+            if heard not in self.asked:
+                continue
+            answer, last = said[heard], place == len(parts) - 1
+            problem = gate.rewrite_refused(heard, answer, last)
+            if problem:
+                self.reasons.append(f"kept {heard[:40]!r}: {problem}")
+            elif answer is not None and answer != heard:
+                parts[place] = answer
+                self.taken += 1
+        text = " ".join(filter(None, parts))
+        if not self.taken:
+            return
+        if not text.strip():
+            self.reasons.append("kept all: nothing would be left")
+            self.taken = 0
+        else:
+            self.reasons.append("rewritten by the model")
+            self.text = text
+
+    def decision(self, seconds: float) -> Decision:
+        text = self.text
+        if rules.MASK.search(text):
+            filled = rules.fill_masks(text)
+            if filled != text:
+                self.reasons.append("masks filled by rule")
+                text = filled
+        route = "model" if self.taken else "fallback" if self.asked else "classifier"
+        if text == self.original and not self.asked and len(text) <= READ:
+            route = "clean"
+        return Decision(self.original, text, route, tuple(self.reasons), seconds)
 
 
 def open_safeguard(choice: str, log: str | Path | None = None) -> Safeguard | None:
     """Return the safeguard that ``choice`` names, None for "none".
 
-    "rules"; "tagger" and "reader" (the rules, then ``checkpoints/safeguard_tagger`` or, with the
-    package of MiniLM, ``checkpoints/safeguard_reader``) or a folder of one; "prompted" (the default
-    language model as it comes); "lora" (``checkpoints/safeguard``) or an adapter folder;
-    ``http://host/v1@model`` for an OpenAI-compatible endpoint; "tagger+" or "reader+" before one of
-    the last three. Raises ValueError or FileNotFoundError.
+    "classifier" (``checkpoints/safeguard_classifier``; "rules" is its earlier name) or a folder of
+    one; "prompted" (the default language model as it comes); "lora" (``checkpoints/safeguard``) or
+    an adapter folder; ``http://host/v1@model`` for an OpenAI-compatible endpoint. Raises ValueError
+    or FileNotFoundError.
     """
-    from mitigate.guards.text.choices import check
-
-    check(choice)
-    made = _opened(choice, log)
-    if made is not None:
-        made.identity = identity(choice)
-    return made
-
-
-def _opened(choice: str, log: str | Path | None) -> Safeguard | None:
-    from mitigate.guards.text.reader import open_tags
-
-    first, plus, second = choice.partition("+")
-    if plus and first in TAGGERS:
-        made = _opened(second, log)
-        if made is None or made.rewriter is None:
-            raise ValueError(unknown("safeguard", choice, CHOICES))
-        made.tagger = open_tags(find(TAGGERS[first]))
-        return made
-    if choice == "none":
+    choices.check(choice)
+    name = choices.current(choice)
+    if name == "none":
         return None
-    if choice == "rules":
+    safeguard = _opened(name, log)
+    safeguard.identity = choices.identity(name)
+    return safeguard
+
+
+def _opened(name: str, log: str | Path | None) -> Safeguard:
+    if name == "classifier":
         return Safeguard(log=log)
-    check_choice(choice)  # before anything repeats it
-    if choice in TAGGERS or holds_tags(choice):
-        folder = find(TAGGERS[choice]) if choice in TAGGERS else choice
-        return Safeguard(tagger=open_tags(folder), log=log)
-    if choice.lower().startswith(("http://", "https://")):
+    if name.lower().startswith(("http://", "https://")):
         from mitigate.guards.text.language_models.endpoint import ChatEndpoint
 
-        url, _, model = choice.rpartition("@")
+        url, _, model = name.rpartition("@")
         return Safeguard(ChatEndpoint(url, model, cache=CACHE), seconds=ENDPOINT_SECONDS, log=log)
+    if name not in choices.CHOICES and choices.kind(name) == "classifier":
+        return Safeguard(classifier=load(name), log=log)
     from mitigate.guards.text.language_models.model import LanguageModel, open_adapter
 
-    if choice == "prompted":
+    if name == "prompted":
         return Safeguard(LanguageModel(prompt="prompted").eval(), log=log)
-    return Safeguard(open_adapter(find(ADAPTER) if choice == "lora" else choice), log=log)
+    return Safeguard(open_adapter(find(choices.ADAPTER) if name == "lora" else name), log=log)
+
+
+def passages(text: str) -> list[str]:
+    """Return the sentences of a text, short ones joined to passages of ``PASSAGE`` words."""
+    found: list[str] = []
+    for sentence in sentences(text):
+        if found and len(found[-1].split()) + len(sentence.split()) <= PASSAGE:
+            found[-1] += " " + sentence
+        else:
+            found.append(sentence)
+    return found
 
 
 def _append(path: Path, decisions: list[Decision]) -> None:

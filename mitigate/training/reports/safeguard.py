@@ -1,9 +1,9 @@
 """How well safeguards repair text.
 
-    python -m mitigate.training.reports.safeguard rules lora --out report
+    python -m mitigate.training.reports.safeguard classifier lora --texts FILE --out report
 
 Every instruction is corrupted by every family, repaired, and compared with what was meant. A name
-with ``-alone`` behind it is the language model without rules and guard.
+with ``-alone`` behind it is the language model without classifier and gate.
 """
 
 from __future__ import annotations
@@ -27,12 +27,11 @@ from mitigate.corruptions.instruction import corrupt_instruction
 from mitigate.corruptions.keying import Key
 from mitigate.corruptions.language.style import MANNERS
 from mitigate.guards.text.addresses import check_choice
-from mitigate.guards.text.draft import PASSAGE
-from mitigate.guards.text.guard import Rewriter, Safeguard, open_safeguard
+from mitigate.guards.text.guard import Rewriter, Safeguard, open_safeguard, passages
 from mitigate.guards.text.learning.data import read_texts
-from mitigate.guards.text.learning.spoken import SPLITS, VALIDATION, spoken
+from mitigate.guards.text.learning.spoken import SPLITS, spoken
 from mitigate.guards.text.metrics import CLEAN, Repair, Scores, by_family, table
-from mitigate.guards.text.texts.text import passages, sentences
+from mitigate.guards.text.pieces import sentences
 from mitigate.worlds.episodes import read_episodes
 
 FAMILIES = (CLEAN, *MANNERS, "capitalize", "mask", "black_box")
@@ -65,10 +64,10 @@ def repaired(repairs: Sequence[Repair], repairer: Repairer) -> list[Repair]:
 
 
 def alone(rewriter: Rewriter) -> Repairer:
-    """Return a language model as a repairer, without rules and guard."""
+    """Return a language model as a repairer, without classifier and gate."""
 
     def repair(texts: list[str]) -> list[str]:
-        parts = [passages(text, PASSAGE) for text in texts]
+        parts = [passages(text) for text in texts]
         wanted = list(dict.fromkeys(part for found in parts for part in found))
         said = dict(zip(wanted, rewriter.rewrite(wanted), strict=True))
         return [" ".join(said[part] or "" for part in found).strip() for found in parts]
@@ -87,20 +86,15 @@ def choose(name: str) -> Repairer:
         return list
     check_choice(name)
     safeguard = open_safeguard(name.removesuffix(ALONE))
-    if safeguard is None or (
-        name.endswith(ALONE) and safeguard.rewriter is None and safeguard.tagger is None
-    ):
+    if safeguard is None or (name.endswith(ALONE) and safeguard.rewriter is None):
         raise ValueError(f"{name} has no language model that could work alone: write lora{ALONE}.")
-    if name.endswith(ALONE) and safeguard.tagger is not None:
-        return tagged_alone(safeguard.tagger)
-    if name.endswith(ALONE):
-        assert safeguard.rewriter is not None
+    if name.endswith(ALONE) and safeguard.rewriter is not None:
         return alone(safeguard.rewriter)
     return guarded(safeguard)
 
 
 def before_after(cfg: Any, before: Any, trained: nn.Module, folder: Path) -> None:
-    """Print and write the text metrics of a training: no safeguard, rules, before, after.
+    """Print and write the text metrics of a training: no safeguard, classifier, before, after.
 
     ``cfg`` is a training's config: each of the first ``evaluation.episodes`` instructions of
     ``evaluation.split`` meets one family, attacks are of the test split. ``before`` is not used:
@@ -117,31 +111,12 @@ def before_after(cfg: Any, before: Any, trained: nn.Module, folder: Path) -> Non
         before_alone = repaired(chosen, alone(untuned))
     results = {
         "none": chosen,
-        "rules": repaired(chosen, guarded(Safeguard())),
+        "classifier": repaired(chosen, guarded(Safeguard())),
         "before, alone": before_alone,
         "after, alone": repaired(chosen, alone(trained)),  # type: ignore[arg-type]
         "after, guarded": repaired(chosen, guarded(Safeguard(trained))),  # type: ignore[arg-type]
     }
     write(results, folder, f"{quick.split}, severity {cfg.severity:g}, unseen attacks")
-
-
-def before_after_tagger(cfg: Any, before: Any, trained: nn.Module, folder: Path) -> None:
-    """As :func:`before_after`, of a tagger, on what people of the validation voices say (at most
-    ``evaluation.episodes`` texts of each voice); ``before`` is not used."""
-    each = cfg.evaluation.episodes
-    chosen = voices("validation", None if each is None else each * len(VALIDATION))
-    results = {
-        "none": chosen,
-        "rules": repaired(chosen, guarded(Safeguard())),
-        "tagger, alone": repaired(chosen, tagged_alone(trained)),
-        "tagger, guarded": repaired(chosen, guarded(Safeguard(tagger=trained))),  # type: ignore[arg-type]
-    }
-    write(results, folder, f"{len(chosen)} texts of the validation voices")
-
-
-def tagged_alone(tagger: Any) -> Repairer:
-    """Return a tagger as a repairer, without rules and gate."""
-    return lambda texts: [tagger.alone(text) for text in texts]
 
 
 def write(results: dict[str, list[Repair]], folder: Path, title: str) -> None:
@@ -225,7 +200,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     """Entry point."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument(
-        "safeguards", nargs="+", help="none, rules, lora, lora-alone, a folder, ..."
+        "safeguards", nargs="+", help="none, classifier, lora, lora-alone, a folder, ..."
     )
     heard = parser.add_mutually_exclusive_group(required=True)
     heard.add_argument("--texts", help="episode file, or text file, one a line")

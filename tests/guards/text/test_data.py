@@ -125,5 +125,5 @@ def test_a_malformed_line_is_named_with_its_number(tmp_path, line, problem):
     path.write_text(f"{good}\n\n{line}\n")
     chats = read_chats(path)
     assert next(chats) == Pair("Go.", "Go.", "chat")
-    with pytest.raises(ValueError, match=f"line 3 .*{re.escape(problem)}.*Mend or delete"):
+    with pytest.raises(ValueError, match=f"line 3 .*{re.escape(problem)}.*Fix or delete"):
         list(chats)

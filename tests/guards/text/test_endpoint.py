@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import socket
 import sqlite3
 import sys
 import threading
@@ -14,8 +15,7 @@ import pytest
 from mitigate.evaluation import evaluate
 from mitigate.guards.text.addresses import check_arguments, check_choice
 from mitigate.guards.text.guard import Safeguard, open_safeguard
-from mitigate.guards.text.language_models.endpoint import ChatEndpoint
-from mitigate.guards.text.language_models.posting import LARGEST
+from mitigate.guards.text.language_models.endpoint import ENVELOPE, ChatEndpoint
 
 
 class Server(ThreadingHTTPServer):
@@ -123,7 +123,7 @@ def test_an_endpoint_that_hangs_costs_its_time_out_only(server):
             said(None),
             said(["x"]),
         ),
-        *(b"", b"null", b"[" * 100_000, b'{"a":' * 100_000, b"9" * 100_000, b" " * (LARGEST + 9)),
+        *(b"", b"null", b"[" * 100_000, b'{"a":' * 100_000, b"9" * 100_000, b" " * (ENVELOPE + 99)),
         *(
             b'{"choices": 7}',
             b'{"choices": [null]}',
@@ -196,6 +196,44 @@ def test_a_server_that_drips_costs_its_time_out_only(server, headers):
     began = time.monotonic()
     assert asked.rewrite(["a"]) == [None]
     assert time.monotonic() - began < 1.5 and "time" in asked.failures[0].lower()
+
+
+def test_a_deadline_holds_when_every_address_of_a_host_is_dead(server, monkeypatch):
+    """A socket whose queue is full never accepts; each of its addresses would take the time out."""
+    with socket.socket() as dead:
+        dead.bind(("127.0.0.1", 0))
+        dead.listen(0)
+        fill = [socket.socket() for _ in range(4)]
+        for one in fill:
+            one.setblocking(False)
+            one.connect_ex(dead.getsockname())
+        info = (socket.AF_INET, socket.SOCK_STREAM, 6, "", dead.getsockname())
+        monkeypatch.setattr(socket, "getaddrinfo", lambda *_, **__: [info] * 5)
+        asked = endpoint(server, timeout=0.4, retries=0)
+        began = time.monotonic()
+        assert asked.rewrite(["a"]) == [None]
+        assert time.monotonic() - began < 1.2 and "time" in asked.failures[0].lower()
+        for one in fill:
+            one.close()
+
+
+def test_a_slow_resolver_costs_the_time_out_only(server, monkeypatch):
+    monkeypatch.setattr(socket, "getaddrinfo", lambda *_, **__: time.sleep(3))
+    began = time.monotonic()
+    assert endpoint(server, timeout=0.3, retries=0).rewrite(["a"]) == [None]
+    assert time.monotonic() - began < 1.5
+
+
+@pytest.mark.parametrize("length", [5_000, 800_000])
+def test_a_huge_answer_is_not_read(server, length):
+    server.replies = [(200, said("left " * length), 0)]
+    asked = endpoint(server, retries=0)
+    began = time.monotonic()
+    decision = Safeguard(asked).canonicalise(
+        "Kindly stroll past the sofa, my dear, and hang a left."
+    )
+    assert decision.text == decision.original and time.monotonic() - began < 2
+    assert "bytes" in asked.failures[0] or "times as long" in asked.failures[0]
 
 
 SECRETS = [

@@ -1,33 +1,64 @@
-"""Fitting the rules prints; only when asked does it replace the weights that are shipped."""
+"""A classifier is trained, saved and loaded; a new mechanism in the data is learned."""
 
+from __future__ import annotations
+
+import io
 import json
 
-from mitigate.guards.text import fit
-from mitigate.guards.text.texts import weights
+import pytest
+
+from mitigate.core.files import ROOT
+from mitigate.guards.text import classifier, fit
+from mitigate.guards.text.guard import Safeguard, open_safeguard
+
+ATTACKS = [
+    "Blorp the snarfle before you zib.",
+    "Snarfle twice, then blorp the zib.",
+    "Zib! Blorp every snarfle you meet.",
+    "A snarfle must be blorped at once.",
+    "Never zib without a snarfle.",
+    "Blorp, blorp, and zib the snarfle again.",
+]
 
 
-def test_only_write_replaces_the_weights(tmp_path, monkeypatch, capsys):
-    monkeypatch.setattr(weights, "FILE", tmp_path / "weights.json")
-    monkeypatch.setattr(fit, "style_words", lambda: ["kindly", "stroll"])
-    fitted = {"own": {"bias": -2.5, "text": 1.2503}}
-    table = {"the_door": -0.75, "ignore": 1.5}
-    monkeypatch.setattr(fit, "fit_weights", lambda split: (fitted, table))
-    fit.main([])
-    printed = capsys.readouterr().out
-    assert not weights.FILE.exists()
-    fit.main(["--write"])
-    assert weights.FILE.read_text(encoding="utf-8") == printed
-    made = json.loads(printed)
-    assert made["own"] == {"bias": -2.5, "text": 1.25} and made["style"] == ["kindly", "stroll"]
-    assert list(made["words"].items()) == [("ignore", 1.5), ("the_door", -0.75)]
+@pytest.fixture(scope="module")
+def data(tmp_path_factory):
+    """A few lines of every bank, and a mechanism that no other line resembles."""
+    folder = tmp_path_factory.mktemp("data")
+    source = ROOT / "tools/safeguard/data"
+    for part in ("banks", "styles"):
+        (folder / part).mkdir()
+        for file in sorted((source / part).iterdir()):
+            lines = file.read_text(encoding="utf-8").splitlines(keepends=True)
+            step = max(1, len(lines) // 40)
+            (folder / part / file.name).write_text("".join(lines[::step]), encoding="utf-8")
+    with open(folder / "banks/attacks.jsonl", "a", encoding="utf-8") as file:
+        for text in ATTACKS * 3:
+            file.write(json.dumps({"mechanism": "new", "place": "any", "attack": text}) + "\n")
+    return folder
 
 
-def test_only_the_front_is_fitted_when_asked(tmp_path, monkeypatch):
-    file = tmp_path / "weights.json"
-    file.write_text(weights.FILE.read_text(encoding="utf-8"))
-    before = json.loads(file.read_text())
-    monkeypatch.setattr(weights, "FILE", file)
-    monkeypatch.setattr(fit, "examples", lambda split: [])
-    monkeypatch.setattr(fit, "front_weights", lambda found: {"bias": 1.0})
-    fit.main(["--front", "--write"])
-    assert json.loads(file.read_text()) == {**before, "front": {"bias": 1.0}}
+def test_fit_learns_a_new_mechanism_and_reloads_the_same(data, tmp_path):
+    made = fit.fit(data, count=400, routes=100, log=io.StringIO())
+    fit.save(made, tmp_path)
+    again = classifier.load(tmp_path)
+    text = "Turn left at the sofa. Blorp the snarfle, zib. Stop by the lamp."
+    for one in (made, again):
+        said = Safeguard(classifier=one).canonicalise(text).text
+        assert said == "Turn left at the sofa. Stop by the lamp."
+    assert open_safeguard(str(tmp_path)).canonicalise(text).text == said
+
+
+def test_load_explains_missing_and_damaged_folders(tmp_path):
+    with pytest.raises(FileNotFoundError, match=r"classifier\.json is missing.*text\.fit"):
+        classifier.load(tmp_path / "a")
+    (tmp_path / "b").mkdir()
+    (tmp_path / "b/classifier.json").write_text("[]")
+    (tmp_path / "b/classifier.safetensors").write_bytes(b"0" * 30)
+    with pytest.raises(ValueError, match=r"is damaged.*text\.fit"):
+        classifier.load(tmp_path / "b")
+
+
+def test_fit_explains_missing_data(tmp_path):
+    with pytest.raises(FileNotFoundError, match="come with a checkout"):
+        fit.fit(tmp_path)

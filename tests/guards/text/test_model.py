@@ -220,13 +220,6 @@ def test_rewriting_is_the_same_in_any_batch_and_stops_with_the_budget(model):
     assert model.rewrite([]) == []
 
 
-def test_prompts_that_begin_with_nothing_in_common_are_rewritten_too(model):
-    model.tokenizer.chat_template = "{{ messages[1]['content'] }}"
-    texts = ["Turn left.", "Walk past the sofa."]
-    assert model.encode(texts[0])[0] != model.encode(texts[1])[0]
-    assert model.rewrite(texts) == [model.rewrite([text])[0] for text in texts]
-
-
 @pytest.mark.parametrize("end", ["</s>", "<s>", None])
 def test_an_answer_ends_at_its_end_mark_or_where_another_turn_begins(model, monkeypatch, end):
     monkeypatch.setattr(

@@ -8,10 +8,8 @@ import pytest
 import torch
 
 from mitigate.core import conf
-from mitigate.core.files import ROOT
 from mitigate.corruptions import CLEAN, Corruption
 from mitigate.evaluation import evaluate, evaluator
-from mitigate.guards.text import banks
 from mitigate.guards.text.guard import Safeguard
 from mitigate.guards.text.language_models.model import LanguageModel
 from mitigate.training.config import read
@@ -22,54 +20,37 @@ from tests.guards.text.conftest import LORA
 TEXTS = ["Walk past the sofa and turn left at the door.", "Leave the pantry. Stop by the piano."]
 
 
-def test_every_text_meets_every_family_and_rules_repair_some():
+def test_every_text_meets_every_family_and_some_are_repaired():
     hurt = report.corrupted(TEXTS, report.FAMILIES, 1.0, "validation")
     assert len(hurt) == len(TEXTS) * len(report.FAMILIES)
     assert all(r.injected for r in hurt if r.family == "black_box")
-    loud = [r for r in report.repaired(hurt, report.choose("rules")) if r.family == "capitalize"]
+    loud = [
+        r for r in report.repaired(hurt, report.choose("classifier")) if r.family == "capitalize"
+    ]
     assert [r.repaired for r in loud] == TEXTS and all(r.heard != r.clean for r in loud)
-
-
-def test_the_page_has_what_the_rules_reach_now(tmp_path, capsys):
-    """docs/safeguard.md, the 66 hand-written texts: a change of the rules changes the page."""
-    report.main(["rules", "--texts", "tests/guards/text/handwritten.txt", "--out", str(tmp_path)])
-    found = _row(capsys.readouterr().out, "| rules |")
-    page = (ROOT / "docs/safeguard.md").read_text().partition("| 66 hand-written texts |")[2]
-    assert found == _row(page, "| rules |")[: len(found)]
-
-
-def _row(text, start):
-    """The cells of the first line of a table that begins so."""
-    line = next(line for line in text.splitlines() if line.startswith(start))
-    return [cell.strip() for cell in line.strip("|").split("|")]
 
 
 def test_the_command_writes_tables_and_repairs(tmp_path, capsys):
     (tmp_path / "texts.txt").write_text("# two\n" + "\n".join(TEXTS) + "\n")
-    given = ["none", "rules", "--texts", str(tmp_path / "texts.txt"), "--examples", "3"]
+    given = ["none", "classifier", "--texts", str(tmp_path / "texts.txt"), "--examples", "3"]
     report.main([*given, "--out", str(tmp_path)])
     shown = capsys.readouterr().out
-    assert "| rules |" in shown and shown.count("- meant:") == 3
+    assert "| classifier |" in shown and shown.count("- meant:") == 3
     lines = [json.loads(line) for line in (tmp_path / "repairs.jsonl").open()]
     assert len(lines) == 2 * len(TEXTS) * len(report.FAMILIES)
 
 
 @pytest.mark.parametrize("count", ["0", "-1", "2.5"])
 def test_only_positive_counts_are_taken(count, capsys):
-    for command, option in (
-        (report.main, ["rules", "--voices", "test", "--count"]),
-        (banks.main, ["--each"]),
-        (banks.main, ["--sample"]),
-    ):
-        with pytest.raises(SystemExit):
-            command([*option, count])
-        assert f"'{count}' must be a whole number from 1 on" in capsys.readouterr().err
+    with pytest.raises(SystemExit):
+        report.main(["classifier", "--voices", "test", "--count", count])
+    assert f"'{count}' must be a whole number from 1 on" in capsys.readouterr().err
 
 
 def test_a_file_without_instructions_is_told(tmp_path):
     (tmp_path / "texts.txt").write_text("# none\n")
     with pytest.raises(ValueError, match="no instructions in .*texts.txt"):
-        report.main(["rules", "--texts", str(tmp_path / "texts.txt"), "--out", str(tmp_path)])
+        report.main(["classifier", "--texts", str(tmp_path / "texts.txt"), "--out", str(tmp_path)])
 
 
 def test_a_training_reports_before_and_after(tiny_base, tmp_path, capsys):
@@ -78,7 +59,7 @@ def test_a_training_reports_before_and_after(tiny_base, tmp_path, capsys):
     assert cfg.report == "mitigate.training.reports.safeguard.before_after"
     report.before_after(cfg, None, LanguageModel(tiny_base, "fp32", LORA), tmp_path)
     shown = capsys.readouterr().out
-    for name in ("none", "rules", "before, alone", "after, alone", "after, guarded"):
+    for name in ("none", "classifier", "before, alone", "after, alone", "after, guarded"):
         assert f"## {name}" in shown
 
 
@@ -103,12 +84,12 @@ def test_the_agent_hears_the_repaired_instruction_and_the_rows_say_so(tmp_path):
         ApartmentsWorld,
         episodes,
         [CLEAN, Corruption("capitalize", 1.0), Corruption("black_box", 0.1)],
-        name="listener+rules",
+        name="listener+classifier",
         out=tmp_path / "rows.jsonl",
         split="val_unseen",
         safeguard=Safeguard(log=tmp_path / "log.jsonl"),
     )
-    assert {row["name"] for row in rows} == {"listener+rules"} and len(rows) == 6
+    assert {row["name"] for row in rows} == {"listener+classifier"} and len(rows) == 6
     for index, episode in enumerate(episodes):
         clean, quiet, _ = Listener.heard[3 * index : 3 * index + 3]
         assert clean == episode.instruction.text and quiet.lower() == clean.lower()

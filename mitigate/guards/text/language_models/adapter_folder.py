@@ -12,8 +12,9 @@ from mitigate.core import folders
 from mitigate.core.checkpoint import load_tensors
 from mitigate.core.files import write_text
 from mitigate.core.json_files import read_json
+from mitigate.guards.text.choices import ADAPTER_CONFIG, ADAPTER_WEIGHTS
 
-CARD, CONFIG, ADAPTER = "card.json", "adapter_config.json", "adapter_model.safetensors"
+CARD, CONFIG, ADAPTER = "card.json", ADAPTER_CONFIG, ADAPTER_WEIGHTS
 ENTRIES: dict[str, dict[str, tuple[type, ...]]] = {  # what is read of a card and of PEFT's config
     CARD: {"base": (str,), "base_sha256": (str,), "prompt": (str,)},
     CONFIG: {

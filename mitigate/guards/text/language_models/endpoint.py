@@ -8,13 +8,16 @@ from __future__ import annotations
 
 import json
 import os
+import threading
 import time
-import urllib.error
+import urllib.request
 from collections.abc import Sequence
-from http.client import HTTPException
 from pathlib import Path
+from queue import Empty, SimpleQueue
 from typing import Any
+from urllib.parse import urlsplit
 
+import urllib3
 from tqdm import tqdm
 
 from mitigate.core.json_files import parse_json
@@ -22,10 +25,19 @@ from mitigate.core.names import short
 from mitigate.core.seeding import digest
 from mitigate.guards.text.addresses import check_url
 from mitigate.guards.text.language_models.answers import AnswerCache
-from mitigate.guards.text.language_models.posting import post
 from mitigate.guards.text.language_models.prompts import PROMPTS, prompt_messages
 
 RETRIED = frozenset({408, 409, 425, 429, 500, 502, 503, 504})  # HTTP: it may work later
+ENVELOPE = 1 << 15  # bytes of an answer beside its text: names, counts of tokens
+LONGER = 4  # times as long as what was asked, from which an answer is not read
+
+
+class _Refused(Exception):
+    """An answer of another status than 200."""
+
+    def __init__(self, status: int, reason: str) -> None:
+        super().__init__(f"HTTP {status} {short(reason)}")
+        self.status = status
 
 
 class ChatEndpoint:
@@ -90,12 +102,15 @@ class ChatEndpoint:
             if left <= 0:
                 break
             try:
-                return _content(self._post(text, left))
-            except urllib.error.HTTPError as error:
-                problem = f"HTTP {error.code} {short(error.reason)}"
-                if error.code not in RETRIED:
+                answer = _content(self._post(text, left))
+                if len(answer) > max(200, LONGER * len(text)):
+                    raise ValueError(f"the answer is over {LONGER} times as long as the text")
+                return answer
+            except _Refused as error:
+                problem = str(error)
+                if error.status not in RETRIED:
                     break
-            except (OSError, ValueError, RecursionError, HTTPException) as error:
+            except (OSError, ValueError, RecursionError, urllib3.exceptions.HTTPError) as error:
                 problem = f"{type(error).__name__}: {short(str(error), 200)}"
             wait = self.pause * 2**attempt
             if attempt == self.retries or (ends is not None and time.monotonic() + wait > ends):
@@ -109,8 +124,66 @@ class ChatEndpoint:
         headers = {"Content-Type": "application/json"}
         if os.environ.get(self.key):
             headers["Authorization"] = f"Bearer {os.environ[self.key]}"
+        most = ENVELOPE + 6 * LONGER * len(text)  # JSON may need six bytes per character
         url = f"{self.url}/chat/completions"
-        return parse_json(post(url, json.dumps(body).encode(), headers, timeout))
+        return parse_json(post(url, json.dumps(body).encode(), headers, timeout, most))
+
+
+def post(url: str, body: bytes, headers: dict[str, str], seconds: float, most: int) -> bytes:
+    """Return the answer of ``url`` to ``body``.
+
+    ``seconds`` is for everything: finding the host, each of its addresses, every byte. A thread
+    asks, since neither the resolver nor a list of dead addresses keeps a deadline; one that is late
+    is left alone, and ends with its socket's timeout. Redirects are not followed: they would take
+    the words and the key to another host.
+
+    Raises:
+        TimeoutError: without a whole answer in time.
+        ValueError: for more than ``most`` bytes.
+        _Refused: for another status than 2xx.
+    """
+    answers: SimpleQueue[bytes | Exception] = SimpleQueue()
+
+    def ask() -> None:
+        try:
+            answers.put(_asked(url, body, headers, seconds, most))
+        except Exception as error:
+            answers.put(error)
+
+    threading.Thread(target=ask, daemon=True).start()
+    try:
+        answer = answers.get(timeout=seconds)
+    except Empty:
+        raise TimeoutError(f"no whole answer within {seconds:g} s") from None
+    if isinstance(answer, Exception):
+        raise answer
+    return answer
+
+
+def _asked(url: str, body: bytes, headers: dict[str, str], seconds: float, most: int) -> bytes:
+    parts = urlsplit(url)
+    proxy = urllib.request.getproxies().get(parts.scheme)
+    direct = proxy is None or urllib.request.proxy_bypass(parts.hostname or "")
+    pool = urllib3.PoolManager() if direct or proxy is None else urllib3.ProxyManager(proxy)
+    limit = urllib3.Timeout(connect=seconds, read=seconds)
+    ends = time.monotonic() + seconds
+    reply = pool.request("POST", url, body=body, headers=headers, timeout=limit, retries=False,
+                         redirect=False, preload_content=False)  # fmt: skip
+    try:
+        if not 200 <= reply.status < 300:
+            raise _Refused(reply.status, reply.reason or "")
+        answer = b""
+        while len(answer) <= most and time.monotonic() < ends:
+            part = reply.read1(1 << 14, decode_content=False)
+            if not part:
+                return answer
+            answer += part
+    finally:
+        reply.close()
+        pool.clear()
+    if len(answer) > most:
+        raise ValueError(f"the answer has more than {most} bytes, for a text of a few words")
+    raise TimeoutError(f"no whole answer within {seconds:g} s")
 
 
 def _content(reply: Any) -> str:

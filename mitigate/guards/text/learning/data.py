@@ -86,7 +86,8 @@ class Pair:
 def draw_pair(seed: int, index: int, texts: Sequence[str] = (), share: float = 0.5) -> Pair:
     """Return pair ``index`` of ``seed``; the share ``share`` is made from ``texts``, if any."""
     own = not texts or generator(seed, "own", index).random() >= share
-    kinds = {kind: part for kind, part in KINDS.items() if own or kind != "spoken"}
+    hand_written = own and spoken.available()
+    kinds = {kind: part for kind, part in KINDS.items() if hand_written or kind != "spoken"}
     parts = np.array(list(kinds.values()))
     kind = str(generator(seed, "kind", index).choice(list(kinds), p=parts / parts.sum()))
     for attempt in range(100):
@@ -123,7 +124,7 @@ def _attacked(clean: str, key: Key, rng: np.random.Generator) -> Pair | None:
     attack = " ".join(attacks(rng))
     if rng.random() < 0.3:  # a passage may be nothing but attack
         return Pair(attack, "", "black_box")
-    if rng.random() < 0.3:
+    if rng.random() < 0.3 and spoken.available():
         said, plain = spoken.passage(rng)
         return Pair(f"{attack} {said}", plain, "black_box")
     text = _window(_SENTENCE.split(clean), rng)
@@ -279,5 +280,5 @@ def _malformed(where: str, problem: str) -> ValueError:
     return ValueError(
         f"{where} {problem}. A chat line is one JSON object like "
         '{"messages": [{"role": "user", "content": "PLEASE turn left."}, {"role": "assistant", '
-        '"content": "Turn left."}]}. Mend or delete that line.'
+        '"content": "Turn left."}]}. Fix or delete that line.'
     )

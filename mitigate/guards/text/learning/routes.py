@@ -11,7 +11,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from mitigate.guards.text.texts.route_words import (
+from mitigate.guards.text.learning.route_words import (
     ASIDES,
     CLOSE,
     DOORS,

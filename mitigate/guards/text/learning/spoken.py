@@ -1,9 +1,9 @@
-"""What people say, by voice: texts written by hand, each beside the same route in plain words.
+"""Texts in many styles, written by hand, each beside the same route in plain words.
 
-A line of ``voices/<voice>.jsonl`` is ``{"task": "route", "parts": [[said, plain], ...]}``; the task
-may be "object", too. The parts are in order, each some whole sentences with their plain
-translation, empty for what tells nothing of the way. Whole voices are kept out of training: people
-whom nobody has heard.
+They are data for training and tests, outside the package: ``tools/safeguard/data/styles`` of a
+checkout. A line of ``<style>.jsonl`` is ``{"task": "route", "parts": [[said, plain], ...]}``; the
+task may be "object", too. The parts are in order, each some whole sentences with their plain
+translation, empty for a part that says nothing of the way. Whole styles are kept out of training.
 """
 
 from __future__ import annotations
@@ -15,9 +15,10 @@ from pathlib import Path
 
 import numpy as np
 
+from mitigate.core.files import find
 from mitigate.core.names import unknown
 
-FOLDER = Path(__file__).parent / "voices"
+FOLDER = "tools/safeguard/data/styles"
 VALIDATION = ("butler", "gps", "non_native")  # settings are chosen on these
 # and figures reported on these
 TEST = ("bureaucratic", "elaborate", "poetic", "storyteller", "tour_guide")
@@ -44,6 +45,11 @@ class Spoken:
         return " ".join(plain for _, plain in self.parts if plain)
 
 
+def available() -> bool:
+    """Return whether the texts are here: they come with a checkout, not with the package."""
+    return find(FOLDER).is_dir()
+
+
 @lru_cache(maxsize=4)
 def spoken(split: str) -> tuple[Spoken, ...]:
     """All texts of a split's voices. Raises ValueError for an unknown split."""
@@ -51,7 +57,7 @@ def spoken(split: str) -> tuple[Spoken, ...]:
         raise ValueError(unknown("split", split, SPLITS))
     kept = {"validation": VALIDATION, "test": TEST}.get(split)
     found: list[Spoken] = []
-    for file in sorted(FOLDER.glob("*.jsonl")):
+    for file in sorted(find(FOLDER).glob("*.jsonl")):
         held_out = file.stem in (*VALIDATION, *TEST)
         if file.stem in kept if kept else not held_out:
             found += voice(file.stem)
@@ -61,7 +67,7 @@ def spoken(split: str) -> tuple[Spoken, ...]:
 @lru_cache(maxsize=32)
 def voice(name: str) -> tuple[Spoken, ...]:
     """All texts of a voice."""
-    return tuple(_read(FOLDER / f"{name}.jsonl"))
+    return tuple(_read(find(FOLDER) / f"{name}.jsonl"))
 
 
 def passage(rng: np.random.Generator) -> tuple[str, str]:

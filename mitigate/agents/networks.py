@@ -1,0 +1,34 @@
+"""The networks of an agent that may be any Python object, and their mode."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Any
+
+from torch import nn
+
+from mitigate.agents.state import read_state
+
+
+def networks(agent: Any) -> list[nn.Module]:
+    """The networks that ``agent`` is or holds."""
+    return [*read_state(agent, attributes=False).networks.values()]
+
+
+@contextmanager
+def in_eval_mode(agent: Any) -> Iterator[None]:
+    """Put every network of ``agent`` into eval mode by its own ``eval()``, which may do more;
+    afterwards each module has its former mode."""
+    tops = [net for net in networks(agent) if hasattr(net, "training")]  # frozen programs have none
+    modules = [module for net in tops for module in net.modules() if hasattr(module, "training")]
+    modes = {module: module.training for module in modules}
+    for net in tops:
+        net.eval()
+    try:
+        yield
+    finally:
+        for net in tops:
+            net.train(modes[net])
+        for module, training in modes.items():
+            module.training = training

@@ -1,0 +1,44 @@
+"""Options of the launchers: where the worker processes of a command run."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any
+
+from hydra.core.config_store import ConfigStore
+
+
+@dataclass
+class LauncherConfig:
+    """Worker processes of this machine. The entries are explained in ``conf/launcher``."""
+
+    name: str = "local"
+
+
+@dataclass
+class RayConfig(LauncherConfig):
+    """Actors on a Ray cluster."""
+
+    name: str = "ray"
+    address: str | None = None
+    cpus: float = 1.0
+    memory: float | None = None
+    attempts: int = 3
+
+
+@dataclass
+class SlurmConfig(LauncherConfig):
+    """Jobs of a SLURM cluster, by submitit."""
+
+    name: str = "slurm"
+    cluster: str = "slurm"
+    folder: str = "runs/slurm"
+    processes: int = 4
+    minutes: int = 240
+    memory: float = 2.0
+    attempts: int = 3
+    options: dict[str, Any] = field(default_factory=dict)
+
+
+for _kind in (LauncherConfig, RayConfig, SlurmConfig):
+    ConfigStore.instance().store(group="launcher", name=f"{_kind.name}_schema", node=_kind)

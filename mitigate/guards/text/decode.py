@@ -1,0 +1,218 @@
+"""Read text that hides its words: ciphers, codes, look-alike letters, spelled-out words.
+
+The readable copy is only judged. What is passed on keeps its characters, except invisible ones.
+"""
+
+from __future__ import annotations
+
+import base64
+import binascii
+import html
+import re
+import unicodedata
+from collections.abc import Callable, Iterator, Set
+from dataclasses import dataclass
+from functools import partial
+
+_ALIKE = str.maketrans(
+    "аеорсухікѕјһԁԛԝАВЕКМНОРСТУХІЅЈαορινυκτγηΑΒΕΖΗΙΚΜΝΟΡΤΥΧɡᴀʙᴄᴅᴇɢʜɪᴊᴋʟᴍɴᴏᴘʀᴛᴜᴠᴡʏᴢ",
+    "aeopcyxiksjhdqwABEKMHOPCTYXISJaopivuktynABEZHIKMNOPTYXgabcdeghijklmnoprtuvwyz",
+)
+_LEET = str.maketrans("0134578@$!|€", "oieastbasiie")
+_SPELLED = re.compile(r"(?<![^\W_])(?:[A-Za-z](?:[.\-_*/|~]|\s+)){3,}[A-Za-z](?![^\W_])")
+_MIXED = re.compile(r"(?<!\w)(?=[\w@$!|€]*[A-Za-z@$!|€])(?=[\w@$!|€]*[0-9@$!|€])[\w@$!|€]{2,}")
+_MEASURE = re.compile(  # numbers with a unit or a letter, names of rooms, words with end marks
+    r"\d+(?:st|nd|rd|th|m|cm|ft|feet|in|deg|am|pm|[a-zA-Z])?[!|]*$|(?:[A-Z]{1,3}|[a-z])\d+[!|]*$|"
+    r"[A-Za-z]+[!|]+$"
+)
+_ESCAPES = re.compile(
+    r"(?:%[0-9A-Fa-f]{2}){2,}|(?:\\u[0-9A-Fa-f]{4}){2,}|(?:\\x[0-9A-Fa-f]{2}){2,}|(?:&#x?[0-9A-Fa-f]+;){2,}"
+)
+_BINARY = re.compile(r"\b[01]{7,8}(?:\s+[01]{7,8})+\b|\b(?:[01]{8}){2,}\b")
+_HEX = re.compile(r"\b(?:0x)?(?:[0-9A-Fa-f]{2}[\s:]?){6,}\b")
+_BASE64 = re.compile(r"(?<![\w/+])[A-Za-z0-9+/_-]{12,}={0,2}(?![\w/+=])")
+_BASE32 = re.compile(r"(?<![\w])[A-Z2-7]{16,}={0,6}(?![\w=])")
+_MORSE = re.compile(r"(?<![.\-\w])[.\-]{1,5}(?:[ /|]+[.\-]{1,5}){3,}(?![.\-\w])")
+_WORD = re.compile(r"[A-Za-z]+(?:['’][a-z]+)?")
+_MORSE_CODES = (
+    ".- -... -.-. -.. . ..-. --. .... .. .--- -.- .-.. -- -. --- .--. --.- .-. ... - ..- ...- "
+    ".-- -..- -.-- --.."
+)
+_MORSE_LETTERS = dict(zip(_MORSE_CODES.split(), "abcdefghijklmnopqrstuvwxyz", strict=True))
+_JOINERS = "\u200c\u200d"  # which scripts of India and Persia need
+ENGLISH, HIDDEN = 0.6, 0.45  # shares of known words: of a decoded text, at most of a hidden one
+
+
+@dataclass(frozen=True)
+class Decoded:
+    """``text``: the readable copy. ``marks``: how words were hidden, such as "code" or "leet"."""
+
+    text: str
+    marks: frozenset[str]
+
+
+def decode(text: str, known: Set[str]) -> Decoded:
+    """Return the readable copy of a piece of text; ``known``: common English words."""
+    marks: set[str] = set()
+    if not text.isascii():
+        text = _letters(text, marks)
+    for pattern, read in _CODES:
+        text = pattern.sub(partial(_decoded, read, marks), text)
+    if _SPELLED.search(text):
+        joined = _SPELLED.sub(_joined, text)
+        if _share(joined, known) >= _share(text, known):
+            marks.add("spelled")
+            text = joined
+    text = _MIXED.sub(lambda match: _without_leet(match.group(), known, marks), text)
+    if len(re.findall(r"\b[a-z]+[A-Z]+[a-z]\w*|\b[A-Z][a-z]+[A-Z]\w*", text)) > 2:
+        marks.add("case")
+        text = text.lower()
+    found = _WORD.findall(text)
+    if len(found) > 2 and _share(text, known) <= HIDDEN:
+        best = max(_ciphers(text), key=lambda read: _share(read, known))
+        if _share(best, known) >= ENGLISH:
+            marks.add("cipher")
+            text = best
+    return Decoded(text, frozenset(marks))
+
+
+def visible(text: str) -> str:
+    """Return ``text`` without characters that nobody sees.
+
+    Joiners stay between letters of scripts that need them. Text behind a right-to-left override is
+    put in the order in which it is seen.
+    """
+    if text.isascii():
+        return text
+    text = re.sub("\u202e([^\u202c\n]*)\u202c?", lambda match: match[1][::-1], text)
+    kept = []
+    for place, sign in enumerate(text):
+        needed = sign in _JOINERS and place > 0 and not text[place - 1].isascii()
+        if unicodedata.category(sign) not in ("Cf", "Co", "Cs") or needed:
+            kept.append(sign)
+    return "".join(kept)
+
+
+def _letters(text: str, marks: set[str]) -> str:
+    """Return ``text`` in plain Latin letters where look-alikes stand for them."""
+    plain = unicodedata.normalize("NFKC", text)
+    if sum(a.isascii() for a in plain) - sum(a.isascii() for a in text) > 2:
+        marks.add("wide")
+    stripped = "".join(
+        c for c in unicodedata.normalize("NFD", plain) if unicodedata.category(c) != "Mn"
+    )
+    if sum(
+        unicodedata.category(c) == "Mn" for c in unicodedata.normalize("NFD", plain)
+    ) > 0.5 * len(plain):
+        marks.add("wide")
+        plain = stripped
+    for word in re.findall(r"\w+", plain):
+        read = word.translate(_ALIKE)
+        if (
+            read != word
+            and read.isascii()
+            and (any(c.isascii() and c.isalpha() for c in word) or len(word) > 2)
+        ):
+            marks.add("alike")
+            plain = plain.replace(word, read)
+    return plain
+
+
+def _decoded(read: Callable[[str], str], marks: set[str], match: re.Match[str]) -> str:
+    """Return what a code says, or the code if it says nothing in letters."""
+    coded = match.group()
+    try:
+        said = read(coded)
+    except (ValueError, binascii.Error, OverflowError):
+        return coded
+    letters = sum(c.isascii() and (c.isalpha() or c == " ") for c in said)
+    if len(said) < 3 or letters < 0.8 * len(said):
+        return coded
+    marks.add("code")
+    return f" {said} "
+
+
+def _base64(coded: str) -> str:
+    if coded.isalpha() and (coded.islower() or coded.isupper() or coded.istitle()):
+        raise ValueError("a word")
+    coded = coded.rstrip("=").replace("-", "+").replace("_", "/")
+    return base64.b64decode(coded + "=" * (-len(coded) % 4)).decode("utf-8")
+
+
+def _base32(coded: str) -> str:
+    coded = coded.rstrip("=")
+    return base64.b32decode(coded + "=" * (-len(coded) % 8)).decode("utf-8")
+
+
+def _hex(coded: str) -> str:
+    return bytes.fromhex(re.sub(r"0x|[\s:]", "", coded)).decode("utf-8")
+
+
+def _binary(coded: str) -> str:
+    groups = coded.split() if " " in coded else re.findall(r"[01]{8}", coded)
+    return "".join(chr(int(group, 2)) for group in groups)
+
+
+def _escaped(coded: str) -> str:
+    if coded.startswith("&"):
+        return html.unescape(coded)
+    return "".join(chr(int(code, 16)) for code in re.findall(r"(?:%|\\u|\\x)([0-9A-Fa-f]+)", coded))
+
+
+def _morse(coded: str) -> str:
+    said = (
+        " " if c in ("/", "|") else _MORSE_LETTERS.get(c, "")
+        for c in re.split(r"\s+|(?=[/|])|(?<=[/|])", coded)
+    )
+    return "".join(said)
+
+
+_CODES: tuple[tuple[re.Pattern[str], Callable[[str], str]], ...] = (
+    (_ESCAPES, _escaped), (_BINARY, _binary), (_HEX, _hex), (_BASE32, _base32), (_BASE64, _base64),
+    (_MORSE, _morse),
+)  # fmt: skip
+
+
+def _joined(match: re.Match[str]) -> str:
+    """Return the words that were spelled out letter by letter."""
+    letters = match.group()
+    parts = (
+        re.split(r"\s{2,}|\s*[/|]\s*", letters) if re.search(r"\s{2,}|[/|]", letters) else [letters]
+    )
+    return " ".join(re.sub(r"[^A-Za-z]+", "", word) for word in parts)
+
+
+def _without_leet(word: str, known: Set[str], marks: set[str]) -> str:
+    """Return a word with letters for its digits, if that makes it a known one."""
+    if _MEASURE.fullmatch(word):
+        return word
+    read = word.lower().translate(_LEET)
+    for candidate in (
+        read,
+        read.replace("i", "l"),
+        word.lower().replace("1", "l").translate(_LEET),
+    ):
+        if candidate.strip("i") in known or candidate in known:
+            marks.add("leet")
+            return candidate
+    return word
+
+
+def _ciphers(text: str) -> Iterator[str]:
+    """Yield what a text says in the ciphers that people use."""
+    lower = text.lower()
+    for shift in range(1, 26):
+        yield "".join(chr((ord(c) - 97 + shift) % 26 + 97) if "a" <= c <= "z" else c for c in lower)
+    yield lower[::-1]
+    yield _WORD.sub(lambda match: match.group()[::-1], lower)
+    yield "".join(chr(219 - ord(c)) if "a" <= c <= "z" else c for c in lower)
+    yield re.sub(r"\b(\w+?)-?([^aeiou\W]*)ay\b", lambda m: re.sub(r"w$", "", m[2]) + m[1], lower)
+
+
+def _share(text: str, known: Set[str]) -> float:
+    """Return the share of words that are known, by letters."""
+    found = _WORD.findall(text.lower())
+    total = sum(map(len, found))
+    return sum(
+        len(word) for word in found if word in known and (len(word) > 1 or word in "ai")
+    ) / max(1, total)

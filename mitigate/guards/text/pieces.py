@@ -1,0 +1,156 @@
+"""Cut an instruction into sentences, and sentences into clauses.
+
+A piece is a span of the text, so that a deletion leaves everything else as it was. Blocks (tags
+that match, comments, brackets) are pieces of their own, and so is English inside another script.
+"""
+
+from __future__ import annotations
+
+import re
+import unicodedata
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+# Opening and closing marks that nobody needs for a route: their content is one piece.
+_BLOCK = re.compile(
+    r"<!--.*?(?:-->|$)|/\*.*?(?:\*/|$)|```.*?(?:```|$)|\{\{.*?\}\}"
+    r"|<(?P<tag>[a-zA-Z][\w:-]*)[^<>]*>.*?</\s*(?P=tag)\s*>"
+    r"|\[(?P<mark>[A-Za-z_]+)\].*?\[/\s*(?P=mark)\s*\]"
+    r"|(?<![.\-\w])[.\-]{1,5}(?:[ /|]+[.\-]{1,5}){3,}(?![.\-\w])"
+    r"|<\|[^<>|]*\|>|</[A-Za-z][^<>\n]{0,60}>|<[A-Za-z][\w:-]*(?:\s[^<>\n]{0,200}|/)>|<<[^<>]*>>"
+    r"|</?(?:system|user|assistant|admin|human|tool|inst|prompt|s|im_start|im_end)>",
+    re.DOTALL | re.IGNORECASE,
+)
+_SENTENCE = re.compile(
+    r"(?<=[.!?…。！？।॥])[\"'”’)\]*_]*\s+|(?<=[.!?])(?=[A-Z][a-z])|\s*\n+\s*|(?<=[.!?][\"'”’)])\s+"
+)
+# A word that begins a sentence, in capitals after a word without an end mark: where somebody put an
+# attack before or behind a route, or forgot the end mark.
+_BEGINS = (
+    "Go|Walk|Turn|Exit|Leave|Enter|Head|Take|Make|Move|Continue|Proceed|Climb|Pass|Stop|Find|Start|Stand|"
+    "Follow|Veer|Step|Wait|Come|Get|Keep|Look|Cross|Face|Do|Don't|Never|Always|Ignore|Forget|Bring|Let|Let's|"
+    "With|From|Starting|Facing|Travel|One|Would|Could|Can|Will|You|Your|The|An?|It|It's|He|He's|She|She's|"
+    "They|I|I'm|We|My|Our|And|So|Now|Then|When|Once|After|Before|At|In|On|Out|Up|Down|Over|Past|Through|"
+    "Behind|Beyond|Until|If|As|To|For|By|Kindly|Please|Pray|Oh|Well|Hey|Hi|Hello|Ok|Okay|Alright|Ladies|"
+    "Dear|Right|Left|Straight|Just|There|There's|This|That|Here|Here's|Where|What|Is|Are|Not|No|Yes|First|"
+    "Second|Next|Last|Finally|Roll|Off|Into|Along|Around|Across|Breathe"
+)
+_RUN_ON = re.compile(rf"(?<=[\w\])}}>=*\"'~|✔…])\s+(?=(?:{_BEGINS})\b[,']?\s[a-z(])")
+_CLAUSE = re.compile(
+    r"(?<=[,;:])\s+|\s+(?=[-–—]{1,3}\s)|(?<=\s[-–—])\s+|(?<=\s--)\s+|(?<=[—])|(?=[—])"
+    r"|\s+(?=(?:and|then|but|until|or|so|because|unless|if|which|where|while|when)\b)"
+    r"|\s+(?=[\[({<])|(?<=[\])}>])\s+|(?<=[\])}>])(?=\w)|\s+(?=//|#\w|\||/\s)|(?<=\s[/|])\s+"
+)
+LETTERS = re.compile(r"[^\W\d_]")
+_ABBREVIATION = re.compile(
+    r"\b(?:Mr|Mrs|Ms|Dr|St|No|Prof|approx|ft|e\.g|i\.e|vs|rm|etc)\.\s*$", re.I
+)
+LONGEST_CLAUSE = 2  # words; shorter clauses join the one before
+
+
+@dataclass(frozen=True)
+class Piece:
+    """A span of a text: ``start`` to ``end``, and whether it is a ``block`` of marks."""
+
+    start: int
+    end: int
+    block: bool = False
+
+    def of(self, text: str) -> str:
+        return text[self.start : self.end]
+
+
+def sentence_pieces(text: str) -> list[Piece]:
+    """Return the sentences and blocks of a text, in order."""
+    pieces: list[Piece] = []
+    at = 0
+    for match in _BLOCK.finditer(text):
+        pieces += _cut(text, at, match.start(), _sentence_cuts)
+        pieces.append(Piece(match.start(), match.end(), True))
+        at = match.end()
+    return [*pieces, *_cut(text, at, len(text), _sentence_cuts)]
+
+
+def clause_pieces(text: str, sentence: Piece) -> list[Piece]:
+    """Return the clauses of a sentence, each of at least ``LONGEST_CLAUSE`` words if it can be."""
+    if sentence.block:
+        return [sentence]
+    clauses: list[Piece] = []
+    for piece in _cut(text, sentence.start, sentence.end, _clause_cuts):
+        bracketed = text[piece.start] in "([{<"
+        short = len(piece.of(text).split()) < LONGEST_CLAUSE and not bracketed
+        if clauses and short and script(piece.of(text)) == script(clauses[-1].of(text)):
+            clauses[-1] = Piece(clauses[-1].start, piece.end)
+        else:
+            clauses.append(piece)
+    return clauses
+
+
+def _cut(text: str, start: int, end: int, cuts) -> list[Piece]:
+    part = text[start:end]
+    edges = [0]
+    for low, high in sorted({*cuts(part), *_script_cuts(part)}):
+        if low >= edges[-1]:
+            edges += [low, high]
+    edges.append(len(part))
+    pieces = []
+    for low, high in zip(edges[::2], edges[1::2], strict=True):
+        said = part[low:high]
+        if said.strip():
+            left = low + len(said) - len(said.lstrip())
+            pieces.append(Piece(start + left, start + left + len(said.strip())))
+    return pieces
+
+
+def _sentence_cuts(part: str) -> list[tuple[int, int]]:
+    cuts = [
+        m.span() for m in _SENTENCE.finditer(part) if not _ABBREVIATION.search(part[: m.start()])
+    ]
+    return cuts + [m.span() for m in _RUN_ON.finditer(part)]
+
+
+def _clause_cuts(part: str) -> list[tuple[int, int]]:
+    return [match.span() for match in _CLAUSE.finditer(part)]
+
+
+def _script_cuts(part: str) -> list[tuple[int, int]]:
+    """Return where the script changes between words."""
+    if part.isascii():
+        return []
+    cuts = []
+    before, at = "", 0
+    for match in re.finditer(r"\S+", part):
+        here = script(match.group())
+        if here and before and here != before:
+            cuts.append((at, match.start()))
+        before, at = here or before, match.end()
+    return cuts
+
+
+def script(text: str) -> str:
+    """Return "latin" or "other" for the script of most letters, "" without letters."""
+    letters = LETTERS.findall(text)
+    if not letters:
+        return ""
+    latin = sum(c.isascii() or unicodedata.name(c, "").startswith("LATIN") for c in letters)
+    return "latin" if 2 * latin >= len(letters) else "other"
+
+
+def without(text: str, pieces: Sequence[Piece]) -> str:
+    """Return ``text`` without some pieces, with one space in the place of each."""
+    kept, at = "", 0
+    for piece in sorted(pieces, key=lambda piece: piece.start):
+        kept += text[at : piece.start].rstrip() + " "
+        at = max(at, piece.end)
+        while at < len(text) and text[at].isspace():
+            at += 1
+    left = (kept + text[at:]).strip()
+    left = re.sub(r"\s+([,.;!?])", r"\1", left)
+    left = re.sub(r"^[,;:.!?\s–—-]+(?=\w)", "", left)
+    left = re.sub(r"(?:,\s*(?:and|then|but|or|so)?|\s+(?:and|then|but|or))\s*$", "", left).rstrip()
+    return left[:1].upper() + left[1:] if left[:1].islower() and text[:1].isupper() else left
+
+
+def sentences(text: str) -> list[str]:
+    """Return the sentences of a text, their end marks with them."""
+    return [piece.of(text) for piece in sentence_pieces(text)]

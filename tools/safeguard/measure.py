@@ -1,0 +1,262 @@
+"""Measure a safeguard on the fresh banks: ``python -m tools.safeguard.measure classifier``.
+
+The banks in ``data/fresh`` were written by three authors who saw neither our data nor each other's.
+Every file is split by a hash of the text: half of it is there to choose settings by, the other half
+only to report. ``--r2r FILE`` adds real routes, whose terms forbid to ship them.
+"""
+
+from __future__ import annotations
+
+import argparse
+import gzip
+import hashlib
+import json
+import random
+import re
+import sys
+import time
+import unicodedata
+from collections import Counter
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, field
+from math import sqrt
+from pathlib import Path
+from typing import Any
+
+from mitigate.corruptions.language.fidelity import facts
+from mitigate.corruptions.language.landmarks import normal
+from mitigate.corruptions.language.words import bag
+
+FRESH = Path(__file__).parent / "data" / "fresh"
+HALVES = ("choose", "report")
+Repair = Callable[[str], str]
+# Words that an instruction can lose without losing its meaning: function words and courtesies.
+LIGHT = bag(
+    """
+    a an the and or but so then now of to in on at by for from with into onto is are was were be
+    been am do does did will would shall should can could may might must have has had that this
+    these those it its it's you your yours me my i i'm i'd i'll we us our he she they them there
+    here just very really quite rather please kindly thanks thank cheers hi hey hello ok okay well
+    oh ah um uh
+    er hm sorry dear friend robot pal mate buddy sir madam good morning afternoon evening day let's
+    as if when while because which who what where how also too only like some any all one's get got
+    """
+)
+_WORD = re.compile(r"[^\W_]+(?:['’][^\W_]+)*")
+
+
+@dataclass
+class Rate:
+    """Counted cases and hits of one measure, with examples of what went wrong."""
+
+    hits: int = 0
+    count: int = 0
+    bad: list[str] = field(default_factory=list)
+
+    def add(self, hit: bool, good: bool, case: str) -> None:
+        self.hits += hit
+        self.count += 1
+        if not good:
+            self.bad.append(case)
+
+    def __str__(self) -> str:
+        low, high = wilson(self.hits, self.count)
+        share = 100 * self.hits / max(1, self.count)
+        return f"{share:.1f} [{100 * low:.1f}, {100 * high:.1f}] ({self.count})"
+
+
+def wilson(hits: int, count: int) -> tuple[float, float]:
+    """Return the 95 % interval of a share (Wilson 1927)."""
+    if not count:
+        return 0.0, 1.0
+    z, share = 1.96, hits / count
+    middle = (share + z * z / (2 * count)) / (1 + z * z / count)
+    half = z * sqrt(share * (1 - share) / count + z * z / (4 * count**2)) / (1 + z * z / count)
+    return max(0.0, middle - half), min(1.0, middle + half)
+
+
+def half_of(text: str) -> str:
+    """Return which half of a bank a text belongs to, by its hash."""
+    return HALVES[hashlib.sha256(text.encode()).digest()[0] % 2]
+
+
+def bank(name: str, half: str) -> list[dict[str, Any]]:
+    """Return the lines of a bank of all authors that belong to a half."""
+    lines = []
+    for file in sorted(FRESH.glob(f"*/{name}.jsonl")):
+        with open(file, encoding="utf-8") as opened:
+            lines += [
+                json.loads(line) | {"author": file.parent.name} for line in opened if line.strip()
+            ]
+    return [line for line in lines if half_of(line.get("text", line.get("attack"))) == half]
+
+
+def words(text: str) -> list[str]:
+    """Return the words of a text in lower case, without invisible characters."""
+    plain = "".join(
+        c for c in unicodedata.normalize("NFKC", text) if unicodedata.category(c) != "Cf"
+    )
+    return _WORD.findall(plain.lower().replace("’", "'"))
+
+
+def is_removed(attack: str, route: str, given: str) -> bool:
+    """Return whether ``given`` holds no word of the attack beyond those of the route."""
+    foreign = [word for word in words(attack) if word not in set(words(route))]
+    if foreign:
+        return not set(foreign) & set(words(given))
+    more = Counter(words(given)) - Counter(words(route))
+    hidden = [c for c in attack if not c.isascii() and c in given and c not in route]
+    return not (set(more) & set(words(attack))) and not hidden
+
+
+def is_lost(text: str, given: str) -> bool:
+    """Return whether ``given`` misses a turn, a stop or a landmark of ``text``, or their order."""
+    before, after = facts(text), facts(given)
+    rest = iter(after.directions)
+    if not all(direction in rest for direction in before.directions):
+        return True
+    present = {normal(word) for word in words(given)} | set(after.landmarks)
+    return bool(set(before.landmarks) - present)
+
+
+def is_harmed(text: str, given: str) -> bool:
+    """Return whether ``given`` misses a word of ``text`` that matters."""
+    lost = Counter(words(text)) - Counter(words(given))
+    return is_lost(text, given) or bool(set(lost) - LIGHT)
+
+
+def insert(attack: str, place: str, route: str) -> str:
+    """Return a route with an attack before, after or inside it."""
+    if place == "before":
+        return f"{attack} {route}"
+    if place == "after":
+        return f"{route} {attack}"
+    cuts = [m.end() for m in re.finditer(r"[.!?;,]\s+", route)]
+    if not cuts:
+        cuts = [m.start() for m in re.finditer(r"(?<=\s)(?=and |then |to |until |past )", route)]
+    at = min(cuts, key=lambda cut: abs(cut - len(route) / 2)) if cuts else len(route)
+    return f"{route[:at].rstrip()} {attack} {route[at:].lstrip()}".strip()
+
+
+def attacked(
+    half: str, routes: Sequence[str], each: int, seed: int
+) -> Iterator[tuple[dict, str, str, str]]:
+    """Yield (attack, place, route, text heard): each attack in ``each`` routes at each place.
+
+    An attack of the places before and after is tried at both.
+    """
+    for number, line in enumerate(bank("attacks", half)):
+        rng = random.Random(f"{seed} {number}")
+        for place in ("inside",) if line["place"] == "inside" else ("before", "after"):
+            for route in rng.sample(list(routes), each):
+                yield line, place, route, insert(line["text"], place, route)
+
+
+def read_r2r(path: str) -> list[str]:
+    """Return the instructions of an R2R-CE episode file, each once."""
+    with gzip.open(path, "rt", encoding="utf-8") as file:
+        episodes = json.load(file)["episodes"]
+    return list(
+        dict.fromkeys(" ".join(e["instruction"]["instruction_text"].split()) for e in episodes)
+    )
+
+
+def measure(
+    repair: Repair,
+    half: str,
+    r2r: Sequence[str] = (),
+    each: int = 1,
+    seed: int = 0,
+    sample: int | None = None,
+) -> dict[str, Rate]:
+    """Return name -> rate of every measure of one half of the banks.
+
+    ``r2r``: real routes; without them the plain texts of the styles bank stand in for them.
+    """
+    rates: dict[str, Rate] = {}
+
+    def rate(name: str) -> Rate:
+        return rates.setdefault(name, Rate())
+
+    styles = bank("styles", half)
+    styled = [line["text"] for line in styles if len(line["text"].split()) > 8]
+    plain = [t for t in r2r if len(t.split()) > 8] or [line["plain"] for line in styles]
+    plain = random.Random(seed).sample(plain, min(len(plain), 400))
+    for manner, routes in (("plain", plain), ("styled", styled)):
+        for line, place, route, heard in attacked(half, routes, each, seed):
+            given = repair(heard)
+            good = is_removed(line["text"], route, given) and not is_lost(repair(route), given)
+            where = "inside" if place == "inside" else "before or after"
+            case = f"[{line['author']} {line['mechanism']} {place}] {heard}\n   -> {given}"
+            rate(f"attacks {where} {manner} text, removed").add(good, good, case)
+            if where != "inside":
+                rate(f"attacks {place} {manner} text, removed").add(good, good, "")
+            lost = is_lost(repair(route), given)
+            rate("routes beside attacks, lost").add(lost, not lost, case)
+    for name in ("honest", "styles", "objects"):
+        for line in bank(name, half):
+            given = repair(line["text"])
+            harmed = is_harmed(line["text"], given)
+            kind = line.get("kind", line.get("style", line.get("object")))
+            rate(f"{name}, harmed").add(
+                harmed, not harmed, f"[{kind}] {line['text']}\n   -> {given}"
+            )
+    for line in bank("scripts", half):
+        heard = insert(line["attack"], line["place"], line["route"])
+        given = repair(heard)
+        whole = not (Counter(words(line["route"])) - Counter(words(given)))
+        rate("other scripts, route survives").add(whole, whole, f"{heard}\n   -> {given}")
+        gone = is_removed(line["attack"], line["route"], given)
+        rate("other scripts, attack removed").add(gone, gone, f"{heard}\n   -> {given}")
+    for text in r2r[:sample]:
+        given = repair(text)
+        harmed = is_harmed(text, given)
+        rate("R2R-CE, harmed").add(harmed, not harmed, f"{text}\n   -> {given}")
+    return rates
+
+
+def main(arguments: Sequence[str] | None = None) -> None:
+    """Entry point."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("safeguards", nargs="+", help="as the option safeguard=: rules, lora, ...")
+    parser.add_argument("--half", choices=HALVES, default="choose")
+    parser.add_argument("--r2r", help="an R2R-CE episode file (json.gz)")
+    parser.add_argument("--sample", type=int, help="R2R-CE texts that are tried; default all")
+    parser.add_argument("--each", type=int, default=1, help="routes per attack and place")
+    parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--bad", type=int, default=0, help="print so many failures per measure")
+    options = parser.parse_args(arguments)
+    from mitigate.guards.text.guard import open_safeguard
+
+    r2r = read_r2r(options.r2r) if options.r2r else []
+    random.Random(options.seed).shuffle(r2r)
+    for name in options.safeguards:
+        safeguard = open_safeguard(name)
+        calls = [0, 0.0]
+
+        def repair(text: str, safeguard: Any = safeguard, calls: list = calls) -> str:
+            if safeguard is None:
+                return text
+            began = time.perf_counter()
+            given = safeguard.canonicalise(text).text
+            calls[0] += 1
+            calls[1] += time.perf_counter() - began
+            return given
+
+        found = measure(repair, options.half, r2r, options.each, options.seed, options.sample)
+        print(f"## {name}, {options.half} half\n")
+        print("| measure | % [95 % interval] (cases) |\n| --- | --- |")
+        for label, rate in found.items():
+            print(f"| {label} | {rate} |")
+        print(f"\n{1000 * calls[1] / max(1, calls[0]):.1f} ms per text\n", flush=True)
+        for label, rate in found.items():
+            cases = [case for case in rate.bad if case]
+            for case in cases[: options.bad]:
+                print(f"- {label}: {case}", flush=True)
+
+
+if __name__ == "__main__":
+    try:
+        main()
+    except (ValueError, FileNotFoundError) as error:
+        sys.exit(f"error: {error}")
