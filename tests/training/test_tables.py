@@ -115,7 +115,7 @@ def test_what_is_measured_can_be_chosen(tmp_path, option):
         ('+evaluations.mine=["checkpoint=x"]', "Evaluation mine: checkpoint=x is for the table"),
         ('+evaluations.mine=["agent=recurrent"]', "Evaluation mine: agent=recurrent is for the"),
         ("+evaluations.mine=[1]", "evaluations.mine=.1. must be a list of options"),
-        ('+columns.mine=["restore=nope"]', "Column mine: There are no weights at at nope"),
+        ('+columns.mine=["restore=nope"]', "Column mine: There is no restorer at nope"),
         (
             '+columns.mine=["restore=checkpoints/restorer:pose"]',
             "Column mine: There are no weights at",
