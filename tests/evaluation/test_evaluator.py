@@ -84,7 +84,7 @@ def test_rows_behind_a_restorer_are_of_another_agent(tmp_path):
 
 
 def test_rows_behind_a_callable_do_not_depend_on_workers(tmp_path):
-    guards = open_guards("rules", "tests.guards.filters:Brighter")
+    guards = open_guards("classifier", "tests.guards.filters:Brighter")
     conditions = [CLEAN, Corruption("low_light", 0.9), Corruption("black_box", 0.9)]
     one = run(tmp_path / "one", conditions=conditions, guards=guards)
     two = run(tmp_path / "two", workers=2, conditions=conditions, guards=guards)

@@ -319,8 +319,8 @@ def test_a_call_that_is_stopped_before_its_walks_changes_no_agent(walk, monkeypa
 
 
 def test_a_restorer_and_a_safeguard_may_stand_in_front_of_any_agent(walk):
-    alone, behind = walk(Holder(weight(1))), walk(Holder(weight(1)), safeguard="rules")
-    assert behind.name == "Holder+rules" and behind.agents != alone.agents
+    alone, behind = walk(Holder(weight(1))), walk(Holder(weight(1)), safeguard="classifier")
+    assert behind.name == "Holder+classifier" and behind.agents != alone.agents
     restored = walk(Holder(weight(1)), restore="checkpoints/restorer:rgb")
     assert restored.name == "Holder+restorer-rgb" and len(restored.agents) == 1
     filtered = walk(Holder(weight(1)), restore="tests.guards.filters:median")
