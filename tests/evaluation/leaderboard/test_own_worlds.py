@@ -180,7 +180,7 @@ def test_benchmark_does_not_reuse_rows_after_a_forward_hook(walk, capsys):
     agent.nets["policy"].register_forward_hook(lambda module, inputs, output: -output)
     hooked = walk(agent)
     assert hooked.SR["clean"][0] == 0
-    assert "nets.policy.forward hook (a forward hook" in capsys.readouterr().out
+    assert "nets.policy.forward hook 0 (a forward hook" in capsys.readouterr().out
     with pytest.raises(ValueError, match=r"forward hook.*cannot be read. Give version="):
         walk(agent)
     assert walk(agent, version="hooked").SR["clean"][0] == 0
