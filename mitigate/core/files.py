@@ -123,27 +123,12 @@ class _Unpacked(gzip.GzipFile):
         return found
 
 
-@contextmanager
-def writing(path: Path | str) -> Iterator[None]:
-    """Around what writes ``path``, a file or a folder: the error of the system, of the same type,
-    says that it cannot be written and what to do."""
-    try:
-        yield
-    except OSError as error:
-        if error.strerror is None:  # it says so already
-            raise
-        raise type(error)(
-            f"Cannot write {path}: {error.strerror}. Free the space or the permission, or name "
-            "another folder; what was finished is kept whole."
-        ) from error
-
-
 def make_folder(folder: Path | str) -> Path:
     """Make ``folder`` with those above it, unless it is there; return it.
 
     Raises OSError as :func:`writing`, and as :func:`mitigate.core.output.check` does.
     """
-    with writing(folder):
+    with output.writing(folder):
         output.make_checked(folder)
     return Path(folder)
 
@@ -154,13 +139,13 @@ def _draft(path: Path) -> Iterator[Path]:
     block ends without an error, with the mode that the umask gives. Makes the folder."""
     # a random part: nobody can put a link at a name that is not known
     temporary = path.with_name(f".{path.name}.{secrets.token_hex(4)}.{os.getpid()}.tmp")
-    with writing(path):
+    with output.writing(path):
         output.make_checked(path.parent)
         output.open_output(temporary, "xb").close()
     mode = stat.S_IMODE(temporary.stat().st_mode)
     try:
         yield temporary
-        with writing(path):
+        with output.writing(path):
             output.check(path)
             temporary.chmod(mode)  # safetensors puts a private file in its place
             with open(temporary, "rb+") as file:
@@ -234,7 +219,7 @@ def write_atomically(path: Path, write: Callable[[Path], Any]) -> Path:
 def write_bytes(path: Path | str, data: bytes) -> None:
     """Write ``data`` to ``path``, which is there whole or not at all. Makes the folder. Raises
     OSError as :func:`writing`."""
-    with _draft(Path(path)) as temporary, writing(path):
+    with _draft(Path(path)) as temporary, output.writing(path):
         temporary.write_bytes(data)
 
 

@@ -27,9 +27,10 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from mitigate.core import checksums, older_folders, output
-from mitigate.core.files import make_folder, sha256, write_text, writing
+from mitigate.core.files import make_folder, sha256, write_text
 from mitigate.core.json_files import read_object
 from mitigate.core.names import short
+from mitigate.core.output import writing
 
 MANIFEST = "manifest.json"
 FORMAT = 1

@@ -15,7 +15,8 @@ from pathlib import Path
 from typing import IO
 
 from mitigate.core import output
-from mitigate.core.files import make_folder, writing
+from mitigate.core.files import make_folder
+from mitigate.core.output import writing
 
 NAME = ".lock"
 _LEFT = re.compile(r"\..+\.(\d+)\.tmp")  # as mitigate/core/files.py names what is not yet whole

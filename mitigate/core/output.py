@@ -146,6 +146,21 @@ def unregister(root: Root) -> None:
 
 
 @contextmanager
+def writing(path: Path | str) -> Iterator[None]:
+    """Around what writes ``path``, a file or a folder: the error of the system, of the same type,
+    says that it cannot be written and what to do."""
+    try:
+        yield
+    except OSError as error:
+        if error.strerror is None:  # it says so already
+            raise
+        raise type(error)(
+            f"Cannot write {path}: {error.strerror}. Free the space or the permission, or name "
+            "another folder; what was finished is kept whole."
+        ) from error
+
+
+@contextmanager
 def output_folder(folder: Path | str, *expected: str) -> Iterator[Root]:
     """Make ``folder`` and watch it while the block runs.
 
@@ -157,7 +172,8 @@ def output_folder(folder: Path | str, *expected: str) -> Iterator[Root]:
         FolderLostError: If it is removed or replaced while the block runs.
     """
     folder = Path(folder)
-    make_checked(folder)
+    with writing(folder):
+        make_checked(folder)
     root = register(folder)
     root.expected += [folder / name for name in expected]
     try:

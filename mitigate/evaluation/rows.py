@@ -16,10 +16,10 @@ from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from mitigate.core.files import atomic_text, make_folder, open_text, writing
+from mitigate.core.files import atomic_text, make_folder, open_text
 from mitigate.core.json_files import parse_json
 from mitigate.core.names import counted, short
-from mitigate.core.output import open_output
+from mitigate.core.output import open_output, writing
 
 if TYPE_CHECKING:
     from mitigate.worlds.episodes import Episode

@@ -226,11 +226,13 @@ def made(options, folder):
 def test_a_safeguard_makes_another_agent_of_its_own_folder(tmp_path):
     plain, folder = made(["conditions=[clean]"], tmp_path)
     guarded, other = made(["conditions=[clean]", "safeguard=rules"], tmp_path)
-    assert plain.label["agent"] != guarded.label["agent"] and guarded.label["name"] == "nav+rules"
+    assert (
+        plain.label["agent"] != guarded.label["agent"] and guarded.label["name"] == "nav+classifier"
+    )
     assert [name for name in plain.settings if plain.settings[name] != guarded.settings[name]] == [
         "safeguard"
     ]
-    assert folder.name == "nav-s0.6" and other.name == "nav-rules-s0.6"
+    assert folder.name == "nav-s0.6" and other.name == "nav-classifier-s0.6"
     assert made(["conditions=[clean]", "episodes=60"], tmp_path)[1].name == "nav-s0.6-e60"
 
 

@@ -16,8 +16,8 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Protocol
 
-from mitigate.core.files import find, make_folder, writing
-from mitigate.core.output import open_output
+from mitigate.core.files import find, make_folder
+from mitigate.core.output import open_output, writing
 from mitigate.guards.text import choices, gate, rules
 from mitigate.guards.text.classifier import Classifier, load
 from mitigate.guards.text.decode import visible

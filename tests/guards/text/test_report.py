@@ -10,6 +10,8 @@ import torch
 from mitigate.core import conf
 from mitigate.corruptions import CLEAN, Corruption
 from mitigate.evaluation import evaluate, evaluator
+from mitigate.guards.guard import Guards
+from mitigate.guards.opening import TextGuard
 from mitigate.guards.text.guard import Safeguard
 from mitigate.guards.text.language_models.model import LanguageModel
 from mitigate.training.config import read
@@ -87,7 +89,7 @@ def test_the_agent_hears_the_repaired_instruction_and_the_rows_say_so(tmp_path):
         name="listener+classifier",
         out=tmp_path / "rows.jsonl",
         split="val_unseen",
-        safeguard=Safeguard(log=tmp_path / "log.jsonl"),
+        guards=Guards([TextGuard(Safeguard(log=tmp_path / "log.jsonl"), "classifier")]),
     )
     assert {row["name"] for row in rows} == {"listener+classifier"} and len(rows) == 6
     for index, episode in enumerate(episodes):
