@@ -62,6 +62,12 @@ SCHEMA: Mapping[str, tuple[Callable[[Any], bool], str]] = {
 OLDER = ("events",)  # entries that older versions did not write
 
 
+def folder_name(condition: str, severity: float, repeat: int = 0) -> str:
+    """Return the name of a condition, which is also that of its folder."""
+    name = f"{condition}-s{severity:g}" if severity or condition != "clean" else condition
+    return f"{name}-again{repeat}" if repeat else name
+
+
 def write_done(folder: Path, entries: Mapping[str, Any]) -> None:
     """Mark the condition in ``folder`` as finished with ``entries``, which lack ``events``."""
     seal = {"bytes": (folder / EVENTS).stat().st_size, "sha256": sha256(folder / EVENTS)}
@@ -75,8 +81,8 @@ def read_done(folder: Path) -> dict[str, Any] | None:
     Entries may be missing: older versions wrote fewer (:func:`missing_entries`).
 
     Raises:
-        ValueError: ``done.json`` is damaged, or the events are not those that it was written with.
-            The message names the file and what to do.
+        ValueError: ``done.json`` is damaged or of another condition than the folder, or the events
+            are not those that it was written with. The message names the file and what to do.
     """
     file = folder / DONE
     if not file.is_file():
@@ -90,7 +96,8 @@ def read_done(folder: Path) -> dict[str, Any] | None:
         if name in entries and not is_valid(entries[name]):
             raise ValueError(f"{file}: {name} must be {kind}, got {short(entries[name])}. {again}")
     if not missing_entries(entries):
-        _compare(folder, entries)
+        _compare_name(folder, entries)
+        _compare_events(folder, entries)
     return entries
 
 
@@ -99,23 +106,33 @@ def missing_entries(entries: Mapping[str, Any]) -> list[str]:
     return [name for name in SCHEMA if name not in entries and name not in OLDER]
 
 
-def _compare(folder: Path, entries: Mapping[str, Any]) -> None:
+def _compare_name(folder: Path, entries: Mapping[str, Any]) -> None:
+    """Raise ValueError if the entries are of another condition than ``folder`` is named after."""
+    name = folder_name(entries["condition"], entries["severity"], entries["repeat"])
+    if name != folder.name:
+        raise ValueError(
+            f"{folder} holds the condition {name}, as its {DONE} says: the folder was renamed or "
+            "copied, or the file was edited. No file was changed. If it was renamed, give it its "
+            f"old name, {name}. Otherwise move {folder} out of {folder.parent} and run the same "
+            "command again: it measures this condition again."
+        )
+
+
+def _compare_events(folder: Path, entries: Mapping[str, Any]) -> None:
     """Raise ValueError if the events in ``folder`` are not those of the finished condition."""
     events, count = folder / EVENTS, entries["episodes_told"]
     if not events.is_file():
         raise damaged(folder, f"the file is missing, and {DONE} records {count} episodes")
     told = results.read(folder, count_closed=True)  # a damaged line is named by its number
     seal = entries.get("events")
-    if seal is None:
-        counts = {len(told.ends), len(results.read(folder).ends)}
-        if count not in counts:
-            raise damaged(folder, f"{len(told.ends)} episodes ended, and {DONE} records {count}")
-        return
-    size = events.stat().st_size
-    if size != seal["bytes"]:
-        raise damaged(folder, f"it has {size} bytes, and {DONE} records {seal['bytes']}")
-    if sha256(events) != seal["sha256"]:
-        raise damaged(folder, f"its sha256 is not the one that {DONE} records")
+    if seal is not None:
+        size = events.stat().st_size
+        if size != seal["bytes"]:
+            raise damaged(folder, f"it has {size} bytes, and {DONE} records {seal['bytes']}")
+        if sha256(events) != seal["sha256"]:
+            raise damaged(folder, f"its sha256 is not the one that {DONE} records")
+    if count not in {len(told.ends), len(results.read(folder).ends)}:
+        raise damaged(folder, f"{len(told.ends)} episodes ended, and {DONE} records {count}")
 
 
 def check_finished(folder: Path) -> None:

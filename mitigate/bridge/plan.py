@@ -16,7 +16,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from mitigate.bridge.cell import Cell
+from mitigate.bridge.cell import Cell, folder_name
 from mitigate.bridge.condition import Condition, Subset, Words, tokenizer_of
 from mitigate.bridge.config import RunConfig, check_options, name_of
 from mitigate.bridge.hook import mitigate_hook
@@ -74,8 +74,7 @@ def cells(plan: Plan) -> list[Cell]:
         *((clean, number) for number in range(config.repeats)),
         *((corruption, 0) for corruption in others),
     ]:
-        name = f"{corruption.name}-s{corruption.severity:g}" if corruption.severity else "clean"
-        name += f"-again{repeat}" if repeat else ""
+        name = folder_name(corruption.name, corruption.severity, repeat)
         recording = None if config.record is None else Path(config.record) / name
         condition = Condition(
             corruption,

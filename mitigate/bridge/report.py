@@ -11,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
-from mitigate.bridge.cell import DONE, Cell, missing_entries, read_done
+from mitigate.bridge.cell import DONE, Cell, folder_name, missing_entries, read_done
 from mitigate.bridge.plan import met
 from mitigate.bridge.results import OWN
 from mitigate.core.files import write_bytes, write_text
@@ -20,6 +20,8 @@ from mitigate.corruptions import CLEAN, Corruption
 from mitigate.evaluation import bootstrap, report, rows
 from mitigate.evaluation.rows import ROWS, Row
 from mitigate.worlds.measures import RULES
+
+LABELS = ("agent", "seed", "split")  # of rows.IDENTITY; all rows of a run have the same
 
 
 def write_report(made: Sequence[Cell], out: Path) -> None:
@@ -48,15 +50,17 @@ def write_report(made: Sequence[Cell], out: Path) -> None:
 def _write_rows(file: Path, found: Sequence[Row], left_out: Sequence[str]) -> None:
     """Write the rows of a run; none of the file's may be lost without a word.
 
-    Rows of conditions that are ``left_out`` of the table are kept in a copy of the file.
+    Rows of conditions that are ``left_out`` of the table, and rows of another agent, seed or split,
+    are kept in a copy of the file.
 
     Raises:
         ValueError: The file holds rows of another condition or episode that ``found`` lacks. It
             stays as it is.
     """
     before = rows.read(file) if file.exists() else []
-    now = {_measured(row) for row in found}
+    now, labels = {_measured(row) for row in found}, {_label(row) for row in found}
     lost = [row for row in before if _measured(row) not in now]
+    foreign = [row for row in before if _label(row) not in labels and _measured(row) in now]
     names = Counter(_folder_of(row) for row in lost)
     unexplained = [name for name in names if name not in left_out]
     if unexplained:
@@ -66,10 +70,16 @@ def _write_rows(file: Path, found: Sequence[Row], left_out: Sequence[str]) -> No
             "left as it is. Run these conditions again, or move the file to another folder and run "
             "the same command again."
         )
-    if lost:
+    told = list(names)
+    if foreign:
+        own = zip(*labels, strict=True)
+        theirs = zip(*(_label(row) for row in foreign), strict=True)
+        other = [n for n, a, b in zip(LABELS, own, theirs, strict=True) if not {*b} <= {*a}]
+        told += [f"another {name}" for name in other]
+    if told:
         copy = _free(file.with_name(f"{file.name}.before"))
         write_bytes(copy, file.read_bytes())
-        print(f"The rows of {', '.join(names)} are now in {copy} alone.", flush=True)
+        print(f"The rows of {', '.join(told)} are now in {copy} alone.", flush=True)
     rows.write(file, found, fewer=True)  # another rule= gives other rows of the same episodes
 
 
@@ -78,10 +88,14 @@ def _measured(row: Row) -> tuple[str, float, str]:
     return str(row["corruption"]), float(row["severity"]), str(row["episode_id"])
 
 
+def _label(row: Row) -> tuple[object, ...]:
+    """The agent, seed and split of a row, by which it is told from those of another run."""
+    return tuple(row[name] for name in LABELS)
+
+
 def _folder_of(row: Row) -> str:
     """The name of the condition's folder that a row comes from."""
-    name = str(row["corruption"])
-    return f"{name}-s{row['severity']:g}" if row["severity"] else name
+    return folder_name(str(row["corruption"]), float(row["severity"]))
 
 
 def _free(path: Path) -> Path:

@@ -9,7 +9,7 @@ from contextlib import contextmanager
 from typing import Any
 
 from mitigate.agents.agent import Agent, as_agent
-from mitigate.core.errors import said
+from mitigate.core.errors import own_place, said
 from mitigate.corruptions import (
     Corruption,
     Key,
@@ -39,16 +39,36 @@ def run_episode(
     many observations the agent read.
 
     A ValueError out of a step names the episode, the condition and the step; one is raised for an
-    action that is no whole number.
+    action that is no whole number, and for a SystemExit of the agent or the world.
     """
-    walk = _Walk(world, episode, corruption, seed, guards)
-    with instructed(agent, episode, corruption, seed, guards):
-        try:
-            while not walk.done:
-                walk.step(action_of(agent.act(walk.observation), agent))
-        except ValueError as error:
-            raise walk.failed(error) from error
-    return walk.measures()
+    with _no_exit(_name(episode, corruption)):
+        walk = _Walk(world, episode, corruption, seed, guards)
+        with instructed(agent, episode, corruption, seed, guards):
+            try:
+                while not walk.done:
+                    walk.step(action_of(agent.act(walk.observation), agent))
+            except ValueError as error:
+                raise walk.failed(error) from error
+        return walk.measures()
+
+
+def _name(episode: Episode, corruption: Corruption) -> str:
+    return f"Episode {episode.episode_id}, {corruption.name}"
+
+
+@contextmanager
+def _no_exit(name: str) -> Iterator[None]:
+    """Raise ValueError in place of a SystemExit, which would end the evaluation as if it were
+    finished."""
+    try:
+        yield
+    except SystemExit as error:
+        place = own_place(error)
+        raise ValueError(
+            f"{name}: the agent or the world ended the program by SystemExit({error.code!r})"
+            f"{f' (raised in {place})' if place else ''}, and the evaluation is not finished. "
+            "Raise an error in its place, or end the episode."
+        ) from error
 
 
 def action_of(answer: Any, agent: Any) -> int:
@@ -79,21 +99,25 @@ def run_side_by_side(
             while waiting and free:
                 begun, job = waiting.popleft()
                 world = free.pop()
-                memory = agent.begin(guards.begin(start_of(agent, *job)))
-                under_way[begun] = _Walk(world, *job, guards), world, memory
+                with _no_exit(_name(*job[:2])):
+                    memory = agent.begin(guards.begin(start_of(agent, *job)))
+                    under_way[begun] = _Walk(world, *job, guards), world, memory
             ended = [key for key, (walk, _, _) in under_way.items() if walk.done]
             for key in ended:
                 walk, world, _ = under_way.pop(key)
-                measured[key] = walk.measures()
+                with _no_exit(walk.name):
+                    measured[key] = walk.measures()
                 free.append(world)
             if not ended:
                 walks, _, memories = zip(*under_way.values(), strict=True)
-                actions = agent.act_all([walk.observation for walk in walks], memories)
+                with _no_exit(" and ".join(walk.name for walk in walks)):
+                    actions = agent.act_all([walk.observation for walk in walks], memories)
                 for walk, action in zip(walks, actions, strict=True):
-                    try:
-                        walk.step(action_of(action, agent))
-                    except ValueError as error:
-                        raise walk.failed(error) from error
+                    with _no_exit(walk.name):
+                        try:
+                            walk.step(action_of(action, agent))
+                        except ValueError as error:
+                            raise walk.failed(error) from error
         yield measured.pop(number)
 
 
@@ -108,7 +132,7 @@ class _Walk:
         seed: int,
         guards: Guards,
     ) -> None:
-        self.name, self.steps = f"Episode {episode.episode_id}, {corruption.name}", 0
+        self.name, self.steps = _name(episode, corruption), 0
         self.met = Corrupted(world, corruption, seed)
         self.shown = guarded(self.met, guards)
         self.observation = self.shown.reset(episode)

@@ -157,9 +157,9 @@ class SeededWorld(World):
 
     def _won(self) -> bool:
         if isinstance(self.success, str):
-            return bool(np.any(self._report().get(self.success, False)))
+            return _truth(self._report().get(self.success, False), f"The entry {self.success!r}")
         end = Ending(self._report(), self._reward, self._total, self._steps)
-        return bool(np.any(self.success(end)))
+        return _truth(self.success(end), "The success function")
 
     def _observation(self, seen: Mapping[str, Any]) -> Observation:
         """Copies: an environment may use its buffers again."""
@@ -177,6 +177,26 @@ class SeededWorld(World):
             unit = "Give unit=, the metres of one unit of it (0.001 for millimetres)."
             check_metres(metres, "the depth", unit)
         return metres
+
+
+def _truth(told: Any, source: str) -> bool:
+    """Return whether what ``source`` said, or any part of it, is true; None is false.
+
+    Raises ValueError for what is neither a truth value nor 0 or 1.
+    """
+    try:
+        parts = np.asarray(told).ravel().tolist()
+        valid = all(part is None or part in (0, 1) for part in parts)
+    except (ValueError, TypeError):  # a ragged list, or an object that is no number
+        parts, valid = [], False
+    if not valid:
+        raise ValueError(
+            f"{source} says {told!r:.80} at the end of an episode, and success must be a truth "
+            "value, or 0 or 1 (or an array or a list of these). Give success= a function that "
+            'compares it, such as success=lambda end: end.info["score"] >= 0.5, with '
+            'rule="score >= 0.5".'
+        )
+    return any(parts)
 
 
 def _check_success(success: Any, rule: str | None) -> None:

@@ -1,6 +1,8 @@
 """Damaged files of a finished run are named, and none of its rows is lost."""
 
 import json
+import os
+import shutil
 import sys
 
 import pytest
@@ -119,6 +121,44 @@ def test_run_rejects_a_finished_marker_with_a_wrong_entry(finished, name, value)
     assert ran.returncode == 1 and f"{marker}: {name} must be" in ran.stderr
 
 
+@pytest.mark.parametrize("options", ["conditions=[low_light,flare]", "conditions=[clean]"])
+@pytest.mark.parametrize("copied", [False, True])
+def test_run_rejects_the_folder_of_another_condition(finished, options, copied):
+    out, again = finished
+    other = out / "conditions" / "flare-s0.6"
+    (shutil.copytree if copied else os.rename)(out / CONDITION, other)
+    before = contents(out)
+    ran = again(options)
+    assert ran.returncode == 1 and f"{other} holds the condition low_light-s0.6" in ran.stderr
+    assert f"move {other} out of" in ran.stderr and contents(out) == before
+
+
+@pytest.mark.parametrize(
+    ("entry", "reason"),
+    [
+        ({"condition": "flare"}, "holds the condition flare-s0.6"),
+        ({"severity": 0.3}, "holds the condition low_light-s0.3"),
+        ({"repeat": 1}, "holds the condition low_light-s0.6-again1"),
+        ({"episodes_told": 2}, "3 episodes ended, and done.json records 2"),
+    ],
+)
+def test_run_rejects_a_changed_entry_of_a_finished_marker(finished, entry, reason):
+    out, again = finished
+    marker = out / CONDITION / "done.json"
+    marker.write_text(json.dumps(json.loads(marker.read_text()) | entry))
+    before = contents(out)
+    ran = again()
+    assert ran.returncode == 1 and reason in ran.stderr and contents(out) == before
+
+
+def test_run_rejects_another_condition_in_the_folder_of_clean(finished):
+    out, again = finished
+    marker = out / "conditions" / "clean" / "done.json"
+    marker.write_text(json.dumps(json.loads(marker.read_text()) | {"condition": "flare"}))
+    ran = again()
+    assert ran.returncode == 1 and "clean holds the condition flare-s0" in ran.stderr
+
+
 def test_run_compares_counts_of_a_marker_without_a_checksum(finished):
     """As older versions wrote it."""
     out, again = finished
@@ -160,6 +200,18 @@ def test_run_copies_rows_that_stay_out_of_the_table(finished):
     ran = again("conditions=[flare]")
     assert not ran.stderr and "are now in" in ran.stdout
     assert (out / "rows.jsonl.before").read_bytes() == before
+
+
+@pytest.mark.parametrize("other", [{"agent": "abc"}, {"seed": 9}, {"split": "elsewhere"}])
+def test_run_copies_rows_of_another_agent_seed_or_split(finished, other):
+    out, again = finished
+    held = rows.read(out / "rows.jsonl")
+    rows.write(out / "rows.jsonl", [*held, held[-1] | other])
+    before = (out / "rows.jsonl").read_bytes()
+    ran = again()
+    assert not ran.stderr and f"another {next(iter(other))}" in ran.stdout
+    assert (out / "rows.jsonl.before").read_bytes() == before
+    assert rows.read(out / "rows.jsonl") == held
 
 
 def test_run_may_judge_the_same_episodes_by_another_rule(finished):

@@ -153,3 +153,20 @@ def test_a_mistake_that_this_project_tells_is_told_as_it_is():
     with pytest.raises(ValueError) as caught:
         run_episode(Answers(None), Cell(), EPISODE, CLEAN, 0)
     assert "raised in" not in said(caught.value)
+
+
+def leave():
+    raise SystemExit(0)
+
+
+@pytest.mark.parametrize("place", ["act", "reset", "step", "measures"])
+def test_an_exit_of_the_agent_or_the_world_is_an_error_that_names_the_episode(place):
+    agent, cell = Answers(leave if place == "act" else 0), Cell()
+    if place != "act":
+        setattr(cell, place, lambda *_: leave())
+    words = rf"Episode e7, clean: .*SystemExit\(0\).*{Path(__file__).name}, line \d+, leave\(\)"
+    with pytest.raises(ValueError, match=words):
+        run_episode(agent, cell, EPISODE, CLEAN, 0)
+    agent = Answers(leave if place == "act" else 0)
+    with pytest.raises(ValueError, match=words):
+        list(run_side_by_side(agent, [cell], [(EPISODE, CLEAN, 0)]))

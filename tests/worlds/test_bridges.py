@@ -165,6 +165,35 @@ def test_gym_world_asks_a_success_function_about_the_whole_episode():
     assert world.rule == "anything"
 
 
+NO_TRUTH = [float("nan"), "False", {"s": False}, 0.3, -1, "no", [0, 2], [[1], [0, 1]]]
+
+
+@pytest.mark.parametrize("told", NO_TRUTH, ids=str)
+def test_gym_world_rejects_a_success_that_is_no_truth_value(told):
+    from mitigate.worlds.gym import GymWorld
+
+    world = GymWorld(Room(), success=lambda end: told, rule="anything")
+    with pytest.raises(ValueError, match=r"success must be a truth value, or 0 or 1"):
+        run_episode(Brightness(), world, episode(3), CLEAN, 0)
+
+
+@pytest.mark.parametrize(
+    ("told", "won"),
+    [
+        *((value, 0) for value in (None, [], [False], False, 0, 0.0, np.bool_(False))),
+        *((value, 1) for value in (1, 1.0, np.float32(1), np.uint8(1), [0, 1], np.ones((1, 1)))),
+        (torch.tensor([True]), 1),
+        ([None, True], 1),
+    ],
+    ids=str,
+)
+def test_gym_world_takes_truth_values_and_0_or_1_for_success(told, won):
+    from mitigate.worlds.gym import GymWorld
+
+    world = GymWorld(Room(), success=lambda end: told, rule="anything")
+    assert run_episode(Brightness(), world, episode(3), CLEAN, 0)["success"] == won
+
+
 @pytest.mark.parametrize("success", [3, "", ["won"]])
 def test_gym_world_rejects_invalid_success(success):
     from mitigate.worlds.gym import GymWorld
