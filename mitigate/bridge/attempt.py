@@ -16,11 +16,11 @@ from mitigate.bridge.cell import DONE, Cell, files_of, left_out, write_done
 from mitigate.bridge.events import EVENTS, LOCK, put_aside
 from mitigate.bridge.hook import mitigate_hook
 from mitigate.bridge.program import GRACE, Command
+from mitigate.bridge.recording import delete_drafts
 from mitigate.bridge.results import Told
 from mitigate.bridge.server import Listener
 from mitigate.core import output
 from mitigate.core.files import make_folder
-from mitigate.core.locks import delete_abandoned
 from mitigate.core.names import counted
 from mitigate.core.output import open_output
 from mitigate.core.signals import unbroken
@@ -73,14 +73,14 @@ class Attempt:
                 "(out=...)."
             ) from error
         self.root = output.register(folder, self.lock)
-        kind = "finished" if (folder / DONE).is_file() else "unfinished"
+        if cell.recording is not None:
+            delete_drafts(cell.recording)
+        kind = "finished" if output.is_regular(folder / DONE) else "unfinished"
         (folder / DONE).unlink(missing_ok=True)
         put_aside(folder, kind)
         chosen = cell.chosen if cell.clean is None else None
         if chosen is not None and not any(chosen.folder.glob(f"conditions/*/{DONE}")):
             chosen.forget()  # of a run that came to nothing
-        if cell.recording is not None:
-            delete_abandoned(cell.recording.glob("*/.*.tmp"))
         self.files = files_of(cell.command)
         self.listener = Listener(cell.condition, folder, cell.patience).__enter__()
         words = self._words()

@@ -22,6 +22,7 @@ from mitigate.bridge.events import EVENTS, damaged
 from mitigate.bridge.hook.mitigate_hook import CLOSE, RESET
 from mitigate.bridge.recording import is_whole
 from mitigate.bridge.results import CUT_OFF, NORMALISED, Told, near, without_path
+from mitigate.core import output
 from mitigate.core.files import atomic_text, sha256
 from mitigate.core.json_files import read_object
 from mitigate.core.names import counted, short
@@ -85,7 +86,7 @@ def read_done(folder: Path) -> dict[str, Any] | None:
             are not those that it was written with. The message names the file and what to do.
     """
     file = folder / DONE
-    if not file.is_file():
+    if not output.is_regular(file):
         return None
     again = (
         f"No file was changed. Move {folder} out of {folder.parent} and run the same command "
@@ -121,7 +122,7 @@ def _compare_name(folder: Path, entries: Mapping[str, Any]) -> None:
 def _compare_events(folder: Path, entries: Mapping[str, Any]) -> None:
     """Raise ValueError if the events in ``folder`` are not those of the finished condition."""
     events, count = folder / EVENTS, entries["episodes_told"]
-    if not events.is_file():
+    if not output.is_regular(events):
         raise damaged(folder, f"the file is missing, and {DONE} records {count} episodes")
     told = results.read(folder, count_closed=True)  # a damaged line is named by its number
     seal = entries.get("events")

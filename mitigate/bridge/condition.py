@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from mitigate.bridge.results import Told
+from mitigate.core import output
 from mitigate.core.files import atomic_text
 from mitigate.core.json_files import read_object
 from mitigate.core.output import open_output
@@ -207,7 +208,7 @@ class Subset:
 
     def _bound(self) -> float | None:
         file = self.folder / "episodes.json"
-        if not file.is_file():
+        if not output.is_regular(file):
             return None
         again = f"Move {self.folder} aside, and run the same command again."
         held = read_object(file, again)

@@ -9,7 +9,6 @@ import fcntl
 import json
 import math
 import os
-import shutil
 import time
 from collections.abc import Iterator, Mapping
 from pathlib import Path
@@ -19,7 +18,7 @@ import numpy as np
 
 from mitigate.bridge.hook.mitigate_hook import CLOSE, OVER, RESET
 from mitigate.core.names import short
-from mitigate.core.output import open_output
+from mitigate.core.output import delete_folder, is_regular, open_output
 from mitigate.evaluation.rows import GREATEST, allowed, stem_of
 from mitigate.worlds.measures import path_length
 
@@ -58,7 +57,7 @@ def read_events(folder: Path) -> Iterator[tuple[int, dict[str, Any]]]:
         ValueError: Another line is not a JSON object with a text ``event``.
     """
     file = folder / EVENTS
-    lines = file.read_bytes().split(b"\n")[:-1] if file.is_file() else []
+    lines = file.read_bytes().split(b"\n")[:-1] if is_regular(file) else []
     for number, line in enumerate(lines, 1):
         try:
             event: Any = json.loads(line)  # distances may be infinite
@@ -71,11 +70,14 @@ def read_events(folder: Path) -> Iterator[tuple[int, dict[str, Any]]]:
 
 def put_aside(folder: Path, kind: str) -> None:
     """Empty the folder of a condition but for its lock: what an earlier attempt left there, the
-    program's own results too, is put into ``<folder>.<kind>``, in place of what is there."""
+    program's own results too, is put into ``<folder>.<kind>``, in place of what is there.
+
+    Raises UnsafePathError if ``<folder>.<kind>`` is a link, a FIFO or a file.
+    """
     left = [path for path in folder.iterdir() if path.name != LOCK]
     if left:
         aside = folder.with_name(f"{folder.name}.{kind}")
-        shutil.rmtree(aside, ignore_errors=True)
+        delete_folder(aside)
         aside.mkdir()
         for path in left:
             os.replace(path, aside / path.name)

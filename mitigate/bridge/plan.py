@@ -85,7 +85,7 @@ def cells(plan: Plan) -> list[Cell]:
             config.turn,
             keep,
             guards=guards,
-            observers=[] if recording is None else [Recorder(recording)],
+            observers=[] if recording is None else [Recorder(recording, recording.parent)],
         )
         made.append(
             Cell(

@@ -12,8 +12,8 @@ import hashlib
 import json
 import os
 import re
-import shutil
 from collections.abc import Iterable, Mapping
+from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, ClassVar
@@ -24,7 +24,8 @@ import numpy as np
 from mitigate.bridge.cameras import Camera, Rig
 from mitigate.bridge.condition import Observer
 from mitigate.core import output
-from mitigate.core.files import RECORDING, atomic_text, write_bytes
+from mitigate.core.files import RECORDING, atomic_text, make_folder, write_bytes
+from mitigate.core.locks import delete_abandoned
 from mitigate.core.observation import DEPTH, RGB
 from mitigate.core.output import open_output
 from mitigate.corruptions.frame_files import counts
@@ -56,6 +57,8 @@ class Recorder(Observer):
     stays: until its end it lies in a folder beside."""
 
     folder: Path
+    root: Path | None = None  # the folder that the user named, if it is one above
+    watched: output.Root | None = None  # during an episode, in the process that writes it
     here: Path | None = None
     place: Path | None = None  # where it is put at its end
     cameras: dict[str, Any] = field(default_factory=dict)  # of the episode
@@ -65,11 +68,11 @@ class Recorder(Observer):
         """Begin the folder of an episode."""
         place = self.folder / part(stem_of(str(told["scene"]))) / part(str(told["id"]))
         self.leave()
-        self.place, self.cameras = place, {}
-        self.here = place.with_name(f".{place.name}.{os.getpid()}.tmp")
-        shutil.rmtree(self.here, ignore_errors=True)
-        output.forget(self.here)
-        output.make_checked(self.here)
+        self.watched = output.register(make_folder(self.root or self.folder))
+        here = place.with_name(f".{place.name}.{os.getpid()}.tmp")
+        output.delete_folder(here)
+        output.make_checked(here)
+        self.here, self.place, self.cameras = here, place, {}
         note = {"unit": UNIT, "depth": "16-bit PNG", "frames": "clean"}
         with atomic_text(self.folder / RECORDING) as file:
             json.dump(note, file)
@@ -104,17 +107,37 @@ class Recorder(Observer):
             said = {name: value for name, value in told.items() if name != "kind"}
             with atomic_text(self.here / "end.json") as file:
                 json.dump(said, file)
-            shutil.rmtree(self.place, ignore_errors=True)  # of an earlier run, or a loop's second
-            output.check(self.place)
+            output.delete_folder(self.place)  # of an earlier run, or a loop's second
             output.forget(self.here)
             os.replace(self.here, self.place)
-        self.here = self.place = None
+        self._close()
 
     def leave(self) -> None:
         """Delete what there is of an episode that did not end."""
         if self.here is not None:
-            shutil.rmtree(self.here, ignore_errors=True)
+            with suppress(output.UnsafePathError, output.FolderLostError):  # not ours any more
+                output.delete_folder(self.here)
+        self._close()
+
+    def _close(self) -> None:
         self.here = self.place = None
+        if self.watched is not None:
+            output.unregister(self.watched)
+            self.watched = None
+
+
+def delete_drafts(folder: Path) -> None:
+    """Delete what processes that are no more left in the recording ``folder`` of a condition.
+
+    Raises UnsafePathError, before anything is deleted, if ``folder``, a scene or an episode in it
+    is a link to a folder, a FIFO or a device.
+    """
+    with output.output_folder(folder.parent):
+        output.check(folder / RECORDING)
+        for path in [*folder.glob("*"), *folder.glob("*/*")]:
+            if not path.is_file():
+                output.check(path / RECORDING)
+        delete_abandoned(folder.glob("*/.*.tmp"))
 
 
 def is_whole(folder: Path, ends: Iterable[Mapping[str, Any]]) -> bool:

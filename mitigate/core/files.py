@@ -79,11 +79,12 @@ def open_text(path: Path | str) -> io.TextIOWrapper:
     """Open ``path`` for reading as UTF-8, behind the byte order mark that editors of Windows put
     first; gzip is told by the first two bytes, not by the name.
 
-    Raises FileNotFoundError, with the nearest names in the folder, if there is no such file.
+    Raises FileNotFoundError, with the nearest names in the folder, if there is no such file, and
+    UnsafePathError for a FIFO, a socket or a device.
     Reading raises BadGzipFile for a gzip file that is damaged, cut short or a bomb (``RATIO``).
     """
     path = Path(path)
-    if not path.is_file():
+    if not output.is_regular(path):
         raise FileNotFoundError(_absent(path))
     with open(path, "rb") as file:
         gzipped = file.read(2) == GZIP_MAGIC
@@ -121,6 +122,12 @@ class _Unpacked(gzip.GzipFile):
                 "file"
             )
         return found
+
+
+def read_regular(path: Path | str) -> str:
+    """Return the UTF-8 text of a small file in an output folder. Raises as :func:`open_text`."""
+    with open_text(path) as file:
+        return file.read()
 
 
 def make_folder(folder: Path | str) -> Path:
@@ -193,7 +200,8 @@ def put_folder(draft: Path, target: Path, old: Path) -> None:
 
 
 def sha256(path: Path | str) -> str:
-    """Return the sha256 of a file, as hex."""
+    """Return the sha256 of a file, as hex. Raises UnsafePathError for a FIFO or a device."""
+    output.is_regular(path)
     digest = hashlib.sha256()
     with open(path, "rb") as file:
         while block := file.read(1 << 20):

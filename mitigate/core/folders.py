@@ -176,7 +176,7 @@ def read_manifest(folder: str | Path, again: str = AGAIN) -> Manifest | None:
     """
     folder = Path(folder)
     file = folder / MANIFEST
-    if not file.is_file():
+    if not output.is_regular(file):
         listed = older_folders.card_files(folder, again)
         if listed is None:
             return None

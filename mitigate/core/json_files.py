@@ -12,6 +12,7 @@ from typing import Any, NoReturn, TextIO
 
 from mitigate.core.files import open_text
 from mitigate.core.names import short
+from mitigate.core.output import is_regular
 
 CHUNK = 1 << 16  # characters read at a time (ours)
 LARGEST_VALUE = 1 << 25  # characters of one JSON value; more means a broken file (ours)
@@ -20,7 +21,9 @@ LARGEST_JSON = 1 << 24  # bytes of a JSON file that is read at once; a card has 
 
 def read_json(path: Path, again: str) -> Any:
     """Return what the JSON file ``path`` holds, which may be of anybody: at most ``LARGEST_JSON``
-    bytes, finite numbers alone. Raises ValueError, which ends in ``again`` (what to do)."""
+    bytes, finite numbers alone. Raises ValueError, which ends in ``again`` (what to do), and
+    UnsafePathError for a FIFO, a socket or a device."""
+    is_regular(path)
     with open(path, "rb") as file:
         raw = file.read(LARGEST_JSON + 1)
     try:

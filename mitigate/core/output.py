@@ -8,6 +8,7 @@ links, FIFOs and devices in place of our files. They are rejected before a byte 
 from __future__ import annotations
 
 import os
+import shutil
 import stat
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -205,6 +206,46 @@ def forget(folder: Path | str) -> None:
     folder = Path(os.path.abspath(folder))
     for root in _roots:
         root.seen = {path for path in root.seen if not path.is_relative_to(folder)}
+
+
+def delete_folder(folder: Path | str) -> None:
+    """Delete ``folder`` with all that is in it, if it exists. Never deletes through a link.
+
+    Raises:
+        UnsafePathError: If ``folder`` is a link, a FIFO or a file, or lies behind a link in an
+            output folder. Nothing was deleted.
+        FolderLostError: If its output folder was removed or replaced.
+    """
+    check(folder)
+    try:
+        mode = os.lstat(folder).st_mode
+    except FileNotFoundError:
+        return
+    if not stat.S_ISDIR(mode):
+        raise UnsafePathError(
+            f"{folder} must be a folder, got {_kind(mode)}. Nothing was deleted. Delete {folder} "
+            "and run the command again."
+        )
+    forget(folder)
+    shutil.rmtree(folder, ignore_errors=True)
+
+
+def is_regular(path: Path | str) -> bool:
+    """Return whether the file ``path`` exists; links are followed.
+
+    Raises:
+        UnsafePathError: If it is a FIFO, a socket or a device: reading it could wait forever.
+    """
+    try:
+        mode = os.stat(path).st_mode
+    except (FileNotFoundError, NotADirectoryError):
+        return False
+    if not stat.S_ISREG(mode) and not stat.S_ISDIR(mode):
+        raise UnsafePathError(
+            f"{path} must be a regular file, got {_kind(mode)}. Reading it could wait forever. "
+            "Delete it, or name another folder, and run the command again."
+        )
+    return stat.S_ISREG(mode)
 
 
 def _check_folder(folder: Path) -> None:

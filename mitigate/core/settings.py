@@ -16,6 +16,7 @@ import yaml
 
 from mitigate.core import names
 from mitigate.core.files import PACKAGE
+from mitigate.core.output import is_regular
 
 LARGEST = 1 << 16  # bytes of a file; the config of a run has about 4000 (ours)
 DEEPEST = 16  # levels of lists and mappings; the config of a run has 8 (ours)
@@ -32,6 +33,7 @@ def read(file: Path) -> dict[str, Any]:
     Raises ValueError for anything else, a file of more than ``LARGEST`` bytes, more than
     ``DEEPEST`` levels, a key that comes twice, and an OmegaConf interpolation.
     """
+    is_regular(file)  # a FIFO would wait forever
     with open(file, "rb") as opened:
         raw = opened.read(LARGEST + 1)
     if len(raw) > LARGEST:

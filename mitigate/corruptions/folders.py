@@ -10,9 +10,9 @@ from pathlib import Path
 import numpy as np
 from tqdm import tqdm
 
-from mitigate.core.files import write_bytes
+from mitigate.core.files import read_regular, write_bytes
 from mitigate.core.observation import Z_MAX
-from mitigate.core.output import lost, output_folder
+from mitigate.core.output import UnsafePathError, lost, output_folder
 from mitigate.corruptions import frame_files
 from mitigate.corruptions.depth_sensor import DepthSensor
 from mitigate.corruptions.frame_files import MOST, RGB
@@ -168,7 +168,7 @@ def _begin(out: Path, settings: Settings, plan: Plan) -> dict:
 
 def _check_earlier(out: Path, settings: dict, episodes: dict[str, list[str]]) -> None:
     try:
-        earlier = json.loads((out / SUMMARY).read_text(encoding="utf-8"))
+        earlier = json.loads(read_regular(out / SUMMARY))
         was, numbered = dict(earlier["settings"]), dict(earlier["episodes"])
         known = {name: (int(e["frames"]), str(e["names"])) for name, e in numbered.items()}
     except FileNotFoundError:
@@ -176,6 +176,8 @@ def _check_earlier(out: Path, settings: dict, episodes: dict[str, list[str]]) ->
             f"{out} holds files but no {SUMMARY}, so it was not made by this program. Name a new "
             "or an empty folder."
         ) from None
+    except UnsafePathError:
+        raise
     except (OSError, ValueError, KeyError, TypeError) as error:
         raise ValueError(
             f"{out / SUMMARY} is damaged ({error}), so what {out} holds is not known. Name a new "

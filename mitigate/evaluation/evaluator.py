@@ -25,6 +25,7 @@ from mitigate.agents.agent import Agent, as_agent
 from mitigate.agents.networks import in_eval_mode, networks
 from mitigate.agents.observation import check_fits
 from mitigate.cluster.launcher import LauncherConfig, count, results
+from mitigate.core import output
 from mitigate.core import workers as processes
 from mitigate.core.checkpoint import check_finite, weights_sha
 from mitigate.core.names import counted
@@ -307,7 +308,7 @@ def _in_order(out: Path, wanted: list[tuple]) -> list[dict[str, Any]]:
     if not wanted:
         return []
     order = {identity: number for number, identity in enumerate(wanted)}
-    held = rows.read(out) if out.is_file() else []
+    held = rows.read(out) if output.is_regular(out) else []
     missing = len(order.keys() - {rows.identity(row) for row in held})
     if missing:
         raise FolderLostError(

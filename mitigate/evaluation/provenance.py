@@ -26,6 +26,7 @@ import numpy as np
 
 from mitigate.agents.fingerprint import contents, hash_of, source_of
 from mitigate.agents.state import array_sha
+from mitigate.core import output
 from mitigate.core.build import Maker
 from mitigate.core.files import atomic_text
 from mitigate.core.json_files import read_object
@@ -144,7 +145,7 @@ def keep(
     if source is not None:
         keep_list_hash(folder, split, source)
     note = folder / NOTE
-    known = _read(note) if note.is_file() else {}
+    known = _read(note) if output.is_regular(note) else {}
     told, sums = {**_described(world), **made_by}, {e.episode_id: _sum(e) for e in episodes}
     own, kind = known.get(split, {}), _told_by_rows(world)
     worlds, sums_before = own.get("worlds", {}), own.get("sums", {})

@@ -26,6 +26,7 @@ from mitigate.core.json_files import read_json
 from mitigate.core.locks import FolderLock
 from mitigate.core.names import name_of, short
 from mitigate.core.options import paths_and_overrides
+from mitigate.core.output import is_regular
 from mitigate.evaluation.conditions import conditions, suite_conditions
 from mitigate.guards.guard import NO_GUARDS, Guards
 
@@ -203,7 +204,7 @@ def _check_earlier(out: Path, settings: dict[str, Any]) -> None:
     again = "Name another folder (out=...), or delete this one."
     if out.exists() and not out.is_dir():
         raise ValueError(f"{out} is no folder, in which a replay is written. {again}")
-    if not (out / SETTINGS).is_file():
+    if not is_regular(out / SETTINGS):
         return
     held = read_json(out / SETTINGS, again)
     if not isinstance(held, dict):

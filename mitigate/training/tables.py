@@ -21,7 +21,7 @@ from mitigate.core import build
 from mitigate.core.files import atomic_text
 from mitigate.core.json_files import read_object
 from mitigate.core.names import short
-from mitigate.core.output import output_folder
+from mitigate.core.output import is_regular, output_folder
 from mitigate.core.progress import Progress, say
 from mitigate.evaluation.episode_lists import episodes
 from mitigate.evaluation.evaluate import load
@@ -110,7 +110,7 @@ def make(made: Sequence[Cell], config: TablesConfig) -> list[str]:
 
 def _add_cost(path: Path, spent: dict[str, float]) -> None:
     """Add CPU seconds to a cell's account, which counts all its runs that had something to do."""
-    cost = _read_cost(path) if path.is_file() else {}
+    cost = _read_cost(path) if is_regular(path) else {}
     for kind, seconds in spent.items():
         cost[kind] = round(cost.get(kind, 0.0) + seconds, 2)
     with atomic_text(path) as file:
@@ -231,4 +231,4 @@ def _named(folder: Path) -> str:
 
 def _rows(folder: Path) -> list[Row]:
     """The rows that an evaluation has left in ``folder`` so far."""
-    return read(folder / ROWS) if (folder / ROWS).is_file() else []
+    return read(folder / ROWS) if is_regular(folder / ROWS) else []

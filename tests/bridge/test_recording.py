@@ -4,13 +4,16 @@ import json
 import os
 import subprocess
 import sys
+from pathlib import Path
 
 import cv2
 import numpy as np
 import pytest
 
 from mitigate.bridge.cameras import Rig, read_camera
+from mitigate.bridge.events import put_aside
 from mitigate.bridge.recording import Recorder, is_whole, part, plain, png
+from mitigate.core.output import UnsafePathError
 from mitigate.corruptions import DepthSensor
 from mitigate.encoders.sources import TRAIN, UNSEEN, FolderFrames
 
@@ -107,3 +110,50 @@ def test_an_episode_that_begins_again_and_does_not_end_leaves_its_recording(tmp_
     recorder.end({"kind": "end", "steps": 4})
     assert json.loads((tmp_path / "k" / "1" / "end.json").read_text())["steps"] == 4
     assert [path.name for path in (tmp_path / "k").iterdir()] == ["1"]
+
+
+TOLD = {"scene": "k.glb", "id": "1"}
+
+
+@pytest.mark.parametrize("inner", ["r", "r/clean", "r/clean/k", "r/clean/k/1"])
+def test_recorder_deletes_nothing_behind_a_link(tmp_path, inner):
+    kept = tmp_path / "v" / Path("r/clean/k/1").relative_to(inner) / "keep.txt"
+    kept.parent.mkdir(parents=True)
+    kept.write_text("mine")
+    link = tmp_path / inner
+    link.parent.mkdir(parents=True, exist_ok=True)
+    link.symlink_to(tmp_path / "v")
+    recorder = Recorder(tmp_path / "r" / "clean", tmp_path / "r")
+    if inner == "r":  # the folder that the user named may be a link
+        recorder.episode(TOLD)
+        recorder.end({"kind": "end"})
+        assert (tmp_path / "v/clean/k/1/end.json").is_file()
+        return
+    with pytest.raises(UnsafePathError, match="must be a folder, got a symbolic link"):
+        recorder.episode(TOLD)
+        recorder.end({"kind": "end"})
+    recorder.leave()
+    assert kept.read_text() == "mine" and len(list((tmp_path / "v").rglob("*.*"))) == 1
+
+
+@pytest.mark.parametrize("plant", [lambda path: path.symlink_to("../../v"), os.mkfifo])
+def test_run_rejects_a_link_or_a_fifo_in_its_recording(run, tmp_path, plant):
+    kept = tmp_path / "v" / "0" / "keep.txt"
+    kept.parent.mkdir(parents=True)
+    kept.write_text("mine")
+    scene = tmp_path / "r" / "clean" / "s0"
+    scene.parent.mkdir(parents=True)
+    plant(scene)
+    options = f"conditions=[clean] record={tmp_path / 'r'}"
+    assert "s0 must be a folder, got a " in run(tmp_path / "out", options).stderr
+    assert kept.read_text() == "mine" and len(list((tmp_path / "v").rglob("*"))) == 2
+
+
+@pytest.mark.parametrize("kind", ["unfinished", "finished"])
+def test_put_aside_rejects_a_fifo(tmp_path, kind):
+    (tmp_path / "clean").mkdir()
+    (tmp_path / "clean" / "output.txt").write_text("")
+    os.mkfifo(tmp_path / f"clean.{kind}")
+    with pytest.raises(UnsafePathError, match=f"clean.{kind} must be a folder, got a FIFO"):
+        put_aside(tmp_path / "clean", kind)
+    assert (tmp_path / "clean" / "output.txt").is_file()

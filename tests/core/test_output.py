@@ -8,7 +8,7 @@ import socket
 
 import pytest
 
-from mitigate.core import checksums, files, output
+from mitigate.core import checksums, files, json_files, output, settings
 from mitigate.core.locks import NAME, FolderLock, delete_leftovers
 from mitigate.core.output import FolderLostError, UnsafePathError, open_output, output_folder
 from mitigate.evaluation import rows
@@ -265,3 +265,27 @@ def test_folder_lock_keeps_the_first_error(tmp_path):
         raise KeyError
     with FolderLock(tmp_path / "out"):  # and is free again
         pass
+
+
+@pytest.mark.parametrize(
+    "read",
+    [
+        rows.read,
+        files.read_regular,
+        files.sha256,
+        settings.read,
+        lambda path: json_files.read_json(path, ""),
+        lambda path: rows.gather([path.parent]),
+    ],
+)
+def test_reading_rejects_a_fifo(tmp_path, read):
+    fifo(tmp_path / "rows.jsonl")
+    with pytest.raises(UnsafePathError, match="must be a regular file, got a FIFO"):
+        read(tmp_path / "rows.jsonl")
+
+
+@pytest.mark.parametrize("plant", [link, fifo])
+def test_delete_folder_rejects_what_is_no_folder(tmp_path, plant):
+    plant(tmp_path / "folder")
+    with pytest.raises(UnsafePathError, match="folder must be a folder, got a .*Nothing was del"):
+        output.delete_folder(tmp_path / "folder")

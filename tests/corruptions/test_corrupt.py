@@ -362,3 +362,10 @@ def test_it_starts_without_torch():
     )
     run = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, check=False)
     assert run.returncode == 0, run.stderr
+
+
+def test_corrupt_rejects_a_fifo_in_place_of_its_summary(run, walk):
+    (walk / "out").mkdir()
+    os.mkfifo(walk / "out" / "corrupt.json")
+    said = complaint(run("corruption=spatter", "severity=0.5"))
+    assert "corrupt.json must be a regular file, got a FIFO" in said

@@ -16,6 +16,7 @@ from typing import Annotated, Any, get_type_hints
 from pydantic import AfterValidator, ConfigDict, Field, TypeAdapter, ValidationError, with_config
 from typing_extensions import TypedDict
 
+from mitigate.core import output
 from mitigate.core.files import atomic_text
 from mitigate.core.json_files import read_json
 from mitigate.core.names import counted, short
@@ -168,7 +169,7 @@ def load(path: Path | str) -> LeaderboardEntry:
             unknown key, and a value of a wrong type, length or range.
     """
     path = Path(path)
-    if not path.is_file():
+    if not output.is_regular(path):
         raise FileNotFoundError(f"There is no entry {path}. {_REWRITE}")
     if path.stat().st_size > LARGEST:
         raise ValueError(f"{path} has more than {LARGEST} bytes, too many for an entry. {_REWRITE}")
