@@ -18,20 +18,24 @@ from contextlib import suppress
 from dataclasses import asdict, dataclass
 from functools import cache
 from pathlib import PurePath
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import torch
 from torch import nn
 
+from mitigate.agents.adapter_layers import Adapter
 from mitigate.agents.state import (
     State,
     array_sha,
     class_name,
+    has_settings,
     is_users,
     plain_attributes,
     plain_text,
     read_state,
+    says_all,
 )
 from mitigate.core.checkpoint import weights_sha
 from mitigate.core.checksums import DIGITS
@@ -79,21 +83,22 @@ def contents(agent: Any, version: str | None = None) -> Contents:
 
     For every agent: its kind, ``settings()``, weights and buffers, the user's code, hooks that can
     be read, and replaced methods. For one of ours also whatever differs from a new agent with the
-    same settings; for others the classes inside their networks. Without ``settings()`` also the
-    plain attributes and arrays.
+    same settings; for others the classes inside their networks. Without ``settings()``, or where
+    a base class defines it, also the plain attributes and arrays.
     """
     shipped = KIND in vars(type(agent))
-    has_settings = hasattr(agent, "settings")
-    state = read_state(agent, attributes=not has_settings)
-    settings = agent.settings if has_settings else {}
+    complete = says_all(agent)
+    state = read_state(agent, attributes=not complete)
+    settings = agent.settings if has_settings(agent) else {}
+    changes = _changes(agent, state) if shipped else []
     code = [*_codes(agent, state), *_lines(state.constants)]
     optional = {
         "code": code,
         "attributes": _lines(state.attributes),
         "behaviour": _lines(state.behaviour),
         "networks": [] if shipped else _architecture(state),
-        "changes": _changes(agent) if shipped else [],
-        "arrays": [] if has_settings or not state.networks else _lines(state.arrays),
+        "changes": changes,
+        "arrays": [] if complete or not state.networks else _lines(state.arrays),
         "version": version,
         "unreadable": _lines(state.unreadable) if version is None else [],
     }
@@ -193,9 +198,10 @@ def _architecture(state: State) -> list[str]:
     return _lines(lines)
 
 
-def _changes(agent: Any) -> list[str]:
+def _changes(agent: Any, state: State) -> list[str]:
     """Return what differs between one of our agents and a new one with its settings, beside weights
-    and what it remembers of an episode: layers, buffers and plain attributes."""
+    and what it remembers of an episode: layers, buffers and plain attributes. Note in ``state``
+    what cannot be read of added layers."""
     with torch.random.fork_rng(devices=[]):
         new = type(agent)(**agent.settings())
     before = dict(new.named_modules())
@@ -204,11 +210,26 @@ def _changes(agent: Any) -> list[str]:
         other = before.pop(place, None)
         if type(module) is not type(other):
             changes.append(f"{place}: {class_name(type(module))}")
+            changes += _added(place, module, state)
         if other is not None:
             found, usual = _attributes(module, other), _attributes(other, other)
             changes += [f"{place}.{n} = {v}" for n, v in found.items() if usual.get(n) != v]
             changes += [f"{place}.{n} is missing" for n in usual if n not in found]
     return sorted([*changes, *(f"{place} is missing" for place in before)])
+
+
+def _added(place: str, module: nn.Module, state: State) -> list[str]:
+    """Return the attributes of a layer that a new agent does not have, and of its class."""
+    if isinstance(module, Adapter):  # also holds what it said of the last frames
+        return [f"{place}.settings = {_text(module.settings)}"]
+    alone = SimpleNamespace(**plain_attributes(module), kind=type(module))
+    found = read_state(alone)
+    state.unreadable.update({f"{place}.{name}": why for name, why in found.unreadable.items()})
+    shas = {name: weights_sha(net) for name, net in found.networks.items()}
+    buffers = {k: module._buffers[k] for k in module._non_persistent_buffers_set}
+    hashed = {k: array_sha(v) for k, v in buffers.items() if v is not None}
+    lines = _lines({**found.attributes, **found.constants, **found.arrays, **shas, **hashed})
+    return [f"{place}.{line}" for line in lines]
 
 
 def _attributes(module: nn.Module, new: nn.Module) -> dict[str, str]:

@@ -14,7 +14,7 @@ import re
 import sys
 import sysconfig
 import types
-from collections import deque
+from collections import Counter, deque
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import suppress
 from dataclasses import dataclass, field
@@ -22,7 +22,7 @@ from datetime import date, datetime, timedelta
 from datetime import time as clock_time
 from decimal import Decimal
 from enum import Enum
-from functools import cache, partial
+from functools import cache, partial, partialmethod
 from itertools import chain
 from pathlib import PurePath
 from typing import Any
@@ -57,6 +57,8 @@ _BY_VERSION = ("mitigate", "torch")  # packages whose code is identified by thei
 _INSTALLED = frozenset(("site-packages", "dist-packages"))
 _OF_TORCH = frozenset((*vars(nn.Module()), "parametrizations"))
 _OF_ADAPTERS = "_statistics_before_adapters"  # set by agents/adapters.py
+_PYTHONS = sys.stdlib_module_names - {"__main__"}
+_DESCRIPTORS = (types.MemberDescriptorType, types.GetSetDescriptorType)
 _OWN_HOOKS = "mitigate.agents.adapters"  # its adapters are modules: in state_dict()
 _HOOKS = ("_forward_pre_hooks", "_forward_hooks")
 
@@ -92,6 +94,30 @@ class _Item:
     required: bool = False  # must be readable even if the agent has settings()
 
 
+@dataclass(frozen=True)
+class _Replacement:
+    """What stands in a class in place of a method: part of the code."""
+
+    value: Any
+
+
+def has_settings(agent: Any) -> bool:
+    """Return whether ``agent`` or its class defines ``settings``: what ``__getattr__`` finds in
+    another object does not describe this one."""
+    return "settings" in getattr(agent, "__dict__", ()) or _definer(type(agent)) is not None
+
+
+def says_all(agent: Any) -> bool:
+    """Return whether ``settings`` stands for all attributes: not of a subclass, which may add
+    some, of the class that defines it."""
+    own = "settings" in getattr(agent, "__dict__", ())
+    return own or _definer(type(agent)) is type(agent)
+
+
+def _definer(kind: type) -> type | None:
+    return next((each for each in kind.__mro__ if "settings" in vars(each)), None)
+
+
 def read_state(agent: Any, *, attributes: bool = True) -> State:
     """Return the state of ``agent``; each object is read once, at the place found first.
 
@@ -102,6 +128,7 @@ def read_state(agent: Any, *, attributes: bool = True) -> State:
     """
     state = State()
     seen: dict[int, tuple[Any, str]] = {}
+    taken = Counter[str]()
     waiting = deque([_Item("", agent)])
     while waiting:
         item = waiting.popleft()
@@ -126,7 +153,11 @@ def read_state(agent: Any, *, attributes: bool = True) -> State:
             if attributes or item.required:
                 state.unreadable[item.place] = _why(value)
             continue
-        waiting.extend(children)
+        for child in children:
+            taken[child.place] += 1
+            if taken[child.place] > 1:  # a method that the object or a subclass replaces
+                child.place += f" ({taken[child.place]})"
+            waiting.append(child)
     return state
 
 
@@ -169,14 +200,21 @@ def _visit(state: State, item: _Item, *, whole: bool, attributes: bool) -> list[
     parts = _parts(value)
     if parts is None:
         return None
-    is_code = isinstance(value, (types.FunctionType, partial, types.MethodType))
-    fixed = is_code or item.required or (item.fixed and isinstance(value, _CONTAINERS))
+    is_code = isinstance(value, (types.FunctionType, partial, partialmethod, types.MethodType))
+    kept = isinstance(value, (*_CONTAINERS, type))
+    fixed = is_code or item.required or (item.fixed and kept)
     if not is_code and not isinstance(value, (*_CONTAINERS, *_GETTERS, *_NAMED)):
         _noting(state, item, attributes)(f"{item.place}()", class_name(type(value)))
     return [
-        _Item(_join(item.place, name), part, fixed and _is_constant(name, part), item.required)
+        _item(_join(item.place, name), part, fixed and _is_constant(name, part), item.required)
         for name, part in parts
     ]
+
+
+def _item(place: str, part: Any, fixed: bool = False, required: bool = False) -> _Item:
+    if isinstance(part, _Replacement):
+        return _Item(place, part.value, fixed=True, required=True)
+    return _Item(place, part, fixed, required)
 
 
 def _is_constant(name: str, part: Any) -> bool:
@@ -191,7 +229,10 @@ def _visit_network(
     net = item.value
     state.networks[item.place] = net
     kinds = dict.fromkeys(map(type, net.modules()))
-    found = [_Item(_join(item.place, k), part) for kind in kinds for k, part in _methods(kind)]
+    found = [_item(_join(item.place, k), part) for kind in kinds for k, part in _methods(kind)]
+    if attributes:
+        data = [pair for kind in kinds for pair in _class_data(kind)]
+        found += [_Item(_join(item.place, name), part) for name, part in data]
     if any(getattr(torch_module, f"_global{name}", None) for name in _HOOKS):
         place = _join(item.place, "global hooks")
         state.unreadable[place] = "a forward hook that is registered for all modules"
@@ -234,6 +275,10 @@ def _hidden(state: State, place: str, module: nn.Module) -> Iterator[_Item]:
         else:
             kind = getattr(hook, "__qualname__", type(hook).__qualname__)
             state.unreadable[name] = f"a forward hook, {kind}"
+    adapter = dict(module.named_children()).get("adapter")
+    hooked = any(getattr(hook, "__module__", "") == _OWN_HOOKS for hook in hooks)
+    if isinstance(adapter, Adapter) and not (hooked or isinstance(module, nn.Sequential)):
+        state.behaviour[_join(place, "adapter")] = "not called: its hook is removed"
     for name, value in vars(module).items():
         if callable(value) and callable(getattr(type(module), name, None)):
             yield _Item(_join(place, name), value, fixed=True, required=True)
@@ -252,8 +297,8 @@ def _parts(value: Any) -> Iterable[tuple[str, Any]] | None:
     if isinstance(value, _LISTS):
         return _numbered(value)
     if isinstance(value, type):
-        return _methods(value)
-    if isinstance(value, partial):
+        return chain(_methods(value), _class_data(value))
+    if isinstance(value, (partial, partialmethod)):
         return [("func", value.func), *_numbered((value.args, value.keywords))]
     if isinstance(value, _GETTERS):
         return _numbered(value.__reduce__())
@@ -274,7 +319,10 @@ def _attributes(value: Any) -> Iterable[tuple[str, Any]] | None:
     slots = [one for kind in kinds for one in vars(kind).items()]
     members = [(k, one) for k, one in slots if isinstance(one, types.MemberDescriptorType)]
     if isinstance(own, dict) or members:
-        return chain((own or {}).items(), _filled(value, members), _methods(type(value)))
+        kind = type(value)
+        return chain(
+            (own or {}).items(), _filled(value, members), _methods(kind), _class_data(kind)
+        )
     package = str(type(value).__module__).partition(".")[0]
     foreign = package == "ctypes" or type(value).__name__ == "PyCapsule"
     opaque = foreign or isinstance(value, Iterator)
@@ -282,13 +330,53 @@ def _attributes(value: Any) -> Iterable[tuple[str, Any]] | None:
 
 
 def _methods(kind: type) -> Iterator[tuple[str, Any]]:
-    """The user's functions in ``kind`` and its bases, also those that were set later."""
+    """The user's functions in ``kind`` and its bases, also those that were set later, and what
+    else stands in place of a method."""
     for each in kind.__mro__:
+        users = _is_users_class(each)
         for name, one in vars(each).items() if each is not object else ():
             bound = getattr(one, "__func__", one)  # of a static or class method
             function = getattr(bound, "fget", bound)  # of a property
-            if isinstance(function, types.FunctionType) and _is_users(function):
-                yield name, function
+            if isinstance(function, types.FunctionType):
+                if _is_users(function):
+                    yield name, function
+                elif _of_another(each, function):
+                    yield name, _Replacement(_name_of(function))
+            elif (users or each.__module__.startswith("mitigate.")) and _acts(name, function):
+                yield name, _Replacement(function)
+
+
+def _of_another(kind: type, function: types.FunctionType) -> bool:
+    """Return whether one of our classes has got a function that was written elsewhere."""
+    return kind.__module__.startswith("mitigate.") and (
+        function.__module__.startswith("mitigate.")
+        and not function.__qualname__.startswith(f"{kind.__qualname__}.")
+    )
+
+
+def _acts(name: str, value: Any) -> bool:
+    """Return whether ``value`` in a class is called as a method without being a function."""
+    if isinstance(value, (type, nn.Module)) or (name.startswith("__") and name.endswith("__")):
+        return False
+    return isinstance(value, partialmethod) or callable(value)
+
+
+def _class_data(kind: type) -> Iterator[tuple[str, Any]]:
+    """The attributes of the user's classes among ``kind`` and its bases that are no methods."""
+    for each in kind.__mro__:
+        for name, one in vars(each).items() if _is_users_class(each) else ():
+            hidden = (name.startswith("__") and name.endswith("__")) or name == "_abc_impl"
+            function = getattr(one, "__func__", getattr(one, "fget", one))
+            described = isinstance(one, (property, staticmethod, classmethod, *_DESCRIPTORS))
+            if not (hidden or described or isinstance(one, Enum) or _acts(name, function)):
+                yield name, one
+
+
+def _is_users_class(kind: type) -> bool:
+    module = sys.modules.get(kind.__module__)
+    file = getattr(module, "__file__", None) or ""
+    stdlib = kind.__module__.partition(".")[0] in _PYTHONS
+    return not stdlib and is_users(kind.__module__, file)
 
 
 def _globals(function: types.FunctionType) -> Iterator[tuple[str, Any]]:
@@ -302,7 +390,34 @@ def _globals(function: types.FunctionType) -> Iterator[tuple[str, Any]]:
         codes += [part for part in code.co_consts if isinstance(part, types.CodeType)]
     for name in names:
         if name in function.__globals__:
-            yield name, function.__globals__[name]
+            part = function.__globals__[name]
+            yield name, part
+            yield from _named(name, part, names)
+        elif name in sys.modules:  # imported where it is used
+            yield from _named(name, sys.modules[name], names)
+
+
+def _named(place: str, module: Any, names: Iterable[str]) -> Iterator[tuple[str, Any]]:
+    """What code with these ``names`` may read of one of the user's modules, or of one inside it."""
+    waiting = [(place, module)]
+    seen: list[Any] = []
+    while waiting:
+        place, module = waiting.pop()
+        if any(module is one for one in seen) or not _is_users_module(module):
+            continue
+        seen.append(module)
+        for name in names:
+            if name in vars(module):
+                yield f"{place}.{name}", vars(module)[name]
+                waiting.append((f"{place}.{name}", vars(module)[name]))
+
+
+def _is_users_module(module: Any) -> bool:
+    if not isinstance(module, types.ModuleType):
+        return False
+    top = module.__name__.partition(".")[0]
+    file = getattr(module, "__file__", None) or next(iter(getattr(module, "__path__", ())), "")
+    return top not in _PYTHONS and is_users(module.__name__, file)
 
 
 def _is_users(function: types.FunctionType) -> bool:

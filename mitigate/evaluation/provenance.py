@@ -25,7 +25,7 @@ from typing import Any
 import numpy as np
 
 from mitigate.agents.fingerprint import contents, hash_of, source_of
-from mitigate.agents.state import array_sha
+from mitigate.agents.state import array_sha, says_all
 from mitigate.core import output
 from mitigate.core.build import Maker
 from mitigate.core.files import atomic_text
@@ -59,7 +59,7 @@ class Known:
             )
         self.agent = agent
         self.version = version
-        self.without_settings = not hasattr(agent, "settings")
+        self.without_settings = not says_all(agent)
         found = contents(agent, version)
         same, after, before = _last.get(id(agent), (lambda: None, None, None))
         self.parts = before if same() is agent and after == found.parts else found.parts

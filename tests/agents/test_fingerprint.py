@@ -6,7 +6,9 @@ import copy
 import importlib
 import linecache
 import sys
+import types
 from collections import OrderedDict
+from functools import lru_cache, partial, partialmethod
 from types import SimpleNamespace
 
 import pytest
@@ -495,3 +497,184 @@ def test_adapters_are_read_completely(target):
         insert_adapters(one.net, ["4"])
     assert fingerprint(users[0], {}) == fingerprint(users[1], {})
     assert not contents(users[0]).unreadable
+
+
+class Scale(nn.Module):
+    """A layer of the user's."""
+
+    def __init__(self, by: int) -> None:
+        super().__init__()
+        self.by = by
+
+    def forward(self, x):
+        return x * self.by
+
+
+class Own:
+    """An agent of plain parts."""
+
+    def act(self, observation):
+        return helpers.decide(observation) + helpers.LEVEL + Config.LEVEL
+
+
+class Config:
+    LEVEL = 0
+
+
+class Described(Own):
+    """Also one with settings()."""
+
+    def settings(self):
+        return {}
+
+
+class Biased(Described):
+    """Inherits settings() and adds an attribute."""
+
+    def __init__(self, bias: int) -> None:
+        self.bias = bias
+
+
+class BiasedPlanner(TopologicalAgent):
+    """The same of a shipped agent."""
+
+
+class Wrapper:
+    """Delegates what it does not define."""
+
+    def __init__(self, bias: int) -> None:
+        self.agent, self.bias = Described(), bias
+
+    def __getattr__(self, name):
+        return getattr(self.__dict__["agent"], name)
+
+
+class Answer:
+    def __init__(self, action: int) -> None:
+        self.action = action
+
+    def __call__(self, observation):
+        return self.action
+
+
+def answer(self, action, observation=None):
+    return action
+
+
+def first(observation):
+    return 0
+
+
+def second(observation):
+    return 1
+
+
+helpers = types.ModuleType("helpers")
+helpers.decide, helpers.LEVEL = first, 0
+
+
+def _own_act(act):
+    made = Own()
+    made.act = act
+    return made
+
+
+def _enclosed(action):
+    return lambda observation: action
+
+
+def _scaled(by):
+    made = agent()
+    made.rgb_encoder.stages.append(Scale(by))
+    return made
+
+
+def _parametrized(by):
+    made = agent()
+    nn.utils.parametrize.register_parametrization(made.rgb_encoder.stem[0], "weight", Scale(by))
+    return made
+
+
+def _adapted(removed):
+    made = agent(adapters={"target_modules": ["rgb_encoder.stages.0"]})
+    if removed:
+        made.rgb_encoder.stages[0].adapter.hook.remove()
+    return made
+
+
+def _biased_planner(bias):
+    made = BiasedPlanner(16, planner=SMALL)
+    made.bias = bias
+    return made
+
+
+def _with(owner, name, value, made):
+    """Set an attribute of a class or module until the end of the test, and make an agent."""
+
+    def make(number, patch):
+        patch.setattr(owner, name, value(number), raising=False)
+        return made()
+
+    return make
+
+
+def _network(weight):
+    made = nn.Linear(1, 1)
+    nn.init.constant_(made.weight, weight)
+    return nn.init.zeros_(made.bias) is not None and made
+
+
+def _cached(action):
+    return lru_cache(lambda self, observation=None, action=action: action)
+
+
+REPLACED = {
+    "a partial act": lambda n, patch: _own_act(partial(first, n)),
+    "an enclosed act": lambda n, patch: _own_act(_enclosed(n)),
+    "a default of act": lambda n, patch: _own_act(eval(f"lambda observation, k={n}: k")),
+    "an added layer": lambda n, patch: _scaled(n),
+    "a parametrization": lambda n, patch: seeding.seed_everything(0, "p") or _parametrized(n),
+    "a removed hook": lambda n, patch: _adapted(n),
+    "a subclass's attribute": lambda n, patch: Biased(n),
+    "a shipped subclass's attribute": lambda n, patch: (
+        seeding.seed_everything(0, "b") or _biased_planner(n)
+    ),
+    "a wrapper's attribute": lambda n, patch: Wrapper(n),
+    "a shipped partial method": _with(
+        TopologicalAgent, "act", lambda n: partialmethod(answer, n), agent
+    ),
+    "a shipped callable": _with(TopologicalAgent, "act", Answer, agent),
+    "a shipped function": _with(
+        TopologicalAgent, "act", lambda n: (FrontierAgent.act, RecurrentAgent.act)[n], agent
+    ),
+}
+for kind in (Own, Described):
+    REPLACED |= {
+        f"{kind.__name__}: a partial method": _with(
+            kind, "act", lambda n: partialmethod(answer, n), kind
+        ),
+        f"{kind.__name__}: a callable": _with(kind, "act", Answer, kind),
+        f"{kind.__name__}: a cache": _with(kind, "act", _cached, kind),
+        f"{kind.__name__}: a function of a module": _with(
+            helpers, "decide", lambda n: (first, second)[n], kind
+        ),
+        f"{kind.__name__}: a value of a module": _with(helpers, "LEVEL", int, kind),
+        f"{kind.__name__}: a value of a class": _with(Config, "LEVEL", int, kind),
+    }
+REPLACED |= {
+    "a number of its class": _with(Own, "threshold", int, Own),
+    "a mapping of its class": _with(Own, "table", lambda n: {"a": [n]}, Own),
+    "an array of its class": _with(Own, "mean", lambda n: torch.full((2,), float(n)), Own),
+    "a network of its class": _with(Own, "net", _network, Own),
+}
+
+
+@pytest.mark.parametrize("what", REPLACED)
+def test_fingerprint_changes_with_replaced_code_and_data(what, monkeypatch):
+    hashes, unreadable = [], False
+    for number in (0, 0, 1):
+        made = REPLACED[what](number, monkeypatch)
+        hashes.append(fingerprint(made, {}))
+        unreadable |= bool(contents(made).unreadable)
+    assert hashes[0] == hashes[1] and (hashes[0] != hashes[2] or unreadable)
+    assert not unreadable
