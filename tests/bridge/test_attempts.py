@@ -121,7 +121,7 @@ def test_a_disk_that_takes_nothing_is_not_the_hooks_fault(tmp_path):
     with Listener(met, tmp_path / "told") as listener:
         python(listener, "import mitigate_hook; mitigate_hook.connect('a')")
     problem = read(tmp_path / "told").refused[0]
-    assert f"cannot write {tmp_path}/recorded" in problem and "mitigate_hook.py" not in problem
+    assert f"Cannot write {tmp_path}/recorded" in problem and "mitigate_hook.py" not in problem
 
 
 def made(folder, *options):
