@@ -10,9 +10,9 @@ from pathlib import Path
 import numpy as np
 from tqdm import tqdm
 
-from mitigate.core.files import read_regular, write_bytes
+from mitigate.core.files import read_regular, sha256, write_bytes
 from mitigate.core.observation import Z_MAX
-from mitigate.core.output import UnsafePathError, lost, output_folder
+from mitigate.core.output import UnsafePathError, is_regular, lost, output_folder
 from mitigate.corruptions import frame_files
 from mitigate.corruptions.depth_sensor import DepthSensor
 from mitigate.corruptions.frame_files import MOST, RGB
@@ -96,18 +96,18 @@ def _corrupt_all(source: Path, out: Path, settings: Settings, plan: Plan) -> dic
     summary = _begin(out, settings, plan)
     outputs = {frame.path: _output(frame.path, settings.format) for frame in plan.frames}
     given = set(outputs)
-    for frame in tqdm(plan.frames, desc=settings.corruption, unit="frame", disable=None):
-        name, target = frame.path.as_posix(), outputs[frame.path]
-        if name in plan.left_out:
-            continue
-        if target != frame.path and (target in given):
-            plan.left_out[name] = f"would become {target.name}, which is there: use format=same"
-        elif (out / target).exists():
-            summary["there"] += 1
-        else:
-            _corrupt_file(source / frame.path, out / target, frame, settings, plan)
-            summary["written"] += name not in plan.left_out
-        given.add(target)
+    try:
+        for frame in tqdm(plan.frames, desc=settings.corruption, unit="frame", disable=None):
+            name, target = frame.path.as_posix(), outputs[frame.path]
+            if name in plan.left_out:
+                continue
+            if target != frame.path and (target in given):
+                plan.left_out[name] = f"would become {target.name}, which is there: use format=same"
+            else:
+                _corrupt_frame(source, out, target, frame, settings, plan, summary)
+            given.add(target)
+    finally:  # so that an interrupted run need not compute its frames again
+        _write_summary(out, summary)
     missing = [
         out / outputs[frame.path]
         for frame in plan.frames
@@ -120,7 +120,22 @@ def _corrupt_all(source: Path, out: Path, settings: Settings, plan: Plan) -> dic
     return summary
 
 
-def _corrupt_file(path: Path, target: Path, frame: Frame, settings: Settings, plan: Plan) -> None:
+def _corrupt_frame(
+    source: Path,
+    out: Path,
+    target: Path,
+    frame: Frame,
+    settings: Settings,
+    plan: Plan,
+    summary: dict,
+) -> None:
+    """Write one frame unless ``out`` has it as this command writes it; record its checksum."""
+    name, checksums = target.as_posix(), summary["checksums"]
+    files = (source / frame.path, out / target)
+    there = is_regular(out / target)
+    if there and name in checksums and checksums[name] == _checksum(*files):
+        summary["there"] += 1
+        return
     key = Key(settings.seed, frame.episode, frame.number)
 
     def change(pixels: np.ndarray) -> np.ndarray:
@@ -129,11 +144,27 @@ def _corrupt_file(path: Path, target: Path, frame: Frame, settings: Settings, pl
         )
 
     try:
-        data = frame_files.corrupted(path, target.suffix, settings.unit, change)
+        data = frame_files.corrupted(files[0], target.suffix, settings.unit, change)
     except ValueError as error:  # LeftOutError, or a shape that the suite refuses
         plan.left_out[frame.path.as_posix()] = str(error)
+        checksums.pop(name, None)
         return
-    write_bytes(target, data)
+    if there and files[1].stat().st_size == len(data) and files[1].read_bytes() == data:
+        summary["there"] += 1
+    else:
+        write_bytes(files[1], data)
+        summary["written"] += 1
+        summary["replaced"] += [name] * there
+    checksums[name] = _checksum(*files)
+
+
+def _checksum(read: Path, written: Path) -> str:
+    """Return one checksum of a frame as it was read and as it was written, "" if one of the files
+    cannot be read."""
+    try:
+        return _short_hash(sha256(read) + sha256(written))
+    except OSError:
+        return ""
 
 
 def _output(path: Path, form: str) -> Path:
@@ -148,8 +179,9 @@ def _begin(out: Path, settings: Settings, plan: Plan) -> dict:
     """Check what an earlier run left in ``out``, then note settings and episodes there."""
     of_its_own = version(settings.corruption)
     settings_now = {"suite_version": SUITE_VERSION, **of_its_own, **asdict(settings)}
+    checksums: dict[str, str] = {}
     if out.is_dir() and any(path.name[0] != "." for path in out.iterdir()):
-        _check_earlier(out, settings_now, plan.episodes())
+        checksums = _check_earlier(out, settings_now, plan.episodes())
     summary = {
         "settings": settings_now,
         "episodes": {
@@ -158,19 +190,26 @@ def _begin(out: Path, settings: Settings, plan: Plan) -> dict:
         },
         "written": 0,
         "there": 0,
+        "replaced": [],
         "other_modality": plan.other_modality,
         "other_files": plan.other_files,
         "left_out": [],
+        "checksums": checksums,
     }
     _write_summary(out, summary)
     return summary
 
 
-def _check_earlier(out: Path, settings: dict, episodes: dict[str, list[str]]) -> None:
+def _check_earlier(out: Path, settings: dict, episodes: dict[str, list[str]]) -> dict[str, str]:
+    """Return the checksums that an earlier run recorded, none if an earlier version did.
+
+    Raises ValueError if ``out`` was not made with these settings and frames.
+    """
     try:
         earlier = json.loads(read_regular(out / SUMMARY))
         was, numbered = dict(earlier["settings"]), dict(earlier["episodes"])
         known = {name: (int(e["frames"]), str(e["names"])) for name, e in numbered.items()}
+        checksums = {str(k): str(v) for k, v in dict(earlier.get("checksums", {})).items()}
     except FileNotFoundError:
         raise ValueError(
             f"{out} holds files but no {SUMMARY}, so it was not made by this program. Name a new "
@@ -178,7 +217,7 @@ def _check_earlier(out: Path, settings: dict, episodes: dict[str, list[str]]) ->
         ) from None
     except UnsafePathError:
         raise
-    except (OSError, ValueError, KeyError, TypeError) as error:
+    except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
         raise ValueError(
             f"{out / SUMMARY} is damaged ({error}), so what {out} holds is not known. Name a new "
             "folder, or delete this one."
@@ -203,6 +242,7 @@ def _check_earlier(out: Path, settings: dict, episodes: dict[str, list[str]]) ->
             )
     counts = {name: count for name, (count, _) in known.items()}
     _check_added(out, str(settings["format"]), episodes, counts)
+    return checksums
 
 
 def _check_added(
@@ -223,7 +263,11 @@ def _check_added(
 
 
 def _digest(names: list[str]) -> str:
-    return blake2b("\n".join(names).encode("utf-8", "surrogateescape"), digest_size=8).hexdigest()
+    return _short_hash("\n".join(names))
+
+
+def _short_hash(text: str) -> str:
+    return blake2b(text.encode("utf-8", "surrogateescape"), digest_size=8).hexdigest()
 
 
 def _write_summary(out: Path, summary: dict) -> None:

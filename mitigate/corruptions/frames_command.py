@@ -19,9 +19,10 @@
   --list      the corruptions: what they corrupt, what severity means, what is kept, the source
   --help      this
 
-The same command goes on where it stopped. OUT/corrupt.json holds settings, counts and the files
-left out with the reason; files of other kinds are left alone, and counted by suffix. Exit status:
-0 done, 1 done but bad files were left out, 2 not done.
+The same command goes on where it stopped, and writes frames again that were changed since.
+OUT/corrupt.json holds settings, counts, the files left out with the reason and a checksum of each
+frame; files of other kinds are left alone, and counted by suffix. Exit status: 0 done, 1 done but
+bad files were left out, 2 not done.
 
 Example: mitigate corrupt recorded/ corrupted/ corruption=spatter severity=0.5
 """
@@ -103,6 +104,14 @@ def _report(summary: dict, out: str) -> int:
     others = told(summary["other_files"])
     counts += [f"other files left alone: {others}"] * bool(others)
     print("; ".join(counts))
+    replaced = summary["replaced"]
+    if replaced:
+        more = ", ..." if len(replaced) > SHOWN else ""
+        print(
+            f"{len(replaced)} frames differed from those that this command writes and were written "
+            f"again: {', '.join(replaced[:SHOWN])}{more}",
+            file=sys.stderr,
+        )
     for entry in left_out[:SHOWN]:
         print(f"left out: {entry['file']} {entry['reason']}", file=sys.stderr)
     if left_out:

@@ -11,7 +11,7 @@ from typing import Any
 
 from tqdm import tqdm
 
-from mitigate.core.files import atomic_text
+from mitigate.core.files import atomic_text, read_regular, sha256
 from mitigate.corruptions.instruction import check_options, corrupt_instruction, is_rewritten
 from mitigate.corruptions.keying import Key
 from mitigate.corruptions.language.style import MANNERS, Rewrite, restyle
@@ -118,11 +118,36 @@ def _check_target(source: Path | str, out: Path | str) -> None:
         raise ValueError(f"{summary} is the file that is read, and the summary's name: rename it.")
     if summary.exists() and not Path(out).exists():
         raise ValueError(f"{summary} is there already, without {out}: move it away first.")
-    if Path(out).exists() and not summary.is_file():
+    if Path(out).exists():
+        _check_own(Path(out), summary)
+
+
+def _check_own(out: Path, summary: Path) -> None:
+    """Raise ValueError unless ``out`` is as :func:`run` wrote it."""
+    move = "Give another name, or move the file away first."
+    if not summary.is_file():
         raise ValueError(
-            f"{out} is there already and no file of corrupt_episodes: {out}{SUMMARY} is not beside "
-            "it. Give another name, or move the file away first."
+            f"{out} is there already and no file of corrupt_episodes: {summary} is not beside it. "
+            f"{move}"
         )
+    try:
+        earlier = json.loads(read_regular(summary))
+        episodes, recorded = int(earlier["episodes"]), earlier.get("sha256")
+        earlier["corruption"], earlier["severity"], earlier["seed"], earlier["suite"]
+    except (ValueError, KeyError, TypeError, AttributeError, RecursionError):
+        raise ValueError(
+            f"{out} is there already and no file of corrupt_episodes: {summary} beside it holds "
+            f"other things. {move}"
+        ) from None
+    if recorded is None:  # of an earlier version
+        try:
+            same = sum(1 for _ in read_episodes(out, hidden_goals=True)) == episodes
+        except (ValueError, OSError):
+            same = False
+    else:
+        same = recorded == sha256(out)
+    if not same:
+        raise ValueError(f"{out} was changed after corrupt_episodes wrote it. {move}")
 
 
 def _summarised(settings: dict[str, Any], counts: Counts, out: Path | str) -> dict[str, Any]:
@@ -134,6 +159,7 @@ def _summarised(settings: dict[str, Any], counts: Counts, out: Path | str) -> di
         "blank": counts.blank,
         "skipped_languages": dict(counts.skipped_languages),
         "tokens": dict(counts.tokens),
+        "sha256": sha256(out),
     }
     if settings["corruption"] in MANNERS:
         summary["gate"] = _rates(counts.gate)

@@ -36,7 +36,7 @@ class GymWorld(SeededWorld):
         rule: str | None = None,
     ) -> None:
         space = env.action_space
-        if not hasattr(space, "n") or getattr(space, "shape", ()) != ():
+        if _attribute(space, "n") is None or _attribute(space, "shape", ()) != ():
             raise ValueError(
                 f"The actions {env.action_space} are not discrete, and an agent answers with one "
                 "whole number: wrap the environment in a gymnasium.ActionWrapper with a Discrete "
@@ -44,15 +44,18 @@ class GymWorld(SeededWorld):
             )
         boxes = _by_name(env.observation_space)
         known = {RGB: WHOLE} if WHOLE in boxes else {n: n for n in (RGB, DEPTH, POSE) if n in boxes}
-        most = {n: np.max(getattr(b, "high", np.inf)) for n, b in boxes.items()}  # of a Box alone
+        most = {n: np.max(_attribute(b, "high", np.inf)) for n, b in boxes.items()}
         arrays = {n: b for n, b in boxes.items() if b.shape is not None}  # no text, no Tuple
         found = {n: (b.shape, str(b.dtype), float(most[n])) for n, b in arrays.items()}
         super().__init__(found, entries or known, success, unit, limit, rule)
         self.env = env
 
     def reset(self, episode: Episode) -> Observation:
-        seen, self._info = self.env.reset(seed=self._begin(episode))
-        return self._observation(_by_name(seen))
+        seed = self._begin(episode)
+        with self._calling(f"{type(self.env).__name__}.reset()"):
+            seen, self._info = self.env.reset(seed=seed)
+            parts = _by_name(seen)
+        return self._observation(parts)
 
     def step(self, action: int) -> Observation:
         """Raises ValueError for an action that the environment does not have, and at the end of an
@@ -61,10 +64,13 @@ class GymWorld(SeededWorld):
         space = self.env.action_space
         if not 0 <= action < space.n:
             raise ValueError(f"Unknown action {action}: the environment has {space.n}.")
-        first = int(getattr(space, "start", 0))
-        seen, reward, terminated, truncated, self._info = self.env.step(action + first)
-        self._end_step(float(reward), bool(terminated or truncated))
-        return self._observation(_by_name(seen))
+        first = int(_attribute(space, "start", 0))
+        with self._calling(f"{type(self.env).__name__}.step()"):
+            seen, reward, terminated, truncated, info = self.env.step(action + first)
+            reward, over, parts = float(reward), bool(terminated or truncated), _by_name(seen)
+            self._info = dict(info)
+        self._end_step(reward, over)
+        return self._observation(parts)
 
     def _report(self) -> Mapping[str, Any]:
         return self._info
@@ -72,7 +78,7 @@ class GymWorld(SeededWorld):
 
 def _by_name(seen: Any) -> dict[str, Any]:
     """The parts of an observation, or of its space, by dotted name; ``WHOLE`` if it has none."""
-    parts = getattr(seen, "spaces", seen)
+    parts = _attribute(seen, "spaces", seen)
     if not isinstance(parts, Mapping):
         return {WHOLE: seen}
     return {
@@ -80,3 +86,8 @@ def _by_name(seen: Any) -> dict[str, Any]:
         for name, value in parts.items()
         for inner, part in _by_name(value).items()
     }
+
+
+def _attribute(space: Any, name: str, default: Any = None) -> Any:
+    """Return an attribute of a space, which may be of gymnasium, of gym or of another class."""
+    return getattr(space, name, default)  # these libraries share attributes, not classes

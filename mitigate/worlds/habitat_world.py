@@ -245,7 +245,7 @@ class HabitatWorld(World):
         settings = habitat_sim.NavMeshSettings()
         settings.set_defaults()
         for name, value in self.navmesh.items():
-            if not hasattr(settings, name):
+            if name not in dir(settings):
                 raise ValueError(f"habitat-sim's NavMeshSettings have no {name}.")
             setattr(settings, name, value)
         if not self._sim.recompute_navmesh(self._sim.pathfinder, settings):

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
+from mitigate.core.errors import own_place
 from mitigate.core.observation import DEPTH, POSE, RGB, Observation, Sensor
 from mitigate.core.seeding import digest
 from mitigate.worlds.episodes import Episode, Instruction, is_seed
@@ -53,6 +55,8 @@ Success = str | Callable[[Ending], bool]  # an entry of the environment's report
 class SeededWorld(World):
     """A subclass sets ``_steps``, ``_reward`` and ``done`` as it goes, and says what it saw.
 
+    It calls the environment within ``_calling``, so that an error names the episode.
+
     Args: found: shape, dtype and greatest value of each entry of the environment's observations.
     entries: names of its frames by ours ("rgb", "depth", "pose"), and of whatever else the agent
     reads, by the names that it reads ("goal"). success: the entry that says at
@@ -65,7 +69,8 @@ class SeededWorld(World):
     Depth that is not finite or below 0 reads 0, no reading. Raises ValueError if an entry is not
     there, frames have other shapes than the suite takes, RGB is not uint8, ``unit`` or ``limit`` is
     invalid, or a ``success`` function has no ``rule``; at the end of an episode that does not
-    report success; and for the first depth of an episode if that cannot be metres.
+    report success; for the first depth of an episode if that cannot be metres; for frames of
+    another shape or type than the environment says; and in place of any error of the environment.
     """
 
     done = True
@@ -129,6 +134,7 @@ class SeededWorld(World):
     def _begin(self, episode: Episode) -> int:
         """Count from 0 again; the seed of an episode, ``info["seed"]`` or else made of its id."""
         self.done = self._cut = False
+        self._name = episode.episode_id
         self._reward = self._total = 0.0
         self._steps = 0
         seed = episode.info.get("seed", digest("episode", episode.episode_id))
@@ -136,7 +142,12 @@ class SeededWorld(World):
 
     def _end_step(self, reward: float, over: bool) -> None:
         """Count a step. Raises ValueError if the environment ended the episode and does not say
-        whether it succeeded."""
+        whether it succeeded, and for a reward that is NaN where success is asked of a function."""
+        if math.isnan(reward) and callable(self.success):
+            raise ValueError(
+                f"The reward of step {self._steps + 1} of episode {self._name} must be a number, "
+                "got NaN: no success function can compare it."
+            )
         self._reward = reward
         self._total += reward
         self._steps += 1
@@ -144,8 +155,8 @@ class SeededWorld(World):
         self.done = over or self._cut
         if over and isinstance(self.success, str) and self.success not in self._report():
             raise ValueError(
-                f"At the end of an episode the environment must report success, but it has no "
-                f"entry {self.success!r}, only "
+                f"At the end of episode {self._name} the environment must report success, but it "
+                f"has no entry {self.success!r}, only "
                 f"{', '.join(map(repr, self._report())) or 'none'}. Give success= the name of an "
                 "entry, which says False for a failure, or a function, such as "
                 'success=lambda end: end.total > 0, rule="return > 0".'
@@ -157,17 +168,48 @@ class SeededWorld(World):
 
     def _won(self) -> bool:
         if isinstance(self.success, str):
-            return _truth(self._report().get(self.success, False), f"The entry {self.success!r}")
-        end = Ending(self._report(), self._reward, self._total, self._steps)
-        return _truth(self.success(end), "The success function")
+            answer, source = self._report().get(self.success, False), f"The entry {self.success!r}"
+        else:
+            source = "The success function"
+            end = Ending(self._report(), self._reward, self._total, self._steps)
+            with self._calling(source):
+                answer = self.success(end)
+        return _truth(answer, source, self._name)
+
+    @contextmanager
+    def _calling(self, what: str) -> Iterator[None]:
+        """Raise ValueError, naming the episode, in place of any error of the user's code inside."""
+        try:
+            yield
+        except MemoryError:  # explained by core/errors.py
+            raise
+        except Exception as error:
+            place = own_place(error)
+            cause = " ".join(str(error).split())[:300]
+            raise ValueError(
+                f"{what} raised {type(error).__name__} in episode {self._name}: {cause}"
+                f"{f' (raised in {place})' if place else ''}"
+            ) from error
 
     def _observation(self, seen: Mapping[str, Any]) -> Observation:
         """Copies: an environment may use its buffers again."""
         frames = {name: np.array(seen[entry]) for name, entry in self.entries.items()}
+        for name in {RGB, DEPTH}.intersection(frames):
+            self._check_frame(name, frames[name])
         if DEPTH in frames:
             frames[DEPTH] = self._metres(frames[DEPTH])
         pose = {POSE: frames.pop(POSE)} if POSE in frames else {}
         return Observation(pose, lambda: frames, tuple(frames))
+
+    def _check_frame(self, name: str, frame: np.ndarray) -> None:
+        """Raise ValueError for a frame that is not what the environment's space says."""
+        sensor = self.sensors[name]
+        if frame.shape != sensor.shape or (name == RGB and frame.dtype != np.uint8):
+            raise ValueError(
+                f"The {name} frame after step {self._steps} of episode {self._name} must be "
+                f"{sensor.dtype} {list(sensor.shape)}, as the environment's space says, got "
+                f"{frame.dtype} {list(frame.shape)}."
+            )
 
     def _metres(self, depth: np.ndarray) -> np.ndarray:
         """Depth as float32 metres; of the first in an episode it is asked whether it can be."""
@@ -179,7 +221,7 @@ class SeededWorld(World):
         return metres
 
 
-def _truth(told: Any, source: str) -> bool:
+def _truth(told: Any, source: str, episode: str) -> bool:
     """Return whether what ``source`` said, or any part of it, is true; None is false.
 
     Raises ValueError for what is neither a truth value nor 0 or 1.
@@ -191,9 +233,9 @@ def _truth(told: Any, source: str) -> bool:
         parts, valid = [], False
     if not valid:
         raise ValueError(
-            f"{source} says {told!r:.80} at the end of an episode, and success must be a truth "
-            "value, or 0 or 1 (or an array or a list of these). Give success= a function that "
-            'compares it, such as success=lambda end: end.info["score"] >= 0.5, with '
+            f"{source} says {told!r:.80} at the end of episode {episode}, and success must be a "
+            "truth value, or 0 or 1 (or an array or a list of these). Give success= a function "
+            'that compares it, such as success=lambda end: end.info["score"] >= 0.5, with '
             'rule="score >= 0.5".'
         )
     return any(parts)

@@ -14,6 +14,7 @@ import numpy as np
 import torch
 from tensordict import TensorDict, TensorDictBase
 from torchrl.data import Bounded, Categorical, Composite, NonTensor, OneHot, Unbounded
+from torchrl.data.tensor_specs import ContinuousBox
 from torchrl.envs import EnvBase
 
 from mitigate.core.observation import (
@@ -141,7 +142,8 @@ class EnvWorld(SeededWorld):
     within another is "camera.rgb". success: an entry of its tensordict, or a function.
     The others: as ``SeededWorld``.
 
-    Raises ValueError as ``SeededWorld`` does, and for an environment that is batched.
+    Raises ValueError as ``SeededWorld`` does, for an environment that is batched, and for actions
+    that are not one discrete number.
     """
 
     def __init__(
@@ -158,6 +160,14 @@ class EnvWorld(SeededWorld):
             raise ValueError(
                 f"The environment has the batch size {list(env.batch_size)}: give one."
             )
+        action = env.full_action_spec
+        actions = [action[key] for key in action.keys(True, True)]
+        if len(actions) != 1 or not _is_discrete(actions[0]):
+            raise ValueError(
+                "The actions of the environment must be one discrete number (Categorical or "
+                f"OneHot), got {', '.join(f'{type(a).__name__} {list(a.shape)}' for a in actions)}. Wrap it "
+                "in a transform that turns a whole number into an action of yours."
+            )
         spec = env.observation_spec
         specs = {_dotted(key): spec[key] for key in spec.keys(True, True)}
         known = {name: name for name in (RGB, DEPTH, POSE) if name in specs}
@@ -166,9 +176,12 @@ class EnvWorld(SeededWorld):
         self.env = env
 
     def reset(self, episode: Episode) -> Observation:
-        self.env.set_seed(self._begin(episode))
-        self._now = self.env.reset()
-        return self._seen()
+        seed = self._begin(episode)
+        with self._calling(f"{type(self.env).__name__}.reset()"):
+            self.env.set_seed(seed)
+            self._now = self.env.reset()
+            parts = self._parts()
+        return self._observation(parts)
 
     def step(self, action: int) -> Observation:
         """Raises ValueError for an action that the environment does not have, and at the end of an
@@ -181,17 +194,27 @@ class EnvWorld(SeededWorld):
         if isinstance(spec, OneHot):
             chosen = torch.nn.functional.one_hot(chosen, spec.space.n).to(spec.dtype)
         self._now.set(self.env.action_key, chosen.reshape(spec.shape))
-        self._now = self.env.step(self._now)["next"]
-        reward = float(self._now.get(self.env.reward_key).sum())
-        self._end_step(reward, bool(self._now["done"].any()))
-        return self._seen()
+        with self._calling(f"{type(self.env).__name__}.step()"):
+            self._now = self.env.step(self._now)["next"]
+            reward = float(self._now.get(self.env.reward_key).sum())
+            over = any(bool(self._now[key].any()) for key in self.env.done_keys)
+            parts = self._parts()
+        self._end_step(reward, over)
+        return self._observation(parts)
 
     def _report(self) -> dict[str, Any]:
         return {_dotted(key): self._now[key] for key in self._now.keys(True, True)}
 
-    def _seen(self) -> Observation:
+    def _parts(self) -> dict[str, np.ndarray]:
         keys = {_dotted(key): key for key in self._now.keys(True, True)}
-        return self._observation({e: self._now[keys[e]].numpy() for e in self.entries.values()})
+        return {e: self._now[keys[e]].numpy(force=True) for e in self.entries.values()}
+
+
+def _is_discrete(spec: Any) -> bool:
+    """Return whether an action is one number of ``spec.space.n``; subclasses hold several."""
+    return type(spec) in (Categorical, OneHot) and spec.shape.numel() == (
+        spec.space.n if type(spec) is OneHot else 1
+    )
 
 
 def _dotted(key: str | tuple[str, ...]) -> str:
@@ -211,7 +234,7 @@ def _listed(episodes: Any) -> list[Episode]:
 
 
 def _spec_of(sensor: Sensor) -> Any:
-    dtype = getattr(torch, sensor.dtype)
+    dtype = torch.from_numpy(np.empty(0, sensor.dtype)).dtype
     if sensor.dtype == "uint8":
         return Bounded(0, 255, shape=sensor.shape, dtype=dtype)
     if math.isfinite(sensor.high):
@@ -224,8 +247,8 @@ def _spec_of(sensor: Sensor) -> Any:
 def _measured(spec: Any) -> tuple[tuple[int, ...], str, float]:
     """Shape, dtype and greatest value of an entry; infinity where it has no end, for which torchrl
     has the greatest number of the dtype."""
-    most = getattr(getattr(spec, "space", None), "high", None)
     shape, dtype = tuple(spec.shape), str(spec.dtype).removeprefix("torch.")
-    far = math.inf if most is None else float(torch.as_tensor(most).max())
+    ends = isinstance(spec.space, ContinuousBox)
+    far = float(spec.space.high.max()) if ends else math.inf
     endless = dtype.startswith("float") and far >= torch.finfo(spec.dtype).max / 2
     return shape, dtype, math.inf if endless else far

@@ -151,7 +151,7 @@ class WorldWrapper(World):
     def __getattr__(self, name: str) -> Any:
         if name.startswith("__") or name in ("world", "_inner"):  # of a copy that is being made
             raise AttributeError(name)
-        return getattr(self.world, name)  # whatever else the world has
+        return getattr(self.world, name)  # whatever else the world has, such as point() and put()
 
     @property
     def rule(self) -> str:  # type: ignore[override]

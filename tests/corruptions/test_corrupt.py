@@ -13,7 +13,7 @@ import pytest
 from PIL import Image
 
 from mitigate.core import files
-from mitigate.corruptions import DepthSensor, Key, corrupt, registry
+from mitigate.corruptions import DepthSensor, Key, corrupt, folders, registry
 from mitigate.corruptions import frames_command as program
 
 ROOT = Path(__file__).parents[2]
@@ -94,14 +94,13 @@ def test_all_frames_can_be_one_episode(run, walk):
 
 def test_the_same_command_goes_on_and_new_frames_join_at_the_end(run, walk):
     run(*SPATTER)
-    kept, again = walk / "out/a/frame3.png", walk / "out/b/c/0.png"
-    kept.write_bytes(b"looked at no more")
+    again = walk / "out/b/c/0.png"
     whole = again.read_bytes()
     again.unlink()
     save(walk / "in/a/frame12.png", RGB[3])
     status, out, _ = run(*SPATTER)
     assert status == 0 and "2 frames written" in out and "12 were there" in out
-    assert kept.read_bytes() == b"looked at no more" and again.read_bytes() == whole
+    assert again.read_bytes() == whole
     wanted = corrupt(RGB[3], "spatter", 0.6, key=Key(0, "a", 12))
     assert np.array_equal(read(walk / "out/a/frame12.png"), wanted)
 
@@ -369,3 +368,94 @@ def test_corrupt_rejects_a_fifo_in_place_of_its_summary(run, walk):
     os.mkfifo(walk / "out" / "corrupt.json")
     said = complaint(run("corruption=spatter", "severity=0.5"))
     assert "corrupt.json must be a regular file, got a FIFO" in said
+
+
+def damage_by_truncation(walk: Path) -> None:
+    os.truncate(walk / "out/a/frame3.png", 100)
+
+
+def damage_by_emptying(walk: Path) -> None:
+    (walk / "out/a/frame3.png").write_bytes(b"")
+
+
+def damage_by_swapping(walk: Path) -> None:
+    one, other = walk / "out/a/frame3.png", walk / "out/a/frame4.png"
+    first, second = one.read_bytes(), other.read_bytes()
+    one.write_bytes(second)
+    other.write_bytes(first)
+
+
+def damage_by_a_clean_copy(walk: Path) -> None:
+    (walk / "out/a/frame3.png").write_bytes((walk / "in/a/frame3.png").read_bytes())
+
+
+DAMAGES = [
+    damage_by_truncation,
+    damage_by_emptying,
+    damage_by_swapping,
+    damage_by_a_clean_copy,
+]
+
+
+def contents(folder: Path) -> dict[str, bytes]:
+    return {str(p.relative_to(folder)): p.read_bytes() for p in folder.rglob("*.png")}
+
+
+@pytest.mark.parametrize("earlier", ["with checksums", "without checksums"])
+@pytest.mark.parametrize("damage", DAMAGES, ids=lambda damage: damage.__name__)
+def test_corrupt_writes_changed_output_frames_again(run, walk, damage, earlier):
+    run(*SPATTER)
+    whole = contents(walk / "out")
+    if earlier == "without checksums":  # summaries of earlier versions
+        held = summary(walk / "out")
+        del held["checksums"], held["replaced"]
+        (walk / "out/corrupt.json").write_text(json.dumps(held))
+    damage(walk)
+    count = 2 if damage is damage_by_swapping else 1
+    status, out, err = run(*SPATTER)
+    assert status == 0 and contents(walk / "out") == whole
+    assert f"{count} frames written" in out and f"{13 - count} were there" in out
+    assert f"{count} frames differed from those that this command writes" in err
+    assert "a/frame3.png" in err
+    found = summary(walk / "out")
+    assert len(found["replaced"]) == count and len(found["checksums"]) == 13
+    assert run(*SPATTER)[1].startswith("0 frames written")
+
+
+def test_corrupt_writes_a_frame_again_whose_input_changed(run, walk):
+    run(*SPATTER)
+    save(walk / "in/a/frame3.png", RGB[7])
+    assert "1 frames written" in run(*SPATTER)[1]
+    wanted = corrupt(RGB[7], "spatter", 0.6, key=Key(0, "a", 3))
+    assert np.array_equal(read(walk / "out/a/frame3.png"), wanted)
+
+
+def test_corrupt_keeps_the_checksums_of_an_interrupted_run(run, walk, monkeypatch):
+    real, calls = folders.write_bytes, []
+
+    def interrupt(path, data):
+        calls.append(path)
+        if len(calls) == 5:
+            raise KeyboardInterrupt
+        real(path, data)
+
+    monkeypatch.setattr(folders, "write_bytes", interrupt)
+    assert run(*SPATTER)[0] == 130
+    monkeypatch.undo()
+    assert len(summary(walk / "out")["checksums"]) == 3
+    status, out, _ = run(*SPATTER)
+    assert status == 0 and "10 frames written" in out and "3 were there" in out
+
+
+def test_corrupt_rejects_checksums_of_another_form(run, walk):
+    run(*SPATTER)
+    held = summary(walk / "out")
+    (walk / "out/corrupt.json").write_text(json.dumps({**held, "checksums": ["x"]}))
+    assert "corrupt.json is damaged" in complaint(run(*SPATTER))
+
+
+def test_corrupt_rejects_a_fifo_in_place_of_a_frame(run, walk):
+    run(*SPATTER)
+    (walk / "out/a/frame3.png").unlink()
+    os.mkfifo(walk / "out/a/frame3.png")
+    assert "frame3.png must be a regular file, got a FIFO" in complaint(run(*SPATTER))

@@ -385,3 +385,116 @@ def test_an_environment_of_torchrl_is_a_world():
 def test_an_environment_without_the_named_frames_is_refused():
     with pytest.raises(ValueError, match="no array 'pixels'"):
         EnvWorld(WorldEnv(ApartmentsWorld(SIZE), load_episodes("val_seen")[:1]), {"rgb": "pixels"})
+
+
+class Failing(Room):
+    """Raises an error at a call; the others work."""
+
+    def __init__(self, call, error):
+        super().__init__("rgb")
+        self.call, self.error = call, error
+
+    def reset(self, *, seed=None, options=None):
+        if self.call == "reset":
+            raise self.error
+        return super().reset(seed=3 if seed is None else seed)
+
+    def step(self, action):
+        if self.call == "step":
+            raise self.error
+        return super().step(action)
+
+
+@pytest.mark.parametrize("torchrl", [False, True])
+@pytest.mark.parametrize("call", ["reset", "step"])
+@pytest.mark.parametrize("error", [RuntimeError("no\nconnection"), KeyError("pose")], ids=repr)
+def test_worlds_name_the_episode_of_an_error_of_the_environment(torchrl, call, error):
+    from torchrl.envs import GymWrapper
+
+    from mitigate.worlds.gym import GymWorld
+
+    room = Failing("none", error)
+    world = EnvWorld(GymWrapper(room), **BY_REWARD) if torchrl else GymWorld(room, **BY_REWARD)
+    room.call = call
+    what = rf"{call}\(\) raised {type(error).__name__} in episode e3: .*raised in .*test_bridges.py"
+    with pytest.raises(ValueError, match=what) as raised:
+        run_episode(Brightness(), world, episode(3), CLEAN, 0)
+    assert "\n" not in str(raised.value)
+    cause = raised.value.__cause__
+    assert error in (cause, cause.__cause__)
+
+
+def test_worlds_name_the_episode_of_an_invalid_success():
+    from mitigate.worlds.gym import GymWorld
+
+    def fail(end):
+        return end.info["wn"]
+
+    for success, part in (
+        (lambda end: 0.3, r"function says 0.3 at the end of episode e3"),
+        (fail, r"function raised KeyError in episode e3: 'wn' \(raised in .*fail\(\)\)"),
+    ):
+        world = GymWorld(Room(), success=success, rule="anything")
+        with pytest.raises(ValueError, match=part):
+            run_episode(Brightness(), world, episode(3), CLEAN, 0)
+
+
+class Changing(Room):
+    """Changes an element of what its step returns."""
+
+    def __init__(self, place, value):
+        super().__init__()
+        self.place, self.value = place, value
+
+    def step(self, action):
+        answer = list(super().step(action))
+        answer[self.place] = self.value
+        return tuple(answer)
+
+
+@pytest.mark.parametrize(
+    ("place", "value", "part"),
+    [
+        (0, np.zeros((SIZE, SIZE, 3), np.float32), "must be uint8 .*got float32"),
+        (0, np.zeros((SIZE, 8, 3), np.uint8), r"after step 1 of episode e3 must be .*16, 8, 3"),
+        (1, float("nan"), "reward of step 1 of episode e3 must be a number, got NaN"),
+        (1, None, r"step\(\) raised TypeError in episode e3"),
+        (4, None, r"step\(\) raised TypeError in episode e3"),
+    ],
+    ids=str,
+)
+def test_gym_world_rejects_odd_answers_of_a_step(place, value, part):
+    from mitigate.worlds.gym import GymWorld
+
+    with pytest.raises(ValueError, match=part):
+        run_episode(
+            Brightness(), GymWorld(Changing(place, value), **BY_REWARD), episode(3), CLEAN, 0
+        )
+
+
+def test_env_world_rejects_actions_that_are_not_one_discrete_number():
+    from torchrl.data import Binary, Bounded, MultiCategorical, MultiOneHot
+
+    env = WorldEnv(ApartmentsWorld(SIZE), load_episodes("val_seen")[:1])
+    for spec in (
+        Bounded(-1, 1, shape=(2,)),
+        MultiCategorical([2, 3]),
+        Binary(4),
+        MultiOneHot([2, 3]),
+    ):
+        env.action_spec = spec
+        with pytest.raises(ValueError, match="must be one discrete number .*Categorical or OneHot"):
+            EnvWorld(env, **BY_REWARD)
+
+
+@pytest.mark.parametrize("shape", [(), (1,)])
+def test_env_world_takes_categorical_actions_of_one_number(shape):
+    from torchrl.data import Categorical
+
+    listed = load_episodes("val_seen")[:1]
+    env = WorldEnv(ApartmentsWorld(SIZE), listed)
+    env.action_spec = Categorical(4, shape=shape)
+    world = EnvWorld(env, **BY_REWARD)
+    world.reset(listed[0])
+    world.step(1)
+    assert world.measures() == {"success": 0, "spl": 0.0, "steps": 1}

@@ -224,6 +224,46 @@ def test_a_file_of_others_is_not_written_over(tmp_path):
     assert run(source, out, "mask", 1.0) == run(source, out, "mask", 1.0)
 
 
+@pytest.mark.parametrize(
+    "summary",
+    ["{}", "[]", "null", '{"corruption": "mask"}', "not JSON", "\ud800"],
+    ids=str,
+)
+def test_corrupt_episodes_keeps_a_file_beside_a_summary_of_others(tmp_path, summary):
+    source, out = made(tmp_path / "in.json.gz", episode(1)), tmp_path / "out.json"
+    out.write_text("precious")
+    (tmp_path / "out.json.summary.json").write_text(summary, errors="surrogatepass")
+    with pytest.raises(ValueError, match="no file of corrupt_episodes.*move"):
+        run(source, out, "mask", 1.0)
+    assert out.read_text() == "precious"
+
+
+def test_corrupt_episodes_keeps_a_file_that_was_changed_since(tmp_path):
+    source, out = made(tmp_path / "in.json.gz", episode(1)), tmp_path / "out.json"
+    run(source, out, "mask", 1.0)
+    out.write_text("precious")
+    with pytest.raises(ValueError, match="was changed after corrupt_episodes wrote it.*move"):
+        run(source, out, "mask", 1.0)
+    assert out.read_text() == "precious"
+
+
+@pytest.mark.parametrize("changed", [False, True])
+def test_corrupt_episodes_reads_summaries_without_a_checksum(tmp_path, changed):
+    source, out = made(tmp_path / "in.json.gz", episode(1)), tmp_path / "out.json"
+    beside = tmp_path / "out.json.summary.json"
+    summary = run(source, out, "mask", 1.0)
+    del summary["sha256"]
+    beside.write_text(json.dumps(summary))
+    if not changed:
+        assert "sha256" in run(source, out, "mask", 1.0)
+        return
+    for content in ("precious", json.dumps({"episodes": []})):
+        out.write_text(content)
+        with pytest.raises(ValueError, match="move"):
+            run(source, out, "mask", 1.0)
+        assert out.read_text() == content
+
+
 def test_an_interrupt_ends_with_a_line_and_no_file(tmp_path, monkeypatch, capsys):
     def interrupted(*given, **options):
         raise KeyboardInterrupt

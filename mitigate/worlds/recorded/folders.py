@@ -126,13 +126,30 @@ def _recorded(
             f"{len(steps)} steps: it is not whole."
         )
     steps = steps[: min(counts)]
+    _check_calls(steps, files)
     poses = _places(steps, folder / STEPS)
-    said = str(told.get("text") or told.get("category") or "")[:LARGEST_WORDS]
+    said = told.get("text") or told.get("category") or ""
+    if not isinstance(said, str):
+        raise ValueError(f"{folder / EPISODE}: the instruction must be a text, got {short(said)}.")
+    said = said[:LARGEST_WORDS]
     unit = _told(_json(top / RECORDING), "unit", top / RECORDING) or 0.001
     if not 0 < unit <= 1:
         raise ValueError(f"{top / RECORDING} says that a count of depth is {unit:g} m.")
     times = np.arange(len(steps)) * 1.0
     return Frames(name, said, cameras, files, times, poses, True, 0, unit)
+
+
+def _check_calls(steps: Sequence[Any], files: Mapping[str, Sequence[Path]]) -> None:
+    """Raise ValueError if a frame is not of the call of its step, as when one in the middle is
+    missing."""
+    for place, step in enumerate(steps):
+        call = step.get("call") if isinstance(step, dict) else None
+        for there in files.values():
+            if type(call) is int and there[place].stem != f"{call:06d}":
+                raise ValueError(
+                    f"{there[place].parent} has no frame {call:06d}, which {STEPS} names: it is not "
+                    "whole. Copy it again, or leave this drive out."
+                )
 
 
 def _level(listed: Mapping[str, Any], name: str) -> bool:
@@ -144,7 +161,12 @@ def _level(listed: Mapping[str, Any], name: str) -> bool:
 def _lens(name: str, first: Path, listed: Mapping[str, Any], hfov: float | None) -> Lens:
     """The lens of a camera, as the recording says, or by its first frame and ``hfov``."""
     own = listed.get(name)
-    if not isinstance(own, dict) or own.get("kind") not in (RGB, DEPTH):
+    if own is not None and (not isinstance(own, dict) or own.get("kind") not in (RGB, DEPTH)):
+        raise ValueError(
+            f"{first.parent.parent / CAMERAS} must say kind, {RGB} or {DEPTH}, of {name}, got "
+            f"{short(own)}. Copy it again, or leave this drive out."
+        )
+    if own is None:
         return Lens(frame_files.modality(first), 90.0 if hfov is None else hfov)
     wide, yaw = (_told(own, key, first.parent.parent / CAMERAS) for key in ("hfov", "yaw"))
     if wide is None and hfov is None:

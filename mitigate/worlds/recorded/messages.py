@@ -30,11 +30,17 @@ _DEPTHS = {"16UC1": ("u2", 0.001), "mono16": ("u2", 0.001), "32FC1": ("f4", 1.0)
 
 def place(message: Any) -> tuple[float, float, float]:
     """The plan pose in a message that holds one; NaN for a rotation that is none."""
-    while not hasattr(message, "orientation"):
-        message = message.pose
+    while (inner := _field(message, "pose")) is not None:
+        message = inner
     turned = message.orientation
     ahead = rotated((turned.x, turned.y, turned.z, turned.w), (1.0, 0.0, 0.0))
     return plan_pose(float(message.position.x), float(message.position.y), ahead)
+
+
+def _field(message: Any, *names: str) -> Any:
+    """Return the first of these fields that a message has, or None: ROS 1 and 2 name some
+    differently, and classes of messages are made from the bag."""
+    return next((getattr(message, name) for name in names if hasattr(message, name)), None)
 
 
 def stamp(raw: bytes, ros2: bool) -> float:
@@ -52,7 +58,7 @@ def stamp(raw: bytes, ros2: bool) -> float:
 
 def camera_matrix(message: Any) -> np.ndarray:
     """The 3x3 matrix of a CameraInfo, flat: ``K`` in ROS 1, ``k`` in ROS 2."""
-    return np.asarray(message.k if hasattr(message, "k") else message.K).reshape(-1)
+    return np.asarray(_field(message, "k", "K")).reshape(-1)
 
 
 def lens(kind: str, message: Any, path: Path) -> Lens:
@@ -64,7 +70,7 @@ def lens(kind: str, message: Any, path: Path) -> Lens:
     size = (int(message.width), int(message.height))
     if min(size) < 1:
         raise ValueError(f"{path}: its CameraInfo says pictures of {size[0]} x {size[1]}.")
-    model = str(getattr(message, "distortion_model", ""))
+    model = str(_field(message, "distortion_model"))
     if model in FISHEYE:
         raise ValueError(
             f"{path}: the {kind} camera has a fisheye lens ({model}), which is read as a pinhole: "
@@ -79,7 +85,7 @@ def image(message: Any, kind: str, path: Path) -> np.ndarray:
 
     Raises ValueError for an encoding that is not known, and for one that does not fit ``kind``.
     """
-    if hasattr(message, "format"):
+    if _field(message, "format") is not None:
         return _compressed(message, kind, path)
     height, width, encoding = int(message.height), int(message.width), str(message.encoding)
     table: Mapping[str, tuple] = _COLOURS if kind == RGB else _DEPTHS

@@ -160,8 +160,12 @@ def placed(times: np.ndarray, table: np.ndarray) -> tuple[np.ndarray, np.ndarray
 
 
 def words(file: Path) -> str:
-    """The instruction in a text file; empty if there is none. Raises ValueError for a long one."""
-    return text(file, LARGEST_WORDS).strip() if file.is_file() else ""
+    """The instruction in a text file; empty if there is none. Raises ValueError for a long one, and
+    for one that is not UTF-8."""
+    found = text(file, LARGEST_WORDS).strip() if file.is_file() else ""
+    if "\N{REPLACEMENT CHARACTER}" in found or "\0" in found:
+        raise ValueError(f"{file} must be UTF-8 text: save it again as UTF-8, or leave it out.")
+    return found
 
 
 def text(file: Path, most: int = LARGEST_TEXT) -> str:

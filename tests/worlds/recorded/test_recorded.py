@@ -262,6 +262,38 @@ def test_poses_that_a_recording_lacks_are_counted(recorded):
         assert read(recorded).poses is None
 
 
+@pytest.mark.parametrize(
+    ("file", "content", "part"),
+    [
+        ("cameras.json", b'{"rgb": {"kind": "thermal"}}', "must say kind, rgb or depth, of rgb"),
+        ("cameras.json", b'{"rgb": 90}', "must say kind, rgb or depth, of rgb, got 90"),
+        ("episode.json", b'{"text": ["go"]}', "the instruction must be a text"),
+    ],
+)
+def test_open_recording_rejects_odd_notes_of_an_episode(recorded, file, content, part):
+    (recorded / "kitchen" / "17" / file).write_bytes(content)
+    with pytest.raises(ValueError, match=part):
+        read(recorded)
+
+
+@pytest.mark.parametrize("kind", [RGB, DEPTH])
+def test_open_recording_rejects_a_missing_frame_in_the_middle(recorded, kind):
+    (recorded / "kitchen" / "17" / kind / "000002.png").unlink()
+    with pytest.raises(ValueError, match=rf"{kind} has no frame 000002, .*not whole"):
+        read(recorded)
+
+
+def test_open_recording_reads_an_episode_whose_last_frame_is_missing(recorded):
+    (recorded / "kitchen" / "17" / DEPTH / "000005.png").unlink()
+    assert len(read(recorded).times) == 5
+
+
+def test_open_recording_rejects_an_instruction_that_is_not_utf_8(folder):
+    (folder / "instruction.txt").write_bytes("Gehe zur Küche.".encode("utf-16"))
+    with pytest.raises(ValueError, match="must be UTF-8 text"):
+        read(folder)
+
+
 def test_headings_that_do_not_point_along_the_way_are_told(folder):
     way = [(0.0, 0.25 * n, 0.0) for n in range(6)]
     for heading, strange in ((0.0, False), (math.pi / 2, True)):  # of +x as ROS has it
