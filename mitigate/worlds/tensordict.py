@@ -163,10 +163,10 @@ class EnvWorld(SeededWorld):
         action = env.full_action_spec
         actions = [action[key] for key in action.keys(True, True)]
         if len(actions) != 1 or not _is_discrete(actions[0]):
+            shown = ", ".join(f"{type(spec).__name__} {list(spec.shape)}" for spec in actions)
             raise ValueError(
                 "The actions of the environment must be one discrete number (Categorical or "
-                f"OneHot), got {', '.join(f'{type(a).__name__} {list(a.shape)}' for a in actions)}. Wrap it "
-                "in a transform that turns a whole number into an action of yours."
+                f"OneHot), got {shown}. Wrap it in a transform that turns a whole number into an action of yours."
             )
         spec = env.observation_spec
         specs = {_dotted(key): spec[key] for key in spec.keys(True, True)}

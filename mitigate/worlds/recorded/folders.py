@@ -147,8 +147,8 @@ def _check_calls(steps: Sequence[Any], files: Mapping[str, Sequence[Path]]) -> N
         for there in files.values():
             if type(call) is int and there[place].stem != f"{call:06d}":
                 raise ValueError(
-                    f"{there[place].parent} has no frame {call:06d}, which {STEPS} names: it is not "
-                    "whole. Copy it again, or leave this drive out."
+                    f"{there[place].parent} has no frame {call:06d}, which {STEPS} names: it is "
+                    "not whole. Copy it again, or leave this drive out."
                 )
 
 
