@@ -166,7 +166,8 @@ class EnvWorld(SeededWorld):
             shown = ", ".join(f"{type(spec).__name__} {list(spec.shape)}" for spec in actions)
             raise ValueError(
                 "The actions of the environment must be one discrete number (Categorical or "
-                f"OneHot), got {shown}. Wrap it in a transform that turns a whole number into an action of yours."
+                f"OneHot), got {shown}. Wrap it in a transform that turns a whole number into an "
+                "action of yours."
             )
         spec = env.observation_spec
         specs = {_dotted(key): spec[key] for key in spec.keys(True, True)}
