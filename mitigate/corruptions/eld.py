@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import lru_cache, partial
 
 import numpy as np
 from numba import njit
@@ -178,17 +178,16 @@ def low_light_noise(
     return out
 
 
+_record = partial(Record.of, "rgb")
 RECORDS = (
-    Record(
-        name="low_light_noise",
-        modality="rgb",
-        apply=low_light_noise,
+    _record(
+        low_light_noise,
         severity="low_light, then light / 300^s and gain",
         place=2,
         label="L-L w/ noise",
         fails="the same, with the sensor's noise",
-        formula=("`low_light`, then the ELD model below"),
-        sources=("Wei et al., TPAMI 2021 (ELD), Sony A7S2"),
+        formula="`low_light`, then the ELD model below",
+        sources="Wei et al., TPAMI 2021 (ELD), Sony A7S2",
         source="ELD, TPAMI 2021",
         episode="gradient",
         frame="noise",

@@ -15,9 +15,8 @@ from mitigate.core.observation import Z_MAX
 from mitigate.core.output import UnsafePathError, is_regular, lost, output_folder
 from mitigate.corruptions import frame_files
 from mitigate.corruptions.depth_sensor import DepthSensor
-from mitigate.corruptions.frame_files import MOST, RGB
+from mitigate.corruptions.frame_files import MOST, RGB, Frame, Plan, make_plan, told
 from mitigate.corruptions.keying import Key
-from mitigate.corruptions.plan import Frame, Plan, make_plan, told
 from mitigate.corruptions.registry import known, version
 from mitigate.corruptions.suite import SUITE_VERSION, Corruption, check_name, corrupt
 

@@ -36,7 +36,7 @@ from dataclasses import MISSING, fields
 from mitigate.core.arguments import asks_help, paths_and_options
 from mitigate.corruptions import folders, registry
 from mitigate.corruptions.folders import UNITS, Settings
-from mitigate.corruptions.plan import told
+from mitigate.corruptions.frame_files import told
 from mitigate.corruptions.suite import check_name
 
 SHOWN = 5  # files left out that are named on the screen; all are in the summary

@@ -15,8 +15,7 @@ import numpy as np
 from numba import njit
 
 from mitigate.core import observation
-from mitigate.corruptions.cached import cached
-from mitigate.corruptions.keying import field, top_share, uniform
+from mitigate.corruptions.keying import cached, field, top_share, uniform
 
 DARK_BASE, DARK_RAMP = 0.60, 0.37  # between RobustNav (0.57-0.31 of the mean) and 3DCC (0.24-0.12)
 SPATTER_CORRELATION = 0.018  # of min(H, W)

@@ -2,13 +2,14 @@
 
 A corruption of your own is such a record, found by the entry point group ``mitigate.corruptions``
 (``docs/bring-your-own.md``); ours stand at the end of ``rgb.py``, ``eld.py``,
-``depth.py``, ``language/families.py``, ``broad/__init__.py`` and the files of ``unseen``.
+``depth.py``, ``registry.py``, ``broad/__init__.py`` and the files of ``unseen``.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -66,6 +67,11 @@ class Record:
             raise ValueError(f"A half is {VALIDATION!r} or {TEST!r}, not {self.half!r}.")
         if self.modality != "instruction" and not callable(self.apply):
             raise ValueError(f"The corruption {self.name!r} needs a function that applies it.")
+
+    @classmethod
+    def of(cls, modality: str, apply: Callable[..., np.ndarray], **fields: Any) -> Record:
+        """Return the record of a function, by its name."""
+        return cls(apply.__name__, modality, apply, **fields)
 
     @property
     def title(self) -> str:

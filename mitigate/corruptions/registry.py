@@ -13,14 +13,32 @@ from importlib.metadata import entry_points
 
 from mitigate.core.names import unknown
 from mitigate.corruptions import broad, depth, eld, rgb, unseen
-from mitigate.corruptions.language import families
 from mitigate.corruptions.record import MODALITIES, TEST, VALIDATION, Record
+
+
+def _record(name: str, place: int, severity: str, label: str = "") -> Record:
+    return Record(
+        name, "instruction", None, severity, place, label, episode="all draws", source="NavTrust"
+    )
+
+
+INSTRUCTIONS = (  # applied by instruction.py
+    _record("friendly", 20, "probability that it is told in a friendly manner"),
+    _record("novice", 21, "probability that it is told as by a novice"),
+    _record("professional", 22, "probability that it is told as by a professional"),
+    _record("formal", 23, "probability that it is told in a formal manner"),
+    _record("capitalize", 24, "share of words that are stressed by capitals", "Capitalizing"),
+    _record("mask", 25, "share of words that are hidden", "Masking"),
+    _record("black_box", 26, "share of the bank of misleading prefixes", "Black-box prompt"),
+    _record("white_box", 27, "the same, in the system prompt", "White-box prompt"),
+)
+
 
 GROUP = "mitigate.corruptions"  # of entry points: name = "package.module:RECORD"
 SUITE = {
     record.name: record
     for record in sorted(
-        (*rgb.RECORDS, *eld.RECORDS, *depth.RECORDS, *families.RECORDS), key=lambda r: r.place
+        (*rgb.RECORDS, *eld.RECORDS, *depth.RECORDS, *INSTRUCTIONS), key=lambda r: r.place
     )
 }
 HALVES = (VALIDATION, TEST)

@@ -8,7 +8,7 @@ without a source were chosen by this project. Masks are in ``masks``, compiled b
 from __future__ import annotations
 
 import math
-from functools import lru_cache
+from functools import lru_cache, partial
 
 import numpy as np
 
@@ -145,11 +145,10 @@ def black_out(views: np.ndarray, severity: float, key: Key, heading=None) -> np.
     return out
 
 
+_record = partial(Record.of, "rgb")
 RECORDS = (
-    Record(
-        name="motion_blur",
-        modality="rgb",
-        apply=motion_blur,
+    _record(
+        motion_blur,
         severity="line of 0.10 s of the width, blended 0.5 + 0.5 s",
         place=0,
         fails="the camera turned during the exposure",
@@ -165,15 +164,12 @@ RECORDS = (
         ),
         source="ImageNet-C, NavTrust",
         episode="direction",
-        frame="-",
         slip=0.03,
         bars=(1.1, 0.10),
-        reason=("16 taps of 16-bit integers a colour value, and a padded copy of the frame."),
+        reason="16 taps of 16-bit integers a colour value, and a padded copy of the frame.",
     ),
-    Record(
-        name="low_light",
-        modality="rgb",
-        apply=low_light,
+    _record(
+        low_light,
         severity="loses s (0.60 to 0.97) of the light",
         place=1,
         label="L-L w/o noise",
@@ -182,17 +178,14 @@ RECORDS = (
             f"x (1 - s ({masks.DARK_BASE:g} + {masks.DARK_RAMP:g} t)); t in [0, 1] a linear "
             "ramp, or the distance to one light"
         ),
-        sources=("between RobustNav, which leaves 0.57-0.31 of the mean, and 3DCC (0.24-0.12)"),
+        sources="between RobustNav, which leaves 0.57-0.31 of the mean, and 3DCC (0.24-0.12)",
         source="NavTrust, RobustNav, 3DCC",
         episode="gradient",
-        frame="-",
         bars=(0.10, 0.010),
-        reason=("The kernel takes under three cycles for 16 colour values; the rest is the call."),
+        reason="The kernel takes under three cycles for 16 colour values; the rest is the call.",
     ),
-    Record(
-        name="spatter",
-        modality="rgb",
-        apply=spatter,
+    _record(
+        spatter,
         severity="covers 0.45 s of the frame, opacity 0.5 + 0.5 s",
         place=3,
         fails="mud or water on the lens",
@@ -202,17 +195,14 @@ RECORDS = (
             f"opacity 0.5 + 0.5 s; mud {masks.SPATTER_COLOURS[0]} or water "
             f"{masks.SPATTER_COLOURS[1]}"
         ),
-        sources=("colours and cover of ImageNet-C (0.04-0.57); correlation and edge are ours"),
+        sources="colours and cover of ImageNet-C (0.04-0.57); correlation and edge are ours",
         source="ImageNet-C",
         episode="mask, mud or water",
-        frame="-",
         bars=(0.15, 0.010),
-        reason=("As low_light: the same kernel, another mask."),
+        reason="As low_light: the same kernel, another mask.",
     ),
-    Record(
-        name="flare",
-        modality="rgb",
-        apply=flare,
+    _record(
+        flare,
         severity="brightness of the glow",
         place=4,
         fails="a light shines into the lens",
@@ -222,17 +212,14 @@ RECORDS = (
             f"exp(-r/{masks.FLARE_HALO_WIDTH:g})) times {masks.FLARE_TINT}, at most 1; "
             "r over the diagonal; centre U(0.1, 0.9) W, U(0, 0.5) H"
         ),
-        sources=("radial gradient of the paper; constants are ours"),
+        sources="radial gradient of the paper; constants are ours",
         source="NavTrust",
         episode="place, at a world yaw",
-        frame="-",
         bars=(0.10, 0.010),
-        reason=("As low_light, and one kernel call a view, because each view has its own mask."),
+        reason="As low_light, and one kernel call a view, because each view has its own mask.",
     ),
-    Record(
-        name="defocus",
-        modality="rgb",
-        apply=defocus,
+    _record(
+        defocus,
         severity="Gaussian, sigma 5 s px at 224 px",
         place=5,
         fails="out of focus",
@@ -240,10 +227,9 @@ RECORDS = (
             f"Gaussian, sigma = 5 s u side/224, u ~ U({1 - DEFOCUS_SPREAD:g}, "
             f"{1 + DEFOCUS_SPREAD:g}); sigma < {DEFOCUS_LEAST:g} px changes nothing"
         ),
-        sources=("disks of ImageNet-C have radii of 3-10 px at 224; randomised as in the paper"),
+        sources="disks of ImageNet-C have radii of 3-10 px at 224; randomised as in the paper",
         source="NavTrust, ImageNet-C",
         episode="width, +- 20 %",
-        frame="-",
         bars=(1.2, 0.10),
         reason=(
             "The bar is for a sigma of 2.5 px (s = 0.5). At s = 0.6 it is 3.0 px, 20 % more or "
@@ -251,35 +237,28 @@ RECORDS = (
             "x 224."
         ),
     ),
-    Record(
-        name="foreign_object",
-        modality="rgb",
-        apply=foreign_object,
+    _record(
+        foreign_object,
         severity="disk of radius 0.5 s of the short side",
         place=6,
         fails="something sits before the lens",
-        formula=(f"black disk at the centre, radius {masks.DISK_RADIUS:g} s side"),
-        sources=("the paper; the radius is ours"),
+        formula=f"black disk at the centre, radius {masks.DISK_RADIUS:g} s side",
+        sources="the paper; the radius is ours",
         source="NavTrust",
-        episode="-",
-        frame="-",
         bars=(0.042, 0.010),
-        reason=("A copy of the frame, then the black disk."),
+        reason="A copy of the frame, then the black disk.",
     ),
-    Record(
-        name="black_out",
-        modality="rgb",
-        apply=black_out,
+    _record(
+        black_out,
         severity="probability that a view is black",
         place=7,
         label="Black-out",
         fails="a view is lost",
-        formula=("black where U(0, 1) < s"),
-        sources=('the paper\'s "fixed probability"; p = s is ours'),
+        formula="black where U(0, 1) < s",
+        sources='the paper\'s "fixed probability"; p = s is ours',
         source="NavTrust",
-        episode="-",
         frame="which views",
         bars=(0.017, 0.004),
-        reason=("A copy of the frame where the view is kept; a fresh hash for each frame."),
+        reason="A copy of the frame where the view is kept; a fresh hash for each frame.",
     ),
 )

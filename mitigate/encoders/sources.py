@@ -24,7 +24,7 @@ from mitigate.core.observation import POSE, VIEW_STEP_DEGREES, VIEWS
 from mitigate.core.progress import Progress, say
 from mitigate.core.seeding import generator
 from mitigate.corruptions import Corruption, DepthSensor, Key, corrupt_observation, frame_files
-from mitigate.corruptions.plan import make_plan, told
+from mitigate.corruptions.frame_files import make_plan, told
 from mitigate.worlds.episodes import read_episodes
 from mitigate.worlds.world import Placeable
 

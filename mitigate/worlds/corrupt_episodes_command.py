@@ -17,12 +17,259 @@ from __future__ import annotations
 
 import json
 import sys
-from collections.abc import Callable, Mapping, Sequence
+from collections import Counter
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import Path
 from typing import Any
 
+from tqdm import tqdm
+
 from mitigate.core.arguments import asks_help, paths_and_options
-from mitigate.corruptions.language.text import passed_through
-from mitigate.worlds.corrupted_episodes import NAMES, USES, check_for_file, run
+from mitigate.core.files import atomic_text, read_regular, sha256
+from mitigate.corruptions.instruction import check_options, corrupt_instruction, is_rewritten
+from mitigate.corruptions.keying import Key
+from mitigate.corruptions.language.style import MANNERS, Rewrite, restyle
+from mitigate.corruptions.language.text import has_word, is_english, passed_through
+from mitigate.corruptions.language.tokens import VOCABULARY, Tokenizer, tokenizer_for
+from mitigate.corruptions.suite import INSTRUCTION, SUITE_VERSION, check_name, check_severity
+from mitigate.worlds.episodes import Episode, read_episodes, read_extras, write_episodes
+
+ORIGINAL = "original_text"  # where the clean text is kept
+STALE = ("timed_instruction",)  # RxR: the clean words again, with their times
+SUMMARY = ".summary.json"  # behind the name of the file
+NAMES = tuple(name for name in INSTRUCTION if name != "white_box")
+USES = {"black_box": ("split",), "mask": ("mask_token", "tagger"), "capitalize": ("tagger",)}
+
+
+@dataclass
+class Counts:
+    """What happened to the episodes of a file."""
+
+    episodes: int = 0
+    changed: int = 0
+    blank: int = 0
+    skipped_languages: Counter = field(default_factory=Counter)
+    tokens: Counter = field(default_factory=Counter)
+    gate: Counter = field(default_factory=Counter)
+
+
+def run(
+    source: Path | str,
+    out: Path | str,
+    corruption: str,
+    severity: float,
+    *,
+    seed: int = 0,
+    split: str = "test",
+    tokenizer: str | None = None,
+    mask_token: str | None = None,
+    tagger: str = "own",
+    rewrite: Rewrite | None = None,
+) -> dict[str, Any]:
+    """Corrupt the file ``source`` into ``out`` and return the summary that is written beside it.
+
+    Args: corruption: one of ``NAMES``. seed: with the episode id, the key of each draw, as in an
+    evaluation. tokenizer: "vocabulary" for the file's own, a folder or hub name for transformers;
+    None removes the tokens of changed instructions. The others are those of
+    ``corrupt_instruction``; the mask token is by default the tokenizer's own, else "[MASK]". The
+    summary has those that the corruption uses (``USES``).
+
+    Raises ValueError or FileNotFoundError for wrong options or files, and for an ``out`` that is
+    there and was not made so; then ``out`` is untouched.
+    """
+    check_for_file(corruption)
+    severity = check_severity(severity)
+    Key(seed, "0")  # refuses a seed that is none
+    check_options(split, "[MASK]" if mask_token is None else mask_token, tagger)
+    _check_target(source, out)
+    extras = read_extras(source)
+    words = tokenizer_for(tokenizer, extras) if tokenizer else None
+    mask = mask_token if mask_token is not None else (words and words.mask_token) or "[MASK]"
+    given = {"split": split, "mask_token": mask, "tagger": tagger}
+    counts = Counts()
+
+    def corrupted(episode: Episode) -> str:
+        key, text = Key(seed, episode.episode_id), episode.instruction.text
+        if corruption in MANNERS:
+            return _restyled(text, corruption, severity, key, rewrite, counts.gate)
+        return corrupt_instruction(
+            text, corruption, severity, key, split=split, mask_token=mask, tagger=tagger
+        )
+
+    episodes = tqdm(read_episodes(source, hidden_goals=True), unit="episode", disable=None)
+    other_words = words is not None and tokenizer != VOCABULARY
+    write_episodes(out, _changed(episodes, corrupted, words, counts, other_words), extras)
+    settings = {
+        "source": str(source),
+        "corruption": corruption,
+        "severity": severity,
+        "seed": seed,
+        "suite": SUITE_VERSION,
+        "tokenizer": tokenizer,
+        **{name: given[name] for name in USES.get(corruption, ())},
+    }
+    return _summarised(settings, counts, out)
+
+
+def check_for_file(corruption: str) -> None:
+    """Raise ValueError unless ``corruption`` is one of ``NAMES``."""
+    if corruption == "white_box":
+        raise ValueError(
+            "corruption=white_box is not applicable to a file: it corrupts the system prompt of an "
+            "agent, which no episode holds. Evaluate an agent that has one, or use "
+            "corruption=black_box."
+        )
+    check_name(corruption, NAMES)
+
+
+def _check_target(source: Path | str, out: Path | str) -> None:
+    if Path(out).resolve() == Path(source).resolve():
+        raise ValueError(f"{out} is the file that is read: give the corrupted one another name.")
+    if Path(out).is_dir():
+        raise ValueError(f"{out} is a folder: name the file to write in it.")
+    summary = Path(f"{out}{SUMMARY}")
+    if summary.resolve() == Path(source).resolve():
+        raise ValueError(f"{summary} is the file that is read, and the summary's name: rename it.")
+    if summary.exists() and not Path(out).exists():
+        raise ValueError(f"{summary} is there already, without {out}: move it away first.")
+    if Path(out).exists():
+        _check_own(Path(out), summary)
+
+
+def _check_own(out: Path, summary: Path) -> None:
+    """Raise ValueError unless ``out`` is as :func:`run` wrote it."""
+    move = "Give another name, or move the file away first."
+    if not summary.is_file():
+        raise ValueError(
+            f"{out} is there already and no file of corrupt_episodes: {summary} is not beside it. "
+            f"{move}"
+        )
+    try:
+        earlier = json.loads(read_regular(summary))
+        episodes, recorded = int(earlier["episodes"]), earlier.get("sha256")
+        earlier["corruption"], earlier["severity"], earlier["seed"], earlier["suite"]
+    except (ValueError, KeyError, TypeError, AttributeError, RecursionError):
+        raise ValueError(
+            f"{out} is there already and no file of corrupt_episodes: {summary} beside it holds "
+            f"other things. {move}"
+        ) from None
+    if recorded is None:  # of an earlier version
+        try:
+            same = sum(1 for _ in read_episodes(out, hidden_goals=True)) == episodes
+        except (ValueError, OSError):
+            same = False
+    else:
+        same = recorded == sha256(out)
+    if not same:
+        raise ValueError(f"{out} was changed after corrupt_episodes wrote it. {move}")
+
+
+def _summarised(settings: dict[str, Any], counts: Counts, out: Path | str) -> dict[str, Any]:
+    """Write the summary of what was done beside ``out``, and return it."""
+    summary = {
+        **settings,
+        "episodes": counts.episodes,
+        "changed": counts.changed,
+        "blank": counts.blank,
+        "skipped_languages": dict(counts.skipped_languages),
+        "tokens": dict(counts.tokens),
+        "sha256": sha256(out),
+    }
+    if settings["corruption"] in MANNERS:
+        summary["gate"] = _rates(counts.gate)
+    with atomic_text(f"{out}{SUMMARY}") as file:
+        json.dump(summary, file, indent=2, ensure_ascii=False)
+        file.write("\n")
+    return summary
+
+
+def _changed(
+    episodes: Iterator[Episode],
+    corrupted: Callable[[Episode], str],
+    words: Tokenizer | None,
+    counts: Counts,
+    every: bool,
+) -> Iterator[Episode]:
+    """Yield the episodes with their instructions corrupted, one at a time.
+
+    ``every``: also instructions that stay as they are get the tokens of ``words``, whose
+    vocabulary is not the file's.
+    """
+
+    def unchanged(episode: Episode) -> Episode:
+        if not every:
+            return episode
+        said = episode.instruction
+        tokens = _tokens(said.text, said.tokens, words, counts.tokens)
+        return replace(episode, instruction=replace(said, tokens=tokens))
+
+    for episode in episodes:
+        counts.episodes += 1
+        instruction = episode.instruction
+        if not is_english(instruction.language):
+            counts.skipped_languages[instruction.language] += 1
+            yield unchanged(episode)
+            continue
+        if not has_word(instruction.text):
+            counts.blank += 1
+            yield unchanged(episode)
+            continue
+        try:
+            text = corrupted(episode)
+        except ValueError as error:
+            raise ValueError(f"Episode {episode.episode_id}: {error}") from error
+        if text == instruction.text:
+            yield unchanged(episode)
+            continue
+        counts.changed += 1
+        tokens = _tokens(text, instruction.tokens, words, counts.tokens)
+        extra = {key: value for key, value in instruction.extra.items() if key not in STALE}
+        counts.tokens["timed_instruction_removed"] += len(instruction.extra) - len(extra)
+        extra.setdefault(ORIGINAL, instruction.text)
+        yield replace(
+            episode, instruction=replace(instruction, text=text, tokens=tokens, extra=extra)
+        )
+
+
+def _tokens(
+    text: str, old: Sequence[int] | None, words: Tokenizer | None, counts: Counter
+) -> tuple[int, ...] | None:
+    """Return the tokens of ``text``, as many as the file had, or None; never those it had."""
+    if words is None:
+        counts["removed"] += old is not None
+        return None
+    tokens, cut = words.encode(text, len(old) if old else None)
+    counts["remade"] += 1
+    counts["cut_short"] += cut
+    return tokens
+
+
+def _restyled(
+    text: str, manner: str, severity: float, key: Key, rewrite: Rewrite | None, gate: Counter
+) -> str:
+    if not is_rewritten(manner, severity, key):
+        return text
+    found = restyle(text, manner, key, rewrite)
+    gate["rewrites"] += 1
+    gate["passed_at_once"] += found.passed and found.tries == 1
+    gate["passed"] += found.passed
+    gate["clauses"] += found.clauses
+    gate["clauses_kept"] += found.plain
+    return found.text
+
+
+def _rates(gate: Counter) -> dict[str, Any]:
+    rewrites = gate["rewrites"]
+    return {
+        "rewrites": rewrites,
+        "kept_original": rewrites - gate["passed"],
+        "pass_rate_first": round(gate["passed_at_once"] / rewrites, 4) if rewrites else None,
+        "pass_rate": round(gate["passed"] / rewrites, 4) if rewrites else None,
+        "clauses": gate["clauses"],
+        "clauses_kept": gate["clauses_kept"],
+    }
+
 
 ALIAS = "family"  # of corruption=, in older command lines
 OPTIONS: dict[str, Callable[[str], Any]] = {

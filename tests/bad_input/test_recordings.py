@@ -124,7 +124,7 @@ def test_a_list_that_is_too_long_is_refused_before_it_is_read_whole(tmp_path, mo
     folder = tum(tmp_path / "drive")
     with open(folder / "rgb.txt", "wb") as file:
         file.truncate(1 << 30)  # sparse: one line without an end
-    monkeypatch.setattr("mitigate.worlds.recorded.tum.text.__defaults__", (1 << 20,))
+    monkeypatch.setattr("mitigate.worlds.recorded.folders.text.__defaults__", (1 << 20,))
     refused(folder, "more than 1048576 bytes")
 
 

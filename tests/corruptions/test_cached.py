@@ -5,22 +5,22 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from mitigate.corruptions import Key, cached, corrupt
+from mitigate.corruptions import Key, corrupt, keying
 
 MASKED = ("low_light", "spatter", "flare", "haze", "scratches", "refraction")
 
 
 def held() -> int:
-    return sum(size for _, size in cached._kept.values())
+    return sum(size for _, size in keying._kept.values())
 
 
 @pytest.fixture
 def kept(monkeypatch):
     """A cache of its own, for 1 MB and 8 entries."""
-    monkeypatch.setattr(cached, "_kept", {})
-    monkeypatch.setattr(cached, "MOST", 1 << 20)
-    monkeypatch.setattr(cached, "MOST_KEPT", 8)
-    return cached._kept
+    monkeypatch.setattr(keying, "_kept", {})
+    monkeypatch.setattr(keying, "MOST", 1 << 20)
+    monkeypatch.setattr(keying, "MOST_KEPT", 8)
+    return keying._kept
 
 
 def test_what_is_kept_in_all_is_bounded_by_bytes(kept):
@@ -43,7 +43,7 @@ def test_a_mask_that_was_dropped_is_made_again_to_the_bit(kept, name):
 def test_what_was_used_last_stays_and_a_large_one_is_kept_alone(kept):
     made = []
 
-    @cached.cached
+    @keying.cached
     def zeros(count):
         made.append(count)
         return np.zeros(count, np.uint8)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from mitigate.corruptions import DepthSensor, Key, corrupt
-from mitigate.corruptions.echo import echo_polynomial, echo_shift
+from mitigate.corruptions.depth import echo_polynomial, echo_shift
 
 WALL = np.full((12, 96, 128), 4.0, np.float32)
 

@@ -7,7 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from mitigate.corruptions import DEPTH, NAMES, DepthSensor, Key, corrupt
-from mitigate.corruptions.echo import echo_shift
+from mitigate.corruptions.depth import echo_shift
 from mitigate.corruptions.registry import modality, unseen_names
 
 SENSORS = (DepthSensor(), DepthSensor(0.5, 5.0, missing=-1.0))

@@ -14,8 +14,7 @@ from mitigate.corruptions import Key, corrupt_instruction
 from mitigate.corruptions.language.fidelity import check
 from mitigate.corruptions.language.style import MANNERS
 from mitigate.worlds import corrupt_episodes_command as episodes_command
-from mitigate.worlds import corrupted_episodes as episode_file
-from mitigate.worlds.corrupted_episodes import ORIGINAL, run
+from mitigate.worlds.corrupt_episodes_command import ORIGINAL, run
 from mitigate.worlds.episodes import read_episodes, read_extras
 from tests.r2r_ce import FOLDER, needs_r2r_ce
 
@@ -269,7 +268,7 @@ def test_an_interrupt_ends_with_a_line_and_no_file(tmp_path, monkeypatch, capsys
         raise KeyboardInterrupt
 
     source = made(tmp_path / "in.json.gz", episode(1))
-    monkeypatch.setattr(episode_file, "corrupt_instruction", interrupted)
+    monkeypatch.setattr(episodes_command, "corrupt_instruction", interrupted)
     line = [str(source), str(tmp_path / "o.json"), "corruption=mask", "severity=1"]
     assert episodes_command.main(line) == 130
     assert "interrupted: nothing was written" in capsys.readouterr().err

@@ -17,7 +17,7 @@ import torch
 
 from mitigate.corruptions import depth as ours
 from mitigate.corruptions import rgb
-from mitigate.corruptions.echo import echo_shift
+from mitigate.corruptions.depth import echo_shift
 from tools.bench.timing import version
 
 Calls = dict[str, Callable[[], object]]  # by the name of our corruption

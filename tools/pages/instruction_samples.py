@@ -20,7 +20,7 @@ from mitigate.corruptions.keying import Key, digest, uniform
 from mitigate.corruptions.language.fidelity import check
 from mitigate.corruptions.language.style import MANNERS, restyle
 from mitigate.corruptions.language.text import has_word
-from mitigate.worlds.corrupted_episodes import NAMES
+from mitigate.worlds.corrupt_episodes_command import NAMES
 from mitigate.worlds.episodes import read_episodes
 
 OTHER = {"left": "right", "right": "left"}

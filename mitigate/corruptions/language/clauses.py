@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 
-from mitigate.corruptions.language.words import bag
+from mitigate.corruptions.language.words import listed
 
 COMMANDS = (
     "walk|go|head|turn|take|make|stop|wait|exit|enter|leave|continue|proceed|move|pass|climb|"
@@ -37,10 +37,7 @@ _BEGINS_CONDITION = re.compile(
     re.IGNORECASE,
 )
 _COMMAND = re.compile(rf"(?:{_ADVERBS}\s+)*\b(?:{COMMANDS})\b", re.IGNORECASE)
-_NO_COMMAND_AFTER = bag(
-    "you to and or will you'll the a an your of that which then we it this can should have must "
-    "with by first second next last his her no in at on from inside before after as"
-)
+_NO_COMMAND_AFTER = listed("no_command_after")
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,5 @@
-"""Which way a text tells one to go: left, right, around, straight, up, down and stop, in order.
+"""Which way a text tells one to go: left, right, around, straight, up, down and stop, in order;
+and its numbers, ordinals and distances.
 
 "down the hall" goes along, "down the stairs" goes down; "right before" and "you left the room" turn
 nowhere; "wait there" after "stop" stops once.
@@ -8,47 +9,22 @@ from __future__ import annotations
 
 import re
 
-from mitigate.corruptions.language.tagger import Token
-from mitigate.corruptions.language.words import bag
+from mitigate.corruptions.language.tagger import SENTENCE_ENDS, Token
+from mitigate.corruptions.language.words import WORDS, bag, listed
 
-STOPS = bag("stop stops stopping stopped wait waits waiting halt halts pause pauses")
-MOTION = bag(
-    """
-    go walk head proceed continue move enter exit leave turn climb descend ascend cross pass take
-    make advance follow step veer bear approach traverse navigate going walking heading proceeding
-    continuing moving entering exiting leaving turning climbing passing swing stroll wander pop come
-    """
-)
-TURN_VERBS = bag(
-    "turn turns turning turned veer veers veering bear bears bearing pivot rotate rotates swing "
-    "hang swerve reorient"
-)
-_LEVELS = bag(
-    "stairs stair steps step staircase stairway stairwell flight flights level floor story storey "
-    "ramp basement ladder escalator"
-)
-_FILLERS = bag(
-    "the a an this that those these your same first second next set of two three long short small "
-    "large entire main little few"
-)
-_NO_CLIMB = bag("end ends pick set line lined sit lie slow upside wrap hurry")
-_LEFT = bag("left leftmost lefthand left-hand leftward leftwards")
-_RIGHT = bag("right rightmost righthand right-hand rightward rightwards")
-_STRAIGHT = bag("straight forward forwards onward onwards ahead")
-_UP = bag("upstairs ascend ascends ascending upward upwards")
-_DOWN = bag("downstairs descend descends descending downward downwards")
-_ADVERB_BEFORE = bag(
-    """
-    before after next in behind away past by beside under outside inside near above where when as
-    there here beyond now into through
-    """
-)
-_SIDE_AFTER = TURN_VERBS | bag(
-    """
-    take the your a slight slightly hard sharp sharply immediate immediately far first second third
-    make and left to on another keep
-    """
-)
+STOPS = listed("stops")
+MOTION = listed("motion")
+TURN_VERBS = listed("turn_verbs")
+_LEVELS = listed("levels")
+_FILLERS = listed("fillers")
+_NO_CLIMB = listed("no_climb")
+_LEFT = listed("left")
+_RIGHT = listed("right")
+_STRAIGHT = listed("straight")
+_UP = listed("up")
+_DOWN = listed("down")
+_ADVERB_BEFORE = listed("adverb_before")
+_SIDE_AFTER = TURN_VERBS | listed("side_after")
 _AROUND = re.compile(
     r"\b(?:turn|turning|spin|spinning|swing|rotate|pivot)(?: all the way| right| completely| fully|"
     r" yourself| straight| back)* (?:around|round|back|180(?: degrees?)?|"
@@ -160,3 +136,54 @@ def _stops(found: list[Token], place: int) -> bool:
 def at(found: list[Token], place: int) -> str:
     """Return the word at a place in lower case, "" outside the text."""
     return found[place].lower if 0 <= place < len(found) else ""
+
+
+_COUNTED = ("two", "three", "four", "five", "six", "seven", "eight", "nine", "ten")
+_NUMBERS = {str(number): word for number, word in enumerate(_COUNTED, 2)} | {
+    word: word
+    for word in (
+        *_COUNTED,
+        *bag("eleven twelve twenty thirty forty fifty sixty ninety hundred half twice"),
+    )
+}
+_NUMBERS |= {"couple": "two", "11": "eleven", "12": "twelve", "20": "twenty", "90": "ninety"}
+_ORDINALS = {
+    word: word for word in bag("first second third fourth fifth sixth seventh eighth last")
+} | {"1st": "first", "2nd": "second", "3rd": "third", "4th": "fourth", "5th": "fifth"}
+_UNITS = listed("units")
+_UNIT: dict[str, str] = WORDS["units"]
+_LONE_UNITS = _UNITS - bag("step steps m cm ft foot feet yard yards")
+
+
+def quantities(found: list[Token], turned: dict[int, int]) -> list[str]:
+    """Return the numbers, ordinals and distances in order: "two", "first", "two step", "meter".
+
+    ``turned``: the places of ``directions.about_turns``, whose 180 degrees are no quantity.
+    """
+    inside = {place for first, last in turned.items() for place in range(first, last + 1)}
+    names = []
+    for place, token in enumerate(found):
+        word, before, after = token.lower, at(found, place - 1), at(found, place + 1)
+        if place in inside:
+            continue
+        if word in _ORDINALS:
+            if not _orders_sentences(found, place):
+                names.append(_ORDINALS[word])
+        elif word in _NUMBERS or word.isdecimal():
+            unit = f" {_unit(after)}" if after in _UNITS else ""
+            names.append(_NUMBERS.get(word, word) + unit)
+        elif word in _LONE_UNITS and before not in _NUMBERS and not before.isdecimal():
+            names.append(_unit(word))
+    return names
+
+
+def _unit(word: str) -> str:
+    return _UNIT.get(word, word.removesuffix("s"))
+
+
+def _orders_sentences(found: list[Token], place: int) -> bool:
+    """Return whether "first" or "last" orders what is said ("first, turn left"; "at last")."""
+    before, after = at(found, place - 1), found[place + 1] if place + 1 < len(found) else None
+    loose = after is None or not after.is_word or after.tag in ("VERB", "PRON", "ADV")
+    begins = place == 0 or before in SENTENCE_ENDS or before in ("and", ",", "at")
+    return begins and loose

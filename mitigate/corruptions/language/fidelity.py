@@ -13,51 +13,17 @@ from dataclasses import dataclass
 from functools import lru_cache
 from itertools import accumulate
 
-from mitigate.corruptions.language import directions, landmarks, quantities
+from mitigate.corruptions.language import directions, landmarks
 from mitigate.corruptions.language.directions import at
 from mitigate.corruptions.language.tagger import SENTENCE_ENDS, Token, tag
-from mitigate.corruptions.language.words import bag
+from mitigate.corruptions.language.words import WORDS, listed
 
 COMPASS = re.compile(r"(?:north|south|east|west)(?:east|west)?(?:ern|erly|wards?|bound)?$|o'clock$")
-COLOURS = bag(
-    """
-    red blue green yellow orange white black brown grey purple pink beige tan gold golden silver
-    maroon violet turquoise teal navy cream burgundy
-    """
-)
-ATTRIBUTES = COLOURS | bag(
-    """
-    wooden metal leather marble wicker glass stone brick round square rectangular circular oval
-    arched large small long short tall narrow wide open closed double single striped tiled carpeted
-    spiral curved
-    """
-)
-DENIALS = bag("not never avoid ignore skip don't dont can't cannot won't n't")
-_SAME = {
-    "gray": "grey",
-    "big": "large",
-    "huge": "large",
-    "little": "small",
-    "tiny": "small",
-    "opened": "open",
-    "shut": "closed",
-    "rounded": "round",
-    "wood": "wooden",
-}
-_RELATIONS = {
-    word: name
-    for name, forms in {
-        "into": "enter enters entering into inside",
-        "out": "exit exits exiting leave leaving out outside depart vacate egress withdraw",
-        "past": "past passed pass passes passing",
-        "between": "between",
-        "behind": "behind",
-        "opposite": "opposite",
-        "under": "under beneath underneath",
-        "above": "above",
-    }.items()
-    for word in forms.split()
-}
+COLOURS = listed("colours")
+ATTRIBUTES = COLOURS | listed("attributes")
+DENIALS = listed("denials")
+_SAME: dict[str, str] = WORDS["same_attribute"]
+_RELATIONS = {word: name for name, forms in WORDS["relations"].items() for word in forms.split()}
 
 
 @dataclass(frozen=True)
@@ -153,7 +119,7 @@ def _read(text: str) -> _Reading:
     said = Facts(
         directions=tuple(directions.directions(found, turned)),
         landmarks=tuple(name for _, name, is_landmark in names if is_landmark),
-        numbers=tuple(quantities.quantities(found, turned)),
+        numbers=tuple(directions.quantities(found, turned)),
         compass=tuple(t.lower for t in found if COMPASS.match(t.lower)),
         attributes=tuple(a for t in found if (a := _same(t)) in ATTRIBUTES),
         relations=tuple(_relations(found)),

@@ -7,7 +7,7 @@ pixels.
 from __future__ import annotations
 
 import math
-from functools import lru_cache
+from functools import lru_cache, partial
 
 import numpy as np
 
@@ -72,13 +72,11 @@ def wiggling(views: np.ndarray, severity: float, key: Key, sensor: DepthSensor) 
     return kept(views, clean + table[place.astype(np.int32)], sensor)
 
 
+_record = partial(Record.of, "depth", version="1")
 RECORDS = (
-    Record(
-        name="scale_error",
-        modality="depth",
-        apply=scale_error,
+    _record(
+        scale_error,
         half=VALIDATION,
-        version="1",
         severity="all depth off by 0.25 s to 0.4 s",
         fails="the baseline or focal length is miscalibrated",
         formula=f"z (1 +- s k), k ~ U({SCALE_LEAST:g}, {SCALE_MOST:g})",
@@ -89,35 +87,29 @@ RECORDS = (
         source="Khoshelham & Elberink 2012",
         episode="sign and size",
     ),
-    Record(
-        name="wiggling",
-        modality="depth",
-        apply=wiggling,
+    _record(
+        wiggling,
         half=VALIDATION,
-        version="1",
         severity="0.3 s metres too near and too far by turns",
         fails="the harmonics of a time-of-flight camera's light",
         formula=(
             f"z + {WIGGLE:g} s sin(2 pi (z/P + p)), P = c/(8 f) = {WIGGLE_PERIOD:.2f} metres, f = "
             f"{WIGGLE_HERTZ / 1e6:g} MHz"
         ),
-        sources=("wiggling error (Lindner & Kolb 2006; Foix 2011); the amplitude is ours"),
+        sources="wiggling error (Lindner & Kolb 2006; Foix 2011); the amplitude is ours",
         source="Lindner & Kolb 2006",
         episode="phase p",
     ),
-    Record(
-        name="misalignment",
-        modality="depth",
-        apply=misalignment,
+    _record(
+        misalignment,
         half=TEST,
-        version="1",
         severity="moved by 0.12 s of the width against RGB",
         fails="the mount of the depth camera has moved",
         formula=(
             f"z at p + d, d = +-{ASIDE:g} s W (1, U(-{ASIDE_DOWN:g}, {ASIDE_DOWN:g})); an invalid "
             "one there changes nothing"
         ),
-        sources=("registration errors of RGB-D cameras (Khoshelham & Elberink 2012); d is ours"),
+        sources="registration errors of RGB-D cameras (Khoshelham & Elberink 2012); d is ours",
         source="Khoshelham & Elberink 2012",
         episode="direction",
         slip=0.01,

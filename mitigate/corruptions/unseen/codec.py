@@ -6,7 +6,7 @@ Functions take and give what those of ``corruptions/rgb.py`` do.
 from __future__ import annotations
 
 import math
-from functools import lru_cache
+from functools import lru_cache, partial
 
 import numpy as np
 from numba import njit
@@ -137,13 +137,11 @@ def lost_slices(views: np.ndarray, severity: float, key: Key, heading=None) -> n
     return out
 
 
+_record = partial(Record.of, "rgb", version="1")
 RECORDS = (
-    Record(
-        name="compression",
-        modality="rgb",
-        apply=compression,
+    _record(
+        compression,
         half=VALIDATION,
-        version="1",
         severity="patterns of amplitude under 0.4 s are lost",
         fails="too little bandwidth for the camera's stream",
         formula=(
@@ -157,19 +155,16 @@ RECORDS = (
         ),
         source="ImageNet-C, H.264, H.265",
     ),
-    Record(
-        name="lost_slices",
-        modality="rgb",
-        apply=lost_slices,
+    _record(
+        lost_slices,
         half=TEST,
-        version="1",
         severity="0.8 s of the slices are lost",
         fails="packets of the camera's stream are lost",
         formula=(
             f"of {SLICES} slices each view loses each with probability {LOST:g} s, from column "
             f"U(0, 1) W to the end: grey {NOTHING}"
         ),
-        sources=("H.264 over IP (Wenger 2003), bit error of 3DCC; shares are ours"),
+        sources="H.264 over IP (Wenger 2003), bit error of 3DCC; shares are ours",
         source="Wenger 2003",
         frame="which, from where",
         slip=0.01,

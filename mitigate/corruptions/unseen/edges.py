@@ -7,13 +7,14 @@ pixels.
 from __future__ import annotations
 
 import math
+from functools import partial
 
 import numpy as np
 from numba import njit
 
 from mitigate.core.observation import HFOV_DEGREES
+from mitigate.corruptions.depth import farthest_along, larger
 from mitigate.corruptions.depth_sensor import NEAREST, DepthSensor, is_valid
-from mitigate.corruptions.echo import farthest_along, larger
 from mitigate.corruptions.keying import Key, digest, mix, uniform, view_streams
 from mitigate.corruptions.record import TEST, VALIDATION, Record
 
@@ -120,51 +121,43 @@ def edge_shadow(views: np.ndarray, severity: float, key: Key, sensor: DepthSenso
     return out
 
 
+_record = partial(Record.of, "depth", version="1")
 RECORDS = (
-    Record(
-        name="fattening",
-        modality="depth",
-        apply=fattening,
+    _record(
+        fattening,
         half=VALIDATION,
-        version="1",
         severity="near surfaces grow by 0.08 s side",
         fails="the window of a stereo matcher sees past edges",
         formula=(
             f"the least depth within r = {FATTENING:g} s side (a square), linear between whole "
             "pixels"
         ),
-        sources=("edge fattening of stereo (Kanade & Okutomi 1994; Scharstein 2002); r is ours"),
+        sources="edge fattening of stereo (Kanade & Okutomi 1994; Scharstein 2002); r is ours",
         source="Kanade & Okutomi 1994",
     ),
-    Record(
-        name="edge_shadow",
-        modality="depth",
-        apply=edge_shadow,
+    _record(
+        edge_shadow,
         half=VALIDATION,
-        version="1",
         severity="the projector is 0.5 s metres aside",
         fails="the light of the projector does not reach there",
         formula=(
             f"no reading where x + f b/z does not exceed that of all before it in the row; b = "
             f"{BASELINE:g} s metres, f = W/(2 tan({HFOV_DEGREES:g}/2 degrees))"
         ),
-        sources=("shadows of structured light (Khoshelham & Elberink 2012: b = 0.075); b is ours"),
+        sources="shadows of structured light (Khoshelham & Elberink 2012: b = 0.075); b is ours",
         source="Khoshelham & Elberink 2012",
         episode="side",
     ),
-    Record(
-        name="flying_pixels",
-        modality="depth",
-        apply=flying_pixels,
+    _record(
+        flying_pixels,
         half=TEST,
-        version="1",
         severity="the share s of the pixels beside edges",
         fails="a pixel sees two surfaces at once",
         formula=(
             f"the share s of the pixels reads near + U(0, 1) (far - near), of the nearest and the "
             f"farthest within {FOOTPRINT:g} side (a square)"
         ),
-        sources=("flying pixels of time of flight (Foix 2011; Reynolds et al., CVPR 2011)"),
+        sources="flying pixels of time of flight (Foix 2011; Reynolds et al., CVPR 2011)",
         source="Reynolds et al. 2011",
         frame="which, where to",
     ),

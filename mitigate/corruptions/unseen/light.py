@@ -6,14 +6,13 @@ Functions take and give what those of ``corruptions/rgb.py`` do.
 from __future__ import annotations
 
 import math
-from functools import lru_cache
+from functools import lru_cache, partial
 
 import numpy as np
 
 from mitigate.corruptions import masks
-from mitigate.corruptions.cached import cached
 from mitigate.corruptions.eld import GAMMA
-from mitigate.corruptions.keying import Key, digest, field, scramble, uniform
+from mitigate.corruptions.keying import Key, cached, digest, field, scramble, uniform
 from mitigate.corruptions.record import TEST, VALIDATION, Record
 
 STOPS, STOPS_SPREAD = 2.0, 0.2  # of exposure at s = 1
@@ -110,13 +109,11 @@ def hue_shift(views: np.ndarray, severity: float, key: Key, heading=None) -> np.
     return out
 
 
+_record = partial(Record.of, "rgb", version="1")
 RECORDS = (
-    Record(
-        name="white_balance",
-        modality="rgb",
-        apply=white_balance,
+    _record(
+        white_balance,
         half=VALIDATION,
-        version="1",
         severity="2 s stops between red and blue",
         fails="the camera takes the light for another one",
         formula=(
@@ -132,12 +129,9 @@ RECORDS = (
         episode="direction",
         slip=0.001,
     ),
-    Record(
-        name="haze",
-        modality="rgb",
-        apply=haze,
+    _record(
+        haze,
         half=VALIDATION,
-        version="1",
         severity=f"optical depth {HAZE_DEPTH:g} s",
         fails="smoke, steam or dust in the room",
         formula=(
@@ -153,34 +147,28 @@ RECORDS = (
         source="3DCC, ImageNet-C",
         episode="field, place by view",
     ),
-    Record(
-        name="overexposure",
-        modality="rgb",
-        apply=overexposure,
+    _record(
+        overexposure,
         half=TEST,
-        version="1",
         severity="2 s stops too much light",
         fails="the exposure is stuck at a dark place's",
         formula=(
             f"min(255, x 2^({STOPS:g} s u/{GAMMA:g})), u ~ U({1 - STOPS_SPREAD:g}, "
             f"{1 + STOPS_SPREAD:g})"
         ),
-        sources=("brightness of ImageNet-C; stops of light instead of grey levels are ours"),
+        sources="brightness of ImageNet-C; stops of light instead of grey levels are ours",
         source="ImageNet-C, 3DCC",
         episode="stops, +- 20 %",
     ),
-    Record(
-        name="hue_shift",
-        modality="rgb",
-        apply=hue_shift,
+    _record(
+        hue_shift,
         half=TEST,
-        version="1",
         severity="hues turned by 180 s degrees",
         fails="wrong Bayer order or colour matrix",
         formula=(
             f"colours turned about the grey axis by +-{HUE_DEGREES:g} s degrees, clipped to 0-255"
         ),
-        sources=("a wrong order of channels moves hues by 120 degrees; the range is ours"),
+        sources="a wrong order of channels moves hues by 120 degrees; the range is ours",
         source="ours, after ImageNet-C's saturate",
         episode="sense",
         slip=0.001,

@@ -6,13 +6,13 @@ Functions take and give what those of ``corruptions/rgb.py`` do.
 from __future__ import annotations
 
 import math
+from functools import partial
 
 import numpy as np
 from numba import njit
 
 from mitigate.corruptions import masks
-from mitigate.corruptions.cached import cached
-from mitigate.corruptions.keying import Key, digest, field, uniform
+from mitigate.corruptions.keying import Key, cached, digest, field, uniform
 from mitigate.corruptions.record import TEST, VALIDATION, Record
 
 GHOST = 0.5  # share of the ghost at s = 1
@@ -118,46 +118,38 @@ def scratches(views: np.ndarray, severity: float, key: Key, heading=None) -> np.
     return out
 
 
+_record = partial(Record.of, "rgb", version="1")
 RECORDS = (
-    Record(
-        name="ghosting",
-        modality="rgb",
-        apply=ghosting,
+    _record(
+        ghosting,
         half=VALIDATION,
-        version="1",
         severity="a second picture of opacity 0.5 s",
         fails="a pane or dome before the lens reflects",
         formula=(
             f"(1 - a) x + a x', a = {GHOST:g} s; x' moved by +-U({GHOST_NEAR:g}, {GHOST_FAR:g}) W "
             f"and U(-{GHOST_DOWN:g}, {GHOST_DOWN:g}) H"
         ),
-        sources=("double reflection of glass (Shih et al., CVPR 2015); constants are ours"),
+        sources="double reflection of glass (Shih et al., CVPR 2015); constants are ours",
         source="Shih et al. 2015",
         episode="displacement",
     ),
-    Record(
-        name="refraction",
-        modality="rgb",
-        apply=refraction,
+    _record(
+        refraction,
         half=TEST,
-        version="1",
         severity="displaced by 0.045 s side, rms",
         fails="water or grease on the lens bends the light",
         formula=(
             f"x at p + {BEND:g} s side grad h(p); h a random field of correlation {DROPS:g} side, "
             "its slope of rms 1; bilinear"
         ),
-        sources=("caustic refraction of ImageNet-C-bar, elastic transform of ImageNet-C"),
+        sources="caustic refraction of ImageNet-C-bar, elastic transform of ImageNet-C",
         source="ImageNet-C-bar",
         episode="surface",
         slip=0.01,
     ),
-    Record(
-        name="scratches",
-        modality="rgb",
-        apply=scratches,
+    _record(
+        scratches,
         half=TEST,
-        version="1",
         severity=f"the first {SCRATCHES} s scratches",
         fails="the lens is scratched or cracked",
         formula=(
@@ -165,7 +157,7 @@ RECORDS = (
             f"colour {SCRATCH_COLOUR}; opacity {SCRATCH_OPACITY:g} exp(-(d/{SCRATCH_CORE:g})^2/2) "
             f"and {GLOW_OPACITY:g} exp(-(d/{SCRATCH_GLOW:g})^2/2), d over the side"
         ),
-        sources=("camera crack of RobustNav, frost of ImageNet-C; constants are ours"),
+        sources="camera crack of RobustNav, frost of ImageNet-C; constants are ours",
         source="RobustNav",
         episode="where they are",
         slip=0.001,

@@ -6,6 +6,8 @@ pixels.
 
 from __future__ import annotations
 
+from functools import partial
+
 import numpy as np
 from numba import njit
 
@@ -103,13 +105,11 @@ def glossy_floor(views: np.ndarray, severity: float, key: Key, sensor: DepthSens
     return out
 
 
+_record = partial(Record.of, "depth", version="1")
 RECORDS = (
-    Record(
-        name="ripple",
-        modality="depth",
-        apply=ripple,
+    _record(
+        ripple,
         half=VALIDATION,
-        version="1",
         severity="waves of sd 0.06 s z^2 metres",
         fails="the errors of a stereo camera go together",
         formula=(
@@ -124,40 +124,31 @@ RECORDS = (
         episode="field",
         frame="offset, by view",
     ),
-    Record(
-        name="range_limit",
-        modality="depth",
-        apply=range_limit,
+    _record(
+        range_limit,
         half=TEST,
-        version="1",
         severity="no reading beyond z_max 0.1^s",
         fails="dark surfaces or sunlight leave too little signal",
         formula=f"no reading where z > z_max {RANGE_LEFT:g}^s",
-        sources=("range of active cameras in sunlight (Fankhauser et al. 2015); 0.1 is ours"),
+        sources="range of active cameras in sunlight (Fankhauser et al. 2015); 0.1 is ours",
         source="Fankhauser et al. 2015",
     ),
-    Record(
-        name="mismatches",
-        modality="depth",
-        apply=mismatches,
+    _record(
+        mismatches,
         half=TEST,
-        version="1",
         severity="0.3 s of the readings are anywhere",
         fails="a stereo matcher takes one place for another",
         formula=(
             f"U(0, 1) z_max in the share {WRONG:g} s of square cells of {SPECKLE:g} side, at least "
             "1 px"
         ),
-        sources=("bad pixels and speckles of stereo (Scharstein 2002, Hirschmueller 2008)"),
+        sources="bad pixels and speckles of stereo (Scharstein 2002, Hirschmueller 2008)",
         source="Scharstein 2002",
         frame="which, what they read",
     ),
-    Record(
-        name="glossy_floor",
-        modality="depth",
-        apply=glossy_floor,
+    _record(
+        glossy_floor,
         half=TEST,
-        version="1",
         severity="the share s of the floor",
         fails="a polished floor shows the room upside down",
         formula=(

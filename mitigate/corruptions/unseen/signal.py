@@ -6,6 +6,7 @@ Functions take and give what those of ``corruptions/rgb.py`` do.
 from __future__ import annotations
 
 import math
+from functools import partial
 
 import numpy as np
 from numba import njit
@@ -74,52 +75,44 @@ def impulse_noise(views: np.ndarray, severity: float, key: Key, heading=None) ->
     return out
 
 
+_record = partial(Record.of, "rgb", version="1")
 RECORDS = (
-    Record(
-        name="rolling_shutter",
-        modality="rgb",
-        apply=rolling_shutter,
+    _record(
+        rolling_shutter,
         half=VALIDATION,
-        version="1",
         severity="rows moved by 0.05 s of the width",
         fails="the camera shakes while its rows are read",
         formula=(
             f"row y moved by {WOBBLE:g} s W sin(2 pi (f y/H + p)), f ~ U({WOBBLE_WAVES[0]:g}, "
             f"{WOBBLE_WAVES[1]:g}), p ~ U(0, 1); bilinear, edges replicated"
         ),
-        sources=("rolling-shutter geometry (Liang et al., TIP 2008); amplitude and f are ours"),
+        sources="rolling-shutter geometry (Liang et al., TIP 2008); amplitude and f are ours",
         source="Liang et al. 2008",
         episode="frequency f",
         frame="phase p",
         slip=0.01,
     ),
-    Record(
-        name="flicker_bands",
-        modality="rgb",
-        apply=flicker_bands,
+    _record(
+        flicker_bands,
         half=VALIDATION,
-        version="1",
         severity="bands of 1 +- 0.8 s of the light",
         fails="lamps flicker faster than the rows are read",
         formula=(
             f"min(255, x (1 + {FLICKER:g} s cos(2 pi (f y/H + p)))), f ~ U({BANDS[0]:g}, "
             f"{BANDS[1]:g}), p ~ U(0, 1) for each view"
         ),
-        sources=("lamps on mains under a rolling shutter (Sheinin et al., CVPR 2017); f is ours"),
+        sources="lamps on mains under a rolling shutter (Sheinin et al., CVPR 2017); f is ours",
         source="Sheinin et al. 2017",
         episode="frequency f",
         frame="phase p, by view",
     ),
-    Record(
-        name="impulse_noise",
-        modality="rgb",
-        apply=impulse_noise,
+    _record(
+        impulse_noise,
         half=TEST,
-        version="1",
         severity="0.3 s of the pixels black or white",
         fails="bit errors between sensor and computer",
-        formula=(f"each colour 0 or 255 in {IMPULSES:g} s of the pixels"),
-        sources=("impulse noise of ImageNet-C (0.03-0.27)"),
+        formula=f"each colour 0 or 255 in {IMPULSES:g} s of the pixels",
+        sources="impulse noise of ImageNet-C (0.03-0.27)",
         source="ImageNet-C",
         frame="which pixels",
         slip=0.002,

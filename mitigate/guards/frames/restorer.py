@@ -18,7 +18,7 @@ from mitigate.core.files import find
 from mitigate.core.names import unknown
 from mitigate.core.observation import DEPTH, RGB, Z_MAX
 from mitigate.corruptions.depth_sensor import DepthSensor, check_unit
-from mitigate.corruptions.views import MOST_VIEWS
+from mitigate.corruptions.suite import MOST_VIEWS
 from mitigate.guards.frames import folder as folders
 from mitigate.guards.frames.choices import SENSORS
 from mitigate.guards.frames.sensor import CHANNELS, SensorRestorer

@@ -7,8 +7,8 @@ from functools import cached_property, lru_cache
 import numpy as np
 
 from mitigate.worlds.apartments.faces import FaceBuilder, Faces
-from mitigate.worlds.apartments.furniture import CATALOGUE
 from mitigate.worlds.apartments.layout import (
+    CATALOGUE,
     DOOR,
     WALL,
     Door,

@@ -5,8 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from mitigate.worlds.apartments.apartment import Apartment
-from mitigate.worlds.apartments.furniture import CATALOGUE
-from mitigate.worlds.apartments.layout import DOOR
+from mitigate.worlds.apartments.layout import CATALOGUE, DOOR
 from mitigate.worlds.apartments.palette import palette
 
 _ROOMS = {

@@ -7,8 +7,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mitigate.worlds.apartments.furniture import CATALOGUE, CATEGORIES
-from mitigate.worlds.apartments.layout import DOOR, HEIGHT, LINTEL, WALL, Door, Furniture
+from mitigate.worlds.apartments.layout import (
+    CATALOGUE,
+    CATEGORIES,
+    DOOR,
+    HEIGHT,
+    LINTEL,
+    WALL,
+    Door,
+    Furniture,
+)
 from mitigate.worlds.apartments.palette import PATTERNS, Palette, palette
 
 if TYPE_CHECKING:

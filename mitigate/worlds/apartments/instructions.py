@@ -1,99 +1,26 @@
 """Language: what a person would say about a path, in templates that no two splits share.
 
-Every split owns its phrasings (``TEMPLATES``); the words of the validation splits all occur in the
-training phrasings, so an agent meets new sentences, not new words.
+Every split owns its phrasings (``templates.json``); the words of the validation splits all occur in
+the training phrasings, so an agent meets new sentences, not new words.
 """
 
 from __future__ import annotations
 
+import json
+from collections.abc import Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mitigate.worlds.apartments.furniture import CATALOGUE
+from mitigate.worlds.apartments.layout import CATALOGUE
 
 if TYPE_CHECKING:  # the words are used where there is no simulator
     from mitigate.worlds.apartments.apartment import Apartment
 
-TEMPLATES: dict[str, dict[str, tuple[str, ...]]] = {
-    "train": {
-        "ahead": ("walk straight ahead", "go straight", "head forward",
-            "keep going straight ahead", "move forward", "proceed straight", "go ahead",
-            "head straight on", "carry on straight ahead"),
-        "left": ("turn left", "take a left", "go to your left", "make a turn to the left",
-            "bear left", "turn to the left", "go left", "swing left"),
-        "right": ("turn right", "take a right", "go to your right", "make a turn to the right",
-            "bear right", "turn to the right", "go right", "swing right"),
-        "around": ("turn around", "make a full turn and go back", "turn back the other way",
-            "turn around and face the other way", "turn around completely"),
-        "door": ("go through the doorway", "walk through the door",
-            "leave the {here} through the doorway", "exit the {here}", "pass through the door",
-            "walk out of the {here}", "leave the {here}", "step through the doorway",
-            "go out of the {here}"),
-        "enter": ("enter the {room}", "go into the {room}", "walk into the {room}",
-            "head through the door into the {room}", "continue to the {room}",
-            "step into the {room}", "proceed into the {room}", "walk towards the {room} and enter",
-            "go inside the {room}", "cross into the {room}"),
-        "past": ("walk past the {thing}", "go past the {thing}", "pass the {thing}",
-            "keep going past the {thing}", "move along the {thing}", "walk by the {thing}",
-            "pass by the {thing}", "proceed past the {thing}", "go beyond the {thing}"),
-        "pass_left": ("walk past the {thing} on your left", "keep the {thing} on the left",
-            "pass the {thing} on your left side", "pass the {thing} to your left",
-            "with the {thing} on your left go on"),
-        "pass_right": ("walk past the {thing} on your right", "keep the {thing} on the right",
-            "pass the {thing} on your right side", "pass the {thing} to your right",
-            "with the {thing} on your right go on"),
-        "stop": ("stop next to the {thing}", "stop in front of the {thing}", "wait by the {thing}",
-            "stop at the {thing}", "wait near the {thing}", "walk to the {thing} and stop",
-            "go to the {thing} and wait there", "you are done when you reach the {thing}",
-            "stop beside the {thing}", "go all the way to the {thing} and stop",
-            "stop once you reach the {thing}", "go up to the {thing} and stop there",
-            "stand next to the {thing}", "stop right by the {thing}"),
-        "stop_room": ("stop next to the {thing} in the {room}",
-            "wait by the {thing} in the {room}", "go to the {thing} in the {room} and stop there",
-            "stop at the {thing} of the {room}", "in the {room} walk to the {thing} and wait",
-            "stop beside the {thing} in the {room}", "stand next to the {thing} of the {room}",
-            "once you are in the {room} stop at the {thing}"),
-        "find": ("find {a} {thing}", "go to {a} {thing}",
-            "look for {a} {thing} and stop next to it", "walk to the {thing} and wait",
-            "locate {a} {thing}", "search for {a} {thing} and stop beside it",
-            "find the nearest {thing} and stop there"),
-        "join": (" and ", ", then ", ". ", ". then ", ", ", ". after that ", ". once there "),
-    },
-    "val_seen": {
-        "ahead": ("go straight ahead", "walk forward"),
-        "left": ("make a left", "turn to your left"),
-        "right": ("make a right", "turn to your right"),
-        "around": ("turn back", "go back the other way"),
-        "door": ("go through the door", "exit through the doorway"),
-        "enter": ("head into the {room}", "pass into the {room}"),
-        "past": ("head past the {thing}", "walk along the {thing}"),
-        "pass_left": ("go past the {thing} on the left",),
-        "pass_right": ("go past the {thing} on the right",),
-        "stop": ("wait at the {thing}", "go to the {thing} and stop", "stop near the {thing}"),
-        "stop_room": ("stop near the {thing} in the {room}",
-            "walk to the {thing} in the {room} and wait"),
-        "find": ("look for {a} {thing}", "go to the {thing} and stop"),
-        "join": (", then ", ". and then "),
-    },
-    "val_unseen": {
-        "ahead": ("continue straight", "move straight ahead"),
-        "left": ("head left", "take a turn to your left"),
-        "right": ("head right", "take a turn to your right"),
-        "around": ("turn all the way around", "make a turn and go back"),
-        "door": ("leave through the door", "head through the doorway"),
-        "enter": ("move into the {room}", "go through to the {room}"),
-        "past": ("continue past the {thing}", "go along the {thing}"),
-        "pass_left": ("move past the {thing} on your left",),
-        "pass_right": ("move past the {thing} on your right",),
-        "stop": ("stop by the {thing}", "walk up to the {thing} and wait there",
-            "wait in front of the {thing}"),
-        "stop_room": ("in the {room} stop by the {thing}", "wait near the {thing} of the {room}"),
-        "find": ("walk to {a} {thing} and stop", "look for the {thing} and wait next to it"),
-        "join": (" and then ", ". next, "),
-    },
-}  # fmt: skip
+_FILE = Path(__file__).with_name("templates.json")
+TEMPLATES: dict[str, dict[str, list[str]]] = json.loads(_FILE.read_text(encoding="utf-8"))
 SAID_BEFORE = 0.25  # of the turns behind a doorway, in training: people say these both ways (ours)
 _BESIDE = 1.6  # metres before and behind a doorway within which a turn belongs to it (ours)
 _NEAR_PATH = 1.3  # metres from the path to a landmark that is worth naming
@@ -136,11 +63,11 @@ def find(apartment: Apartment, category: str, rng: np.random.Generator) -> str:
     return text[0].upper() + text[1:] + "."
 
 
-def _pick(options: tuple[str, ...], rng: np.random.Generator) -> str:
+def _pick(options: Sequence[str], rng: np.random.Generator) -> str:
     return options[int(rng.integers(len(options)))]
 
 
-def _sentence(clauses: list[str], joins: tuple[str, ...], rng: np.random.Generator) -> str:
+def _sentence(clauses: list[str], joins: Sequence[str], rng: np.random.Generator) -> str:
     text = clauses[0]
     for clause in clauses[1:]:
         text += _pick(joins, rng) + clause

@@ -14,7 +14,7 @@ from numba import njit
 
 from mitigate.core.observation import HFOV_DEGREES, VIEWS
 from mitigate.worlds.apartments.apartment import Apartment
-from mitigate.worlds.apartments.furniture import CATEGORIES, ROOM_KINDS
+from mitigate.worlds.apartments.layout import CATEGORIES, ROOM_KINDS
 from mitigate.worlds.apartments.navigation import FreeSpace
 from mitigate.worlds.apartments.palette import COLOUR_NAMES
 

@@ -1,12 +1,54 @@
-"""Floor plans: recursive splits into rooms, doorways, room kinds, furniture placement."""
+"""Floor plans: the furniture catalogue, recursive splits into rooms, doorways and placement.
+
+Each category of furniture is a few axis-aligned boxes, recognisable by its shape.
+``furniture.json`` holds sizes in metres. A part is ``(x0, x1, y0, y1, z0, z1, paint)`` in the
+object's own frame: x along the wall, y away from it (the back of the object is y = 0), z up.
+``paint`` is "main" (the object's colour), a name of ``paints``, or an RGB triple in [0, 1].
+"""
 
 from __future__ import annotations
 
+import json
 from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 
-from mitigate.worlds.apartments.furniture import CATALOGUE, ROOMS, Category
+_DATA = json.loads(Path(__file__).with_name("furniture.json").read_text(encoding="utf-8"))
+Part = tuple[float, float, float, float, float, float, object]
+
+
+@dataclass(frozen=True)
+class Category:
+    """``width`` along the wall and ``depth`` away from it in metres; ``solid`` blocks motion."""
+
+    name: str
+    width: float
+    depth: float
+    parts: tuple[Part, ...]
+    coloured: bool = True
+    solid: bool = True
+
+
+def _part(held: list[Any]) -> Part:
+    *box, paint = held
+    paint = _DATA["paints"].get(paint, paint) if isinstance(paint, str) else paint
+    return (*box, tuple(paint) if isinstance(paint, list) else paint)
+
+
+CATALOGUE = {
+    name: Category(name, **{**held, "parts": tuple(map(_part, held["parts"]))})
+    for name, held in _DATA["categories"].items()
+}
+CATEGORIES = tuple(CATALOGUE)
+
+# room kind -> (always present, chosen from); at most one of a category in a room except chairs
+ROOMS: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
+    kind: (tuple(held["always"]), tuple(held["choice"])) for kind, held in _DATA["rooms"].items()
+}
+ROOM_KINDS = tuple(ROOMS)
+
 
 WALL = 0.12  # wall thickness, metres
 DOOR = 1.0  # clear doorway width, metres

@@ -11,6 +11,8 @@ Beside each, ``instruction.txt`` may hold the words.
 
 from __future__ import annotations
 
+import io
+import math
 import warnings
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -24,12 +26,20 @@ from mitigate.core.json_files import parse_json, read_json
 from mitigate.core.names import short, unknown
 from mitigate.core.observation import DEPTH, RGB
 from mitigate.corruptions import frame_files
-from mitigate.corruptions.frame_files import SUFFIXES
-from mitigate.corruptions.plan import natural
+from mitigate.corruptions.frame_files import SUFFIXES, natural
 from mitigate.worlds.episodes import from_vlnce
-from mitigate.worlds.recorded import tum
-from mitigate.worlds.recorded.source import LARGEST_WORDS, LONGEST, Lens, text, words
-from mitigate.worlds.recorded.tum import number
+from mitigate.worlds.recorded.source import (
+    LARGEST_WORDS,
+    LONGEST,
+    SLOP,
+    Lens,
+    near,
+    placed,
+    plan_pose,
+    rotated,
+    text,
+    words,
+)
 
 CAMERAS, STEPS, EPISODE = "cameras.json", "steps.jsonl", "episode.json"
 POSES, WORDS = "poses.csv", "instruction.txt"
@@ -88,18 +98,18 @@ def open_folder(
         return [drive for drive in read if drive is not None]
     if cameras:
         raise ValueError(f"cameras= chooses of a recording by mitigate run, which {path} is not.")
-    if tum.is_one(path):
-        lenses, files, times, poses, dropped = tum.read(path, hfov)
-        said, per_count = words(path / WORDS), tum.UNIT if unit is None else unit
+    if _has_lists(path):
+        lenses, files, times, poses, dropped = _read_lists(path, hfov)
+        said, per_count = words(path / WORDS), TUM_UNIT if unit is None else unit
         return [Frames(path.name, said, lenses, files, times, poses, False, dropped, per_count)]
-    if (path / tum.TRAJECTORY).is_file():
-        raise ValueError(f"{path} has {tum.TRAJECTORY}, but not its lists {', '.join(tum.LISTS)}.")
+    if (path / TRAJECTORY).is_file():
+        raise ValueError(f"{path} has {TRAJECTORY}, but not its lists {', '.join(LISTS)}.")
     return [_simple(path, hfov, unit)]
 
 
 def is_drive(folder: Path) -> bool:
     """Whether a folder holds frames in one of the forms above."""
-    return any((folder / name).exists() for name in (RECORDING, *tum.LISTS, RGB, DEPTH))
+    return any((folder / name).exists() for name in (RECORDING, *LISTS, RGB, DEPTH))
 
 
 def _recorded(
@@ -286,4 +296,107 @@ def _lines(file: Path) -> list[Any]:
             if place < len(lines):
                 problem = f"{file}, line {place}, cannot be read ({error!s:.200})."
                 raise ValueError(problem) from error
+    return found
+
+
+LISTS, TRAJECTORY = ("rgb.txt", "depth.txt"), "groundtruth.txt"
+TUM_UNIT = 1 / 5000  # metres of a count; TUM RGB-D benchmark, file formats
+TUM_HFOV = math.degrees(2 * math.atan(320 / 525))  # its default calibration: 640 pixels, focal 525
+
+
+def _has_lists(path: Path) -> bool:
+    """Whether ``path`` has a list of images."""
+    return any((path / name).is_file() for name in LISTS)
+
+
+def _read_lists(
+    path: Path, hfov: float | None
+) -> tuple[dict[str, Lens], dict[str, list[Path]], np.ndarray, np.ndarray | None, int]:
+    """Cameras, the files of each, times and poses of a folder, and how many instants were left out,
+    as nothing of the other lists was near; an instant is an RGB image with what
+    is nearest in time. The agent's way is that of the camera's optical axis.
+
+    Raises ValueError for what is damaged, and if nothing fits together.
+    """
+    listed = {kind: _listed(path, f"{kind}.txt") for kind in (RGB, DEPTH)}
+    listed = {kind: lines for kind, lines in listed.items() if lines}
+    if not listed:
+        raise ValueError(f"{path}: its lists name no image.")
+    leading = RGB if RGB in listed else DEPTH
+    times = np.array([time for time, _ in listed[leading]])
+    files: dict[str, list[Path]] = {leading: [file for _, file in listed[leading]]}
+    kept = np.ones(len(times), bool)
+    for kind, lines in listed.items():
+        if kind != leading:
+            nearest, away = near(times, np.array([time for time, _ in lines]))
+            files[kind] = [lines[i][1] for i in nearest]
+            kept &= away <= SLOP
+    poses = None
+    if (path / TRAJECTORY).is_file():
+        poses, known = placed(times, _trajectory(path / TRAJECTORY))
+        kept &= known
+    if not kept.any():
+        raise ValueError(f"{path}: no frame of one list is within {SLOP} s of the others' lines.")
+    files = {
+        k: [f for f, keep in zip(there, kept, strict=True) if keep] for k, there in files.items()
+    }
+    cameras = {kind: Lens(kind, TUM_HFOV if hfov is None else hfov) for kind in files}
+    poses = None if poses is None else poses[kept]
+    return cameras, files, times[kept], poses, int((~kept).sum())
+
+
+def _listed(path: Path, name: str) -> list[tuple[float, Path]]:
+    """(time, file) of each line of a list of TUM's; files lie below ``path``."""
+    found = []
+    for line, row in _table(path / name, least=2):
+        file = path / row[1]
+        if "\0" in row[1] or path.resolve() not in file.resolve().parents:
+            raise ValueError(f"{path / name}, line {line}, names a file outside of {path}.")
+        found.append((number(row[0], path / name, line), file))
+    return sorted(found)
+
+
+def _trajectory(file: Path) -> np.ndarray:
+    """float64 [N, 4]: time and plan pose of lines "time x y z qx qy qz qw". Raises ValueError if
+    most look up or down, as a robot's poses would be read."""
+    rows = []
+    for line, row in _table(file, least=8):
+        numbers = [number(word, file, line) for word in row[:8]]
+        ahead = rotated(numbers[4:], (0.0, 0.0, 1.0))
+        rows.append((numbers[0], *plan_pose(numbers[1], numbers[2], ahead)))
+    if not rows:
+        raise ValueError(f"{file} holds no pose.")
+    lost = sum(math.isnan(row[3]) for row in rows)
+    if 2 * lost > len(rows):
+        raise ValueError(
+            f"{file}: {lost} of {len(rows)} poses look up or down, or are none. They must be of "
+            "the camera's optical axis (z ahead, x right, y down), with z up in the room. Turn "
+            "those of a robot (x ahead) so, or delete the file to go without poses."
+        )
+    return np.array(sorted(rows))
+
+
+def _table(file: Path, least: int) -> Iterator[tuple[int, list[str]]]:
+    """The words of each line that is no comment, with its number."""
+    if not file.is_file():
+        return
+    for place, line in enumerate(io.StringIO(text(file)), 1):
+        row = line.split()
+        if not row or row[0].startswith("#"):
+            continue
+        if len(row) < least:
+            raise ValueError(f"{file}, line {place}, has {len(row)} words, not {least}.")
+        if place > LONGEST:
+            raise ValueError(f"{file} has more than {LONGEST} lines: cut the recording.")
+        yield place, row
+
+
+def number(word: str, file: Path, line: int) -> float:
+    """``word`` as a finite number. Raises ValueError, naming file and line, if it is none."""
+    try:
+        found = float(word)
+    except ValueError:
+        found = math.nan
+    if not math.isfinite(found):
+        raise ValueError(f"{file}, line {line}: {word[:40]!r} is no finite number.")
     return found

@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 
 from mitigate.worlds.apartments.apartment import Apartment
-from mitigate.worlds.apartments.export_command import main, parse
-from mitigate.worlds.apartments.gltf import glb
+from mitigate.worlds.apartments.export_command import glb, main, parse
 from mitigate.worlds.apartments.tasks import load_episodes
 from mitigate.worlds.episodes import read_episodes
 

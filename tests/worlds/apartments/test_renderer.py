@@ -8,7 +8,7 @@ import pytest
 from mitigate.core.observation import VIEWS
 from mitigate.worlds.apartments import __main__ as show
 from mitigate.worlds.apartments.apartment import Apartment
-from mitigate.worlds.apartments.furniture import CATEGORIES
+from mitigate.worlds.apartments.layout import CATEGORIES
 from mitigate.worlds.apartments.renderer import EYE, FARTHEST, Renderer
 
 SIZE = 48
