@@ -256,7 +256,7 @@ def _check_success(success: Any, rule: str | None) -> None:
 
 
 def _check_shape(name: str, entry: str, shape: tuple[int, ...]) -> None:
-    """Raise ValueError for frames that the suite does not take: ``corruptions/views.py``."""
+    """Raise ValueError for frames that the suite does not take: ``corruptions/suite.py``."""
     flat = name == DEPTH and len(shape) == 2
     if flat or (len(shape) in (3, 4) and shape[-1] == (3 if name == RGB else 1)):
         return

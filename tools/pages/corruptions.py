@@ -50,7 +50,7 @@ read noise) that a hash of the pixel indexes; tests hold them against a slow dir
 A random field is white noise on a grid of {side} cells along the shorter side, smoothed by a
 Gaussian of the stated correlation and resampled to the frame. Constants of our own stand in the
 code with the rest: `mitigate/corruptions/rgb.py`, `mitigate/corruptions/masks.py`,
-`mitigate/corruptions/depth.py`, `mitigate/corruptions/echo.py`, `mitigate/corruptions/eld.py`.
+`mitigate/corruptions/depth.py`, `mitigate/corruptions/eld.py`.
 
 ## Suites
 

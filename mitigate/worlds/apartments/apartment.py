@@ -16,6 +16,7 @@ from mitigate.worlds.apartments.layout import (
     Rect,
     Room,
     furnish,
+    grow,
     name_rooms,
     place_doors,
     split_rooms,
@@ -77,7 +78,7 @@ class Apartment:
         for room in self.rooms:
             x0, y0, x1, y1 = room.rect
             for rect in ((x0, y0, x1, y0), (x0, y1, x1, y1), (x0, y0, x0, y1), (x1, y0, x1, y1)):
-                _fill(blocked, _pad(rect, WALL / 2), True)
+                _fill(blocked, grow(rect, WALL / 2), True)
         for door in self.doors:
             half = (WALL, DOOR / 2) if door.axis == 0 else (DOOR / 2, WALL)
             _fill(
@@ -108,10 +109,6 @@ def apartment_of(scene_id: str) -> Apartment:
             f"not {parts[1]!r}."
         )
     return apartment
-
-
-def _pad(rect: Rect, by: float) -> Rect:
-    return rect[0] - by, rect[1] - by, rect[2] + by, rect[3] + by
 
 
 def _fill(grid: np.ndarray, rect: Rect, value: bool) -> None:

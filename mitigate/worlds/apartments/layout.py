@@ -175,7 +175,7 @@ def furnish(
                 continue
             placed.append(piece)
             if CATALOGUE[name].solid:
-                taken.append(_grow(piece.rect, 0.05))
+                taken.append(grow(piece.rect, 0.05))
     return placed
 
 
@@ -220,7 +220,7 @@ def _door_clearance(door: Door) -> Rect:
     return door.x - half[0], door.y - half[1], door.x + half[0], door.y + half[1]
 
 
-def _grow(rect: Rect, by: float) -> Rect:
+def grow(rect: Rect, by: float) -> Rect:
     return rect[0] - by, rect[1] - by, rect[2] + by, rect[3] + by
 
 
