@@ -10,7 +10,7 @@ RANKS = $(if $(filter-out 1,$(NPROC)),-m torch.distributed.run --standalone --ma
 BIN := $(VENV)/bin
 PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check
 .DEFAULT_GOAL := help
-.PHONY: help install test-faults train evaluate sweep table report table1 table2 export test test-all wheels lint bench doctor clean
+.PHONY: help install test-faults train evaluate sweep table report table1 table2 export test test-all wheels lint docs docs-serve bench doctor clean
 
 help: ## list the targets
 	@grep -E '^[a-z0-9-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z0-9-]+):.*## /\1|/' \
@@ -76,6 +76,12 @@ lint: $(VENV)/.stamp ## check style, formatting and types
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
+
+docs: $(VENV)/.stamp-docs ## build the documentation site in build/site
+	NO_MKDOCS_2_WARNING=1 $(BIN)/python -m mkdocs build --quiet --config-file tools/site/mkdocs.yml
+
+docs-serve: $(VENV)/.stamp-docs ## show the site at http://127.0.0.1:8000 and rebuild it on changes
+	NO_MKDOCS_2_WARNING=1 $(BIN)/python -m mkdocs serve --config-file tools/site/mkdocs.yml
 
 bench: $(VENV)/.stamp-bench ## time corruptions beside their peers, training, evaluation and the renderer (minutes)
 	$(BIN)/python -m tools.bench $(ARGS)

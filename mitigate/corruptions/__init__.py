@@ -1,6 +1,7 @@
 """Corruptions: what can happen to a frame or an instruction, keyed and the same everywhere."""
 
 from mitigate.corruptions.depth_sensor import DepthSensor
+from mitigate.corruptions.example import example_depth, example_rgb
 from mitigate.corruptions.instruction import (
     NotApplicable,
     corrupt_instruction,
@@ -40,5 +41,7 @@ __all__ = [
     "corrupt_instruction",
     "corrupt_normalised",
     "corrupt_observation",
+    "example_depth",
+    "example_rgb",
     "inject_system_prompt",
 ]

@@ -205,11 +205,9 @@ def test_an_adapter_adapts_once(encoder):
     assert calls == adapters.adapted(model)
 
 
-def test_the_lines_in_the_readme_load_adapters_without_this_package(tmp_path, monkeypatch):
-    readme = (Path(__file__).parents[2] / "README.md").read_text(encoding="utf-8")
-    train, load = (
-        b for b in re.findall(r"```python\n(.*?)```", readme, re.S) if "my-adapters" in b
-    )
+def test_examples_of_the_encoder_page_load_adapters_without_this_package(tmp_path, monkeypatch):
+    page = (Path(__file__).parents[2] / "docs/encoder.md").read_text(encoding="utf-8")
+    train, load = (b for b in re.findall(r"```python\n(.*?)```", page, re.S) if "my-adapters" in b)
     monkeypatch.chdir(tmp_path)
     torch.manual_seed(0)
     model, x = ResNet().eval(), torch.randn(2, 3, 32, 32)

@@ -1,0 +1,103 @@
+"""Hooks of MkDocs: pages from outside ``docs/``, generated reference pages, links to sources."""
+
+from __future__ import annotations
+
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+from mkdocs.structure.files import File, Files
+
+from mitigate.cli import COMMANDS
+
+ROOT = Path(__file__).resolve().parents[2]
+PAGES = {  # page of the site: file of the checkout
+    "changelog.md": "CHANGELOG.md",
+    "checkpoints.md": "checkpoints/README.md",
+    "contributing.md": "CONTRIBUTING.md",
+    "recipes.md": "recipes/README.md",
+    "security.md": "SECURITY.md",
+}
+CONFIGS = ("train", "evaluate", "run", "replay", "sweep", "table1", "table2", "export_drive")
+LINK = re.compile(r"(!?)\[([^\]]*)\]\((?!\w+:|#)([^)#\s]+)(#[^)\s]*)?\)")
+
+
+def on_files(files: Files, config) -> Files:
+    """Add the pages that are outside ``docs/`` and the generated ones."""
+    for page, source in PAGES.items():
+        text = (ROOT / source).read_text(encoding="utf-8")
+        files.append(File.generated(config, page, content=_relink(text, source, page)))
+    files.append(File.generated(config, "reference/commands.md", content=commands_page()))
+    files.append(File.generated(config, "reference/configuration.md", content=configs_page()))
+    return files
+
+
+def on_page_markdown(markdown: str, page, config, files: Files) -> str:
+    """Rewrite links of pages in ``docs/`` that point to other files of the checkout."""
+    if page.file.generated_by:
+        return markdown
+    return _relink(markdown, f"docs/{page.file.src_uri}", page.file.src_uri)
+
+
+def _relink(text: str, source: str, page: str) -> str:
+    """Make links of ``source`` valid on ``page``; links to files without a page become text."""
+    pages = {file: name for name, file in PAGES.items()}
+
+    def replace(match: re.Match) -> str:
+        image, label, path, anchor = match.groups(default="")
+        target = os.path.normpath(os.path.join(os.path.dirname(source), path))
+        if target == "README.md":
+            name, anchor = "index.md", ""
+        elif target in pages:
+            name = pages[target]
+        elif target.startswith("docs/") and not target.startswith("docs/leaderboard"):
+            name = target.removeprefix("docs/")
+        else:
+            return label
+        return f"{image}[{label}]({os.path.relpath(name, os.path.dirname(page) or '.')}{anchor})"
+
+    return LINK.sub(replace, text)
+
+
+def commands_page() -> str:
+    """Return the page that lists each command with its help."""
+    parts = [
+        "# Commands",
+        "",
+        "`mitigate COMMAND [OPTIONS]`. Each command prints its help with `--help`.",
+    ]
+    for name, command in COMMANDS.items():
+        shown = subprocess.run(
+            [sys.executable, "-c", "from mitigate.cli import main; main()", name, "--help"],
+            capture_output=True,
+            text=True,
+            cwd=ROOT,
+            check=True,
+        ).stdout
+        parts += ["", f"## {name}", "", f"{command.about[0].upper()}{command.about[1:]}.", ""]
+        parts += ["```text", shown.strip(), "```"]
+    return "\n".join(parts)
+
+
+def configs_page() -> str:
+    """Return the page with every option of the Hydra commands, as the files with their comments."""
+    parts = [
+        "# Configuration",
+        "",
+        "Every option of a command is an entry of its file in `conf/`. Set it as `name=value`, and",
+        "nested entries with dots: `trainer.lr=1e-4`.",
+    ]
+    groups = ("agent", "env", "schedule", "suite", "launcher", "experiment", "debug", "recipe")
+    for name in CONFIGS:
+        parts += _yaml(f"{name}.yaml")
+    for group in groups:
+        for path in sorted((ROOT / "conf" / group).glob("*.yaml")):
+            parts += _yaml(f"{group}/{path.name}")
+    return "\n".join(parts)
+
+
+def _yaml(name: str) -> list[str]:
+    text = (ROOT / "conf" / name).read_text(encoding="utf-8").strip()
+    return ["", f"## `{name}`", "", "```yaml", text, "```"]
