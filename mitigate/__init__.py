@@ -35,7 +35,7 @@ def __getattr__(name: str) -> Any:
         try:
             return getattr(import_module(_HOMES[name]), name)
         except ModuleNotFoundError as error:
-            from mitigate.core.extras import lacking
+            from mitigate.core.errors import lacking
 
             told = lacking(f"mitigate.{name}", error)
             if not told:

@@ -12,7 +12,7 @@ from collections.abc import Sequence
 from importlib import import_module
 from typing import NamedTuple
 
-from mitigate.core.extras import lacking
+from mitigate.core.errors import lacking
 from mitigate.core.names import unknown
 
 

@@ -57,7 +57,7 @@ def argument_names(kind: Any) -> list[str]:
     A class with ``sources`` (``mitigate.training.objective``) takes those of its sources too, and
     no source itself.
     """
-    sources: Mapping[str, Any] = getattr(kind, "sources", {})  # of objectives alone
+    sources: Mapping[str, Any] = getattr(kind, "sources", {})  # other classes and functions lack it
     names = [name for name in signature(kind).parameters if name not in sources]
     for source in sources.values():
         names += [name for name in signature(source).parameters if name not in names]

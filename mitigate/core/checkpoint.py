@@ -10,6 +10,7 @@ from __future__ import annotations
 import hashlib
 import shutil
 from pathlib import Path
+from typing import Any, Protocol, runtime_checkable
 
 import torch
 from safetensors import SafetensorError
@@ -173,12 +174,11 @@ def _kind(value: torch.Tensor) -> str:
 
 
 def _borrowed(module: nn.Module) -> dict[str, torch.Tensor]:
-    """The tensors that a state dict leaves out where they are public ones: ``public_tensors`` of
-    the modules in ``module`` that have such (``core/public_weights.py``)."""
+    """The tensors that a state dict leaves out where they are public ones (:func:`borrow`)."""
     return {
         f"{prefix}.{name}" if prefix else name: value
         for prefix, part in module.named_modules()
-        for name, value in getattr(part, "public_tensors", {}).items()
+        for name, value in vars(part).get("public_tensors", {}).items()
     }
 
 
@@ -215,18 +215,26 @@ def _again(file: Path) -> str:
     return f"Fetch or train them again.{alone}"
 
 
+@runtime_checkable
+class OwnFormat(Protocol):
+    """An agent with a format of its own, such as an adapter in PEFT's."""
+
+    def save(self, folder: str | Path) -> Any: ...
+
+    def load(self, folder: str | Path) -> Any: ...
+
+
 def save_agent(agent: nn.Module, folder: str | Path, config: str | None = None) -> None:
     """Write what was trained into ``folder``, and its settings.
 
     Args:
-        agent: written by its own ``save``, if it has one (an adapter in PEFT's format), else as
+        agent: written by its own ``save``, if it has one (:class:`OwnFormat`), else as
             :func:`save_weights` does.
         folder: the folder.
         config: text of ``config.yaml``; None: no such file.
     """
-    save = getattr(agent, "save", None)  # of a kind of agent with a format of its own
-    if save is not None:
-        save(folder)
+    if isinstance(agent, OwnFormat):
+        agent.save(folder)
         if config is not None:
             folders.add_file(folder, CONFIG, config)
         return
@@ -238,7 +246,10 @@ def save_agent(agent: nn.Module, folder: str | Path, config: str | None = None) 
 
 def load_agent(agent: nn.Module, path: str | Path) -> None:
     """Fill ``agent`` from what :func:`save_agent` wrote; raises as :func:`load_weights` does."""
-    getattr(agent, "load", lambda place: load_weights(agent, place))(path)
+    if isinstance(agent, OwnFormat):
+        agent.load(path)
+    else:
+        load_weights(agent, path)
 
 
 def weights_sha(module: nn.Module, leave_out: str | None = None) -> str:
@@ -253,3 +264,44 @@ def weights_sha(module: nn.Module, leave_out: str | None = None) -> str:
             raw = value.detach().cpu().contiguous().reshape(-1).view(torch.uint8)
             sha.update(raw.numpy().tobytes())
     return sha.hexdigest()[:12]
+
+
+# Public weights inside a module of ours are never copied into its checkpoints, only named there. A
+# checkpoint of such a module holds what differs from them, such as adapters, and the sha256 of the
+# file that they came from.
+
+
+def borrow(module: nn.Module, prefixes: tuple[str, ...], source: str, name: str) -> None:
+    """Leave the tensors of ``module`` whose names begin so out of its state dicts, while they are
+    as they are now, bit for bit; a state dict without them takes them from here.
+
+    ``source``: sha256 of the file that they came from, in hex; ``name``: what to call them in an
+    error. Loading a state dict that was made with others raises ValueError.
+    """
+    module.public_tensors = {  # type: ignore[assignment]
+        key: value.clone() for key, value in module.state_dict().items() if key.startswith(prefixes)
+    }
+    module.public_name = name  # type: ignore[assignment]
+    module.register_buffer("public", torch.tensor(list(bytes.fromhex(source)), dtype=torch.uint8))
+    module.register_state_dict_post_hook(_leave_out)
+    module.register_load_state_dict_pre_hook(_fill_in)
+
+
+def _leave_out(module: Any, state: dict[str, Any], prefix: str, _: Any) -> None:
+    for name, value in module.public_tensors.items():
+        held = state.get(prefix + name)
+        if held is not None and torch.equal(held.cpu(), value):
+            del state[prefix + name]
+
+
+def _fill_in(module: Any, state: dict[str, Any], prefix: str, *_: Any) -> None:
+    made_with = state.get(f"{prefix}public")
+    if made_with is not None and not torch.equal(made_with.cpu(), module.public.cpu()):
+        raise ValueError(
+            f"These weights belong to {module.public_name} with sha256 "
+            f"{bytes(made_with.tolist()).hex()[:12]}, but the installed one has "
+            f"{bytes(module.public.tolist()).hex()[:12]}: install the version that they were made "
+            "with."
+        )
+    for name, value in module.public_tensors.items():
+        state.setdefault(prefix + name, value)

@@ -1,4 +1,4 @@
-"""Compose, type and explain the options of a command; run its Hydra program.
+"""Configs: compose, type and explain the options of a command; run its Hydra program.
 
 Each command registers the dataclass of its options when its module is imported (:func:`register`).
 A user's mistake ends in one paragraph: cause, choices, fix. Set ``HYDRA_FULL_ERROR=1`` to see the
@@ -15,7 +15,7 @@ import signal
 import sys
 import textwrap
 import threading
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, redirect_stderr
 from itertools import takewhile
 from pathlib import Path
@@ -33,20 +33,14 @@ from mitigate.core.build import argument_names
 from mitigate.core.errors import said, too_much
 from mitigate.core.files import PACKAGE
 from mitigate.core.names import unknown
-from mitigate.core.options import (
-    check_dashes,
-    config_folder,
-    flags_first,
-    without_config_folder,
-)
-from mitigate.core.signals import raise_ended
+from mitigate.core.options import check_dashes, config_folder, flags_first, without_config_folder
+from mitigate.core.signals import Ended, raise_ended
 
 CONF = PACKAGE / "conf"  # of a checkout: a link to its conf/
 TYPES: dict[str, type] = {}  # the dataclass of each conf/<name>.yaml that is registered
 FULL = "HYDRA_FULL_ERROR"  # what Hydra asks whether errors are shown whole
-OURS = (
-    "MITIGATE_FULL_ERROR"  # set beside it by main: programs that it starts do not show them whole
-)
+# set beside it by main: programs that it starts do not show them whole
+OURS = "MITIGATE_FULL_ERROR"
 HYDRAS = "Error executing job with overrides"  # hydra.core.utils, JobReturn.return_value
 WHOLE = "# @package _global_"  # Hydra's mark of a file that sets entries beside its own group
 KINDS = {
@@ -124,7 +118,7 @@ def main(
     except KeyboardInterrupt as error:
         command = shlex.join([*sys.argv[0].split(), *sys.argv[1:], *behind])
         print(f"\n{str(error) or 'SIGINT'}: stopped. {again}: {command}", file=sys.stderr)
-        sys.exit(getattr(error, "status", 130))
+        sys.exit(error.status if isinstance(error, Ended) else 130)
     finally:
         del os.environ[FULL], os.environ[OURS]
 
@@ -133,8 +127,7 @@ def main(
 def _without_hydras_line() -> Iterator[None]:
     """Leave out the line with which Hydra announces an error: users' are explained in a paragraph,
     and others come with a traceback."""
-    stream = _Quieter(sys.stderr)
-    with redirect_stderr(stream):
+    with redirect_stderr(_Quieter(sys.stderr)):
         yield
 
 
@@ -148,7 +141,7 @@ class _Quieter:
         return len(text) if text.startswith(HYDRAS) else self._stream.write(text)
 
     def __getattr__(self, name: str) -> Any:
-        return getattr(self._stream, name)
+        return getattr(self._stream, name)  # all else is the stream's own
 
 
 def explain(error: Exception, primary: str, options: Sequence[str] = ()) -> str:
@@ -185,13 +178,9 @@ def explain(error: Exception, primary: str, options: Sequence[str] = ()) -> str:
     return " ".join(str(error).split())
 
 
-def load_config(
-    primary: str, overrides: Iterable[str] = (), further: Path | None = None
-) -> DictConfig:
-    """Compose ``conf/<primary>.yaml`` with ``overrides``, outside a Hydra program.
-
-    ``further`` is a folder with more configs, which ``overrides`` may name too
-    (``--config-dir=mine``).
+def load_config(primary: str, words: Sequence[str] = ()) -> DictConfig:
+    """Compose ``conf/<primary>.yaml`` with the ``words`` of a command line, outside a Hydra program:
+    overrides, and maybe a folder with more configs (``--config-dir=mine``).
 
     Raises:
         ValueError: if no imported module has registered the types of this file.
@@ -201,14 +190,14 @@ def load_config(
             f"The types of conf/{primary}.yaml are not registered: import the module of the "
             "command first (mitigate/cli.py names it)."
         )
-    own, overrides = without_config_folder([*overrides])
-    further = further or config_folder(own)
-    if further is not None:
-        place = str(further.resolve()).replace("\\", "\\\\").replace('"', '\\"')
-        overrides = [*overrides, f'hydra.searchpath=["file://{place}"]']
+    _, overrides = without_config_folder(words)
+    folder = config_folder(words)
+    if folder is not None:
+        place = str(folder.resolve()).replace("\\", "\\\\").replace('"', '\\"')
+        overrides.append(f'hydra.searchpath=["file://{place}"]')
     GlobalHydra.instance().clear()
     with initialize_config_dir(str(CONF), version_base="1.3"):
-        return compose(primary, list(overrides))
+        return compose(primary, overrides)
 
 
 def notices(primary: str, options: Sequence[str]) -> list[str]:
@@ -222,12 +211,12 @@ def notices(primary: str, options: Sequence[str]) -> list[str]:
     }
     if not added:
         return []
-    others = [o for o in options if re.match(r"[^-+].*=|~", o)]
+    own, others = without_config_folder(options)
     try:
-        cfg = load_config(primary, others, config_folder(options))
+        cfg = load_config(primary, [*own, *(o for o in others if re.match(r"[^-+].*=|~", o))])
     except (HydraException, OmegaConfBaseException):  # which the program itself explains
         return []
-    folders = [folder for folder in (CONF, config_folder(options)) if folder is not None]
+    folders = (CONF, config_folder(options) or CONF)
     return [
         told
         for key, whole in added.items()
@@ -272,9 +261,10 @@ def options_text(primary: str) -> str:
     own, _, _ = (CONF / f"{primary}.yaml").read_text(encoding="utf-8").partition("\nhydra:")
     lines = [re.sub(r"^# (\w+: .*#)", r"\1", line) for line in own.splitlines()]
     kept = [line for line in lines if re.match(r" *\w+:.*#|\w+: \S", line)]
-    groups = []
-    for name, chosen in _chosen(primary).items():
-        groups.append(f"{name}: {chosen or 'null'}  # {_choices(name, primary)}")
+    groups = [
+        f"{name}: {chosen or 'null'}  # {_choices(name, primary)}"
+        for name, chosen in _chosen(primary).items()
+    ]
     return "\n".join(groups + kept)
 
 
@@ -304,19 +294,19 @@ def _chosen(primary: str) -> dict[str, str | None]:
     return {name: chosen for name, chosen in found.items() if "/" not in name}
 
 
-def composed(primary: str, options: Sequence[str] = (), further: Path | None = None) -> DictConfig:
+def composed(primary: str, words: Sequence[str] = ()) -> DictConfig:
     """:func:`load_config`, which raises ValueError, in one paragraph, for what is wrong."""
     try:
-        return load_config(primary, options, further)
+        return load_config(primary, words)
     except (HydraException, OmegaConfBaseException) as error:
-        own = [f"--config-dir={further}"] if further else []
-        raise ValueError(explain(error, primary, [*options, *own])) from error
+        raise ValueError(explain(error, primary, words)) from error
 
 
 def _chosen_by(options: Sequence[str], primary: str) -> DictConfig:
     """The config with what ``options`` choose of its groups (``agent=recurrent``), and no more."""
-    groups = [o for o in options if o.partition("=")[0] in _chosen(primary)]
-    return load_config(primary, groups, config_folder(options))
+    own, others = without_config_folder(options)
+    groups = [o for o in others if o.partition("=")[0] in _chosen(primary)]
+    return load_config(primary, [*own, *groups])
 
 
 def _unknown_key(key: str, cfg: DictConfig, primary: str) -> str:

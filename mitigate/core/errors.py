@@ -1,4 +1,4 @@
-"""Errors that a setting, a file or the system brings about, in one paragraph each."""
+"""Errors that a setting, a file, the system or a missing package brings about, in one paragraph."""
 
 from __future__ import annotations
 
@@ -10,6 +10,26 @@ from pathlib import Path
 from mitigate.core.files import PACKAGE
 
 RECIPES = (PACKAGE / "recipes").resolve()  # of a checkout: a link
+# what extras of pyproject.toml bring, by the names that are imported
+PACKAGES = frozenset(
+    [
+        "hydra",
+        "matplotlib",
+        "omegaconf",
+        "panda3d",
+        "peft",
+        "PIL",
+        "rosbags",
+        "sacrebleu",
+        "safetensors",
+        "tensorboard",
+        "torch",
+        "torchrl",
+        "tqdm",
+        "transformers",
+        "yaml",
+    ]
+)
 _STANDARD = Path(sysconfig.get_path("stdlib")).resolve()
 _INSTALLED = {"site-packages", "dist-packages"}
 
@@ -54,4 +74,15 @@ def too_much(error: Exception) -> str:
         f"A setting or a file asks for {what or 'too great a number'} ("
         f"{cause or type(error).__name__}). Look at "
         "the last option or file that you changed; HYDRA_FULL_ERROR=1 shows where it was used."
+    )
+
+
+def lacking(what: str, error: ModuleNotFoundError, extra: str = "train") -> str:
+    """What ``what`` needs and how to install it; empty if what is missing is no such package."""
+    name = (error.name or "").partition(".")[0]
+    if name not in PACKAGES:
+        return ""
+    return (
+        f"{what} needs {name}, which is not installed: in a checkout, make install, or "
+        f"pip install -e '.[{extra}]'."
     )

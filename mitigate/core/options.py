@@ -1,19 +1,66 @@
-"""Options of a command line that Hydra would refuse in words of its own, or take without a word."""
+"""The words of a command line, before any config is read: paths, ``key=value`` options and flags.
+
+Commands that need no Hydra read theirs with :func:`paths_and_options`. The others leave options to
+Hydra (``core/conf.py``), except those that it would refuse in words of its own, or take without a
+word.
+"""
 
 from __future__ import annotations
 
 import argparse
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Collection, Iterable, Sequence
 from pathlib import Path
 
-from hydra._internal.utils import get_args_parser
-from hydra.core.override_parser.overrides_parser import OverridesParser
-from hydra.core.override_parser.types import Override
-from hydra.errors import HydraException
+from mitigate.core.names import unknown
 
+HELP = ("--help", "-h")
 MULTIRUN = ("-m", "--multirun")
 CONFIG_DIR = ("--config-dir", "-cd")
+
+
+def asks_help(arguments: Sequence[str]) -> bool:
+    """Whether the help is to be shown: it is asked for, or there is nothing to do."""
+    return not arguments or any(name in arguments for name in HELP)
+
+
+def paths_and_options(
+    arguments: Sequence[str], paths: Sequence[str], known: Collection[str]
+) -> tuple[list[str], dict[str, str]]:
+    """As many paths as there are names in ``paths``, and the options by name, as text.
+
+    Raises ValueError in one paragraph for another number of paths, an option that is not in
+    ``known`` or that is given twice, and for -x or --x.
+    """
+    found: list[str] = []
+    options: dict[str, str] = {}
+    for argument in arguments:
+        name, equals, value = argument.partition("=")
+        if equals and name.isidentifier():
+            if name not in known:
+                raise ValueError(unknown("option", name, known))
+            if name in options:
+                raise ValueError(f"{name} is given twice: {options[name]!r} and {value!r}.")
+            options[name] = value
+        elif argument.startswith("-"):
+            raise ValueError(f"There is no option {argument}: write key=value, or --help.")
+        else:
+            found.append(argument)
+    if len(found) != len(paths):
+        given = f"there are {len(found)}: {', '.join(found)}" if found else "there are none"
+        raise ValueError(
+            f"The command takes {len(paths)} {'path' if len(paths) == 1 else 'paths'}, "
+            f"{' and '.join(paths)}, but {given}. See --help. (A path whose name holds '=' is "
+            "written ./a=b.)"
+        )
+    return found, options
+
+
+def check_paths(paths: Sequence[object], options: str) -> None:
+    """Raise ValueError for ``out=x`` among the paths of a command whose ``options`` have dashes."""
+    for path in map(str, paths):
+        if path.partition("=")[0].isidentifier() and "=" in path and not Path(path).exists():
+            raise ValueError(f"There is no file {path}. Options are written {options} here.")
 
 
 def paths_and_overrides(arguments: Iterable[str]) -> tuple[list[str], list[str]]:
@@ -26,21 +73,21 @@ def paths_and_overrides(arguments: Iterable[str]) -> tuple[list[str], list[str]]
 def values(options: Sequence[str], key: str) -> list[str]:
     """What ``options`` set ``key`` to, without quotes and escapes: the last of them, and of one
     with several values, for many runs, all. None for what Hydra cannot read."""
-    found: list[str] = []
-    for option in options:
-        if re.match(rf"\+{{0,2}}{re.escape(key)}=", option):
-            try:
-                (parsed,) = OverridesParser.create().parse_overrides([option])
-            except HydraException:
-                return []
-            several = parsed.is_sweep_override()
-            found = [*map(str, parsed.sweep_string_iterator())] if several else [_text(parsed)]
-    return found
+    from hydra.core.override_parser.overrides_parser import OverridesParser  # an optional package
+    from hydra.core.override_parser.types import QuotedString
+    from hydra.errors import HydraException
 
-
-def _text(parsed: Override) -> str:
-    value = parsed.value()
-    return str(getattr(value, "text", value))
+    given = [option for option in options if re.match(rf"\+{{0,2}}{re.escape(key)}=", option)]
+    try:
+        parsed = OverridesParser.create().parse_overrides(given)
+    except HydraException:
+        return []
+    if not parsed or parsed[-1].is_sweep_override():
+        return [
+            str(value) for override in parsed[-1:] for value in override.sweep_string_iterator()
+        ]
+    value = parsed[-1].value()
+    return [value.text if isinstance(value, QuotedString) else str(value)]
 
 
 def config_folder(options: Sequence[str]) -> Path | None:
@@ -63,6 +110,8 @@ def without_config_folder(options: Sequence[str]) -> tuple[list[str], list[str]]
 
 def check_dashes(options: Sequence[str]) -> None:
     """Raise ValueError for ``--severity 0.6``, as other programs have it."""
+    from hydra._internal.utils import get_args_parser  # an optional package
+
     known = {flag for action in get_args_parser()._actions for flag in action.option_strings}
     for at, word in enumerate(options):
         flag, equals, value = word.partition("=")

@@ -1,5 +1,8 @@
 """In which number format networks compute: decided here, once a run, and obeyed everywhere.
 
+The choice depends on the device alone and is not timed: on a busy machine the same command would
+choose now one format, now the other, and train other weights.
+
 The trainer chooses, keeps the answer in the checkpoint, and puts :func:`computing` around all that
 it runs: forward, rollouts, teachers, feature caches. Weights stay float32 and evaluations compute
 in float32, so that rows of two machines can be compared.
@@ -8,9 +11,9 @@ in float32, so that rows of two machines can be compared.
 from __future__ import annotations
 
 import os
+import re
 import time
 from contextlib import AbstractContextManager
-from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
 
@@ -19,26 +22,10 @@ import torch.nn.functional as F
 
 CHOICES = ("auto", "fp32", "bf16")
 CAP = "ONEDNN_MAX_CPU_ISA"  # oneDNN's cap on the instructions that it uses
-_NATIVE = (
-    "BF16",
-    "FP16",
-    "AMX",
-    "AVX10",
-    "DEFAULT",
-    "ALL",
-)  # caps that leave bf16 its instructions
-# Milliseconds of the probe in fp32 on the machine that the stages' costs were measured on (2 cores
+_NATIVE = re.compile("BF16|FP16|AMX|AVX10|DEFAULT|ALL")  # caps that leave bf16 its instructions
+# Milliseconds of the probe on the machine that the stages' costs were measured on (2 cores
 # of an AMD EPYC, capped to AVX2).
 REFERENCE = 12.0
-
-
-@dataclass(frozen=True)
-class Probe:
-    """Least milliseconds of one small training step, forward and backward; ``bf16`` is None where
-    it was not timed because the CPU does not compute it natively."""
-
-    fp32: float
-    bf16: float | None
 
 
 def check(precision: str) -> None:
@@ -52,19 +39,15 @@ def check(precision: str) -> None:
 def choose(precision: str, device: torch.device) -> str:
     """Return "fp32" or "bf16" for ``precision``, one of ``CHOICES``.
 
-    "auto" is bf16 only where the device computes it natively and, on a CPU, :func:`probe` finds it
-    no slower; elsewhere bf16 is emulated, 3 to 10 times slower than fp32 (measured with AVX2).
-    Raises ValueError for another name.
+    "auto" is bf16 only where the device computes it natively; elsewhere bf16 is emulated, 3 to 10
+    times slower than fp32 (measured with AVX2). Raises ValueError for another name.
     """
     check(precision)
     if precision != "auto":
         return precision
     if device.type == "cuda":
         return "bf16" if torch.cuda.is_bf16_supported(including_emulation=False) else "fp32"
-    if device.type != "cpu":
-        return "fp32"
-    found = probe()
-    return "bf16" if found.bf16 is not None and found.bf16 <= found.fp32 else "fp32"
+    return "bf16" if device.type == "cpu" and native() else "fp32"
 
 
 def device_of(name: str) -> torch.device:
@@ -97,11 +80,11 @@ def device_of(name: str) -> torch.device:
 def to_device(value: Any, device: torch.device) -> Any:
     """Move what has ``to`` (tensors, batches of them) in nested dicts, lists and tuples to
     ``device``; leave the rest."""
-    if hasattr(value, "to"):
+    if hasattr(value, "to"):  # batches of decisions are of users' classes
         return value.to(device)
     if isinstance(value, dict):
         return {name: to_device(item, device) for name, item in value.items()}
-    if isinstance(value, (list, tuple)) and not hasattr(value, "_fields"):
+    if type(value) in (list, tuple):  # not a named one, which objectives move themselves
         return type(value)(to_device(item, device) for item in value)
     return value
 
@@ -124,37 +107,24 @@ def native(capabilities: dict | None = None, cap: str | None = None) -> bool:
     """
     has = torch.cpu.get_capabilities() if capabilities is None else capabilities
     cap = os.environ.get(CAP, "") if cap is None else cap
-    allowed = not cap or any(name in cap.upper() for name in _NATIVE)
+    allowed = not cap or _NATIVE.search(cap.upper()) is not None
     return allowed and any(has.get(name) for name in ("avx512_bf16", "amx_bf16", "bf16"))
 
 
 @lru_cache(maxsize=1)
-def probe(rounds: int = 7) -> Probe:
-    """Time a small step of convolutions and a product in fp32 and, where it is native, in bf16,
-    in turns: a tenth of a second or two, once a process."""
-    kinds = ("fp32", "bf16") if native() else ("fp32",)
-    spent: dict[str, list[float]] = {kind: [] for kind in kinds}
+def probe(rounds: int = 7) -> float:
+    """Return the least milliseconds of a small fp32 training step of convolutions and a product:
+    how fast this machine is. Takes a tenth of a second, once per process."""
     with torch.random.fork_rng(devices=[]):
-        step = _step()
+        x = torch.randn(48, 32, 32, 32)
+        kernel = torch.randn(48, 32, 3, 3, requires_grad=True)
+        matrix = torch.randn(512, 512, requires_grad=True)
+    spent = []
     for _ in range(rounds):
-        for kind in kinds:
-            began = time.perf_counter()
-            step(kind)
-            spent[kind].append(1e3 * (time.perf_counter() - began))
-    least = {kind: min(times) for kind, times in spent.items()}
-    return Probe(least["fp32"], least.get("bf16"))
-
-
-def _step():
-    x = torch.randn(48, 32, 32, 32)
-    kernel = torch.randn(48, 32, 3, 3, requires_grad=True)
-    matrix = torch.randn(512, 512, requires_grad=True)
-
-    def step(kind: str) -> None:
-        with computing(kind, x.device):
-            y = F.conv2d(x, kernel, stride=2, padding=1).relu()
-            z = y.flatten(2).mean(2).repeat(8, 11)[:, :512] @ matrix
-        (y.float().mean() + z.float().mean()).backward()
+        began = time.perf_counter()
+        y = F.conv2d(x, kernel, stride=2, padding=1).relu()
+        z = y.flatten(2).mean(2).repeat(8, 11)[:, :512] @ matrix
+        (y.mean() + z.mean()).backward()
         kernel.grad = matrix.grad = None
-
-    return step
+        spent.append(1e3 * (time.perf_counter() - began))
+    return min(spent)

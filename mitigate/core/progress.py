@@ -13,15 +13,11 @@ import os
 import sys
 import threading
 import time
-from types import TracebackType
-from typing import TYPE_CHECKING
+from typing import Any
 
 from tqdm import tqdm
 
 from mitigate.core.names import counted
-
-if TYPE_CHECKING:
-    from typing_extensions import Self
 
 EVERY = 10.0  # seconds without a line after which the clock prints one
 REDRAW = 1.0  # seconds between redraws of a bar
@@ -51,7 +47,7 @@ class Progress:
         self._began = time.monotonic()
         self._bar: tqdm | None = None
 
-    def __enter__(self) -> Self:
+    def __enter__(self) -> Progress:
         self._began = time.monotonic()
         with _lock:
             if sys.stdout.isatty():
@@ -65,17 +61,13 @@ class Progress:
                     leave=None,  # nested ones vanish
                 )
             else:
-                say(self._first())
+                before = f", {self.start} of them done before" if self.start else ""
+                say(f"{self.title}: {counted(self.total, self.unit)}{before}")
             _open.append(self)
             _start_clock()
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def __exit__(self, kind: type[BaseException] | None, *_: Any) -> None:
         with _lock:
             if self in _open:  # it is not in a forked child
                 _open.remove(self)
@@ -83,7 +75,8 @@ class Progress:
             if self._bar is not None:
                 self._bar.close()
             else:
-                say(self._last(failed=kind is not None))
+                end = "done in" if kind is None else "stopped after"
+                say(self._line(f"{end} {duration(time.monotonic() - self._began)}"))
 
     def advance(self, count: int = 1, note: str = "") -> None:
         """Count ``count`` units as done (0 is allowed); an empty ``note`` keeps the latest one."""
@@ -102,11 +95,10 @@ class Progress:
     def line(self) -> str:
         """Return e.g. ``train: step 120/700, 3.1 steps/s, 3 min 10 s left, loss 0.31``."""
         elapsed, now = time.monotonic() - self._began, self.done - self.start
-        if now > 0:
-            pace = [_rate(now / max(elapsed, 1e-9), self.unit), f"{duration(self.left())} left"]
-        else:
-            pace = [f"{duration(elapsed)} so far"]
-        return ", ".join([self._place(), *pace, *self._notes()])
+        if now <= 0:
+            return self._line(f"{duration(elapsed)} so far")
+        rate = _rate(now / max(elapsed, 1e-9), self.unit)
+        return self._line(f"{rate}, {duration(self.left())} left")
 
     def left(self) -> float:
         """Return the seconds that the rest takes at the mean pace so far; infinite before that."""
@@ -114,20 +106,9 @@ class Progress:
         pace = (time.monotonic() - self._began) / now if now > 0 else math.inf
         return (self.total - self.done) * pace if self.done < self.total else 0.0
 
-    def _place(self) -> str:
-        return f"{self.title}: {self.unit} {self.done}/{self.total}"
-
-    def _notes(self) -> list[str]:
-        return [self.note] if self.note else []
-
-    def _first(self) -> str:
-        before = f", {self.start} of them done before" if self.start else ""
-        return f"{self.title}: {counted(self.total, self.unit)}{before}"
-
-    def _last(self, failed: bool) -> str:
-        end = "stopped after" if failed else "done in"
-        elapsed = duration(time.monotonic() - self._began)
-        return ", ".join([self._place(), f"{end} {elapsed}", *self._notes()])
+    def _line(self, pace: str) -> str:
+        note = f", {self.note}" if self.note else ""
+        return f"{self.title}: {self.unit} {self.done}/{self.total}, {pace}{note}"
 
 
 def say(text: str) -> None:

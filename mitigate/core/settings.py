@@ -39,11 +39,7 @@ def read(file: Path) -> dict[str, Any]:
     if len(raw) > LARGEST:
         raise ValueError(f"{file} has more than {LARGEST} bytes. {_WARNING}")
     try:
-        loader = _PlainLoader(raw.decode("utf-8"))
-        try:
-            found = loader.get_single_data()
-        finally:
-            loader.dispose()
+        found = yaml.load(raw.decode("utf-8"), _PlainLoader)
     except (yaml.YAMLError, ValueError, OverflowError, RecursionError) as error:
         cause = " ".join(str(error).split())
         raise ValueError(f"{file} is no plain YAML ({cause}). {_WARNING}") from error
@@ -93,9 +89,11 @@ def read_agent(file: Path, target: str, known: Collection[str]) -> dict[str, Any
 def named(target: object) -> str:
     """What ``agent=`` calls an agent of the class ``target``; empty if it is none of ours."""
     files = sorted((PACKAGE / "conf" / "agent").glob("*.yaml"))
-    lines = {file.stem: file.read_text(encoding="utf-8").splitlines() for file in files}
-    of_it = (n for n, held in lines.items() if f"_target_: {target}" in map(str.strip, held))
-    return next(of_it, "")
+    for file in files:
+        lines = file.read_text(encoding="utf-8").splitlines()
+        if f"_target_: {target}" in map(str.strip, lines):
+            return file.stem
+    return ""
 
 
 def unknown(file: Path | str, key: str, allowed: Collection[str]) -> str:
@@ -112,9 +110,10 @@ class _PlainLoader(yaml.SafeLoader):
 
     def compose_node(self, parent: Any, index: Any) -> Any:
         event: Any = self.peek_event()
-        for part in ("anchor", "tag"):
-            if getattr(event, part, None) is not None:
-                raise ValueError(f"it has the {part} {_short(getattr(event, part))}")
+        if event.anchor is not None:
+            raise ValueError(f"it has the anchor {_short(event.anchor)}")
+        if event.tag is not None:
+            raise ValueError(f"it has the tag {_short(event.tag)}")
         self._depth += 1
         if self._depth > DEEPEST:
             raise ValueError(f"it has more than {DEEPEST} levels")

@@ -33,7 +33,7 @@ import sys
 from collections.abc import Sequence
 from dataclasses import MISSING, fields
 
-from mitigate.core.arguments import asks_help, paths_and_options
+from mitigate.core.options import asks_help, paths_and_options
 from mitigate.corruptions import folders, registry
 from mitigate.corruptions.folders import UNITS, Settings
 from mitigate.corruptions.frame_files import told

@@ -22,7 +22,7 @@ from mitigate.core.build import maker
 from mitigate.core.locks import FolderLock
 from mitigate.core.names import counted
 from mitigate.core.observation import FORWARD, LEFT, RIGHT, STOP
-from mitigate.core.options import check_dashes, config_folder, without_config_folder
+from mitigate.core.options import check_dashes, without_config_folder
 from mitigate.core.progress import Progress
 from mitigate.core.seeding import generator
 from mitigate.corruptions import CLEAN, SUITE_VERSION
@@ -117,7 +117,7 @@ def main() -> int:
     try:
         check_dashes(given)
         _check(without_config_folder(given)[1])
-        cfg = conf.composed("evaluate", given, config_folder(given))
+        cfg = conf.composed("evaluate", given)
         out = Path(cfg.out or OUT)
         found = run(cfg, out)
     except (OSError, ValueError) as error:

@@ -13,7 +13,7 @@ import sys
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
-from mitigate.core.arguments import check_paths
+from mitigate.core.options import check_paths
 
 OUT = Path("runs/table")
 

@@ -102,7 +102,8 @@ def _walks_of(run: Path, overrides: list[str], configs: Path | None) -> Walks:
     from mitigate.agents import loading
     from mitigate.shipping.export import WALKS, Walks
 
-    cfg = conf.composed("evaluate", overrides, configs)
+    folder = [] if configs is None else [f"--config-dir={configs}"]
+    cfg = conf.composed("evaluate", [*overrides, *folder])
     node = loading.settings_of(cfg.agent, str(run / "agent"), overrides)
     listed = episodes(cfg.env, cfg.split, WALKS)
     return Walks(build.maker(node), build.maker(cfg.env.world), listed)

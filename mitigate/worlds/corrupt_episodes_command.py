@@ -25,8 +25,8 @@ from typing import Any
 
 from tqdm import tqdm
 
-from mitigate.core.arguments import asks_help, paths_and_options
 from mitigate.core.files import atomic_text, read_regular, sha256
+from mitigate.core.options import asks_help, paths_and_options
 from mitigate.corruptions.instruction import check_options, corrupt_instruction, is_rewritten
 from mitigate.corruptions.keying import Key
 from mitigate.corruptions.language.style import MANNERS, Rewrite, restyle

@@ -19,7 +19,8 @@ def test_the_example_of_a_new_recipe_trains(tmp_path, monkeypatch):
         (tmp_path / name).write_text(text)
     monkeypatch.syspath_prepend(tmp_path)
     options = ["recipe=steady", "debug=smoke", "workers=0", "evaluation.enabled=false"]
-    cfg = conf.load_config("train", [*options, f"folder={tmp_path / 'run'}"], further=tmp_path)
+    options += [f"folder={tmp_path / 'run'}", f"--config-dir={tmp_path}"]
+    cfg = conf.load_config("train", options)
     train.run(cfg)
     assert states.checkpoints(tmp_path / "run/views")[-1].name == "step-00000002.pt"
     del sys.modules["steady"]

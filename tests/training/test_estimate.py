@@ -30,7 +30,7 @@ TIMED = [
 @pytest.fixture
 def reference(monkeypatch):
     """The machine that the costs were measured on."""
-    monkeypatch.setattr(precision, "probe", lambda: precision.Probe(precision.REFERENCE, None))
+    monkeypatch.setattr(precision, "probe", lambda: precision.REFERENCE)
     monkeypatch.setattr(plan, "cores", lambda: 2)
 
 
@@ -81,7 +81,7 @@ def test_an_agent_that_says_nothing_has_no_estimate_of_its_evaluation(tmp_path):
 def test_other_machines_take_as_much_longer_as_their_probe(monkeypatch, reference, tmp_path):
     cfg = training("conv_adapter", "recurrent")
     here = plan.estimate(cfg, tmp_path)
-    monkeypatch.setattr(precision, "probe", lambda: precision.Probe(3 * precision.REFERENCE, None))
+    monkeypatch.setattr(precision, "probe", lambda: 3 * precision.REFERENCE)
     assert plan.estimate(cfg, tmp_path) == pytest.approx(3 * here)
 
 

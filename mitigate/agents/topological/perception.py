@@ -23,9 +23,9 @@ from torch import Tensor, nn
 
 from mitigate.agents.adapters import adapters_of
 from mitigate.agents.text import CONCEPTS
+from mitigate.core.checkpoint import borrow
 from mitigate.core.files import sha256
 from mitigate.core.observation import VIEWS
-from mitigate.core.public_weights import borrow
 
 ANGLES, DISTANCES = 120, 12
 STEP = 0.25  # metres a distance bin

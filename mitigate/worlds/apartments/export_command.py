@@ -28,9 +28,9 @@ from typing import Any
 import cv2
 import numpy as np
 
-from mitigate.core.arguments import asks_help, paths_and_options
 from mitigate.core.files import atomic_text, write_bytes
 from mitigate.core.names import unknown
+from mitigate.core.options import asks_help, paths_and_options
 from mitigate.core.output import output_folder
 from mitigate.worlds.apartments.apartment import apartment_of
 from mitigate.worlds.apartments.faces import Faces
