@@ -179,8 +179,9 @@ def explain(error: Exception, primary: str, options: Sequence[str] = ()) -> str:
 
 
 def load_config(primary: str, words: Sequence[str] = ()) -> DictConfig:
-    """Compose ``conf/<primary>.yaml`` with the ``words`` of a command line, outside a Hydra program:
-    overrides, and maybe a folder with more configs (``--config-dir=mine``).
+    """Compose ``conf/<primary>.yaml`` with ``words`` of a command line, outside a Hydra program.
+
+    They are overrides, and maybe a folder with more configs (``--config-dir=mine``).
 
     Raises:
         ValueError: if no imported module has registered the types of this file.

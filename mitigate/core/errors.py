@@ -11,25 +11,10 @@ from mitigate.core.files import PACKAGE
 
 RECIPES = (PACKAGE / "recipes").resolve()  # of a checkout: a link
 # what extras of pyproject.toml bring, by the names that are imported
-PACKAGES = frozenset(
-    [
-        "hydra",
-        "matplotlib",
-        "omegaconf",
-        "panda3d",
-        "peft",
-        "PIL",
-        "rosbags",
-        "sacrebleu",
-        "safetensors",
-        "tensorboard",
-        "torch",
-        "torchrl",
-        "tqdm",
-        "transformers",
-        "yaml",
-    ]
-)
+PACKAGES = frozenset({
+    "hydra", "matplotlib", "omegaconf", "panda3d", "peft", "PIL", "rosbags", "sacrebleu",
+    "safetensors", "tensorboard", "torch", "torchrl", "tqdm", "transformers", "yaml",
+})  # fmt: skip
 _STANDARD = Path(sysconfig.get_path("stdlib")).resolve()
 _INSTALLED = {"site-packages", "dist-packages"}
 

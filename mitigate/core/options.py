@@ -82,10 +82,10 @@ def values(options: Sequence[str], key: str) -> list[str]:
         parsed = OverridesParser.create().parse_overrides(given)
     except HydraException:
         return []
-    if not parsed or parsed[-1].is_sweep_override():
-        return [
-            str(value) for override in parsed[-1:] for value in override.sweep_string_iterator()
-        ]
+    if not parsed:
+        return []
+    if parsed[-1].is_sweep_override():
+        return [*map(str, parsed[-1].sweep_string_iterator())]
     value = parsed[-1].value()
     return [value.text if isinstance(value, QuotedString) else str(value)]
 

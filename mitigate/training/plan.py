@@ -1,14 +1,18 @@
 """The plan of a training: everything that is decided before the first step.
 
-:func:`plan` reads the typed options once. It builds the agent with the settings that it inherits
-from the weights it starts from, leaves out stages that have nothing to train in it, drops
-corruptions that it does not read, and checks that recipe, agent, world and folder fit together.
+:func:`check` rejects options that make no sense whatever the agent. :func:`plan` then decides, in
+this order, as the functions below stand:
+
+1. It builds the agent, with the settings that it inherits from the weights it starts from.
+2. It leaves out stages that have nothing to train in this agent, and corruptions that it does not
+   read, and says so.
+3. It plans each stage: the objective with its arguments, and the settings of the trainer.
+4. It checks that agent, world, folder and stages fit together.
 """
 
 from __future__ import annotations
 
 import copy
-import math
 from collections.abc import Iterator, Mapping
 from contextlib import redirect_stdout
 from dataclasses import dataclass
@@ -23,21 +27,18 @@ from torch import nn
 from mitigate.agents.agent import as_agent
 from mitigate.agents.loading import begun_from, build_agent
 from mitigate.agents.observation import check_fits
-from mitigate.core import precision
 from mitigate.core.build import build, located, maker
 from mitigate.core.conf import CONF
 from mitigate.core.contracts import lacking
 from mitigate.core.json_files import read_object
-from mitigate.core.names import counted
 from mitigate.core.observation import DEPTH, RGB
-from mitigate.core.progress import duration, say
+from mitigate.core.progress import say
 from mitigate.core.workers import cores
 from mitigate.corruptions import Schedule
 from mitigate.corruptions.registry import modality, names
 from mitigate.evaluation.conditions import check_sensors, conditions
-from mitigate.evaluation.config import REPORT, times
+from mitigate.evaluation.config import REPORT
 from mitigate.evaluation.episode_lists import episodes
-from mitigate.evaluation.evaluate import load
 from mitigate.training import states
 from mitigate.training.config import StageConfig, TrainConfig, check_values
 from mitigate.training.objective import Objective, ObjectiveSpec
@@ -48,10 +49,7 @@ from mitigate.worlds.world import Placeable
 
 IDENTITY = "identity.json"  # in a stage's folder: its start, settings, code and teacher
 NOT_IDENTITY = ("workers", "folder")  # arguments that do not change what a stage trains
-EPISODE_COST = 0.12  # seconds of one core for an evaluated episode, measured on the reference
-EPISODES = 300  # assumed length of an evaluation's whole list, which need not be opened
 OURS = "mitigate.recipes."
-OTHER_FOLDER = "Choose another folder (folder=...), or delete this one."
 
 
 @dataclass(frozen=True)
@@ -91,19 +89,40 @@ class Plan:
     stages: list[StagePlan]
     workers: int
 
-    @property
-    def agent_config(self) -> dict[str, Any]:
-        """What is written beside the weights of the agent."""
-        return agent_config(self.config.agent, self.agent)
 
-    def base(self) -> Any:
-        """Return the agent that the run starts from, to compare with; None without one."""
-        config = self.config
-        return load(config.agent, config.init, config.seed) if config.has_base else None
+def check(config: TrainConfig) -> None:
+    """Raise ValueError for options that are well typed but make no sense."""
+    check_values(config)
+    name, env, stages = config.name, config.env, config.active_stages
+    if not stages:
+        raise ValueError(f"The recipe {name} has no stages: its YAML must list at least one.")
+    if env.training is None and config.report == REPORT:
+        raise ValueError(
+            f"The world {env.name} has no training episodes: give its config an entry "
+            "training, such as {_target_: mitigate.worlds.episodes.ListedEpisodes, path: x.json}."
+        )
+    complete = [stage for stage in stages if _target_of(stages[stage])]
+    other = next((stage for stage in stages if stage not in complete), None)
+    if other is not None:
+        raise ValueError(
+            f"The recipe {name} has no stage {other!r}: its stages are {', '.join(complete)}. "
+            "Leave out what sets another one (experiment=frozen fits imitation and da_* only)."
+        )
+    listed = config.report == REPORT or env.episodes
+    if config.evaluation.enabled and listed:  # a mistake must not show only after the training
+        count = config.evaluation.episodes
+        episodes(env, config.evaluation.split, count if count is None else min(count, 1))
+        measured = conditions(config.suite.conditions, config.severity, config.severity_depth)
+        if config.report == REPORT:
+            check_sensors(measured, maker(env.world)().sensors, env.name)
 
 
-def plan(config: TrainConfig, ranks: Ranks | None = None) -> Plan:
-    """Decide everything about a training before its first step.
+def _target_of(stage: StageConfig) -> str:
+    return str((stage.recipe or {}).get("_target_") or "")
+
+
+def plan(config: TrainConfig, ranks: Ranks) -> Plan:
+    """Decide everything about a training of checked options (:func:`check`).
 
     Prints a line for each decision that a user may not expect.
 
@@ -111,9 +130,7 @@ def plan(config: TrainConfig, ranks: Ranks | None = None) -> Plan:
         ValueError: for options, a recipe, an agent, a world or a folder that do not fit together.
         FileNotFoundError: for missing weights.
     """
-    check(config)  # again: a caller may have built the options itself
     config = copy.deepcopy(config)
-    ranks = ranks or Ranks()
     folder = Path(config.folder or "")
     inherited = begun_from(config.agent, config.init)  # rejects the weights of another kind
     node = config.agent if config.init_parts else inherited
@@ -127,37 +144,6 @@ def plan(config: TrainConfig, ranks: Ranks | None = None) -> Plan:
     check_fit(config, agent, stages, ranks)
     workers = min(MOST, cores()) if config.workers is None else config.workers
     return Plan(config, folder, agent, stages, workers)
-
-
-def check(config: TrainConfig) -> None:
-    """Raise ValueError for options that are well typed but make no sense."""
-    check_values(config)
-    name, env = config.name, config.env
-    if not config.active_stages:
-        raise ValueError(f"The recipe {name} has no stages: its YAML must list at least one.")
-    if env.training is None and config.report == REPORT:
-        raise ValueError(
-            f"The world {env.name} has no training episodes: give its config an entry "
-            "training, such as {_target_: mitigate.worlds.episodes.ListedEpisodes, path: x.json}."
-        )
-    complete = [n for n, stage in config.active_stages.items() if _target_of(stage)]
-    for stage in config.active_stages:
-        if stage not in complete:
-            raise ValueError(
-                f"The recipe {name} has no stage {stage!r}: its stages are {', '.join(complete)}. "
-                "Leave out what sets another one (experiment=frozen fits imitation and da_* only)."
-            )
-    listed = config.report == REPORT or env.episodes
-    if config.evaluation.enabled and listed:  # a mistake must not show only after the training
-        count = config.evaluation.episodes
-        episodes(env, config.evaluation.split, count if count is None else min(count, 1))
-        measured = conditions(config.suite.conditions, config.severity, config.severity_depth)
-        if config.report == REPORT:
-            check_sensors(measured, maker(env.world)().sensors, env.name)
-
-
-def _target_of(stage: StageConfig) -> str:
-    return str((stage.recipe or {}).get("_target_") or "")
 
 
 def check_teacher(config: TrainConfig) -> None:
@@ -176,8 +162,7 @@ def warn_unused_schedule(config: TrainConfig) -> None:
     mode = schedule.get("mode")
     if mode is None or (mode == "clean" and not schedule.get("broad_share")):
         return
-    recipes = [stage.recipe for stage in config.active_stages.values()]
-    if not _contains(recipes, schedule["_target_"]):
+    if not _contains([s.recipe for s in config.active_stages.values()], schedule["_target_"]):
         say(
             f"the schedule (mode {mode}) has no effect: recipe={config.name} draws no corruptions "
             f"in {', '.join(config.stages)}. One that trains under corruptions is "
@@ -361,7 +346,7 @@ def _check_settings(node: Mapping[str, Any], agent: nn.Module) -> None:
 
 
 def _settings_of(agent: Any) -> dict[str, Any]:
-    """Return the settings of an agent; those without ``settings()`` have none."""
+    """Return the settings of an agent; those of users need not have ``settings()``."""
     return dict(getattr(agent, "settings", dict)())
 
 
@@ -390,27 +375,15 @@ def check_folder(config: TrainConfig, stages: list[StagePlan]) -> None:
         if name not in config.stages:
             raise ValueError(
                 f"{folder} holds a run of another recipe: it has trained a stage {name}, and the "
-                f"recipe {config.name} has {', '.join(config.stages)}. {OTHER_FOLDER}"
+                f"recipe {config.name} has {', '.join(config.stages)}. {states.OTHER_FOLDER}"
             )
-        if name in planned:
-            _check_same(file, states.as_json(planned[name].identity))
-
-
-def _check_same(file: Path, planned: dict[str, Any]) -> None:
-    """Raise ValueError if the identity in ``file`` names other settings than ``planned``.
-
-    The trainer compares all of it, but only when its stage begins.
-    """
-    try:
-        recorded = read_object(file, OTHER_FOLDER)
-    except ValueError:  # damaged: the checkpoints hold it too
-        return
-    different = states.differences({key: recorded.get(key) for key in planned}, planned)
-    if different:
-        raise ValueError(
-            f"{file.parent} holds a run with other settings ({'; '.join(different[:6])}). Use the "
-            f"old settings to resume it. {OTHER_FOLDER}"
-        )
+        if name in planned:  # the trainer compares all of it, but only when its stage begins
+            try:
+                recorded = read_object(file, states.OTHER_FOLDER)
+            except ValueError:  # damaged: the checkpoints hold it too
+                continue
+            identity = states.as_json(planned[name].identity)
+            states.check_same(file.parent, {key: recorded.get(key) for key in identity}, identity)
 
 
 def check_stages(name: str, agent: nn.Module, stages: list[StagePlan], ranks: Ranks) -> None:
@@ -453,48 +426,3 @@ def agent_config(node: Mapping[str, Any], agent: nn.Module) -> dict[str, Any]:
     barred = as_agent(agent).own_config_only
     config = {name: value for name, value in data(node).items() if name not in barred}
     return {"_target_": node["_target_"], **config, **data(_settings_of(agent))}
-
-
-def describe(config: TrainConfig, folder: Path) -> str:
-    """Return one line: what a run is going to do and about how long that takes here."""
-    parts = [f"{name} {count} steps" for name, count in _steps(config).items()]
-    if _evaluated_episodes(config):
-        count = config.evaluation.episodes
-        listed = "all episodes" if count is None else counted(count, "episode")
-        measured = counted(len(config.suite.conditions), "condition")
-        parts.append(f"{1 + config.has_base} x {listed} x {measured}")
-    total = estimate(config, folder)
-    about = "no estimate" if math.isnan(total) else f"about {duration(60 * math.ceil(total / 60))}"
-    return f"{config.name}: {', '.join(parts)}: {about} on this machine; all goes to {folder}"
-
-
-def estimate(config: TrainConfig, folder: Path) -> float:
-    """Return the seconds that the rest of a run takes here; NaN if a cost is unknown.
-
-    Costs are seconds on the machine of ``precision.REFERENCE``. A stage lists its seconds per step
-    with the topological agent, and another kind of agent its factors (``cost`` in its config), from
-    trainings that were timed.
-    """
-    costs: list[tuple[float, float | None]] = []  # count, and seconds of each
-    for name, count in _steps(config).items():
-        done = states.checkpoints(folder / name)
-        left = count - (states.steps_done(done[-1]) if done else 0)
-        costs.append((max(0, left), config.active_stages[name].cost))
-    episode = times(EPISODE_COST / (config.evaluation.workers or cores()), config.cost.evaluation)
-    costs.append((_evaluated_episodes(config), episode))
-    seconds = sum(count * (math.nan if cost is None else cost) for count, cost in costs if count)
-    return seconds * precision.probe().fp32 / precision.REFERENCE
-
-
-def _steps(config: TrainConfig) -> dict[str, int]:
-    """Return the steps of each stage by name."""
-    stages = config.active_stages.items()
-    return {name: stage.settings(config.trainer).get("steps", 0) for name, stage in stages}
-
-
-def _evaluated_episodes(config: TrainConfig) -> int:
-    """Return how many episodes run after the training; 0 where another report is made."""
-    if not config.evaluation.enabled or config.report != REPORT:
-        return 0
-    count = config.evaluation.episodes or EPISODES
-    return (1 + config.has_base) * len(config.suite.conditions) * count

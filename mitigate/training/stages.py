@@ -13,9 +13,11 @@ from mitigate.agents.fingerprint import code_sha
 from mitigate.core import checkpoint, seeding
 from mitigate.core.files import atomic_text
 from mitigate.core.progress import say
+from mitigate.evaluation.evaluate import load
 from mitigate.training import states
 from mitigate.training.config import plain_data
-from mitigate.training.plan import IDENTITY, Plan, StagePlan, describe
+from mitigate.training.estimate import describe
+from mitigate.training.plan import IDENTITY, Plan, StagePlan, agent_config
 from mitigate.training.ranks import Ranks
 from mitigate.training.trainer import Trainer
 from mitigate.training.workers import Workers
@@ -33,12 +35,13 @@ def run_plan(plan: Plan, ranks: Ranks) -> Path:
     if not ranks.first:
         return plan.folder
     plan.agent.cpu().eval()
-    agent_config = OmegaConf.to_yaml({"agent": plan.agent_config})
-    checkpoint.save_agent(plan.agent, plan.folder / "agent", agent_config)
+    settings = OmegaConf.to_yaml({"agent": agent_config(config.agent, plan.agent)})
+    checkpoint.save_agent(plan.agent, plan.folder / "agent", settings)
     with atomic_text(plan.folder / "config.yaml") as file:
         file.write(OmegaConf.to_yaml(plain_data(config)))
     if config.evaluation.enabled:
-        get_method(config.report)(config, plan.base(), plan.agent, plan.folder)
+        base = load(config.agent, config.init, config.seed) if config.has_base else None
+        get_method(config.report)(config, base, plan.agent, plan.folder)
     print(f"done: {plan.folder}", flush=True)
     return plan.folder
 

@@ -18,6 +18,7 @@ from mitigate.core import checksums
 from mitigate.core.checkpoint import unwritten
 
 FORMAT = 1
+OTHER_FOLDER = "Choose another folder (folder=...), or delete this one."
 REQUIRED = ("format", "step", "model", "optimizer", "scheduler", "rng", "config")
 _NAME = re.compile(r"step-(\d{8})\.pt")
 
@@ -117,6 +118,16 @@ def differences(old: Any, new: Any, path: str = "") -> list[str]:
             for line in differences(old.get(name), new.get(name), f"{path}.{name}".lstrip("."))
         ]
     return [] if old == new else [f"{path}: {old} -> {new}"]
+
+
+def check_same(folder: Path, old: dict[str, Any], new: dict[str, Any]) -> None:
+    """Raise ValueError if the run in ``folder`` was begun with the config ``old``, not ``new``."""
+    different = differences(old, new)
+    if different:
+        raise ValueError(
+            f"{folder} holds a run with other settings ({'; '.join(different[:6])}). Use the old "
+            f"settings to resume it. {OTHER_FOLDER}"
+        )
 
 
 def as_json(config: dict[str, Any]) -> dict[str, Any]:

@@ -306,12 +306,7 @@ class Trainer:
             return 0
         path, state = found
         self._keep_precision(state["config"])
-        different = states.differences(states.as_json(state["config"]), self.config)
-        if different:
-            raise ValueError(
-                f"{self.folder} holds a run with other settings ({'; '.join(different[:6])}). "
-                "Use the old settings to resume it, choose another folder, or delete it."
-            )
+        states.check_same(self.folder, states.as_json(state["config"]), self.config)
         try:
             self.objective.load_state_dict(state["model"])
             self.optimizer.load_state_dict(state["optimizer"])

@@ -9,7 +9,7 @@ import pytest
 from mitigate.agents.loading import build_agent
 from mitigate.core import conf, precision
 from mitigate.evaluation.config import CostConfig
-from mitigate.training import plan
+from mitigate.training import estimate, plan
 from mitigate.training.config import TrainConfig, read
 
 # Minutes of trainings on 2 cores capped to AVX2, with the evaluation and without the set-up of the
@@ -31,7 +31,7 @@ TIMED = [
 def reference(monkeypatch):
     """The machine that the costs were measured on."""
     monkeypatch.setattr(precision, "probe", lambda: precision.REFERENCE)
-    monkeypatch.setattr(plan, "cores", lambda: 2)
+    monkeypatch.setattr(estimate, "cores", lambda: 2)
 
 
 def training(recipe: str, agent: str, *options: str) -> TrainConfig:
@@ -42,53 +42,53 @@ def training(recipe: str, agent: str, *options: str) -> TrainConfig:
 
 @pytest.mark.parametrize(("recipe", "agent", "minutes"), TIMED)
 def test_the_estimate_is_what_was_timed(reference, tmp_path, recipe, agent, minutes):
-    seconds = plan.estimate(training(recipe, agent), tmp_path)
+    seconds = estimate.estimate(training(recipe, agent), tmp_path)
     assert seconds / 60 == pytest.approx(minutes, rel=0.1)
 
 
 @pytest.mark.parametrize("recipe", ["dagger", "imitation", "ablation", "harden", "stacked"])
 @pytest.mark.parametrize("agent", ["recurrent", "recurrent_rgb"])
 def test_every_recipe_of_a_kind_has_an_estimate(reference, tmp_path, recipe, agent):
-    assert plan.estimate(training(recipe, agent), tmp_path) > 60
+    assert estimate.estimate(training(recipe, agent), tmp_path) > 60
 
 
 def test_what_is_done_takes_no_time(reference, tmp_path):
     cfg = training("da_per_episode", "recurrent")
-    whole = plan.estimate(cfg, tmp_path)
+    whole = estimate.estimate(cfg, tmp_path)
     (tmp_path / "imitation").mkdir()
     (tmp_path / "imitation" / "step-00000040.pt").touch()
-    left = plan.estimate(cfg, tmp_path)
+    left = estimate.estimate(cfg, tmp_path)
     assert whole - left == pytest.approx(40 * cfg.stages["imitation"].cost)
 
 
 @pytest.mark.parametrize("unknown", ["episodes", "evaluation"])
 def test_a_kind_of_agent_that_does_not_say_what_it_costs_has_no_estimate(tmp_path, unknown):
     cfg = training("da_per_episode", "recurrent", f"cost.{unknown}=null")
-    assert math.isnan(plan.estimate(cfg, tmp_path))
-    assert ": no estimate on this machine" in plan.describe(cfg, tmp_path)
+    assert math.isnan(estimate.estimate(cfg, tmp_path))
+    assert ": no estimate on this machine" in estimate.describe(cfg, tmp_path)
     known = training("conv_adapter", "recurrent", "cost.episodes=null")  # walks none
-    assert plan.estimate(known, tmp_path) > 60
+    assert estimate.estimate(known, tmp_path) > 60
 
 
 def test_an_agent_that_says_nothing_has_no_estimate_of_its_evaluation(tmp_path):
     cfg = training("conv_adapter", "recurrent")
     cfg.cost = CostConfig()
-    assert math.isnan(plan.estimate(cfg, tmp_path))
+    assert math.isnan(estimate.estimate(cfg, tmp_path))
     cfg.evaluation.enabled = False
-    assert plan.estimate(cfg, tmp_path) > 60
+    assert estimate.estimate(cfg, tmp_path) > 60
 
 
 def test_other_machines_take_as_much_longer_as_their_probe(monkeypatch, reference, tmp_path):
     cfg = training("conv_adapter", "recurrent")
-    here = plan.estimate(cfg, tmp_path)
+    here = estimate.estimate(cfg, tmp_path)
     monkeypatch.setattr(precision, "probe", lambda: 3 * precision.REFERENCE)
-    assert plan.estimate(cfg, tmp_path) == pytest.approx(3 * here)
+    assert estimate.estimate(cfg, tmp_path) == pytest.approx(3 * here)
 
 
 def test_a_base_that_is_not_evaluated_is_not_counted(tmp_path):
     """swap_encoder starts from parts of an agent, which are none by themselves."""
     cfg = read(conf.load_config("train", ["recipe=swap_encoder"]))
-    assert ", 1 x 40 episodes x 13 conditions: about " in plan.describe(cfg, tmp_path)
-    assert ", 2 x 40 episodes x 13 conditions: about " in plan.describe(
+    assert ", 1 x 40 episodes x 13 conditions: about " in estimate.describe(cfg, tmp_path)
+    assert ", 2 x 40 episodes x 13 conditions: about " in estimate.describe(
         read(conf.load_config("train", ["recipe=harden"])), tmp_path
     )

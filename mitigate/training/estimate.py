@@ -1,0 +1,62 @@
+"""How long a training takes here, as its first line says."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+from mitigate.core import precision
+from mitigate.core.names import counted
+from mitigate.core.progress import duration
+from mitigate.core.workers import cores
+from mitigate.evaluation.config import REPORT, times
+from mitigate.training import states
+from mitigate.training.config import TrainConfig
+
+EPISODE_COST = 0.12  # seconds of one core for an evaluated episode, measured on the reference
+EPISODES = 300  # assumed length of an evaluation's whole list, which need not be opened
+
+
+def describe(config: TrainConfig, folder: Path) -> str:
+    """Return one line: what a run is going to do and about how long that takes here."""
+    parts = [f"{name} {count} steps" for name, count in _steps(config).items()]
+    if _episodes(config):
+        count = config.evaluation.episodes
+        listed = "all episodes" if count is None else counted(count, "episode")
+        measured = counted(len(config.suite.conditions), "condition")
+        parts.append(f"{1 + config.has_base} x {listed} x {measured}")
+    total = estimate(config, folder)
+    about = "no estimate" if math.isnan(total) else f"about {duration(60 * math.ceil(total / 60))}"
+    return f"{config.name}: {', '.join(parts)}: {about} on this machine; all goes to {folder}"
+
+
+def estimate(config: TrainConfig, folder: Path) -> float:
+    """Return the seconds that the rest of a run takes here; NaN if a cost is unknown.
+
+    Costs are seconds on the machine of ``precision.REFERENCE``. A stage lists its seconds per step
+    with the topological agent, and another kind of agent its factors (``cost`` in its config), from
+    trainings that were timed.
+    """
+    costs: list[tuple[float, float | None]] = []  # count, and seconds of each
+    for name, count in _steps(config).items():
+        done = states.checkpoints(folder / name)
+        left = count - (states.steps_done(done[-1]) if done else 0)
+        costs.append((max(0, left), config.active_stages[name].cost))
+    episode = times(EPISODE_COST / (config.evaluation.workers or cores()), config.cost.evaluation)
+    costs.append((_episodes(config), episode))
+    seconds = sum(count * (math.nan if cost is None else cost) for count, cost in costs if count)
+    return seconds * precision.probe() / precision.REFERENCE
+
+
+def _steps(config: TrainConfig) -> dict[str, int]:
+    """Return the steps of each stage by name."""
+    stages = config.active_stages.items()
+    return {name: stage.settings(config.trainer).get("steps", 0) for name, stage in stages}
+
+
+def _episodes(config: TrainConfig) -> int:
+    """Return how many episodes run after the training; 0 where another report is made."""
+    if not config.evaluation.enabled or config.report != REPORT:
+        return 0
+    count = config.evaluation.episodes or EPISODES
+    return (1 + config.has_base) * len(config.suite.conditions) * count
