@@ -12,7 +12,7 @@ from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Any, Protocol, runtime_checkable
 
 import cv2
 import numpy as np
@@ -45,6 +45,7 @@ class Shot:
     labels: np.ndarray | None = None
 
 
+@runtime_checkable
 class Source(Protocol):
     """Where frames come from; ``files``: from files, which may be damaged, or change."""
 
@@ -288,7 +289,7 @@ def source_of(
     frames), or the random poses of a world, with the scenes of its list ``split`` as the unseen
     ones. Raises ValueError for a list that there is not, and as these do."""
     made = world()
-    if hasattr(made, "shots"):
+    if isinstance(made, Source):
         return made
     if split not in (episodes or {}):
         raise ValueError(unknown("split", split, episodes or {}))

@@ -7,7 +7,9 @@ it is made. So any number of workers, none included, gives the same batches.
 from __future__ import annotations
 
 from collections import deque
-from typing import Any, NamedTuple
+from collections.abc import Callable
+from functools import partial
+from typing import Any
 
 import torch
 
@@ -41,7 +43,7 @@ class Batches:
         self.objective, self.steps, self.kind, self.device = objective, steps, kind, device
         self.workers = workers if workers is not None and len(workers) else None
         self.ranks, self.lag, self.save_every = ranks or Ranks(), lag, save_every
-        self._ordered: deque[_Order] = deque()
+        self._ordered: deque[tuple[int, Callable[[], list[Any]]]] = deque()  # step, its pieces
         self._taken = False
 
     def batch(self, step: int) -> dict[str, Any]:
@@ -62,7 +64,9 @@ class Batches:
         while self._newest(step) < self._last(step):
             later = self._newest(step) + 1
             self._order(later, self._jobs(later))
-        return self._made(step)
+        ordered, receive = self._ordered.popleft()
+        assert ordered == step, f"step {step} was asked for, {ordered} is next"
+        return objective.collate(step, receive())
 
     def _last(self, step: int) -> int:
         """The last step whose pieces may be ordered when ``step`` is due."""
@@ -73,7 +77,7 @@ class Batches:
 
     def _newest(self, step: int) -> int:
         """The last step whose pieces are ordered."""
-        return self._ordered[-1].step if self._ordered else step - 1
+        return self._ordered[-1][0] if self._ordered else step - 1
 
     def _jobs(self, step: int) -> list[Any]:
         """This rank's jobs of a step; none if the objective makes its batches alone."""
@@ -91,31 +95,17 @@ class Batches:
         """Have the pieces of ``step`` made, with the weights of now."""
         if self.workers is None:
             with precision.computing(self.kind, self.device):
-                self._ordered.append(_Order(step, 0, [do(self.objective, job) for job in jobs]))
+                pieces = [do(self.objective, job) for job in jobs]
+            self._ordered.append((step, lambda: pieces))
             return
         if not self._taken:
             self.workers.take(self.objective, self.kind)
             self._taken = True
-        self.workers.order(jobs, self._turn(step))
-        self._ordered.append(_Order(step, len(jobs), []))
-
-    def _made(self, step: int) -> dict[str, Any]:
-        """The batch of ``step`` from the pieces that were ordered."""
-        order = self._ordered.popleft()
-        assert order.step == step, f"step {step} was asked for, {order.step} is next"
-        if self.workers is None:
-            return self.objective.collate(step, order.pieces)
-        return self.objective.collate(step, self.workers.receive(order.awaited, self._turn(step)))
+        turn = self._turn(step)
+        self.workers.order(jobs, turn)
+        self._ordered.append((step, partial(self.workers.receive, len(jobs), turn)))
 
     def _turn(self, step: int) -> int:
         """Whose turn ``step`` is; jobs that need the weights of now are never of two steps at
         once."""
         return step if self.objective.ahead or self.lag else 0
-
-
-class _Order(NamedTuple):
-    """A step, how many pieces of it workers make, or those that were made here."""
-
-    step: int
-    awaited: int
-    pieces: list[Any]

@@ -6,20 +6,14 @@ import sys
 import time
 from collections import defaultdict
 from pathlib import Path
-from types import TracebackType
-from typing import TYPE_CHECKING
+from typing import Any
 
 import numpy as np
 
 from mitigate.core import output, progress
 from mitigate.core.files import make_folder
 
-if TYPE_CHECKING:
-    from typing_extensions import Self
-
-CPU = (
-    "cpu_s_per_step"  # scalar: this process's CPU seconds, all threads, a step since the last line
-)
+CPU = "cpu_s_per_step"  # scalar: CPU seconds of this process, all threads, since the last line
 
 
 class Journal:
@@ -44,21 +38,16 @@ class Journal:
         self._told: dict[str, list[float]] = defaultdict(list)  # one need not be in every batch
         self._since = start, time.monotonic()
 
-    def __enter__(self) -> Self:
+    def __enter__(self) -> Journal:
         self._root = output.register(self._folder)
         self._progress.__enter__()
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
-        self._progress.__exit__(kind, error, trace)
+    def __exit__(self, kind: type[BaseException] | None, *_: Any) -> None:
+        self._progress.__exit__(kind)
         self._writer.close()
         try:
-            if error is None:
+            if kind is None:
                 self._root.check()
         finally:
             output.unregister(self._root)
@@ -89,18 +78,15 @@ class Journal:
             self._writer.add_scalar(name, value, step)
         if not line:
             return
-        self._log_cost(step)
+        before, then = self._measured
+        self._measured = self._progress.done, time.process_time()
+        steps = max(1, self._progress.done - before)
+        self._writer.add_scalar(CPU, (self._measured[1] - then) / steps, step)
         shown = [f"{name} {value:.4g}" for name, value in values.items()]
         self._progress.advance(0, note=shown[0])
         if not sys.stdout.isatty():
             left = progress.duration(self._progress.left())
             self.say("  ".join([f"step {step}/{self._progress.total}", *shown, f"{left} left"]))
-
-    def _log_cost(self, step: int) -> None:
-        before, then = self._measured
-        self._measured = self._progress.done, time.process_time()
-        steps = max(1, self._progress.done - before)
-        self._writer.add_scalar(CPU, (self._measured[1] - then) / steps, step)
 
     def figures(self, step: int, pictures: dict[str, np.ndarray]) -> None:
         """Log uint8 pictures ``[H, W, 3]``."""

@@ -125,8 +125,8 @@ class Objective(nn.Module):
     def weight(self, batch: dict[str, Any]) -> float:
         """Return how much a rank's batch counts beside those of the others: what its losses are
         means over. By default that of its decisions, if it has any, else 1."""
-        found = getattr(batch.get("decisions"), "weight", None)
-        return 1.0 if found is None else float(found.sum())
+        decisions = batch.get("decisions")
+        return 1.0 if decisions is None else float(decisions.weight.sum())
 
     def forward(self, batch: dict[str, Any]) -> dict[str, Tensor]:
         """Return scalars: ``loss`` (differentiable) and whatever else is worth logging."""

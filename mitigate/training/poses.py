@@ -4,6 +4,7 @@ encoders. They depend on no weights, so workers make them ahead of time."""
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from typing import Any, ClassVar
 
 import numpy as np
@@ -14,8 +15,8 @@ from mitigate.core.pictures import side_by_side
 from mitigate.core.seeding import generator
 from mitigate.corruptions import Schedule, corrupt_observation
 from mitigate.training.objective import Objective
-from mitigate.training.parts import OWN, SEEING, hold_statistics
-from mitigate.training.success import measure
+from mitigate.training.parts import OWN, SEEING
+from mitigate.training.success import DrawsBySuccess
 from mitigate.worlds.episodes import share_of
 from mitigate.worlds.world import Placeable, TrainingEpisodes, depth_sensor
 
@@ -27,7 +28,8 @@ VIEWS_ALONE = (
 )
 
 
-class Poses:
+@dataclass(eq=False)
+class Poses(DrawsBySuccess):
     """The source of batches of panoramas from random poses, corrupted and clean.
 
     Args:
@@ -46,34 +48,27 @@ class Poses:
             anywhere.
     """
 
-    def __init__(
-        self,
-        agent: Any,
-        world: Callable[[], Any],
-        training: TrainingEpisodes,
-        modality: str,
-        schedule: Schedule | None = None,
-        panoramas: int = 12,
-        seed: int = 0,
-        refresh_episodes: int = 8,
-        own: bool = False,
-    ) -> None:
-        if modality not in ("rgb", "depth"):
-            raise ValueError(f"modality={modality!r} is unknown; choose 'rgb' or 'depth'.")
-        if panoramas < 1:
-            raise ValueError(f"recipe.panoramas={panoramas} a step are none: give 1 or more.")
-        schedule = schedule or Schedule("clean", 0.0)
-        self.agent = agent
-        self.make_world = world
-        self.training = training
-        self.sensor = modality
-        self.schedule = schedule.only(modality) if own else schedule
-        self.panoramas = panoramas
-        self.seed = seed
-        self.refresh_episodes = refresh_episodes
+    agent: Any
+    world: Callable[[], Any]
+    training: TrainingEpisodes
+    modality: str
+    schedule: Schedule = None  # type: ignore[assignment]
+    panoramas: int = 12
+    seed: int = 0
+    refresh_episodes: int = 8
+    own: bool = False
+
+    def __post_init__(self) -> None:
+        if self.modality not in ("rgb", "depth"):
+            raise ValueError(f"modality={self.modality!r} is unknown; choose 'rgb' or 'depth'.")
+        check_panoramas(self.panoramas)
+        self.sensor = self.modality
+        self.schedule = self.schedule or Schedule("clean", 0.0)
+        if self.own:
+            self.schedule = self.schedule.only(self.sensor)
         self.label: str | None = None
         self.every = 1
-        self._world: Placeable | None = None
+        self._placed: Placeable | None = None
         self._last: np.ndarray | None = None
 
     def learn(self, label: str, every: int) -> None:
@@ -86,21 +81,21 @@ class Poses:
         self.every = every
 
     def __getstate__(self) -> dict[str, Any]:
-        return {**self.__dict__, "_world": None}
+        return {**self.__dict__, "_placed": None}
 
     @property
-    def world(self) -> Placeable:
+    def placed(self) -> Placeable:
         """The world of this process."""
-        if self._world is None:
-            made = self.make_world()
+        if self._placed is None:
+            made = self.world()
             if not isinstance(made, Placeable):
                 raise ValueError(
                     f"{type(made).__name__} cannot look from anywhere (scenes, enter, point, put), "
                     "so encoders cannot be taught on random poses there. Leave out the stages that "
                     "do (stages.NAME=null), or give the world these (docs/bring-your-own.md)."
                 )
-            self._world = made
-        return self._world
+            self._placed = made
+        return self._placed
 
     @property
     def pieces(self) -> int:
@@ -111,19 +106,7 @@ class Poses:
         """(step, piece, of how many, panoramas, the schedule's state) of each piece; ``workers``:
         processes that measure success rates where there are none."""
         if self.schedule.mode == "success_distributed" and self.schedule.success is None:
-            self.schedule.refresh(
-                measure(
-                    self.agent,
-                    self.schedule,
-                    self.make_world,
-                    self.training,
-                    episodes=self.refresh_episodes,
-                    seed=self.seed,
-                    step=step,
-                    workers=workers,
-                )
-            )
-            hold_statistics(self.agent.train())
+            self.refresh(step, workers)
         pieces = self.pieces
         counts = [len(part) for part in np.array_split(np.arange(self.panoramas), pieces)]
         state = self.schedule.state_dict()
@@ -132,10 +115,9 @@ class Poses:
     def work(self, job: tuple) -> list[tuple[np.ndarray, ...]]:
         """(frames, the same before the corruption, labels) of each random pose of a piece."""
         step, piece, pieces, count, state = job
-        if state != self.schedule.state_dict():
-            self.schedule.load_state_dict(state)
+        self.set_schedule(state)
         rng = generator(self.seed, "perception", self.sensor, step, piece)
-        scenes = share_of(self.world.scenes, piece, pieces)
+        scenes = share_of(self.placed.scenes, piece, pieces)
         return [self._panorama(rng, scenes, f"{step}-{piece}-{i}") for i in range(count)]
 
     def collate(self, pieces: list[list[tuple]]) -> dict[str, Any]:
@@ -154,20 +136,20 @@ class Poses:
 
     def _panorama(self, rng: np.random.Generator, scenes: Any, name: str) -> tuple[np.ndarray, ...]:
         """Frames, the same before the corruption, and labels of one random pose."""
-        self.world.enter(scenes[int(rng.integers(len(scenes)))])
-        xy = self.world.point(rng)
-        if len(self.world.sensors[self.sensor].yaws) == 1:
+        self.placed.enter(scenes[int(rng.integers(len(scenes)))])
+        xy = self.placed.point(rng)
+        if len(self.placed.sensors[self.sensor].yaws) == 1:
             looks = [self._look(xy, rng, name, i) for i in range(VIEWS // self.every)]
             return tuple(np.stack(part) for part in zip(*looks, strict=True))
         heading = float(rng.uniform(-np.pi, np.pi))
         first = int(rng.integers(self.every)) if self.every > 1 else 0
         views = list(range(first, VIEWS, self.every))
-        clean, truth = self.world.put(xy, heading, views=views, rgb=self.sensor == RGB)
+        clean, truth = self.placed.put(xy, heading, views=views, rgb=self.sensor == RGB)
         # a corruption may show another view's picture: a view not rendered has that of one that was
         shown = [views[(view - first) // self.every % len(views)] for view in range(VIEWS)]
         clean = {**clean, self.sensor: clean[self.sensor][shown]}
         drawn = self.schedule.draw(self.seed, name, 0)
-        frames = corrupt_observation(clean, *drawn, depth_sensor(self.world.sensors))
+        frames = corrupt_observation(clean, *drawn, depth_sensor(self.placed.sensors))
         target = self._target(truth)
         target = target[views] if len(target) == VIEWS else target
         return frames[self.sensor][views], clean[self.sensor][views], target
@@ -177,9 +159,9 @@ class Poses:
     ) -> tuple[np.ndarray, ...]:
         """As :meth:`_panorama`, of one view of one camera."""
         heading = float(rng.uniform(-np.pi, np.pi))
-        clean, truth = self.world.put(xy, heading, views=None, rgb=self.sensor == RGB)
+        clean, truth = self.placed.put(xy, heading, views=None, rgb=self.sensor == RGB)
         drawn = self.schedule.draw(self.seed, name, number)
-        frames = corrupt_observation(clean, *drawn, depth_sensor(self.world.sensors))
+        frames = corrupt_observation(clean, *drawn, depth_sensor(self.placed.sensors))
         return frames[self.sensor], clean[self.sensor], self._target(truth)
 
     def _target(self, truth: Mapping[str, np.ndarray]) -> np.ndarray:
@@ -219,3 +201,9 @@ class OnViews(Objective):
 
     def set_extra_state(self, state: dict[str, Any]) -> None:
         self.poses.schedule.load_state_dict(state["schedule"])
+
+
+def check_panoramas(panoramas: int) -> None:
+    """Raise ValueError for less than one panorama per step."""
+    if panoramas < 1:
+        raise ValueError(f"recipe.panoramas={panoramas} a step are none: give 1 or more.")

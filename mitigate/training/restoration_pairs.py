@@ -6,7 +6,7 @@ from __future__ import annotations
 import copy
 from collections.abc import Callable
 from dataclasses import replace
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 import torch
@@ -16,57 +16,27 @@ from mitigate.corruptions import Schedule
 from mitigate.corruptions.suite import SENSOR
 from mitigate.encoders.sources import TRAIN, Frames, collect, corrupted, source_of
 from mitigate.training import success
-from mitigate.training.poses import Poses
+from mitigate.training.poses import Poses, check_panoramas
 from mitigate.worlds.world import TrainingEpisodes
 
 GROUP = 12  # frames of a folder that count as one panorama of a batch
-
-
-class Pairs(Protocol):
-    """The parts of a batch of "frames" and "clean" [instants, views, H, W, c], in numbers that
-    depend on no worker. ``ring``: whether the views of an instant are of one panorama."""
-
-    ring: bool
-    sensor: str
-    schedule: Schedule
-
-    def start(self) -> None: ...
-
-    def identity(self) -> dict[str, str]: ...
-
-    def jobs(self, step: int) -> list[Any]: ...
-
-    def work(self, job: Any) -> Any: ...
-
-    def collate(self, pieces: list[Any]) -> dict[str, Any]: ...
 
 
 class PosePairs(Poses):
     """Panoramas of random poses (``training/poses.py``); of a world with one camera, views of
     random poses."""
 
-    def __init__(
-        self,
-        agent: Any,
-        world: Callable[[], Any],
-        training: TrainingEpisodes,
-        modality: str,
-        schedule: Schedule,
-        panoramas: int,
-        seed: int,
-    ) -> None:
-        super().__init__(agent, world, training, modality, schedule, panoramas, seed, own=True)
-        self.ring = False
+    ring = False  # whether the views of an instant are of one panorama
 
     def start(self) -> None:
         """Learn from the world what its views are; ValueError if it cannot look from anywhere or
         has no such sensor."""
-        if self.sensor not in self.world.sensors:
+        if self.sensor not in self.placed.sensors:
             raise ValueError(
-                f"{type(self.world).__name__} shows no {self.sensor}: set agent.sensors to what "
-                f"it shows ({', '.join(self.world.sensors)})."
+                f"{type(self.placed).__name__} shows no {self.sensor}: set agent.sensors to what "
+                f"it shows ({', '.join(self.placed.sensors)})."
             )
-        self.ring = len(self.world.sensors[self.sensor].yaws) > 1
+        self.ring = len(self.placed.sensors[self.sensor].yaws) > 1
 
     def identity(self) -> dict[str, str]:
         """Nothing: poses follow from the settings."""
@@ -85,7 +55,7 @@ class FramePairs:
     far: metres to which depth is read.
     """
 
-    ring = False
+    ring = False  # each frame is an instant of its own
 
     def __init__(
         self,
@@ -98,8 +68,7 @@ class FramePairs:
         seed: int,
         far: float,
     ) -> None:
-        if panoramas < 1:
-            raise ValueError(f"recipe.panoramas={panoramas} a step are none: give 1 or more.")
+        check_panoramas(panoramas)
         self.depth = replace(SENSOR, z_max=far)
         self.source = source_of(world, sensor, None, "", None)
         self.schedule, self.sensor, self.seed = schedule, sensor, seed
@@ -145,6 +114,9 @@ class FramePairs:
         return {"frames": torch.from_numpy(frames), "clean": torch.from_numpy(clean)}
 
 
+Pairs = PosePairs | FramePairs  # the source of "frames" and "clean" [instants, views, H, W, c]
+
+
 def pairs_of(
     agent: Any,
     world: Callable[[], Any],
@@ -169,7 +141,7 @@ def pairs_of(
         return FramePairs(
             world, own, sensor=modality, frames=frames, panoramas=panoramas, seed=seed, far=far
         )
-    return PosePairs(agent, world, training, modality, schedule, panoramas, seed)
+    return PosePairs(agent, world, training, modality, schedule, panoramas, seed, own=True)
 
 
 def with_clean_share(pairs: Pairs, share: float) -> Pairs:

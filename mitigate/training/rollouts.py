@@ -7,6 +7,7 @@ corruptions; its batch is all their decisions.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from typing import Any, ClassVar
 
 import numpy as np
@@ -17,14 +18,15 @@ from mitigate.core.pictures import picture
 from mitigate.core.seeding import generator
 from mitigate.corruptions import Schedule
 from mitigate.training.objective import Objective, check_share
-from mitigate.training.parts import OWN, TRAINABLE, hold_statistics
-from mitigate.training.success import measure, prior_rates
+from mitigate.training.parts import OWN, TRAINABLE
+from mitigate.training.success import DrawsBySuccess, prior_rates
 from mitigate.worlds.world import Corrupted, TrainingEpisodes, World
 
 PIECES = 4  # jobs that the episodes of a step are shared out to (ours)
 
 
-class Rollouts:
+@dataclass(eq=False)
+class Rollouts(DrawsBySuccess):
     """The source of batches of decisions: rollouts of ``agent`` under a schedule of corruptions.
 
     Args:
@@ -45,36 +47,26 @@ class Rollouts:
         ValueError: for no episodes, for an invalid share, and as ``prior_rates`` does.
     """
 
-    def __init__(
-        self,
-        agent: Any,
-        world: Callable[[], World],
-        training: TrainingEpisodes,
-        schedule: Schedule | None = None,
-        episodes: int = 3,
-        follow_oracle: float = 0.5,
-        seed: int = 0,
-        prior: str | None = None,
-        refresh_every: int = 0,
-        refresh_episodes: int = 8,
-    ) -> None:
-        check_episodes(episodes)
-        check_share("follow_oracle", follow_oracle)
-        self.agent = agent
-        self.world = world
-        self.training = training
-        self.schedule = schedule or Schedule("clean", 0.0)
-        self.episodes = episodes
-        self.follow_oracle = follow_oracle
-        self.seed = seed
-        self.prior = prior
-        self.refresh_every = refresh_every
-        self.refresh_episodes = refresh_episodes
+    agent: Any
+    world: Callable[[], World]
+    training: TrainingEpisodes
+    schedule: Schedule = None  # type: ignore[assignment]
+    episodes: int = 3
+    follow_oracle: float = 0.5
+    seed: int = 0
+    prior: str | None = None
+    refresh_every: int = 0
+    refresh_episodes: int = 8
+
+    def __post_init__(self) -> None:
+        check_episodes(self.episodes)
+        check_share("follow_oracle", self.follow_oracle)
+        self.schedule = self.schedule or Schedule("clean", 0.0)
         self.clean = False
         self.teachers: tuple[Any, ...] = ()
         self.picture: np.ndarray | None = None
-        if prior is not None:
-            self.schedule.refresh(prior_rates(prior))
+        if self.prior is not None:
+            self.schedule.refresh(prior_rates(self.prior))
 
     def keep_clean(self, *teachers: Any) -> None:
         """Keep the observations before their corruption too.
@@ -92,7 +84,8 @@ class Rollouts:
     def identity(self) -> dict[str, str]:
         """Hashes of the files that the batches are made of."""
         prior = {} if self.prior is None else {"prior_sha256": sha256(self.prior)}
-        return {**getattr(self.training, "identity", dict)(), **prior}
+        files = getattr(self.training, "identity", dict)()  # users' episodes may come from none
+        return {**files, **prior}
 
     def jobs(self, step: int, workers: int | None = None) -> list[tuple]:
         """(step, piece, of how many, episodes, the schedule's state) of each piece; ``workers``:
@@ -108,8 +101,7 @@ class Rollouts:
     def work(self, job: tuple) -> tuple[Any, np.ndarray | None]:
         """What was decided in the episodes of a piece, and a picture of the last look."""
         step, piece, pieces, count, state = job
-        if state != self.schedule.state_dict():
-            self.schedule.load_state_dict(state)
+        self.set_schedule(state)
         rngs = [generator(self.seed, "rollout", step, piece, i) for i in range(count)]
         episodes = [self.training.draw(rng, (piece, pieces)) for rng in rngs]
         worlds = [
@@ -131,22 +123,6 @@ class Rollouts:
     def figures(self) -> dict[str, np.ndarray]:
         """A panorama as the agent saw it in the last batch."""
         return {} if self.picture is None else {"seen": self.picture}
-
-    def refresh(self, step: int, workers: int | None = None) -> None:
-        """Measure the success under every corruption on training episodes, for the schedule."""
-        self.schedule.refresh(
-            measure(
-                self.agent,
-                self.schedule,
-                self.world,
-                self.training,
-                episodes=self.refresh_episodes,
-                seed=self.seed,
-                step=step,
-                workers=workers,
-            )
-        )
-        hold_statistics(self.agent.train())
 
 
 class OnEpisodes(Objective):

@@ -14,7 +14,39 @@ from mitigate.core.seeding import generator
 from mitigate.corruptions import Schedule
 from mitigate.evaluation.evaluator import WORTH, EpisodeTask
 from mitigate.evaluation.rows import read
+from mitigate.training.parts import hold_statistics
 from mitigate.worlds.world import TrainingEpisodes, World
+
+
+class DrawsBySuccess:
+    """What sources of batches share whose schedule may draw by the success rates of their agent."""
+
+    agent: Any
+    world: Callable[[], Any]
+    training: TrainingEpisodes
+    schedule: Schedule
+    seed: int
+    refresh_episodes: int
+
+    def refresh(self, step: int, workers: int | None = None) -> None:
+        """Measure the success under every corruption on training episodes, for the schedule."""
+        rates = measure(
+            self.agent,
+            self.schedule,
+            self.world,
+            self.training,
+            episodes=self.refresh_episodes,
+            seed=self.seed,
+            step=step,
+            workers=workers,
+        )
+        self.schedule.refresh(rates)
+        hold_statistics(self.agent.train())
+
+    def set_schedule(self, state: dict[str, Any]) -> None:
+        """Draw as the schedule did when a job was ordered."""
+        if state != self.schedule.state_dict():
+            self.schedule.load_state_dict(state)
 
 
 def measure(

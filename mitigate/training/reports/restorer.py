@@ -18,8 +18,6 @@ from typing import Any, NamedTuple
 
 import cv2
 import numpy as np
-from hydra.errors import HydraException
-from omegaconf.errors import OmegaConfBaseException
 from torch import nn
 
 from mitigate.core import conf
@@ -28,13 +26,14 @@ from mitigate.core.files import atomic_text, find, write_bytes
 from mitigate.core.markdown import markdown_table
 from mitigate.core.names import unknown
 from mitigate.core.observation import DEPTH, POSE, RGB
+from mitigate.core.options import positive
 from mitigate.core.pictures import depth_picture
 from mitigate.core.progress import Progress
 from mitigate.core.seeding import generator
 from mitigate.corruptions import CLEAN, Corruption, DepthSensor, Key, corrupt_observation
 from mitigate.corruptions.registry import title
 from mitigate.corruptions.suite import SENSOR
-from mitigate.encoders.sources import UNSEEN, collect
+from mitigate.encoders.sources import UNSEEN, Source, collect
 from mitigate.evaluation.bootstrap import NO_INTERVAL, Estimate, mean, share
 from mitigate.evaluation.conditions import conditions
 from mitigate.guards.frames.restorer import Restorer, load_restorer
@@ -91,7 +90,7 @@ def instants(env: Any, split: str, count: int, seed: int, restorer: Restorer) ->
     """Clean observations of ``count`` random poses in the scenes of a list of ``env``, or frames of
     the unseen part of a folder. Raises ValueError for an unknown split."""
     made = maker(env.world)()
-    if hasattr(made, "shots"):
+    if isinstance(made, Source):
         sensor, part = next(iter(restorer.parts().items()))
         found = collect(made, UNSEEN, count, seed).frames
         clean = [{sensor: frame[None]} for frame in found]
@@ -249,29 +248,22 @@ def main(arguments: Sequence[str] | None = None) -> None:
     parser.add_argument("folder", help="of the restorer")
     parser.add_argument("--split", default="val_seen")
     parser.add_argument("--suite", default="full")
-    parser.add_argument("--count", type=int, default=40, help="random instants (default 40)")
+    parser.add_argument("--count", type=positive, default=40, help="random instants (default 40)")
     parser.add_argument("--severity", type=float, default=0.6)
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--out", default="runs/restoration", help="folder of table and picture")
     options = parser.parse_args(arguments)
-    if options.count < 1:
-        raise ValueError(f"--count {options.count}: give 1 instant or more.")
-    chosen = [f"suite={options.suite}"]
-    try:
-        cfg = conf.load_config("evaluate", chosen)
-    except (HydraException, OmegaConfBaseException) as error:
-        raise ValueError(conf.explain(error, "evaluate", chosen)) from None
+    cfg = conf.composed("evaluate", [f"suite={options.suite}"])
     met = conditions(list(cfg.suite.conditions), options.severity, None)
     restorer = load_restorer(options.folder)
-    seed = options.seed
     if not any({*corruption.modalities} & {*restorer.nets} for corruption in met):
         raise ValueError(
             f"suite={options.suite} corrupts no frames of {', '.join(restorer.nets)}: choose "
             "another, such as full or unseen_val."
         )
-    seen = instants(cfg.env, options.split, options.count, seed, restorer)
+    seen = instants(cfg.env, options.split, options.count, options.seed, restorer)
     about = f"{options.split}, suite {options.suite}, severity {options.severity:g}"
-    write(restorer, seen, met, seed, Path(options.out), about)
+    write(restorer, seen, met, options.seed, Path(options.out), about)
 
 
 if __name__ == "__main__":

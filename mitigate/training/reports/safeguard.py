@@ -144,9 +144,7 @@ def summary(scores: dict[str, dict[str, Scores]]) -> str:
         met = {f: s for f, s in found.items() if f not in (CLEAN, "all")}
         count = sum(s.count for s in met.values())
         means = [
-            sum(s.count * (getattr(s, field) or 0.0) for s in met.values()) / count
-            if count
-            else None
+            sum(s.count * (vars(s)[field] or 0.0) for s in met.values()) / count if count else None
             for field in ("directions", "landmarks", "token_f1")
         ]
         removed, clean = found["all"].removed, found["all"].changed
