@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import time
+from typing import Any
 
 import torch
 from torch import nn
 
-from mitigate.training.objective import Objective
+from mitigate.training.objective import Objective, split_arguments
 
 
 class TinyAgent(nn.Module):
@@ -52,3 +53,12 @@ class TinyRecipe(Objective):
 
     def set_extra_state(self, state: dict) -> None:
         self.count = state["count"]
+
+
+def assemble(kind: type[Objective], agent: Any, **arguments: Any) -> Any:
+    """Build an objective and its source from built arguments, split as in a recipe."""
+    parameter = next((name for name in kind.sources if name not in arguments), "")
+    own, others = split_arguments(kind, parameter, arguments, kind.__qualname__)
+    if parameter:
+        own[parameter] = kind.sources[parameter](agent=agent, **others)
+    return kind(agent=agent, **own)

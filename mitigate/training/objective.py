@@ -7,7 +7,7 @@ each argument to the constructor that names it: that of the objective or that of
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Container, Mapping
 from dataclasses import dataclass, field
 from inspect import Parameter, signature
 from numbers import Real
@@ -244,7 +244,7 @@ class ObjectiveSpec:
         kind = located(target)
         check_kind(kind, target)
         given = {name: value for name, value in recipe.items() if name != "_target_"}
-        parameter = next(iter(_sources(kind, given)), "")
+        parameter = _source_of(kind, given)
         own, others = split_arguments(kind, parameter, given, target)
         return cls(target, own, others if parameter else None, parameter)
 
@@ -267,16 +267,6 @@ class ObjectiveSpec:
         return objective
 
 
-def assemble(kind: type[Objective], agent: Any, **arguments: Any) -> Any:
-    """Build an objective and its source from built arguments, split as in a recipe."""
-    target = f"{kind.__module__}.{kind.__qualname__}"
-    parameter = next(iter(_sources(kind, arguments)), "")
-    own, others = split_arguments(kind, parameter, arguments, target)
-    if parameter:
-        own[parameter] = kind.sources[parameter](agent=agent, **others)
-    return kind(agent=agent, **own)
-
-
 def split_arguments(
     kind: Any, parameter: str, given: Mapping[str, Any], target: str
 ) -> tuple[dict[str, Any], dict[str, Any]]:
@@ -289,10 +279,8 @@ def split_arguments(
     source_names, source_open = _parameters(kind.sources[parameter]) if parameter else ((), False)
     names = [n for n in (*own_names, *source_names) if n != parameter]
     for name in given:
-        known = name.startswith("_") or name in names or own_open or source_open
-        if not known:
-            choices = [*dict.fromkeys(names)]
-            raise ValueError(f"{target}: {unknown('argument', name, choices)}")
+        if not (name.startswith("_") or name in names or own_open or source_open):
+            raise ValueError(f"{target}: {unknown('argument', name, [*dict.fromkeys(names)])}")
     others = {
         n: v for n, v in given.items() if n in source_names or (source_open and n not in own_names)
     }
@@ -310,12 +298,17 @@ def _parameters(kind: Any) -> tuple[tuple[str, ...], bool]:
     return tuple(p.name for p in parameters if p.kind is not Parameter.VAR_KEYWORD), is_open
 
 
-def _sources(kind: Any, given: Iterable[str]) -> list[str]:
-    """Return the parameters of ``kind`` that take a source which nothing in ``given`` provides."""
-    if not (isinstance(kind, type) and issubclass(kind, Objective)):
-        return []
+def _source_of(kind: Any, given: Container[str]) -> str:
+    """Return the parameter of ``kind`` that takes its source, "" without one or if it is given."""
+    if not is_objective(kind):
+        return ""
     names, _ = _parameters(kind)
-    return [name for name in kind.sources if name in names and name not in given]
+    return next((name for name in kind.sources if name in names and name not in given), "")
+
+
+def is_objective(kind: Any) -> bool:
+    """Return whether ``kind`` is a class of objectives, not a function that makes one."""
+    return isinstance(kind, type) and issubclass(kind, Objective)
 
 
 def check_kind(kind: Any, target: str) -> None:
@@ -325,7 +318,7 @@ def check_kind(kind: Any, target: str) -> None:
     """
     if not isinstance(kind, type):
         return
-    if not issubclass(kind, Objective):
+    if not is_objective(kind):
         raise ValueError(not_an_objective(target))
     names, is_open = _parameters(kind)
     if "agent" not in names and not is_open:

@@ -41,7 +41,7 @@ from mitigate.evaluation.config import REPORT
 from mitigate.evaluation.episode_lists import episodes
 from mitigate.training import states
 from mitigate.training.config import StageConfig, TrainConfig, check_values
-from mitigate.training.objective import Objective, ObjectiveSpec
+from mitigate.training.objective import ObjectiveSpec, is_objective
 from mitigate.training.parts import POLICY, SEEING, policy_parts
 from mitigate.training.ranks import Ranks
 from mitigate.training.workers import MOST
@@ -234,7 +234,7 @@ def _leave_out_views(config: TrainConfig, agent: nn.Module) -> None:
     Where no other stage could train the agent they stay, and :func:`check_fit` rejects them.
     """
     kinds = {name: located(_target_of(stage)) for name, stage in config.active_stages.items()}
-    views = [name for name, kind in kinds.items() if _is_objective(kind) and kind.needs == SEEING]
+    views = [name for name, kind in kinds.items() if is_objective(kind) and kind.needs == SEEING]
     others = [kind for name, kind in kinds.items() if name not in views]
     if all(_misfit(kind, agent) for kind in others):
         return
@@ -250,13 +250,9 @@ def _leave_out_views(config: TrainConfig, agent: nn.Module) -> None:
             say(f"{name}: left out, {cause} (docs/bring-your-own.md)")
 
 
-def _is_objective(kind: Any) -> bool:
-    return isinstance(kind, type) and issubclass(kind, Objective)
-
-
 def _misfit(kind: Any, agent: nn.Module) -> str:
     """Return why an objective cannot train ``agent``; "" for what is no class of an objective."""
-    return str(kind.misfit(agent)) if _is_objective(kind) else ""
+    return str(kind.misfit(agent)) if is_objective(kind) else ""
 
 
 def warn_warmup(config: TrainConfig) -> None:

@@ -11,6 +11,7 @@ import math
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import KW_ONLY, dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -24,17 +25,21 @@ from mitigate.core.progress import say
 from mitigate.core.signals import Ended, Held, held
 from mitigate.training import optimization, states
 from mitigate.training.batches import Batches
-from mitigate.training.config import LIMITS, check_limits
+from mitigate.training.config import check_limits
 from mitigate.training.journal import Journal
 from mitigate.training.objective import Objective, accumulate
 from mitigate.training.ranks import Ranks
 from mitigate.training.workers import Workers
+
+# settings that the weights depend on: a run is not resumed under others
+FIXED = ("steps", "lr", "weight_decay", "warmup", "schedule", "grad_clip", "seed", "precision")
 
 
 class LossNotFinite(ValueError):
     """The loss or its gradient is NaN or infinite; the weights were not changed by that step."""
 
 
+@dataclass(eq=False)
 class Trainer:
     """Train ``objective`` for ``steps`` updates of AdamW in ``folder``.
 
@@ -61,65 +66,54 @@ class Trainer:
         workers: processes that make batches (``Objective.jobs``); None makes them in this one, to
             the same bits.
         ranks: processes that train together; the first one logs and saves.
-        name: of the stage in what is printed; None: of the objective's class.
+        name: of the stage in what is printed; empty: of the objective's class.
         config: JSON-able description of the run. A checkpoint made under another is refused.
 
     Raises:
         ValueError: for a setting out of its range.
     """
 
-    def __init__(
-        self,
-        objective: Objective,
-        *,
-        steps: int,
-        folder: str | Path,
-        lr: float = 1e-3,
-        weight_decay: float = 0.01,
-        warmup: int = 0,
-        schedule: str = "cosine",
-        grad_clip: float = 1.0,
-        log_every: int = 50,
-        save_every: int = 1000,
-        eval_every: int = 0,
-        figure_every: int = 0,
-        keep: int = 2,
-        lag: int = 0,
-        seed: int = 0,
-        precision: str = "auto",
-        device: str = "auto",
-        workers: Workers | None = None,
-        ranks: Ranks | None = None,
-        name: str | None = None,
-        config: dict[str, Any] | None = None,
-    ) -> None:
-        optimization.check(schedule)
-        check_limits({k: v for k, v in locals().items() if k in LIMITS})
-        self.folder, self.steps, self.seed, self.keep = Path(folder), steps, seed, keep
-        self.log_every, self.save_every, self.grad_clip = log_every, save_every, grad_clip
-        self.eval_every, self.figure_every = eval_every, figure_every
-        self.device = device_of(device)
-        self.workers, self.ranks, self.lag = workers, ranks or Ranks(), lag
-        self.asked = precision
-        self.precision = self.ranks.of_first(choose(precision, self.device))
-        self.objective = objective.to(self.device)
-        self.name = name or type(objective).__name__
-        self.config = states.as_json(config or {}) | {
-            "trainer": {
-                "steps": steps,
-                "lr": lr,
-                "weight_decay": weight_decay,
-                "warmup": warmup,
-                "schedule": schedule,
-                "grad_clip": grad_clip,
-                "seed": seed,
-                "precision": self.precision,
-                **({"lag": lag, "save_every": save_every} if lag else {}),
-            },
-        }
-        groups = objective.parameter_groups()
-        self.optimizer = optimization.adamw(groups, self.name, lr, weight_decay)
-        self.scheduler = optimization.scheduler(self.optimizer, steps, warmup, schedule)
+    objective: Objective
+    _: KW_ONLY
+    steps: int
+    folder: Path
+    lr: float = 1e-3
+    weight_decay: float = 0.01
+    warmup: int = 0
+    schedule: str = "cosine"
+    grad_clip: float = 1.0
+    log_every: int = 50
+    save_every: int = 1000
+    eval_every: int = 0
+    figure_every: int = 0
+    keep: int = 2
+    lag: int = 0
+    seed: int = 0
+    precision: str = "auto"
+    device: Any = "auto"
+    workers: Workers | None = None
+    ranks: Ranks = field(default_factory=Ranks)
+    name: str = ""
+    config: dict[str, Any] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        optimization.check(self.schedule)
+        check_limits(vars(self))
+        self.folder = Path(self.folder)
+        self.device = device_of(self.device)
+        self.asked = self.precision
+        self.precision = self.ranks.of_first(choose(self.precision, self.device))
+        self.objective = self.objective.to(self.device)
+        self.name = self.name or type(self.objective).__name__
+        fixed = {name: vars(self)[name] for name in FIXED}
+        if self.lag:
+            fixed |= {"lag": self.lag, "save_every": self.save_every}
+        self.config = states.as_json(self.config) | {"trainer": fixed}
+        groups = self.objective.parameter_groups()
+        self.optimizer = optimization.adamw(groups, self.name, self.lr, self.weight_decay)
+        self.scheduler = optimization.scheduler(
+            self.optimizer, self.steps, self.warmup, self.schedule
+        )
         self.trained = [p for group in self.optimizer.param_groups for p in group["params"]]
         self._saved, self._finished = 0, False  # steps in a checkpoint; whether it needs no more
 

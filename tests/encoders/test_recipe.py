@@ -25,10 +25,10 @@ from mitigate.encoders.sources import FolderFrames
 from mitigate.recipes.encoder import HardenEncoder, variance
 from mitigate.training import train
 from mitigate.training.config import read
-from mitigate.training.objective import assemble
 from mitigate.training.reports.encoder import before_after
 from mitigate.training.trainer import Trainer
 from tests.encoders.shapes import TinyNet, tiny
+from tests.tiny import assemble
 
 TINY = ["agent=encoder", "agent.model=tests.encoders.shapes:tiny", "agent.output=pool"]
 

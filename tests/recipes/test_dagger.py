@@ -11,9 +11,9 @@ from mitigate.agents.recurrent import RecurrentAgent
 from mitigate.core.seeding import seed_everything
 from mitigate.corruptions import Schedule
 from mitigate.recipes.dagger import Dagger
-from mitigate.training.objective import assemble
 from mitigate.worlds.apartments.tasks import DrawnEpisodes
 from mitigate.worlds.apartments.world import ApartmentsWorld
+from tests.tiny import assemble
 
 SMALL = {"width": 16, "heads": 2, "text_layers": 1}
 

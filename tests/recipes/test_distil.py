@@ -16,11 +16,11 @@ from mitigate.corruptions import DEPTH, Schedule
 from mitigate.recipes.adapt import FRESH, HELD, Adapt, AdaptViews, differ
 from mitigate.recipes.distil import Distil, DistilViews, feature_loss, policy_kl
 from mitigate.recipes.imitate import Imitate, imitation
-from mitigate.training.objective import assemble
 from mitigate.training.states import checkpoints
 from mitigate.training.trainer import Trainer
 from mitigate.worlds.apartments.tasks import DrawnEpisodes
 from mitigate.worlds.apartments.world import ApartmentsWorld
+from tests.tiny import assemble
 
 SMALL = {"heads": 2, "text_layers": 1, "layers": 1}
 ADAPTERS = {"target_modules": [r"(rgb|depth)_encoder\.stages\.1"], "ring": [r"rgb.*stages\.2"]}

@@ -17,12 +17,12 @@ from mitigate.corruptions import Schedule
 from mitigate.evaluation import rows
 from mitigate.recipes.distil import policy_kl
 from mitigate.recipes.imitate import Imitate, check_losses, imitation
-from mitigate.training.objective import assemble
 from mitigate.training.rollouts import Rollouts
 from mitigate.training.trainer import Trainer
 from mitigate.worlds.apartments.tasks import DrawnEpisodes
 from mitigate.worlds.apartments.world import ApartmentsWorld
 from tests.evaluation.made_rows import cell
+from tests.tiny import assemble
 
 SMALL = {"heads": 2, "text_layers": 1, "layers": 1}
 SOURCES = {"world": partial(ApartmentsWorld, 64, 2), "training": DrawnEpisodes(2)}

@@ -12,9 +12,9 @@ from mitigate.agents.topological import TopologicalAgent, stored
 from mitigate.core import seeding
 from mitigate.corruptions import Schedule
 from mitigate.recipes.imitate_stored import ImitateStored
-from mitigate.training.objective import assemble
 from mitigate.worlds.apartments.tasks import DrawnEpisodes
 from mitigate.worlds.apartments.world import ApartmentsWorld
+from tests.tiny import assemble
 
 SCENE = "apartments/train/000000"
 SMALL = {"heads": 2, "text_layers": 1, "layers": 1}

@@ -16,10 +16,10 @@ from mitigate.encoders.sources import FolderFrames
 from mitigate.guards.frames.restorer import Restorer
 from mitigate.recipes.restore import Restore
 from mitigate.recipes.restore_gate import Judged, RestoreGate
-from mitigate.training.objective import assemble
 from mitigate.training.trainer import Trainer
 from mitigate.worlds.apartments.tasks import DrawnEpisodes
 from mitigate.worlds.apartments.world import ApartmentsWorld
+from tests.tiny import assemble
 
 
 def recipe_of(sensor: str = RGB, names=("foreign_object", "missing_data"), **given) -> Restore:

@@ -7,8 +7,8 @@ from functools import partial
 import pytest
 import torch
 
-from mitigate.training.objective import Objective, ObjectiveSpec, assemble
-from tests.tiny import TinyAgent
+from mitigate.training.objective import Objective, ObjectiveSpec
+from tests.tiny import TinyAgent, assemble
 
 
 class Numbers:
