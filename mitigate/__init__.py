@@ -33,7 +33,7 @@ def __getattr__(name: str) -> Any:
     """Import what is in ``__all__``, and torch with it, when it is first asked for."""
     if name in _HOMES:
         try:
-            return getattr(import_module(_HOMES[name]), name)
+            return vars(import_module(_HOMES[name]))[name]
         except ModuleNotFoundError as error:
             from mitigate.core.errors import lacking
 

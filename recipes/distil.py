@@ -13,7 +13,7 @@ what the teacher's give for the clean one.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 import torch
 from torch import Tensor
@@ -25,9 +25,6 @@ from mitigate.training.objective import check_weights
 from mitigate.training.parts import load_teacher, refuse_gates, train_only
 from mitigate.training.poses import OnViews, Poses
 from mitigate.training.rollouts import OnEpisodes, Rollouts
-
-if TYPE_CHECKING:
-    from typing_extensions import Self
 
 
 class Distil(OnEpisodes):
@@ -89,7 +86,7 @@ class Distil(OnEpisodes):
     def identity(self) -> dict[str, str]:
         return {**self.rollouts.identity(), "teacher_sha256": checkpoint.weights_sha(self.teacher)}
 
-    def train(self, mode: bool = True) -> Self:
+    def train(self, mode: bool = True) -> Any:
         super().train(mode)
         self.teacher.eval()
         return self
@@ -170,7 +167,7 @@ class DistilViews(OnViews):
     def identity(self) -> dict[str, str]:
         return {"teacher_sha256": checkpoint.weights_sha(self.teacher)}
 
-    def train(self, mode: bool = True) -> Self:
+    def train(self, mode: bool = True) -> Any:
         super().train(mode)
         self.teacher.eval()
         return self

@@ -16,11 +16,13 @@ from collections import OrderedDict
 from collections.abc import Mapping
 from contextlib import suppress
 from inspect import signature
+from operator import attrgetter
 from pathlib import Path
 from typing import Any
 
 import torch
 from torch import Tensor, nn
+from torch.export.unflatten import InterpreterModule
 
 from mitigate.core import checkpoint
 from mitigate.core.files import find
@@ -81,11 +83,12 @@ def _imported(path: str, kwargs: dict[str, Any]) -> nn.Module:
         raise ValueError(
             f"agent.model={path}: importing {name} failed ({told(error)}). Mend that module."
         ) from error
-    for part in attribute.split("."):
-        if not hasattr(thing, part):
-            there = [n for n in dir(thing) if not n.startswith("_")]
-            raise ValueError(f"agent.model={path}: {unknown('callable', part, there)}")
-        thing = getattr(thing, part)
+    try:
+        thing = attrgetter(attribute)(thing)
+    except AttributeError as error:
+        there = [name for name in dir(error.obj) if not name.startswith("_")]
+        what = unknown("callable", error.name, there)
+        raise ValueError(f"agent.model={path}: {what}") from error
     made = _called(path, thing, kwargs)
     if not isinstance(made, nn.Module):
         raise ValueError(f"agent.model={path} made a {type(made).__name__}, not a torch nn.Module.")
@@ -157,9 +160,9 @@ def _exported(path: Path) -> nn.Module:
         ) from error
     model = torch.export.unflatten(program)
     for module in model.modules():
-        graph: Any = getattr(module, "graph", None)
-        for node in () if graph is None else graph.nodes:
-            node.meta.pop("val", None)  # a tensor without values, which cannot be copied
+        if isinstance(module, InterpreterModule):
+            for node in module.graph.nodes:
+                node.meta.pop("val", None)  # a tensor without values, which cannot be copied
     return model
 
 
@@ -228,7 +231,7 @@ def read_state(path: Path) -> dict[str, Tensor]:
     if path.suffix == ".safetensors":
         return checkpoint.load_tensors(path)
     held = _load(path)
-    for _ in range(len(NESTED)):  # one may hold itself
+    for _ in NESTED:  # one may hold itself
         if not isinstance(held, Mapping) or any(isinstance(v, Tensor) for v in held.values()):
             break
         inner = next((name for name in NESTED if isinstance(held.get(name), Mapping)), None)

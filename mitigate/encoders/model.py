@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 from inspect import signature
 from numbers import Real
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import torch
@@ -21,11 +21,8 @@ from mitigate.core.files import find
 from mitigate.core.names import short, unknown
 from mitigate.core.progress import say
 from mitigate.corruptions import DepthSensor
+from mitigate.encoders import folder as folders
 from mitigate.encoders import loading
-
-if TYPE_CHECKING:
-    from typing_extensions import Self
-
 
 RESIZE = ("bilinear", "bicubic", "area", "nearest")
 FROM_UINT8 = 255.0  # of RGB frames
@@ -237,7 +234,7 @@ class Encoder(nn.Module):
         for parameter in trained:
             parameter.requires_grad_(True)
 
-    def train(self, mode: bool = True) -> Self:
+    def train(self, mode: bool = True) -> Encoder:
         """The encoder stays in eval mode: no dropout, and its BatchNorms keep their statistics."""
         super().train(mode)
         self.model.train(False)
@@ -311,20 +308,16 @@ class Encoder(nn.Module):
 
     def _item(self, output: Any) -> Tensor:
         """The target in what the model returned."""
-        if self.output is not None and not isinstance(output, Tensor):
-            held: dict[Any, Any] = dict(output) if isinstance(output, Mapping) else {}
-            held |= enumerate(output) if isinstance(output, (tuple, list)) else ()
-            if isinstance(held.get(self.output), Tensor):
-                return held[self.output]
-            names = [str(name) for name, value in held.items() if isinstance(value, Tensor)]
-        elif self.output is None:
-            named = isinstance(output, Mapping)
-            chosen = next(iter(output.values()), None) if named else first(output)
-            if isinstance(chosen, Tensor):
-                return chosen
-            names = list(output) if isinstance(output, Mapping) else []
+        items: dict[Any, Any] = dict(output) if isinstance(output, Mapping) else {}
+        if isinstance(output, (tuple, list)):
+            items = dict(enumerate(output))
+        if self.output is not None:
+            chosen = items.get(self.output)
         else:
-            names = []
+            chosen = next(iter(items.values()), None) if items else first(output)
+        if isinstance(chosen, Tensor):
+            return chosen
+        names = [str(name) for name, value in items.items() if isinstance(value, Tensor)]
         modules = [name for name, _ in self.model.named_modules() if name]
         what = f"It returns {', '.join(names)}. " if names else ""
         raise ValueError(
@@ -372,14 +365,10 @@ class Encoder(nn.Module):
 
     def save(self, folder: str | Path) -> Path:
         """Write what was trained: see ``folder.py``."""
-        from mitigate.encoders import folder as folders
-
         return folders.write(self, folder)
 
     def load(self, folder: str | Path) -> None:
         """Read what :meth:`save` wrote; errors as ``folder.fill``."""
-        from mitigate.encoders import folder as folders
-
         folders.fill(self, folder)
 
 

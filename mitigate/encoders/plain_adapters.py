@@ -38,6 +38,7 @@ def attach(model, folder, check=True):
     around it. Raises ValueError for a folder that is damaged or does not fit and for a model that
     has adapters already, and OSError for a missing file.
     """
+    # TorchScript may lack the attribute
     hooks = [hook for m in model.modules() for hook in getattr(m, "_forward_hooks", {}).values()]
     if any(isinstance(hook, _Adapter) for hook in hooks):
         raise ValueError(
@@ -50,10 +51,10 @@ def attach(model, folder, check=True):
     surplus = [name for name in tensors if not name.startswith(owners)]
     if surplus:
         raise ValueError(f"{WEIGHTS} in {folder} has tensors of no adapter: {surplus[0]!a:.60}.")
-    wrapped = set(shapes) <= {"before", "behind"} and not hasattr(model, "before")
-    if wrapped:
-        model = _Wrapped(model)
     modules = dict(model.named_modules())
+    if set(shapes) <= {"before", "behind"} and "before" not in modules:
+        model = _Wrapped(model)
+        modules = dict(model.named_modules())
     missing = sorted(set(shapes) - set(modules))
     if missing:
         raise ValueError(
@@ -107,7 +108,8 @@ class _Adapter:
     def __call__(self, module, inputs, output):
         if isinstance(output, (tuple, list)):
             rest = (self.adapt(output[0]),) + tuple(output[1:])
-            return output._make(rest) if hasattr(output, "_make") else type(output)(rest)
+            named = hasattr(output, "_make")  # named tuples share no class of their own
+            return output._make(rest) if named else type(output)(rest)
         return self.adapt(output)
 
     def fingerprint(self):
@@ -194,17 +196,14 @@ def _known(shape):
     """Whether the settings of an adapter are of the form that this file knows."""
     if not isinstance(shape, dict) or not {"channels", "reduction"} <= set(shape):
         return False
-    for name, value in shape.items():
-        if name == "kind":
-            good = value == "tokens"
-        elif name == "gate":
-            good = value is True
-        else:
-            low = 0 if name == "batch" else 1
-            good = type(value) is int and name in NUMBERS and low <= value <= NUMBERS[name]
-        if not good:
+    rest = {name: value for name, value in shape.items() if name not in ("kind", "gate")}
+    for name, value in rest.items():
+        low = 0 if name == "batch" else 1
+        if type(value) is not int or not low <= value <= NUMBERS.get(name, -1):
             return False
-    return ("kernel" in shape and shape["kernel"] % 2 == 1) or shape.get("kind") == "tokens"
+    if shape.get("gate", True) is not True or shape.get("kind", "tokens") != "tokens":
+        return False
+    return shape.get("kernel", 0) % 2 == 1 or "kind" in shape
 
 
 def parse(data, path="the file"):

@@ -114,8 +114,7 @@ class LinearProbe:
 
     def __init__(self, clean: np.ndarray, labels: np.ndarray, scene: np.ndarray) -> None:
         self.mean, self.scale = clean.mean(0), clean.std(0) + 1e-6
-        shown = labels.sum(0)
-        self.used = np.flatnonzero((shown >= FEWEST) & (len(labels) - shown >= FEWEST))
+        self.used = shown_enough(labels)
         x, y = self._scaled(clean), labels[:, self.used].astype(np.float64)
         held = np.isin(scene, np.unique(scene)[:: round(1 / PROBE_SHARE)])
         kept = shown_enough(y[held])

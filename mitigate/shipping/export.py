@@ -225,7 +225,10 @@ def _write(
     adapters_only = _only_adapters_trained(cfg, agent)
     known = facts(cfg, agent)  # before the slow part: what is missing shows at once
     shipped = agent
-    _write_weights(draft, agent, adapters_only, half=walks is None)
+    if adapters_only:
+        adapters.write_adapters(agent, draft)
+    else:
+        checkpoint.write_tensors(agent, draft / checkpoint.WEIGHTS, half=walks is None)
     if walks is None and not adapters_only:
         shipped = copy.deepcopy(agent)
         checkpoint.load_weights(shipped, draft)
@@ -257,14 +260,6 @@ def _write(
         _reload(draft, wanted)
     else:
         _reload_walks(draft, agent, walks)
-
-
-def _write_weights(draft: Path, agent: nn.Module, only_adapters: bool, *, half: bool) -> None:
-    """Write the weights of ``agent``, with ``half`` in float16, or its adapters alone."""
-    if only_adapters:
-        adapters.write_adapters(agent, draft)
-    else:
-        checkpoint.write_tensors(agent, draft / checkpoint.WEIGHTS, half=half)
 
 
 def _programs(
@@ -350,22 +345,10 @@ def _of_one_agent(own: list[Row], given: list[Row], weights: set[str]) -> Iterat
 
 def _reload(draft: Path, wanted: dict[str, Tensor]) -> None:
     """Run :func:`check_outputs` in a fresh process; ValueError with its last words if it fails."""
-    root = str(Path(__file__).resolve().parents[2])
-    path = os.pathsep.join(filter(None, (root, os.environ.get("PYTHONPATH"))))
     with tempfile.TemporaryDirectory() as folder:
         expected = Path(folder) / "expected.safetensors"
         save_file(_open(wanted), expected)
-        done = subprocess.run(
-            [sys.executable, "-c", _RUN.format("check_outputs"), str(draft), str(expected)],
-            env={**os.environ, "PYTHONPATH": path},
-            capture_output=True,
-            text=True,
-        )
-    if done.returncode:
-        last = (done.stderr.strip().splitlines() or ["no message"])[-1]
-        raise ValueError(
-            f"The folder does not reload to the same outputs ({last}); nothing written"
-        )
+        _run_apart("check_outputs", "outputs", draft, expected)
 
 
 def _reload_walks(draft: Path, agent: nn.Module, walks: Walks) -> None:
@@ -375,15 +358,22 @@ def _reload_walks(draft: Path, agent: nn.Module, walks: Walks) -> None:
         given, expected = Path(folder, "walks"), Path(folder, "expected.json")
         given.write_bytes(pickle.dumps((sys.path, walks)))  # ours, for the process started here
         expected.write_text(json.dumps(walks.measures(agent)), encoding="utf-8")
-        done = subprocess.run(
-            [sys.executable, "-c", _RUN.format("check_walks"), *map(str, (draft, given, expected))],
-            env={**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, sys.path))},
-            capture_output=True,
-            text=True,
-        )
+        _run_apart("check_walks", "agent", draft, given, expected)
+
+
+def _run_apart(check: str, what: str, *paths: Path) -> None:
+    """Call the function ``check`` of this module in a fresh process; ValueError with its last words
+    if it fails: the folder does not reload to the same ``what``."""
+    root = str(Path(__file__).resolve().parents[2])
+    done = subprocess.run(
+        [sys.executable, "-c", _RUN.format(check), *map(str, paths)],
+        env={**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, (root, *sys.path)))},
+        capture_output=True,
+        text=True,
+    )
     if done.returncode:
         last = (done.stderr.strip().splitlines() or ["no message"])[-1]
-        raise ValueError(f"The folder does not reload to the same agent ({last}); nothing written")
+        raise ValueError(f"The folder does not reload to the same {what} ({last}); nothing written")
 
 
 def check_walks(draft: str, given: str, expected: str) -> None:

@@ -11,7 +11,7 @@ from collections.abc import Callable, Container, Mapping
 from dataclasses import dataclass, field
 from inspect import Parameter, signature
 from numbers import Real
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 import torch
@@ -23,9 +23,6 @@ from mitigate.core.names import unknown
 from mitigate.core.precision import computing
 from mitigate.training.config import in_range, number_text
 from mitigate.training.parts import hold_statistics
-
-if TYPE_CHECKING:
-    from typing_extensions import Self
 
 WEIGHT = 1e9  # largest weight of a loss, a generous bound
 
@@ -64,7 +61,7 @@ class Objective(nn.Module):
         absent = lacking(agent, cls.needs)
         return f"it has no {', '.join(absent)}. {cls.otherwise}" if absent else ""
 
-    def train(self, mode: bool = True) -> Self:
+    def train(self, mode: bool = True) -> Any:
         """As a module's; frozen normalisations keep their statistics (``hold_statistics``)."""
         super().train(mode)
         hold_statistics(self)

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import re
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import product
 from pathlib import Path
@@ -17,7 +17,7 @@ from typing import Any
 
 from hydra.core.override_parser.overrides_parser import OverridesParser
 from hydra.errors import HydraException
-from omegaconf import MISSING, DictConfig
+from omegaconf import MISSING
 
 from mitigate.cluster import launcher, programs
 from mitigate.cluster.launcher import RayConfig
@@ -48,11 +48,6 @@ conf.register("sweep", SweepConfig)
 OWN = re.compile(r"(command|runs|jobs|launcher(\.[\w.]+)?)=")
 
 
-def run(cfg: DictConfig, options: Sequence[str]) -> None:
-    """Run the sweep of composed options (:func:`run_all`)."""
-    run_all(conf.typed(cfg, "sweep"), options)
-
-
 def run_all(config: SweepConfig, options: Sequence[str]) -> None:
     """Run every combination of ``options``, then write and print the table of ``config.runs``.
 
@@ -72,16 +67,8 @@ def run_all(config: SweepConfig, options: Sequence[str]) -> None:
 
     for chosen in made:
         conf.composed(config.command, with_kind(chosen) if config.command == "evaluate" else chosen)
-    chains, problems = [chain(config, chosen, made) for chosen in made], []
-    with Progress("sweep", len(chains), unit="run") as progress:
-
-        def told(number: int, outcome: programs.Outcome) -> None:
-            if outcome.problem:
-                problems.append(f"{chains[number].name}: {outcome.problem}")
-            progress.say(f"{chains[number].name}: {outcome.problem or 'done'}")
-            progress.advance()
-
-        programs.run(chains, config.jobs, launcher.chosen(config.launcher), progress, told)
+    chains = [chain(config, chosen, made) for chosen in made]
+    problems = run_chains("sweep", "run", chains, config.jobs, config.launcher)
     if len(problems) < len(chains):
         write_table([Path(config.runs)], Path(config.runs))
     if problems:
@@ -90,6 +77,33 @@ def run_all(config: SweepConfig, options: Sequence[str]) -> None:
             f"{len(problems)} of {len(chains)} runs failed. {again} {config.runs}/{LOGS}. "
             + " ".join(problems)
         )
+
+
+def run_chains(
+    title: str,
+    unit: str,
+    chains: Sequence[programs.Chain],
+    jobs: int,
+    place: Any,
+    ended: Callable[[int, programs.Outcome], None] = lambda *_: None,
+) -> list[str]:
+    """Run ``chains``, ``jobs`` at a time, on the machines of the launcher ``place``.
+
+    Print a line for each that ended, call ``ended`` with its number, and return what went wrong.
+    """
+    problems = []
+    with Progress(title, len(chains), unit=unit) as progress:
+
+        def told(number: int, outcome: programs.Outcome) -> None:
+            ended(number, outcome)
+            line = f"{chains[number].name}: {outcome.problem or 'done'}"
+            if outcome.problem:
+                problems.append(line)
+            progress.say(line)
+            progress.advance()
+
+        programs.run(chains, jobs, launcher.chosen(place), progress, told)
+    return problems
 
 
 def _check_own(options: Sequence[str]) -> None:
@@ -163,7 +177,7 @@ def main() -> int:
         return 2
 
     def program() -> None:
-        run(conf.load_config("sweep", own), options)
+        run_all(conf.typed(conf.load_config("sweep", own), "sweep"), options)
 
     conf.main(program, "sweep", lambda: check_arguments(options))
     return 0

@@ -16,13 +16,13 @@ from typing import Any
 
 from omegaconf import DictConfig
 
-from mitigate.cluster import launcher, programs
+from mitigate.cluster import programs
 from mitigate.core import build
 from mitigate.core.files import atomic_text
 from mitigate.core.json_files import read_object
 from mitigate.core.names import short
 from mitigate.core.output import is_regular, output_folder
-from mitigate.core.progress import Progress, say
+from mitigate.core.progress import say
 from mitigate.evaluation.episode_lists import episodes
 from mitigate.evaluation.evaluate import load
 from mitigate.evaluation.rows import ROWS, Row, read
@@ -35,6 +35,7 @@ from mitigate.training.cells import (
     listed,
     read_options,
 )
+from mitigate.training.sweep import run_chains
 
 COST, REPORT = "cost.json", "overview.md"
 
@@ -84,28 +85,22 @@ def _make_cells(made: Sequence[Cell], config: TablesConfig, out: Path) -> Path:
 
 def make(made: Sequence[Cell], config: TablesConfig) -> list[str]:
     """Train and evaluate all cells, ``config.jobs`` at a time; return what went wrong."""
-    chains, problems = [cell.chain(config) for cell in made], []
+    chains = [cell.chain(config) for cell in made]
     for cell in made:
         cell.keep()
     before = [
         {kind: cell.left(kind) for kind, _ in chain.programs}
         for cell, chain in zip(made, chains, strict=True)
     ]
-    with Progress("cells", len(made), unit="cell") as progress:
 
-        def told(number: int, outcome: programs.Outcome) -> None:
-            cell = made[number]
-            idle = {kind for kind, left in before[number].items() if left == cell.left(kind) != []}
-            failed = bool(outcome.problem)
-            spent = {k: s for k, s in outcome.seconds.items() if failed or k not in idle}
-            _add_cost(cell.folder / COST, spent)
-            if outcome.problem:
-                problems.append(f"{cell.column}, seed {cell.seed}: {outcome.problem}")
-            progress.say(f"{chains[number].name}: {outcome.problem or 'done'}")
-            progress.advance()
+    def ended(number: int, outcome: programs.Outcome) -> None:
+        cell = made[number]
+        idle = {kind for kind, left in before[number].items() if left == cell.left(kind) != []}
+        failed = bool(outcome.problem)
+        spent = {k: s for k, s in outcome.seconds.items() if failed or k not in idle}
+        _add_cost(cell.folder / COST, spent)
 
-        programs.run(chains, config.jobs, launcher.chosen(config.launcher), progress, told)
-    return problems
+    return run_chains("cells", "cell", chains, config.jobs, config.launcher, ended)
 
 
 def _add_cost(path: Path, spent: dict[str, float]) -> None:
