@@ -33,31 +33,23 @@ def write(path: Path, write: Callable[[Path], Any]) -> Path:
     def write_and_announce(temporary: Path) -> None:
         nonlocal digest
         write(temporary)
-        digest = announce(path, temporary)
+        digest = sha256(temporary)
+        _note(path, [*dict.fromkeys([*_sums_before(path), digest])])
 
     write_atomically(path, write_and_announce)
-    settle(path, digest)
+    if _sums(path) != [digest]:
+        _note(path, [digest])
     return path
 
 
-def announce(path: Path, new: Path) -> str:
-    """Call before ``new`` is renamed to ``path``, then :func:`settle` with the sum that this
-    returns: notes the sum of ``new`` beside those of the file that it replaces."""
-    digest = sha256(new)
-    listed: list[str] = []
-    if path.is_file():
-        try:
-            listed = _sums(path) if sidecar(path).is_file() else [sha256(path)]
-        except ValueError:  # a damaged sidecar goes with its file
-            listed = []
-    _note(path, [*dict.fromkeys([*listed, digest])])
-    return digest
-
-
-def settle(path: Path, digest: str) -> None:
-    """Note ``digest`` alone as the sum of ``path``."""
-    if _sums(path) != [digest]:
-        _note(path, [digest])
+def _sums_before(path: Path) -> list[str]:
+    """Return the sums of the file that is replaced, none if there is none."""
+    try:
+        if sidecar(path).is_file() and path.is_file():
+            return _sums(path)
+        return [sha256(path)] if path.is_file() else []
+    except ValueError:  # a damaged sidecar goes with its file
+        return []
 
 
 def problem(path: Path) -> str:
@@ -81,11 +73,10 @@ def delete(path: Path) -> None:
     path.unlink(missing_ok=True)
 
 
-def delete_sidecars(folder: Path, pattern: str, *, orphans: bool = False) -> None:
-    """Delete the sidecars of the files in ``folder`` whose names match ``pattern`` (as a glob);
-    ``orphans``: only those of files that are gone."""
+def delete_orphans(folder: Path, pattern: str) -> None:
+    """Delete the sidecars in ``folder`` of files that are gone; ``pattern`` (a glob) matched them."""
     for note in folder.glob(pattern + SUFFIX):
-        if not (orphans and note.with_suffix("").is_file()):
+        if not note.with_suffix("").is_file():
             note.unlink(missing_ok=True)
 
 

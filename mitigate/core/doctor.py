@@ -12,26 +12,10 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
 NEEDED = (
-    "torch",
-    "torchrl",
-    "numpy",
-    "scipy",
-    "numba",
-    "opencv-python-headless",
-    "panda3d",
-    "pillow",
-    "hydra-core",
-    "tensorboard",
-    "safetensors",
-    "matplotlib",
-    "tqdm",
-    "peft",
-    "transformers",
-    "pydantic",
-    "pyyaml",
-    "sacrebleu",
-    "urllib3",
-)
+    "torch", "torchrl", "numpy", "scipy", "numba", "opencv-python-headless", "panda3d", "pillow",
+    "hydra-core", "tensorboard", "safetensors", "matplotlib", "tqdm", "peft", "transformers",
+    "pydantic", "pyyaml", "sacrebleu", "urllib3",
+)  # fmt: skip
 EXTRAS = {
     "dev": (
         *("pytest", "pytest-xdist", "ruff", "mypy", "hypothesis", "gymnasium", "rosbags"),
@@ -135,7 +119,10 @@ def compiler() -> str | None:
 
 
 def _packages() -> list[str]:
-    missing = [name for name in NEEDED if not _package(name)]
+    missing = []
+    for name in NEEDED:
+        _line(name, _version(name) or "missing")
+        missing += [] if _version(name) else [name]
     if "torch" not in missing:
         _line("torch and CUDA", cuda())
     for extra, names in EXTRAS.items():
@@ -154,16 +141,8 @@ def cuda() -> str:
         count = torch.cuda.device_count()
         names = ", ".join(torch.cuda.get_device_name(number) for number in range(count))
         return f"sees {names} (CUDA {torch.version.cuda})"
-    built = torch.version.cuda
-    return (
-        f"sees no GPU (built for CUDA {built})" if built else "sees no GPU (built for CPUs alone)"
-    )
-
-
-def _package(name: str) -> bool:
-    found = _version(name)
-    _line(name, found or "missing")
-    return found is not None
+    built = f"CUDA {torch.version.cuda}" if torch.version.cuda else "CPUs alone"
+    return f"sees no GPU (built for {built})"
 
 
 def _version(name: str) -> str | None:

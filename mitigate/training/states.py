@@ -49,7 +49,7 @@ def save(folder: Path, state: dict[str, Any], *, keep: int = 2) -> Path:
     older = [other for other in checkpoints(folder) if other.name < path.name]
     for old in older[: max(0, len(older) - keep + 1)]:
         checksums.delete(old)
-    checksums.delete_sidecars(Path(folder), "step-*.pt", orphans=True)
+    checksums.delete_orphans(Path(folder), "step-*.pt")
     return path
 
 
