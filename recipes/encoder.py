@@ -21,6 +21,7 @@ from torch import Tensor, nn
 
 from mitigate.agents.adapter_layers import Gate
 from mitigate.agents.adapters import backbone_sha
+from mitigate.agents.agent import as_agent
 from mitigate.core import checkpoint
 from mitigate.core.pictures import side_by_side
 from mitigate.core.progress import Progress
@@ -31,7 +32,6 @@ from mitigate.encoders.model import Encoder
 from mitigate.encoders.sources import TRAIN, UNSEEN, Frames, Source, collect, corrupted, source_of
 from mitigate.training import success
 from mitigate.training.objective import Objective, check_weights
-from mitigate.training.parts import without_adapters
 
 SHOWN = 12  # frames in the log's picture
 MOST_KEPT = 1 << 30  # bytes of clean features kept from the start; more are computed at each step
@@ -102,7 +102,7 @@ class HardenEncoder(Objective):
         self.batch_size = batch
         self.micro = micro_batch
         agent.requires_grad_(False)  # of parameters of TorchScript that train there is no copy
-        self.teacher = without_adapters(agent).eval()
+        self.teacher = as_agent(agent).as_teacher().eval()
         agent.choose_trained()
         names = tuple(name for name in schedule.names if modality(name) == agent.sensor)
         if not names:

@@ -7,6 +7,7 @@ an agent that has a ``store``. Otherwise as ``recipes/imitate.py``, whose loss i
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from typing import Any, ClassVar
 
 import numpy as np
@@ -22,6 +23,7 @@ from mitigate.training.rollouts import PIECES, batch_of, check_episodes
 from mitigate.worlds.world import TrainingEpisodes, World
 
 
+@dataclass(eq=False)
 class StoredRollouts:
     """The source of batches of decisions on stored features.
 
@@ -42,37 +44,26 @@ class StoredRollouts:
         ValueError: for no episodes, for an invalid share, and for a schedule by success.
     """
 
-    def __init__(
-        self,
-        agent: Any,
-        world: Callable[[], World],
-        training: TrainingEpisodes,
-        folder: str,
-        steps: int,
-        episodes: int = 40,
-        follow_oracle: float = 0.25,
-        seed: int = 0,
-        schedule: Schedule | None = None,
-        variants: int = 0,
-    ) -> None:
-        check_episodes(episodes)
-        check_share("follow_oracle", follow_oracle)
-        success.refuse(schedule if variants else None)
-        self.agent = agent
-        self.world = world
-        self.training = training
-        self.folder = folder
-        self.steps = steps
-        self.episodes = episodes
-        self.follow_oracle = follow_oracle
-        self.seed = seed
-        self.variants = (
-            {"schedule": schedule, "variants": variants, "seed": seed} if variants else {}
-        )
+    agent: Any
+    world: Callable[[], World]
+    training: TrainingEpisodes
+    folder: str
+    steps: int
+    episodes: int = 40
+    follow_oracle: float = 0.25
+    seed: int = 0
+    schedule: Schedule | None = None
+    variants: int = 0
+
+    def __post_init__(self) -> None:
+        check_episodes(self.episodes)
+        check_share("follow_oracle", self.follow_oracle)
+        success.refuse(self.schedule if self.variants else None)
 
     def start(self, workers: int | None) -> None:
         """Make the store, in the precision of the training."""
-        self.store = self.agent.store(self.world, self.folder, **self.variants)
+        drawn = {"schedule": self.schedule, "variants": self.variants, "seed": self.seed}
+        self.store = self.agent.store(self.world, self.folder, **(drawn if self.variants else {}))
         self.store.build(workers)
 
     @property

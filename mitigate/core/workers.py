@@ -169,9 +169,11 @@ class _Crew:
                 self.crew.append(_Worker(self.context, self.copy))
             while self.done < self.total:
                 with held() as ending:  # what is there to hear is handed out before it ends
-                    self._hand_out()
-                    talking = self._talking()
-                for worker in talking:
+                    for worker in self.crew:
+                        if not worker.left and self.waiting:
+                            worker.give(self.waiting.popleft())
+                    readable = {*wait([worker.pipe for worker in self.crew], SECOND)}
+                for worker in [worker for worker in self.crew if worker.pipe in readable]:
                     yield from self._hear(worker)
                 self._report_stuck()
                 yield None
@@ -181,16 +183,6 @@ class _Crew:
                 worker.process.kill()
             for worker in self.crew:
                 worker.end()
-
-    def _hand_out(self) -> None:
-        for worker in self.crew:
-            if not worker.left and self.waiting:
-                worker.give(self.waiting.popleft())
-
-    def _talking(self) -> list[_Worker]:
-        """Workers with something to read, waiting at most ``SECOND`` for one."""
-        readable = set(wait([worker.pipe for worker in self.crew], SECOND))
-        return [worker for worker in self.crew if worker.pipe in readable]
 
     def _hear(self, worker: _Worker) -> Iterator[tuple[int, Any]]:
         while True:

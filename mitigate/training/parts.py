@@ -91,18 +91,14 @@ def hold_statistics(module: nn.Module, around: Sequence[nn.Parameter] = ()) -> N
     mode: in training mode every batch moves these, though no weight trains. One without weights of
     its own is frozen if all are of the nearest module around it that has some, but for adapters
     (``around``: those of a module above)."""
-    around = _without_adapters(module) or around
+    own = [p for name, p in module.named_parameters() if checkpoint.ADAPTER not in f".{name}"]
+    around = own or around
     for child in module.children():
         hold_statistics(child, around)
         if isinstance(child, _NormBase):
-            own = [*child.parameters()] or around
-            frozen = bool(own) and not any(p.requires_grad for p in own)
+            judged = [*child.parameters()] or around
+            frozen = bool(judged) and not any(p.requires_grad for p in judged)
             child.train(child.training and not frozen)
-
-
-def _without_adapters(module: nn.Module) -> list[nn.Parameter]:
-    named = module.named_parameters()
-    return [p for name, p in named if checkpoint.ADAPTER not in f".{name}"]
 
 
 def load_teacher(agent: nn.Module, weights: str | None) -> nn.Module:
@@ -123,7 +119,7 @@ def load_teacher(agent: nn.Module, weights: str | None) -> nn.Module:
             f"{weights} holds adapters alone, and a teacher needs whole weights: name a folder "
             f"with {checkpoint.WEIGHTS}, such as checkpoints/teacher."
         )
-    teacher = without_adapters(agent)
+    teacher = as_agent(agent).as_teacher()
     if weights != START:
         try:
             checkpoint.load_weights(teacher, find(weights))
@@ -133,9 +129,3 @@ def load_teacher(agent: nn.Module, weights: str | None) -> nn.Module:
                 "RECIPE=da_per_episode` and name its folder (teacher=runs/.../agent)."
             ) from error
     return teacher.requires_grad_(False).eval()
-
-
-def without_adapters(agent: nn.Module) -> nn.Module:
-    """A copy of ``agent`` without what was added to make it robust: see ``as_teacher`` of
-    ``agents/agent.py``."""
-    return as_agent(agent).as_teacher()

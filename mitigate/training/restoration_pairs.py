@@ -5,16 +5,16 @@ from __future__ import annotations
 
 import copy
 from collections.abc import Callable
-from dataclasses import replace
-from typing import Any
+from dataclasses import dataclass, replace
+from typing import Any, ClassVar
 
 import numpy as np
 import torch
 
 from mitigate.core.seeding import generator
-from mitigate.corruptions import Schedule
+from mitigate.corruptions import DepthSensor, Schedule
 from mitigate.corruptions.suite import SENSOR
-from mitigate.encoders.sources import TRAIN, Frames, collect, corrupted, source_of
+from mitigate.encoders.sources import TRAIN, Frames, Source, collect, corrupted, source_of
 from mitigate.training import success
 from mitigate.training.poses import Poses, check_panoramas
 from mitigate.worlds.world import TrainingEpisodes
@@ -48,32 +48,31 @@ class PosePairs(Poses):
         return {"frames": made["frames"], "clean": made["clean"]}
 
 
+@dataclass(eq=False)
 class FramePairs:
     """Frames of a folder, each corrupted as an instant of its own (``encoders/sources.py``).
 
-    Args: as ``source_of``; frames: read once. panoramas: groups of ``GROUP`` frames of a step.
-    far: metres to which depth is read.
+    Attributes:
+        source: of the frames.
+        schedule: of corruptions of ``sensor``.
+        count: frames that are read, once.
+        panoramas: groups of ``GROUP`` frames of a step.
+        seed: of frames and corruptions.
+        depth: what depth is in them.
     """
 
-    ring = False  # each frame is an instant of its own
+    source: Source
+    schedule: Schedule
+    sensor: str
+    count: int
+    panoramas: int
+    seed: int
+    depth: DepthSensor
+    frames: Frames | None = None
+    ring: ClassVar[bool] = False  # each frame is an instant of its own
 
-    def __init__(
-        self,
-        world: Callable[[], Any],
-        schedule: Schedule,
-        *,
-        sensor: str,
-        frames: int,
-        panoramas: int,
-        seed: int,
-        far: float,
-    ) -> None:
-        check_panoramas(panoramas)
-        self.depth = replace(SENSOR, z_max=far)
-        self.source = source_of(world, sensor, None, "", None)
-        self.schedule, self.sensor, self.seed = schedule, sensor, seed
-        self.count, self.groups = frames, panoramas
-        self.frames: Frames | None = None
+    def __post_init__(self) -> None:
+        check_panoramas(self.panoramas)
 
     def start(self) -> None:
         """Read the frames, once."""
@@ -94,7 +93,7 @@ class FramePairs:
         """(step, group, its frames) of each group."""
         assert self.frames is not None, "start() reads the frames"
         made = []
-        for group in range(self.groups):
+        for group in range(self.panoramas):
             rng = generator(self.seed, "restore frames", step, group)
             made.append((step, group, self.frames.some(rng.integers(len(self.frames), size=GROUP))))
         return made
@@ -136,11 +135,10 @@ def pairs_of(
     """
     success.refuse(schedule)
     if training is None:
-        far = agent.parts()[modality].far
+        depth = replace(SENSOR, z_max=agent.parts()[modality].far)
+        source = source_of(world, modality, None, "", None)
         own = schedule.only(modality)
-        return FramePairs(
-            world, own, sensor=modality, frames=frames, panoramas=panoramas, seed=seed, far=far
-        )
+        return FramePairs(source, own, modality, frames, panoramas, seed, depth)
     return PosePairs(agent, world, training, modality, schedule, panoramas, seed, own=True)
 
 

@@ -25,7 +25,8 @@ from mitigate.core.output import is_regular, output_folder
 from mitigate.core.progress import say
 from mitigate.evaluation.episode_lists import episodes
 from mitigate.evaluation.evaluate import load
-from mitigate.evaluation.rows import ROWS, Row, read
+from mitigate.evaluation.rows import ROWS, Row, gather, read
+from mitigate.evaluation.sections import sections
 from mitigate.training.cells import (
     Cell,
     TablesConfig,
@@ -127,11 +128,9 @@ def _read_cost(path: Path) -> dict[str, float]:
 def write_report(config: TablesConfig, out: Path, paths: Sequence[Path | str]) -> Path:
     """Write ``table.md`` with its pictures, and ``overview.md`` with the paper beside it, from
     the rows under ``paths``."""
-    from mitigate.evaluation import report, rows
-    from mitigate.evaluation.report import beside
-    from mitigate.evaluation.sections import sections
+    from mitigate.evaluation import report  # brings matplotlib
 
-    found = rows.gather(paths)
+    found = gather(paths)
     report.write(found, out)
     made = [
         section
@@ -148,7 +147,7 @@ def write_report(config: TablesConfig, out: Path, paths: Sequence[Path | str]) -
     figures = {name: list(values) for name, values in config.paper.items()}
     spent = {} if config.rows else costs(out)
     with atomic_text(out / REPORT) as file:
-        file.write("\n".join(beside(section, figures, spent) for section in made))
+        file.write("\n".join(report.beside(section, figures, spent) for section in made))
     print((out / REPORT).read_text(encoding="utf-8"), flush=True)
     return out / REPORT
 
@@ -156,13 +155,13 @@ def write_report(config: TablesConfig, out: Path, paths: Sequence[Path | str]) -
 def write_further(made: Sequence[Cell], config: TablesConfig, out: Path) -> list[Path]:
     """Write ``NAME/table.md`` with its pictures for each further evaluation, and return their
     paths. Each has a table of its own: its episodes need not be those of the others."""
-    from mitigate.evaluation import report, rows
+    from mitigate.evaluation import report  # brings matplotlib
 
     written = []
     for name in listed(config.evaluations, "evaluations"):
         paths = [cell.further(name) for cell in made if _rows(cell.further(name))]
         if paths:
-            written.append(report.write(rows.gather(paths), out / name)[0])
+            written.append(report.write(gather(paths), out / name)[0])
     return written
 
 
@@ -170,8 +169,7 @@ def draw_walks(config: TablesConfig, out: Path) -> list[Path]:
     """Write pictures of episodes that the last of ``config.walks`` wins back for the first, by the
     agents of the first seed, behind what their cells put in front of them; nothing if one of them
     has no cell."""
-    from mitigate.evaluation import rows
-    from mitigate.evaluation.trajectories import write_pictures
+    from mitigate.evaluation.trajectories import write_pictures  # brings matplotlib
     from mitigate.guards.opening import open_guards
 
     held = {cell.column: cell for cell in cells(config) if cell.seed == config.seeds[0]}
@@ -194,7 +192,7 @@ def draw_walks(config: TablesConfig, out: Path) -> list[Path]:
     drawn = {episode.episode_id for episode in chosen}
     found = [
         row
-        for row in rows.gather([cell.evaluation for cell in made.values()])
+        for row in gather([cell.evaluation for cell in made.values()])
         if row["split"] == config.split
         and row["severity"] in (0.0, config.severity)
         and row["episode_id"] in drawn

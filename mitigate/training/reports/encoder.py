@@ -11,10 +11,11 @@ import numpy as np
 from matplotlib.figure import Figure
 from torch import nn
 
+from mitigate.agents.agent import as_agent
 from mitigate.agents.loading import build_agent
 from mitigate.core import checkpoint
 from mitigate.core.build import maker
-from mitigate.core.files import atomic_text, write_atomically
+from mitigate.core.files import atomic_text, write_figure
 from mitigate.core.json_files import read_object
 from mitigate.core.markdown import markdown_table
 from mitigate.corruptions import CLEAN, SUITE_VERSION, Corruption
@@ -26,7 +27,6 @@ from mitigate.encoders.sources import TRAIN, UNSEEN, Frames, collect, source_of
 from mitigate.evaluation.bootstrap import NO_INTERVAL, Estimate
 from mitigate.evaluation.conditions import conditions
 from mitigate.training.config import TrainConfig
-from mitigate.training.parts import without_adapters
 from mitigate.training.plan import IDENTITY
 
 BEFORE, AFTER = "before", "after"
@@ -53,7 +53,7 @@ def before_after(config: TrainConfig, base: Any, trained: nn.Module, folder: Pat
     assert isinstance(trained, Encoder)
     train, unseen = _frames(config, trained.sensor)
     whole = trained.tune == "all"
-    before: Any = _begun(config, base, folder) if whole else without_adapters(trained)
+    before: Any = _begun(config, base, folder) if whole else as_agent(trained).as_teacher()
     encoders: dict[str, Encoder] = {BEFORE: before.eval(), AFTER: trained.eval()}
     met = _conditions(config, trained.sensor)
     scores = with_mean(measure(encoders, met, train, unseen, config.seed))
@@ -124,11 +124,7 @@ def write(scores: Scores, folder: Path, about: str) -> list[Path]:
         file.write(text)
     with atomic_text(folder / "features.jsonl") as file:
         file.writelines(json.dumps(row) + "\n" for row in rows(scores, about))
-    drawn = picture(scores, about)
-    write_atomically(
-        folder / "features.png",
-        lambda path: drawn.savefig(path, format="png", dpi=120, facecolor="white"),
-    )
+    write_figure(folder / "features.png", picture(scores, about), dpi=120, facecolor="white")
     written = [folder / f"features.{kind}" for kind in ("md", "jsonl", "png")]
     print(text, flush=True)
     print("\n".join(f"wrote {path}" for path in written), flush=True)

@@ -181,16 +181,14 @@ def sheet(
         if sensor is None:
             continue
         frames = seen.corrupted(number, corruption, seed)[sensor]
-        shown = [
-            _views(sensor, f) for f in (frames, restorer.restore(sensor, frames), clean[sensor])
-        ]
-        if not rows:
-            heads = [
-                _said(head, shown[0].shape[1], HEAD) for head in ("corrupted", "restored", "clean")
-            ]
-            rows.append(_beside(_said("", LABEL, HEAD), heads))
-        rows.append(_beside(_said(title(corruption.name)[:18], LABEL, SIDE), shown))
-    return np.vstack(rows) if rows else None
+        shown = (frames, restorer.restore(sensor, frames), clean[sensor])
+        views = [_views(sensor, part) for part in shown]
+        rows.append(_beside(_said(title(corruption.name)[:18], LABEL, SIDE), views))
+    if not rows:
+        return None
+    width = (rows[0].shape[1] - LABEL) // 3 - GAP
+    heads = [_said(head, width, HEAD) for head in ("corrupted", "restored", "clean")]
+    return np.vstack([_beside(_said("", LABEL, HEAD), heads), *rows])
 
 
 def _far(frames: dict[str, np.ndarray]) -> float:
