@@ -74,7 +74,7 @@ def delete(path: Path) -> None:
 
 
 def delete_orphans(folder: Path, pattern: str) -> None:
-    """Delete the sidecars of files that are gone from ``folder``; ``pattern`` is a glob of these."""
+    """Delete the sidecars of files in ``folder`` that are gone; ``pattern`` is a glob of these."""
     for note in folder.glob(pattern + SUFFIX):
         if not note.with_suffix("").is_file():
             note.unlink(missing_ok=True)
