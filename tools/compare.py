@@ -2,8 +2,9 @@
 
 For code that is moved or rewritten and must do what it did. Every recipe trains two steps and every
 shipped agent walks 20 episodes under the whole suite, by the commands that a user types, in a
-checkout of each commit; weights and rows must be the same, bit for bit. Bits differ between
-processors, so figures are kept in ``runs/compare`` only, for the next comparison on this machine.
+checkout of each commit; weights and rows must be the same, bit for bit. Trainings are in fp32: older
+commits choose the precision by a timing. Bits differ between processors, so figures are kept in
+``runs/compare`` only, for the next comparison on this machine.
 
 The second commit is by default the working tree as it is. Exits with status 1 if anything differs.
 """
@@ -98,6 +99,7 @@ def trained(folder: Path, recipe: str) -> str:
     with tempfile.TemporaryDirectory() as out:
         extra = EXTRA.get(recipe, ())
         options = [f"recipe={recipe}", "debug=smoke", "workers=0", "evaluation.enabled=false"]
+        options.append("trainer.precision=fp32")
         python(folder, "train", *options, f"runs={out}", f"folder={out}/run", *extra)
         (file,) = Path(out, "run/agent").glob("*.safetensors")
         return tensors_digest(file)
