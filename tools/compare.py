@@ -2,8 +2,8 @@
 
 For code that is moved or rewritten and must do what it did. Every recipe trains two steps and every
 shipped agent walks 20 episodes under the whole suite, by the commands that a user types, in a
-checkout of each commit; weights and rows must be the same, bit for bit. Trainings are in fp32: older
-commits choose the precision by a timing. Bits differ between processors, so figures are kept in
+checkout of each commit; weights and rows must be the same, bit for bit. Trainings are in fp32, as
+older commits choose the precision by a timing. Bits differ between processors, so figures stay in
 ``runs/compare`` only, for the next comparison on this machine.
 
 The second commit is by default the working tree as it is. Exits with status 1 if anything differs.
