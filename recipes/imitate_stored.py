@@ -23,7 +23,7 @@ from mitigate.training.rollouts import PIECES, batch_of, check_episodes
 from mitigate.worlds.world import TrainingEpisodes, World
 
 
-@dataclass(eq=False)
+@dataclass(eq=False, repr=False)
 class StoredRollouts:
     """The source of batches of decisions on stored features.
 

@@ -28,7 +28,7 @@ VIEWS_ALONE = (
 )
 
 
-@dataclass(eq=False)
+@dataclass(eq=False, repr=False)
 class Poses(DrawsBySuccess):
     """The source of batches of panoramas from random poses, corrupted and clean.
 

@@ -48,7 +48,7 @@ class PosePairs(Poses):
         return {"frames": made["frames"], "clean": made["clean"]}
 
 
-@dataclass(eq=False)
+@dataclass(eq=False, repr=False)
 class FramePairs:
     """Frames of a folder, each corrupted as an instant of its own (``encoders/sources.py``).
 

@@ -25,7 +25,7 @@ from mitigate.worlds.world import Corrupted, TrainingEpisodes, World
 PIECES = 4  # jobs that the episodes of a step are shared out to (ours)
 
 
-@dataclass(eq=False)
+@dataclass(eq=False, repr=False)
 class Rollouts(DrawsBySuccess):
     """The source of batches of decisions: rollouts of ``agent`` under a schedule of corruptions.
 

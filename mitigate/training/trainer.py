@@ -39,7 +39,7 @@ class LossNotFinite(ValueError):
     """The loss or its gradient is NaN or infinite; the weights were not changed by that step."""
 
 
-@dataclass(eq=False)
+@dataclass(eq=False, repr=False)
 class Trainer:
     """Train ``objective`` for ``steps`` updates of AdamW in ``folder``.
 

@@ -192,6 +192,8 @@ class _Worker:
 def _packed(objective: Objective) -> bytes:
     own = "keep what cannot be pickled out of its attributes, or train with workers=0"
     device = next((p.device for p in objective.parameters()), torch.device("cpu"))
+    if device.type == "cpu":  # it stays as it is
+        return packed(objective, type(objective).__name__, own)
     try:
         return packed(objective.cpu(), type(objective).__name__, own)
     finally:
