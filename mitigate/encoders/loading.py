@@ -22,7 +22,8 @@ from typing import Any
 
 import torch
 from torch import Tensor, nn
-from torch.export.unflatten import InterpreterModule
+from torch.export.unflatten import InterpreterModule, UnflattenedModule
+from torch.fx import GraphModule
 
 from mitigate.core import checkpoint
 from mitigate.core.files import find
@@ -160,7 +161,7 @@ def _exported(path: Path) -> nn.Module:
         ) from error
     model = torch.export.unflatten(program)
     for module in model.modules():
-        if isinstance(module, InterpreterModule):
+        if isinstance(module, (UnflattenedModule, InterpreterModule, GraphModule)):
             for node in module.graph.nodes:
                 node.meta.pop("val", None)  # a tensor without values, which cannot be copied
     return model
