@@ -299,14 +299,10 @@ def test_a_target_that_is_no_recipe_for_an_agent_is_told_as_that(tmp_path, targe
 
 
 @pytest.mark.parametrize(
-    ("place", "options"),
-    [
-        ("poses", ["recipe=stacked"]),
-        ("rollouts", ["recipe=da_success", "experiment=frozen"]),
-    ],
+    "options", [["recipe=stacked"], ["recipe=da_success", "experiment=frozen"]]
 )
 def test_a_trial_measures_success_on_one_episode_and_starts_no_process(
-    tmp_path, monkeypatch, place, options
+    tmp_path, monkeypatch, options
 ):
     met = []
 
@@ -314,7 +310,7 @@ def test_a_trial_measures_success_on_one_episode_and_starts_no_process(
         met.append((episodes, workers))
         raise InterruptedError
 
-    monkeypatch.setattr(f"mitigate.training.{place}.measure", measured)
+    monkeypatch.setattr("mitigate.training.success.measure", measured)
     options = [*options, "agent=recurrent", "debug=smoke", "workers=0", f"folder={tmp_path}"]
     with pytest.raises(InterruptedError):
         train.run(conf.load_config("train", [*options, OFF]))
