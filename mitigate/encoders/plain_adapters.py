@@ -108,8 +108,8 @@ class _Adapter:
     def __call__(self, module, inputs, output):
         if isinstance(output, (tuple, list)):
             rest = (self.adapt(output[0]),) + tuple(output[1:])
-            named = hasattr(output, "_make")  # named tuples share no class of their own
-            return output._make(rest) if named else type(output)(rest)
+            # named tuples share no class of their own
+            return output._make(rest) if hasattr(output, "_make") else type(output)(rest)
         return self.adapt(output)
 
     def fingerprint(self):
