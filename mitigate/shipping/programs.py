@@ -109,7 +109,7 @@ class Stored(nn.Module):
             self.register_buffer(key, _smallest(tensors[name].detach()))
 
     def forward(self, *inputs: Tensor) -> tuple[Tensor, ...]:
-        tensors = {name: self._buffers[key].float() for name, key in self._names.items()}
+        tensors = {name: self.get_buffer(key).float() for name, key in self._names.items()}
         return functional_call(self._network[0], tensors, inputs)
 
 

@@ -42,7 +42,7 @@ class PosePairs(Poses):
         """Nothing: poses follow from the settings."""
         return {}
 
-    def collate(self, pieces: list[list[tuple]]) -> dict[str, Any]:
+    def collate(self, pieces: list[Any]) -> dict[str, Any]:
         """As :meth:`Poses.collate`, without targets."""
         made = super().collate(pieces)
         return {"frames": made["frames"], "clean": made["clean"]}
@@ -107,7 +107,7 @@ class FramePairs:
             frames.append(corrupted(clean, index, *drawn, self.depth))
         return np.stack(frames), clean.frames
 
-    def collate(self, pieces: list[tuple[np.ndarray, np.ndarray]]) -> dict[str, Any]:
+    def collate(self, pieces: list[Any]) -> dict[str, Any]:
         """The groups as tensors "frames" and "clean"."""
         frames, clean = (np.stack(part) for part in zip(*pieces, strict=True))
         return {"frames": torch.from_numpy(frames), "clean": torch.from_numpy(clean)}

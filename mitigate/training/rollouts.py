@@ -84,7 +84,8 @@ class Rollouts(DrawsBySuccess):
     def identity(self) -> dict[str, str]:
         """Hashes of the files that the batches are made of."""
         prior = {} if self.prior is None else {"prior_sha256": sha256(self.prior)}
-        files = getattr(self.training, "identity", dict)()  # users' episodes may come from none
+        # users' episodes may come from no files
+        files: dict[str, str] = getattr(self.training, "identity", dict)()
         return {**files, **prior}
 
     def jobs(self, step: int, workers: int | None = None) -> list[tuple]:
