@@ -35,7 +35,7 @@ def build_agent(
         _check_own(plain(node))
     seeding.seed_everything(seed, "agent")
     agent = build(node)
-    if weights is not None and not hasattr(agent, "state_dict"):
+    if weights is not None and not hasattr(agent, "state_dict"):  # any class of a config
         raise ValueError(
             f"A {type(agent).__name__} is no torch.nn.Module, which weights could fill: leave out "
             f"{weights}, and let it read them itself."
@@ -99,7 +99,7 @@ def carried(node: Mapping[str, Any], weights: str) -> dict[str, Any]:
     """
     place = find(weights)
     if (place / LORA).is_file() and hasattr(located(node["_target_"]), "load"):
-        return {}  # a language model says itself whose adapter it takes
+        return {}  # only language models have load(), and say themselves whose adapter they take
     file = loading.config_of(place)
     if not file.is_file():
         return {}

@@ -199,7 +199,7 @@ def check_fillable(agent: Any) -> None:
     """Raise TypeError for a class in place of its object, and for what has no weights."""
     if isinstance(agent, type):
         raise TypeError(f"agent is the class {agent.__name__}: give an object of it, made by it.")
-    if not hasattr(agent, "eval"):
+    if not hasattr(agent, "eval"):  # an object of any class
         raise TypeError(
             f"agent is a {type(agent).__name__}, which has no weights to fill: give a "
             "torch.nn.Module of the class that was trained."
@@ -384,7 +384,7 @@ def _is_path(value: Any) -> bool:
 def vocabulary_sha(agent: Any) -> str | None:
     """Return the first 12 hex digits of the sha256 of the words, in the order of their ids; None
     of an agent without a vocabulary."""
-    if not hasattr(agent, "vocabulary"):
+    if not hasattr(agent, "vocabulary"):  # of two of our kinds
         return None
     return hashlib.sha256("\n".join(agent.vocabulary).encode()).hexdigest()[:12]
 

@@ -294,16 +294,15 @@ def _globals(function: types.FunctionType) -> Parts:
         codes += [part for part in code.co_consts if isinstance(part, types.CodeType)]
     scope = function.__globals__
     waiting = [(name, scope.get(name, sys.modules.get(name))) for name in names]
-    waiting = [(name, part) for name, part in waiting if name in scope or part is not None]
+    waiting = [(n, part) for n, part in waiting if n in scope or _is_users_module(part)]
     entered: list[Any] = []
     for place, part in waiting:
         if not _is_users_module(part):
             yield place, part
         elif not any(part is one for one in entered):
             entered.append(part)
-            waiting += [
-                (f"{place}.{name}", vars(part)[name]) for name in names if name in vars(part)
-            ]
+            here = [name for name in names if name in vars(part)]
+            waiting += [(f"{place}.{name}", vars(part)[name]) for name in here]
 
 
 def _hides_memory(kind: type, base: type) -> bool:

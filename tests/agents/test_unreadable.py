@@ -9,6 +9,7 @@ import io
 import operator
 import re
 import sqlite3
+import sys
 import types
 import weakref
 
@@ -273,3 +274,13 @@ def test_fingerprint_with_settings_changes_with_code_and_what_it_names(what):
             hashes.append(fingerprint(agent, {}))
     assert hashes[0] == hashes[1]
     assert hashes[0] != hashes[2] or all(unreadable)
+
+
+def test_fingerprint_does_not_depend_on_imported_modules(monkeypatch):
+    class Agent(Holder):
+        def act(self, observation) -> int:
+            return observation.colorsys.value  # names a module of Python that is not imported
+
+    before = fingerprint(Agent(0), {})
+    monkeypatch.setitem(sys.modules, "colorsys", types.ModuleType("colorsys"))
+    assert fingerprint(Agent(0), {}) == before
