@@ -71,7 +71,7 @@ def contents(agent: Any, version: str | None = None) -> Contents:
     Without ``settings()``, or where a base class defines it, also all attributes.
     """
     shipped = KIND in vars(type(agent))
-    settings = agent.settings if has_settings(agent) else {}
+    settings = agent.settings if _definer(agent) is not None else {}
     state = _changes(agent) if shipped else read_state(agent, attributes=not says_all(agent))
     optional = {
         "code": _codes(agent, state),
@@ -88,24 +88,18 @@ def contents(agent: Any, version: str | None = None) -> Contents:
     return Contents(parts, state.unreadable if version is None else {})
 
 
-def has_settings(agent: Any) -> bool:
-    """Return whether ``agent`` or its class defines ``settings``: what a wrapper finds in another
-    object does not describe this one."""
-    return _own_settings(agent) or _definer(type(agent)) is not None
-
-
 def says_all(agent: Any) -> bool:
     """Return whether ``settings`` stands for all attributes: not of a subclass, which may add
     some, of the class that defines it."""
-    return _own_settings(agent) or _definer(type(agent)) is type(agent)
+    return _definer(agent) in (agent, type(agent))
 
 
-def _own_settings(agent: Any) -> bool:
-    return "settings" in read(agent, "__dict__", default=())  # an object with slots has none
-
-
-def _definer(kind: type) -> type | None:
-    return next((each for each in kind.__mro__ if "settings" in vars(each)), None)
+def _definer(agent: Any) -> Any:
+    """Return what defines ``settings``: the object, or a class; None if only ``__getattr__`` may,
+    which describes another object."""
+    places = (agent, *type(agent).__mro__)
+    own = (one for one in places if "settings" in read(one, "__dict__", default=()))
+    return next(own, None)
 
 
 def _changes(agent: Any) -> State:
@@ -127,12 +121,6 @@ def hash_of(parts: Mapping[str, Any], sensors: Mapping[str, Sensor], front: str 
     shown = {name: asdict(sensor) for name, sensor in sorted(sensors.items())}
     text = json.dumps({**parts, "sensors": shown, "front": front}, sort_keys=True, default=_plain)
     return hashlib.sha256(text.encode()).hexdigest()[:DIGITS]
-
-
-def source_of(kind: type) -> list[str]:
-    """Return the source of a class and of its bases that are the user's code, as it was when it
-    was first read: a later edit of the file does not change a loaded class."""
-    return list(_source_of(kind))
 
 
 def code_sha(objective: nn.Module) -> str:
@@ -160,6 +148,12 @@ def _written(code: types.CodeType, file: str) -> str:
         return bytecode(code)
 
 
+def source_of(kind: type) -> list[str]:
+    """Return the source of a class and of its bases that are the user's code, as it was when it
+    was first read: a later edit of the file does not change a loaded class."""
+    return list(_source_of(kind))
+
+
 @cache
 def _source_of(kind: type) -> tuple[str, ...]:
     found = []
@@ -172,10 +166,10 @@ def _source_of(kind: type) -> tuple[str, ...]:
 
 def _weights(state: State) -> str | list[tuple[str, str]]:
     """Return the hash of the agent's own weights, else of each network, else of each array."""
-    shas = [(place, weights_sha(net)) for place, net in state.networks] or state.arrays
-    if [place for place, _ in state.networks] == [""]:
+    shas = [(place, weights_sha(net)) for place, net in state.networks]
+    if len(shas) == 1 and not shas[0][0]:
         return shas[0][1]
-    return sorted(shas) or ""
+    return sorted(shas or state.arrays) or ""
 
 
 def _plain(value: Any) -> Any:

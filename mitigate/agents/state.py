@@ -40,8 +40,9 @@ _SCALARS: tuple[Any, ...] = (str, bytes, int, float, complex)
 _CONTENT: tuple[Any, ...] = (dict, list, tuple, set, frozenset, *_SCALARS)  # and their subclasses
 _PATHS = (type(PurePath()), *type(PurePath()).__subclasses__())  # they cache their text
 _TEXTS = (*_SCALARS, bool, type(None), type(...), *_PATHS, torch.dtype, torch.device)
-_LOCKS = (type(threading.Lock()), type(threading.RLock()))
-_IGNORED = (*_LOCKS, logging.Logger, Observation)  # nothing of them changes an action
+_IGNORED = (  # nothing of them changes an action
+    *(type(threading.Lock()), type(threading.RLock()), logging.Logger, Observation),
+)
 _ARRAYS = (np.ndarray, np.memmap, torch.Tensor, nn.Parameter)
 _NAMED = (types.FunctionType, types.ModuleType, type, types.BuiltinFunctionType)
 _MEMBERS: dict[type, tuple[str, ...]] = {  # what stands for all of an object
@@ -56,12 +57,15 @@ _PYTHONS = sys.stdlib_module_names - {"__main__"}
 _READABLE = _PYTHONS | {"numpy", "torch", "mitigate"}  # packages whose pickling is complete
 _BY_VERSION = ("mitigate", "torch")  # packages whose code is identified by their version
 _INSTALLED = frozenset(("site-packages", "dist-packages"))
-_PICKLING = ("__reduce_ex__", "__reduce__", "__getstate__", "__getnewargs_ex__", "__getnewargs__")
-_ANSWERING = (*_PICKLING, "__getattr__", "__getattribute__", "__iter__", "items")
-_FLAT = ("_flat_weights", "_flat_weight_refs")  # parameters of recurrent layers, again
-_OF_ADAPTERS = ("_statistics_before_adapters",)  # set by agents/adapters.py
-_OF_TORCH = frozenset((*vars(nn.Module()), "parametrizations", *_FLAT, *_OF_ADAPTERS))
-_RUNNING = ("hook", "judged")  # of an adapter: its handle, and its answer to the last frames
+_ANSWERING = {  # methods that could answer for an object
+    *("__reduce_ex__", "__reduce__", "__getstate__", "__getnewargs_ex__", "__getnewargs__"),
+    *("__getattr__", "__getattribute__", "__iter__", "items"),
+}
+_LEFT_OUT = {  # of torch (the last two are parameters of recurrent layers), and of adapters.py
+    *(*vars(nn.Module()), "parametrizations", "_flat_weights", "_flat_weight_refs"),
+    "_statistics_before_adapters",
+}
+_RUNNING = {"hook", "judged"}  # of an adapter: its handle, and its answer to the last frames
 _OWN_HOOKS = "mitigate.agents.adapters"  # its adapters are modules: in state_dict()
 
 Parts = Iterable[tuple[str, Any]]
@@ -229,9 +233,9 @@ class _Reader:
                 self.state.unreadable[inner] = "a TorchScript module, whose program cannot be read"
                 continue
             self.visit_hooks(inner, module)
-            buffers = [(k, one) for k, one in module._buffers.items() if one is not None]
+            buffers = module._buffers.items()
             self.add(inner, [(k, one) for k, one in buffers if _join(name, k) not in saved])
-            left_out = {*_OF_TORCH, *(_RUNNING if isinstance(module, Adapter) else ())}
+            left_out = _LEFT_OUT | (_RUNNING if isinstance(module, Adapter) else set())
             usual = self.usual.get(name)
             if type(usual) is type(module):
                 known = {*vars(usual), *dir(type(module))}
@@ -322,7 +326,7 @@ def _pickled(value: Any) -> Parts | None:
     for each in type(value).__mro__:
         users = _is_users_class(each)
         readable = each.__module__.partition(".")[0] in _READABLE
-        if not (users or readable) or (users and {*_ANSWERING} & {*vars(each)}):
+        if not (users or readable) or (users and _ANSWERING & {*vars(each)}):
             return None
     try:
         reduce = copyreg.dispatch_table.get(type(value))
@@ -330,8 +334,7 @@ def _pickled(value: Any) -> Parts | None:
         if not isinstance(found, str):
             return _numbered(list(part) if isinstance(part, Iterator) else part for part in found)
         where = pickle.whichmodule(value, found)  # type: ignore[attr-defined]
-        module = sys.modules[where]
-        return [("", f"{module.__name__}.{found}")] if read(module, found) is value else None
+        return [("", f"{where}.{found}")] if read(sys.modules[where], found) is value else None
     except Exception:  # whatever a type raises that cannot be pickled
         return None
 
@@ -370,11 +373,10 @@ def _is_users_code(kind: type) -> bool:
 
 
 def _is_users_module(module: Any) -> bool:
-    if not isinstance(module, types.ModuleType):
+    if not isinstance(module, types.ModuleType) or module.__name__.partition(".")[0] in _PYTHONS:
         return False
-    top = module.__name__.partition(".")[0]
     file = read(module, "__file__") or next(iter(read(module, "__path__", default=())), "")
-    return top not in _PYTHONS and is_users(module.__name__, file)
+    return is_users(module.__name__, file)
 
 
 def _is_users(function: types.FunctionType) -> bool:
