@@ -278,6 +278,7 @@ def _members(kind: type) -> Parts:
         function = read(one, "__func__", "fget", default=one)
         method = isinstance(function, types.FunctionType)
         data = name == "_abc_impl" or isinstance(one, _DESCRIPTORS)
+        data |= name == "__repr__" and method and not _is_users(function)  # of a dataclass
         if data or (_is_dunder(name) and not callable(function)):
             continue
         moved = method and function.__qualname__ != f"{kind.__qualname__}.{name}"
