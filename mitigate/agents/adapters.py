@@ -300,6 +300,7 @@ def refuse_adapted(model: nn.Module) -> None:
 
 def attach_all(model: nn.Module, made: dict[str, Adapter]) -> None:
     """Freeze ``model`` and attach ``made``, all or none."""
+    # anything may have that name: a module, a parameter, a method
     taken = [name for name in made if hasattr(model.get_submodule(name), NAME)]
     if taken:
         raise ValueError(
@@ -350,7 +351,7 @@ def _adapt(module: nn.Module, inputs: Any, output: Any) -> Any:
     adapter = _adapter_of(module)
     if isinstance(output, (tuple, list)):
         rest = (adapter(first(output)), *output[1:])
-        # a named tuple takes its parts one by one
+        # a named tuple, which alone has _make, takes its parts one by one
         return output._make(rest) if hasattr(output, "_make") else type(output)(rest)
     return adapter(output)
 

@@ -21,7 +21,7 @@ import torch
 from torch import Tensor, nn
 
 from mitigate.agents.adapters import remove_adapters
-from mitigate.core.contracts import lacking, take_over
+from mitigate.core.contracts import lacking, read, take_over
 
 if TYPE_CHECKING:
     from mitigate.worlds.episodes import Episode
@@ -108,6 +108,35 @@ class Agent:
         return _without_adapters(self)
 
 
+class SideBySide(Agent):
+    """Base class of agents that run ``together`` episodes at once. A subclass defines ``begin`` and
+    ``answers``."""
+
+    def act_all(
+        self, observations: Sequence[Mapping[str, np.ndarray]], memories: Sequence[Any]
+    ) -> list[int]:
+        """Return an action for each of up to ``together`` episodes. Raises what
+        ``agents/observation.py`` rejects."""
+        spare = self.together - len(memories)  # filled up, so that sums round as in a full batch
+        observations = [*observations, *[observations[-1]] * spare]
+        return self.answers(observations, [*memories, *[memories[-1]] * spare], len(memories))
+
+    def answers(
+        self,
+        observations: Sequence[Mapping[str, np.ndarray]],
+        memories: Sequence[Any],
+        count: int,
+    ) -> list[int]:
+        """Return the actions of the first ``count`` episodes, whose memories change."""
+        raise NotImplementedError(f"{type(self).__name__} defines no answers(...)")
+
+
+def check_started(started: bool) -> None:
+    """Raise RuntimeError before the first ``reset``."""
+    if not started:
+        raise RuntimeError("Start the episode first: agent.reset(instruction).")
+
+
 # what :func:`as_agent` takes over from an object once; ``system_prompt`` and ``aim`` may change
 OPTIONAL = (
     *("views", "sensors", "tasks", "together", "encoders", "labels", "loss_weights", "frozen"),
@@ -133,7 +162,7 @@ class _AgentView(Agent):
 
     @property
     def system_prompt(self) -> str | None:
-        return getattr(self._agent, "system_prompt", None)  # may be set later
+        return read(self._agent, "system_prompt")  # may be set later
 
     @system_prompt.setter
     def system_prompt(self, text: str | None) -> None:
@@ -141,7 +170,7 @@ class _AgentView(Agent):
 
     @property
     def aim(self) -> np.ndarray | None:  # type: ignore[override]
-        return getattr(self._agent, "aim", None)  # changes from step to step
+        return read(self._agent, "aim")  # changes from step to step
 
     def reset(self, instruction: str) -> None:
         self._agent.reset(instruction)
@@ -151,6 +180,12 @@ class _AgentView(Agent):
 
     def as_teacher(self) -> Any:
         return _without_adapters(self._agent)
+
+
+def stated_settings(agent: Any) -> dict[str, Any] | None:
+    """Return what ``settings``, a method or a mapping, says of ``agent``; None if it has none."""
+    settings = read(agent, "settings")
+    return None if settings is None else dict(settings() if callable(settings) else settings)
 
 
 def _without_adapters(agent: Any) -> Any:

@@ -15,21 +15,20 @@ import hashlib
 import json
 import os
 import warnings
-from collections.abc import Mapping, Sequence
 from functools import partial
-from inspect import signature
 from pathlib import Path
 from typing import Any
 
 import torch
-from torch import nn
 
 from mitigate.agents import adapters, schema
-from mitigate.core import checkpoint, folders, seeding, settings
+from mitigate.agents.agent import stated_settings
+from mitigate.core import checkpoint, folders, settings
 from mitigate.core.checkpoint import CONFIG
+from mitigate.core.contracts import read
 from mitigate.core.files import find, places, sha256
 from mitigate.core.json_files import read_object
-from mitigate.core.names import short, unknown
+from mitigate.core.names import short
 
 FORMAT = 2  # of a card; 1 is read, too (core/older_folders.py)
 CARD, README = "card.json", "README.md"
@@ -41,7 +40,6 @@ KNOWN = (checkpoint.WEIGHTS, adapters.WEIGHTS, adapters.SETTINGS, *FILES, PROGRA
 ENTRIES = ("adapters_only", "base", "vocabulary", "commit", "agent")  # of a card, for loading
 LONGEST_PATH = 1000  # characters of the path of a base (heuristic; Linux reads 4095)
 TARGET = schema.KINDS[0]
-LORA = "adapter_model.safetensors"  # PEFT's name
 PAGES = {  # by package, the page on what is trained there: its folder `agent` is used as it is
     "mitigate.encoders": "docs/encoder.md",
     "mitigate.guards.frames": "docs/restoration.md",
@@ -201,7 +199,7 @@ def check_fillable(agent: Any) -> None:
     """Raise TypeError for a class in place of its object, and for what has no weights."""
     if isinstance(agent, type):
         raise TypeError(f"agent is the class {agent.__name__}: give an object of it, made by it.")
-    if not hasattr(agent, "eval"):
+    if not hasattr(agent, "eval"):  # an object of any class
         raise TypeError(
             f"agent is a {type(agent).__name__}, which has no weights to fill: give a "
             "torch.nn.Module of the class that was trained."
@@ -218,11 +216,10 @@ def check_same(agent: Any, config: Path, again: str) -> None:
         ValueError: The settings differ, or, ending in ``again``, the file has none.
     """
     stored = _settings_in(config, again)
-    has_settings = hasattr(agent, "settings")
-    if has_settings:
-        own = dict(agent.settings() if callable(agent.settings) else agent.settings)
-    else:
-        named = {k: getattr(agent, k, None) for k, v in stored.items() if isinstance(v, _PLAIN)}
+    stated = stated_settings(agent)
+    own = stated
+    if own is None:
+        named = {k: read(agent, k) for k, v in stored.items() if isinstance(v, _PLAIN)}
         own = {name: value for name, value in named.items() if isinstance(value, _PLAIN)}
     wrong = [k for k, v in own.items() if k in stored and _as_json(stored[k]) != _as_json(v)]
     if not wrong:
@@ -231,15 +228,15 @@ def check_same(agent: Any, config: Path, again: str) -> None:
         f"{config} is of an agent with {wrong[0]}={stored[wrong[0]]!r:.60}, but the one given "
         f"has {own[wrong[0]]!r:.60}. Build it with the settings in that file."
     )
-    if has_settings:
+    if stated is not None:
         raise ValueError(text)
     warnings.warn(text, stacklevel=4)
 
 
 def give_settings(agent: Any, config: Path, again: str) -> None:
-    """Give an agent without ``settings`` those in ``config``, as :func:`build_agent` does: the same
-    agent then has the same fingerprint. Errors as of :func:`check_same`."""
-    if not hasattr(agent, "settings"):
+    """Give an agent without ``settings`` those in ``config``, as ``building.build_agent`` does, so
+    that its fingerprint is the same. Errors as of :func:`check_same`."""
+    if stated_settings(agent) is None:
         known = {k: v for k, v in _settings_in(config, again).items() if k != "_target_"}
         agent.settings = partial(dict, known)
 
@@ -253,132 +250,7 @@ def _settings_in(config: Path, again: str) -> dict[str, Any]:
 
 def _as_json(value: Any) -> Any:
     """``value`` as it is once it was written: a tuple is a list."""
-    return json.loads(json.dumps(value, default=lambda one: getattr(one, "tolist", one.__str__)()))
-
-
-# an agent for a run: settings of its config and of the weights it begins from ---------------------
-# Hydra and OmegaConf are imported here alone: what is above needs neither, as users are promised.
-
-
-def build_agent(
-    node: Mapping[str, Any], *, weights: str | None, seed: int, parts: Sequence[str] | None = None
-) -> nn.Module:
-    """Return the agent of ``node``, its first weights drawn from ``seed`` or read from a file;
-    ``parts``: of its ``parts()``, those that are read; None: all."""
-    from mitigate.core.build import build, plain
-
-    weights = None if weights is None else str(find(weights))
-    if is_ours(node["_target_"]):  # numbers that would take all memory, patterns for ever
-        check_own(plain(node))
-    seeding.seed_everything(seed, "agent")
-    agent = build(node)
-    if weights is not None and not hasattr(agent, "state_dict"):
-        raise ValueError(
-            f"A {type(agent).__name__} is no torch.nn.Module, which weights could fill: leave out "
-            f"{weights}, and let it read them itself."
-        )
-    if not hasattr(agent, "settings"):  # those of its config are what is known of it
-        known = {k: v for k, v in plain(node).items() if k != "_target_"}
-        try:
-            agent.settings = partial(dict, known)
-        except (AttributeError, TypeError) as error:  # of a class with slots, or one that is frozen
-            raise ValueError(
-                f"{type(agent).__name__} takes no attribute settings ({error}): give it a method "
-                "settings() that returns its constructor's arguments."
-            ) from error
-    if weights is not None and parts:
-        for name in parts:
-            if name not in agent.parts():
-                raise ValueError(unknown("part of the agent", name, agent.parts()))
-            checkpoint.load_part(agent.parts()[name], name, weights)
-    elif weights is not None and is_hardened(weights):
-        fill(agent, weights)
-    elif weights is not None:
-        checkpoint.load_agent(agent, weights)
-    return agent
-
-
-def settings_of(
-    node: Mapping[str, Any], weights: str, overrides: Sequence[str] = ()
-) -> dict[str, Any]:
-    """Return ``node`` with the settings that ``weights`` carry (:func:`carried`, errors too).
-
-    What the command line sets counts more (``overrides``: ``agent.blind=[rgb]``); ``agent=mine``
-    names the class, and what the weights do not say.
-    """
-    from omegaconf import OmegaConf
-
-    from mitigate.core.build import plain
-
-    keys = [override.lstrip("+").partition("=")[0].split(".") for override in overrides]
-    named = {key[1] for key in keys if key[0] == "agent" and len(key) > 1}
-    found = plain(OmegaConf.merge(plain(node), carried(node, weights)))
-    given = plain(node)
-    for setting in named:
-        found[setting] = given[setting]
-    return found
-
-
-def begun_from(node: Mapping[str, Any], weights: str | None) -> Mapping[str, Any]:
-    """Return ``node`` with the settings that it leaves open (null, or not named: adapters, the
-    vocabulary) as in the ``weights`` that a training begins from; None: as it is. Errors as of
-    :func:`carried`."""
-    from omegaconf import OmegaConf
-
-    from mitigate.core.build import plain
-
-    if weights is None:
-        return node
-    open_ = {k: v for k, v in carried(node, weights).items() if node.get(k) is None}
-    return plain(OmegaConf.merge(plain(node), open_))
-
-
-def carried(node: Mapping[str, Any], weights: str) -> dict[str, Any]:
-    """Return the settings of the agent that ``weights`` belong to, none if they do not say.
-
-    They come, as data, from ``config.yaml`` beside the weights.
-
-    Raises:
-        ValueError: The weights are those of another kind of agent than ``node``, or the file holds
-            anything but plain data that the agent takes.
-    """
-    from mitigate.core.build import located
-
-    place = find(weights)
-    if (place / LORA).is_file() and hasattr(located(node["_target_"]), "load"):
-        return {}  # a language model says itself whose adapter it takes
-    file = config_of(place)
-    if not file.is_file():
-        return {}
-    if is_ours(node["_target_"]):
-        return agent_settings(file, node["_target_"])
-    made = located(node["_target_"])
-    names = {*signature(made).parameters, *map(str, node)} - {"_target_"}
-    names -= set(getattr(made, "own_config_only", ()))  # a class of the user's may have none
-    return settings.read_agent(file, node["_target_"], names)
-
-
-def agent_option(options: Sequence[str], weights: str) -> list[str]:
-    """The option ``agent=`` of the kind of agent that ``weights`` are of, with which what it asks
-    of the world comes. None where ``options`` choose one, and where that kind is the usual one,
-    none of ours, or not to be known."""
-    if any(option.lstrip("+~").partition("=")[0] == "agent" for option in options):
-        return []
-    try:
-        kind = kind_of(config_of(find(weights)))
-    except (OSError, ValueError):  # reported where they are loaded
-        return []
-    name = "" if kind == TARGET else settings.named(kind)
-    return [f"agent={name}"] if name else []
-
-
-def with_kind(options: Sequence[str]) -> list[str]:
-    """The ``options`` of an evaluation, with the kind of agent that its ``checkpoint=`` is of."""
-    from mitigate.core.options import values
-
-    weights = values(options, "checkpoint")
-    own = agent_option(options, weights[0]) if len(weights) == 1 else []
-    return [*options, *own]
+    return json.loads(json.dumps(value, default=lambda one: read(one, "tolist", "__str__")()))
 
 
 # settings of our kinds ---------------------------------------------------------------------------
@@ -402,14 +274,6 @@ def agent_settings(config: Path, target: str = TARGET) -> dict[str, Any]:
     :func:`build_from`."""
     known = schema.schema_of(target).settings
     return schema.check(settings.read_agent(config, target, known), config, target)
-
-
-def check_own(held: dict[str, Any]) -> None:
-    """Raise ValueError if a user's own config ``held`` sets an agent of ours to an invalid value;
-    settings that are not in its schema are for its class to reject."""
-    target = held["_target_"]
-    given = {k: v for k, v in held.items() if k in schema.schema_of(target).settings}
-    schema.check(given, "The options", target, "Give it such a value, or leave it out.")
 
 
 # hardened folders --------------------------------------------------------------------------------
@@ -520,7 +384,7 @@ def _is_path(value: Any) -> bool:
 def vocabulary_sha(agent: Any) -> str | None:
     """Return the first 12 hex digits of the sha256 of the words, in the order of their ids; None
     of an agent without a vocabulary."""
-    if not hasattr(agent, "vocabulary"):
+    if not hasattr(agent, "vocabulary"):  # of two of our kinds
         return None
     return hashlib.sha256("\n".join(agent.vocabulary).encode()).hexdigest()[:12]
 

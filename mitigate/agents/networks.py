@@ -13,15 +13,15 @@ from mitigate.agents.state import read_state
 
 def networks(agent: Any) -> list[nn.Module]:
     """The networks that ``agent`` is or holds."""
-    return [*read_state(agent, attributes=False).networks.values()]
+    return [net for _, net in read_state(agent, attributes=False).networks]
 
 
 @contextmanager
 def in_eval_mode(agent: Any) -> Iterator[None]:
     """Put every network of ``agent`` into eval mode by its own ``eval()``, which may do more;
     afterwards each module has its former mode."""
-    tops = [net for net in networks(agent) if hasattr(net, "training")]  # frozen programs have none
-    modules = [module for net in tops for module in net.modules() if hasattr(module, "training")]
+    tops = [net for net in networks(agent) if _has_mode(net)]
+    modules = [module for net in tops for module in net.modules() if _has_mode(module)]
     modes = {module: module.training for module in modules}
     for net in tops:
         net.eval()
@@ -32,3 +32,7 @@ def in_eval_mode(agent: Any) -> Iterator[None]:
             net.train(modes[net])
         for module, training in modes.items():
             module.training = training
+
+
+def _has_mode(module: nn.Module) -> bool:
+    return hasattr(module, "training")  # a frozen program has none

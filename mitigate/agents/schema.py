@@ -131,7 +131,7 @@ def class_of(target: str) -> Any:
     """The class of one of ``KINDS``; each is imported only where it is needed."""
     assert target in KINDS, target
     module, _, name = target.rpartition(".")
-    return getattr(import_module(module), name)
+    return getattr(import_module(module), name)  # named by KINDS
 
 
 def schema_of(target: str) -> Schema:

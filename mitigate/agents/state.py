@@ -1,29 +1,27 @@
-"""Read the state of an agent that may be any Python object, and list what cannot be read.
+"""Read everything that determines how an object behaves, and list what cannot be read.
 
-:func:`read_state` follows attributes, containers, functions and what functions name. It never runs
-code of the agent, except ``settings()`` and ``fingerprint()`` where an object offers them.
+:func:`read_state` follows attributes, containers, functions and what functions name. A value counts
+as read only if Python shows all of it: plain data, arrays, attributes without hidden memory of C
+code, or what pickle would store of a type of Python, numpy or torch. Everything else is unreadable.
+No code of the agent runs, except a hook's ``fingerprint()``.
 """
 
 from __future__ import annotations
 
+import copyreg
+import functools
 import hashlib
 import logging
-import operator
-import random
-import re
+import pickle
 import sys
 import sysconfig
+import threading
 import types
-from collections import Counter, deque
-from collections.abc import Callable, Iterable, Iterator
+from collections import deque
+from collections.abc import Iterable, Iterator
 from contextlib import suppress
 from dataclasses import dataclass, field
-from datetime import date, datetime, timedelta
-from datetime import time as clock_time
-from decimal import Decimal
-from enum import Enum
-from functools import cache, partial, partialmethod
-from itertools import chain
+from functools import cache
 from pathlib import PurePath
 from typing import Any
 
@@ -34,390 +32,352 @@ from torch.nn.modules import module as torch_module
 
 from mitigate.agents.adapter_layers import Adapter
 from mitigate.core.checksums import DIGITS
+from mitigate.core.contracts import read
 from mitigate.core.observation import Observation
 
 MOST_VALUES = 100_000  # values that are visited (heuristic: under a second)
-_LISTS: tuple[Any, ...] = (list, tuple, deque, type({}.values()))
-_CONTAINERS = (*_LISTS, set, frozenset, dict, types.MappingProxyType)
-_GETTERS = (operator.itemgetter, operator.attrgetter, operator.methodcaller)
-_SCALARS = (str, bytes, int, float, complex, type(None))
-_DATA = (
-    *(*_SCALARS, PurePath, np.generic, np.dtype, torch.device, torch.dtype, torch.Size),
-    *(range, slice, re.Pattern, bytearray, Decimal, datetime, date, clock_time, timedelta),
+_SCALARS: tuple[Any, ...] = (str, bytes, int, float, complex)
+_CONTENT: tuple[Any, ...] = (dict, list, tuple, set, frozenset, *_SCALARS)  # and their subclasses
+_PATHS = (type(PurePath()), *type(PurePath()).__subclasses__())  # they cache their text
+_TEXTS = (*_SCALARS, bool, type(None), type(...), *_PATHS, torch.dtype, torch.device)
+_IGNORED = (  # nothing of them changes an action
+    *(type(threading.Lock()), type(threading.RLock()), logging.Logger, Observation),
 )
-_GENERATORS: dict[type, Callable[[Any], Any]] = {
-    torch.Generator: lambda generator: generator.get_state().tolist(),
-    np.random.Generator: lambda generator: generator.bit_generator.state,
-    np.random.RandomState: lambda generator: generator.get_state(legacy=False),
-    random.Random: lambda generator: generator.getstate(),
+_ARRAYS = (np.ndarray, np.memmap, torch.Tensor, nn.Parameter)
+_NAMED = (types.FunctionType, types.ModuleType, type, types.BuiltinFunctionType)
+_MEMBERS: dict[type, tuple[str, ...]] = {  # what stands for all of an object
+    **dict.fromkeys((staticmethod, classmethod), ("__func__",)),
+    property: ("fget", "fset", "fdel"),
+    types.MethodType: ("__self__", "__func__"),
+    types.BuiltinFunctionType: ("__self__",),
 }
-_IGNORED = (np.ufunc, logging.Logger, types.ModuleType, Observation)
-_NAMED = (types.FunctionType, types.BuiltinFunctionType, np.ufunc, types.ModuleType, type)
+_CODE = (*_NAMED, types.MethodType, functools.partial, functools.partialmethod)
+_DESCRIPTORS = (types.MemberDescriptorType, types.GetSetDescriptorType)
+_PYTHONS = sys.stdlib_module_names - {"__main__"}
+_READABLE = _PYTHONS | {"numpy", "torch", "mitigate"}  # packages whose pickling is complete
 _BY_VERSION = ("mitigate", "torch")  # packages whose code is identified by their version
 _INSTALLED = frozenset(("site-packages", "dist-packages"))
-_OF_TORCH = frozenset((*vars(nn.Module()), "parametrizations"))
-_OF_ADAPTERS = "_statistics_before_adapters"  # set by agents/adapters.py
-_PYTHONS = sys.stdlib_module_names - {"__main__"}
-_DESCRIPTORS = (types.MemberDescriptorType, types.GetSetDescriptorType)
+_ANSWERING = {  # methods that could answer for an object
+    *("__reduce_ex__", "__reduce__", "__getstate__", "__getnewargs_ex__", "__getnewargs__"),
+    *("__getattr__", "__getattribute__", "__iter__", "items"),
+}
+_LEFT_OUT = {  # of torch (the last two are parameters of recurrent layers), and of adapters.py
+    *(*vars(nn.Module()), "parametrizations", "_flat_weights", "_flat_weight_refs"),
+    "_statistics_before_adapters",
+}
+_RUNNING = {"hook", "judged"}  # of an adapter: its handle, and its answer to the last frames
 _OWN_HOOKS = "mitigate.agents.adapters"  # its adapters are modules: in state_dict()
-_HOOKS = ("_forward_pre_hooks", "_forward_hooks")
+
+Parts = Iterable[tuple[str, Any]]
 
 
 @dataclass
 class State:
-    """What :func:`read_state` found, by dotted place in the agent; "" is the agent itself.
+    """What :func:`read_state` found, by place in the agent; "" is the agent itself.
 
     Attributes:
-        networks: every ``nn.Module``, without the modules inside it.
-        arrays: hash of every tensor and array.
-        functions: functions of the user's own code.
-        constants: plain values that functions name or enclose.
-        attributes: all other plain data, as text.
-        behaviour: hooks and replaced methods that could be read, as text.
+        networks: every ``nn.Module`` by place, without the modules inside it.
+        arrays: hashes, by place, of tensors and arrays that do not count as attributes.
+        functions: code of the user's functions.
+        lines: everything else that counts, as ``place = text``; places in classes, which do not
+            depend on the object, begin with "class ".
         unreadable: reasons by place.
     """
 
-    networks: dict[str, nn.Module] = field(default_factory=dict)
-    arrays: dict[str, str] = field(default_factory=dict)
-    functions: dict[str, types.FunctionType] = field(default_factory=dict)
-    constants: dict[str, str] = field(default_factory=dict)
-    attributes: dict[str, str] = field(default_factory=dict)
-    behaviour: dict[str, str] = field(default_factory=dict)
+    networks: list[tuple[str, nn.Module]] = field(default_factory=list)
+    arrays: list[tuple[str, str]] = field(default_factory=list)
+    functions: list[types.CodeType] = field(default_factory=list)
+    lines: list[str] = field(default_factory=list)
     unreadable: dict[str, str] = field(default_factory=dict)
 
 
-@dataclass
-class _Item:
-    place: str
-    value: Any
-    fixed: bool = False  # belongs to code, not to the changing state of an object
-    required: bool = False  # must be readable even if the agent has settings()
-
-
-@dataclass(frozen=True)
-class _Replacement:
-    """What stands in a class in place of a method: part of the code."""
-
-    value: Any
-
-
-def has_settings(agent: Any) -> bool:
-    """Return whether ``agent`` or its class defines ``settings``: what ``__getattr__`` finds in
-    another object does not describe this one."""
-    return "settings" in getattr(agent, "__dict__", ()) or _definer(type(agent)) is not None
-
-
-def says_all(agent: Any) -> bool:
-    """Return whether ``settings`` stands for all attributes: not of a subclass, which may add
-    some, of the class that defines it."""
-    own = "settings" in getattr(agent, "__dict__", ())
-    return own or _definer(type(agent)) is type(agent)
-
-
-def _definer(kind: type) -> type | None:
-    return next((each for each in kind.__mro__ if "settings" in vars(each)), None)
-
-
-def read_state(agent: Any, *, attributes: bool = True) -> State:
+def read_state(agent: Any, *, attributes: bool = True, like: nn.Module | None = None) -> State:
     """Return the state of ``agent``; each object is read once, at the place found first.
 
     Args:
         agent: any object.
-        attributes: whether plain attributes count. Without them, which suits an agent that has
-            ``settings()``, only hooks and replaced methods can be unreadable.
+        attributes: whether plain attributes count. Without them only code and what it names count.
+        like: an agent of the same kind. Attributes of modules that it lacks do not count.
     """
-    state = State()
-    seen: dict[int, tuple[Any, str]] = {}
-    taken = Counter[str]()
-    waiting = deque([_Item("", agent)])
-    while waiting:
-        item = waiting.popleft()
-        value = item.value
-        note = _noting(state, item, attributes)
+    return _Reader(agent, attributes, like).read()
+
+
+class _Reader:
+    """The search through one agent, breadth first."""
+
+    def __init__(self, agent: Any, attributes: bool, like: nn.Module | None) -> None:
+        self.agent = agent
+        self.usual = dict(like.named_modules()) if like is not None else {}
+        self.state = State()
+        self.seen: dict[int, tuple[Any, str, bool]] = {}
+        self.classes: set[type] = set()
+        self.waiting: deque[tuple[str, Any, bool]] = deque([("", agent, attributes)])
+
+    def read(self) -> State:
+        """Visit everything that can be reached."""
+        while self.waiting:
+            self.visit(*self.waiting.popleft())
+            if len(self.seen) > MOST_VALUES:
+                self.state.unreadable[""] = f"it holds more than {MOST_VALUES:,} values"
+                break
+        return self.state
+
+    def note(self, place: str, text: str, counts: bool = True) -> None:
+        if counts:
+            self.state.lines.append(f"{place} = {text}")
+
+    def add(self, place: str, parts: Parts, counts: bool = True) -> None:
+        """Visit the ``parts`` of what is at ``place`` later."""
+        self.waiting.extend((_join(place, name), part, counts) for name, part in parts)
+
+    def visit(self, place: str, value: Any, counts: bool) -> None:
+        """Note what ``value`` is, and add its parts."""
+        counts = counts or isinstance(value, _CODE)
         text = plain_text(value)
+        if isinstance(value, _IGNORED):
+            return None
         if text is not None:
-            note(item.place, text)
-            continue
+            return self.note(place, text, counts)
         if isinstance(value, _NAMED):
-            note(f"{item.place}()", _name_of(value))
-        if id(value) in seen:
-            if attributes and not callable(value):
-                note(item.place, f"same object as {seen[id(value)][1]}")
+            self.note(f"{place}()", _name_of(value))
+        _, first, counted = self.seen.get(id(value), (None, "", False))
+        if id(value) in self.seen and (counted or not counts or value is self.agent):
+            return self.note(place, f"same object as {first}", counts and counted)
+        self.seen[id(value)] = value, place, counts  # keeps it alive, so that its id stays unique
+        if isinstance(value, nn.Module):
+            return self.visit_network(place, value, counts)
+        parts = self.parts(place, value, counts)
+        if parts is None and counts:
+            self.state.unreadable[place] = _why(value)
+        self.add(place, parts or (), counts)
+
+    def parts(self, place: str, value: Any, counts: bool) -> Parts | None:
+        """Return the parts of ``value`` by name; None if not all of it can be read."""
+        kind = type(value)
+        if kind in _ARRAYS:
+            sha = array_sha(value)
+            self.note(place, sha, counts)
+            self.state.arrays += [(place, sha)] if sha and not counts else []
+            return [*_attributes(value)] if sha else None
+        if isinstance(value, types.FunctionType):
+            return self.function_parts(place, value)
+        if isinstance(value, types.ModuleType):
+            public = [(k, part) for k, part in vars(value).items() if not _is_dunder(k)]
+            return public if _is_users_module(value) else []
+        if isinstance(value, type):
+            return self.add_class(value)
+        if kind in _MEMBERS:
+            return [(name, read(value, name)) for name in _MEMBERS[kind]]
+        if isinstance(value, functools._lru_cache_wrapper):
+            return [*vars(value).items(), ("cache", value.cache_parameters())]
+        base = next(each for each in kind.__mro__ if each in _CONTENT or each is object)
+        hidden = _hides_memory(kind, base)
+        found = _pickled(value) if hidden else self.content(base, place, value, counts)
+        if found is None:
+            return None
+        self.add_class(kind)
+        if kind is not base:
+            self.note(f"{place}()", class_name(kind), counts)
+        return [*found, *_attributes(value)]
+
+    def content(self, base: Any, place: str, value: Any, counts: bool) -> Parts | None:
+        """Return what ``value`` holds beside attributes, by its ``base`` in ``_CONTENT``."""
+        if base is object:
+            return []
+        if base is dict:
+            keys, parts = [*dict.keys(value)], [*dict.values(value)]
+            names = [key if type(key) is str else f"[{n}]" for n, key in enumerate(keys)]
+            return [("keys()", keys), *zip(names, parts, strict=True)]
+        if base in (list, tuple):
+            return _numbered(base.__iter__(value))
+        if base in (set, frozenset):
+            self.add(place, [("{}", part) for part in base.__iter__(value)], False)
+            return None if counts else []  # which text belongs to which part is not known
+        return [("", base.__repr__(value))]
+
+    def function_parts(self, place: str, value: types.FunctionType) -> Parts:
+        """Note the code of a user's function, and return what it encloses and names."""
+        users = _is_users(value)
+        if users:
+            self.state.functions.append(value.__code__)
+        if users and value.__name__ == "<lambda>":  # a line may hold several
+            self.note(place, bytecode(value.__code__))
+        cells = zip(value.__code__.co_freevars, value.__closure__ or (), strict=True)
+        enclosed = [(name, cell.cell_contents) for name, cell in cells if _is_filled(cell)]
+        usual = [("defaults", value.__defaults__), ("keywords", value.__kwdefaults__)]
+        usual = [(name, part) for name, part in usual if part]
+        return [*enclosed, *usual, *vars(value).items(), *(_globals(value) if users else ())]
+
+    def add_class(self, kind: type) -> Parts:
+        """Visit what belongs to the code of ``kind`` and of its bases."""
+        for each in kind.__mro__:
+            if each not in self.classes and each is not object:
+                self.classes.add(each)
+                self.add(f"class {class_name(each)}", _members(each))
+        return []
+
+    def visit_network(self, place: str, net: nn.Module, counts: bool) -> None:
+        """Note a network, and add its classes, hooks and whatever its state dict does not hold."""
+        self.state.networks.append((place, net))
+        if torch_module._global_forward_hooks or torch_module._global_forward_pre_hooks:
+            hooks = _join(place, "global hooks")
+            self.state.unreadable[hooks] = "a hook that is registered for all modules"
+        for kind in dict.fromkeys(map(type, net.modules())):
+            self.add_class(kind)
+        saved = net.state_dict()
+        for name, module in net.named_modules():
+            inner = _join(place, name)
+            self.seen.setdefault(id(module), (module, inner, counts))
+            self.note(f"{inner}()", class_name(type(module)))
+            if type(module).__module__.startswith("torch.jit"):
+                self.state.unreadable[inner] = "a TorchScript module, whose program cannot be read"
+                continue
+            self.visit_hooks(inner, module)
+            buffers = module._buffers.items()
+            self.add(inner, [(k, one) for k, one in buffers if _join(name, k) not in saved])
+            left_out = _LEFT_OUT | (_RUNNING if isinstance(module, Adapter) else set())
+            usual = self.usual.get(name)
+            if type(usual) is type(module):
+                known = {*vars(usual), *dir(type(module))}
+                left_out |= {*vars(module)} - known | {*read(module, "run_state", default=())}
+            whole = counts or type(module).__module__.startswith("torch.")
+            for k, part in vars(module).items():
+                replaces = callable(part) and callable(read(type(module), k))
+                adapter = k == "settings" and ".adapter" in f".{name}"
+                if k not in left_out:
+                    self.add(inner, [(k, part)], whole or replaces or adapter)
+        packed = [(k, one) for k, one in saved.items() if not isinstance(one, torch.Tensor)]
+        self.add(_join(place, "state_dict()"), packed)  # such as of a quantised layer
+
+    def visit_hooks(self, place: str, module: nn.Module) -> None:
+        """Note hooks. One is readable if it is of our adapters, has a method ``fingerprint()`` that
+        returns plain data, or is an object of torch such as a weight norm."""
+        hooks = [*module._forward_pre_hooks.values(), *module._forward_hooks.values()]
+        origins = [str(read(hook, "__module__", default=type(hook).__module__)) for hook in hooks]
+        for number, (hook, origin) in enumerate(zip(hooks, origins, strict=True)):
+            name = _join(place, f"forward hook {number}")
+            describe = read(hook, "fingerprint")
+            kind = type(hook).__qualname__
+            if callable(describe):
+                self.note(name, f"{kind} {describe()!r}")
+            elif origin.startswith("torch.") and [*_attributes(hook)]:
+                self.add(name, [("", hook)])
+            elif origin != _OWN_HOOKS:
+                kind = read(hook, "__qualname__", default=kind)
+                self.state.unreadable[name] = f"a forward hook, {kind}"
+        adapter = isinstance(module._modules.get("adapter"), Adapter)
+        if adapter and not (_OWN_HOOKS in origins or isinstance(module, nn.Sequential)):
+            self.note(_join(place, "adapter"), "not called: its hook is removed")
+
+
+def _members(kind: type) -> Parts:
+    """Everything in a user's class; of another class what was set later."""
+    users = _is_users_class(kind)
+    ours = kind.__module__.startswith(("mitigate.", "torch.")) and kind is not nn.Module
+    for name, one in vars(kind).items():
+        function = read(one, "__func__", "fget", default=one)
+        method = isinstance(function, types.FunctionType)
+        data = name == "_abc_impl" or isinstance(one, _DESCRIPTORS)
+        data |= name == "__repr__" and method and not _is_users(function)  # of a dataclass
+        if data or (_is_dunder(name) and not callable(function)):
             continue
-        seen[id(value)] = value, item.place  # keeps the object alive, so that its id stays unique
-        if len(seen) > MOST_VALUES:
-            state.unreadable[""] = f"it holds more than {MOST_VALUES:,} values"
-            break
-        children = _visit(state, item, whole=value is agent, attributes=attributes)
-        if children is None:
-            if attributes or item.required:
-                state.unreadable[item.place] = _why(value)
-            continue
-        for child in children:
-            taken[child.place] += 1
-            if taken[child.place] > 1:  # a method that the object or a subclass replaces
-                child.place += f" ({taken[child.place]})"
-            waiting.append(child)
-    return state
+        moved = method and function.__qualname__ != f"{kind.__qualname__}.{name}"
+        called = callable(function) or isinstance(one, functools.partialmethod)
+        called = called and not isinstance(one, (type, nn.Module))
+        if users or (method and _is_users(function)) or (ours and (moved or called and not method)):
+            yield name, one
 
 
-def _noting(state: State, item: _Item, attributes: bool) -> Callable[[str, str], None]:
-    """Return what notes a text of ``item``, where it counts."""
-    lines = state.constants if item.fixed else state.attributes
+def _globals(function: types.FunctionType) -> Parts:
+    """What the user's ``function``, and functions written inside it, may name of its module, and of
+    the user's modules that this names."""
+    codes = [function.__code__]
+    names = dict[str, None]()
+    for code in codes:
+        names |= dict.fromkeys(code.co_names)
+        names |= dict.fromkeys(one for one in code.co_consts if isinstance(one, str))  # getattr
+        codes += [part for part in code.co_consts if isinstance(part, types.CodeType)]
+    scope = function.__globals__
+    waiting = [(name, scope.get(name, sys.modules.get(name))) for name in names]
+    waiting = [(n, part) for n, part in waiting if n in scope or _is_users_module(part)]
+    entered: list[Any] = []
+    for place, part in waiting:
+        if not _is_users_module(part):
+            yield place, part
+        elif not any(part is one for one in entered):
+            entered.append(part)
+            here = [name for name in names if name in vars(part)]
+            waiting += [(f"{place}.{name}", vars(part)[name]) for name in here]
 
-    def note(place: str, text: str) -> None:
-        if attributes or item.fixed:
-            lines[place] = text
 
-    return note
+def _hides_memory(kind: type, base: type) -> bool:
+    """Return whether objects of ``kind`` hold more than ``base`` and Python attributes: memory of
+    C code. This is the check of ``object.__reduce_ex__``, without calling the user's code."""
+    slots: Any = copyreg._slotnames(kind)  # type: ignore[attr-defined]
+    words = len(slots) + (kind.__weakrefoffset__ > 0)
+    words += kind.__dictoffset__ > 0 or (kind.__dictoffset__ < 0 < kind.__itemsize__)
+    return kind.__basicsize__ > base.__basicsize__ + words * tuple.__itemsize__
+
+
+def _pickled(value: Any) -> Parts | None:
+    """Return what pickle would store of an object with memory of C code; None if it cannot, or if
+    code of the user or of an unknown package would answer."""
+    if isinstance(value, Iterator):  # it changes with every use
+        return None
+    for each in type(value).__mro__:
+        users = _is_users_class(each)
+        readable = each.__module__.partition(".")[0] in _READABLE
+        if not (users or readable) or (users and _ANSWERING & {*vars(each)}):
+            return None
+    try:
+        reduce = copyreg.dispatch_table.get(type(value))
+        found = reduce(value) if reduce else value.__reduce_ex__(2)
+        if not isinstance(found, str):
+            return _numbered(list(part) if isinstance(part, Iterator) else part for part in found)
+        where = pickle.whichmodule(value, found)  # type: ignore[attr-defined]
+        return [("", f"{where}.{found}")] if read(sys.modules[where], found) is value else None
+    except Exception:  # whatever a type raises that cannot be pickled
+        return None
+
+
+def _attributes(value: Any) -> Parts:
+    """The attributes and slots of an object."""
+    with suppress(AttributeError):
+        yield from object.__getattribute__(value, "__dict__").items()
+    for kind in type(value).__mro__:
+        for name, one in vars(kind).items() if "__slots__" in vars(kind) else ():
+            if isinstance(one, types.MemberDescriptorType):
+                with suppress(AttributeError):  # not set
+                    yield name, one.__get__(value)
+
+
+def _is_dunder(name: str) -> bool:
+    return name.startswith("__") and name.endswith("__")
 
 
 def _name_of(value: Any) -> str:
     """The name of a class, function or module."""
     if isinstance(value, type):
         return class_name(value)
-    name = getattr(value, "__qualname__", getattr(value, "__name__", ""))
+    name = read(value, "__qualname__", "__name__")
     users = isinstance(value, types.FunctionType) and _is_users(value)
-    return name if users else f"{getattr(value, '__module__', None) or ''}.{name}"
-
-
-def _visit(state: State, item: _Item, *, whole: bool, attributes: bool) -> list[_Item] | None:
-    """Note what ``item`` is, and return its parts; None if it cannot be read."""
-    value = item.value
-    if isinstance(value, _IGNORED):
-        return []
-    if isinstance(value, types.FunctionType) and _is_users(value):
-        state.functions[item.place] = value
-    if isinstance(value, nn.Module):
-        return _visit_network(state, item, whole=whole, attributes=attributes)
-    if isinstance(value, torch.Tensor) or hasattr(type(value), "__array__"):
-        sha = array_sha(value)
-        if sha and item.fixed:
-            state.constants[item.place] = sha
-        elif sha:
-            state.arrays[item.place] = sha
-        return [] if sha else None
-    parts = _parts(value)
-    if parts is None:
-        return None
-    is_code = isinstance(value, (types.FunctionType, partial, partialmethod, types.MethodType))
-    kept = isinstance(value, (*_CONTAINERS, type))
-    fixed = is_code or item.required or (item.fixed and kept)
-    if not is_code and not isinstance(value, (*_CONTAINERS, *_GETTERS, *_NAMED)):
-        _noting(state, item, attributes)(f"{item.place}()", class_name(type(value)))
-    return [
-        _item(_join(item.place, name), part, fixed and _is_constant(name, part), item.required)
-        for name, part in parts
-    ]
-
-
-def _item(place: str, part: Any, fixed: bool = False, required: bool = False) -> _Item:
-    if isinstance(part, _Replacement):
-        return _Item(place, part.value, fixed=True, required=True)
-    return _Item(place, part, fixed, required)
-
-
-def _is_constant(name: str, part: Any) -> bool:
-    """Return False for a container in a global variable, which code may fill as it runs."""
-    return name.isdigit() or name in ("self", "func") or not isinstance(part, _CONTAINERS)
-
-
-def _visit_network(
-    state: State, item: _Item, *, whole: bool, attributes: bool
-) -> list[_Item] | None:
-    """Note a network, and return its methods, hooks and whatever state_dict() does not hold."""
-    net = item.value
-    state.networks[item.place] = net
-    kinds = dict.fromkeys(map(type, net.modules()))
-    found = [_item(_join(item.place, k), part) for kind in kinds for k, part in _methods(kind)]
-    if attributes:
-        data = [pair for kind in kinds for pair in _class_data(kind)]
-        found += [_Item(_join(item.place, name), part) for name, part in data]
-    if any(getattr(torch_module, f"_global{name}", None) for name in _HOOKS):
-        place = _join(item.place, "global hooks")
-        state.unreadable[place] = "a forward hook that is registered for all modules"
-    for name, module in net.named_modules():
-        place = _join(item.place, name)
-        found += _hidden(state, place, module)
-        if attributes or (whole and not name):
-            found += [_Item(_join(place, k), v) for k, v in plain_attributes(module).items()]
-    for name, value in net.state_dict().items():
-        if not isinstance(value, torch.Tensor):  # such as packed weights of a quantised layer
-            place = _join(item.place, f"state {name}")
-            found.append(_Item(place, value, fixed=True, required=True))
-    return found
-
-
-def plain_attributes(module: nn.Module) -> dict[str, Any]:
-    """Return the attributes of ``module`` that neither torch nor the adapters have put there."""
-    ours = ("hook",) if isinstance(module, Adapter) else ()
-    left_out = _OF_TORCH | {_OF_ADAPTERS, *ours}
-    return {name: value for name, value in vars(module).items() if name not in left_out}
-
-
-def _hidden(state: State, place: str, module: nn.Module) -> Iterator[_Item]:
-    """Note hooks, and yield readable ones and replaced methods such as ``forward``.
-
-    A hook is readable if it is one of this project's adapters, an object with a ``fingerprint()``
-    method that returns plain data, or an object of torch such as a weight norm.
-    """
-    hooks = [hook for kind in _HOOKS for hook in (getattr(module, kind, None) or {}).values()]
-    for number, hook in enumerate(hooks):
-        name = _join(place, f"forward hook {number}")
-        origin = str(getattr(hook, "__module__", type(hook).__module__))
-        describe = getattr(hook, "fingerprint", None)
-        if origin == _OWN_HOOKS:
-            continue
-        if callable(describe):
-            state.behaviour[name] = f"{type(hook).__qualname__} {describe()!r}"
-        elif origin.startswith("torch.") and hasattr(hook, "__dict__") and vars(hook):
-            yield _Item(name, hook, fixed=True, required=True)
-        else:
-            kind = getattr(hook, "__qualname__", type(hook).__qualname__)
-            state.unreadable[name] = f"a forward hook, {kind}"
-    adapter = dict(module.named_children()).get("adapter")
-    hooked = any(getattr(hook, "__module__", "") == _OWN_HOOKS for hook in hooks)
-    if isinstance(adapter, Adapter) and not (hooked or isinstance(module, nn.Sequential)):
-        state.behaviour[_join(place, "adapter")] = "not called: its hook is removed"
-    for name, value in vars(module).items():
-        if callable(value) and callable(getattr(type(module), name, None)):
-            yield _Item(_join(place, name), value, fixed=True, required=True)
-    if type(module).__module__.startswith("torch.jit"):
-        state.unreadable[place] = "a TorchScript module, whose program cannot be read"
-
-
-def _parts(value: Any) -> Iterable[tuple[str, Any]] | None:
-    """The parts of ``value`` by name; None if nothing can be known of them."""
-    if isinstance(value, dict):
-        return ((str(key), part) for key, part in dict.items(value))
-    if isinstance(value, types.MappingProxyType):
-        return [("of", dict(value))]
-    if isinstance(value, (set, frozenset)):
-        return ((f"{{{number}}}", part) for number, part in enumerate(value))  # in any order
-    if isinstance(value, _LISTS):
-        return _numbered(value)
-    if isinstance(value, type):
-        return chain(_methods(value), _class_data(value))
-    if isinstance(value, (partial, partialmethod)):
-        return [("func", value.func), *_numbered((value.args, value.keywords))]
-    if isinstance(value, _GETTERS):
-        return _numbered(value.__reduce__())
-    if isinstance(value, (types.MethodType, types.BuiltinFunctionType)):
-        return [("self", value.__self__), ("func", getattr(value, "__func__", None))]
-    if isinstance(value, types.FunctionType):
-        enclosed = [cell.cell_contents for cell in value.__closure__ or () if _is_filled(cell)]
-        usual = _numbered([*enclosed, *(value.__defaults__ or ()), value.__kwdefaults__])
-        return chain(usual, _globals(value))
-    return _attributes(value)
-
-
-def _attributes(value: Any) -> Iterable[tuple[str, Any]] | None:
-    """The attributes and slots of an object. Objects of the standard library's C code hold no
-    weights, except iterators and foreign memory; of other C code nothing is known."""
-    own = getattr(value, "__dict__", None)
-    kinds = [kind for kind in type(value).__mro__ if vars(kind).get("__slots__")]
-    slots = [one for kind in kinds for one in vars(kind).items()]
-    members = [(k, one) for k, one in slots if isinstance(one, types.MemberDescriptorType)]
-    if isinstance(own, dict) or members:
-        kind = type(value)
-        return chain(
-            (own or {}).items(), _filled(value, members), _methods(kind), _class_data(kind)
-        )
-    package = str(type(value).__module__).partition(".")[0]
-    foreign = package == "ctypes" or type(value).__name__ == "PyCapsule"
-    opaque = foreign or isinstance(value, Iterator)
-    return [] if package in sys.stdlib_module_names and not opaque else None
-
-
-def _methods(kind: type) -> Iterator[tuple[str, Any]]:
-    """The user's functions in ``kind`` and its bases, also those that were set later, and what
-    else stands in place of a method."""
-    for each in kind.__mro__:
-        users = _is_users_class(each)
-        for name, one in vars(each).items() if each is not object else ():
-            bound = getattr(one, "__func__", one)  # of a static or class method
-            function = getattr(bound, "fget", bound)  # of a property
-            if isinstance(function, types.FunctionType):
-                if _is_users(function):
-                    yield name, function
-                elif _of_another(each, function):
-                    yield name, _Replacement(_name_of(function))
-            elif (users or each.__module__.startswith("mitigate.")) and _acts(name, function):
-                yield name, _Replacement(function)
-
-
-def _of_another(kind: type, function: types.FunctionType) -> bool:
-    """Return whether one of our classes has got a function that was written elsewhere."""
-    return kind.__module__.startswith("mitigate.") and (
-        function.__module__.startswith("mitigate.")
-        and not function.__qualname__.startswith(f"{kind.__qualname__}.")
-    )
-
-
-def _acts(name: str, value: Any) -> bool:
-    """Return whether ``value`` in a class is called as a method without being a function."""
-    if isinstance(value, (type, nn.Module)) or (name.startswith("__") and name.endswith("__")):
-        return False
-    return isinstance(value, partialmethod) or callable(value)
-
-
-def _class_data(kind: type) -> Iterator[tuple[str, Any]]:
-    """The attributes of the user's classes among ``kind`` and its bases that are no methods."""
-    for each in kind.__mro__:
-        for name, one in vars(each).items() if _is_users_class(each) else ():
-            hidden = (name.startswith("__") and name.endswith("__")) or name == "_abc_impl"
-            function = getattr(one, "__func__", getattr(one, "fget", one))
-            described = isinstance(one, (property, staticmethod, classmethod, *_DESCRIPTORS))
-            if not (hidden or described or isinstance(one, Enum) or _acts(name, function)):
-                yield name, one
+    return name if users else f"{read(value, '__module__') or ''}.{name}"
 
 
 def _is_users_class(kind: type) -> bool:
+    return kind.__module__.partition(".")[0] not in _PYTHONS and _is_users_code(kind)
+
+
+def _is_users_code(kind: type) -> bool:
     module = sys.modules.get(kind.__module__)
-    file = getattr(module, "__file__", None) or ""
-    stdlib = kind.__module__.partition(".")[0] in _PYTHONS
-    return not stdlib and is_users(kind.__module__, file)
-
-
-def _globals(function: types.FunctionType) -> Iterator[tuple[str, Any]]:
-    """What the user's ``function``, and functions written inside it, may name of its module."""
-    if not _is_users(function):
-        return
-    codes = [function.__code__]
-    names = dict[str, None]()
-    for code in codes:
-        names |= dict.fromkeys(code.co_names)
-        codes += [part for part in code.co_consts if isinstance(part, types.CodeType)]
-    for name in names:
-        if name in function.__globals__:
-            part = function.__globals__[name]
-            yield name, part
-            yield from _named(name, part, names)
-        elif name in sys.modules:  # imported where it is used
-            yield from _named(name, sys.modules[name], names)
-
-
-def _named(place: str, module: Any, names: Iterable[str]) -> Iterator[tuple[str, Any]]:
-    """What code with these ``names`` may read of one of the user's modules, or of one inside it."""
-    waiting = [(place, module)]
-    seen: list[Any] = []
-    while waiting:
-        place, module = waiting.pop()
-        if any(module is one for one in seen) or not _is_users_module(module):
-            continue
-        seen.append(module)
-        for name in names:
-            if name in vars(module):
-                yield f"{place}.{name}", vars(module)[name]
-                waiting.append((f"{place}.{name}", vars(module)[name]))
+    return is_users(kind.__module__, read(module, "__file__") or "")
 
 
 def _is_users_module(module: Any) -> bool:
-    if not isinstance(module, types.ModuleType):
+    if not isinstance(module, types.ModuleType) or module.__name__.partition(".")[0] in _PYTHONS:
         return False
-    top = module.__name__.partition(".")[0]
-    file = getattr(module, "__file__", None) or next(iter(getattr(module, "__path__", ())), "")
-    return top not in _PYTHONS and is_users(module.__name__, file)
+    file = read(module, "__file__") or next(iter(read(module, "__path__", default=())), "")
+    return is_users(module.__name__, file)
 
 
 def _is_users(function: types.FunctionType) -> bool:
@@ -435,48 +395,48 @@ def is_users(module: str, file: str) -> bool:
 
 def class_name(kind: type) -> str:
     """Return the name of a class; with its module only where the source does not count anyway."""
-    module = sys.modules.get(kind.__module__)
-    users = is_users(kind.__module__, getattr(module, "__file__", None) or "")
-    return kind.__qualname__ if users else f"{kind.__module__}.{kind.__qualname__}"
+    return kind.__qualname__ if _is_users_code(kind) else f"{kind.__module__}.{kind.__qualname__}"
 
 
-def array_sha(array: Any) -> str:
+def array_sha(array: np.ndarray | torch.Tensor) -> str:
     """Return the hash of an array's or tensor's type, shape and bytes; "" if it has no readable
     bytes (sparse, on the meta device, of objects)."""
-    kind = array.dtype if isinstance(array, torch.Tensor) else ""
+    kind: Any = array.dtype
     if isinstance(array, torch.Tensor):
         if array.layout != torch.strided or array.is_meta:
             return ""
+        shape = tuple(array.shape)
         array = array.dequantize() if array.is_quantized else array
-        array = array.detach().cpu().contiguous()
-        text = f"{kind} {tuple(array.shape)}"
-        array = array.reshape(-1).view(torch.uint8).numpy()
-    else:
-        try:
-            array = np.asarray(array)
-        except Exception:  # of another library, such as one on a GPU
-            return ""
-        text = f"{array.dtype} {tuple(array.shape)}"
-    if array.dtype.hasobject:
+        array = array.detach().cpu().contiguous().reshape(-1).view(torch.uint8).numpy()
+    elif array.dtype.hasobject:
         return ""
-    return hashlib.sha256(text.encode() + array.tobytes()).hexdigest()[:DIGITS]
+    else:
+        shape = array.shape
+    return hashlib.sha256(f"{kind} {shape}".encode() + array.tobytes()).hexdigest()[:DIGITS]
 
 
 def plain_text(value: Any) -> str | None:
-    """Plain data, or a flat container of it, as text that is equal in every process; else None."""
-    if isinstance(value, Enum):
-        return f"{type(value).__qualname__}.{value.name}"
-    for kind, generator_state in _GENERATORS.items():
-        if isinstance(value, kind):
-            return str(generator_state(value))
-    if isinstance(value, _DATA):
+    """Return plain data, or a flat container of it, as text that is equal in every process."""
+    kind = type(value)
+    if kind in _TEXTS:
         return repr(value)
-    if type(value) in (list, tuple, deque, set, frozenset, dict):
-        pairs = value.items() if isinstance(value, dict) else [(0, part) for part in value]
-        if all(type(part) in _SCALARS for pair in pairs for part in pair):
-            unordered = isinstance(value, (set, frozenset))
-            return repr(sorted(map(repr, value)) if unordered else value)
+    if kind in (set, frozenset) and all(type(part) in _TEXTS for part in value):
+        return f"{kind.__name__} {sorted(map(repr, value))}"
+    flat = [*value.keys(), *value.values()] if kind is dict else value
+    if kind in (dict, list, tuple) and all(type(part) in _TEXTS for part in flat):
+        return repr(value)
     return None
+
+
+def bytecode(code: types.CodeType) -> str:
+    """Return what ``code`` does, as text, where its source does not tell."""
+    return f"{code.co_name} {code.co_code.hex()} {code.co_names} {_constants(code)}"
+
+
+def _constants(code: types.CodeType) -> list[str]:
+    inner = [part for part in code.co_consts if isinstance(part, types.CodeType)]
+    plain = [plain_text(p) or repr(p) for p in code.co_consts if not isinstance(p, types.CodeType)]
+    return plain + [text for part in inner for text in (part.co_code.hex(), *_constants(part))]
 
 
 def _why(value: Any) -> str:
@@ -489,14 +449,8 @@ def _join(*names: str) -> str:
     return ".".join(name for name in names if name)
 
 
-def _numbered(parts: Iterable[Any]) -> Iterator[tuple[str, Any]]:
-    return ((str(number), part) for number, part in enumerate(parts))
-
-
-def _filled(value: Any, members: Iterable[tuple[str, Any]]) -> Iterator[tuple[str, Any]]:
-    for name, member in members:
-        with suppress(AttributeError):  # not set
-            yield name, member.__get__(value)
+def _numbered(parts: Iterable[Any]) -> Parts:
+    return [(str(number), part) for number, part in enumerate(parts)]
 
 
 def _is_filled(cell: types.CellType) -> bool:

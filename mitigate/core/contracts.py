@@ -6,6 +6,14 @@ from collections.abc import Iterable, Sequence
 from typing import Any
 
 
+def read(thing: Any, *names: str, default: Any = None) -> Any:
+    """Return the first of the attributes ``names`` that an object of an unknown class has."""
+    for name in names:
+        if hasattr(thing, name):  # any class may be asked
+            return getattr(thing, name)
+    return default
+
+
 def take_over(view: Any, thing: Any, names: Iterable[str]) -> None:
     """Give ``view``, which has defaults, those of the members ``names`` that ``thing`` has."""
     for name in names:

@@ -14,7 +14,7 @@ from hydra.errors import HydraException
 from omegaconf.errors import OmegaConfBaseException
 
 from mitigate.agents.agent import as_agent
-from mitigate.agents.loading import agent_option
+from mitigate.agents.building import agent_option
 from mitigate.agents.networks import in_eval_mode
 from mitigate.agents.observation import check_fits
 from mitigate.cluster.launcher import count

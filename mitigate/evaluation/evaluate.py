@@ -129,10 +129,10 @@ def load(
     by ``node``; what ``overrides`` say of the agent counts more. None: the agent of ``node``, which
     is no network. Raises FileNotFoundError if they are missing, ValueError if they do not fit."""
 
-    from mitigate.agents import loading
+    from mitigate.agents import building
 
-    settings = node if weights is None else loading.settings_of(node, weights, overrides)
-    agent = loading.build_agent(settings, weights=weights, seed=seed)
+    settings = node if weights is None else building.settings_of(node, weights, overrides)
+    agent = building.build_agent(settings, weights=weights, seed=seed)
     if not hasattr(agent, "state_dict"):
         return agent
     if weights is None:
@@ -171,7 +171,7 @@ def _add_kind_of_agent() -> None:
     """Check the command line, and add the kind of agent that its weights are of."""
     check_arguments(sys.argv)
     if any("checkpoint=" in option for option in sys.argv[1:]):
-        from mitigate.agents.loading import with_kind
+        from mitigate.agents.building import with_kind
 
         sys.argv[1:] = with_kind(sys.argv[1:])
 

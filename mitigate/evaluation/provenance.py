@@ -24,8 +24,8 @@ from typing import Any
 
 import numpy as np
 
-from mitigate.agents.fingerprint import contents, hash_of, source_of
-from mitigate.agents.state import array_sha, says_all
+from mitigate.agents.fingerprint import contents, hash_of, says_all, source_of
+from mitigate.agents.state import array_sha
 from mitigate.core import output
 from mitigate.core.build import Maker
 from mitigate.core.files import atomic_text

@@ -99,11 +99,11 @@ def _own_kind(run: Path) -> list[str]:
 def _walks_of(run: Path, overrides: list[str], configs: Path | None) -> Walks:
     """How to make the agent and the world that ``overrides`` name; the agent's settings are those
     beside the run's weights, read as data."""
-    from mitigate.agents import loading
+    from mitigate.agents import building
     from mitigate.shipping.export import WALKS, Walks
 
     folder = [] if configs is None else [f"--config-dir={configs}"]
     cfg = conf.composed("evaluate", [*overrides, *folder])
-    node = loading.settings_of(cfg.agent, str(run / "agent"), overrides)
+    node = building.settings_of(cfg.agent, str(run / "agent"), overrides)
     listed = episodes(cfg.env, cfg.split, WALKS)
     return Walks(build.maker(node), build.maker(cfg.env.world), listed)

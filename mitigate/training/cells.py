@@ -279,7 +279,7 @@ def _check_own(options: Sequence[str], taken: Sequence[str], why: str) -> None:
 
 def evaluation_of(options: Sequence[str]) -> EvaluateConfig:
     """Return the typed options of an evaluation, with the kind of agent of its weights."""
-    from mitigate.agents.loading import with_kind  # brings torch
+    from mitigate.agents.building import with_kind  # brings torch
 
     return evaluate_options.read(conf.composed("evaluate", with_kind(options)))
 

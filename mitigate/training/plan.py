@@ -25,7 +25,7 @@ from omegaconf import OmegaConf
 from torch import nn
 
 from mitigate.agents.agent import as_agent
-from mitigate.agents.loading import begun_from, build_agent
+from mitigate.agents.building import begun_from, build_agent
 from mitigate.agents.observation import check_fits
 from mitigate.core.build import build, located, maker
 from mitigate.core.conf import CONF

@@ -61,7 +61,7 @@ def run_all(config: SweepConfig, options: Sequence[str]) -> None:
     configs, options = without_config_folder(options)
     made = [[*configs, *chosen] for chosen in combinations(options)]
     _check_own(options)
-    from mitigate.agents.loading import with_kind  # brings torch
+    from mitigate.agents.building import with_kind  # brings torch
     from mitigate.evaluation import evaluate  # noqa: F401 - registers its options
     from mitigate.training import train  # noqa: F401 - registers its options
 

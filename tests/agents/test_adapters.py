@@ -20,7 +20,7 @@ from mitigate.agents.adapters import (
     save_adapters,
     scale_adapters,
 )
-from mitigate.agents.loading import build_agent
+from mitigate.agents.building import build_agent
 from mitigate.core import conf
 from mitigate.core.checkpoint import weights_sha
 from mitigate.core.observation import VIEWS

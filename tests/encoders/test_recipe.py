@@ -12,7 +12,7 @@ from omegaconf import OmegaConf
 from PIL import Image
 
 from mitigate.agents.adapters import adapter_parameters
-from mitigate.agents.loading import carried
+from mitigate.agents.building import carried
 from mitigate.core import conf
 from mitigate.core.build import build
 from mitigate.core.checkpoint import weights_sha

@@ -22,7 +22,7 @@ from safetensors.torch import save_file
 from torch.export.pt2_archive._package import load_pt2
 
 import mitigate
-from mitigate.agents import adapters, loading
+from mitigate.agents import adapters, building, loading
 from mitigate.agents.topological import TopologicalAgent
 from mitigate.core import build, checkpoint, folders
 from mitigate.core.files import sha256
@@ -227,11 +227,11 @@ def test_a_folder_of_adapters_holds_no_backbone_and_needs_its_base(place, tmp_pa
 
 def test_evaluation_and_training_take_a_folder_of_adapters(place):
     folder = str(place / "hardened/adapted")
-    node = loading.settings_of(node_of({}), folder)
-    agent = loading.build_agent(node, weights=folder, seed=0)
+    node = building.settings_of(node_of({}), folder)
+    agent = building.build_agent(node, weights=folder, seed=0)
     assert checkpoint.weights_sha(agent) == loading.check_hardened(Path(folder))["run_agent"]
     with pytest.raises(ValueError, match="other modules"):
-        loading.build_agent(node_of(TINY), weights=folder, seed=0)
+        building.build_agent(node_of(TINY), weights=folder, seed=0)
 
 
 def test_loading_needs_neither_hydra_nor_the_simulator_and_import_stays_light(place, tmp_path):
@@ -386,16 +386,16 @@ def test_adapters_that_the_card_does_not_list_take_no_part(place, copied):
     assert not loading.adapters_only(copied)
     assert cards.reference(str(copied))["sha256"] == sha256(copied / checkpoint.WEIGHTS)
     with pytest.raises(ValueError, match="not listed"):
-        loading.build_agent(node_of(TINY), weights=str(copied), seed=0)
+        building.build_agent(node_of(TINY), weights=str(copied), seed=0)
 
 
 def test_evaluation_and_training_refuse_a_changed_folder(copied):
-    assert loading.build_agent(node_of(TINY), weights=str(copied), seed=0)
+    assert building.build_agent(node_of(TINY), weights=str(copied), seed=0)
     with pytest.raises(ValueError, match="another kind .hardened, not weights"):
         checkpoint.save_weights(TopologicalAgent(**TINY), copied)
     checkpoint.write_tensors(TopologicalAgent(**TINY), copied / checkpoint.WEIGHTS)
     with pytest.raises(ValueError, match="does not have the sha256"):
-        loading.build_agent(node_of(TINY), weights=str(copied), seed=0)
+        building.build_agent(node_of(TINY), weights=str(copied), seed=0)
 
 
 def test_a_folder_of_another_agent_than_its_card_says_is_refused(copied):

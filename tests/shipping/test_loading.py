@@ -10,7 +10,7 @@ import torch
 import yaml
 
 import mitigate
-from mitigate.agents.loading import agent_option
+from mitigate.agents.building import agent_option
 from mitigate.core import checkpoint, conf
 from mitigate.evaluation import evaluate
 

@@ -6,7 +6,7 @@ import math
 
 import pytest
 
-from mitigate.agents.loading import build_agent
+from mitigate.agents.building import build_agent
 from mitigate.core import conf, precision
 from mitigate.evaluation.config import CostConfig
 from mitigate.training import estimate, plan

@@ -6,7 +6,7 @@ import pytest
 import torch
 from omegaconf import OmegaConf
 
-from mitigate.agents.loading import LORA, carried
+from mitigate.agents.building import LORA, carried
 from mitigate.agents.topological import stored
 from mitigate.core import checkpoint, conf
 from mitigate.core.build import build

@@ -24,7 +24,7 @@ from unittest import mock
 
 import torch
 
-from mitigate.agents.loading import build_agent
+from mitigate.agents.building import build_agent
 from mitigate.core import conf, precision, seeding
 from mitigate.core.markdown import markdown_table
 from mitigate.core.workers import cores

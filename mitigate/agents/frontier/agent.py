@@ -20,7 +20,7 @@ from torch import Tensor, nn
 from mitigate.agents import observation as checked
 from mitigate.agents import schema
 from mitigate.agents.adapters import insert_adapters
-from mitigate.agents.agent import Agent, Output
+from mitigate.agents.agent import Output, SideBySide, check_started
 from mitigate.agents.controller import Controller
 from mitigate.agents.encoders import CAMERA_ENCODERS, CAMERA_LABELS, SIZE, CameraRGB, see_camera
 from mitigate.agents.frontier.grid import (
@@ -71,7 +71,7 @@ ROOM_SHARE = 0.3  # what a likely room counts against the object itself (ours)
 _ROOMS = slice(len(CONCEPTS) - len(ROOM_NAMES), len(CONCEPTS))
 
 
-class FrontierAgent(Agent, nn.Module):
+class FrontierAgent(SideBySide, nn.Module):
     """Args: width: of the features of a column of the view. adapters: keyword arguments of
     ``insert_adapters``, for an encoder with adapters. blind: of "rgb", "depth" and "instruction",
     what is blanked before it enters (the ablations). size: pixels of a square view that it works
@@ -151,24 +151,23 @@ class FrontierAgent(Agent, nn.Module):
         walker.reset(instruction)
         return walker
 
-    def act_all(
-        self, observations: Sequence[Mapping[str, np.ndarray]], memories: Sequence[FrontierAgent]
+    def answers(
+        self,
+        observations: Sequence[Mapping[str, np.ndarray]],
+        memories: Sequence[FrontierAgent],
+        count: int,
     ) -> list[int]:
-        """One low-level action of each of up to ``together`` episodes; frames are encoded at once.
-        Raises what ``agents/observation.py`` refuses."""
-        frames = [checked.frame(seen, RGB, 1) for seen in observations]
-        filled = [*frames, *[frames[-1]] * (self.together - len(frames))]  # one size: equal sums
-        known = self._recognise(np.stack(filled))[: len(frames)]
-        walking = zip(memories, observations, known, strict=True)
+        """One low-level action of each of the first ``count`` episodes; frames are encoded at
+        once."""
+        known = self._recognise(np.stack([checked.frame(seen, RGB, 1) for seen in observations]))
+        walking = [*zip(memories, observations, known, strict=True)][:count]
         return [walker._act(seen, concepts) for walker, seen, concepts in walking]
 
     def act(self, observation: Mapping[str, np.ndarray]) -> int:
         """One low-level action. Raises RuntimeError before the first ``reset``, and what
         ``agents/observation.py`` refuses."""
-        if not self._started:
-            raise RuntimeError("Start the episode first: agent.reset(instruction).")
-        frame = checked.frame(observation, RGB, 1)
-        return self._act(observation, self._recognise(frame[None])[0])
+        check_started(self._started)
+        return self.answers([observation], [self], 1)[0]
 
     def _act(self, observation: Mapping[str, np.ndarray], concepts: np.ndarray) -> int:
         """``concepts`` [4, C]: probabilities of what the columns of the frame show."""

@@ -20,7 +20,7 @@ from torch import Tensor, nn
 from mitigate.agents import observation as checked
 from mitigate.agents import schema
 from mitigate.agents.adapters import insert_adapters
-from mitigate.agents.agent import Agent, Output, check_logits
+from mitigate.agents.agent import Output, SideBySide, check_logits, check_started
 from mitigate.agents.encoders import (
     CAMERA_ENCODERS,
     CAMERA_LABELS,
@@ -61,7 +61,7 @@ class Walk:
     odometer: Odometer
 
 
-class RecurrentAgent(Agent, nn.Module):
+class RecurrentAgent(SideBySide, nn.Module):
     """Args:
     sensors: "rgb", "depth" or both; frames are [H, W, c] of one camera that looks ahead.
     rgb_width, depth_width: of the features of a column of the view. policy: keyword arguments of
@@ -295,32 +295,25 @@ class RecurrentAgent(Agent, nn.Module):
         return Walk(text, State.start(text), Odometer())
 
     @torch.inference_mode()
-    def act_all(
-        self, observations: Sequence[Mapping[str, np.ndarray]], memories: Sequence[Walk]
+    def answers(
+        self,
+        observations: Sequence[Mapping[str, np.ndarray]],
+        memories: Sequence[Walk],
+        count: int,
     ) -> list[int]:
-        """The likeliest action of each of up to ``together`` episodes. Raises what
-        ``agents/observation.py`` refuses."""
-        count = len(memories)
-        spare = self.together - count  # filled up: sums then round alike for any number of episodes
-        observations = [*observations, *[observations[-1]] * spare]
-        return self._answers(observations, [*memories, *[memories[-1]] * spare], count)
-
-    def _answers(
-        self, observations: Sequence[Mapping[str, np.ndarray]], walks: Sequence[Walk], count: int
-    ) -> list[int]:
-        """Actions of the first ``count``, whose memories change."""
+        """The likeliest actions of the first ``count`` episodes, whose memories change."""
         frames = {
             name: np.stack([checked.frame(seen, name, 1) for seen in observations])
             for name in self.sensors
         }
         columns = self.policy.look(self._encode(frames))
-        moves = torch.from_numpy(np.stack([walk.odometer.moves() for walk in walks]))
-        text = Text(*map(torch.cat, zip(*(walk.text for walk in walks), strict=True)))
-        state = State.join([walk.state for walk in walks])
+        moves = torch.from_numpy(np.stack([walk.odometer.moves() for walk in memories]))
+        text = Text(*map(torch.cat, zip(*(walk.text for walk in memories), strict=True)))
+        state = State.join([walk.state for walk in memories])
         state = self.policy.step(text, columns, moves.to(self.device), state)
         logits = check_logits(self.policy.answer(state.hidden), self)
         actions = logits.argmax(-1).tolist()[:count]
-        for row, (walk, action) in enumerate(zip(walks, actions, strict=False)):
+        for row, (walk, action) in enumerate(zip(memories, actions, strict=False)):
             walk.state = state.rows(torch.tensor([row], device=self.device))
             walk.odometer.add(action)
         return actions
@@ -329,13 +322,11 @@ class RecurrentAgent(Agent, nn.Module):
         """Start an episode; see :meth:`begin`."""
         self._walk = self.begin(instruction)
 
-    @torch.inference_mode()
     def act(self, observation: Mapping[str, np.ndarray]) -> int:
         """The likeliest action. Raises RuntimeError before the first ``reset``, and what
         ``agents/observation.py`` refuses."""
-        if self._walk is None:
-            raise RuntimeError("Start the episode first: agent.reset(instruction).")
-        return self._answers([observation], [self._walk], 1)[0]
+        check_started(self._walk is not None)
+        return self.answers([observation], [self._walk], 1)[0]  # type: ignore[list-item]
 
     def taken(self, action: int, metres: float, radians: float) -> None:
         """Somebody else drives: count what was done in place of the last answer."""

@@ -21,7 +21,7 @@ from torch import Tensor, nn
 from mitigate.agents import observation as checked
 from mitigate.agents import schema
 from mitigate.agents.adapters import insert_adapters, remove_adapters
-from mitigate.agents.agent import Agent, Output, check_logits
+from mitigate.agents.agent import Agent, Output, check_logits, check_started
 from mitigate.agents.controller import Controller
 from mitigate.agents.encoders import (
     SIZE,
@@ -359,8 +359,7 @@ class TopologicalAgent(Agent, nn.Module):
         Raises RuntimeError before the first ``reset``, and what ``agents/observation.py`` refuses:
         KeyError, TypeError or ValueError for a missing entry, a wrong dtype, shape or unit.
         """
-        if not self._started:
-            raise RuntimeError("Start the episode first: agent.reset(instruction).")
+        check_started(self._started)
         action = self.controller.action(checked.pose(observation))
         while action is None:
             if self._final or not self._decide(observation):

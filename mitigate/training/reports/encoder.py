@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from torch import nn
 
 from mitigate.agents.agent import as_agent
-from mitigate.agents.loading import build_agent
+from mitigate.agents.building import build_agent
 from mitigate.core import checkpoint
 from mitigate.core.build import maker
 from mitigate.core.files import atomic_text, write_figure

@@ -1,0 +1,286 @@
+"""A change of behaviour changes the fingerprint, or the user is asked for a version."""
+
+from __future__ import annotations
+
+import array
+import collections
+import enum
+import io
+import operator
+import re
+import sqlite3
+import sys
+import types
+import weakref
+
+import numpy as np
+import pytest
+import torch
+from torch import nn
+
+from mitigate.agents.fingerprint import contents, fingerprint
+
+
+class Level(enum.Enum):
+    LOW = 0
+    HIGH = 1
+
+
+class Table(dict):
+    """A mapping of the user's, with attributes for keys."""
+
+    __getattr__ = dict.get
+
+
+class Steps(list):
+    """A list of the user's."""
+
+
+class Slotted:
+    __slots__ = ("level",)
+
+    def __init__(self, level: int) -> None:
+        self.level = level
+
+
+class Pickled:
+    """Leaves out of its pickles what it does."""
+
+    def __init__(self, level: int) -> None:
+        self.level = level
+
+    def __getstate__(self):
+        return {}
+
+
+class Numbers(np.ndarray):
+    """An array of the user's."""
+
+
+class Answer:
+    """An object in place of a method."""
+
+    def __init__(self, levels) -> None:
+        self.levels = levels
+
+    def __call__(self, observation) -> int:
+        return self.levels["stop"][0][0]
+
+
+class Target:
+    level = 0
+
+
+class Holder:
+    """An agent without settings()."""
+
+    def __init__(self, value) -> None:
+        self.value = value
+
+    def act(self, observation) -> int:
+        return 0
+
+
+def _module(level: int) -> types.ModuleType:
+    module = types.ModuleType("config")
+    module.level = [level, [level]]
+    return module
+
+
+def _connection(level: int) -> sqlite3.Connection:
+    connection = sqlite3.connect(":memory:")
+    connection.execute("create table levels (level)")
+    connection.execute("insert into levels values (?)", (level,))
+    return connection
+
+
+def _function(level: int):
+    def decide(observation):
+        return decide.level
+
+    decide.level = level
+    return decide
+
+
+def _counter(level: int) -> collections.Counter:
+    counter = collections.Counter()
+    counter.level = level
+    return counter
+
+
+TARGETS = [Target(), Target()]
+LONG = "a" * 300
+VALUES = {
+    "the factory of a defaultdict": lambda n: collections.defaultdict((int, list)[n]),
+    "a default of a factory": lambda n: collections.defaultdict(lambda level=n: level),
+    "an item of a defaultdict": lambda n: collections.defaultdict(int, level=[n]),
+    "an item of a dict's subclass": lambda n: Table(level=n),
+    "an item of a list's subclass": lambda n: Steps([n]),
+    "an attribute of a counter": _counter,
+    "an ordered dict": lambda n: collections.OrderedDict([("ab"[n], 0), ("ba"[n], 0)]),
+    "the length of a deque": lambda n: collections.deque([1], maxlen=n + 1),
+    "the type of a key": lambda n: {(1, "1")[n]: []},
+    "the order of keys": lambda n: {"ab"[n]: [], "ba"[n]: []},
+    "an array of Python": lambda n: array.array("i", [n]),
+    "a memoryview": lambda n: memoryview(bytes([n])),
+    "a mask": lambda n: np.ma.array([1, 2], mask=[0, n]),
+    "an array's subclass": lambda n: np.full(2, n).view(Numbers),
+    "an array of objects": lambda n: np.array([[n], None], dtype=object),
+    "a long pattern": lambda n: re.compile(LONG + "ab"[n]),
+    "text in memory": lambda n: io.StringIO(f"{n}"),
+    "the place in text in memory": lambda n: _sought(n),
+    "a member of an Enum": lambda n: list(Level)[n],
+    "a connection": _connection,
+    "a weak reference": lambda n: weakref.ref(TARGETS[n]),
+    "a module": _module,
+    "an object with slots": Slotted,
+    "an object that pickles less": Pickled,
+    "an attribute of a function": _function,
+    "functions of one line": lambda n: [lambda x: 0, lambda x: 1][n],
+    "an item of a set": lambda n: {frozenset([n])},
+    "an object of a set": lambda n: {Slotted(n)},
+    "a getter": lambda n: operator.itemgetter(n),
+    "a method of a value": lambda n: {"level": n}.get,
+    "a generator": lambda n: (level for level in [n]),
+    "a random generator": np.random.default_rng,
+    "a view of values": lambda n: {"level": n}.values(),
+    "a tensor's attribute": lambda n: _tagged(n),
+    "a type": lambda n: (int, float)[n],
+}
+
+
+def _sought(place: int) -> io.StringIO:
+    text = io.StringIO("ab")
+    text.seek(place)
+    return text
+
+
+def _tagged(level: int) -> torch.Tensor:
+    tensor = torch.zeros(1)
+    tensor.level = level
+    return tensor
+
+
+@pytest.mark.parametrize("what", VALUES)
+def test_fingerprint_changes_with_a_value_or_asks_for_a_version(what):
+    first, other = Holder(VALUES[what](0)), Holder(VALUES[what](1))
+    unreadable = contents(first).unreadable and contents(other).unreadable
+    assert unreadable or fingerprint(first, {}) != fingerprint(other, {})
+    assert fingerprint(first, {}, version="1") and not contents(first, "1").unreadable
+
+
+READ = (
+    "the factory of a defaultdict",
+    "an item of a dict's subclass",
+    "a mask",
+    "a long pattern",
+    "an array of Python",
+    "a member of an Enum",
+    "a module",
+    "an object with slots",
+)
+
+
+@pytest.mark.parametrize("what", READ)
+def test_contents_reads_plain_data_of_any_type(what):
+    first, again = Holder(VALUES[what](0)), Holder(VALUES[what](0))
+    assert not contents(first).unreadable and fingerprint(first, {}) == fingerprint(again, {})
+
+
+CONFIG: dict = {}
+OBJECT = Slotted(0)
+
+
+def reads_globals(observation) -> int:
+    return CONFIG.get("levels", 0) + OBJECT.level
+
+
+class Described(nn.Module):
+    """An agent with settings()."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.part = nn.Sequential(nn.ReLU())
+
+    def settings(self):
+        return {}
+
+    def act(self, observation) -> int:
+        return reads_globals(observation)
+
+    def first(self, observation) -> int:
+        return 0
+
+    def second(self, observation) -> int:
+        return 1
+
+
+def _listed(weight: int, patch) -> Described:
+    agent, layer = Described(), nn.Linear(1, 1)
+    nn.init.constant_(layer.weight, weight)
+    nn.init.constant_(layer.bias, 0)
+    agent.part.layers = [layer]
+    return agent
+
+
+def _exchanged(number: int, patch) -> Described:
+    methods = [Described.first, Described.second]
+    patch.setattr(Described, "first", methods[number])
+    patch.setattr(Described, "second", methods[1 - number])
+    return Described()
+
+
+def _with(owner, name, value):
+    def make(number, patch):
+        patch.setattr(owner, name, value(number))
+        return Described()
+
+    return make
+
+
+def _levels(number: int, patch) -> Described:
+    patch.setitem(CONFIG, "levels", [[number]])
+    return Described()
+
+
+DESCRIBED = {
+    "a global mapping": _levels,
+    "a global object": _with(OBJECT, "level", int),
+    "exchanged methods": _exchanged,
+    "a network in a list of a part": _listed,
+    "nested values of a callable": _with(
+        Described, "act", lambda n: Answer({"stop": [[n]], "memo": [{"a": 1}]})
+    ),
+    "a function of torch": _with(Described, "act", lambda n: (torch.relu, torch.sigmoid)[n]),
+    "a function of a layer": _with(
+        Described, "act", lambda n: (nn.functional.gelu, nn.functional.softmax)[n]
+    ),
+    "a function of Python": _with(Described, "act", lambda n: (operator.neg, operator.pos)[n]),
+    "a function of an installed package": _with(
+        Described, "act", lambda n: (pytest.fail, pytest.skip)[n]
+    ),
+    "a universal function": _with(Described, "act", lambda n: (np.sin, np.cos)[n]),
+    "a method of torch": _with(nn.ReLU, "forward", lambda n: (nn.GELU, nn.SiLU)[n].forward),
+}
+
+
+@pytest.mark.parametrize("what", DESCRIBED)
+def test_fingerprint_with_settings_changes_with_code_and_what_it_names(what):
+    hashes, unreadable = [], []
+    for number in (0, 0, 1):
+        with pytest.MonkeyPatch.context() as patch:
+            agent = DESCRIBED[what](number, patch)
+            unreadable.append(bool(contents(agent).unreadable))
+            hashes.append(fingerprint(agent, {}))
+    assert hashes[0] == hashes[1]
+    assert hashes[0] != hashes[2] or all(unreadable)
+
+
+def test_fingerprint_does_not_depend_on_imported_modules(monkeypatch):
+    class Agent(Holder):
+        def act(self, observation) -> int:
+            return observation.colorsys.value  # names a module of Python that is not imported
+
+    before = fingerprint(Agent(0), {})
+    monkeypatch.setitem(sys.modules, "colorsys", types.ModuleType("colorsys"))
+    assert fingerprint(Agent(0), {}) == before
