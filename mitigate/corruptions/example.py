@@ -20,6 +20,7 @@ def example_rgb() -> np.ndarray:
         uint8 array of shape [400, 600, 3], RGB.
     """
     picture = cv2.imread(str(_FOLDER / "photograph.jpg"), cv2.IMREAD_COLOR)
+    assert picture is not None
     return np.ascontiguousarray(picture[..., ::-1])
 
 
@@ -30,4 +31,5 @@ def example_depth() -> np.ndarray:
         float32 array of shape [360, 480, 1], metres.
     """
     millimetres = cv2.imread(str(_FOLDER / "depth.png"), cv2.IMREAD_UNCHANGED)
-    return (millimetres / _MILLIMETRES_PER_METRE).astype(np.float32)[..., None]
+    assert millimetres is not None
+    return (millimetres[..., None] / _MILLIMETRES_PER_METRE).astype(np.float32)
