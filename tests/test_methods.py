@@ -131,6 +131,7 @@ def runs(tmp_path_factory) -> list[Path]:
     folder = tmp_path_factory.mktemp("multirun")
     options = ["recipe=imitation", "debug=smoke", "agent=frontier", "stages.imitation=null"]
     options += ["agent.size=16", "agent.width=8", "env.size=16", "init=null", "workers=0"]
+    options += ["stages.perception_depth=null", "stages.perception_rgb.recipe.panoramas=2"]
     options += ["evaluation.enabled=false", f"runs={folder}", "seed=0,1"]
     done = subprocess.run(
         [sys.executable, "-m", "mitigate.train", "--multirun", *options],
