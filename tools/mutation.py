@@ -3,8 +3,8 @@
     python -m tools.mutation            every mutation (about three minutes on two cores)
     python -m tools.mutation kl spl     these alone
 
-Each mutation is applied to a temporary copy of the checkout, in which its test file runs. A mutation
-that no test catches, or whose line is no longer in the source, ends the command with status 1.
+Each mutation is applied to a temporary copy of the checkout, in which its test file runs. If no
+test catches it, or if its line is no longer in the source, the command ends with status 1.
 """
 
 from __future__ import annotations
@@ -21,6 +21,7 @@ from typing import NamedTuple
 
 ROOT = Path(__file__).parents[1]
 COPIED = ("conf", "mitigate", "recipes", "tests", "tools", "pyproject.toml")
+COMPILED = shutil.ignore_patterns("__pycache__")
 TESTS_FAILED = 1  # exit status of pytest; others mean that no test ran
 
 
@@ -82,8 +83,7 @@ def outcome(mutation: Mutation) -> str:
         copy = Path(folder)
         for name in COPIED:
             if (ROOT / name).is_dir():
-                ignored = shutil.ignore_patterns("__pycache__")
-                shutil.copytree(ROOT / name, copy / name, symlinks=True, ignore=ignored)
+                shutil.copytree(ROOT / name, copy / name, symlinks=True, ignore=COMPILED)
             else:
                 shutil.copy(ROOT / name, copy / name)
         (copy / "checkpoints").symlink_to(ROOT / "checkpoints")  # large, and no test writes there

@@ -38,7 +38,10 @@ def data(tmp_path_factory):
     return folder
 
 
-def test_fit_learns_a_new_mechanism_and_reloads_the_same(data, tmp_path):
+def test_fit_learns_a_new_mechanism_and_reloads_the_same(data, tmp_path, monkeypatch):
+    monkeypatch.setattr(fit, "STEPS", 30)
+    monkeypatch.setattr(fit, "FOLD_STEPS", 10)
+    monkeypatch.setattr(fit, "STEPS_2", 80)
     made = fit.fit(data, count=150, routes=40, log=io.StringIO())
     fit.save(made, tmp_path)
     again = classifier.load(tmp_path)
