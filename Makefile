@@ -10,7 +10,7 @@ RANKS = $(if $(filter-out 1,$(NPROC)),-m torch.distributed.run --standalone --ma
 BIN := $(VENV)/bin
 PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check
 .DEFAULT_GOAL := help
-.PHONY: help install test-faults train evaluate sweep table report table1 table2 export test test-all wheels lint docs docs-serve bench doctor clean
+.PHONY: help install test-faults mutations train evaluate sweep table report table1 table2 export test test-all wheels lint docs docs-serve bench doctor clean
 
 help: ## list the targets
 	@grep -E '^[a-z0-9-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z0-9-]+):.*## /\1|/' \
@@ -71,6 +71,9 @@ wheels: $(VENV)/.stamp ## build both wheels and use them in an empty folder
 
 test-faults: $(VENV)/.stamp ## break trainings and evaluations on purpose: ARGS="--recipes ts_distill"
 	$(BIN)/python -m tools.faults $(ARGS)
+
+mutations: $(VENV)/.stamp ## break central functions and require that a test fails: ARGS="kl spl"
+	$(BIN)/python -m tools.mutation $(ARGS)
 
 lint: $(VENV)/.stamp ## check style, formatting and types
 	$(BIN)/ruff check .

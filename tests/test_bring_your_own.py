@@ -43,8 +43,8 @@ def run(folder: Path, *command: str) -> None:
 
 
 @pytest.fixture(scope="module")
-def folder(tmp_path_factory) -> Iterator[Path]:
-    """Where a stranger saved the page's files and ran its commands."""
+def files(tmp_path_factory) -> Iterator[Path]:
+    """The folder in which a user saved the files of the page."""
     folder = tmp_path_factory.mktemp("mine")
     (folder / "corridor.py").write_text(CODE)
     for name, text in CONFIGS.items():
@@ -54,10 +54,16 @@ def folder(tmp_path_factory) -> Iterator[Path]:
         patch.chdir(folder)
         patch.syspath_prepend(folder)
         importlib.import_module("corridor").write_lists()
-        for command in COMMANDS:
-            run(folder, *shlex.split(command)[1:])
         yield folder
     del sys.modules["corridor"]
+
+
+@pytest.fixture(scope="module")
+def folder(files) -> Path:
+    """The same folder after the commands of the page: a training, an evaluation, an export."""
+    for command in COMMANDS:
+        run(files, *shlex.split(command)[1:])
+    return files
 
 
 def success(file: Path) -> dict[str, float]:
@@ -71,6 +77,7 @@ def test_a_world_and_an_agent_fit_on_a_page():
     assert len(CODE.splitlines()) < LONGEST and len(CONFIGS) == 3 == len(COMMANDS)
 
 
+@pytest.mark.slow
 def test_it_learns_by_imitation_distillation_and_adapters_and_meets_the_suite(folder):
     reached = success(folder / "runs/corridor-s0.6-seed0/rows.jsonl")
     assert set(reached) > {"clean", "spatter", "black_out"} and reached["clean"] > 0.9
@@ -79,6 +86,7 @@ def test_it_learns_by_imitation_distillation_and_adapters_and_meets_the_suite(fo
     assert {"imitate", "distil", "adapt"} == set(stages)
 
 
+@pytest.mark.slow
 def test_the_saved_agent_is_the_one_that_was_trained(folder):
     """Its settings come with its weights: the command names no adapters."""
     rows = "rows.jsonl"
@@ -90,6 +98,7 @@ def test_the_saved_agent_is_the_one_that_was_trained(folder):
     assert first["agent"] == again["agent"]
 
 
+@pytest.mark.slow
 def test_the_folder_of_the_run_fills_an_agent_that_its_user_built(folder):
     place, mine = "runs/corridor-s0.6-seed0/agent", sys.modules["corridor"].Policy
     row = json.loads((folder / "again/rows.jsonl").read_text().splitlines()[0])
@@ -102,11 +111,15 @@ def test_the_folder_of_the_run_fills_an_agent_that_its_user_built(folder):
         mitigate.load(place, agent=mine(width=4, adapters=True))
 
 
-def test_recipes_and_python_take_the_agent_and_the_world_of_the_page(folder):
+def test_recipes_take_the_agent_and_the_world_of_the_page(files):
     options = ["--config-dir=mine", "recipe=imitation", "agent=policy", "env=corridor"]
     config = read(conf.load_config("train", options))
     leave_out_stages(config, sys.modules["corridor"].Policy())
     assert [*config.active_stages] == ["imitation"]
+
+
+@pytest.mark.slow
+def test_benchmark_takes_the_agent_and_the_world_of_the_page(folder):
     entry = mitigate.benchmark(
         "runs/corridor-s0.6-seed0/agent",
         options=["--config-dir=mine", "agent=policy", "env=corridor"],
@@ -117,6 +130,7 @@ def test_recipes_and_python_take_the_agent_and_the_world_of_the_page(folder):
     assert entry.name.startswith("corridor")
 
 
+@pytest.mark.slow
 def test_the_exported_folder_fills_an_agent_that_its_user_built(folder):
     mine = sys.modules["corridor"].Policy(adapters=True)
     assert mitigate.load_hardened("hardened/corridor", agent=mine) is mine

@@ -19,6 +19,7 @@ from torch import nn
 
 import mitigate
 from mitigate.agents.adapters import ConvAdapter, adapter_parameters, adapters_of, insert_adapters
+from mitigate.agents.frontier import FrontierAgent
 from mitigate.agents.fusion import reliability
 from mitigate.corruptions import Schedule
 from mitigate.recipes.distil import feature_loss, policy_kl
@@ -131,6 +132,7 @@ def runs(tmp_path_factory) -> list[Path]:
     folder = tmp_path_factory.mktemp("multirun")
     options = ["recipe=imitation", "debug=smoke", "agent=frontier", "stages.imitation=null"]
     options += ["agent.size=16", "agent.width=8", "env.size=16", "init=null", "workers=0"]
+    options += ["stages.perception_depth=null", "stages.perception_rgb.recipe.panoramas=2"]
     options += ["evaluation.enabled=false", f"runs={folder}", "seed=0,1"]
     done = subprocess.run(
         [sys.executable, "-m", "mitigate.train", "--multirun", *options],
@@ -151,9 +153,15 @@ def test_multirun_trains_one_run_per_combination(runs):
 
 def test_export_reloads_to_the_same_outputs(runs, tmp_path, monkeypatch):
     monkeypatch.setattr(export, "WALKS", 1)
-    walks = export_command._walks_of(runs[0], ["agent=frontier", "env.size=16"], None)
+    (option,) = export_command._own_kind(runs[0])  # what the command takes without options
+    assert option == "agent=frontier"
+    with pytest.raises(ValueError, match=option):
+        export.export(runs[0], "tiny", out=tmp_path)
+    walks = export_command._walks_of(runs[0], [option, "env.size=16"], None)
     folder = export.export(runs[0], "tiny", out=tmp_path, walks=walks)
+    assert 'load_hardened("checkpoints/hardened/tiny")' in (folder / "README.md").read_text()
     loaded, trained = mitigate.load_hardened(folder), finished(runs[0], walks)[1].eval()
+    assert isinstance(loaded, FrontierAgent)
     rng = torch.Generator().manual_seed(0)
     frames = torch.randint(0, 256, (2, 16, 16, 3), generator=rng).to(torch.uint8)
     with torch.no_grad():

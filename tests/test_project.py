@@ -1,4 +1,4 @@
-"""The Makefile lists its targets, the doctor reports, and seeds are keyed."""
+"""The Makefile lists its targets, and the doctor reports."""
 
 from __future__ import annotations
 
@@ -9,9 +9,8 @@ import sys
 from pathlib import Path
 
 import pytest
-import torch
 
-from mitigate.core import doctor, seeding
+from mitigate.core import doctor
 
 if sys.version_info >= (3, 11):
     import tomllib
@@ -75,17 +74,6 @@ def test_doctor_says_what_to_do_with_an_older_python(capsys, monkeypatch):
     monkeypatch.setattr(doctor.sys, "version_info", (3, 9, 18))
     assert doctor.main([]) == 1
     assert "Python 3.10 or newer is needed: make PYTHON=python3.10" in capsys.readouterr().out
-
-
-def test_keyed_generators_depend_on_every_part_of_the_key_only():
-    draw = seeding.generator(1, "a", 2).random()
-    torch.manual_seed(0)
-    assert draw == seeding.generator(1, "a", 2).random()
-    others = [seeding.generator(*key).random() for key in ((2, "a", 2), (1, "b", 2), (1, "a", "2"))]
-    assert len({draw, *others}) == 4
-    assert seeding.digest("a", "b") != seeding.digest("ab")
-    one, two = (torch.rand(2, generator=seeding.torch_generator(3, "x")) for _ in range(2))
-    assert torch.equal(one, two)
 
 
 @pytest.mark.parametrize(("told", "wanted"), [(None, "PASSIVE"), ("ACTIVE", "ACTIVE")])

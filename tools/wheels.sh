@@ -1,8 +1,10 @@
 #!/usr/bin/env bash
-# Build the wheels of mitigate and mitigate-weights, install them, and use them away from the checkout:
+# Build the wheels of mitigate and mitigate-weights, install them with their dependencies in an empty
+# environment, and use them away from the checkout:
 #   tools/wheels.sh [FOLDER]
-# The libraries are those of PYTHON's environment (default .venv/bin/python), so that this takes
-# minutes. hatchling is installed from the package index unless that environment has it.
+# PYTHON names the interpreter (default .venv/bin/python); none of its packages is used. The
+# dependencies come from the package index or pip's cache. FOLDER gets the wheels, the environment
+# and the runs (default: a temporary folder).
 set -euo pipefail
 root=$(cd "$(dirname "$0")/.." && pwd)
 python=${PYTHON:-$root/.venv/bin/python}
@@ -20,10 +22,8 @@ ls -l "$work/wheels"
 code=("$work"/wheels/mitigate-[0-9]*.whl)
 [ "$(stat -c %s "${code[0]}")" -le "$most" ] || { echo "${code[0]} has over $most bytes." >&2; exit 1; }
 
-"$python" -m venv "$work/venv"
-site=$("$work/venv/bin/python" -c 'import site; print(site.getsitepackages()[0])')
-"$python" -c 'import site; print(site.getsitepackages()[0])' >"$site/libraries.pth"
-pip=("$work/venv/bin/python" -m pip install --quiet --disable-pip-version-check --no-index --no-deps)
+"$python" -m venv "$work/venv" # without the packages of $python
+pip=("$work/venv/bin/python" -m pip install --quiet --disable-pip-version-check)
 "${pip[@]}" "${code[0]}"
 
 cd "$work/empty"
@@ -31,15 +31,15 @@ unset PYTHONPATH MITIGATE_WEIGHTS
 export PATH=$work/venv/bin:$PATH OMP_NUM_THREADS=1
 python - <<'END'
 """The suite without torch, and the error for weights that are not installed."""
-import sys
+from importlib.util import find_spec
 
-sys.modules["torch"] = None
 import numpy as np
 import mitigate
 from mitigate.core.files import find
 from mitigate.corruptions import Key, corrupt
 
-assert "empty" not in mitigate.__file__ and "site-packages" in mitigate.__file__
+assert not any(map(find_spec, ("torch", "hydra", "pytest"))), "the environment is not empty"
+assert "site-packages" in mitigate.__file__
 frame = np.full((48, 64, 3), 128, np.uint8)
 assert (corrupt(frame, "spatter", 0.6, key=Key(0, "1", 0)) != frame).any()
 try:
@@ -49,7 +49,9 @@ except FileNotFoundError as error:
 else:
     raise AssertionError("weights without mitigate-weights")
 END
-"${pip[@]}" "$work"/wheels/mitigate_weights-*.whl
+"${pip[@]}" torch==2.13.0 # as the Makefile
+"${pip[@]}" "${code[0]}[train]" "$work"/wheels/mitigate_weights-*.whl
+du -sh "$work/venv"
 mitigate train recipe=da_per_episode debug=smoke trainer.steps=2 workers=0 rollouts=2 \
   stages.perception_rgb.recipe.panoramas=2 stages.perception_depth.recipe.panoramas=2 \
   evaluation.enabled=false folder=run

@@ -23,16 +23,30 @@ for _, name in mitigate_hook.wanted([("", name) for name in "abc"]):
 CONDITION = "conditions/low_light-s0.6"
 
 
+@pytest.fixture(scope="module")
+def place(tmp_path_factory):
+    """A folder for the program and its run, which all tests of this file share."""
+    return tmp_path_factory.mktemp("finished")
+
+
 @pytest.fixture
-def finished(run, tmp_path):
-    """A finished run of two conditions: its folder, and a function that runs it again."""
-    (tmp_path / "nav.py").write_text(PROGRAM)
-    out = tmp_path / "o"
+def finished(run, place):
+    """A finished run of two conditions: its folder, and a function that runs it again.
+
+    The first test measures them; each test gets the folder as it was then.
+    """
+    out, kept = place / "o", place / "kept"
 
     def again(options="conditions=[low_light]"):
-        return run(out, options, f"{sys.executable} {tmp_path / 'nav.py'}")
+        return run(out, options, f"{sys.executable} {place / 'nav.py'}")
 
-    assert not again().stderr
+    if not kept.exists():
+        (place / "nav.py").write_text(PROGRAM)
+        assert not again().stderr
+        shutil.copytree(out, kept)
+    else:
+        shutil.rmtree(out)
+        shutil.copytree(kept, out)
     return out, again
 
 

@@ -76,7 +76,7 @@ def test_each_chain_is_run_to_its_end_and_its_cpu_seconds_are_told(tmp_path):
         assert one.log.read_text() == "1\n"
 
 
-@pytest.mark.parametrize("kind", ["ray", "slurm"])
+@pytest.mark.parametrize("kind", [pytest.param("ray", marks=pytest.mark.slow), "slurm"])
 def test_a_chain_whose_worker_is_killed_goes_on_elsewhere_and_doubles_no_row(
     kind, request, tmp_path
 ):

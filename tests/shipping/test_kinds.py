@@ -21,9 +21,8 @@ KINDS = {
 }
 
 
-@pytest.mark.parametrize(
-    "kind", ["frontier", pytest.param("recurrent_rgb", marks=pytest.mark.slow)]
-)
+@pytest.mark.slow  # tests/test_methods.py exports a run of the frontier agent quickly
+@pytest.mark.parametrize("kind", KINDS)
 def test_a_run_is_exported_and_loads_again(tmp_path, kind, monkeypatch):
     monkeypatch.setattr(export, "WALKS", 1)
     made, own = KINDS[kind]

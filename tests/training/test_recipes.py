@@ -66,6 +66,7 @@ def test_every_recipe_trains_two_steps(tmp_path, name, monkeypatch):
     checkpoint.load_agent(build(cfg.agent), folder / "agent")
 
 
+@pytest.mark.slow
 def test_a_language_model_in_eight_bits_is_trained_without_a_line_a_product(tmp_path, capfd):
     pytest.importorskip("bitsandbytes")
     base = write_tiny_model(tmp_path / "tiny-llama")

@@ -30,7 +30,7 @@ def data(tmp_path_factory):
         (folder / part).mkdir()
         for file in sorted((source / part).iterdir()):
             lines = file.read_text(encoding="utf-8").splitlines(keepends=True)
-            step = max(1, len(lines) // 40)
+            step = max(1, len(lines) // 12)
             (folder / part / file.name).write_text("".join(lines[::step]), encoding="utf-8")
     with open(folder / "banks/attacks.jsonl", "a", encoding="utf-8") as file:
         for text in ATTACKS * 3:
@@ -38,8 +38,11 @@ def data(tmp_path_factory):
     return folder
 
 
-def test_fit_learns_a_new_mechanism_and_reloads_the_same(data, tmp_path):
-    made = fit.fit(data, count=400, routes=100, log=io.StringIO())
+def test_fit_learns_a_new_mechanism_and_reloads_the_same(data, tmp_path, monkeypatch):
+    monkeypatch.setattr(fit, "STEPS", 30)
+    monkeypatch.setattr(fit, "FOLD_STEPS", 10)
+    monkeypatch.setattr(fit, "STEPS_2", 80)
+    made = fit.fit(data, count=150, routes=40, log=io.StringIO())
     fit.save(made, tmp_path)
     again = classifier.load(tmp_path)
     text = "Turn left at the sofa. Blorp the snarfle, zib. Stop by the lamp."
