@@ -12,8 +12,8 @@ import signal
 import time
 from typing import IO, Any
 
-from mitigate.bridge.cell import DONE, Cell, files_of, left_out, write_done
-from mitigate.bridge.events import EVENTS, LOCK, put_aside
+from mitigate.bridge.cell import Cell, files_of, left_out, write_done
+from mitigate.bridge.events import DONE, EVENTS, LOCK, put_aside
 from mitigate.bridge.hook import mitigate_hook
 from mitigate.bridge.program import GRACE, Command
 from mitigate.bridge.recording import delete_drafts
@@ -51,6 +51,7 @@ class Attempt:
         self.left: list[str] = []
         self.listener: Listener | None = None
         self.lock: IO[str] | None = None
+        self.events: IO[str] | None = None
         self.root: output.Root | None = None
         self.process: Command | None = None
 
@@ -75,9 +76,8 @@ class Attempt:
         self.root = output.register(folder, self.lock)
         if cell.recording is not None:
             delete_drafts(cell.recording)
-        kind = "finished" if output.is_regular(folder / DONE) else "unfinished"
-        (folder / DONE).unlink(missing_ok=True)
-        put_aside(folder, kind)
+        put_aside(folder, "finished" if output.is_regular(folder / DONE) else "unfinished")
+        self.events = open_output(folder / EVENTS, "x", encoding="utf-8")
         chosen = cell.chosen if cell.clean is None else None
         if chosen is not None and not any(chosen.folder.glob(f"conditions/*/{DONE}")):
             chosen.forget()  # of a run that came to nothing
@@ -117,7 +117,7 @@ class Attempt:
     def _poll(self) -> str | None:
         assert self.process is not None and self.listener is not None
         cell = self.cell
-        output.check(cell.folder / EVENTS)
+        self._check_events()
         status = self.process.status()
         if status is None:
             problem = self._stuck()
@@ -129,6 +129,7 @@ class Attempt:
         self.left = self.process.left()
         self._end_command()
         self._settle()
+        self._check_events()
         self.kill()
         problem = self._problem(status)
         if cell.clean is not None and cell.extra_episodes():  # clean is no measure of this one
@@ -139,6 +140,14 @@ class Attempt:
             entries |= {"files": self.files, "episodes_told": len(cell.told().ends)}
             write_done(cell.folder, entries)
         return problem
+
+    def _check_events(self) -> None:
+        """Raise FolderLostError if the events, or their folder, are not those of this attempt."""
+        assert self.events is not None
+        path = self.cell.folder / EVENTS
+        output.check(path)
+        if not output.is_same(os.fstat(self.events.fileno()), path):
+            raise output.lost(path)
 
     def kill(self) -> None:
         """End the command with all of its processes, and the server."""
@@ -153,9 +162,10 @@ class Attempt:
             if self.root is not None:
                 output.unregister(self.root)
                 self.root = None
-            if self.lock is not None:
-                self.lock.close()
-                self.lock = None
+            for file in (self.events, self.lock):
+                if file is not None:
+                    file.close()
+            self.events = self.lock = None
 
     def _end_command(self) -> None:
         """End all processes of the command: after ``GRACE`` those that are still connected, too."""

@@ -18,7 +18,7 @@ from typing import Any
 
 from mitigate.bridge import results
 from mitigate.bridge.condition import SETTLED, Condition, Subset
-from mitigate.bridge.events import EVENTS, damaged
+from mitigate.bridge.events import DONE, EVENTS, damaged
 from mitigate.bridge.hook.mitigate_hook import CLOSE, RESET
 from mitigate.bridge.recording import is_whole
 from mitigate.bridge.results import CUT_OFF, NORMALISED, Told, near, without_path
@@ -33,7 +33,6 @@ from mitigate.worlds.measures import RULES
 LOG = "output.txt"
 TAIL = 12  # lines of the command's output that an error repeats
 LARGEST = 1 << 30  # bytes of a file of the command that is hashed; of a larger one its size counts
-DONE = "done.json"
 _SHA256 = re.compile(r"[0-9a-f]{64}")
 
 
@@ -86,12 +85,14 @@ def read_done(folder: Path) -> dict[str, Any] | None:
             are not those that it was written with. The message names the file and what to do.
     """
     file = folder / DONE
-    if not output.is_regular(file):
-        return None
     again = (
         f"No file was changed. Move {folder} out of {folder.parent} and run the same command "
         "again: it measures this condition again."
     )
+    if file.is_dir():
+        raise ValueError(f"{file} must be a file, got a folder. {again}")
+    if not output.is_regular(file):
+        return None
     entries = read_object(file, again)
     for name, (is_valid, kind) in SCHEMA.items():
         if name in entries and not is_valid(entries[name]):

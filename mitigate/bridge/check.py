@@ -6,14 +6,16 @@ Says what it sees and hears, which conditions of the suite apply, and draws what
 from __future__ import annotations
 
 import io
+import textwrap
 import time
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, ClassVar
 
-import cv2
 import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
 from mitigate.bridge.attempt import Attempt
 from mitigate.bridge.cameras import Group, Rig, corrupted
@@ -21,17 +23,17 @@ from mitigate.bridge.condition import Observer, applicable, untold
 from mitigate.bridge.config import RunConfig, check_options, name_of
 from mitigate.bridge.plan import Plan, cells
 from mitigate.bridge.results import NEAR, NORMALISED, Told
-from mitigate.core.files import write_bytes
+from mitigate.core.files import write_bytes, write_figure
 from mitigate.core.observation import DEPTH, RGB
 from mitigate.core.output import output_folder
 from mitigate.core.pictures import depth_picture
 from mitigate.corruptions import Corruption, Key
+from mitigate.evaluation.plots import plain
 from mitigate.guards.guard import NO_GUARDS, Guards
 
 LATE = 900.0  # seconds that a program may take to its first frame (ours): models are loaded first
 SHOWN = 4  # cameras of a panorama in a row of the sheet
-SIDE, LABEL, LINE = 160, 190, 20  # pixels: height of a picture, width of the names, of their lines
-FONT, WIDE = cv2.FONT_HERSHEY_SIMPLEX, 22  # characters of a line of the names
+SIDE, WIDE = 1.64, 22  # inches: side of a cell of the sheet; characters of a line of the names
 HEADING = "heading"  # beside the cameras in the file of the first frames
 TRIED = 40  # calls, until one is taken in which a corruption acts: some come and go (ours)
 
@@ -99,10 +101,7 @@ def check(config: RunConfig, command: Sequence[str]) -> Path | None:
     for kind in sorted({part.modality for part in fitting} - shown):
         print(f"the first call has no frame of {kind}: no corruption of it is drawn")
     drawn = [part for part in dict.fromkeys(fitting) if part.modality in shown]
-    picture = sheet(rig, frames, drawn, told.first, config.seed)
-    path = out / "sheet.png"
-    png = cv2.imencode(".png", picture[..., ::-1])[1].tobytes()
-    write_bytes(path, png)
+    path = write_figure(out / "sheet.png", sheet(rig, frames, drawn, told.first, config.seed))
     print(f"wrote {path}: what the agent would see at its first frame", flush=True)
     return path
 
@@ -179,15 +178,15 @@ def sheet(
     corruptions: Sequence[Corruption],
     first: Mapping[str, Any],
     seed: int,
-) -> np.ndarray:
-    """Return uint8 RGB: a row for clean and each corruption, with the cameras of its modality that
-    are most; a corruption that comes and goes is drawn at a call in which it acts."""
+) -> Figure:
+    """Draw a row for clean and each corruption, with the cameras of its modality that are most; a
+    corruption that comes and goes is drawn at a call in which it acts."""
     scene = str(first.get("scene", "")).rpartition("/")[2]
     episode = f"{scene}/{first.get('episode', '')}"
     heading = float(frames[HEADING][0]) if frames[HEADING].size else None
     by_kind = {group.cameras[0].kind: group for group in reversed(rig.groups)}
     clean = {kind: _views(group, frames) for kind, group in by_kind.items()}
-    drawn = [_row([f"clean {kind}"], by_kind[kind], views) for kind, views in clean.items()]
+    rows = [([f"clean {kind}"], by_kind[kind], views) for kind, views in clean.items()]
     for corruption in corruptions:
         group, before = by_kind[corruption.modality], clean[corruption.modality]
         for call in range(TRIED):
@@ -198,14 +197,12 @@ def sheet(
         acts = f"at call {call}" if call else ""
         if np.array_equal(views, before, equal_nan=True):
             acts = f"no change in {TRIED} calls"
-        drawn.append(_row([corruption.name, acts], group, views))
-    wide = max(row.shape[1] for row in drawn)
-    return np.vstack(
-        [
-            np.pad(row, ((0, 4), (0, wide - row.shape[1]), (0, 0)), constant_values=255)
-            for row in drawn
-        ]
-    )
+        rows.append(([corruption.name, acts], group, views))
+    across = 1 + min(SHOWN, max(len(group.cameras) for _, group, _ in rows))
+    figure = Figure(figsize=(SIDE * across, SIDE * len(rows)), dpi=100, layout="constrained")
+    for axes, row in zip(figure.subplots(len(rows), across, squeeze=False), rows, strict=True):
+        _draw_row(axes, *row)
+    return figure
 
 
 def _views(group: Group, frames: Mapping[str, np.ndarray]) -> np.ndarray:
@@ -215,28 +212,17 @@ def _views(group: Group, frames: Mapping[str, np.ndarray]) -> np.ndarray:
     return views
 
 
-def _row(names: Sequence[str], group: Group, views: np.ndarray) -> np.ndarray:
-    """The names, below them the entries that are drawn, and beside them their pictures."""
-    cells = [np.full((SIDE, LABEL, 3), 255, np.uint8)]
+def _draw_row(axes: Sequence[Axes], names: Sequence[str], group: Group, views: np.ndarray) -> None:
+    """Draw the names, below them the entries that are drawn, and beside them their pictures."""
+    for axis in axes:
+        axis.axis("off")
     shown = list(zip(group.cameras, group.views, strict=True))[:SHOWN]
-    entries = ", ".join(camera.name for camera, _ in shown)
-    lines = [*filter(None, names), *_broken(entries)]
-    for number, line in enumerate(lines[: SIDE // LINE - 1]):
-        place = (6, 2 * LINE + LINE * number)
-        grey = 0 if number == 0 else 110
-        cv2.putText(cells[0], line, place, FONT, 0.45, (grey,) * 3, 1, cv2.LINE_AA)
-    for camera, view in shown:
+    entries = textwrap.fill(", ".join(camera.name for camera, _ in shown), WIDE)
+    text = "\n".join([*filter(None, names), entries])
+    axes[0].text(0, 0.5, plain(text), va="center", fontsize=8)
+    for axis, (camera, view) in zip(axes[1:], shown, strict=False):
         frame = views[view]
         if camera.kind == DEPTH:
             metres = camera.metres(frame.reshape(frame.shape[:2]).astype(np.float32))
             frame = depth_picture(metres, camera.sensor.z_max)
-        scale = SIDE / frame.shape[0]
-        size = (max(1, round(frame.shape[1] * scale)), SIDE)
-        cells.append(cv2.resize(frame, size, interpolation=cv2.INTER_AREA))
-    return np.hstack(cells)
-
-
-def _broken(text: str) -> Iterator[str]:
-    """``text`` in lines of ``WIDE`` characters."""
-    for at in range(0, len(text), WIDE):
-        yield text[at : at + WIDE].strip()
+        axis.imshow(frame)

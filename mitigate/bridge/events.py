@@ -22,7 +22,7 @@ from mitigate.core.output import delete_folder, is_regular, open_output
 from mitigate.evaluation.rows import GREATEST, allowed, stem_of
 from mitigate.worlds.measures import path_length
 
-EVENTS, LOCK = "events.jsonl", "lock"
+EVENTS, LOCK, DONE = "events.jsonl", "lock", "done.json"
 COUNTS = ("steps", "calls")
 METRES = ("start_distance", "distance")  # infinite where a goal is out of reach
 FIELDS = ("metrics", *COUNTS, "path", *METRES, "stopped", "how", "farthest")
@@ -71,15 +71,17 @@ def read_events(folder: Path) -> Iterator[tuple[int, dict[str, Any]]]:
 def put_aside(folder: Path, kind: str) -> None:
     """Empty the folder of a condition but for its lock: what an earlier attempt left there, the
     program's own results too, is put into ``<folder>.<kind>``, in place of what is there.
+    ``done.json`` is deleted first, so that the condition counts as unfinished from then on.
 
-    Raises UnsafePathError if ``<folder>.<kind>`` is a link, a FIFO or a file.
+    Raises UnsafePathError, before anything is changed, if ``<folder>.<kind>`` is a link, a FIFO or
+    a file.
     """
-    left = [path for path in folder.iterdir() if path.name != LOCK]
-    if left:
+    if any(path.name != LOCK for path in folder.iterdir()):
         aside = folder.with_name(f"{folder.name}.{kind}")
         delete_folder(aside)
         aside.mkdir()
-        for path in left:
+        (folder / DONE).unlink(missing_ok=True)
+        for path in [path for path in folder.iterdir() if path.name != LOCK]:
             os.replace(path, aside / path.name)
 
 

@@ -12,12 +12,11 @@ import os
 import shlex
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cache
 from pathlib import Path
 from typing import Any
 
 from mitigate.bridge.cell import Cell, folder_name
-from mitigate.bridge.condition import Condition, Subset, Words, tokenizer_of
+from mitigate.bridge.condition import Condition, Observer, Subset, Words, tokenizer_of
 from mitigate.bridge.config import RunConfig, check_options, name_of
 from mitigate.bridge.hook import mitigate_hook
 from mitigate.bridge.recording import Recorder, plain
@@ -64,11 +63,10 @@ def cells(plan: Plan) -> list[Cell]:
     environment = _environment(config)
     guards = open_guards(config.safeguard, config.restore, log=out / "safeguard.jsonl")
     _check_guards(guards)
-    restored = guards.frames_hash()
     chosen = None if config.episodes is None else Subset(config.episodes, out)
     keep = None if chosen is None else chosen.keep
-    text, adapters = shlex.join(plan.command), adapters_of(config)
-    label = label_of(config, text, plan.name, restored, adapters)
+    fixed, added = _settings(plan, guards)
+    label = _label(plan, added)
     made: list[Cell] = []
     for corruption, repeat in [
         *((clean, number) for number in range(config.repeats)),
@@ -76,16 +74,13 @@ def cells(plan: Plan) -> list[Cell]:
     ]:
         name = folder_name(corruption.name, corruption.severity, repeat)
         recording = None if config.record is None else Path(config.record) / name
+        observers: list[Observer] = []
+        if recording is not None:
+            observers.append(Recorder(recording, recording.parent))
         condition = Condition(
-            corruption,
-            config.seed,
-            words,
-            repeat,
-            config.missing,
-            config.turn,
-            keep,
+            *(corruption, config.seed, words, repeat, config.missing, config.turn, keep),
             guards=guards,
-            observers=[] if recording is None else [Recorder(recording, recording.parent)],
+            observers=observers,
         )
         made.append(
             Cell(
@@ -97,7 +92,7 @@ def cells(plan: Plan) -> list[Cell]:
                 condition,
                 label,
                 config.rule,
-                settings_of(config, text, corruption, restored, adapters),
+                fixed | met(corruption) | added,
                 config.patience,
                 environment,
                 clean=made[0].folder if made else None,
@@ -138,38 +133,27 @@ def _environment(config: RunConfig) -> dict[str, str]:
     return {mitigate_hook.ADAPTERS: json.dumps(told)}
 
 
-def settings_of(
-    config: RunConfig,
-    command: str,
-    corruption: Corruption,
-    restored: str | None,
-    adapters: str | None,
-) -> dict[str, Any]:
-    """What a condition's result depends on, by which a finished one is known again."""
-    told = {name: vars(config)[name] for name in SETTINGS}
-    told |= met(corruption)
-    told |= {"restore": restored, "adapters": adapters}
-    return {"command": command, **told, "safeguard": _guard(config), "watch": watched(config)}
+def _settings(plan: Plan, guards: Guards) -> tuple[dict[str, Any], dict[str, Any]]:
+    """Return what every result of a run depends on, beside the corruption: the command and options,
+    and what changes the agent. By these a finished condition is known again."""
+    config = plan.config
+    fixed = {"command": shlex.join(plan.command)}
+    fixed |= {name: vars(config)[name] for name in SETTINGS}
+    guard = "none"  # without a wait for torch
+    if config.safeguard != "none":
+        from mitigate.guards.text.choices import identity
+
+        guard = identity(config.safeguard)
+    added = {"restore": guards.frames_hash(), "adapters": adapters_of(config)}
+    return fixed, {**added, "safeguard": guard, "watch": watched(config)}
 
 
 def watched(config: RunConfig) -> dict[str, str | None] | None:
     """What ``watch=`` names: of a file its hash, else an environment variable; None without."""
-    if not config.watch:
+    names = [str(name) for name in config.watch or ()]
+    if not names:
         return None
-    return {
-        str(name): _sha(str(name), os.stat(name)) if os.path.isfile(name) else os.environ.get(name)
-        for name in config.watch
-    }
-
-
-def _sha(path: str, now: os.stat_result) -> str:
-    """The hash of a file, read once while it stays as it is."""
-    return _read(path, now.st_size, now.st_mtime_ns)
-
-
-@cache
-def _read(path: str, size: int, changed: int) -> str:
-    return sha256(path)[:12]
+    return {n: sha256(n)[:12] if os.path.isfile(n) else os.environ.get(n) for n in names}
 
 
 def met(corruption: Corruption) -> dict[str, Any]:
@@ -178,26 +162,25 @@ def met(corruption: Corruption) -> dict[str, Any]:
     return {"suite": SUITE_VERSION, "severity": corruption.severity, **own}
 
 
-def _watch(config: RunConfig) -> str | None:
-    seen = watched(config)
-    return None if seen is None else json.dumps(seen, sort_keys=True)
+def _text(watch: dict[str, str | None] | None) -> str | None:
+    return None if watch is None else json.dumps(watch, sort_keys=True)
 
 
-def label_of(
-    config: RunConfig, command: str, name: str, restored: str | None, adapters: str | None
-) -> dict[str, Any]:
+def _label(plan: Plan, added: dict[str, Any]) -> dict[str, Any]:
     """What the rows say of the agent: with a restorer, a safeguard, adapters or what is watched it
     is another one, by their hashes."""
-    sha = _digest(command)
-    guard = None if config.safeguard == "none" else _guard(config)
-    for part in (restored, guard, adapters, _watch(config)):
+    config = plan.config
+    sha = _digest(shlex.join(plan.command))
+    guard = None if added["safeguard"] == "none" else added["safeguard"]
+    for part in (added["restore"], guard, added["adapters"], _text(added["watch"])):
         sha = sha if part is None else _digest(f"{sha} {part}")
-    return {"agent": sha, "name": _column(config, name), "split": config.split, "seed": config.seed}
+    column = _column(config, plan.name)
+    return {"agent": sha, "name": column, "split": config.split, "seed": config.seed}
 
 
 def default_folder(config: RunConfig, name: str) -> Path:
     """The folder of a run that names none: other for another agent, severity, episodes."""
-    parts = [part for part in (adapters_of(config), _watch(config)) if part]
+    parts = [part for part in (adapters_of(config), _text(watched(config))) if part]
     own = "-".join([_column(config, name), *(_digest(part)[:6] for part in parts)])
     own += f"-s{config.severity:g}" + (f"-e{config.episodes}" if config.episodes else "")
     return Path(config.runs) / "run" / plain(own)
@@ -237,14 +220,6 @@ def _column(config: RunConfig, name: str) -> str:
     parts = [name, *labels(config.safeguard, config.restore)]
     parts += ["adapters"] if config.adapters is not None else []
     return "+".join(parts)
-
-
-def _guard(config: RunConfig) -> str:
-    if config.safeguard == "none":
-        return "none"  # without a wait for torch
-    from mitigate.guards.text.choices import identity
-
-    return identity(config.safeguard)
 
 
 def _digest(text: str) -> str:

@@ -9,6 +9,9 @@ when its parent ends, its place among the children. The supervisor is a child su
 Linux): such orphans become its children, so that it knows every descendant. It stays until the last
 one is gone. When PARENT, which started it, is gone or it receives SIGTERM, it ends all of them.
 
+Between the supervisor and the program stands a fork of the supervisor that starts the program and
+waits for it. A program that kills its parent kills this fork, and the supervisor lives on.
+
 It writes JSON lines to the file descriptor PIPE: first ``{"pid": N}`` or ``{"error": TEXT}``, and
 ``{"status": N}`` when the program ends. A bare Python runs it, so this file imports the standard
 library only.
@@ -225,14 +228,11 @@ def main() -> None:
     for number in (signal.SIGINT, signal.SIGHUP):
         signal.signal(number, lambda *_: None)  # the parent decides; the program gets the default
     signal.signal(signal.SIGTERM, lambda *_: ending.append(True))
+    child = os.fork()
+    if child == 0:
+        return _start(program, pipe)
     if sys.platform == "linux":
         ctypes.CDLL(None).prctl(PR_SET_CHILD_SUBREAPER, 1)
-    try:
-        child = subprocess.Popen(program, start_new_session=True)
-    except OSError as error:
-        _tell(pipe, error=error.strerror)
-        return
-    _tell(pipe, pid=child.pid)
     while _reap(child, pipe):
         if os.getppid() != parent:  # it was killed, and another may start the program again
             return _end(child, pipe, 0.0)
@@ -241,13 +241,24 @@ def main() -> None:
         time.sleep(PAUSE)
 
 
+def _start(program: Sequence[str], pipe: int) -> None:
+    """Start the program, wait for its end and report its status; SIGTERM ends the program only."""
+    try:
+        child = subprocess.Popen(program, start_new_session=True)
+    except OSError as error:
+        return _tell(pipe, error=error.strerror)
+    _tell(pipe, pid=child.pid)
+    _tell(pipe, status=child.wait())
+
+
 def _tell(pipe: int, **news: object) -> None:
     with suppress(OSError):  # the parent is gone
         os.write(pipe, (json.dumps(news) + "\n").encode())
 
 
-def _reap(child: subprocess.Popen[bytes], pipe: int) -> bool:
-    """Reap what ended, and report the program's status; return whether any process is left."""
+def _reap(child: int, pipe: int) -> bool:
+    """Reap what ended; return whether any process is left. Report the status of ``child``, which
+    waits for the program, if somebody killed it."""
     while True:
         try:
             pid, status = os.waitpid(-1, os.WNOHANG)
@@ -255,12 +266,11 @@ def _reap(child: subprocess.Popen[bytes], pipe: int) -> bool:
             return False
         if pid == 0:
             return True
-        if pid == child.pid:
-            child.returncode = os.waitstatus_to_exitcode(status)
-            _tell(pipe, status=child.returncode)
+        if pid == child and status:
+            _tell(pipe, status=os.waitstatus_to_exitcode(status))
 
 
-def _end(child: subprocess.Popen[bytes], pipe: int, grace: float) -> None:
+def _end(child: int, pipe: int, grace: float) -> None:
     """End all descendants: by SIGTERM, and what is left after ``grace`` seconds by SIGKILL."""
     began = time.monotonic()
     signal_all(descendants(os.getpid()), signal.SIGTERM)

@@ -11,7 +11,8 @@ from pathlib import Path
 
 import numpy as np
 
-from mitigate.bridge.cell import DONE, Cell, folder_name, missing_entries, read_done
+from mitigate.bridge.cell import Cell, folder_name, missing_entries, read_done
+from mitigate.bridge.events import DONE
 from mitigate.bridge.plan import met
 from mitigate.bridge.results import OWN
 from mitigate.core.files import write_bytes, write_text

@@ -220,6 +220,7 @@ def _begin(attempt: Attempt) -> str:
     try:
         attempt.start()
     except ValueError as error:
+        attempt.kill()
         print(f"{cell.name}: {error}", flush=True)
         return str(error)
     print(f"{cell.name}: started{again}; its output is in {cell.log}", flush=True)

@@ -6,8 +6,6 @@ import math
 from collections.abc import Iterator, Sequence
 from typing import Any
 
-from omegaconf import DictConfig, OmegaConf
-
 from mitigate.cluster import ray_actors, slurm_jobs
 from mitigate.cluster.config import LauncherConfig, RayConfig, SlurmConfig
 from mitigate.core import workers
@@ -17,11 +15,9 @@ from mitigate.core.workers import Task
 __all__ = ["LauncherConfig", "RayConfig", "SlurmConfig", "chosen", "count", "results"]
 
 
-def chosen(node: LauncherConfig | DictConfig) -> LauncherConfig:
-    """The launcher that a config names. Raises ValueError for a number that is too small, and for
-    what can be seen from here to be missing or misnamed, before any work is done."""
-    launcher = OmegaConf.to_object(node) if isinstance(node, DictConfig) else node
-    assert isinstance(launcher, LauncherConfig)
+def chosen(launcher: LauncherConfig) -> LauncherConfig:
+    """Return ``launcher``. Raises ValueError for a number that is too small, and for what can be
+    seen from here to be missing or misnamed, before any work is done."""
     for name in ("cpus", "memory", "attempts", "processes", "minutes"):
         value = vars(launcher).get(name)
         if value is not None and not 0 < value < math.inf:

@@ -83,7 +83,8 @@ class Running:
         spent = self.outcome.seconds
         spent[self.what] = spent.get(self.what, 0.0) + used.ru_utime + used.ru_stime
         if self.process.returncode:
-            said = self.chain.log.read_text(encoding="utf-8", errors="replace").strip()
+            log = self.chain.log
+            said = log.read_text("utf-8", "replace").strip() if log.is_file() else "its log is lost"
             last = " ".join(said.splitlines()[-1:])[-400:]
             self.outcome.problem = f"{self.what} ended with {self.process.returncode} ({last})"
         elif self.left:

@@ -300,7 +300,10 @@ def _check_kind(path: Path | str) -> None:
     except FileNotFoundError:
         return
     if stat.S_ISDIR(mode):
-        return  # os.open names this mistake itself
+        raise UnsafePathError(
+            f"{path} must be a regular file, got a folder. Delete it or move it away, and run the "
+            "command again."
+        )
     if not stat.S_ISREG(mode):
         raise _unsafe(path, _kind(mode))
 

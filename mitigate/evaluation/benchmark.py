@@ -29,6 +29,7 @@ from mitigate.core.workers import packed
 from mitigate.corruptions import CLEAN, Corruption
 from mitigate.evaluation import evaluate as evaluation
 from mitigate.evaluation import provenance
+from mitigate.evaluation.config import EvaluateConfig, read
 from mitigate.evaluation.episode import run_episode
 from mitigate.evaluation.episode_lists import check_count, check_episodes, spread
 from mitigate.evaluation.evaluator import LOCAL, WORTH, evaluate
@@ -89,21 +90,22 @@ def benchmark(
     Raises ValueError for no agent, what there is not, texts that an entry cannot hold and a folder
     with rows of another world, FileNotFoundError for missing weights.
     """
-    cfg, met = _conditions(agent, suite, severity, seed, options)
+    config, met = _conditions(agent, suite, severity, seed, options)
     told = {"training_data": training_data, "link": link}
-    agent, name = _agent(agent, name, cfg, seed, labels(safeguard, restore))
+    agent, name = _agent(agent, name, config, seed, labels(safeguard, restore))
     check_texts(name=name, **told)
-    made = world or maker(cfg.env.world)
-    first, made_by = _first_world(made, met, agent)
-    split, chosen = _episodes(first, cfg, split, episodes, listed, world is not None)
+    made = world or maker(config.env.world)
+    first, made_by = _first_world(made, met, agent, version)
+    split, chosen = _episodes(first, config, split, episodes, listed, world is not None)
     file = Path(out or OUT / f"{_plain(name)}-{split}-s{severity:g}") / ROWS
     guards = open_guards(safeguard, restore, first.sensors)
-    known = Known(agent, first.sensors, guards.fingerprint(), version).check(file, name)
+    known = Known(agent, first, guards.fingerprint(), version).check(file, name)
     label: dict[str, Any] = {"name": name, "split": split, "seed": seed, "known": known}
     with known:
         _tell(agent, made, chosen, met, workers)
-        with FolderLock(file.parent):
+        with FolderLock(file.parent) as lock:
             provenance.keep(file.parent, first, made_by, split, chosen)
+            lock.expect(file, *provenance.notes(file.parent, split))
             rows = evaluate(
                 agent, made, chosen, met, out=file, workers=workers, guards=guards, **label
             )
@@ -114,7 +116,7 @@ def benchmark(
 
 def _conditions(
     agent: Any, suite: str | Sequence[str], severity: float, seed: int, options: Sequence[str]
-) -> tuple[Any, list[Corruption]]:
+) -> tuple[EvaluateConfig, list[Corruption]]:
     """Return the config of an evaluation, for the kind of agent that a path of weights is of, and
     the conditions of the suite, clean first."""
     seeding.check(seed)
@@ -136,27 +138,27 @@ def _conditions(
         options = [*options, *agent_option(options, str(agent))]
     named = [f"suite={suite}"] if isinstance(suite, str) else []
     try:
-        cfg = conf.load_config("evaluate", [*options, *named])
+        config = read(conf.load_config("evaluate", [*options, *named]))
     except (HydraException, OmegaConfBaseException) as error:
         raise ValueError(conf.explain(error, "evaluate", [*options, *named])) from None
-    names = list(cfg.suite.conditions) if isinstance(suite, str) else list(suite)
+    names = list(config.suite.conditions) if isinstance(suite, str) else list(suite)
     met = evaluation.conditions(list(dict.fromkeys(["clean", *names])), severity, None)
     if all(corruption.severity == 0 for corruption in met):
         raise ValueError(
             f"suite={suite!r} at severity {severity:g} corrupts nothing: name a suite or "
             "corruptions, and a severity above 0."
         )
-    return cfg, met
+    return config, met
 
 
 def _agent(
-    agent: Any, name: str | None, cfg: Any, seed: int, guards: Sequence[str]
+    agent: Any, name: str | None, config: EvaluateConfig, seed: int, guards: Sequence[str]
 ) -> tuple[Any, str]:
     """Return the agent, loaded if it is a path, and its heading with the labels ``guards``."""
     usual = type(agent).__name__
     if isinstance(agent, (str, Path)):
         usual = evaluation.name_of(str(agent))
-        agent = evaluation.load(cfg.agent, str(agent), seed)
+        agent = evaluation.load(config.agent, str(agent), seed)
     evaluation.check_walks(agent)
     return agent, "+".join([name or usual, *guards])
 
@@ -166,7 +168,7 @@ def _plain(name: str) -> str:
 
 
 def _first_world(
-    make_world: Any, met: Sequence[Corruption], agent: Any
+    make_world: Any, met: Sequence[Corruption], agent: Any, version: str | None
 ) -> tuple[World, dict[str, str]]:
     """Return a world and what it was made by; raise ValueError if it is not made anew, shows too
     little, or shows another number of views than the agent says."""
@@ -175,8 +177,8 @@ def _first_world(
             f"world is a {type(make_world).__name__}: give what makes one, such as a function, "
             "since each process has its own."
         )
-    world, made_by = provenance.first_world(make_world)
-    if not hasattr(world, "sensors"):
+    world, made_by = provenance.first_world(make_world, version)
+    if not hasattr(world, "sensors"):  # any object of the user may be given by mistake
         kind = type(world).__name__
         raise ValueError(
             f"A {kind} is no world: it has no sensors (docs/bring-your-own.md). If it is a "
@@ -189,16 +191,17 @@ def _first_world(
     return world, made_by
 
 
-def _is_own(world: World, cfg: Any) -> bool:
+def _is_own(world: World, config: EvaluateConfig) -> bool:
     """Whether the world is none of the config's, whose lists of episodes mean nothing in it."""
-    usual = located(cfg.env.world._target_)
-    kind = usual if isinstance(usual, type) else type(maker(cfg.env.world)())  # a function makes it
+    node = config.env.world
+    usual = located(node["_target_"])
+    kind = usual if isinstance(usual, type) else type(maker(node)())  # a function makes it
     return not isinstance(world, kind)
 
 
 def _episodes(
     world: World,
-    cfg: Any,
+    config: EvaluateConfig,
     split: str | None,
     count: int | EllipsisType | None,
     listed: Sequence[Episode] | Path | str | None,
@@ -206,17 +209,17 @@ def _episodes(
 ) -> tuple[str, list[Episode]]:
     """Return the split and the episodes to walk; raise ValueError for none, and for a world that
     was ``given``, of another class than the config's, without a list of its own."""
-    own = given and _is_own(world, cfg)
-    split = split or (provenance.name_of(world) if own else cfg.split)
+    own = given and _is_own(world, config)
+    split = split or (provenance.name_of(world) if own else config.split)
     if listed is None and own:
         raise ValueError(
-            f"The episodes of {cfg.env.name} are none of {provenance.name_of(world)}: give its "
+            f"The episodes of {config.env.name} are none of {provenance.name_of(world)}: give its "
             'own, listed="mine.json", or a list of Episode (mitigate.worlds.episodes, '
             "docs/bring-your-own.md). Of a gymnasium or torchrl environment they are seeds: "
             "listed=seeded_episodes(range(20)) (mitigate.worlds.seeded)."
         )
     if listed is None:
-        return split, evaluation.episodes(cfg.env, split, EPISODES if count is ... else count)
+        return split, evaluation.episodes(config.env, split, EPISODES if count is ... else count)
     check_count(None if count is ... else count)
     if isinstance(listed, Episode) or not isinstance(listed, (str, Path, Iterable)):
         raise ValueError(f"listed={listed!r:.80} is no list of episodes, nor the file of one.")
@@ -233,7 +236,7 @@ def _episodes(
 
 def _check_copies(*things: Any) -> None:
     """Raise ValueError for what other processes cannot be given."""
-    main = Path(getattr(sys.modules["__main__"], "__file__", None) or "")
+    main = Path(vars(sys.modules["__main__"]).get("__file__") or "")
     typed = [thing for thing in things if type(thing).__module__ == "__main__"]
     own = "give workers=1, or define them at the head of a module"
     if typed and not main.is_file():

@@ -15,7 +15,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from omegaconf import DictConfig
 
 from mitigate.core import conf
 from mitigate.core.build import maker
@@ -26,8 +25,9 @@ from mitigate.core.options import check_dashes, without_config_folder
 from mitigate.core.progress import Progress
 from mitigate.core.seeding import generator
 from mitigate.corruptions import CLEAN, SUITE_VERSION
-from mitigate.evaluation import config, rows  # noqa: F401 - config registers the options
+from mitigate.evaluation import rows
 from mitigate.evaluation.bootstrap import share
+from mitigate.evaluation.config import EvaluateConfig, read
 from mitigate.evaluation.episode_lists import episodes
 from mitigate.worlds.episodes import Episode
 from mitigate.worlds.world import World, expert_of
@@ -65,16 +65,18 @@ class RandomAgent:
         return int(self.rng.choice([FORWARD, FORWARD, LEFT, RIGHT]))
 
 
-def run(cfg: DictConfig, out: Path) -> list[rows.Row]:
-    """Walk both on the episodes that ``cfg``, an evaluation's, names; return their rows, which are
-    in the folder ``out`` too. Those that it has count."""
+def run(config: EvaluateConfig, out: Path) -> list[rows.Row]:
+    """Walk both on the episodes that ``config`` names; return their rows, which are in the folder
+    ``out`` too. Those that it has count."""
     from mitigate.evaluation import provenance
 
-    chosen = episodes(cfg.env, cfg.split, cfg.episodes)
-    with FolderLock(out):
-        world, made_by = provenance.first_world(maker(cfg.env.world))
-        provenance.keep(out, world, made_by, cfg.split, chosen, cfg.env.episodes[cfg.split])
-        return _walked(world, cfg.split, chosen, out / rows.ROWS)
+    env, split = config.env, config.split
+    chosen = episodes(env, split, config.episodes)
+    with FolderLock(out) as lock:
+        world, made_by = provenance.first_world(maker(env.world))
+        provenance.keep(out, world, made_by, split, chosen, env.episodes[split])
+        lock.expect(out / rows.ROWS, *provenance.notes(out, split))
+        return _walked(world, split, chosen, out / rows.ROWS)
 
 
 def _walked(world: World, split: str, chosen: Sequence[Episode], out: Path) -> list[rows.Row]:
@@ -82,7 +84,8 @@ def _walked(world: World, split: str, chosen: Sequence[Episode], out: Path) -> l
 
     chance = RandomAgent()
     controls: dict[str, Any] = {"oracle": OracleAgent(world), "random": chance}
-    held = {rows.identity(row): row for row in rows.read(out)} if out.exists() else {}
+    earlier = rows.unique(rows.read(out) if out.exists() else ())
+    held = {rows.identity(row): row for row in earlier}
     found = []
     for name, agent in controls.items():
         label = {
@@ -117,9 +120,9 @@ def main() -> int:
     try:
         check_dashes(given)
         _check(without_config_folder(given)[1])
-        cfg = conf.composed("evaluate", given)
-        out = Path(cfg.out or OUT)
-        found = run(cfg, out)
+        config = read(conf.composed("evaluate", given))
+        out = Path(config.out or OUT)
+        found = run(config, out)
     except (OSError, ValueError) as error:
         print(f"controls: {conf.said(error)}", file=sys.stderr)
         return 2

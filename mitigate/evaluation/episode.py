@@ -9,6 +9,7 @@ from contextlib import contextmanager
 from typing import Any
 
 from mitigate.agents.agent import Agent, as_agent
+from mitigate.core.contracts import lacking
 from mitigate.core.errors import own_place, said
 from mitigate.corruptions import (
     Corruption,
@@ -157,8 +158,8 @@ class _Walk:
         return ValueError(f"{self.name}, step {self.steps + 1}: {said(error)}")
 
     def measures(self) -> dict[str, Any]:
-        found = {**self.met.measures(), "decisions": self.met.looks}
-        plain = {n: v.item() if hasattr(v, "item") else v for n, v in found.items()}  # arrays
+        found: dict[str, Any] = {**self.met.measures(), "decisions": self.met.looks}
+        plain = {n: v if lacking(v, ("item",)) else v.item() for n, v in found.items()}  # arrays
         found = {n: int(v) if isinstance(v, bool) else v for n, v in plain.items()}
         return {name: found.pop(name) for name in MEASURES if name in found} | found
 

@@ -14,13 +14,12 @@ from numbers import Integral
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from omegaconf import DictConfig
-
 from mitigate.core.files import atomic_text, find, sha256
 from mitigate.core.names import counted, unknown
 from mitigate.evaluation.rows import ROWS, Row, read
 
 if TYPE_CHECKING:
+    from mitigate.evaluation.config import EnvConfig
     from mitigate.worlds.episodes import Episode
 
 
@@ -28,7 +27,7 @@ GOLDEN = (5**0.5 - 1) / 2
 TASKS = {"vln": "follow a route", "ogn": "find an object"}  # info["task"] of an episode, in words
 
 
-def episodes(env: DictConfig, split: str, count: int | None) -> list:
+def episodes(env: EnvConfig, split: str, count: int | None) -> list[Episode]:
     """Return ``count`` episodes of a split's shipped list (all, if None), as :func:`spread`.
 
     Raises ValueError for an unknown split, a count below 1, and a list that is empty, names an

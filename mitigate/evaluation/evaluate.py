@@ -65,7 +65,7 @@ def evaluate_agent(config: EvaluateConfig, overrides: Sequence[str] = ()) -> Pat
     check_walks(agent)
     world = build.maker(env.world)
     name = _column(config, overrides)
-    first, made_by = provenance.first_world(world)
+    first, made_by = provenance.first_world(world, config.version)
     check_sensors(met, first.sensors, env.name)
     choices.check(config.safeguard)
     out = Path(config.out or default_folder(config, name))
@@ -133,7 +133,7 @@ def load(
 
     settings = node if weights is None else building.settings_of(node, weights, overrides)
     agent = building.build_agent(settings, weights=weights, seed=seed)
-    if not hasattr(agent, "state_dict"):
+    if lacking(agent, ("state_dict",)):
         return agent
     if weights is None:
         raise ValueError(

@@ -9,6 +9,7 @@ walks several at once.
 
 from __future__ import annotations
 
+import multiprocessing
 import time
 import warnings
 from collections import Counter
@@ -37,7 +38,7 @@ from mitigate.corruptions.language.text import is_english, passed_through
 from mitigate.corruptions.registry import parts, version
 from mitigate.evaluation import rows
 from mitigate.evaluation.episode import run_episode, run_side_by_side, start_of
-from mitigate.evaluation.provenance import Known
+from mitigate.evaluation.provenance import Known, check_classes
 from mitigate.guards.guard import NO_GUARDS, Guards
 from mitigate.worlds.episodes import Episode
 from mitigate.worlds.world import World, as_world
@@ -53,13 +54,15 @@ Job = tuple[Episode, Corruption, dict[str, Any]]  # the last: what the row says 
 class EpisodeTask:
     """Runs jobs (``mitigate/core/workers.py``): each one's result is its label with its measures.
 
-    make_world: each process makes one. A label holds "seed".
+    make_world: each process makes one. A label holds "seed". classes: of ``Known``, which a worker
+    process compares with its own.
     """
 
     agent: Any
     make_world: Callable[[], World]
     guards: Guards = NO_GUARDS
     world: World | None = None
+    classes: str = ""
     preload: ClassVar[str] = "mitigate.evaluation.evaluator"
 
     def __getstate__(self) -> dict[str, Any]:
@@ -73,6 +76,8 @@ class EpisodeTask:
         threads = torch.get_num_threads()
         torch.set_num_threads(1)
         self.world = self.world or self.make_world()
+        if self.classes and multiprocessing.parent_process() is not None:
+            check_classes(self.agent, self.world, self.classes)
         device = next((p.device for p in _parameters(self.agent)), torch.device("cpu"))
         try:
             with computing("fp32", device), in_eval_mode(self.agent):
@@ -156,7 +161,7 @@ def evaluate(
     made = world()
     check_fits(agent, made.sensors, type(made).__name__)
     if known is None:
-        known = Known(agent, made.sensors, guards.fingerprint(), version).check(out, name)
+        known = Known(agent, made, guards.fingerprint(), version).check(out, name)
     label = {
         "agent": known.hash,
         "name": name,
@@ -166,15 +171,11 @@ def evaluate(
         "rule": made.rule,
         **({"weights": weights_sha(agent)} if isinstance(agent, torch.nn.Module) else {}),
     }
-    task = EpisodeTask(agent, world, guards)
+    task = EpisodeTask(agent, world, guards, classes=known.classes)
     jobs = _jobs(episodes, conditions, label)
     with known:
-        _run_missing(task, made, jobs, out, (workers, launcher), f"{name}, {split}")
-    return _tell_of_cuts(_in_order(out, [rows.identity(job[2]) for job in jobs]), name)
-
-
-def _tell_of_cuts(found: list[dict[str, Any]], name: str) -> list[dict[str, Any]]:
-    """Print how many episodes a world's limit cut, and return the rows."""
+        _run_missing(task, made, jobs, out, workers, launcher, f"{name}, {split}")
+    found = _in_order(out, [rows.identity(job[2]) for job in jobs])
     if cut := rows.cuts(found):
         print(f"{name}: {cut}", flush=True)
     return found
@@ -185,10 +186,12 @@ def _run_missing(
     world: World,
     jobs: list[Job],
     out: Path,
-    where: tuple[int | None, LauncherConfig],
+    workers: int | None,
+    launcher: LauncherConfig,
     title: str,
 ) -> None:
-    """Run the jobs that have no row in ``out``. ``where``: processes, and their launcher."""
+    """Run the jobs that have no row in ``out``, a group's in one process, and append their rows as
+    they come."""
     finished = {rows.identity(row) for row in rows.read(out)} if out.exists() else set()
     todo = [job for job in jobs if rows.identity(job[2]) not in finished]
     _warn_of_languages(todo)
@@ -201,7 +204,16 @@ def _run_missing(
         return
     at_once = _together(task.agent, world)
     groups = _groups(todo, 4 * at_once if at_once > 1 else 1)
-    _run(task, groups, len(jobs), out, *where, title)
+    started = min(count(launcher, workers, len(todo), WORTH), len(groups))
+    with Progress(title, len(jobs), unit="walk", start=len(jobs) - len(todo)) as progress:
+        if started > 1:
+            progress.say(f"{title}: {started} {launcher.name} workers")
+        try:
+            _write(results(launcher, task, groups, started, progress), out, progress)
+        except processes.WorkersDied as error:
+            raise processes.WorkersDied(
+                f"{error} The finished rows are in {out}: the same command goes on from there."
+            ) from None
 
 
 def _jobs(
@@ -250,29 +262,6 @@ def _warn_of_languages(jobs: list[Job]) -> None:
         warnings.warn(passed_through(Counter(map(str, found.values()))), stacklevel=3)
 
 
-def _run(
-    task: EpisodeTask,
-    groups: list[list[Job]],
-    total: int,
-    out: Path,
-    workers: int | None,
-    launcher: LauncherConfig,
-    title: str,
-) -> None:
-    """Run the jobs, a group's in one process, and append their rows to ``out`` as they come."""
-    todo = sum(map(len, groups))
-    started = min(count(launcher, workers, todo, WORTH), len(groups))
-    with Progress(title, total, unit="walk", start=total - todo) as progress:
-        if started > 1:
-            progress.say(f"{title}: {started} {launcher.name} workers")
-        try:
-            _write(results(launcher, task, groups, started, progress), out, progress)
-        except processes.WorkersDied as error:
-            raise processes.WorkersDied(
-                f"{error} The finished rows are in {out}: the same command goes on from there."
-            ) from None
-
-
 def _groups(jobs: list[Job], least: int) -> list[list[Job]]:
     """The jobs of each episode, or of so many of them that they are ``least`` or more."""
     groups: list[list[Job]] = []
@@ -302,9 +291,9 @@ def _write(found: Iterable[tuple[int, Any] | None], out: Path, progress: Progres
 
 
 def _in_order(out: Path, wanted: list[tuple]) -> list[dict[str, Any]]:
-    """Return the ``wanted`` rows of ``out`` in that order, and put them into it in the file, each
-    in the place of one of them: the file is then the same for any number of processes. Raises
-    FolderLostError if rows are missing."""
+    """Return the ``wanted`` rows of ``out`` in that order, one per identity (``rows.unique``), and
+    put them into it in the file, each in the place of one of them: the file is then the same for
+    any number of processes. Raises FolderLostError if rows are missing."""
     if not wanted:
         return []
     order = {identity: number for number, identity in enumerate(wanted)}
@@ -322,4 +311,4 @@ def _in_order(out: Path, wanted: list[tuple]) -> list[dict[str, Any]]:
         for place, row in zip(places, found, strict=True):
             held[place] = row
         rows.write(out, held)
-    return found
+    return rows.unique(found)

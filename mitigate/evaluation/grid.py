@@ -216,6 +216,13 @@ class Grid:
         """The severities of the corrupted cells, rising; never 0."""
         return sorted({severity for _, _, severity, _ in self.cells if severity > 0})
 
+    @cached_property
+    def corruptions(self) -> list[str]:
+        """The measured corruptions, those of the blocks first."""
+        measured = {name for _, name, _, _ in self.cells if name != "clean"}
+        known = [name for block in BLOCKS.values() for name in block if name in measured]
+        return known + sorted(measured.difference(known))
+
     def columns_at(self, severity: float) -> list[str]:
         """Return the columns with a cell at ``severity``."""
         measured = {label for label, _, at, _ in self.cells if at == severity}

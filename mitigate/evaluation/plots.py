@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 
 from mitigate.core.files import write_figure
 from mitigate.evaluation import bootstrap
-from mitigate.evaluation.grid import BLOCKS, Grid
+from mitigate.evaluation.grid import Grid
 from mitigate.evaluation.sections import Section, label
 
 COLOURS = mpl.colormaps["RdYlGn"]
@@ -56,9 +56,7 @@ def heatmap(section: Section, path: Path | str) -> Path:
 def severity_curves(grid: Grid, path: Path | str) -> Path:
     """Draw SR (%) against severity, one panel a corruption, with 95 % bootstrap bands. Where
     lines coincide the first is the widest, so that each shows on both sides of the next."""
-    measured = {name for _, name, _, _ in grid.cells if name != "clean"}
-    names = [name for block in BLOCKS.values() for name in block if name in measured]
-    names += sorted(measured.difference(names))
+    names = grid.corruptions
     across = min(4, len(names))
     down = math.ceil(len(names) / across)
     figure = Figure(figsize=(2.6 * across + 0.6, 2.0 * down + 1.2), layout="constrained")

@@ -31,7 +31,6 @@ from mitigate.core.build import Maker
 from mitigate.core.files import atomic_text
 from mitigate.core.json_files import read_object
 from mitigate.core.names import short
-from mitigate.core.observation import Sensor
 from mitigate.evaluation.episode_lists import LIST_HASH, keep_list_hash
 from mitigate.evaluation.rows import read
 from mitigate.worlds.episodes import Episode
@@ -39,37 +38,47 @@ from mitigate.worlds.world import World
 
 # of agents without settings(), by id: the agent, its parts after the last run, and before the first
 _last: dict[int, tuple[Callable[[], Any], Any, Any]] = {}
+# what the code of worlds reads, by their layers' classes and the user's version: a hash from before
+# the first episode, and one from after the last
+_read_by: dict[tuple[tuple[type, ...], str | None], tuple[str, str]] = {}
 
 
 class Known:
-    """``hash`` of ``agent`` behind ``sensors`` and ``front``, taken before episodes change its
-    arrays and attributes; a context manager around all episodes.
+    """``hash`` of ``agent`` in ``world`` behind ``front``, taken before episodes change its
+    arrays and attributes, and ``classes``, a hash of what their classes read; a context manager
+    around all episodes.
 
     The attributes of an agent without ``settings()`` count. If only episodes have changed the
-    object since the last call, its hash is the one from before them.
+    object since the last call, its hash is the one from before them. The same holds for the
+    attributes of the world's classes.
     """
 
-    def __init__(
-        self, agent: Any, sensors: Mapping[str, Sensor], front: str, version: str | None = None
-    ) -> None:
+    def __init__(self, agent: Any, world: World, front: str, version: str | None = None) -> None:
         if version is not None and not (isinstance(version, str) and version):
             raise ValueError(
                 f"version must be a non-empty string, got {version!r:.80}. Name what the agent is, "
                 'such as version="2026-11 weights", and change it whenever its behaviour changes.'
             )
         self.agent = agent
+        self.layers = tuple(type(layer) for layer in _layers(world))
         self.version = version
+        read = _read_by.get((self.layers, None))
+        of_world = read[0] if read else _what_is_read(self.layers, None)[0]
+        self.classes = _hash_of_classes(agent, of_world)
         self.without_settings = not says_all(agent)
         found = contents(agent, version)
         same, after, before = _last.get(id(agent), (lambda: None, None, None))
         self.parts = before if same() is agent and after == found.parts else found.parts
         self.unreadable = found.explain() if found.unreadable else ""
-        self.hash = hash_of(self.parts, sensors, front)
+        self.hash = hash_of(self.parts, world.sensors, front)
 
     def __enter__(self) -> Known:
         return self
 
     def __exit__(self, *_: object) -> None:
+        place = self.layers, self.version
+        if place in _read_by:
+            _read_by[place] = _read_by[place][0], _what_is_read(*place)[0]
         if not self.without_settings:
             return
         agent = self.agent
@@ -92,19 +101,8 @@ class Known:
         rows = read(file) if file.exists() else []
         known = any(row["agent"] == self.hash for row in rows)
         kind = type(self.agent).__name__
-        if self.unreadable and known:
-            raise ValueError(
-                f"{file} holds rows of {name}, perhaps of another agent: of this {kind}, "
-                f'{self.unreadable} cannot be read. Give version="..." to reuse rows of that '
-                "version, and change it whenever the agent's behaviour changes; or name another "
-                "folder (out=...)."
-            )
         if self.unreadable:
-            print(
-                f"{name}: of this {kind}, {self.unreadable} cannot be read, so no later call can "
-                'reuse these rows. Give version="..." to allow it.',
-                flush=True,
-            )
+            _report_unreadable(file, name, "agent", f"this {kind}", self.unreadable, known)
         if known or not any(row["name"] == name for row in rows):
             return self
         counts = "attributes" if self.without_settings else "settings()"
@@ -124,6 +122,8 @@ class Known:
 
 NOTE = "walked.json"
 CLASS, CODE, ENV = "its class", "its code", "its env"  # what differs, in words
+READ = "what its code reads"
+UNREADABLE = "what cannot be read of it"
 MOST_LAYERS = 20  # of wrappers around an environment (ours)
 
 
@@ -149,7 +149,12 @@ def keep(
     told, sums = {**_described(world), **made_by}, {e.episode_id: _sum(e) for e in episodes}
     own, kind = known.get(split, {}), _told_by_rows(world)
     worlds, sums_before = own.get("worlds", {}), own.get("sums", {})
+    if unreadable := told.pop(UNREADABLE, ""):
+        owner = "the classes of this world"
+        _report_unreadable(folder, name_of(world), "world", owner, unreadable, kind in worlds)
     before = worlds.get(kind, told | _older(own))
+    if READ in told:  # older versions did not note it
+        before = {**before, READ: before.get(READ, told[READ])}
     different = [k for k in {**before, **told} if not _is_same(before.get(k), told.get(k))]
     other = [name for name, held in sums_before.items() if sums.get(name, held) != held]
     if different or other:
@@ -162,6 +167,24 @@ def keep(
     known[split] = {"worlds": worlds | {kind: told}, "sums": sums_before | sums}
     with atomic_text(note) as file:
         json.dump(known, file)
+
+
+def _report_unreadable(
+    place: Path, name: str, kind: str, owner: str, unreadable: str, earlier: bool
+) -> None:
+    """Print that rows of an agent or a world cannot be reused; raise ValueError if there are
+    earlier ones in ``place``."""
+    if earlier:
+        raise ValueError(
+            f"{place} holds rows of {name}, perhaps of another {kind}: of {owner}, {unreadable} "
+            'cannot be read. Give version="..." to reuse rows of that version, and change it '
+            f"whenever the {kind}'s behaviour changes; or name another folder (out=...)."
+        )
+    print(
+        f"{name}: of {owner}, {unreadable} cannot be read, so no later call can reuse these rows. "
+        'Give version="..." to allow it.',
+        flush=True,
+    )
 
 
 def notes(folder: Path, split: str) -> list[Path]:
@@ -222,7 +245,7 @@ def name_of(world: World) -> str:
     class of that."""
     env = _environment(world)
     ours = type(world).__module__.startswith("mitigate.")
-    inner = getattr(env, "unwrapped", env) if ours and env is not None else world
+    inner = _member(env, "unwrapped") or env if ours and env is not None else world
     return type(inner).__name__
 
 
@@ -242,6 +265,11 @@ def _older(own: Mapping[str, Any]) -> dict[str, str]:
 def _difference(key: str, before: Mapping[str, str], now: Mapping[str, str]) -> str:
     if key == CODE:
         return f"the code of {now[CLASS]} was changed"
+    if key == READ:
+        return (
+            f"the class attributes of {now[CLASS]}, or the global variables and functions that its "
+            "code names, were changed"
+        )
     was, is_ = (short(held[key], 200) if key in held else "not set" for held in (before, now))
     return f"{key} was {was} and is {is_}"
 
@@ -262,17 +290,25 @@ def _sum(episode: Episode) -> str:
 def _spec(world: World) -> str:
     """Return what the environment inside a world, if there is one, says it was made of: worlds of
     one class differ in it alone."""
-    spec = getattr(_environment(world), "spec", None)  # gymnasium's, or of another library
-    name = getattr(spec, "id", None)
-    if name is None:
+    spec = _member(_environment(world), "spec")
+    entries: Mapping[str, Any] = {}
+    with suppress(TypeError):  # None, or an object with slots
+        entries = vars(spec)
+    if entries.get("id") is None:
         return ""
-    made = json.dumps(getattr(spec, "kwargs", {}), sort_keys=True, default=lambda x: str(type(x)))
-    return f"{name} {made}"
+    kwargs = entries.get("kwargs", {})
+    made = json.dumps(kwargs, sort_keys=True, default=lambda x: str(type(x)))
+    return f"{entries['id']} {made}"
 
 
 def _environment(layer: Any) -> Any:
     """The environment inside a world or a wrapper, None if there is none."""
-    return getattr(layer, "env", None)  # of any library
+    return _member(layer, "env")
+
+
+def _member(thing: Any, name: str) -> Any:
+    """Return what gymnasium, torchrl and others call ``name``; None if ``thing`` has none."""
+    return getattr(thing, name, None)  # their classes have no base in common
 
 
 MADE = "what makes it"
@@ -282,15 +318,59 @@ DEEPEST, ENTRIES = 5, 50  # of nested values; of a mapping that are told one by 
 MOST = 100_000  # lists, mappings and objects in one value that are told (ours)
 
 
-def first_world(make: Callable[[], World]) -> tuple[World, dict[str, str]]:
+def first_world(
+    make: Callable[[], World], version: str | None = None
+) -> tuple[World, dict[str, str]]:
     """Return a world and what it was made by: the entries of a config, or a function's arguments,
     defaults and the values that it uses, a callable object's class and attributes. Of a value that
-    making one changes, such as a cache, ``CHANGES``."""
+    making one changes, such as a cache, ``CHANGES``. Also what the code of its classes reads.
+
+    ``version`` names what cannot be read of the classes.
+    """
     before = dict(_made_by(make))
+    same = {place for place, (_, last) in _read_by.items() if last == _what_is_read(*place)[0]}
     world = make()
     after = dict(_made_by(make))
     changed = {key for key in {**before, **after} if before.get(key) != after.get(key)}
-    return world, after | dict.fromkeys(changed, CHANGES)
+    place = tuple(type(layer) for layer in _layers(world)), version
+    digest, unreadable = _what_is_read(*place)
+    _read_by[place] = (_read_by[place][0] if place in same else digest), ""
+    told = {READ: _read_by[place][0], UNREADABLE: unreadable}
+    found = after | dict.fromkeys(changed, CHANGES)
+    return world, found | {key: text for key, text in told.items() if text}
+
+
+def check_classes(agent: Any, world: World, expected: str) -> None:
+    """Raise ValueError if the classes of an agent and a world in a worker process are not those of
+    the process that started it (``Known.classes``)."""
+    layers = tuple(type(layer) for layer in _layers(world))
+    if _hash_of_classes(agent, _what_is_read(layers, None)[0]) != expected:
+        raise ValueError(
+            f"The class attributes of {type(agent).__name__} or {name_of(world)}, or the global "
+            "variables and functions that their code names, are not the same in a worker process, "
+            "which imports them again. Set them where they are defined, not later, or give "
+            "workers=1."
+        )
+
+
+def _hash_of_classes(agent: Any, of_world: str) -> str:
+    return json_hash([_what_is_read((type(agent),), None)[0], of_world])
+
+
+def _what_is_read(kinds: Sequence[type], version: str | None) -> tuple[str, str]:
+    """Return a hash of the attributes of the user's classes among ``kinds``, with the functions
+    and global variables that their code names, and what cannot be read of them; "" if nothing."""
+    own = tuple(kind for kind in kinds if _is_users(kind))
+    if not own:
+        return "", ""
+    found = contents(own)  # a tuple, as a class may have settings() for its objects
+    if found.unreadable and version is not None:
+        found = contents(own, version)
+    return json_hash(found.parts), found.explain() if found.unreadable else ""
+
+
+def _is_users(kind: type) -> bool:
+    return kind.__module__ == "__main__" or bool(source_of(kind))
 
 
 def kind_of(thing: object) -> str:
@@ -337,7 +417,8 @@ def _object(thing: Any) -> Iterator[tuple[str, str]]:
         return
     yield f"{MADE}, class", kind_of(thing)
     yield f"{MADE}, code", json_hash(source_of(type(thing)))
-    yield from _each(f"{MADE}, attribute", getattr(thing, "__dict__", {}))
+    with suppress(TypeError):  # an object with slots
+        yield from _each(f"{MADE}, attribute", vars(thing))
 
 
 def _each(name: str, values: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
@@ -378,11 +459,13 @@ def _data(value: Any, depth: int, told: Iterator[int]) -> Any:
     if depth < DEEPEST and next(told) < MOST:
         inner = partial(_data, depth=depth + 1, told=told)
         if is_dataclass(value) and not isinstance(value, type):
-            return [kind_of(value), [inner(getattr(value, one.name)) for one in fields(value)]]
+            named = [getattr(value, one.name) for one in fields(value)]  # it may have slots
+            return [kind_of(value), [*map(inner, named)]]
         if isinstance(value, dict):
             return {json.dumps(inner(key)): inner(part) for key, part in value.items()}
         if isinstance(value, (list, tuple)):
             return [*map(inner, value)]
         if isinstance(value, (set, frozenset)):
             return sorted(map(inner, value), key=json.dumps)
+    # a class or function of any kind, such as a builtin one, or else an object
     return str(getattr(value, "__qualname__", kind_of(value)))

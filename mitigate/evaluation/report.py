@@ -76,8 +76,10 @@ def _heading(section: Section) -> str:
     grid, columns = section.grid, section.columns
     at = f"severity {section.severity:g}" if section.blocks else "clean only"
     at = f"{section.kind}, {at}" if section.kind else at
-    kinds = {grid.seeds[column, section.severity] for column in columns}
-    seeds = "seed " + _listed(kinds.pop()) if len(kinds) == 1 else _seeds_by_column(section)
+    by_column = {c: ", ".join(map(str, grid.seeds[c, section.severity])) for c in columns}
+    seeds = "seeds " + "; ".join(f"{n} of {markdown_of(c)}" for c, n in by_column.items())
+    if len({*by_column.values()}) == 1:
+        seeds = f"seed {by_column[columns[0]]}"
     agents = ", ".join(
         f"{markdown_of(x)} " + " ".join(f"`{a}`" for a in grid.agents_at(x, section.severity))
         for x in columns
@@ -99,16 +101,6 @@ def _drawn(grid: Grid) -> str:
     return f"{counted(len(np.unique(grid.units)), grid.drawn)} with their episodes"
 
 
-def _seeds_by_column(section: Section) -> str:
-    seeds = {c: section.grid.seeds[c, section.severity] for c in section.columns}
-    found = (f"{_listed(held)} of {markdown_of(column)}" for column, held in seeds.items())
-    return f"seeds {'; '.join(found)}"
-
-
-def _listed(seeds: Iterable[int]) -> str:
-    return ", ".join(map(str, seeds))
-
-
 def _table(section: Section) -> str:
     lines = []
     for metric in METRICS:
@@ -124,7 +116,7 @@ def _table(section: Section) -> str:
         for metric in METRICS:
             cells = [_prs(section, (c, block, metric)) for c in section.columns]
             lines.append([f"**PRS-{metric} ({block})**", *cells])
-        lines += _by_seed(section, block, "PRS-SR", _prs_of_seed)
+        lines += _by_seed(section, block, "PRS-SR", _rounded_prs)
         if len(section.columns) > 1:
             for metric in METRICS:
                 cells = [_change(section, (c, block, metric)) for c in section.columns]
@@ -255,7 +247,7 @@ def _prs(section: Section, place: tuple[str, str, str]) -> str:
     return f"**{prs.value:.2f}** {prs.interval('.2f')}{marks}"
 
 
-def _prs_of_seed(value: float) -> str:
+def _rounded_prs(value: float) -> str:
     return "undefined" if math.isnan(value) else f"{value:.2f}"
 
 
@@ -333,10 +325,6 @@ def beside(
         lines.append([f"CPU minutes, {kind}", *cost])
     table = markdown_table(["Corruption", *section.columns], lines)
     return f"{_header(section, bool(theirs))}\n\n{table}\n"
-
-
-def _rounded_prs(value: float) -> str:
-    return "undefined" if math.isnan(value) else f"{value:.2f}"
 
 
 def _header(section: Section, compared: bool) -> str:

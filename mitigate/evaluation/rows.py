@@ -185,15 +185,20 @@ def cuts(rows: Iterable[Row]) -> str:
 
 
 def gather(paths: Iterable[Path | str]) -> list[Row]:
-    """Return the rows of files and of all row files under folders, upserted in that order; warn of
-    those that say another success or SPL than one before.
+    """Return the rows of files and of all row files under folders, as :func:`unique` does.
 
     In a folder, JSON lines of another kind are passed over. Raises FileNotFoundError if a path
     does not exist or a folder holds no rows.
     """
+    return unique(row for path in paths for file in files(path) for row in read(file))
+
+
+def unique(rows: Iterable[Row]) -> list[Row]:
+    """Return one row per identity, the last in the place of the first; warn of those with another
+    success or SPL than an earlier one."""
     held: dict[tuple, Row] = {}
     other: list[Row] = []
-    for row in chain.from_iterable(read(file) for path in paths for file in files(path)):
+    for row in rows:
         before = held.get(identity(row), row)
         other += [row] if any(before[key] != row[key] for key in ("success", "spl")) else []
         held[identity(row)] = row
@@ -202,7 +207,7 @@ def gather(paths: Iterable[Path | str]) -> list[Row]:
             f"{len(other)} rows say another success or SPL than one before of the same agent, "
             f"episode and condition (first {other[0]['name']}, episode {other[0]['episode_id']}, "
             f"{other[0]['corruption']}): the last counts. Name the files of one evaluation.",
-            stacklevel=2,
+            stacklevel=1,  # one place, so that the same text is printed once
         )
     return list(held.values())
 

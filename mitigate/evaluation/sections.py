@@ -138,9 +138,7 @@ def sections(
     return found
 
 
-def label(corruption: str) -> str:
-    """Return the name of a corruption as the paper's table prints it."""
-    return title(corruption)
+label = title  # of a corruption, as the paper's table prints it
 
 
 def _section(grid: Grid, kind: str, severity: float, first: Sequence[str]) -> Section:

@@ -17,7 +17,7 @@ from typing import Any
 import cv2
 import hydra
 import numpy as np
-from omegaconf import MISSING, DictConfig, OmegaConf
+from omegaconf import MISSING, DictConfig
 
 from mitigate.core import conf
 from mitigate.core.files import atomic_text, make_folder, write_bytes
@@ -62,14 +62,16 @@ def run(config: ExportDriveConfig, out: Path) -> list[Path]:
     """
     from mitigate.core import build
     from mitigate.core.progress import Progress
+    from mitigate.evaluation.config import EnvConfig, open_entries
     from mitigate.evaluation.episode_lists import episodes
 
     if config.form not in FORMS:
         raise ValueError(unknown("form", config.form, FORMS))
-    world = build.Maker(config.env["world"])()
+    env = open_entries(EnvConfig, config.env)
+    world = build.Maker(env.world)()
     if len(world.sensors[RGB].shape) != 3:
         raise ValueError("A drive has one camera: set env.views=1.")
-    chosen, written = episodes(OmegaConf.create(config.env), config.split, config.episodes), []
+    chosen, written = episodes(env, config.split, config.episodes), []
     paths = _paths(out, [episode.episode_id for episode in chosen], config.form)
     progress = Progress("export_drive", len(chosen), unit="drive")
     with output_folder(out) as root, progress:

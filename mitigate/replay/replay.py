@@ -103,7 +103,8 @@ def run(config: ReplayConfig, paths: Sequence[str]) -> Path:
     _check_earlier(out, settings)
     views = {agent.views for agent in agents.values()}
     recordings = load_recordings(config, paths, views, guards)
-    with FolderLock(out):
+    with FolderLock(out) as lock:
+        lock.expect(out / SETTINGS, out / DECISIONS, out / TABLE)
         for name, corruption in product(agents, met):  # of an earlier run
             _picture_file(out, name, corruption.name).unlink(missing_ok=True)
         with atomic_text(out / SETTINGS) as file:
@@ -205,6 +206,9 @@ def _check_earlier(out: Path, settings: dict[str, Any]) -> None:
     if out.exists() and not out.is_dir():
         raise ValueError(f"{out} is no folder, in which a replay is written. {again}")
     if not is_regular(out / SETTINGS):
+        other_files = [out / name for name in (DECISIONS, TABLE) if (out / name).exists()]
+        if other_files:
+            raise ValueError(f"{other_files[0]} was not written by a replay. {again}")
         return
     held = read_json(out / SETTINGS, again)
     if not isinstance(held, dict):

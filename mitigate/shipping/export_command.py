@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING
 
 from mitigate.core import build, conf, settings
 from mitigate.core.options import paths_and_overrides
-from mitigate.evaluation import config as _options  # noqa: F401 - registers them
+from mitigate.evaluation import config as options
 from mitigate.evaluation.episode_lists import episodes
 
 if TYPE_CHECKING:  # nothing slow is imported before main() has read the command line
@@ -103,7 +103,7 @@ def _walks_of(run: Path, overrides: list[str], configs: Path | None) -> Walks:
     from mitigate.shipping.export import WALKS, Walks
 
     folder = [] if configs is None else [f"--config-dir={configs}"]
-    cfg = conf.composed("evaluate", [*overrides, *folder])
-    node = building.settings_of(cfg.agent, str(run / "agent"), overrides)
-    listed = episodes(cfg.env, cfg.split, WALKS)
-    return Walks(build.maker(node), build.maker(cfg.env.world), listed)
+    config = options.read(conf.composed("evaluate", [*overrides, *folder]))
+    node = building.settings_of(config.agent, str(run / "agent"), overrides)
+    listed = episodes(config.env, config.split, WALKS)
+    return Walks(build.maker(node), build.maker(config.env.world), listed)

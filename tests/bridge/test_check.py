@@ -108,12 +108,11 @@ def test_a_sheet_names_its_entries_and_draws_a_call_in_which_a_corruption_acts(m
     def late(group, views, corruption, key, heading):
         return views + 1 if corruption.name == "spatter" and key.frame == 3 else views
 
-    def note(names, group, views):
+    def note(axes, names, group, views):
         named.append((*names, group.cameras[0].name))
-        return np.zeros((4, 4, 3), np.uint8)
 
     monkeypatch.setattr(drawing, "corrupted", late)
-    monkeypatch.setattr(drawing, "_row", note)
+    monkeypatch.setattr(drawing, "_draw_row", note)
     frames = {"camera left": np.full((8, 8, 3), 90, np.uint8), "heading": np.array([])}
     drawing.sheet(rig, frames, [Corruption("spatter", 0.6), Corruption("flare", 0.6)], {}, 0)
     assert named == [

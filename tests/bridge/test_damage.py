@@ -11,6 +11,8 @@ from mitigate.bridge import results
 from mitigate.bridge.cell import read_done
 from mitigate.bridge.condition import Subset
 from mitigate.bridge.events import note
+from mitigate.core.files import sha256
+from mitigate.core.output import FolderLostError
 from mitigate.evaluation import rows
 
 PROGRAM = """
@@ -269,3 +271,48 @@ def test_subset_rejects_a_damaged_name(tmp_path, line):
     (tmp_path / "episodes.txt").write_text(line + "\n")
     with pytest.raises(ValueError, match=r"episodes\.txt has a damaged line"):
         Subset(2, tmp_path, settled=0).keep(["a", "b"])
+
+
+@pytest.mark.parametrize("name", ["done.json", "lock"])
+def test_run_names_a_folder_in_place_of_its_files(finished, name):
+    out, again = finished
+    path = out / CONDITION / name
+    path.unlink()
+    path.mkdir()
+    if name == "lock":
+        (out / CONDITION / "done.json").unlink()
+    ran = again()
+    assert ran.returncode == 1 and path.is_dir()
+    assert f"{path} must be a " in ran.stderr and "got a folder" in ran.stderr
+
+
+@pytest.mark.parametrize("kind", ["link", "file"])
+def test_run_keeps_a_finished_condition_that_cannot_be_put_aside(finished, tmp_path, kind):
+    out, again = finished
+    aside = out / "conditions/low_light-s0.6.finished"
+    if kind == "link":
+        aside.symlink_to(tmp_path)
+    else:
+        aside.write_text("mine")
+    note(out / "conditions/clean", event="end", scene="", episode="d", steps=1, calls=1)
+    clean = out / "conditions/clean/done.json"
+    events = clean.parent / "events.jsonl"
+    seal = {"bytes": len(events.read_bytes()), "sha256": sha256(events)}
+    entries = json.loads(clean.read_text()) | {"episodes_told": 4, "events": seal}
+    clean.write_text(json.dumps(entries))
+    before = contents(out / CONDITION)
+    ran = again()  # it lacks an episode of clean now, and is measured again
+    assert ran.returncode == 1 and str(aside) in ran.stderr
+    assert contents(out / CONDITION) == before
+
+
+@pytest.mark.parametrize("how", ["os.remove(path)", "os.replace(path, path + '.old')"])
+def test_run_stops_if_its_events_are_removed(run, tmp_path, how):
+    program = PROGRAM.replace("import numpy", "import os, numpy")
+    lines = f"    path = sys.argv[1] + '/events.jsonl'\n    if name == 'b':\n        {how}\n"
+    (tmp_path / "nav.py").write_text(program + lines)
+    out = tmp_path / "o"
+    command = f"{sys.executable} {tmp_path / 'nav.py'} {{out}}"
+    with pytest.raises(FolderLostError, match=r"events\.jsonl was removed or replaced"):
+        run(out, "conditions=[clean]", command)
+    assert not (out / "conditions/clean/done.json").exists()

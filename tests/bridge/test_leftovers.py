@@ -122,10 +122,21 @@ def test_run_leaves_no_process_behind_when_a_signal_ends_it(sleeper, tmp_path, n
     assert not running(tmp_path)
 
 
-def test_run_ends_processes_whose_supervisor_was_killed(run, tmp_path):
+SLEEP = "if len(sys.argv) > 1:\n    time.sleep(60)\n"
+CHILDREN = {
+    "keeps its environment": "if os.fork() == 0:\n    os.setsid()\n    time.sleep(60)\n",
+    "clears its environment": (
+        f"{SLEEP}subprocess.Popen([sys.executable, __file__, 'x'], env={{}}, "
+        "start_new_session=True)\n"
+    ),
+}
+
+
+@pytest.mark.parametrize("child", CHILDREN)
+def test_run_ends_processes_whose_parent_was_killed(run, tmp_path, child):
     file = tmp_path / "nav.py"
     file.write_text(
-        "import os, signal, time\nif os.fork() == 0:\n    os.setsid()\n    time.sleep(60)\n"
+        f"import os, signal, subprocess, sys, time\n{CHILDREN[child]}"
         "os.kill(os.getppid(), signal.SIGKILL)\ntime.sleep(60)\n"
     )
     ran = run(tmp_path / "o", "conditions=[clean]", f"{sys.executable} {file}")

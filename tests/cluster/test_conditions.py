@@ -24,8 +24,10 @@ for name in "ab":
         episode.corrupt({"rgb": numpy.full((8, 8, 3), 90, "uint8")})
     if sys.argv[2] == "spatter-s0.6" and not note.exists():
         note.touch()
-        parent = open(f"/proc/{os.getppid()}/stat").read()  # the supervisor's
-        os.kill(int(parent.rpartition(")")[2].split()[1]), signal.SIGKILL)
+        pid = os.getpid()
+        for _ in range(3):  # the parent, the supervisor, the worker
+            pid = int(open(f"/proc/{pid}/stat").read().rpartition(")")[2].split()[1])
+        os.kill(pid, signal.SIGKILL)
         time.sleep(60)  # the supervisor ends this
     episode.finish(success=name == "a", spl=0.5 * (name == "a"))
 """

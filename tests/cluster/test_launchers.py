@@ -13,7 +13,6 @@ from pathlib import Path
 from typing import ClassVar
 
 import pytest
-from omegaconf import DictConfig, OmegaConf
 
 from mitigate.cluster import ray_actors, slurm_jobs
 from mitigate.cluster.launcher import LauncherConfig, RayConfig, SlurmConfig, chosen, count, results
@@ -184,24 +183,18 @@ def test_the_rest_of_a_share_keeps_its_groups_and_a_failed_submission_leaves_no_
 )
 def test_a_launcher_of_nothing_is_refused(number):
     kind = RayConfig if "cpus" in number else SlurmConfig
-    node = OmegaConf.structured(kind(**number))
     with pytest.raises(ValueError, match=f"launcher.{next(iter(number))}=.* must be above 0"):
-        chosen(node)
+        chosen(kind(**number))
 
 
 def test_without_slurm_it_says_what_to_do(tmp_path, monkeypatch):
     pytest.importorskip("submitit")
     monkeypatch.setenv("PATH", "")
     launcher = SlurmConfig(folder=str(tmp_path))
-    for read in (lambda: run(launcher, Squares(tmp_path)), lambda: chosen(launcher_node(launcher))):
+    for read in (lambda: run(launcher, Squares(tmp_path)), lambda: chosen(launcher)):
         with pytest.raises(ValueError, match="login node"):
             read()
     assert not [*tmp_path.iterdir()]
-
-
-def launcher_node(launcher: LauncherConfig) -> DictConfig:
-    """``launcher`` as the config that names it."""
-    return OmegaConf.structured(launcher)
 
 
 @pytest.mark.parametrize(
@@ -216,20 +209,20 @@ def launcher_node(launcher: LauncherConfig) -> DictConfig:
 def test_a_launcher_that_is_none_is_told_when_it_is_chosen(launcher, package, says):
     pytest.importorskip(package)
     with pytest.raises(ValueError, match=says):
-        chosen(launcher_node(launcher))
+        chosen(launcher)
 
 
 @pytest.mark.parametrize("address", [None, "auto", "10.0.0.1:6379", "ray://head:10001"])
 def test_an_address_is_of_a_form_that_ray_knows(address):
     pytest.importorskip("ray")
-    assert chosen(launcher_node(RayConfig(address=address))).address == address
+    assert chosen(RayConfig(address=address)).address == address
 
 
 def test_what_is_not_installed_is_told_when_it_is_chosen(monkeypatch):
     for module, launcher in ((slurm_jobs, SlurmConfig()), (ray_actors, RayConfig())):
         monkeypatch.setattr(module, "find_spec", lambda name: None)
         with pytest.raises(ValueError, match=r"pip install -e '.\[cluster\]'"):
-            chosen(launcher_node(launcher))
+            chosen(launcher)
 
 
 def test_local_is_what_it_was(tmp_path):

@@ -72,6 +72,26 @@ def test_the_same_command_only_walks_what_is_missing(monkeypatch, tmp_path, walk
     assert "oracle: SR 100.0 [34.2, 100.0] %, SPL 1.00, 2 episodes" in capsys.readouterr().out
 
 
+def test_controls_warns_of_conflicting_rows_and_notices_lost_ones(
+    monkeypatch, tmp_path, walked, capsys
+):
+    given = ["split=val_seen_ogn", f"out={tmp_path}", "episodes=1"]
+    file = tmp_path / "rows.jsonl"
+    assert called(monkeypatch, *given) == 0
+    rows.append(file, [rows.read(file)[0] | {"success": 0, "spl": 0.0}])
+    with pytest.warns(UserWarning, match="1 rows say another success"):
+        assert called(monkeypatch, *given) == 0
+
+    def walk(*_):
+        file.unlink(missing_ok=True)
+        return {"success": 1, "spl": 1.0}
+
+    monkeypatch.setattr("mitigate.evaluation.episode.run_episode", walk)
+    monkeypatch.setattr(rows, "append", lambda *_: None)
+    assert called(monkeypatch, *given[:2], "episodes=2") == 2
+    assert "rows.jsonl was removed or replaced" in capsys.readouterr().err
+
+
 @pytest.mark.parametrize(
     ("option", "words"),
     [

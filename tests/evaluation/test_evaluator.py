@@ -20,6 +20,7 @@ from mitigate.corruptions import (
     inject_system_prompt,
 )
 from mitigate.evaluation import evaluator
+from mitigate.evaluation import rows as result_rows
 from mitigate.evaluation.episode import instruction, run_episode
 from mitigate.evaluation.evaluator import EpisodeTask, _together, evaluate
 from mitigate.guards.frames.restorer import Restorer
@@ -58,6 +59,22 @@ def test_two_workers_give_the_rows_of_one(finished, tmp_path):
     folder, rows = finished
     assert run(tmp_path, workers=2) == rows
     assert (tmp_path / "rows.jsonl").read_bytes() == (folder / "rows.jsonl").read_bytes()
+
+
+def test_evaluate_rejects_workers_whose_classes_are_others(tmp_path, monkeypatch):
+    agent = Straight(1)
+    run(tmp_path / "equal", workers=2, agent=agent, conditions=[CLEAN])
+    monkeypatch.setattr(Straight, "limit", 3, raising=False)
+    with pytest.raises(ValueError, match=r"class attributes of Straight .* give workers=1"):
+        run(tmp_path / "other", workers=2, agent=agent, conditions=[CLEAN])
+
+
+def test_evaluate_warns_of_conflicting_rows(tmp_path):
+    one = run(tmp_path, agent=Straight(1), conditions=[CLEAN])
+    other = one[0] | {"success": 1 - one[0]["success"]}
+    result_rows.append(tmp_path / "rows.jsonl", [other])
+    with pytest.warns(UserWarning, match="1 rows say another success"):
+        assert run(tmp_path, agent=Straight(1), conditions=[CLEAN]) == [other, one[1]]
 
 
 def test_rows_behind_a_restorer_are_of_another_agent(tmp_path):

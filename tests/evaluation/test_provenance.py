@@ -186,6 +186,84 @@ def test_an_edited_world_is_another_one(tmp_path, monkeypatch, wrapped):
     sys.modules.pop("edited_world")
 
 
+GLOBAL = {"cells": 9}
+
+
+def cells() -> int:
+    return GLOBAL["cells"] * FACTOR
+
+
+FACTOR = 1
+
+
+class Counted(Maze):
+    """A world whose episodes change its class, and whose code reads a global variable."""
+
+    count = 0
+    depth = 3
+    found: dict = {}
+
+    def step(self) -> int:
+        Counted.count += 1
+        self.found[self.count] = self.depth
+        return cells()
+
+
+@pytest.mark.parametrize(
+    ("place", "name", "value"),
+    [(Counted, "depth", 4), (Counted, "cells", 3), (Counted, "step", len), ("", "FACTOR", 2)],
+)
+@pytest.mark.parametrize("wrapped", [False, True])
+def test_keep_rejects_a_world_whose_class_attribute_changed(
+    tmp_path, monkeypatch, place, name, value, wrapped
+):
+    make = partial(in_two_layers, Counted()) if wrapped else Counted
+    for _ in range(2):
+        keep(tmp_path, make)
+    monkeypatch.setattr(place or sys.modules[__name__], name, value, raising=False)
+    with pytest.raises(ValueError, match="the class attributes of .* were changed"):
+        keep(tmp_path, make)
+    keep(tmp_path / "other", make)
+
+
+def test_keep_accepts_a_world_whose_class_only_episodes_changed(tmp_path):
+    for _ in range(2):
+        world, made_by = provenance.first_world(Counted)
+        provenance.keep(tmp_path, world, made_by, "val", EPISODES)
+        with provenance.Known(SimpleNamespace(), world, "none"):
+            Counted().step()
+    Counted.count += 1
+    with pytest.raises(ValueError, match="the class attributes of"):
+        keep(tmp_path, Counted)
+
+
+def test_keep_asks_for_a_version_of_a_world_that_cannot_be_read(tmp_path, capsys):
+    class Unreadable(Maze):
+        lines = (number for number in range(3))
+
+    keep(tmp_path, Unreadable)
+    assert "no later call can reuse these rows" in capsys.readouterr().out
+    with pytest.raises(ValueError, match=r'lines .* cannot be read\. Give version="'):
+        keep(tmp_path, Unreadable)
+    for _ in range(2):
+        named = provenance.first_world(Unreadable, "1")
+        provenance.keep(tmp_path / "named", *named, "val", EPISODES)
+    with pytest.raises(ValueError, match="the class attributes of"):
+        provenance.keep(
+            tmp_path / "named", *provenance.first_world(Unreadable, "2"), "val", EPISODES
+        )
+
+
+def test_keep_accepts_notes_of_before_class_attributes_counted(tmp_path):
+    keep(tmp_path, Counted)
+    note = tmp_path / provenance.NOTE
+    known = json.loads(note.read_text())
+    for world in known["val"]["worlds"].values():
+        assert world.pop(provenance.READ)
+    note.write_text(json.dumps(known))
+    keep(tmp_path, Counted)
+
+
 def test_a_folder_of_before_is_taken_as_it_is_and_what_its_note_says_counts(tmp_path):
     (tmp_path / "rows.jsonl").write_text("")
     keep(tmp_path, Maze)

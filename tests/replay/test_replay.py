@@ -240,6 +240,15 @@ def test_a_restorer_of_what_a_drive_does_not_show_is_refused_before_a_frame_is_r
     assert not (tmp_path / "out").exists()
 
 
+@pytest.mark.parametrize("name", ["table.md", "decisions.jsonl"])
+def test_replay_rejects_a_folder_of_another_command(tmp_path, mitigate, name):
+    (tmp_path / name).write_text("mine")
+    options = ("agents=[checkpoints/recurrent/base]", f"out={tmp_path}")
+    status, _, wrong = mitigate("replay", "drive", *options)
+    assert status == 1 and f"{tmp_path / name} was not written by a replay" in wrong
+    assert (tmp_path / name).read_text() == "mine"
+
+
 @pytest.mark.parametrize(
     ("module", "options", "told"),
     [

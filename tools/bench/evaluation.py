@@ -11,6 +11,7 @@ from typing import Any
 
 from mitigate.core import build, conf, workers
 from mitigate.evaluation.conditions import conditions
+from mitigate.evaluation.config import read
 from mitigate.evaluation.episode_lists import episodes
 from mitigate.evaluation.evaluate import load
 from mitigate.evaluation.evaluator import EpisodeTask, Job, evaluate, run_episode
@@ -32,7 +33,7 @@ class Pace:
 
 def paces(count: int) -> dict[str, Pace]:
     """By checkpoint: ``count`` episodes under the suite in this process, both ways in turns."""
-    cfg = conf.load_config("evaluate")
+    cfg = read(conf.load_config("evaluate"))
     found = {}
     for weights in CHECKPOINTS:
         task = EpisodeTask(load(cfg.agent, weights), build.maker(cfg.env.world))
@@ -78,7 +79,7 @@ def seconds_by_workers(count: int) -> dict[int, float]:
 
 
 def _evaluation(count: int, number: int, folder: Path) -> float:
-    cfg = conf.load_config("evaluate")
+    cfg = read(conf.load_config("evaluate"))
     agent = load(cfg.agent, CHECKPOINTS[0])
     started = time.perf_counter()
     evaluate(

@@ -46,7 +46,13 @@ COLOR, DEPTH = "rgb", "depth"  # kinds of camera
 # how an episode ends: it was over; its Env was reset, or closed, before; behind an exception
 OVER, RESET, CLOSE, BROKEN = "over", "reset", "close", "broken"
 ORDERLY = (StopIteration, StopAsyncIteration, GeneratorExit)  # how loops end, no fault of a program
-_thread = threading.local()  # .walk: of connect
+
+
+class _Thread(threading.local):
+    walk = None  # of connect
+
+
+_thread = _Thread()
 # by id, corrupted frames that the program still holds
 _given: "weakref.WeakValueDictionary[int, object]" = weakref.WeakValueDictionary()
 
@@ -219,6 +225,12 @@ def _placed(error):
     return f"{_named(error)[:LONGEST]}{where}"
 
 
+def _get(owner, name, default=None):
+    """Return an attribute of an object of another project, whose versions differ: ``default`` if
+    it has none."""
+    return getattr(owner, name, default)  # what it may lack is known by its name only
+
+
 def _load_numpy():
     global np
     import numpy as np
@@ -226,7 +238,7 @@ def _load_numpy():
 
 def _versions():
     names = ("habitat", "habitat_sim", "torch")
-    found = {n: str(getattr(sys.modules.get(n), "__version__", "")) for n in names}
+    found = {n: str(_get(sys.modules.get(n), "__version__", "")) for n in names}
     return {"pid": os.getpid(), "python": sys.version.split()[0], "numpy": np.__version__, **found}
 
 
@@ -405,7 +417,7 @@ class Walk:
         """Geodesic metres to the goals from the start and from here, and whether it said STOP."""
         if self.sim is None or self.episode is None:
             return {}
-        stopped = getattr(self.task, "is_stop_called", None)
+        stopped = _get(self.task, "is_stop_called")
         return {
             "start_distance": self.start,
             "distance": _distance(self.sim, self.path[-1] if self.path else None, self.episode),
@@ -415,7 +427,7 @@ class Walk:
 
 def _is_given(frame):
     """Whether an array is, or is a part of, a corrupted one that the program was given."""
-    while isinstance(getattr(frame, "base", None), np.ndarray):
+    while isinstance(frame, np.ndarray) and isinstance(frame.base, np.ndarray):
         frame = frame.base
     return _given.get(id(frame)) is frame
 
@@ -469,7 +481,7 @@ def _numbers(metrics, prefix=""):
             found.update(_numbers(value, f"{prefix}{name}."))
             continue
         known = isinstance(value, (bool, int, float, np.bool_, np.integer, np.floating))
-        if getattr(value, "shape", None) == () and hasattr(value, "item"):  # an array, a tensor
+        if _get(value, "shape") == () and _get(value, "item"):  # an array, a tensor
             value = value.item()
             known = isinstance(value, (bool, int, float))
         far = prefix + str(name) == "distance_to_goal" and known and float(value) == math.inf
@@ -481,8 +493,8 @@ def _numbers(metrics, prefix=""):
 def _distance(sim, position, episode):
     """Return the geodesic metres to the nearest goal, or place to see it from, infinite out of
     reach; None if unknown."""
-    goals = getattr(episode, "goals", None) or []
-    views = [p.agent_state.position for g in goals for p in getattr(g, "view_points", None) or []]
+    goals = _get(episode, "goals") or []
+    views = [p.agent_state.position for g in goals for p in _get(g, "view_points") or []]
     ends = [list(map(float, end)) for end in views or [g.position for g in goals]]
     if not ends or position is None:
         return None
@@ -500,14 +512,14 @@ def _of_config(sensor):
     """Return what the server must know of a lab sensor; names are upper case before 0.2.3."""
     if id(sensor) in _described:
         return _described[id(sensor)][1]
-    config, known = getattr(sensor, "config", None), {}
+    config, known = _get(sensor, "config"), {}
     for option in CAMERA:
-        value = getattr(config, option, getattr(config, option.upper(), None))
+        value = _get(config, option, _get(config, option.upper()))
         if isinstance(value, (bool, int, float)) or value is None:
             known[option] = value
         else:
             known[option] = [float(x) for x in value]
-    kind = str(getattr(sensor, "sensor_type", "")).rpartition(".")[2].lower()
+    kind = str(_get(sensor, "sensor_type", "")).rpartition(".")[2].lower()
     known.update(name=sensor.uuid, type=COLOR if kind == "color" else kind)
     _described[id(sensor)] = (sensor, known)
     return known
@@ -516,7 +528,7 @@ def _of_config(sensor):
 def _heading(state):
     """Return the agent's heading in radians, counter-clockwise, of its quaternion."""
     rotation = state.rotation
-    if hasattr(rotation, "imag"):  # numpy-quaternion
+    if _get(rotation, "imag") is not None:  # numpy-quaternion
         return 2 * math.atan2(float(rotation.imag[1]), float(rotation.real))
     x, y, z, w = rotation
     return 2 * math.atan2(float(y), float(w))
@@ -564,19 +576,19 @@ def _get_observations(original, suite, *args, **kwargs):
 def _task_reset(original, task, episode, *args, **kwargs):
     """``EmbodiedTask.reset``: the last episode is over, and the words of the next are corrupted."""
     sim = task._sim
-    if getattr(getattr(sim, "config", None), "enable_batch_renderer", False):
+    if _get(_get(sim, "config"), "enable_batch_renderer"):
         stop("frames of Habitat's batch renderer pass no sensor: set enable_batch_renderer=False.")
     walk = _walk_of(sim.sensor_suite)
     walk.end(task.measurements.get_metrics() if walk.begun else None, RESET)
     _put_back(walk)
     walk.sim, walk.task, walk.episode = sim, task, episode
-    words = getattr(episode, "instruction", None)
+    words = _get(episode, "instruction")
     text, tokens = _own(words)
     said = {
         "text": text,
         "tokens": _plain(tokens),
-        "language": getattr(words, "language", None),
-        "category": getattr(episode, "object_category", None),
+        "language": _get(words, "language"),
+        "category": _get(episode, "object_category"),
     }
     answer = walk.begin(episode.scene_id, episode.episode_id, **said)
     if words is not None and answer.get("text") is not None:
@@ -593,10 +605,10 @@ def _own(words):
     """Return text and tokens of an episode's words as the data set has them, though a walk may have
     put others in their place, and the program changed these: they are not corrupted again. Copies
     and pickles of words that are on know their own, too, by the text that is heard."""
-    text = getattr(words, "instruction_text", None)
-    heard, *own = getattr(words, "_mitigate_own", (None, None, None))
+    text = _get(words, "instruction_text")
+    heard, *own = _get(words, "_mitigate_own", (None, None, None))
     known = heard is not None and (heard == text or _is_on(words))
-    return own if known else (text, getattr(words, "instruction_tokens", None))
+    return own if known else (text, _get(words, "instruction_tokens"))
 
 
 def _is_on(words):
@@ -606,7 +618,7 @@ def _is_on(words):
 
 def _say(words, text, tokens):
     words.instruction_text = text
-    if getattr(words, "instruction_tokens", None) is not None:
+    if _get(words, "instruction_tokens") is not None:
         words.instruction_tokens = tokens
 
 
@@ -628,7 +640,7 @@ def _plain(tokens):
 def _update_measures(original, measurements, *args, **kwargs):
     """``Measurements.update_measures`` is called once for each low-level step."""
     result = original(measurements, *args, **kwargs)
-    sim = getattr(kwargs.get("task"), "_sim", None)
+    sim = _get(kwargs.get("task"), "_sim")
     if sim is not None:
         _walk_of(sim.sensor_suite).moved(kwargs.get("action"))
     return result
@@ -681,7 +693,7 @@ def _env_step(original, env, *args, **kwargs):
 def _env_close(original, env, *args, **kwargs):
     """``Env.close``: an Env for each episode leaves no simulator or connection behind."""
     _end(env, CLOSE)
-    suite = getattr(env.sim, "sensor_suite", None)
+    suite = _get(env.sim, "sensor_suite")
     try:
         return original(env, *args, **kwargs)
     finally:
@@ -700,7 +712,7 @@ def _release(suite):
 
 
 def _end(env, how):
-    suite = getattr(env.sim, "sensor_suite", None)
+    suite = _get(env.sim, "sensor_suite")
     walk = None if suite is None else _walk_of(suite)
     if walk is not None and walk.begun:
         walk.end(env.get_metrics(), how)
@@ -723,7 +735,7 @@ def _sensor_observations(original, sim, *args, **kwargs):
 
 def _async_observations(original, sim, *args, **kwargs):
     """``Simulator.get_sensor_observations_async_finish``, where habitat-sim has it."""
-    wanted = getattr(sim, "_async_draw_agent_ids", None)  # the call forgets them
+    wanted = _get(sim, "_async_draw_agent_ids")  # the call forgets them
     observations = _unseen(original, sim, *args, **kwargs)
     if _is_unseen() or _is_labs(sim):
         return observations
@@ -738,7 +750,7 @@ def _is_labs(sim):
         frame = frame.f_back
     if frame is None or _package(frame.f_globals.get("__name__")) == "habitat":
         return frame is not None
-    if not hasattr(sim, "sensor_suite"):
+    if _get(sim, "sensor_suite") is None:
         return False
     labs = [kind for kind in type(sim).__mro__ if _package(kind.__module__) == "habitat"]
     name = frame.f_code.co_name
@@ -759,7 +771,7 @@ def _package(module):
 def _of_agents(sim, observations, wanted):
     """Corrupt what the acting agent sees, in observations of several agents, by number, or of the
     ``wanted`` one (None: the acting one). The others are no eyes of the agent."""
-    agent = getattr(sim, "_default_agent_id", 0)
+    agent = _default_agent(sim)
     if observations and all(isinstance(seen, dict) for seen in observations.values()):
         if agent in observations:
             observations[agent] = _of_agent(sim, observations[agent])
@@ -769,7 +781,7 @@ def _of_agents(sim, observations, wanted):
 
 
 def _of_agent(sim, observations):
-    walk = getattr(_thread, "walk", None)
+    walk = _thread.walk
     if walk is None or walk.pid != os.getpid():
         stop(
             "habitat-sim is used here without habitat-lab, and nobody said in this thread of this "
@@ -784,7 +796,7 @@ def _of_agent(sim, observations):
 
 
 def _default_agent(sim):
-    return getattr(sim, "_default_agent_id", 0)
+    return _get(sim, "_default_agent_id", 0)
 
 
 def _of_specifications(sim):
@@ -794,9 +806,9 @@ def _of_specifications(sim):
         kind = str(spec.sensor_type).rpartition(".")[2].lower()
         if kind in ("color", "depth"):
             camera = {"name": spec.uuid, "type": COLOR if kind == "color" else DEPTH}
-            camera.update(hfov=float(getattr(spec, "hfov", 90)), normalize_depth=False)
-            for option in ("position", "orientation"):
-                camera[option] = [float(x) for x in getattr(spec, option)]
+            camera.update(hfov=float(_get(spec, "hfov", 90)), normalize_depth=False)
+            camera["position"] = [float(x) for x in spec.position]
+            camera["orientation"] = [float(x) for x in spec.orientation]
             found.append(camera)
     return found
 
@@ -806,7 +818,7 @@ def _of_specifications(sim):
 
 def _wmnav_episode(original, env, number, *args, **kwargs):
     """``Env._run_episode`` of WMNav, which has no lab: its simulators last for an episode each."""
-    _thread.walk = walk = getattr(_thread, "walk", None) or Walk()
+    _thread.walk = walk = _thread.walk or Walk()
     told = env.all_episodes[number]
     words = told["object_category"]
     answer = walk.begin(told["scene_id"], told["episode_id"], text=words, category=words, loop=True)
@@ -838,7 +850,7 @@ def _adapted(folder, file, path):
     its weights are loaded, adapters go into its module ``path``."""
 
     def forward(original, encoder, *args, **kwargs):
-        if not getattr(encoder, "_mitigate_adapted", False):
+        if not vars(encoder).get("_mitigate_adapted"):
             _adapt(encoder, folder, file, path)
             encoder._mitigate_adapted = True
         return original(encoder, *args, **kwargs)
@@ -849,13 +861,14 @@ def _adapted(folder, file, path):
 def _adapt(encoder, folder, file, path):
     owner, module = None, encoder
     for name in filter(None, path.split(".")):
-        if not hasattr(module, name):
+        inner = _get(module, name)
+        if inner is None:
             there = ", ".join(n for n, _ in module.named_children()) or "none"
             stop(
                 f"adapters= names {path} in {type(encoder).__name__}, but there is no {name}: its "
                 f"modules there are {there}."
             )
-        owner, module = (module, name), getattr(module, name)
+        owner, module = (module, name), inner
     spec = importlib.util.spec_from_file_location("mitigate_plain_adapters", file)
     plain_adapters = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(plain_adapters)
@@ -1027,9 +1040,9 @@ def _frame_in(value, name):
     shape = _shape(value)
     if len(shape) > 1 and sorted(shape)[-2] > 8:
         return name, shape
-    if callable(getattr(value, "items", None)):
+    if callable(_get(value, "items")):
         parts = value.items()
-    elif str(getattr(value, "dtype", "")) == "object":
+    elif str(_get(value, "dtype", "")) == "object":
         parts = enumerate(value.ravel().tolist())
     else:
         parts = enumerate(value) if isinstance(value, (list, tuple)) else ()
@@ -1043,7 +1056,7 @@ def _shape(value):
     while isinstance(value, (list, tuple)) and value:
         shape.append(len(value))
         value = value[0]
-    own = value.size if hasattr(value, "getbands") else getattr(value, "shape", None)
+    own = value.size if _get(value, "getbands") else _get(value, "shape")
     if own is None:
         return tuple(shape) if isinstance(value, (int, float)) else ()
     try:
@@ -1084,7 +1097,7 @@ def connect(episode, scene="", instruction=None):
     """Begin an episode under ``mitigate run``; no two have one scene and name. Raises RuntimeError
     outside of it."""
     _check_run()
-    if getattr(_thread, "walk", None) is None:
+    if _thread.walk is None:
         _thread.walk = Walk()
     return Episode(_thread.walk, str(episode), scene, instruction)
 
@@ -1118,12 +1131,12 @@ def patch(module):
     """Wrap the methods of a module that was just imported."""
     _load_numpy()
     for owner, method, wrapper in PATCHES[module.__name__]:
-        kind = getattr(module, owner, None) if owner else module
-        if method in OPTIONAL and not hasattr(kind, method):
-            continue
-        if kind is None or not hasattr(kind, method):
+        kind = _get(module, owner) if owner else module
+        original = None if kind is None else _get(kind, method)
+        if original is not None:
+            setattr(kind, method, _wrapped(original, wrapper))
+        elif method not in OPTIONAL:
             stop(_absent(module, owner, method))
-        setattr(kind, method, _wrapped(getattr(kind, method), wrapper))
 
 
 def _absent(module, owner, method):
@@ -1131,7 +1144,7 @@ def _absent(module, owner, method):
     adapters = json.loads(os.environ.get(ADAPTERS) or "{}")
     if adapters.get("module") == module.__name__:
         classes = [n for n, kind in vars(module).items() if isinstance(kind, type)]
-        there = ", ".join(n for n in classes if hasattr(getattr(module, n), "forward")) or "none"
+        there = ", ".join(n for n in classes if _get(vars(module)[n], "forward")) or "none"
         return (
             f"adapters= names the class {owner} of {module.__name__}, but there is none with a "
             f"forward method: those there are {there}. Write FOLDER:package.module:Class.attribute."

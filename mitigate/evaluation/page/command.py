@@ -73,19 +73,21 @@ def _walks(
     from mitigate.core.build import maker
     from mitigate.core.names import unknown
     from mitigate.evaluation import evaluate
+    from mitigate.evaluation.config import read
     from mitigate.evaluation.page.walks import walk_again
 
     names = {row["name"] for row in held}
     for name, _ in walk:
         if name not in names:
             raise ValueError(unknown("agent in these rows", name, names))
-    cfg = conf.load_config("evaluate", options)
-    world = maker(cfg.env.world)()
-    own = [r for r in held if r["split"] == cfg.split and r["rule"] == world.rule]
+    config = read(conf.load_config("evaluate", options))
+    world = maker(config.env.world)()
+    own = [r for r in held if r["split"] == config.split and r["rule"] == world.rule]
     agents: dict[str, Any] = {
-        name: evaluate.load(cfg.agent, weights or None, overrides=options) for name, weights in walk
+        name: evaluate.load(config.agent, weights or None, overrides=options)
+        for name, weights in walk
     }
-    listed = evaluate.episodes(cfg.env, cfg.split, None)
+    listed = evaluate.episodes(config.env, config.split, None)
     with Progress("walks", most, unit="episode") as progress:
         for drawn in walk_again(agents, world, listed, own, most=most, seed=seed):
             progress.advance()

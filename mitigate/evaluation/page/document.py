@@ -27,42 +27,15 @@ SUFFIXES = (".html", ".htm")
 SCRIPTS = ("dom", "data", "colours", "table", "heatmap", "episodes", "curves", "walks", "main")
 
 
-def page(
-    title: str,
-    about: str,
-    shown: Sequence[dict[str, Any]],
-    *,
-    curves: Sequence[dict[str, Any]] = (),
-    grids: Sequence[dict[str, Any]] = (),
-    packed: str = "",
-    walks: Sequence[dict[str, Any]] = (),
-    notes: Sequence[str] = (),
-    first: int = 0,
-) -> str:
-    """Return an HTML page of sections (``model.section_data``, with the number of their "grid").
-
-    ``about``: a sentence under the title. ``first``: the section that it opens with. The others
-    are as the scripts read them: see the modules that make them.
-    """
-    data = {
-        "title": title,
-        "about": about,
-        "sections": list(shown),
-        "curves": list(curves),
-        "grids": list(grids),
-        "walks": list(walks),
-        "notes": list(notes),
-        "first": first,
-        "end": f"Made by mitigate {version('mitigate')}, corruption suite {SUITE_VERSION}. "
-        "This file is whole: it asks no network for anything.",
-    }
+def _page(data: dict[str, Any], packed: str) -> str:
+    """Return the HTML page of ``data``, as the scripts read them; ``packed``: the episodes."""
     style = (ASSETS / "style.css").read_text(encoding="utf-8")
     scripts = [(ASSETS / f"{name}.js").read_text(encoding="utf-8") for name in SCRIPTS]
     script = '(() => {\n"use strict";\n' + "\n".join(scripts) + "})();\n"
     values = {
         "STYLE_HASH": _hash(style),
         "SCRIPT_HASH": _hash(script),
-        "TITLE": html.escape(title),
+        "TITLE": html.escape(data["title"]),
         "STYLE": style,
         "DATA": _embedded(data),
         "PACKED": packed,
@@ -132,17 +105,19 @@ def report(
             f"holds {most:,} episodes at most: their numbers stand, but such cells do not open. "
             "Name fewer rows to see them."
         )
-    return page(
-        title,
-        f"{len(held):,} rows: {_listed({row['name'] for row in held})}.",
-        shown,
-        curves=curves(parts),
-        grids=packed.grids,
-        packed=packed.text(),
-        walks=walks,
-        notes=notes,
-        first=largest,
-    )
+    data = {
+        "title": title,
+        "about": f"{len(held):,} rows: {_listed({row['name'] for row in held})}.",
+        "sections": shown,
+        "curves": curves(parts),
+        "grids": packed.grids,
+        "walks": list(walks),
+        "notes": notes,
+        "first": largest,
+        "end": f"Made by mitigate {version('mitigate')}, corruption suite {SUITE_VERSION}. "
+        "This file is whole: it asks no network for anything.",
+    }
+    return _page(data, packed.text())
 
 
 def _size(shown: dict[str, Any]) -> int:

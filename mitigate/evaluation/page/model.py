@@ -17,7 +17,7 @@ import numpy as np
 
 from mitigate.evaluation import bootstrap
 from mitigate.evaluation.bootstrap import LEVEL, NO_WIDTH, RESAMPLES, ROUNDING, Estimate
-from mitigate.evaluation.grid import BLOCKS, METRICS, Grid
+from mitigate.evaluation.grid import METRICS, Grid
 from mitigate.evaluation.rows import Row
 from mitigate.evaluation.sections import Retained, Section, compare, label
 
@@ -266,11 +266,8 @@ def _has(panel: dict[str, Any], column: str) -> bool:
 
 
 def _panels(grid: Grid) -> list[dict[str, Any]]:
-    held = {name for _, name, at, _ in grid.cells if at > 0 and name != "clean"}
-    met = [name for block in BLOCKS.values() for name in block if name in held]
-    met += sorted(held.difference(met))
     panels = []
-    for name in met:
+    for name in grid.corruptions:
         lines = [_line(grid, column, name) for column in grid.columns]
         kept = [line for line in lines if line is not None]
         if kept:
