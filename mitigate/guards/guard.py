@@ -114,8 +114,9 @@ class Guard:
 
 
 def overrides(guard: Guard, method: str) -> bool:
-    """Return whether the class of ``guard`` defines ``method`` itself."""
-    return getattr(type(guard), method) is not getattr(Guard, method)
+    """Return whether the class of ``guard``, or one between it and Guard, defines ``method``."""
+    classes = type(guard).__mro__
+    return any(method in vars(cls) for cls in classes[: classes.index(Guard)])
 
 
 class Guards(Guard):

@@ -54,7 +54,9 @@ class FramesCallable(Guard):
         self.choice = choice
         self.label = label(choice)
         self.call = call
-        self.version = named.version or _text_or_none(getattr(call, "version", None))
+        # A callable of the user needs neither attribute.
+        version = named.version or getattr(call, "version", None)
+        self.version = None if version is None else str(version)
         self.frames = _frames(getattr(call, "frames", SENSORS), choice)
         held = [f"{named.module}:{named.name}", _source(module, self.version), self.version]
         digest = hashlib.sha256(json.dumps(held).encode()).hexdigest()
@@ -122,12 +124,13 @@ def open_callable(choice: str) -> Guard:
             f"restore={choice}: {error}. It names module:callable, of a module that is installed, "
             f"in the folder you are in, or on PYTHONPATH, or the folder of a restorer.{hint}"
         ) from error
-    if not hasattr(module, named.name):
+    try:
+        found = getattr(module, named.name)  # the user names it at run time
+    except AttributeError as error:
         public = [name for name in vars(module) if not name.startswith("_")]
         raise ValueError(
             f"restore={choice}: {unknown(f'object of {named.module}', named.name, public)}"
-        )
-    found = getattr(module, named.name)
+        ) from error
     made = found() if isinstance(found, type) else found
     if isinstance(made, Guard):
         made.version = named.version or made.version
@@ -155,10 +158,6 @@ def _frames(frames: Any, choice: str) -> tuple[str, ...]:
             f"restore={choice}: frames must name rgb, depth or both, got {frames!r:.80}."
         )
     return named
-
-
-def _text_or_none(version: Any) -> str | None:
-    return None if version is None else str(version)
 
 
 def _source(module: ModuleType, version: str | None) -> str:

@@ -124,9 +124,11 @@ class LanguageModel(nn.Module):
     def untuned(self) -> Iterator[LanguageModel]:
         """Yield the model as before fine-tuning: no adapter, and the prompt that explains."""
         tuned, self.prompt = self.prompt, "prompted"
-        adapter = getattr(self.network, "disable_adapter", nullcontext)
+        from peft import PeftModel
+
+        network = self.network
         try:
-            with adapter():
+            with network.disable_adapter() if isinstance(network, PeftModel) else nullcontext():
                 yield self
         finally:
             self.prompt = tuned
@@ -253,7 +255,7 @@ def _with_lora(network: nn.Module, lora: dict[str, Any]) -> nn.Module:
         return get_peft_model(network, config)
     except ValueError as error:
         names = {
-            name.rpartition(".")[2] for name, m in network.named_modules() if hasattr(m, "weight")
+            name.rpartition(".")[2] for name, m in network.named_modules() if not [*m.children()]
         }
         raise ValueError(
             f"agent.lora.targets={list(lora['targets'])} name no module of this model. Choose of: "
