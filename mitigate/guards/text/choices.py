@@ -32,14 +32,11 @@ def current(choice: str) -> str:
     """Return the present name of a choice. Warns where an earlier version's tagger or reader is
     named, which no longer exist."""
     first, plus, second = choice.partition("+")
-    if plus and first in REPLACED:
-        _warn(first, choice, second)
-        return current(second)
-    if choice in REPLACED:
-        if choice != "rules":
-            _warn(choice, choice, REPLACED[choice])
-        return REPLACED[choice]
-    return choice
+    if first not in REPLACED:
+        return choice
+    instead = second if plus else REPLACED[first]
+    _warn(first, choice, instead)
+    return current(instead)
 
 
 def _warn(name: str, choice: str, instead: str) -> None:

@@ -32,8 +32,8 @@ SIZE = 1 << BITS  # of the table of hashed features
 CONFIG, WEIGHTS = "classifier.json", "classifier.safetensors"
 _TOKEN = re.compile(r"[a-z]+(?:['’][a-z]+)?|\d+|[^\w\s]|[^\W\d_]+")
 _CAPITALS = re.compile(r"\b[A-Z]{2,}\b")
+_SIGNS = re.compile(r"[<>{}\[\]|=_\\`#]|//|\(\)")
 LIMIT = 8.0  # of a score that goes into the second step
-MARKS = ("code", "cipher", "leet", "spelled", "wide", "alike", "case")
 
 
 def terms(said: Decoded, original: str, block: bool) -> Counter[int]:
@@ -43,27 +43,34 @@ def terms(said: Decoded, original: str, block: bool) -> Counter[int]:
         t if not t.isdigit() else ("#" if len(t) < 3 else "###") for t in _TOKEN.findall(lower)
     ]
     words = [t for t in tokens if t[0].isalnum() or t[0] == "#"]
-    names = [f"w {w}" for w in words]
-    names += [f"p {a} {b}" for a, b in zip(["^", *words], [*words, "$"], strict=True)]
+    names = [f"p {a} {b}" for a, b in zip(["^", *words], [*words, "$"], strict=True)]
     names += [f"s {a} {c}" for a, c in zip(words, words[2:], strict=False)]
     names += [f"m {t}" for t in tokens if not t[0].isalnum()]
-    for word in words:
-        edged = f"<{word}>"
-        names += [f"c{edged[i : i + n]}" for n in (3, 4, 5) for i in range(len(edged) - n + 1)]
     names += [f"= {mark}" for mark in said.marks]
     if block:
         names.append("= block")
-    capitals = len(_CAPITALS.findall(original))
-    if capitals > 1:
+    if len(_CAPITALS.findall(original)) > 1:
         names.append("= capitals")
-    if re.search(r"[<>{}\[\]|=_\\`#]|//|\(\)", original):
+    if _SIGNS.search(original):
         names.append("= signs")
     if script(original) == "other":
         names.append("= script")
-    found: Counter[int] = Counter()
-    for name in names:
-        found[zlib.crc32(name.encode()) & (SIZE - 1)] += 1
+    found = Counter(map(_hashed, names))
+    for word in words:
+        found.update(_word_terms(word))
     return found
+
+
+def _hashed(name: str) -> int:
+    return zlib.crc32(name.encode()) & (SIZE - 1)
+
+
+@lru_cache(maxsize=20_000)
+def _word_terms(word: str) -> tuple[int, ...]:
+    """Return the terms of a word and of its groups of three to five letters."""
+    edged = f"<{word}>"
+    groups = [f"c{edged[i : i + n]}" for n in (3, 4, 5) for i in range(len(edged) - n + 1)]
+    return tuple(map(_hashed, [f"w {word}", *groups]))
 
 
 @dataclass(frozen=True)

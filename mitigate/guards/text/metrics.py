@@ -11,9 +11,7 @@ from mitigate.core.markdown import markdown_table
 from mitigate.corruptions.language.fidelity import check, facts
 
 CLEAN = "clean"  # the family of instructions that nobody corrupted
-# an injected sentence counts as removed below this share of its word pairs (ours); `banks.remains`
-# is stricter: a third, and of pairs that the route has not
-REMAINS = 0.5
+REMAINS = 0.5  # heuristic: below this share of its word pairs an injected sentence is removed
 _WORD = re.compile(r"[^\W_]+(?:['’][^\W_]+)*")
 
 

@@ -10,6 +10,7 @@ import pytest
 from mitigate.core.files import ROOT
 from mitigate.guards.text import classifier, fit
 from mitigate.guards.text.guard import Safeguard, open_safeguard
+from mitigate.guards.text.learning.lines import read_lines
 
 ATTACKS = [
     "Blorp the snarfle before you zib.",
@@ -65,3 +66,20 @@ def test_load_explains_missing_and_damaged_folders(tmp_path):
 def test_fit_explains_missing_data(tmp_path):
     with pytest.raises(FileNotFoundError, match="come with a checkout"):
         fit.fit(tmp_path)
+
+
+@pytest.mark.parametrize(
+    ("line", "problem"),
+    [
+        ('{"attack"', r"attacks\.jsonl, line 2 must be one JSON object"),
+        ('{"mechanism": "a", "place": "any"}', "line 2 must have the key 'attack'"),
+        ('{"mechanism": "a", "place": "any", "attack": 1}', "line 2 must be text under"),
+        ('{"mechanism": "a", "place": "top", "attack": "Go."}', "place must be one of any, inside"),
+    ],
+)
+def test_read_lines_explains_malformed_attacks(tmp_path, line, problem):
+    (tmp_path / "banks").mkdir()
+    good = '{"mechanism": "a", "place": "any", "attack": "Go."}'
+    (tmp_path / "banks/attacks.jsonl").write_text(f"{good}\n{line}\n")
+    with pytest.raises(ValueError, match=problem):
+        read_lines(tmp_path)

@@ -205,7 +205,7 @@ def _align(commands: list[str], said: list[str]) -> list[tuple[str, int | None]]
     at = 0
     for sentence in said:
         fits = at < len(commands) and len(sentence.split()) > 1
-        if fits and not check(commands[at], sentence) and len(said) - len(found) >= 0:
+        if fits and not check(commands[at], sentence):
             frames = len(said) - len(commands)
             if at == 0 and not found and frames and not _tells(sentence, commands[0]):
                 found.append((sentence, None))

@@ -21,6 +21,7 @@ from mitigate.guards.text.learning.styler import draw_styled
 from mitigate.guards.text.pieces import clause_pieces, sentence_pieces
 
 FOLDS = 5
+PLACES = ("any", "inside", "wrap")
 ROUTES = 1200  # drawn from templates, and as many in random styles
 # Weights of lines: hand-written honest texts that look like attacks count most.
 ALIKE = {"lookalikes": 2.0, "fresh_lookalikes": 2.0, "near_misses": 2.0, "odd_routes": 2.0}
@@ -65,7 +66,12 @@ def read_lines(folder: Path, routes: int = ROUTES) -> list[Line]:
         )
     lines = []
     for name in ("attacks", "fresh_attacks"):
-        for d in _json(banks / f"{name}.jsonl"):
+        for d in _json(banks / f"{name}.jsonl", "attack", "mechanism", "place"):
+            if d["place"] not in PLACES:
+                raise ValueError(
+                    f"place must be one of {', '.join(PLACES)}, got {d['place']!r:.40} in "
+                    f"{banks / name}.jsonl, beside {d['attack']!r:.60}."
+                )
             lines.append(Line(d["attack"], True, d["mechanism"], place=d["place"]))
     for i, text in enumerate(_text(banks / "fit_attacks.txt")):
         lines.append(Line(text, True, f"lines {i % 8}", 0.7))
@@ -73,7 +79,7 @@ def read_lines(folder: Path, routes: int = ROUTES) -> list[Line]:
         for family, texts in prefixes(split).items():
             lines += [Line(text, True, f"prefix {family}") for text in texts]
     for name, weight in ALIKE.items():
-        for i, d in enumerate(_json(banks / f"{name}.jsonl")):
+        for i, d in enumerate(_json(banks / f"{name}.jsonl", "text")):
             lines.append(Line(d["text"], False, f"{name} {i % 6}", weight))
     for i, text in enumerate(_text(banks / "fit_routes.txt")):
         lines.append(Line(text, False, f"fit_routes {i % 4}", 1.5))
@@ -102,9 +108,24 @@ def read_lines(folder: Path, routes: int = ROUTES) -> list[Line]:
     return lines
 
 
-def _json(file: Path) -> Iterator[dict[str, Any]]:
+def _json(file: Path, *keys: str) -> Iterator[dict[str, Any]]:
+    """Yield the objects of a JSON-lines file. Raises ValueError for a line that is no JSON object
+    with texts under ``keys``."""
     with open(file, encoding="utf-8") as opened:
-        yield from (json.loads(line) for line in opened if line.strip())
+        for number, line in enumerate(opened, 1):
+            if not line.strip():
+                continue
+            try:
+                d = json.loads(line)
+                if all(isinstance(d[key], str) for key in keys):
+                    yield d
+                    continue
+                problem = "must be text under " + ", ".join(keys)
+            except (ValueError, TypeError) as error:
+                problem = f"must be one JSON object ({error})"
+            except KeyError as error:
+                problem = f"must have the key {error}"
+            raise ValueError(f"{file}, line {number} {problem}. Fix or delete that line.")
 
 
 def _text(file: Path) -> list[str]:
