@@ -1,9 +1,10 @@
-"""How much two processes do beside one: ``python -m tools.bench.scaling [--write]``.
+"""Compare the speed of one process and of two: ``python -m tools.bench.scaling [--write]``.
 
 training: steps of ``da_per_episode`` by one process, and by two ranks of torchrun (gloo), each on
 one thread and without workers. evaluation: rows of the suite by 1 and 2 workers. recording: calls
 of one RGB-D camera of 128 pixels over the bridge, written to disk, by 1 and 2 environments. All in
-one run, so that ratios count; ``--write`` puts the table into docs/scale.md. Linux only.
+one run, so that ratios are comparable; ``--write`` writes the table to docs/lab/gpu-and-clusters.md.
+Linux only.
 """
 
 from __future__ import annotations
@@ -29,7 +30,7 @@ from tools.bench.evaluation import seconds_by_workers
 from tools.bench.pages import put
 from tools.bench.timing import machine
 
-PAGE = Path(__file__).resolve().parents[2] / "docs" / "scale.md"
+PAGE = Path(__file__).resolve().parents[2] / "docs/lab/gpu-and-clusters.md"
 BEGIN = "<!-- table: python -m tools.bench.scaling --write -->"
 END = "<!-- end of the table -->"
 SUITE = 13  # conditions of the default suite
@@ -98,7 +99,7 @@ def _walk(number: int) -> None:
 
 
 def measured(steps: int, episodes: int) -> dict[str, tuple[float, float]]:
-    """What one process and two do in a second, by load."""
+    """Return the rates per second of one process and of two, by load."""
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         seconds = seconds_by_workers(episodes)
@@ -120,9 +121,9 @@ def measured(steps: int, episodes: int) -> dict[str, tuple[float, float]]:
 
 
 def table(found: dict[str, tuple[float, float]]) -> str:
-    """Markdown: a line for each load."""
+    """Return a Markdown table with one row per load."""
     rows = ([name, f"{a:.3g}", f"{b:.3g}", f"{b / a:.2f}"] for name, (a, b) in found.items())
-    head = ("a second", "1 process", "2 processes", "as many")
+    head = ("per second", "1 process", "2 processes", "ratio")
     return f"{machine()}\n\n{markdown_table(head, rows)}"
 
 
@@ -131,7 +132,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     parser = argparse.ArgumentParser(prog="python -m tools.bench.scaling", description=__doc__)
     parser.add_argument("--steps", type=int, default=12, help="of each training (default 12)")
     parser.add_argument("--episodes", type=int, default=8, help="evaluated (default 8)")
-    parser.add_argument("--write", action="store_true", help="write docs/scale.md")
+    parser.add_argument("--write", action="store_true", help="write docs/lab/gpu-and-clusters.md")
     chosen = parser.parse_args(arguments)
     if min(chosen.steps, chosen.episodes) < 1:
         parser.error("--steps and --episodes must be 1 or more.")

@@ -5,7 +5,7 @@ recipe is trained (``debug=smoke``, four steps a stage) once unbroken, and once 
 one after the other, each at a moment drawn from the seed; the weights must be the same bits.
 Evaluations are broken likewise; their rows must be the same bytes. Prints what was tried and what
 survived, and exits with 1 if anything did not, or nothing was tried. ``--write`` puts the table,
-with what earlier calls of that seed found of other recipes, into docs/reliability.md.
+with what earlier calls of that seed found of other recipes, into docs/lab/fault-injection.md.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ FAMILIES = {  # recipes that between them use every file of recipes/
     "restore": "restore, restore_gate",
 }
 EVALUATION = "evaluation"
-PAGE = Path(__file__).resolve().parents[2] / "docs" / "reliability.md"
+PAGE = Path(__file__).resolve().parents[2] / "docs/lab/fault-injection.md"
 
 
 def options(arguments: Sequence[str] | None) -> argparse.Namespace:
@@ -50,7 +50,7 @@ def options(arguments: Sequence[str] | None) -> argparse.Namespace:
     add("--seed", type=int, default=0)
     add("--jobs", type=int, default=cores(), help="recipes at a time, each on about one core")
     add("--out", type=Path, default=Path("runs/faults"))
-    add("--write", action="store_true", help="write docs/reliability.md")
+    add("--write", action="store_true", help="write docs/lab/fault-injection.md")
     return parser.parse_args(arguments)
 
 
@@ -84,7 +84,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     write_bytes(notes, json.dumps(held, indent=1).encode())
     if chosen.write:
         report.write(PAGE, held, FAMILIES, chosen.seed)
-        print(f"wrote docs/{PAGE.name}")
+        print(f"wrote docs/lab/{PAGE.name}")
     return int(survived < tried or (bool(chosen.recipes) and not tried))
 
 

@@ -1,4 +1,4 @@
-"""What became of all faults, as lines and as the table of docs/reliability.md."""
+"""What became of all faults, as lines and as the table of docs/lab/fault-injection.md."""
 
 from __future__ import annotations
 
