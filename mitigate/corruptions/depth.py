@@ -252,7 +252,7 @@ RECORDS = (
         frame="offset, every 5 frames",
         bars=(0.09, 0.008),
         reason=(
-            "A dozen instructions a pixel for validity, range and kind of hole; the bar is "
+            "A dozen instructions per pixel for validity, range and kind of hole; the target is "
             "about two plain copies."
         ),
     ),
@@ -271,7 +271,7 @@ RECORDS = (
         ),
         source="Fuchs 2010, Jimenez 2014",
         bars=(0.65, 0.09),
-        reason="Four maxima a value along rows, four along columns, then a polynomial.",
+        reason="Four maxima per value along rows, four along columns, then a polynomial.",
     ),
     _record(
         quantization,
@@ -284,8 +284,8 @@ RECORDS = (
         slip=0.005,
         bars=(0.056, 0.006),
         reason=(
-            "One division a pixel. Multiplying by 1 / step would be faster, and would "
-            "round other pixels at the middle of a step."
+            "One division per pixel. Multiplying by 1 / step would be faster, but would round "
+            "some pixels differently."
         ),
     ),
 )

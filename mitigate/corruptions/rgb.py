@@ -166,7 +166,7 @@ RECORDS = (
         episode="direction",
         slip=0.03,
         bars=(1.1, 0.10),
-        reason="16 taps of 16-bit integers a colour value, and a padded copy of the frame.",
+        reason="16 taps of 16-bit integers per colour value, and a padded copy of the frame.",
     ),
     _record(
         low_light,
@@ -199,7 +199,7 @@ RECORDS = (
         source="ImageNet-C",
         episode="mask, mud or water",
         bars=(0.15, 0.010),
-        reason="As low_light: the same kernel, another mask.",
+        reason="As low_light: the same kernel with another mask.",
     ),
     _record(
         flare,
@@ -216,7 +216,7 @@ RECORDS = (
         source="NavTrust",
         episode="place, at a world yaw",
         bars=(0.10, 0.010),
-        reason="As low_light, and one kernel call a view, because each view has its own mask.",
+        reason="As low_light, and one kernel call per view, because each view has its own mask.",
     ),
     _record(
         defocus,
@@ -232,9 +232,9 @@ RECORDS = (
         episode="width, +- 20 %",
         bars=(1.2, 0.10),
         reason=(
-            "The bar is for a sigma of 2.5 px (s = 0.5). At s = 0.6 it is 3.0 px, 20 % more or "
-            "less by episode, which takes more taps; padding adds a sixth of the pixels at 224 "
-            "x 224."
+            "The target assumes a sigma of 2.5 px (s = 0.5). At s = 0.6 sigma is 3.0 px, up to "
+            "20 % more or less per episode, and needs more taps; padding adds a sixth of the "
+            "pixels at 224 x 224."
         ),
     ),
     _record(
@@ -259,6 +259,6 @@ RECORDS = (
         source="NavTrust",
         frame="which views",
         bars=(0.017, 0.004),
-        reason="A copy of the frame where the view is kept; a fresh hash for each frame.",
+        reason="A copy of the frame unless the view is dropped, and a new hash per frame.",
     ),
 )

@@ -21,8 +21,8 @@ COLUMNS = (
     "best peer",
     "peer / steady",
     "peer / per frame",
-    "bar",
-    "steady / bar",
+    "target",
+    "steady / target",
     "steady / copy",
 )
 
@@ -38,13 +38,13 @@ def page(
     by_workers: dict[int, float],
     arguments: str = "",
 ) -> str:
-    """All parts as Markdown; ``arguments`` are those of the command."""
-    given = f' ARGS="{arguments}"' if arguments else ""
+    """Return all parts as Markdown. ``arguments`` are the arguments of the command."""
+    options = f' ARGS="{arguments}"' if arguments else ""
     head = [
         "# Benchmarks",
         "",
-        f"`make bench{given}` on {machine()}. One process and one "
-        f"thread but for training, seed {SEED}, about {seconds:g} s a clock.",
+        f"`make bench{options}` on {machine()}. Everything except training uses one process and "
+        f"one thread. Seed {SEED}; about {seconds:g} s per measurement.",
         "",
     ]
     parts = [
@@ -63,12 +63,17 @@ def _corruptions(costs: dict[str, dict[str, Cost]]) -> list[str]:
     lines = [
         f"## Corruptions, suite {SUITE_VERSION}, severity {SEVERITY}",
         "",
-        "Milliseconds a frame (12x64x64: a panorama of 12 views). **Steady**: the frames of an "
-        "episode, fastest of many calls, mean over a few episodes. **Per frame**: each frame "
-        "starts an episode, as in the per-frame regime. **First**: a new severity as well, "
-        "whose tables are then built; both are medians. The peers draw anew at each "
-        "call and keep nothing; theirs is the fastest of many calls too. The bar is this project's "
-        "aim (it has none at 12x64x64).",
+        "Milliseconds per frame (12x64x64: per panorama of 12 views).",
+        "",
+        "- **steady**: consecutive frames of an episode; the fastest of many calls, averaged over "
+        "a few episodes.",
+        "- **per frame**: each frame starts a new episode, as in the per-frame regime; a median.",
+        "- **first**: each frame also has a new severity, whose tables are built; a median.",
+        "- **best peer**: the fastest other library, or plain NumPy, OpenCV or torch code for "
+        "depth. Peers draw random numbers at each call and "
+        "cache nothing. Their time is the fastest of many calls.",
+        "- **target**: the target of this project (none at 12x64x64).",
+        "- **steady / copy**: relative to a plain copy of the frame.",
     ]
     for label, rows in costs.items():
         lines += [
@@ -82,21 +87,21 @@ def _corruptions(costs: dict[str, dict[str, Cost]]) -> list[str]:
 
 def _row(name: str, cost: Cost) -> list[str]:
     peer = cost.best_peer
-    beside = ["none", "", ""]
+    peer_cells = ["none", "", ""]
     if peer is not None:
         times = (f"{peer[1] / mine:.1f}" for mine in (cost.steady, cost.per_frame))
-        beside = [f"{peer[0]}: {peer[1]:.3f}", *times]
+        peer_cells = [f"{peer[0]}: {peer[1]:.3f}", *times]
     bar = ["", ""] if cost.bar is None else [f"{cost.bar:g}", f"{cost.steady / cost.bar:.2f}"]
-    own = [f"{ms:.4f}" for ms in (cost.steady, cost.per_frame, cost.first)]
-    return [f"`{name}`", *own, *beside, *bar, f"{cost.steady / cost.copy:.1f}"]
+    times_of_ours = [f"{ms:.4f}" for ms in (cost.steady, cost.per_frame, cost.first)]
+    return [f"`{name}`", *times_of_ours, *peer_cells, *bar, f"{cost.steady / cost.copy:.1f}"]
 
 
 def _panorama(pair: float) -> list[str]:
     return [
-        "### The worst pair on a panorama",
+        "### The slowest pair on a panorama",
         "",
         f"`low_light_noise` and `multipath` on one panorama of 12 x 224 x 224, in one run: "
-        f"{pair:.2f} ms (bar {PANORAMA_BAR} ms).",
+        f"{pair:.2f} ms (target {PANORAMA_BAR} ms).",
         "",
     ]
 
@@ -109,19 +114,19 @@ def _over(costs: dict[str, dict[str, Cost]]) -> list[str]:
         if cost.over
     ]
     if not missed:
-        return ["Every bar is met.", ""]
+        return ["Every target is met.", ""]
     rows = [
         [f"`{name}`", label, f"{cost.steady - cost.bar:.4f}", f"{cost.call:.4f}"]
         + [f"{cost.steady - cost.call:.4f}", f"{cost.copy:.4f}", record(name).reason]
         for name, label, cost in missed
         if cost.bar is not None
     ]
-    head = ("corruption", "size", "over by", "call", "kernel", "frame copy", "where the time goes")
+    head = ("corruption", "size", "above by", "call", "kernel", "frame copy", "where the time goes")
     return [
-        "### Over the bar",
+        "### Above the target",
         "",
-        f"**Call**: milliseconds of the same call on a frame of {TINY} x {TINY} pixels: checks, "
-        "keys, look-ups and the way into compiled code. **Kernel**: the rest.",
+        f"**call**: milliseconds of the same call on a frame of {TINY} x {TINY} pixels: checks, "
+        "keys, look-ups and the call of compiled code. **kernel**: the rest.",
         "",
         markdown_table(head, rows, words=2),
         "",
@@ -132,20 +137,22 @@ def _training(stages: dict[bool, list[Stage]]) -> list[str]:
     lines = [
         "## Training",
         "",
-        "Every stage of the recipes as `make train` runs it, with a worker process a core, on 2 "
-        f"threads; {LAYOUTS} apartments, so that making them, which a training pays once, does not "
-        "count. **Waiting**: the share of a step in which the trainer waits for its batch; **no "
-        f"network computes**: the same without the networks of rollouts (aim: at most {AIM:.0%}). "
-        "The last columns are milliseconds on one core to make a step's batch, by part. Medians of "
-        "a few steps; corruption and all others are timed in one run.",
+        "Every stage of the recipes as `make train` runs it, with one worker process per core, on "
+        f"2 threads and {LAYOUTS} apartments. The time to generate apartments is excluded, because "
+        "a training spends it only once. Medians of a few steps; all parts are timed in one run.",
+        "",
+        "- **waiting**: share of a step in which the trainer waits for its batch.",
+        "- **no network computes**: the same, without the networks of rollouts (target: at most "
+        f"{AIM:.0%}).",
+        "- **rendering** to **other**: milliseconds on one core to make a step's batch, by part.",
     ]
-    for caps, found in stages.items():
+    for caps, measured in stages.items():
         name = " ".join(f"{key}={value}" for key, value in CAPS.items())
         lines += [
             "",
-            f"### {f'Capped: {name}' if caps else 'As the machine is'}",
+            f"### {f'Limited to AVX2: {name}' if caps else 'All instructions of the CPU'}",
             "",
-            table(found),
+            table(measured),
         ]
     return [*lines, ""]
 
@@ -155,7 +162,7 @@ def _evaluation(paces: dict[str, Pace], by_workers: dict[int, float]) -> list[st
     rows = [
         [f"`{name}`", pace.count, f"{pace.count / pace.alone:.1f}"]
         + [f"{pace.count / pace.together:.1f}", f"{pace.alone / pace.together:.2f}"]
-        + ["the same" if pace.same else "NOT THE SAME"]
+        + ["equal" if pace.same else "NOT EQUAL"]
         for name, pace in paces.items()
     ]
     head = ("agent", "episodes", "alone, episodes / CPU s", "together", "together / alone", "rows")
@@ -163,13 +170,16 @@ def _evaluation(paces: dict[str, Pace], by_workers: dict[int, float]) -> list[st
     return [
         "## Evaluation",
         "",
-        "Episodes, each under one condition of the suite, in one run and in turns, CPU time of one "
-        "process. **Alone**: every episode by itself. **Together**: the conditions of an episode "
-        "one after the other, with frames and features kept, as an evaluation runs them.",
+        "CPU time of one process; both ways alternate in one run. An episode has one condition of "
+        "the suite.",
+        "",
+        "- **alone**: every episode is run separately.",
+        "- **together**: the conditions of an episode follow each other and share cached frames "
+        "and features, as in an evaluation.",
         "",
         markdown_table(head, rows),
         "",
-        f"The same evaluation by worker processes, wall time: {times}{gain}.",
+        f"Wall time of this evaluation by number of worker processes: {times}{gain}.",
         "",
     ]
 
@@ -184,7 +194,7 @@ def _rendering(rates: dict[str, tuple[float, float]], size: int) -> list[str]:
     return [
         f"## RGB-D rendering, {size} x {size} pixels",
         "",
-        "One process, one run, in turns; the best of several rounds.",
+        "One process; the renderers alternate in one run; the best of several rounds.",
         "",
-        markdown_table(("renderer", *views, "ours is faster"), rows),
+        markdown_table(("renderer", *views, "speed of ours relative to it"), rows),
     ]

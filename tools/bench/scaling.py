@@ -3,8 +3,8 @@
 training: steps of ``da_per_episode`` by one process, and by two ranks of torchrun (gloo), each on
 one thread and without workers. evaluation: rows of the suite by 1 and 2 workers. recording: calls
 of one RGB-D camera of 128 pixels over the bridge, written to disk, by 1 and 2 environments. All in
-one run, so that ratios are comparable; ``--write`` writes the table to docs/lab/gpu-and-clusters.md.
-Linux only.
+one run, so that ratios are comparable; ``--write`` writes the table to
+docs/lab/gpu-and-clusters.md. Linux only.
 """
 
 from __future__ import annotations

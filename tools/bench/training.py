@@ -211,9 +211,17 @@ def measured(recipes: Sequence[str], steps: int, caps: bool) -> list[Stage]:
 
 
 def table(stages: Sequence[Stage]) -> str:
-    """Markdown: a row a stage."""
+    """Return a Markdown table with one row per stage."""
     names = [*PARTS, OTHER]
-    head = ["recipe", "stage", "precision", "steps/s", "ms a step", "waiting", "forward + backward"]
+    head = [
+        "recipe",
+        "stage",
+        "precision",
+        "steps/s",
+        "ms per step",
+        "waiting",
+        "forward + backward",
+    ]
     head += ["step / forward + backward alone", "no network computes", *names]
     rows = []
     for s in stages:

@@ -63,13 +63,13 @@ def test_the_page_lists_what_is_over_the_bar():
         "| `low_light` | 0.1000 | 0.2000 | 0.3000 | peer 1: 0.400 | 4.0 | 2.0 | 0.2 | 0.50 | 2.0"
         in text
     )
-    over = text.split("### Over the bar")[1].split("## Training")[0]
+    over = text.split("### Above the target")[1].split("## Training")[0]
     assert "`quantization` | 224x224 | 0.3000" in over and "low_light" not in over
     assert (
         "| `da_per_frame` | imitation | fp32 | 0.50 | 2000 | 80% | 20% | 4.00 | 20% | 900" in text
     )
     assert "| other | 50 | 25 | 4 | 2.0 times |" in text
-    assert "| `base` | 26 | 5.0 | 10.0 | 2.00 | the same |" in text
+    assert "| `base` | 26 | 5.0 | 10.0 | 2.00 | equal |" in text
     assert "9.0 s with 1, 5.0 s with 2 (1.80 times)." in text
 
 
