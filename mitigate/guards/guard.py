@@ -85,8 +85,8 @@ class Guard:
         return self
 
     def fingerprint(self) -> str:
-        """Return a content hash that tells rows behind this guard from others: its class and code,
-        ``settings()`` or attributes, weights and ``version``.
+        """Return a content hash that identifies this guard in rows: its class, the code of a user's
+        class, ``settings()`` or attributes, weights and ``version``.
 
         Raises:
             ValueError: a part cannot be read, and ``version`` is None.

@@ -37,7 +37,7 @@ def test_there_are_two_halves_of_each_modality_and_none_is_of_the_suite():
     assert len(RGB) >= 9 and len(DEPTH) >= 7 and not set(UNSEEN_NAMES) & set(NAMES)
     for modality in ("rgb", "depth"):
         halves = [unseen_names(modality, half=half) for half in (VALIDATION, TEST)]
-        assert len(halves[0]) == len(halves[1])
+        assert abs(len(halves[0]) - len(halves[1])) <= 2, "add corruptions to the other half"
         assert sorted(sum(halves, ())) == sorted(unseen_names(modality))
 
 
