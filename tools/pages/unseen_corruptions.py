@@ -37,7 +37,8 @@ make evaluate ARGS="checkpoint=checkpoints/base suite=unseen_test"  # to report
 `suite=unseen_rgb` and `suite=unseen_depth` one modality. **Nothing is chosen by the test half**:
 who does so has trained on it. Each family of mechanisms (a file of `mitigate/corruptions/unseen`)
 has corruptions in both halves, and which of the first 22 is in which
-was settled before any hardened agent had met one. Results stand in a table of their own, with the blocks "unseen RGB" and "unseen depth" and,
+was settled before any hardened agent had met one.
+Results stand in a table of their own, with the blocks "unseen RGB" and "unseen depth" and,
 where both halves are measured, a PRS of each; they enter no figure of the suite. Every row says the
 version of its corruption.
 

@@ -43,8 +43,8 @@ def card(folder: str | Path) -> dict[str, Any]:
     if missing:
         raise FileNotFoundError(
             f"There is no restorer at {folder}: {', '.join(missing)} missing. Train one with `make "
-            "train RECIPE=restore` (its folder is runs/.../agent), or name checkpoints/restorer or a "
-            "function (module:callable)."
+            "train RECIPE=restore` (its folder is runs/.../agent), or name checkpoints/restorer or "
+            "a function (module:callable)."
         )
     damage = folders.problem(folder / CARD)
     if damage:
