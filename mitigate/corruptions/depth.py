@@ -267,7 +267,7 @@ RECORDS = (
             f"p = 4 pi f gap/c, b = {ECHO_STRENGTH:g} s, f = {ECHO_HERTZ / 1e6:g} MHz"
         ),
         sources=(
-            "phasor sum of two paths (Fuchs 2010, Jimenez 2014); f, b, reach and gap are ours"
+            "phasor sum of two paths (Fuchs 2010, Jimenez 2014); f, b, reach and gap are heuristic"
         ),
         source="Fuchs 2010, Jimenez 2014",
         bars=(0.65, 0.09),
@@ -278,8 +278,8 @@ RECORDS = (
         severity="steps of 0.5 s metres",
         place=11,
         fails="depth in coarse steps",
-        formula=f"rint(z/step) step, step = {STEP:g} s metres",
-        sources="Ideses 2007, Wei 2013; the step is ours",
+        formula=(f"rint(z/step) step, step = {STEP:g} s metres"),
+        sources=("Ideses 2007, Wei 2013; the step is heuristic"),
         source="NavTrust, Ideses 2007, Wei 2013",
         slip=0.005,
         bars=(0.056, 0.006),

@@ -19,30 +19,29 @@ PICTURES = {VALIDATION: "pictures/unseen-validation.jpg", TEST: "pictures/unseen
 CURVES = "pictures/unseen-curves.png"
 TEXT = """# Unseen corruptions
 
-An agent is trained on what is on its list, and measured on the same list. A robot meets what is on
-no list. These {rgb} corruptions of RGB and {depth} of depth differ in mechanism from the [twelve of
-the suite](corruptions.md); no recipe and no schedule draws them unless one is named
-(`schedule.names=[haze]`), though random compositions (`schedule.broad_share`) [come close to
-some](broad-augmentation.md#how-unseen-are-the-unseen-ones). `suite=full` and `suite=all` do without
-them. They keep the suite's
-[rules](corruptions.md#rules): keyed draws, s = 0 changes no bit, more s never changes less, lengths
-are shares of the frame, invalid depth comes back as it was.
+A robot meets failures that no training anticipated. These {rgb} corruptions of RGB and {depth} of
+depth measure that. Their mechanisms differ from the [standard suite](corruptions.md), and no
+recipe trains on them, unless you name one in `schedule.names`. [Random
+compositions](broad-augmentation.md#how-unseen-are-the-unseen-ones) come close to some of them.
 
-```
-make evaluate ARGS="checkpoint=checkpoints/base suite=unseen_val"   # to choose by
+They follow the [rules](corruptions.md#rules) of the suite and are not part of `suite=full` or
+`suite=all`.
+
+```bash
+make evaluate ARGS="checkpoint=checkpoints/base suite=unseen_val"   # to choose methods and settings
 make evaluate ARGS="checkpoint=checkpoints/base suite=unseen_test"  # to report
 ```
 
-300 episodes of a half take 7 to 15 minutes on one core. `suite=unseen` has both halves,
-`suite=unseen_rgb` and `suite=unseen_depth` one modality. **Nothing is chosen by the test half**:
-who does so has trained on it. Each family of mechanisms (a file of `mitigate/corruptions/unseen`)
-has corruptions in both halves, and which of the first 22 is in which
-was settled before any hardened agent had met one.
-Results stand in a table of their own, with the blocks "unseen RGB" and "unseen depth" and,
-where both halves are measured, a PRS of each; they enter no figure of the suite. Every row says the
-version of its corruption.
+- They have a validation half and a test half. **Never choose a method or setting by the test
+  half.** The halves were fixed before any hardened agent was evaluated on them. Each family of
+  mechanisms (a file in `mitigate/corruptions/unseen`) has corruptions in both halves.
+- `suite=unseen` has both halves, `suite=unseen_rgb` and `suite=unseen_depth` one sensor. 300
+  episodes of a half take 7 to 15 minutes on one core.
+- Results appear in a separate table with the blocks "unseen RGB" and "unseen depth", and a PRS
+  per half if both are measured. They do not affect the figures of the standard suite. Each row
+  records the version of its corruption.
 
-This page and its pictures are written by `python -m tools.pages.gallery --page`.
+`python -m tools.pages.gallery --page` writes this page and its pictures.
 
 ## The validation half
 
@@ -54,56 +53,59 @@ This page and its pictures are written by `python -m tools.pages.gallery --page`
 ![Unseen corruptions, test half, at severities 0, 0.25, 0.5, 0.75 and 1]({test_picture})
 
 {test}
-One view of apartment {seed}, one random draw for each sheet. W and H are a view's width and height,
-side = min(H, W), x a pixel, z its depth in metres, U uniform; a random field is that of the suite.
-The numbers are read from the code.
+The pictures show one view of apartment {seed}, with one random draw per sheet. W and H are the
+width and height of a view, side = min(H, W), x a pixel, z its depth in metres, U the uniform
+distribution; a random field is defined [here](corruptions.md#formulas). The values are read from
+the code.
 
-## How much they corrupt
+## Strength
 
 ![SSIM and PSNR of RGB, mean error of depth, against severity]({curves})
 
-Four views of the same apartment, mean over {episodes} random draws, at s = {severity:g}, with the
-suite's beside them. {ranges}
+Four views of the same apartment, mean over {episodes} random draws, at s = {severity:g}, compared
+with the standard suite.
+{ranges}
 
-*Changed*: share of the pixels whose depth is off by more than {off:.0f} %; a lost reading counts as
-0 m. *Slip* is the largest step against "more s never changes less" between
-neighbours on 101 severities; PSNR and depth error never slip by more than rounding.
+*Changed* is the share of pixels whose depth changes by more than {off:.0f} %; missing depth
+counts as 0 m. *Slip* is the largest decrease of the effect between neighbours on 101 severities.
+PSNR and depth error decrease only by rounding.
 
 {strengths}
 
-Speed: 0.03 to 1.5 ms a panorama of 12 x 64 x 64 at s = 0.6, on one thread of a busy 2-core machine;
-`make bench` measures each.
+One panorama of 12 x 64 x 64 takes 0.03 to 1.5 ms at s = 0.6, on one thread of a busy 2-core
+machine. `make bench` measures each corruption.
 
 ## Limits
 
-- Not all are equally far from the suite. Nearest are `flicker_bands` and `overexposure` (light, as
-  `low_light`), `flying_pixels` (beside edges, as `multipath`), and `edge_shadow` and
-  `range_limit`, which lose readings as `missing_data` does and write `DepthSensor.missing`.
-- `haze` and `refraction` know no depth: a corruption of RGB sees RGB alone. `haze` shows each view
-  another part of one cloud, which does not drift.
-- `compression` has no motion compensation and `lost_slices` no earlier picture: a corruption is a
-  function of one frame. A whole frame that comes too late is not among them, for the same reason.
-- `glossy_floor` takes the camera for level and the ceiling for twice as high; `edge_shadow` takes
-  the field of view for {hfov:g} degrees.
-- `misalignment` and `rolling_shutter` move the picture: on a regular pattern, more can look like
-  less. On the chequered scene of the tests SSIM rises by less than {slip:g} between neighbours.
+- Some are similar to corruptions of the suite: `flicker_bands` and `overexposure` to `low_light`,
+  `flying_pixels` to `multipath`, `edge_shadow` and `range_limit` to `missing_data`. The last two
+  write `DepthSensor.missing`.
+- `haze` and `refraction` do not use depth, because a corruption of RGB receives RGB only. `haze`
+  shows each view another part of one cloud, which does not move.
+- A corruption is a function of one frame. So `compression` has no motion compensation,
+  `lost_slices` has no earlier picture, and delayed frames are not included.
+- `glossy_floor` assumes a level camera and a ceiling twice as high as the camera. `edge_shadow`
+  assumes a field of view of {hfov:g} degrees.
+- `misalignment` and `rolling_shutter` move the picture. On a regular pattern, a larger shift can
+  change less. On the chequered scene of the tests SSIM rises by less than {slip:g} between
+  neighbours.
 
 ## Pairs
 
-Two corruptions at once are written `first+second`: the first is applied first, both at one
-severity, and each draws what it draws alone, so that the dirt of `spatter+missing_data` is that of
-`spatter`.
+`first+second` applies two corruptions in this order at the same severity. Each has the same
+random draw as alone: `spatter+missing_data`
+has the same dirt as `spatter`.
 
-```
+```bash
 make evaluate ARGS="suite=pairs"
 make evaluate ARGS="conditions=[clean,low_light+missing_data,haze+range_limit,spatter+mask]"
 ```
 
-Any two of the suite, the unseen ones, the instruction families and those of other packages make a
-pair. `suite=pairs` holds eight of the suite's. Their rows, table and pictures are as those of
-single corruptions, in a table of their own; `mitigate run` takes them, too. In code:
-`corrupt_observation(obs, Corruption("low_light+missing_data", 0.6), key)`. Schedules draw single
-ones.
+Any two corruptions can form a pair: standard, unseen, of instructions, or from other packages.
+`suite=pairs` contains eight pairs of the standard suite. Pairs have a separate table.
+`mitigate run` supports them too. In Python:
+`corrupt_observation(obs, Corruption("low_light+missing_data", 0.6), key)`. Training schedules
+draw single corruptions only.
 """
 
 
@@ -138,15 +140,15 @@ def table(half: str) -> str:
 
 def _ranges(suite: Mapping[str, Curve], found: Mapping[str, Curve], at: int) -> str:
     """A sentence on how strong the weakest and the strongest of each are."""
-    said = []
+    ranges = []
     for curves in (suite, found):
         psnr = [curve.psnr[:, at].mean() for curve in curves.values() if curve.psnr.size]
         error = [curve.error[:, at].mean() for curve in curves.values() if curve.error.size]
-        said.append(
-            f"from {min(psnr):.0f} to {max(psnr):.0f} dB and from {min(error):.2f} to "
-            f"{max(error):.2f} m"
+        ranges.append(
+            f"{min(psnr):.0f} to {max(psnr):.0f} dB (RGB) and {min(error):.2f} to "
+            f"{max(error):.2f} m (depth)"
         )
-    return f"The suite's lie {said[0]}, these {said[1]}."
+    return f"The suite has {ranges[0]}, the unseen corruptions {ranges[1]}."
 
 
 def _strengths(found: Mapping[str, Curve], at: int) -> str:

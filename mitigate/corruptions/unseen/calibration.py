@@ -82,7 +82,7 @@ RECORDS = (
         formula=f"z (1 +- s k), k ~ U({SCALE_LEAST:g}, {SCALE_MOST:g})",
         sources=(
             "scale errors of depth cameras (Khoshelham & Elberink 2012) and, larger, of monocular "
-            "depth; the range is ours"
+            "depth; the range is heuristic"
         ),
         source="Khoshelham & Elberink 2012",
         episode="sign and size",
@@ -96,7 +96,7 @@ RECORDS = (
             f"z + {WIGGLE:g} s sin(2 pi (z/P + p)), P = c/(8 f) = {WIGGLE_PERIOD:.2f} metres, f = "
             f"{WIGGLE_HERTZ / 1e6:g} MHz"
         ),
-        sources="wiggling error (Lindner & Kolb 2006; Foix 2011); the amplitude is ours",
+        sources=("wiggling error (Lindner & Kolb 2006; Foix 2011); the amplitude is heuristic"),
         source="Lindner & Kolb 2006",
         episode="phase p",
     ),
@@ -109,7 +109,9 @@ RECORDS = (
             f"z at p + d, d = +-{ASIDE:g} s W (1, U(-{ASIDE_DOWN:g}, {ASIDE_DOWN:g})); an invalid "
             "one there changes nothing"
         ),
-        sources="registration errors of RGB-D cameras (Khoshelham & Elberink 2012); d is ours",
+        sources=(
+            "registration errors of RGB-D cameras (Khoshelham & Elberink 2012); d is heuristic"
+        ),
         source="Khoshelham & Elberink 2012",
         episode="direction",
         slip=0.01,

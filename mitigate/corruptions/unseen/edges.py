@@ -127,24 +127,28 @@ RECORDS = (
         fattening,
         half=VALIDATION,
         severity="near surfaces grow by 0.08 s side",
-        fails="the window of a stereo matcher sees past edges",
+        fails="the window of a stereo matcher crosses edges",
         formula=(
             f"the least depth within r = {FATTENING:g} s side (a square), linear between whole "
             "pixels"
         ),
-        sources="edge fattening of stereo (Kanade & Okutomi 1994; Scharstein 2002); r is ours",
+        sources=(
+            "edge fattening of stereo (Kanade & Okutomi 1994; Scharstein 2002); r is heuristic"
+        ),
         source="Kanade & Okutomi 1994",
     ),
     _record(
         edge_shadow,
         half=VALIDATION,
         severity="the projector is 0.5 s metres aside",
-        fails="the light of the projector does not reach there",
+        fails="objects block the projector's light",
         formula=(
             f"no reading where x + f b/z does not exceed that of all before it in the row; b = "
             f"{BASELINE:g} s metres, f = W/(2 tan({HFOV_DEGREES:g}/2 degrees))"
         ),
-        sources="shadows of structured light (Khoshelham & Elberink 2012: b = 0.075); b is ours",
+        sources=(
+            "shadows of structured light (Khoshelham & Elberink 2012: b = 0.075); b is heuristic"
+        ),
         source="Khoshelham & Elberink 2012",
         episode="side",
     ),
@@ -159,6 +163,6 @@ RECORDS = (
         ),
         sources="flying pixels of time of flight (Foix 2011; Reynolds et al., CVPR 2011)",
         source="Reynolds et al. 2011",
-        frame="which, where to",
+        frame="which, and their depth",
     ),
 )

@@ -115,7 +115,7 @@ RECORDS = (
         white_balance,
         half=VALIDATION,
         severity="2 s stops between red and blue",
-        fails="the camera takes the light for another one",
+        fails="the camera corrects for the wrong light",
         formula=(
             f"255 min(1, (x/255) 2^(s g/{GAMMA:g})); stops g of red, green, blue = {0.5 * CAST:g} "
             f"(cos a, 0, -cos a) + {0.5 * CAST * TINT:g} (-sin a, sin a, -sin a), a ~ U(0, 360) "
@@ -123,7 +123,7 @@ RECORDS = (
         ),
         sources=(
             "Afifi & Brown, ICCV 2019: errors of white balance from 2850 to 7500 K; the range is "
-            "ours"
+            "heuristic"
         ),
         source="Afifi & Brown 2019",
         episode="direction",
@@ -142,7 +142,7 @@ RECORDS = (
         ),
         sources=(
             "Koschmieder's law, as 3DCC; fractal as ImageNet-C's fog; without depth, since RGB is "
-            "corrupted alone; constants are ours"
+            "corrupted alone; constants are heuristic"
         ),
         source="3DCC, ImageNet-C",
         episode="field, place by view",
@@ -151,12 +151,12 @@ RECORDS = (
         overexposure,
         half=TEST,
         severity="2 s stops too much light",
-        fails="the exposure is stuck at a dark place's",
+        fails="the exposure is set for a dark place",
         formula=(
             f"min(255, x 2^({STOPS:g} s u/{GAMMA:g})), u ~ U({1 - STOPS_SPREAD:g}, "
             f"{1 + STOPS_SPREAD:g})"
         ),
-        sources="brightness of ImageNet-C; stops of light instead of grey levels are ours",
+        sources=("brightness of ImageNet-C; stops of light instead of grey levels are heuristic"),
         source="ImageNet-C, 3DCC",
         episode="stops, +- 20 %",
     ),
@@ -168,8 +168,8 @@ RECORDS = (
         formula=(
             f"colours turned about the grey axis by +-{HUE_DEGREES:g} s degrees, clipped to 0-255"
         ),
-        sources="a wrong order of channels moves hues by 120 degrees; the range is ours",
-        source="ours, after ImageNet-C's saturate",
+        sources=("a wrong order of channels moves hues by 120 degrees; the range is heuristic"),
+        source="after ImageNet-C's saturate",
         episode="sense",
         slip=0.001,
     ),

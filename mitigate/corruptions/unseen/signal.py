@@ -86,7 +86,9 @@ RECORDS = (
             f"row y moved by {WOBBLE:g} s W sin(2 pi (f y/H + p)), f ~ U({WOBBLE_WAVES[0]:g}, "
             f"{WOBBLE_WAVES[1]:g}), p ~ U(0, 1); bilinear, edges replicated"
         ),
-        sources="rolling-shutter geometry (Liang et al., TIP 2008); amplitude and f are ours",
+        sources=(
+            "rolling-shutter geometry (Liang et al., TIP 2008); amplitude and f are heuristic"
+        ),
         source="Liang et al. 2008",
         episode="frequency f",
         frame="phase p",
@@ -101,7 +103,9 @@ RECORDS = (
             f"min(255, x (1 + {FLICKER:g} s cos(2 pi (f y/H + p)))), f ~ U({BANDS[0]:g}, "
             f"{BANDS[1]:g}), p ~ U(0, 1) for each view"
         ),
-        sources="lamps on mains under a rolling shutter (Sheinin et al., CVPR 2017); f is ours",
+        sources=(
+            "lamps on mains under a rolling shutter (Sheinin et al., CVPR 2017); f is heuristic"
+        ),
         source="Sheinin et al. 2017",
         episode="frequency f",
         frame="phase p, by view",
