@@ -195,7 +195,7 @@ RECORDS = (
             f"opacity 0.5 + 0.5 s; mud {masks.SPATTER_COLOURS[0]} or water "
             f"{masks.SPATTER_COLOURS[1]}"
         ),
-        sources=("colours and cover of ImageNet-C (0.04-0.57); correlation and edge are heuristic"),
+        sources="colours and cover of ImageNet-C (0.04-0.57); correlation and edge are heuristic",
         source="ImageNet-C",
         episode="mask, mud or water",
         bars=(0.15, 0.010),
@@ -212,7 +212,7 @@ RECORDS = (
             f"exp(-r/{masks.FLARE_HALO_WIDTH:g})) times {masks.FLARE_TINT}, at most 1; "
             "r over the diagonal; centre U(0.1, 0.9) W, U(0, 0.5) H"
         ),
-        sources=("radial gradient of the paper; constants are heuristic"),
+        sources="radial gradient of the paper; constants are heuristic",
         source="NavTrust",
         episode="place, at a world yaw",
         bars=(0.10, 0.010),
@@ -242,8 +242,8 @@ RECORDS = (
         severity="disk of radius 0.5 s of the short side",
         place=6,
         fails="an object covers the middle of the lens",
-        formula=(f"black disk at the centre, radius {masks.DISK_RADIUS:g} s side"),
-        sources=("the paper; the radius is heuristic"),
+        formula=f"black disk at the centre, radius {masks.DISK_RADIUS:g} s side",
+        sources="the paper; the radius is heuristic",
         source="NavTrust",
         bars=(0.042, 0.010),
         reason="A copy of the frame, then the black disk.",

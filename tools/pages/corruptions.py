@@ -52,7 +52,7 @@ A **random field** is white noise on a grid of {side} cells along the shorter si
 Gaussian with the given correlation length and resampled to the frame.
 
 Code: `mitigate/corruptions/rgb.py`, `mitigate/corruptions/masks.py`,
-`mitigate/corruptions/depth.py`, `mitigate/corruptions/echo.py`, `mitigate/corruptions/eld.py`.
+`mitigate/corruptions/depth.py`, `mitigate/corruptions/eld.py`.
 
 ## Suites
 

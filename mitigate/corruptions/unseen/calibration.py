@@ -96,7 +96,7 @@ RECORDS = (
             f"z + {WIGGLE:g} s sin(2 pi (z/P + p)), P = c/(8 f) = {WIGGLE_PERIOD:.2f} metres, f = "
             f"{WIGGLE_HERTZ / 1e6:g} MHz"
         ),
-        sources=("wiggling error (Lindner & Kolb 2006; Foix 2011); the amplitude is heuristic"),
+        sources="wiggling error (Lindner & Kolb 2006; Foix 2011); the amplitude is heuristic",
         source="Lindner & Kolb 2006",
         episode="phase p",
     ),

@@ -164,7 +164,7 @@ RECORDS = (
             f"of {SLICES} slices each view loses each with probability {LOST:g} s, from column "
             f"U(0, 1) W to the end: grey {NOTHING}"
         ),
-        sources=("H.264 over IP (Wenger 2003), bit error of 3DCC; shares are heuristic"),
+        sources="H.264 over IP (Wenger 2003), bit error of 3DCC; shares are heuristic",
         source="Wenger 2003",
         frame="which, from where",
         slip=0.01,

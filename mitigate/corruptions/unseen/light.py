@@ -156,7 +156,7 @@ RECORDS = (
             f"min(255, x 2^({STOPS:g} s u/{GAMMA:g})), u ~ U({1 - STOPS_SPREAD:g}, "
             f"{1 + STOPS_SPREAD:g})"
         ),
-        sources=("brightness of ImageNet-C; stops of light instead of grey levels are heuristic"),
+        sources="brightness of ImageNet-C; stops of light instead of grey levels are heuristic",
         source="ImageNet-C, 3DCC",
         episode="stops, +- 20 %",
     ),
@@ -168,7 +168,7 @@ RECORDS = (
         formula=(
             f"colours turned about the grey axis by +-{HUE_DEGREES:g} s degrees, clipped to 0-255"
         ),
-        sources=("a wrong order of channels moves hues by 120 degrees; the range is heuristic"),
+        sources="a wrong order of channels moves hues by 120 degrees; the range is heuristic",
         source="after ImageNet-C's saturate",
         episode="sense",
         slip=0.001,

@@ -129,7 +129,7 @@ RECORDS = (
             f"(1 - a) x + a x', a = {GHOST:g} s; x' moved by +-U({GHOST_NEAR:g}, {GHOST_FAR:g}) W "
             f"and U(-{GHOST_DOWN:g}, {GHOST_DOWN:g}) H"
         ),
-        sources=("double reflection of glass (Shih et al., CVPR 2015); constants are heuristic"),
+        sources="double reflection of glass (Shih et al., CVPR 2015); constants are heuristic",
         source="Shih et al. 2015",
         episode="displacement",
     ),
@@ -157,7 +157,7 @@ RECORDS = (
             f"colour {SCRATCH_COLOUR}; opacity {SCRATCH_OPACITY:g} exp(-(d/{SCRATCH_CORE:g})^2/2) "
             f"and {GLOW_OPACITY:g} exp(-(d/{SCRATCH_GLOW:g})^2/2), d over the side"
         ),
-        sources=("camera crack of RobustNav, frost of ImageNet-C; constants are heuristic"),
+        sources="camera crack of RobustNav, frost of ImageNet-C; constants are heuristic",
         source="RobustNav",
         episode="where they are",
         slip=0.001,

@@ -130,7 +130,7 @@ RECORDS = (
         severity="no reading beyond z_max 0.1^s",
         fails="too little signal from dark surfaces or in sunlight",
         formula=f"no reading where z > z_max {RANGE_LEFT:g}^s",
-        sources=("range of active cameras in sunlight (Fankhauser et al. 2015); 0.1 is heuristic"),
+        sources="range of active cameras in sunlight (Fankhauser et al. 2015); 0.1 is heuristic",
         source="Fankhauser et al. 2015",
     ),
     _record(
