@@ -8,7 +8,6 @@ import re
 from collections.abc import Iterable
 from importlib import import_module
 from multiprocessing import forkserver
-from pathlib import Path
 
 import pytest
 from omegaconf import DictConfig
@@ -23,15 +22,13 @@ compose = conf.load_config
 composed: dict[tuple, DictConfig] = {}
 
 
-def load_config(
-    primary: str, overrides: Iterable[str] = (), further: Path | None = None
-) -> DictConfig:
+def load_config(primary: str, overrides: Iterable[str] = ()) -> DictConfig:
     """Compose each set of options once per process: Hydra takes 0.2 s each time."""
     overrides = [*overrides]
     places = dict(match.groups() for match in map(PLACE.fullmatch, overrides) if match)
     rest = tuple(option for option in overrides if not PLACE.fullmatch(option))
-    if further or primary not in conf.TYPES or any(option.startswith("-") for option in rest):
-        return compose(primary, overrides, further)
+    if primary not in conf.TYPES or any(option.startswith("-") for option in rest):
+        return compose(primary, overrides)
     key = (primary, rest, conf.CONF)
     if key not in composed:
         composed[key] = compose(primary, rest)
