@@ -33,8 +33,9 @@ make evaluate ARGS="checkpoint=checkpoints/base suite=unseen_test"  # to report
 ```
 
 - They have a validation half and a test half. **Never choose a method or setting by the test
-  half.** The halves were fixed before any hardened agent was evaluated on them. Each family of
-  mechanisms (a file in `mitigate/corruptions/unseen`) has corruptions in both halves.
+  half.** The halves of the first 22 were fixed before any hardened agent was evaluated on them.
+  Each family of mechanisms (a file in `mitigate/corruptions/unseen`) has corruptions in both
+  halves.
 - `suite=unseen` has both halves, `suite=unseen_rgb` and `suite=unseen_depth` one sensor. 300
   episodes of a half take 7 to 15 minutes on one core.
 - Results appear in a separate table with the blocks "unseen RGB" and "unseen depth", and a PRS
@@ -93,8 +94,7 @@ machine. `make bench` measures each corruption.
 ## Pairs
 
 `first+second` applies two corruptions in this order at the same severity. Each has the same
-random draw as alone: `spatter+missing_data`
-has the same dirt as `spatter`.
+random draw as alone: `spatter+missing_data` has the same dirt as `spatter`.
 
 ```bash
 make evaluate ARGS="suite=pairs"
