@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import cv2
 import numpy as np
 
 _FOLDER = Path(__file__).parent / "examples"
@@ -19,6 +18,8 @@ def example_rgb() -> np.ndarray:
     Returns:
         uint8 array of shape [400, 600, 3], RGB.
     """
+    import cv2  # here, since agents load without it
+
     picture = cv2.imread(str(_FOLDER / "photograph.jpg"), cv2.IMREAD_COLOR)
     assert picture is not None
     return np.ascontiguousarray(picture[..., ::-1])
@@ -30,6 +31,8 @@ def example_depth() -> np.ndarray:
     Returns:
         float32 array of shape [360, 480, 1], metres.
     """
+    import cv2
+
     millimetres = cv2.imread(str(_FOLDER / "depth.png"), cv2.IMREAD_UNCHANGED)
     assert millimetres is not None
     return (millimetres[..., None] / _MILLIMETRES_PER_METRE).astype(np.float32)
