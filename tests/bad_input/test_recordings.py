@@ -106,10 +106,10 @@ def tum(folder: Path) -> Path:
         ("rgb.txt", "0 ../../outside.png\n", "outside"),
         ("rgb.txt", "0 /etc/hostname\n", "outside"),
         ("rgb.txt", "0 rgb/a\0b.png\n", "outside"),
-        ("rgb.txt", f"{'1' * 5000} rgb/0.png\n", "no finite number"),
+        ("rgb.txt", f"{'1' * 5000} rgb/0.png\n", "must be a finite number"),
         ("rgb.txt", "0\n", "words"),
-        ("depth.txt", "nan depth/0.png\n", "no finite number"),
-        ("groundtruth.txt", "0 0 0 0 0 0 0 inf\n", "no finite number"),
+        ("depth.txt", "nan depth/0.png\n", "must be a finite number"),
+        ("groundtruth.txt", "0 0 0 0 0 0 0 inf\n", "must be a finite number"),
         ("groundtruth.txt", "# nothing\n", "no pose"),
     ],
 )
@@ -124,8 +124,8 @@ def test_a_list_that_is_too_long_is_refused_before_it_is_read_whole(tmp_path, mo
     folder = tum(tmp_path / "drive")
     with open(folder / "rgb.txt", "wb") as file:
         file.truncate(1 << 30)  # sparse: one line without an end
-    monkeypatch.setattr("mitigate.worlds.recorded.folders.text.__defaults__", (1 << 20,))
-    refused(folder, "more than 1048576 bytes")
+    monkeypatch.setattr("mitigate.worlds.recorded.folders.read_text.__defaults__", (1 << 20,))
+    refused(folder, "must have at most 1048576 bytes")
 
 
 def recording(folder: Path) -> Path:
@@ -241,9 +241,9 @@ def test_what_is_unpacked_in_all_is_bounded_and_streams_are_joined():
         (lz4.frame.LZ4FrameDecompressor, lz4.frame.compress),
         (storage_mcap.zstd.ZstdDecompressor, storage_mcap.zstd.compress),
     ):
-        assert unpacking.whole(make, pack(b"one") + pack(b"two")) == b"onetwo"
+        assert unpacking.decompress_bounded(make, pack(b"one") + pack(b"two")) == b"onetwo"
         with pytest.raises((EOFError, ValueError)):
-            unpacking.whole(make, pack(b"x" * 1000)[:-6])
+            unpacking.decompress_bounded(make, pack(b"x" * 1000)[:-6])
     budget = unpacking.Budget(0)
     for _ in range(FREE >> 20):
         budget.spend(1 << 20)
@@ -325,11 +325,11 @@ def picture(**changes) -> Message:
 )
 def test_an_image_whose_header_lies_is_refused(changes):
     with pytest.raises(ValueError, match="bag"):
-        ros.image(picture(**changes), RGB, Path("bag"))
+        ros.read_image(picture(**changes), RGB, Path("bag"))
 
 
 def test_a_row_whose_step_lies_takes_no_memory():
-    row = ros.image(picture(height=1, step=1 << 31), RGB, Path("bag"))
+    row = ros.read_image(picture(height=1, step=1 << 31), RGB, Path("bag"))
     assert row.shape == (1, 4, 3)
 
 
@@ -345,7 +345,8 @@ def test_a_compressed_image_of_absurd_size_is_not_decoded(monkeypatch, size):
     monkeypatch.setattr(ros.cv2, "imdecode", lambda *_: pytest.fail("it was decoded"))
     for data in (raw, b"II*\0" + raw, b"GIF89a", b""):
         with pytest.raises(ValueError, match="cannot be decoded"):
-            ros.image(Message(format="png", data=np.frombuffer(data, np.uint8)), RGB, Path("bag"))
+            message = Message(format="png", data=np.frombuffer(data, np.uint8))
+            ros.read_image(message, RGB, Path("bag"))
 
 
 @pytest.mark.parametrize(
@@ -353,5 +354,5 @@ def test_a_compressed_image_of_absurd_size_is_not_decoded(monkeypatch, size):
 )
 def test_a_lens_that_sees_nothing_is_refused(focal, centre):
     assert Lens(RGB, focal=(8, 8), centre=(8, 8), size=(16, 16))
-    with pytest.raises(ValueError, match="is none"):
+    with pytest.raises(ValueError, match="must be"):
         Lens(RGB, focal=focal, centre=centre, size=(16, 16))

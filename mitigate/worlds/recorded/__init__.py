@@ -1,4 +1,4 @@
-"""Drives that were recorded, on a robot or by ``mitigate run record=``: read, and walked along."""
+"""Read recorded drives (folders of frames, ROS bags) and replay them as worlds."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from pathlib import Path
 from mitigate.worlds.recorded.bags import Bag, Topics
 from mitigate.worlds.recorded.folders import Frames, is_drive, open_folder
 from mitigate.worlds.recorded.recording import Driven, RecordedWorld, Recording, Step, kinds, load
-from mitigate.worlds.recorded.source import NARROW, WIDE, Source
+from mitigate.worlds.recorded.source import MAX_HFOV, MIN_HFOV, Source
 
 __all__ = [
     "Driven",
@@ -24,7 +24,7 @@ __all__ = [
 ]
 
 BAGS = (".bag", ".mcap", ".db3")
-PACKED = (".gz", ".zst", ".zip", ".xz", ".bz2")
+COMPRESSED = (".gz", ".zst", ".zip", ".xz", ".bz2")
 
 
 def open_recording(
@@ -36,38 +36,53 @@ def open_recording(
     yaw: float = 0.0,
     cameras: Sequence[str] | None = None,
 ) -> list[Frames | Bag]:
-    """The drives in a folder or a bag, without their frames; of a folder of drives, all.
+    """Open the drives of a bag, a folder, or a folder of drives.
 
-    Args: topics, yaw (degrees to the right of the heading that the camera looks): of a bag. unit:
-    metres of a count of 16-bit depth in a folder. hfov: of cameras in degrees, where the recording
-    does not say. cameras: names of those that are read of a recording by ``mitigate run``.
-    Raises FileNotFoundError if there is none, ValueError for what is damaged or does not fit.
+    Times and poses are read now, frames later by :func:`load`.
+
+    Args:
+        path: A bag, a folder of frames, or a folder with several drives.
+        topics: Topics of a bag; None: the only ones that fit.
+        hfov: Horizontal field of view in degrees, where the recording does not contain it.
+        unit: Metres per count of 16-bit depth in a folder of frames.
+        yaw: Direction of a bag's cameras in degrees to the right of the heading.
+        cameras: Cameras to read from a recording by ``mitigate run``; None: all.
+
+    Returns:
+        The drives.
+
+    Raises:
+        FileNotFoundError: ``path`` does not exist or has no drive.
+        ValueError: A drive is damaged, or an option does not apply to it.
     """
-    path, topics = Path(path), topics or Topics()
-    _check(path, hfov, unit)
+    path = Path(path)
+    topics = topics or Topics()
+    _check_options(path, hfov, unit)
     if _is_bag(path):
         if unit is not None or cameras:
             raise ValueError(
-                f"{path} is a bag, which says its units and cameras: leave unit= and cameras= out."
+                f"{path} is a bag, which contains its units and cameras. Remove unit= and cameras=."
             )
         return [Bag(path, topics, hfov, yaw)]
     if path.is_file():
-        packed = " Unpack it first." if path.suffix in PACKED else ""
-        raise ValueError(f"{path} is no bag ({', '.join(BAGS)}).{packed}")
+        hint = " Unpack it first." if path.suffix in COMPRESSED else ""
+        raise ValueError(f"{path} must be a folder or a bag ({', '.join(BAGS)}).{hint}")
     if not is_drive(path):
-        below = [p for p in sorted(path.iterdir()) if _is_bag(p) or (p.is_dir() and is_drive(p))]
-        if not below:
+        drives = [p for p in sorted(path.iterdir()) if _is_bag(p) or (p.is_dir() and is_drive(p))]
+        if not drives:
             raise FileNotFoundError(
-                f"{path} holds no drive, here or one folder below: no bag, no recording.json (by "
-                "mitigate run record=FOLDER), no rgb.txt and depth.txt (TUM RGB-D), no folders "
-                "rgb/ and depth/."
+                f"{path} and its folders contain no drive. A drive is a bag, or a folder with "
+                "recording.json (from mitigate run record=FOLDER), with rgb.txt and depth.txt (TUM "
+                "RGB-D), or with the folders rgb/ and depth/."
             )
-        again = partial(
+        open_drive = partial(
             open_recording, topics=topics, hfov=hfov, unit=unit, yaw=yaw, cameras=cameras
         )
-        return [drive for one in below for drive in again(one)]
-    if topics.given or yaw:
-        raise ValueError(f"{path} is no bag: leave topics.* and yaw= out.")
+        return [source for drive in drives for source in open_drive(drive)]
+    if topics.set_options or yaw:
+        raise ValueError(
+            f"topics.* and yaw= apply only to a bag, which {path} is not. Remove them."
+        )
     return list(open_folder(path, hfov, unit, cameras))
 
 
@@ -75,10 +90,14 @@ def _is_bag(path: Path) -> bool:
     return (path.is_file() and path.suffix in BAGS) or (path / "metadata.yaml").is_file()
 
 
-def _check(path: Path, hfov: float | None, unit: float | None) -> None:
+def _check_options(path: Path, hfov: float | None, unit: float | None) -> None:
     if not path.exists():
-        raise FileNotFoundError(f"There is no recording {path}: name a folder or a bag.")
-    if hfov is not None and not NARROW <= hfov <= WIDE:
-        raise ValueError(f"hfov={hfov:g} is no field of view: give degrees from 10 to 179.")
+        raise FileNotFoundError(f"There is no recording {path}. Give a folder or a bag.")
+    if hfov is not None and not MIN_HFOV <= hfov <= MAX_HFOV:
+        raise ValueError(
+            f"hfov must be a field of view of {MIN_HFOV:g} to {MAX_HFOV:g} degrees, got {hfov:g}."
+        )
     if unit is not None and not 0 < unit <= 1:
-        raise ValueError(f"unit={unit:g} is no unit: give the metres of a count, such as 0.001.")
+        raise ValueError(
+            f"unit= must be above 0 and at most 1 metre per count, such as 0.001, got {unit:g}."
+        )

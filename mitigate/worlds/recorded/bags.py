@@ -1,10 +1,10 @@
-"""Bags of ROS 1 (``.bag``), ROS 2 (a folder with ``metadata.yaml``) and MCAP, read by ``rosbags``.
+"""Read drives from bags of ROS 1 (``.bag``), ROS 2 (a folder with ``metadata.yaml``) and MCAP.
 
-Nothing of ROS need be installed. Read are images (``sensor_msgs`` Image and CompressedImage),
-``CameraInfo`` and poses (``nav_msgs/Odometry``, ``geometry_msgs/PoseStamped`` and
-``PoseWithCovarianceStamped``) in REP 103's axes: x ahead, y to the left, z up. Times are those of
-the messages' headers, where they have one. A text file beside the bag, with its name and ``.txt``,
-may hold the words.
+The package ``rosbags`` reads them; ROS need not be installed. Images (``sensor_msgs`` Image and
+CompressedImage), ``CameraInfo`` and poses (``nav_msgs/Odometry``, ``geometry_msgs/PoseStamped`` and
+``PoseWithCovarianceStamped``) are read. Poses use the axes of REP 103: x ahead, y to the left, z
+up. Times come from the headers of the messages, if they have one. A text file next to the bag, with
+its name and ``.txt``, may contain the instruction.
 """
 
 from __future__ import annotations
@@ -21,120 +21,152 @@ import numpy as np
 
 from mitigate.core.names import unknown
 from mitigate.core.observation import DEPTH, POSE, RGB
-from mitigate.worlds.recorded.messages import camera_matrix, image, lens, place, stamp
-from mitigate.worlds.recorded.source import LONGEST, SLOP, Lens, near, placed, words
+from mitigate.worlds.recorded.messages import (
+    camera_matrix,
+    read_image,
+    read_lens,
+    read_pose,
+    read_stamp,
+)
+from mitigate.worlds.recorded.source import (
+    MAX_FRAME_GAP,
+    MAX_INSTANTS,
+    Lens,
+    find_nearest,
+    interpolate_poses,
+    read_instruction,
+)
 from mitigate.worlds.recorded.unpacking import bounded
 
 IMAGES = ("sensor_msgs/msg/Image", "sensor_msgs/msg/CompressedImage")
 INFO = "sensor_msgs/msg/CameraInfo"
 POSES = (
-    *("nav_msgs/msg/Odometry", "geometry_msgs/msg/PoseStamped"),
+    "nav_msgs/msg/Odometry",
+    "geometry_msgs/msg/PoseStamped",
     "geometry_msgs/msg/PoseWithCovarianceStamped",
 )
-OFF = "none"  # in place of a topic: it is not read
-_DEEP = re.compile(r"(?:^|[/_])depth(?:$|/|_(?!camera))")  # /depth_camera/image_raw is in colour
-_OTHER = re.compile(r"infra|mask|(?:^|[/_])ir(?:$|[/_])")
+OFF = "none"  # value of a topic option that turns the topic off
+_DEPTH_TOPIC = re.compile(r"(?:^|[/_])depth(?:$|/|_(?!camera))")  # not /depth_camera/image_raw
+_OTHER_IMAGES = re.compile(r"infra|mask|(?:^|[/_])ir(?:$|[/_])")  # infrared images and masks
 
 KINDS = (RGB, DEPTH)
-MOST_POSES = 16 * LONGEST  # of a drive (ours): 500 Hz beside images at 30 Hz
-LARGEST_HELD = 1 << 30  # bytes of images that wait for those of another topic (ours)
+# Heuristic limits.
+MAX_POSES = 16 * MAX_INSTANTS  # of a drive: 500 Hz next to images at 30 Hz
+MAX_BUFFER_BYTES = 1 << 30  # images that wait for those of another topic
 
 
 class Bag:
-    """A drive in a bag; the rest as ``source.py`` says of a Source.
+    """A drive in a bag, a :class:`~mitigate.worlds.recorded.source.Source`.
 
-    Args: path: a file or a folder. topics: of what is read. hfov: degrees, of cameras without
-    CameraInfo. yaw: degrees to the right of the robot's heading that its cameras look.
-    Raises ValueError for a bag that is damaged or has no such topics, and without ``rosbags``.
+    Args:
+        path: A file or a folder.
+        topics: Topics to read.
+        hfov: Horizontal field of view in degrees of cameras without CameraInfo.
+        yaw: Direction of the cameras in degrees to the right of the robot's heading.
+
+    Raises:
+        ValueError: The bag is damaged or lacks a topic, or ``rosbags`` is not installed.
     """
 
     stepped = False
 
     def __init__(self, path: Path, topics: Topics, hfov: float | None, yaw: float = 0.0) -> None:
-        place = path.resolve()  # of `.`, too
-        self.path, self.name = path, place.name if path.is_dir() else path.stem
-        self.instruction = words(place.parent / f"{self.name}.txt")
+        resolved = path.resolve()  # `.` has a name only when resolved
+        self.path = path
+        self.name = resolved.name if path.is_dir() else path.stem
+        self.instruction = read_instruction(resolved.parent / f"{self.name}.txt")
         with self._open() as reader:
-            there = {name: info.msgtype for name, info in reader.topics.items()}
-            self.topics = chosen(path, there, topics)
+            available = {name: info.msgtype for name, info in reader.topics.items()}
+            self.topics = choose_topics(path, available, topics)
             self.kinds = [kind for kind in KINDS if kind in self.topics]
-            stamps, places, lenses = self._index(reader, hfov)
+            stamps, poses, lenses = self._index(reader, hfov)
         if hfov is not None and all(kind in lenses for kind in self.kinds):
-            raise ValueError(f"{path} says how wide its cameras see: leave hfov= out.")
-        self._pair(stamps, places, yaw)
+            raise ValueError(f"{path} contains the field of view of its cameras. Remove hfov=.")
+        self._match(stamps, poses, yaw)
         self.cameras: Mapping[str, Lens] = {
-            kind: lenses[kind] if kind in lenses else self._wide(kind, hfov) for kind in self.kinds
+            kind: lenses[kind] if kind in lenses else self._lens_without_info(kind, hfov)
+            for kind in self.kinds
         }
 
     def frames(self, chosen: Sequence[int]) -> Iterator[dict[str, np.ndarray]]:
-        wanted = {kind: [int(self.paired[kind][i]) for i in chosen] for kind in self.kinds}
-        last = {kind: {n: at for at, n in enumerate(w)} for kind, w in wanted.items()}
-        held: dict[str, dict[int, np.ndarray]] = {kind: {} for kind in self.kinds}
-        given, counts = 0, dict.fromkeys(self.kinds, -1)
+        indices = {kind: [int(self.matches[kind][i]) for i in chosen] for kind in self.kinds}
+        last_use = {kind: {n: at for at, n in enumerate(w)} for kind, w in indices.items()}
+        buffer: dict[str, dict[int, np.ndarray]] = {kind: {} for kind in self.kinds}
+        done = 0
+        counts = dict.fromkeys(self.kinds, -1)
         with self._open() as reader:
-            decode = {kind: set(numbers) for kind, numbers in wanted.items()}
+            decode = {kind: set(numbers) for kind, numbers in indices.items()}
             for kind, _, message in self._messages(reader, self.kinds, decode):
                 counts[kind] += 1
                 if message is not None:
-                    held[kind][counts[kind]] = image(message, kind, self.path)
-                    self._check_held(held)
-                while given < len(chosen) and all(wanted[k][given] in held[k] for k in self.kinds):
-                    yield {k: held[k][wanted[k][given]] for k in self.kinds}
-                    given += 1
-                    for k in self.kinds:  # drop what no later instant shows
-                        held[k] = {n: f for n, f in held[k].items() if last[k][n] >= given}
+                    buffer[kind][counts[kind]] = read_image(message, kind, self.path)
+                    self._check_buffer(buffer)
+                while done < len(chosen) and all(indices[k][done] in buffer[k] for k in self.kinds):
+                    yield {k: buffer[k][indices[k][done]] for k in self.kinds}
+                    done += 1
+                    for k in self.kinds:  # drop the images that no later instant uses
+                        buffer[k] = {n: f for n, f in buffer[k].items() if last_use[k][n] >= done}
 
-    def _check_held(self, held: Mapping[str, dict[int, np.ndarray]]) -> None:
-        if sum(frame.nbytes for there in held.values() for frame in there.values()) > LARGEST_HELD:
+    def _check_buffer(self, buffer: Mapping[str, dict[int, np.ndarray]]) -> None:
+        size = sum(frame.nbytes for images in buffer.values() for frame in images.values())
+        if size > MAX_BUFFER_BYTES:
             raise ValueError(
-                f"{self.path}: images of one instant lie too far apart in the bag (over "
-                f"{LARGEST_HELD >> 30} GiB of others are between them). Write it anew in the order "
-                "of time, or leave one out (topics.depth=none)."
+                f"{self.path}: images of the same time must be close together in the bag, but over "
+                f"{MAX_BUFFER_BYTES >> 30} GiB of others lie between them. Write the bag again in "
+                "the order of time, or leave one topic out (topics.depth=none)."
             )
 
     # ----------------------------------------------------------------------------- reading
 
     @contextmanager
     def _open(self) -> Iterator[Any]:
-        """An open reader; whatever it says of a file from outside is the reason."""
+        """Open a reader; any error of ``rosbags`` becomes a ValueError that names the bag."""
         try:
             from rosbags.highlevel import AnyReader
             from rosbags.typesys import Stores, get_typestore
         except ModuleNotFoundError as error:
             raise ValueError(
-                "Bags are read by rosbags, which is not installed: pip install -e '.[bags]'."
+                "Bags need the package rosbags, which is not installed. Run pip install -e "
+                "'.[bags]'."
             ) from error
         try:
-            usual = get_typestore(Stores.ROS2_HUMBLE)
+            default_types = get_typestore(Stores.ROS2_HUMBLE)
             with (
                 bounded(self.path),
-                AnyReader([self.path], default_typestore=usual) as reader,
+                AnyReader([self.path], default_typestore=default_types) as reader,
             ):
                 yield reader
         except OSError:
             raise
         except Exception as error:
-            if isinstance(error, ValueError) and str(self.path) in str(error):  # ours
-                raise
-            said = " ".join(str(error).split())[:300]
+            if isinstance(error, ValueError) and str(self.path) in str(error):
+                raise  # raised by this package, already names the bag
+            reason = " ".join(str(error).split())[:300]
             raise ValueError(
-                f"{self.path} cannot be read as a bag: {said}. One whose end is missing is "
-                "mended by `rosbag reindex` (ROS 1), `ros2 bag reindex` or `mcap recover`."
+                f"{self.path} cannot be read as a bag: {reason}. If its end is missing, repair it "
+                "with `rosbag reindex` (ROS 1), `ros2 bag reindex` or `mcap recover`."
             ) from error
 
     def _messages(
         self, reader: Any, names: Sequence[str], decode: Mapping[str, set[int]]
     ) -> Iterator[tuple[str, tuple[float, float], Any]]:
-        """(name, seconds, message) of these topics in the order of the bag. seconds: by the header
-        and as received. ``decode``: which of a name's messages are wanted, counted from 0; the
-        others are None; names not in it: all."""
+        """Yield the messages of some topics in the order of the bag.
+
+        Args:
+            reader: The open reader.
+            names: Keys of ``self.topics``.
+            decode: Indices of the messages to decode, by name; names without an entry: all.
+
+        Yields:
+            Name, seconds (from the header, as received), and the message or None.
+        """
         by_topic: dict[str, list[str]] = {}
         for name in names:
             by_topic.setdefault(self.topics[name], []).append(name)
         connections = [c for c in reader.connections if c.topic in by_topic]
         counts = dict.fromkeys(names, -1)
         for connection, received, raw in reader.messages(connections=connections):
-            times = stamp(raw, reader.is2), received / 1e9
+            times = read_stamp(raw, reader.is2), received / 1e9
             for name in by_topic[connection.topic]:
                 counts[name] += 1
                 needed = name not in decode or counts[name] in decode[name]
@@ -144,93 +176,104 @@ class Bag:
     def _index(
         self, reader: Any, hfov: float | None
     ) -> tuple[dict[str, list[float]], list[tuple[float, ...]], dict[str, Lens]]:
-        """When each image was taken, (time, x, y, heading) of each pose, and the lenses."""
+        """Return the times of the images, (time, x, y, heading) of the poses, and the lenses."""
         stamps: dict[str, list[tuple[float, float]]] = {name: [] for name in (*self.kinds, POSE)}
-        places: list[tuple[float, ...]] = []
+        poses: list[tuple[float, ...]] = []
         lenses: dict[str, Lens] = {}
         images: dict[str, set[int]] = {kind: set() for kind in self.kinds}
         for name, times, message in self._messages(reader, list(self.topics), images):
             if name in stamps:
                 stamps[name].append(times)
-            if name in self.kinds and len(stamps[name]) > LONGEST:
-                raise ValueError(f"{self.path} has more than {LONGEST} images: cut it.")
+            if name in self.kinds and len(stamps[name]) > MAX_INSTANTS:
+                raise ValueError(
+                    f"{self.path} must have at most {MAX_INSTANTS} images. Cut the recording."
+                )
             if name == POSE:
-                places.append(place(message))
-                if len(places) > MOST_POSES:
-                    raise ValueError(f"{self.path} has more than {MOST_POSES} poses: cut it.")
+                poses.append(read_pose(message))
+                if len(poses) > MAX_POSES:
+                    raise ValueError(
+                        f"{self.path} must have at most {MAX_POSES} poses. Cut the recording."
+                    )
             elif name not in self.kinds:
                 kind = name.removeprefix("info ")
-                unusable = kind not in lenses and hfov is not None and not message_focal(message)
+                unusable = hfov is not None and not _has_focal_length(message)
                 if kind not in lenses and not unusable:
-                    lenses[kind] = lens(kind, message, self.path)
-        taken = {name: _times(listed) for name, listed in stamps.items()}
-        timed = zip(taken.pop(POSE), places, strict=True)
-        return taken, [(time, *where) for time, where in timed], lenses
+                    lenses[kind] = read_lens(kind, message, self.path)
+        times = {name: _choose_clock(pairs) for name, pairs in stamps.items()}
+        timed = zip(times.pop(POSE), poses, strict=True)
+        return times, [(time, *pose) for time, pose in timed], lenses
 
-    def _wide(self, kind: str, hfov: float | None) -> Lens:
+    def _lens_without_info(self, kind: str, hfov: float | None) -> Lens:
         if hfov is None:
             option = "info" if kind == RGB else "depth_info"
             raise ValueError(
-                f"{self.path} has no CameraInfo for {self.topics[kind]}, so nobody knows how wide "
-                f"it sees: give hfov=69 (degrees, horizontally), or topics.{option}=TOPIC."
+                f"{self.path} has no CameraInfo for {self.topics[kind]}, so its field of view is "
+                f"unknown. Set hfov=69 (degrees, horizontal), or topics.{option}=TOPIC."
             )
         return Lens(kind, hfov)
 
-    def _pair(
-        self, stamps: Mapping[str, list[float]], places: Sequence[tuple[float, ...]], yaw: float
+    def _match(
+        self, stamps: Mapping[str, list[float]], table: Sequence[tuple[float, ...]], yaw: float
     ) -> None:
-        """Set times, poses and, of each instant, the index of each camera's image."""
-        for kind, found in stamps.items():
-            if not found:
+        """Set the times, the poses and the index of each camera's image for each instant."""
+        for kind, taken_at in stamps.items():
+            if not taken_at:
                 raise ValueError(
-                    f"{self.path} has no message on {self.topics[kind]}; topics.{kind}=none leaves "
-                    "it out."
+                    f"{self.path} has no message on {self.topics[kind]}. Set topics.{kind}=none to "
+                    "leave it out."
                 )
-        if POSE in self.topics and not places:
+        if POSE in self.topics and not table:
             raise ValueError(
-                f"{self.path} has no message on {self.topics[POSE]}; topics.pose=none goes without."
+                f"{self.path} has no message on {self.topics[POSE]}. Set topics.pose=none to read "
+                "without poses."
             )
-        order = {kind: np.argsort(found, kind="stable") for kind, found in stamps.items()}
+        order = {kind: np.argsort(taken_at, kind="stable") for kind, taken_at in stamps.items()}
         times = np.sort(stamps[self.kinds[0]])
-        kept = np.ones(len(times), bool)
-        paired = {}
-        for kind, found in stamps.items():
-            nearest, away = near(times, np.sort(found))
-            paired[kind] = order[kind][nearest]
-            kept &= away <= SLOP
+        complete = np.ones(len(times), bool)
+        matches = {}
+        for kind, taken_at in stamps.items():
+            nearest, distance = find_nearest(times, np.sort(taken_at))
+            matches[kind] = order[kind][nearest]
+            complete &= distance <= MAX_FRAME_GAP
         poses = None
-        if places:
-            poses, known = placed(times, np.array(places))
+        if table:
+            poses, known = interpolate_poses(times, np.array(table))
             poses[:, 2] -= math.radians(yaw)
-            kept &= known
-        if not kept.any():
+            complete &= known
+        if not complete.any():
             raise ValueError(
-                f"{self.path}: no image has one of each other topic near it in time (images "
-                f"{len(times)}, poses {len(places)}). Choose others: topics.rgb=, topics.depth=, "
-                "topics.pose=."
+                f"{self.path}: no image has a message of each other topic near in time "
+                f"({len(times)} images, {len(table)} poses). Choose other topics: topics.rgb=, "
+                "topics.depth=, topics.pose=."
             )
-        self.times, self.poses = times[kept], None if poses is None else poses[kept]
-        self.paired = {kind: index[kept] for kind, index in paired.items()}
-        self.dropped = int((~kept).sum())
+        self.times = times[complete]
+        self.poses = None if poses is None else poses[complete]
+        self.matches = {kind: index[complete] for kind, index in matches.items()}
+        self.dropped = int((~complete).sum())
 
 
-def _times(stamps: Sequence[tuple[float, float]]) -> list[float]:
-    """Of a topic's messages (by the header, as received): by the header, if one says a time."""
-    said = any(header for header, _ in stamps)
-    return [header if said else received for header, received in stamps]
+def _choose_clock(stamps: Sequence[tuple[float, float]]) -> list[float]:
+    """Return the times of the headers if any header has one, otherwise the times of receipt."""
+    has_header = any(header for header, _ in stamps)
+    return [header if has_header else received for header, received in stamps]
 
 
-def message_focal(message: Any) -> bool:
-    """Whether a CameraInfo states a focal length."""
+def _has_focal_length(message: Any) -> bool:
+    """Return whether a CameraInfo contains a focal length."""
     matrix = camera_matrix(message)
     return len(matrix) == 9 and bool(matrix[0] > 0)
 
 
 @dataclass(frozen=True)
 class Topics:
-    """Names of topics; None: the only one there is that fits; "none": it is not read.
+    """Names of the topics of a bag. None: the only topic that fits; "none": do not read.
 
-    info, depth_info: CameraInfo of the RGB and of the depth camera.
+    Attributes:
+        rgb: Images of the RGB camera.
+        depth: Images of the depth camera.
+        pose: Poses of the robot.
+        info: CameraInfo of the RGB camera.
+        depth_info: CameraInfo of the depth camera.
     """
 
     rgb: str | None = None
@@ -240,74 +283,96 @@ class Topics:
     depth_info: str | None = None
 
     @property
-    def given(self) -> list[str]:
-        """The options that are set."""
+    def set_options(self) -> list[str]:
+        """Names of the topics that are not None."""
         return [name for name, topic in vars(self).items() if topic is not None]
 
 
-def chosen(path: Path, there: Mapping[str, str | None], topics: Topics) -> dict[str, str]:
-    """The topic of each of "rgb", "depth", "pose", "info rgb" and "info depth" that there is.
+def choose_topics(
+    path: Path, available: Mapping[str, str | None], topics: Topics
+) -> dict[str, str]:
+    """Choose the topics "rgb", "depth", "pose", "info rgb" and "info depth".
 
-    ``there``: the type of each topic. Raises ValueError for names that are not there or of another
-    type, where several fit, and without images.
+    Args:
+        path: The bag, for messages.
+        available: Message type of each topic in the bag.
+        topics: The user's choice.
+
+    Returns:
+        Topics by name, without those that the bag lacks.
+
+    Raises:
+        ValueError: A chosen topic is missing or of another type, several topics fit, or the bag has
+            no images.
     """
-    images = [name for name, kind in there.items() if kind in IMAGES and not _OTHER.search(name)]
-    deep = [n for n in images if _DEEP.search(n) and n != topics.rgb]
-    coloured = [n for n in images if n not in deep and n != topics.depth]
-    placing = [name for name, kind in there.items() if kind in POSES]
-    found = {
-        RGB: _pick(path, RGB, topics.rgb, coloured, there, IMAGES),
-        DEPTH: _pick(path, DEPTH, topics.depth, deep, there, IMAGES),
-        POSE: _pick(path, POSE, topics.pose, placing, there, POSES),
+    images = [
+        name
+        for name, kind in available.items()
+        if kind in IMAGES and not _OTHER_IMAGES.search(name)
+    ]
+    depth = [n for n in images if _DEPTH_TOPIC.search(n) and n != topics.rgb]
+    rgb = [n for n in images if n not in depth and n != topics.depth]
+    poses = [name for name, kind in available.items() if kind in POSES]
+    chosen = {
+        RGB: _choose_topic(path, RGB, topics.rgb, rgb, available, IMAGES),
+        DEPTH: _choose_topic(path, DEPTH, topics.depth, depth, available, IMAGES),
+        POSE: _choose_topic(path, POSE, topics.pose, poses, available, POSES),
     }
-    if not (found[RGB] or found[DEPTH]):
-        told = ", ".join(f"{name} ({kind})" for name, kind in list(there.items())[:12])
-        raise ValueError(f"{path} has no topic with images. It has {told or 'no topic'}.")
-    infos = [name for name, kind in there.items() if kind == INFO]
+    if not (chosen[RGB] or chosen[DEPTH]):
+        listed = ", ".join(f"{name} ({kind})" for name, kind in list(available.items())[:12])
+        raise ValueError(
+            f"{path} has no topic with images. Its topics are {listed or 'none'}. Record a topic "
+            f"of {' or '.join(IMAGES)}."
+        )
+    infos = [name for name, kind in available.items() if kind == INFO]
     for kind, option, named in (
         (RGB, "info", topics.info),
         (DEPTH, "depth_info", topics.depth_info),
     ):
-        if found[kind]:
-            beside = _beside(str(found[kind]), infos)
-            found[f"info {kind}"] = _pick(path, option, named, beside, there, (INFO,))
-    return {name: topic for name, topic in found.items() if topic}
+        if chosen[kind]:
+            candidates = _infos_of(str(chosen[kind]), infos)
+            topic = _choose_topic(path, option, named, candidates, available, (INFO,))
+            chosen[f"info {kind}"] = topic
+    return {name: topic for name, topic in chosen.items() if topic}
 
 
-def _pick(
+def _choose_topic(
     path: Path,
     option: str,
     named: str | None,
-    fitting: Sequence[str],
-    there: Mapping[str, str | None],
+    candidates: Sequence[str],
+    available: Mapping[str, str | None],
     kinds: Sequence[str],
 ) -> str | None:
-    """The topic that is named, or the only one that fits; None if none does."""
+    """Return the topic that the user named, or the only candidate; None if there is none."""
     if named == OFF:
         return None
     if named is not None:
-        if named not in there:
-            raise ValueError(f"{path}: {unknown('topic', named, there)}")
-        if there[named] not in kinds:
+        if named not in available:
+            raise ValueError(f"{path}: {unknown('topic', named, available)}")
+        if available[named] not in kinds:
             raise ValueError(
-                f"{path}: topics.{option}={named} is a {there[named]}, not {' or '.join(kinds)}."
+                f"{path}: topics.{option} must be a topic of {' or '.join(kinds)}, got {named}, "
+                f"which is {available[named]}."
             )
         return named
-    if len(fitting) > 1:
+    if len(candidates) > 1:
         raise ValueError(
-            f"{path} has several topics for {option}: {', '.join(fitting)}. Choose one: "
-            f"topics.{option}={fitting[0]} (or {OFF})"
+            f"{path} has several topics for {option}: {', '.join(candidates)}. Choose one: "
+            f"topics.{option}={candidates[0]} (or {OFF})"
         )
-    return fitting[0] if fitting else None
+    return candidates[0] if candidates else None
 
 
-def _beside(topic: str, infos: Sequence[str]) -> list[str]:
-    """The CameraInfo beside an image topic, by ROS's custom ``<camera>/camera_info``, or the only
-    one below the same first name."""
-    above = topic
-    while "/" in above.strip("/"):
-        above = above.rpartition("/")[0]
-        if f"{above}/camera_info" in infos:
-            return [f"{above}/camera_info"]
+def _infos_of(topic: str, infos: Sequence[str]) -> list[str]:
+    """Return the CameraInfo topics of an image topic.
+
+    By convention of ROS this is ``<camera>/camera_info``; otherwise those with the same first name.
+    """
+    namespace = topic
+    while "/" in namespace.strip("/"):
+        namespace = namespace.rpartition("/")[0]
+        if f"{namespace}/camera_info" in infos:
+            return [f"{namespace}/camera_info"]
     camera = "/" + topic.strip("/").partition("/")[0] + "/"
     return [info for info in infos if info.startswith(camera)][:2]

@@ -1,12 +1,15 @@
-"""Folders of recorded frames: by ``mitigate run record=``, in TUM RGB-D's form, or simply named.
+"""Read drives from folders of frames.
 
-* ``recording.json`` and ``<scene>/<episode>/<camera>/000000.png``: what ``mitigate run`` recorded;
-* ``rgb.txt``, ``depth.txt``, ``groundtruth.txt``: the form of the TUM RGB-D benchmark (Sturm et
+Three layouts are supported:
+
+* ``recording.json`` and ``<scene>/<episode>/<camera>/000000.png``: written by
+  ``mitigate run record=``;
+* ``rgb.txt``, ``depth.txt``, ``groundtruth.txt``: the layout of the TUM RGB-D benchmark (Sturm et
   al., IROS 2012), which most tools for RGB-D cameras write;
-* ``rgb/`` and ``depth/`` with a file for each step, in the order of their names; with
-  ``poses.csv``, a line "x,y,heading" for each (metres, radians, forward is (-sin h, cos h)).
+* ``rgb/`` and ``depth/`` with one file per step, sorted by name. ``poses.csv`` is optional and has
+  one line "x,y,heading" per step (metres, radians, forward is (-sin h, cos h)).
 
-Beside each, ``instruction.txt`` may hold the words.
+The last two layouts may contain the instruction as ``instruction.txt``.
 """
 
 from __future__ import annotations
@@ -29,28 +32,43 @@ from mitigate.corruptions import frame_files
 from mitigate.corruptions.frame_files import SUFFIXES, natural
 from mitigate.worlds.episodes import from_vlnce
 from mitigate.worlds.recorded.source import (
-    LARGEST_WORDS,
-    LONGEST,
-    SLOP,
+    MAX_FRAME_GAP,
+    MAX_INSTANTS,
+    MAX_INSTRUCTION_BYTES,
     Lens,
-    near,
-    placed,
+    find_nearest,
+    interpolate_poses,
     plan_pose,
-    rotated,
-    text,
-    words,
+    read_instruction,
+    read_text,
+    rotate,
 )
 
-CAMERAS, STEPS, EPISODE = "cameras.json", "steps.jsonl", "episode.json"
-POSES, WORDS = "poses.csv", "instruction.txt"
-MOST = 1e6  # of a number in a recording: metres, degrees (ours)
-MOST_TURNED = 50.0  # radians: eight turns, not degrees (ours)
+# The layout of `mitigate run record=`.
+CAMERAS = "cameras.json"
+STEPS = "steps.jsonl"
+EPISODE = "episode.json"
+# The layout with rgb/ and depth/.
+POSES = "poses.csv"
+INSTRUCTION = "instruction.txt"
+# The layout of the TUM RGB-D benchmark.
+LISTS = ("rgb.txt", "depth.txt")
+TRAJECTORY = "groundtruth.txt"
+TUM_UNIT = 1 / 5000  # metres per count; TUM RGB-D benchmark, file formats
+TUM_HFOV = math.degrees(2 * math.atan(320 / 525))  # its default calibration: 640 pixels, focal 525
+
+MAX_NUMBER = 1e6  # heuristic limit of a number in a recording (metres, degrees)
+MAX_HEADING = 50.0  # radians, heuristic: eight turns; larger headings are in degrees
 
 
 @dataclass(frozen=True)
 class Frames:
-    """A drive in files; ``files``: of each camera, one for each instant. ``unit``: metres of a
-    count of 16-bit depth. The rest as ``source.py`` says of a Source."""
+    """A drive in files, a :class:`~mitigate.worlds.recorded.source.Source`.
+
+    Attributes:
+        files: One file per instant, by camera.
+        unit: Metres per count of 16-bit depth.
+    """
 
     name: str
     instruction: str
@@ -70,11 +88,13 @@ class Frames:
         try:
             frame = frame_files.read(path, self.unit)
         except (OSError, ValueError) as error:
-            raise ValueError(f"{path} {error}. Mend it, or take it out of the drive.") from error
-        wanted = self.cameras[camera].kind
-        if (frame.shape[-1] == 3) != (wanted == RGB):
-            raise ValueError(f"{path} is no {wanted} frame, but lies among those of {camera!r}.")
-        if wanted == RGB:
+            raise ValueError(f"{path} {error}. Fix it, or remove it from the drive.") from error
+        kind = self.cameras[camera].kind
+        if (frame.shape[-1] == 3) != (kind == RGB):
+            raise ValueError(
+                f"{path} must be a {kind} frame, as the others of camera {camera!r}. Replace it."
+            )
+        if kind == RGB:
             return frame
         depth = frame[..., 0]
         return np.where(np.isfinite(depth) & (depth > 0), depth, 0).astype(np.float32)
@@ -83,320 +103,385 @@ class Frames:
 def open_folder(
     path: Path, hfov: float | None, unit: float | None, cameras: Sequence[str] | None = None
 ) -> list[Frames]:
-    """The drives in a folder, or in those below it; ``hfov`` (degrees) and ``unit`` (metres of a
-    count of depth) where the folder does not say; ``cameras``: those that are read of a recording
-    by ``mitigate run``.
+    """Open the drives of a folder in one of the three layouts.
 
-    Raises FileNotFoundError if there is none, ValueError for what is damaged or does not fit.
+    Args:
+        path: The folder.
+        hfov: Horizontal field of view in degrees, where the folder does not contain it.
+        unit: Metres per count of 16-bit depth, where the folder does not contain it.
+        cameras: Cameras to read from a recording by ``mitigate run``; None: all.
+
+    Returns:
+        The drives, without their frames.
+
+    Raises:
+        FileNotFoundError: A file is missing.
+        ValueError: The folder is damaged, or an option does not apply to it.
     """
     if (path / RECORDING).is_file():
         if unit is not None:
-            raise ValueError(f"{path} says the unit of its depth itself: leave unit= out.")
-        # a hidden one is of an episode that somebody is in, or was when he was killed
+            raise ValueError(f"{path} contains the unit of its depth. Remove unit=.")
+        # a hidden folder is an episode that is still being recorded, or whose program was killed
         episodes = sorted(file.parent for file in path.glob(f"[!.]*/[!.]*/{STEPS}"))
-        read = (_recorded(folder, path, hfov, cameras) for folder in episodes)
-        return [drive for drive in read if drive is not None]
+        drives = (_read_recorded(folder, path, hfov, cameras) for folder in episodes)
+        return [drive for drive in drives if drive is not None]
     if cameras:
-        raise ValueError(f"cameras= chooses of a recording by mitigate run, which {path} is not.")
+        raise ValueError(
+            f"cameras= applies only to a recording by mitigate run, which {path} is not. Remove "
+            "cameras=."
+        )
     if _has_lists(path):
-        lenses, files, times, poses, dropped = _read_lists(path, hfov)
-        said, per_count = words(path / WORDS), TUM_UNIT if unit is None else unit
-        return [Frames(path.name, said, lenses, files, times, poses, False, dropped, per_count)]
+        return [_read_tum(path, hfov, TUM_UNIT if unit is None else unit)]
     if (path / TRAJECTORY).is_file():
-        raise ValueError(f"{path} has {TRAJECTORY}, but not its lists {', '.join(LISTS)}.")
-    return [_simple(path, hfov, unit)]
+        raise ValueError(
+            f"{path} has {TRAJECTORY}, but lacks the lists of its frames. Add {' or '.join(LISTS)}."
+        )
+    return [_read_simple(path, hfov, unit)]
 
 
 def is_drive(folder: Path) -> bool:
-    """Whether a folder holds frames in one of the forms above."""
+    """Return whether a folder contains frames in one of the three layouts."""
     return any((folder / name).exists() for name in (RECORDING, *LISTS, RGB, DEPTH))
 
 
-def _recorded(
-    folder: Path, top: Path, hfov: float | None, chosen: Sequence[str] | None
+def _read_recorded(
+    folder: Path, recording: Path, hfov: float | None, chosen: Sequence[str] | None
 ) -> Frames | None:
-    """An episode that ``mitigate run`` recorded; None for one without a frame. One that was cut off
-    ends with its last whole step."""
-    told, steps = _json(folder / EPISODE), _lines(folder / STEPS)
-    listed = _json(folder / CAMERAS) if (folder / CAMERAS).is_file() else {}
+    """Read an episode of a recording by ``mitigate run``; None if it has no frames.
+
+    An interrupted episode ends with its last complete step.
+    """
+    episode = _read_object(folder / EPISODE)
+    steps = _read_lines(folder / STEPS)
+    described = _read_object(folder / CAMERAS) if (folder / CAMERAS).is_file() else {}
     names = sorted(p.name for p in folder.iterdir() if p.is_dir())
     for camera in chosen or ():
         if camera not in names:
             raise ValueError(unknown("camera", camera, names))
-    files = {n: _ordered(folder / n) for n in names if not chosen or n in chosen}
-    files = {name: there for name, there in files.items() if there and _level(listed, name)}
+    files = {n: _list_frames(folder / n) for n in names if not chosen or n in chosen}
+    files = {name: paths for name, paths in files.items() if paths and _is_level(described, name)}
     if not steps or not files:
         return None
-    cameras = {name: _lens(name, there[0], listed, hfov) for name, there in files.items()}
-    name = folder.relative_to(top).as_posix()
+    cameras = {name: _read_lens(name, paths[0], described, hfov) for name, paths in files.items()}
+    name = folder.relative_to(recording).as_posix()
     counts = [len(steps), *map(len, files.values())]
     if max(counts) - min(counts) > 1:
         raise ValueError(
-            f"{folder} has {min(counts)} to {max(counts)} frames of its cameras and "
-            f"{len(steps)} steps: it is not whole."
+            f"{folder} is incomplete: its cameras have {min(counts)} to {max(counts)} frames for "
+            f"{len(steps)} steps. Copy it again, or leave this drive out."
         )
     steps = steps[: min(counts)]
     _check_calls(steps, files)
-    poses = _places(steps, folder / STEPS)
-    said = told.get("text") or told.get("category") or ""
-    if not isinstance(said, str):
-        raise ValueError(f"{folder / EPISODE}: the instruction must be a text, got {short(said)}.")
-    said = said[:LARGEST_WORDS]
-    unit = _told(_json(top / RECORDING), "unit", top / RECORDING) or 0.001
+    poses = _recorded_poses(steps, folder / STEPS)
+    instruction = episode.get("text") or episode.get("category") or ""
+    if not isinstance(instruction, str):
+        raise ValueError(
+            f"{folder / EPISODE}: the instruction must be a text, got {short(instruction)}."
+        )
+    instruction = instruction[:MAX_INSTRUCTION_BYTES]
+    unit = _number_or_none(_read_object(recording / RECORDING), "unit", recording / RECORDING)
+    unit = unit or 0.001
     if not 0 < unit <= 1:
-        raise ValueError(f"{top / RECORDING} says that a count of depth is {unit:g} m.")
+        raise ValueError(
+            f"{recording / RECORDING}: unit must be above 0 and at most 1 metre per count, got "
+            f"{unit:g}."
+        )
     times = np.arange(len(steps)) * 1.0
-    return Frames(name, said, cameras, files, times, poses, True, 0, unit)
+    return Frames(name, instruction, cameras, files, times, poses, True, 0, unit)
 
 
 def _check_calls(steps: Sequence[Any], files: Mapping[str, Sequence[Path]]) -> None:
-    """Raise ValueError if a frame is not of the call of its step, as when one in the middle is
-    missing."""
-    for place, step in enumerate(steps):
+    """Raise ValueError if a frame does not belong to its step, as after a missing frame."""
+    for index, step in enumerate(steps):
         call = step.get("call") if isinstance(step, dict) else None
-        for there in files.values():
-            if type(call) is int and there[place].stem != f"{call:06d}":
+        for paths in files.values():
+            if type(call) is int and paths[index].stem != f"{call:06d}":
                 raise ValueError(
-                    f"{there[place].parent} has no frame {call:06d}, which {STEPS} names: it is "
-                    "not whole. Copy it again, or leave this drive out."
+                    f"{paths[index].parent} is incomplete: it has no frame {call:06d}, which "
+                    f"{STEPS} names. Copy it again, or leave this drive out."
                 )
 
 
-def _level(listed: Mapping[str, Any], name: str) -> bool:
-    """Whether a camera looks level, as far as is told."""
-    own = listed.get(name)
-    return not isinstance(own, dict) or own.get("level") is not False
+def _is_level(described: Mapping[str, Any], name: str) -> bool:
+    """Return whether a camera faces horizontally; assumed if the recording does not say."""
+    camera = described.get(name)
+    return not isinstance(camera, dict) or camera.get("level") is not False
 
 
-def _lens(name: str, first: Path, listed: Mapping[str, Any], hfov: float | None) -> Lens:
-    """The lens of a camera, as the recording says, or by its first frame and ``hfov``."""
-    own = listed.get(name)
-    if own is not None and (not isinstance(own, dict) or own.get("kind") not in (RGB, DEPTH)):
+def _read_lens(name: str, frame: Path, described: Mapping[str, Any], hfov: float | None) -> Lens:
+    """Return the lens of a camera from ``cameras.json``, or from a frame of it and ``hfov``."""
+    camera = described.get(name)
+    file = frame.parent.parent / CAMERAS
+    if camera is None:
+        return Lens(frame_files.modality(frame), 90.0 if hfov is None else hfov)
+    if not isinstance(camera, dict) or camera.get("kind") not in (RGB, DEPTH):
         raise ValueError(
-            f"{first.parent.parent / CAMERAS} must say kind, {RGB} or {DEPTH}, of {name}, got "
-            f"{short(own)}. Copy it again, or leave this drive out."
+            f"{file}: kind of camera {name} must be {RGB} or {DEPTH}, got {short(camera)}. Copy "
+            "the file again, or leave this drive out."
         )
-    if own is None:
-        return Lens(frame_files.modality(first), 90.0 if hfov is None else hfov)
-    wide, yaw = (_told(own, key, first.parent.parent / CAMERAS) for key in ("hfov", "yaw"))
-    if wide is None and hfov is None:
-        raise ValueError(f"{first.parent}: nobody said how wide the camera sees: give hfov=79.")
-    if wide is not None and hfov is not None:
-        raise ValueError(f"{first.parent} says how wide it sees ({wide:g}): leave hfov= out.")
-    return Lens(own["kind"], wide or hfov or 0.0, yaw or 0.0)
+    recorded_hfov = _number_or_none(camera, "hfov", file)
+    yaw = _number_or_none(camera, "yaw", file)
+    if recorded_hfov is None and hfov is None:
+        raise ValueError(f"{file} lacks the field of view of camera {name}. Set it, as in hfov=79.")
+    if recorded_hfov is not None and hfov is not None:
+        raise ValueError(
+            f"{file} contains the field of view of camera {name} ({recorded_hfov:g}). Remove hfov=."
+        )
+    return Lens(camera["kind"], recorded_hfov or hfov or 0.0, yaw or 0.0)
 
 
-def _told(held: Mapping[str, Any], key: str, file: Path) -> float | None:
-    """A number of a JSON object, None if it has none. Raises ValueError for anything else."""
-    value = held.get(key)
+def _number_or_none(values: Mapping[str, Any], key: str, file: Path) -> float | None:
+    """Return a number of a JSON object, or None if it is missing or null.
+
+    Raises:
+        ValueError: The value is not a number, or too large.
+    """
+    value = values.get(key)
     if value is None:
         return None
-    if isinstance(value, bool) or not isinstance(value, (int, float)) or abs(value) > MOST:
-        raise ValueError(f"{file}: {key} is {short(value)}, not a number up to {MOST:g}.")
+    if isinstance(value, bool) or not isinstance(value, (int, float)) or abs(value) > MAX_NUMBER:
+        raise ValueError(
+            f"{file}: {key} must be a number up to {MAX_NUMBER:g}, got {short(value)}."
+        )
     return float(value)
 
 
-def _places(steps: Sequence[Any], file: Path) -> np.ndarray | None:
-    """float64 [N, 3] of the lines of steps.jsonl; None, with a warning if it is not of all, where
-    a line does not say where the agent was."""
-    there = sum(map(_is_place, steps))
-    if there < len(steps):
-        if there:
+def _recorded_poses(steps: Sequence[Any], file: Path) -> np.ndarray | None:
+    """Return the poses in the lines of steps.jsonl, float64 [N, 3].
+
+    None if a line has no pose, with a warning if others have one.
+    """
+    count = sum(map(_has_pose, steps))
+    if count < len(steps):
+        if count:
             warnings.warn(
-                f"{file} lacks the pose of {len(steps) - there} of {len(steps)} steps: the drive "
+                f"{file} lacks the pose of {len(steps) - count} of {len(steps)} steps: the drive "
                 "is read without poses.",
                 stacklevel=2,
             )
         return None
     poses = [(*from_vlnce(step["position"]), step["heading"]) for step in steps]
-    return _in_radians(np.array(poses, np.float64), file)
+    return _check_radians(np.array(poses, np.float64), file)
 
 
-def _is_place(step: Any) -> bool:
-    """Whether a line of steps.jsonl says where the agent was."""
-    place = step.get("position") if isinstance(step, dict) else None
-    if not isinstance(place, list) or len(place) != 3:
+def _has_pose(step: Any) -> bool:
+    """Return whether a line of steps.jsonl has a valid pose."""
+    position = step.get("position") if isinstance(step, dict) else None
+    if not isinstance(position, list) or len(position) != 3:
         return False
-    numbers = (*place, step.get("heading"))
-    return all(isinstance(n, (int, float)) and abs(n) <= MOST for n in numbers)
+    numbers = (*position, step.get("heading"))
+    return all(isinstance(n, (int, float)) and abs(n) <= MAX_NUMBER for n in numbers)
 
 
-def _simple(path: Path, hfov: float | None, unit: float | None) -> Frames:
-    """``rgb/``, ``depth/`` and ``poses.csv``: each file is a step."""
-    files = {kind: _ordered(path / kind) for kind in (RGB, DEPTH)}
-    files = {kind: there for kind, there in files.items() if there}
-    counts = {f"{kind}/": len(there) for kind, there in files.items()}
-    poses = _poses(path / POSES) if (path / POSES).is_file() else None
+def _read_simple(path: Path, hfov: float | None, unit: float | None) -> Frames:
+    """Read a drive from ``rgb/``, ``depth/`` and ``poses.csv``; each file is a step."""
+    files = {kind: _list_frames(path / kind) for kind in (RGB, DEPTH)}
+    files = {kind: paths for kind, paths in files.items() if paths}
+    counts = {f"{kind}/": len(paths) for kind, paths in files.items()}
+    poses = _read_poses(path / POSES) if (path / POSES).is_file() else None
     if poses is not None:
         counts[POSES] = len(poses)
     if len(set(counts.values())) != 1 or not files:
-        told = ", ".join(f"{count} in {where}" for where, count in counts.items()) or "no frame"
-        raise ValueError(f"{path} must hold as many of each, one a step, but has {told}.")
-    stems = [[file.stem for file in there] for there in files.values()]
+        listed = ", ".join(f"{count} in {name}" for name, count in counts.items()) or "no frame"
+        raise ValueError(
+            f"{path} must have as many of each, one per step, got {listed}. Add or remove the "
+            "files that do not match."
+        )
+    stems = [[file.stem for file in paths] for paths in files.values()]
     if len(stems) == 2 and stems[0] != stems[1] and set(stems[0]) & set(stems[1]):
-        raise ValueError(f"{path}: some frames of rgb/ have no partner of their name in depth/.")
-    cameras = {kind: Lens(kind, 90.0 if hfov is None else hfov) for kind in files}
-    per_count = 0.001 if unit is None else unit
-    times = np.arange(len(stems[0])) * 1.0
-    return Frames(path.name, words(path / WORDS), cameras, files, times, poses, True, 0, per_count)
+        raise ValueError(
+            f"{path}: some frames of rgb/ have no frame of the same name in depth/. Give both the "
+            "same names."
+        )
+    return Frames(
+        name=path.name,
+        instruction=read_instruction(path / INSTRUCTION),
+        cameras={kind: Lens(kind, 90.0 if hfov is None else hfov) for kind in files},
+        files=files,
+        times=np.arange(len(stems[0])) * 1.0,
+        poses=poses,
+        stepped=True,
+        dropped=0,
+        unit=0.001 if unit is None else unit,
+    )
 
 
-def _poses(file: Path) -> np.ndarray:
-    """float64 [N, 3] of lines "x,y,heading", with or without these names above them."""
+def _read_poses(file: Path) -> np.ndarray:
+    """Read lines "x,y,heading", with or without a header line, as float64 [N, 3]."""
     lines = [
         (n, [word.strip() for word in line.split(",")])
-        for n, line in enumerate(text(file).splitlines(), 1)
+        for n, line in enumerate(read_text(file).splitlines(), 1)
         if line.strip()
     ]
     first = lines[0][1] if lines else []
     if any(word.isalpha() and word.lower() != "nan" for word in first):
         if first != ["x", "y", "heading"]:
-            raise ValueError(f"{file} has the columns {','.join(first)}, not x,y,heading.")
+            raise ValueError(f"{file}: the columns must be x,y,heading, got {','.join(first)}.")
         lines = lines[1:]
     wrong = [n for n, line in lines if len(line) != 3]
     if wrong:
-        raise ValueError(f"{file}, line {wrong[0]}, is not x,y,heading.")
+        raise ValueError(f"{file}, line {wrong[0]}, must have three values: x,y,heading.")
     poses = np.array([[number(w, file, n) for w in line] for n, line in lines])
-    return _in_radians(poses.reshape(-1, 3), file)
+    return _check_radians(poses.reshape(-1, 3), file)
 
 
-def _in_radians(poses: np.ndarray, file: Path) -> np.ndarray:
-    """``poses`` [N, 3]. Raises ValueError for headings that are degrees."""
+def _check_radians(poses: np.ndarray, file: Path) -> np.ndarray:
+    """Return ``poses`` [N, 3]; raise ValueError if the headings are degrees."""
     headings = poses[:, 2]
-    if len(poses) and np.ptp(headings) > 0 and np.abs(headings).max() > MOST_TURNED:
-        raise ValueError(f"{file} has headings up to {np.abs(headings).max():g}: give radians.")
+    if len(poses) and np.ptp(headings) > 0 and np.abs(headings).max() > MAX_HEADING:
+        raise ValueError(
+            f"{file}: headings must be in radians, got {np.abs(headings).max():g}. Convert them."
+        )
     return poses
 
 
-def _ordered(folder: Path) -> list[Path]:
-    """The frames of a folder by name, digits counting as numbers."""
+def _list_frames(folder: Path) -> list[Path]:
+    """Return the frames of a folder by name, comparing digits as numbers."""
     if not folder.is_dir():
         return []
     files = [p for p in folder.iterdir() if p.suffix.lower() in SUFFIXES and p.name[0] != "."]
     return sorted(files, key=lambda file: natural(file.name))
 
 
-def _json(file: Path) -> dict[str, Any]:
-    found = read_json(file, "Copy it again, or leave this drive out.")
-    if not isinstance(found, dict):
-        raise ValueError(f"{file} is no JSON object.")
-    return found
+def _read_object(file: Path) -> dict[str, Any]:
+    """Read a JSON object."""
+    content = read_json(file, "Copy it again, or leave this drive out.")
+    if not isinstance(content, dict):
+        raise ValueError(f"{file} must be a JSON object. Copy it again, or leave this drive out.")
+    return content
 
 
-def _lines(file: Path) -> list[Any]:
-    """The JSON lines of a file; a last one that was cut off is left out."""
-    found = []
-    lines = text(file).splitlines()
-    if len(lines) > LONGEST:
-        raise ValueError(f"{file} has more than {LONGEST} steps: cut the recording.")
-    for place, line in enumerate(lines, 1):
+def _read_lines(file: Path) -> list[Any]:
+    """Read the JSON lines of a file, without an incomplete last line."""
+    records = []
+    lines = read_text(file).splitlines()
+    if len(lines) > MAX_INSTANTS:
+        raise ValueError(f"{file} must have at most {MAX_INSTANTS} steps. Cut the recording.")
+    for line_number, line in enumerate(lines, 1):
         try:
-            found.append(parse_json(line))
+            records.append(parse_json(line))
         except (ValueError, RecursionError) as error:
-            if place < len(lines):
-                problem = f"{file}, line {place}, cannot be read ({error!s:.200})."
+            if line_number < len(lines):
+                problem = f"{file}, line {line_number}, cannot be read ({error!s:.200})."
                 raise ValueError(problem) from error
-    return found
-
-
-LISTS, TRAJECTORY = ("rgb.txt", "depth.txt"), "groundtruth.txt"
-TUM_UNIT = 1 / 5000  # metres of a count; TUM RGB-D benchmark, file formats
-TUM_HFOV = math.degrees(2 * math.atan(320 / 525))  # its default calibration: 640 pixels, focal 525
+    return records
 
 
 def _has_lists(path: Path) -> bool:
-    """Whether ``path`` has a list of images."""
+    """Return whether ``path`` has a list of images in the layout of TUM RGB-D."""
     return any((path / name).is_file() for name in LISTS)
 
 
-def _read_lists(
-    path: Path, hfov: float | None
-) -> tuple[dict[str, Lens], dict[str, list[Path]], np.ndarray, np.ndarray | None, int]:
-    """Cameras, the files of each, times and poses of a folder, and how many instants were left out,
-    as nothing of the other lists was near; an instant is an RGB image with what
-    is nearest in time. The agent's way is that of the camera's optical axis.
+def _read_tum(path: Path, hfov: float | None, unit: float) -> Frames:
+    """Read a drive in the layout of TUM RGB-D.
 
-    Raises ValueError for what is damaged, and if nothing fits together.
+    An instant is an RGB image with the depth image and the pose nearest in time. The heading is
+    the direction of the camera's optical axis.
+
+    Raises:
+        ValueError: A file is damaged, or no frame of one list is near in time to the others.
     """
-    listed = {kind: _listed(path, f"{kind}.txt") for kind in (RGB, DEPTH)}
+    listed = {kind: _read_list(path, f"{kind}.txt") for kind in (RGB, DEPTH)}
     listed = {kind: lines for kind, lines in listed.items() if lines}
     if not listed:
-        raise ValueError(f"{path}: its lists name no image.")
+        raise ValueError(f"{path}: its lists name no image. Add lines to {' or '.join(LISTS)}.")
     leading = RGB if RGB in listed else DEPTH
     times = np.array([time for time, _ in listed[leading]])
     files: dict[str, list[Path]] = {leading: [file for _, file in listed[leading]]}
-    kept = np.ones(len(times), bool)
+    complete = np.ones(len(times), bool)
     for kind, lines in listed.items():
         if kind != leading:
-            nearest, away = near(times, np.array([time for time, _ in lines]))
+            nearest, distance = find_nearest(times, np.array([time for time, _ in lines]))
             files[kind] = [lines[i][1] for i in nearest]
-            kept &= away <= SLOP
+            complete &= distance <= MAX_FRAME_GAP
     poses = None
     if (path / TRAJECTORY).is_file():
-        poses, known = placed(times, _trajectory(path / TRAJECTORY))
-        kept &= known
-    if not kept.any():
-        raise ValueError(f"{path}: no frame of one list is within {SLOP} s of the others' lines.")
+        poses, known = interpolate_poses(times, _read_trajectory(path / TRAJECTORY))
+        complete &= known
+    if not complete.any():
+        raise ValueError(
+            f"{path}: the times of its lists must be within {MAX_FRAME_GAP} s of each other. Check "
+            "that all use the same clock."
+        )
     files = {
-        k: [f for f, keep in zip(there, kept, strict=True) if keep] for k, there in files.items()
+        kind: [file for file, keep in zip(paths, complete, strict=True) if keep]
+        for kind, paths in files.items()
     }
-    cameras = {kind: Lens(kind, TUM_HFOV if hfov is None else hfov) for kind in files}
-    poses = None if poses is None else poses[kept]
-    return cameras, files, times[kept], poses, int((~kept).sum())
+    return Frames(
+        name=path.name,
+        instruction=read_instruction(path / INSTRUCTION),
+        cameras={kind: Lens(kind, TUM_HFOV if hfov is None else hfov) for kind in files},
+        files=files,
+        times=times[complete],
+        poses=None if poses is None else poses[complete],
+        stepped=False,
+        dropped=int((~complete).sum()),
+        unit=unit,
+    )
 
 
-def _listed(path: Path, name: str) -> list[tuple[float, Path]]:
-    """(time, file) of each line of a list of TUM's; files lie below ``path``."""
-    found = []
-    for line, row in _table(path / name, least=2):
+def _read_list(path: Path, name: str) -> list[tuple[float, Path]]:
+    """Read the lines of a list of images as (time, file); raise ValueError for a file outside."""
+    listed = []
+    for line, row in _read_rows(path / name, min_columns=2):
         file = path / row[1]
         if "\0" in row[1] or path.resolve() not in file.resolve().parents:
             raise ValueError(f"{path / name}, line {line}, names a file outside of {path}.")
-        found.append((number(row[0], path / name, line), file))
-    return sorted(found)
+        listed.append((number(row[0], path / name, line), file))
+    return sorted(listed)
 
 
-def _trajectory(file: Path) -> np.ndarray:
-    """float64 [N, 4]: time and plan pose of lines "time x y z qx qy qz qw". Raises ValueError if
-    most look up or down, as a robot's poses would be read."""
+def _read_trajectory(file: Path) -> np.ndarray:
+    """Read lines "time x y z qx qy qz qw" as float64 [N, 4], (time, x, y, heading).
+
+    Raises:
+        ValueError: Most poses face up or down, as those of a robot frame (x forward) do when they
+            are read as poses of an optical axis.
+    """
     rows = []
-    for line, row in _table(file, least=8):
+    for line, row in _read_rows(file, min_columns=8):
         numbers = [number(word, file, line) for word in row[:8]]
-        ahead = rotated(numbers[4:], (0.0, 0.0, 1.0))
-        rows.append((numbers[0], *plan_pose(numbers[1], numbers[2], ahead)))
+        forward = rotate(numbers[4:], (0.0, 0.0, 1.0))
+        rows.append((numbers[0], *plan_pose(numbers[1], numbers[2], forward)))
     if not rows:
-        raise ValueError(f"{file} holds no pose.")
-    lost = sum(math.isnan(row[3]) for row in rows)
-    if 2 * lost > len(rows):
+        raise ValueError(f"{file} has no pose. Add poses, or delete it to read without poses.")
+    invalid = sum(math.isnan(row[3]) for row in rows)
+    if 2 * invalid > len(rows):
         raise ValueError(
-            f"{file}: {lost} of {len(rows)} poses look up or down, or are none. They must be of "
-            "the camera's optical axis (z ahead, x right, y down), with z up in the room. Turn "
-            "those of a robot (x ahead) so, or delete the file to go without poses."
+            f"{file}: {invalid} of {len(rows)} poses look up or down, or are not rotations. Poses "
+            "must be of the camera's optical axis (z ahead, x right, y down), with z up in the "
+            "room. Convert poses of a robot (x ahead), or delete the file to read without poses."
         )
     return np.array(sorted(rows))
 
 
-def _table(file: Path, least: int) -> Iterator[tuple[int, list[str]]]:
-    """The words of each line that is no comment, with its number."""
+def _read_rows(file: Path, min_columns: int) -> Iterator[tuple[int, list[str]]]:
+    """Yield the number and the words of each line that is not a comment."""
     if not file.is_file():
         return
-    for place, line in enumerate(io.StringIO(text(file)), 1):
+    for line_number, line in enumerate(io.StringIO(read_text(file)), 1):
         row = line.split()
         if not row or row[0].startswith("#"):
             continue
-        if len(row) < least:
-            raise ValueError(f"{file}, line {place}, has {len(row)} words, not {least}.")
-        if place > LONGEST:
-            raise ValueError(f"{file} has more than {LONGEST} lines: cut the recording.")
-        yield place, row
+        if len(row) < min_columns:
+            raise ValueError(
+                f"{file}, line {line_number}, must have {min_columns} words, got {len(row)}."
+            )
+        if line_number > MAX_INSTANTS:
+            raise ValueError(f"{file} must have at most {MAX_INSTANTS} lines. Cut the recording.")
+        yield line_number, row
 
 
 def number(word: str, file: Path, line: int) -> float:
-    """``word`` as a finite number. Raises ValueError, naming file and line, if it is none."""
+    """Parse a finite number.
+
+    Raises:
+        ValueError: It is not a finite number; the message names file and line.
+    """
     try:
-        found = float(word)
+        value = float(word)
     except ValueError:
-        found = math.nan
-    if not math.isfinite(found):
-        raise ValueError(f"{file}, line {line}: {word[:40]!r} is no finite number.")
-    return found
+        value = math.nan
+    if not math.isfinite(value):
+        raise ValueError(f"{file}, line {line}: must be a finite number, got {word[:40]!r}.")
+    return value

@@ -1,7 +1,7 @@
-"""A recorded drive as an agent's own cameras would have seen it, and the world that it is.
+"""Load a recorded drive as an agent's observations, and replay it as a world.
 
-Frames of any camera become square views of 90 degrees, as agents know them: cut and resized, and
-black (no reading in depth) where the camera did not look.
+The frames of any camera are cropped and resized to square views of 90 degrees, the field of view
+that agents expect. Pixels outside the recorded image are black (no reading in depth).
 """
 
 from __future__ import annotations
@@ -34,25 +34,31 @@ from mitigate.worlds.episodes import Episode, Instruction
 from mitigate.worlds.recorded.source import Lens, Source
 from mitigate.worlds.world import World, check_metres
 
-NONE = -1  # what was done is none of an agent's actions: it went back, or sideways
-NEARLY = 0.98  # of a step: one of exactly its length must not be missed by rounding (ours)
-MOVES = 0.05  # metres: a robot that stands is measured to move by less (ours)
-PAUSE = 0.5  # of a step: less is none (ours)
+NO_ACTION = -1  # a movement that no action of an agent describes: backwards or sideways
 
-LARGEST = 1 << 32  # bytes of the frames of a drive (ours)
-STRANGE = 1 / 3  # of the steps that move: more do not go along the heading by mistake (ours)
-ENOUGH = 5  # steps that move, to say so (ours)
-OVER = 4  # pixels of a side of what is drawn into, for one of a view that is not filled (ours)
-OFF = 3.0  # degrees that a camera may look beside its view of the panorama (ours)
+# Heuristic limits.
+STEP_TOLERANCE = 0.98  # share of a step: rounding must not skip a step of exactly full length
+MIN_MOVE = 0.05  # metres: odometry of a standing robot moves by less
+MIN_LAST_STEP = 0.5  # share of a step: a shorter last step replaces the one before it
+MAX_FRAME_BYTES = 1 << 32  # all frames of a drive
+MAX_OFF_HEADING = 1 / 3  # share of the moving steps that may go another way than the heading
+MIN_MOVING_STEPS = 5  # fewer moving steps are too few to warn about the heading
+SUPERSAMPLING = 4  # canvas pixels per pixel of a partly covered view, along each side
+MAX_YAW_ERROR = 3.0  # degrees between a camera and its view of the panorama
 
 
 @dataclass(frozen=True)
 class Recording:
-    """One drive, ready to be walked along.
+    """One drive of T steps, loaded into memory.
 
-    frames: "rgb" uint8 [T, S, S, 3] and "depth" float32 metres [T, S, S, 1], of a panorama
-    [T, 12, S, S, c]; those that there are. times: float64 [T], seconds since the first.
-    poses: float64 [T, 3], or None. driven: what whoever drove did, or None.
+    Attributes:
+        name: Name of the drive.
+        instruction: Instruction text; may be empty.
+        frames: "rgb" uint8 [T, S, S, 3] and "depth" float32 metres [T, S, S, 1], or with 12 views
+            [T, 12, S, S, C]. Sensors that were not recorded are missing.
+        times: float64 [T], seconds since the first step.
+        poses: float64 [T, 3], (x, y, heading), or None if unknown.
+        driven: The driver's actions, or None if the poses are unknown.
     """
 
     name: str
@@ -64,214 +70,260 @@ class Recording:
 
     @property
     def sensors(self) -> dict[str, Sensor]:
-        """What it gives, as ``core/observation.py`` says."""
+        """Sensors of the recording by name, see ``core/observation.py``."""
         first = next(iter(self.frames.values()))
-        of = cameras(first.shape[-2], first.shape[1] if first.ndim == 5 else 1)
-        held = {*self.frames, *([] if self.poses is None else [POSE])}
-        return {name: sensor for name, sensor in of.items() if name in held}
+        sensors = cameras(first.shape[-2], first.shape[1] if first.ndim == 5 else 1)
+        recorded = {*self.frames, *([] if self.poses is None else [POSE])}
+        return {name: sensor for name, sensor in sensors.items() if name in recorded}
 
 
 def load(source: Source, *, views: int, size: int, step: Step) -> Recording:
-    """Read the instants of ``source`` that are a step apart, with ``views`` (1 or 12) views of
-    ``size`` pixels.
+    """Load the frames of ``source`` at the instants that are one step apart.
 
-    Raises ValueError for a source without the cameras, and for one that is too long.
+    Args:
+        source: An opened drive.
+        views: Number of views per frame: 1 (one camera) or 12 (panorama).
+        size: Height and width of a view in pixels.
+        step: Distance between two instants.
+
+    Returns:
+        The drive with its frames in memory.
+
+    Raises:
+        ValueError: The source lacks a camera, is damaged or too large.
     """
     if source.stepped and step != Step():
-        raise ValueError(f"{source.name} is recorded step by step: leave step.* out.")
+        raise ValueError(
+            f"step.* has no effect on {source.name}, which is recorded step by step. Remove step.*."
+        )
     chosen = np.arange(len(source.times))
     if not source.stepped:
         chosen = step.choose(source.times, source.poses)
-    looks = _looks(source, views)
-    count = {RGB: 3, DEPTH: 4}
-    needed = len(chosen) * size * size * sum(count[kind] for kind, _ in looks)
-    if needed > LARGEST:
-        longer = "" if source.stepped else " or set longer steps (step.metres=0.5),"
+    view_cameras = _assign_cameras(source, views)
+    pixel_bytes = {RGB: 3, DEPTH: 4}
+    needed = len(chosen) * size * size * sum(pixel_bytes[kind] for kind, _ in view_cameras)
+    if needed > MAX_FRAME_BYTES:
+        longer = "" if source.stepped else " set longer steps (step.metres=0.5),"
         raise ValueError(
-            f"{source.name} has {len(chosen)} steps, whose frames take {needed / 2**30:.1f} GiB, "
-            f"more than {LARGEST >> 30}: cut the recording,{longer} or take smaller frames (size=)."
+            f"The frames of {source.name} must take at most {MAX_FRAME_BYTES >> 30} GiB, got "
+            f"{needed / 2**30:.1f} GiB for {len(chosen)} steps. Cut the recording,{longer} or use "
+            "smaller frames (size=)."
         )
     shape = (len(chosen), *([views] if views > 1 else []), size, size)
     frames = {
         kind: np.zeros((*shape, 3 if kind == RGB else 1), np.uint8 if kind == RGB else np.float32)
-        for kind, _ in looks
+        for kind, _ in view_cameras
     }
     with Progress(f"read {source.name}", len(chosen), unit="instant") as progress:
-        for row, shown in enumerate(source.frames(chosen.tolist())):
-            for (kind, view), camera in looks.items():
-                place = frames[kind][row] if views == 1 else frames[kind][row, view]
+        for row, images in enumerate(source.frames(chosen.tolist())):
+            for (kind, view), camera in view_cameras.items():
+                target = frames[kind][row] if views == 1 else frames[kind][row, view]
                 try:
-                    place[...] = square(shown[camera], source.cameras[camera], size)
+                    target[...] = square_view(images[camera], source.cameras[camera], size)
                 except (ValueError, cv2.error) as error:
                     raise ValueError(f"{source.name}, {camera}: {error}.") from error
             progress.advance()
         if source.dropped:
             progress.say(
-                f"{source.name}: {source.dropped} frames were left out, as no pose or no frame of "
-                "the other camera was near in time"
+                f"{source.name}: left out {source.dropped} frames that have no pose or no frame of "
+                "the other camera near in time"
             )
     if DEPTH in frames:
-        unit = "Of 16-bit PNG set unit= (metres of a count)."
-        check_metres(frames[DEPTH], f"{source.name}'s depth", unit)
+        unit = "For 16-bit PNG set unit= (metres per count)."
+        check_metres(frames[DEPTH], f"the depth of {source.name}", unit)
     poses = None if source.poses is None else source.poses[chosen]
     times = source.times[chosen] - source.times[0]
-    taken = None if poses is None else driven(poses)
-    if poses is not None and taken is not None:
-        _check_headings(source.name, *strange(poses, taken))
-    return Recording(source.name, source.instruction, frames, times, poses, taken)
+    driven = None if poses is None else driver_actions(poses)
+    if poses is not None and driven is not None:
+        _check_headings(source.name, *count_off_heading(poses, driven))
+    return Recording(source.name, source.instruction, frames, times, poses, driven)
 
 
 def kinds(source: Source, views: int) -> list[str]:
-    """Of which kinds ("rgb", "depth") are the frames that :func:`load` would read of ``source``;
-    raises as it does for a source without the cameras."""
-    return sorted({kind for kind, _ in _looks(source, views)}, reverse=True)
+    """Return the kinds of frames ("rgb", "depth") that :func:`load` would read.
+
+    Raises:
+        ValueError: The source lacks a camera.
+    """
+    return sorted({kind for kind, _ in _assign_cameras(source, views)}, reverse=True)
 
 
-def _looks(source: Source, views: int) -> dict[tuple[str, int], str]:
-    """Which camera gives which (kind, view): the one ahead, or all of the panorama."""
-    looks: dict[tuple[str, int], str] = {}
+def _assign_cameras(source: Source, views: int) -> dict[tuple[str, int], str]:
+    """Return the camera of each (kind, view): the front camera, or the whole panorama."""
+    assigned: dict[tuple[str, int], str] = {}
     for name, lens in source.cameras.items():
-        beside = abs((lens.yaw - 30.0 * lens.view + 180) % 360 - 180)
-        if beside > OFF or (views == 1 and lens.view != 0):
+        yaw_error = abs((lens.yaw - 30.0 * lens.view + 180) % 360 - 180)
+        if yaw_error > MAX_YAW_ERROR or (views == 1 and lens.view != 0):
             continue
-        if (lens.kind, lens.view) in looks:
+        if (lens.kind, lens.view) in assigned:
             raise ValueError(
-                f"{source.name} has two {lens.kind} cameras that look the same way, {name} and "
-                f"{looks[lens.kind, lens.view]}: say which, cameras=[rgb,depth] (it has "
-                f"{_told(source)})."
+                f"{source.name} has two {lens.kind} cameras that face the same way, {name} and "
+                f"{assigned[lens.kind, lens.view]}. Choose one, for example cameras=[rgb,depth]. "
+                f"Cameras: {_list_cameras(source)}."
             )
-        looks[lens.kind, lens.view] = name
-    for kind in sorted({kind for kind, _ in looks}, reverse=True):
-        there = sum(k == kind for k, _ in looks)
-        if there < views:
+        assigned[lens.kind, lens.view] = name
+    for kind in sorted({kind for kind, _ in assigned}, reverse=True):
+        count = sum(k == kind for k, _ in assigned)
+        if count < views:
             raise ValueError(
-                f"{source.name} has {there} {kind} cameras of the {VIEWS} that the agent's "
-                f"panorama needs, each 30 degrees from the next (it has {_told(source)}). Give "
+                f"{source.name} has {count} {kind} cameras of the {VIEWS} that the agent's "
+                f"panorama needs, one every 30 degrees. Cameras: {_list_cameras(source)}. Use "
                 "agents with one camera: agents=[checkpoints/recurrent/base]."
             )
-    if not looks:
-        raise ValueError(f"{source.name} has no camera that looks ahead, only {_told(source)}.")
-    return looks
+    if not assigned:
+        raise ValueError(
+            f"{source.name} must have a camera that faces forward. Cameras: "
+            f"{_list_cameras(source)}."
+        )
+    return assigned
 
 
-def _told(source: Source) -> str:
+def _list_cameras(source: Source) -> str:
+    """Return the cameras of a source as text for a message."""
     cameras = source.cameras.items()
     listed = [f"{name} ({lens.kind}, {lens.yaw:g} degrees)" for name, lens in cameras]
     return ", ".join(listed[:6]) + (" ..." if len(listed) > 6 else "") or "none"
 
 
-def square(frame: np.ndarray, lens: Lens, size: int) -> np.ndarray:
-    """A frame as a square view of 90 degrees: uint8 [size, size, 3], or float32 [size, size, 1].
+def square_view(frame: np.ndarray, lens: Lens, size: int) -> np.ndarray:
+    """Crop and resize a frame to a square view of 90 degrees.
 
-    A frame that is one already, of this size, comes back bit for bit.
+    Args:
+        frame: uint8 [H, W, 3] or float32 [H, W].
+        lens: Lens of the camera that took it.
+        size: Height and width of the view in pixels.
+
+    Returns:
+        uint8 [size, size, 3] or float32 [size, size, 1]. A frame that already is such a view is
+        returned bit for bit.
     """
-    depth = lens.kind == DEPTH
+    is_depth = lens.kind == DEPTH
     frame = frame.reshape(*frame.shape[:2], -1)
     height, width = frame.shape[:2]
-    fx, fy, cx, cy = lens.of(height, width)
+    fx, fy, cx, cy = lens.intrinsics(height, width)
     edges = (cx - fx, cx + fx, cy - fy, cy + fy)
     if min(edges[0], edges[2], width - edges[1], height - edges[3]) < -0.5:
-        return _inside(frame, edges, size, depth)
+        return _partial_view(frame, edges, size, is_depth)
     left, right, top, bottom = (round(edge) for edge in edges)
-    whole = frame[max(0, top) : bottom, max(0, left) : right]
-    if whole.shape[:2] != (size, size):
-        whole = _resized(whole, size, size, depth)
-    return whole.reshape(size, size, -1)
+    view = frame[max(0, top) : bottom, max(0, left) : right]
+    if view.shape[:2] != (size, size):
+        view = _resize(view, size, size, is_depth)
+    return view.reshape(size, size, -1)
 
 
-def _inside(
-    frame: np.ndarray, edges: tuple[float, float, float, float], size: int, depth: bool
+def _partial_view(
+    frame: np.ndarray, edges: tuple[float, float, float, float], size: int, is_depth: bool
 ) -> np.ndarray:
-    """A view of which the frame fills a part: drawn larger, so that its edges fall where they
-    are, and then reduced."""
+    """Draw a frame that covers only part of the view.
+
+    The frame is drawn on a larger canvas first, so that rounding moves its edges by a fraction of
+    a pixel only.
+    """
     height, width = frame.shape[:2]
     left, right, top, bottom = edges
-    large = OVER * size
-    across, down = large / (right - left), large / (bottom - top)
-    x0, x1 = (round(min(large, max(0, (x - left) * across))) for x in (0, width))
-    y0, y1 = (round(min(large, max(0, (y - top) * down))) for y in (0, height))
+    large = SUPERSAMPLING * size
+    scale_x = large / (right - left)
+    scale_y = large / (bottom - top)
+    x0, x1 = (round(min(large, max(0, (x - left) * scale_x))) for x in (0, width))
+    y0, y1 = (round(min(large, max(0, (y - top) * scale_y))) for y in (0, height))
     canvas = np.zeros((large, large, frame.shape[2]), frame.dtype)
     if x1 > x0 and y1 > y0:
-        cut = frame[max(0, round(top)) : round(bottom), max(0, round(left)) : round(right)]
-        canvas[y0:y1, x0:x1] = _resized(cut, x1 - x0, y1 - y0, depth).reshape(y1 - y0, x1 - x0, -1)
-    return _resized(canvas, size, size, depth).reshape(size, size, -1)
+        crop = frame[max(0, round(top)) : round(bottom), max(0, round(left)) : round(right)]
+        resized = _resize(crop, x1 - x0, y1 - y0, is_depth)
+        canvas[y0:y1, x0:x1] = resized.reshape(y1 - y0, x1 - x0, -1)
+    return _resize(canvas, size, size, is_depth).reshape(size, size, -1)
 
 
-def _resized(frame: np.ndarray, width: int, height: int, depth: bool) -> np.ndarray:
-    """Colours by area where they shrink; of depth the nearest, so that holes stay holes."""
+def _resize(frame: np.ndarray, width: int, height: int, is_depth: bool) -> np.ndarray:
+    """Resize a frame. Depth takes the nearest pixel, so that missing readings stay missing."""
     shrinks = width < frame.shape[1] or height < frame.shape[0]
-    kind = cv2.INTER_AREA if shrinks else cv2.INTER_LINEAR
+    smooth = cv2.INTER_AREA if shrinks else cv2.INTER_LINEAR
     return cv2.resize(
-        frame, (width, height), interpolation=cv2.INTER_NEAREST_EXACT if depth else kind
+        frame, (width, height), interpolation=cv2.INTER_NEAREST_EXACT if is_depth else smooth
     )
 
 
-def _check_headings(name: str, strange: int, moves: int) -> None:
-    """Warn if too many of the steps that move go another way than the heading."""
-    if moves >= ENOUGH and strange > STRANGE * moves:
+def _check_headings(name: str, off_heading: int, moving: int) -> None:
+    """Warn if too many of the moving steps go another way than the heading."""
+    if moving >= MIN_MOVING_STEPS and off_heading > MAX_OFF_HEADING * moving:
         warnings.warn(
-            f"{name}: {strange} of {moves} steps that move go back or sideways. Does the heading "
-            "point along the way? It is counter-clockwise from +y, in radians; of a bag, yaw= says "
-            "where its camera looks.",
+            f"{name}: {off_heading} of {moving} steps that move go backwards or sideways. Check "
+            "the heading: it is counter-clockwise from +y, in radians. For a bag, yaw= sets the "
+            "direction of its camera.",
             stacklevel=3,
         )
 
 
 class RecordedWorld(World):
-    """A world in which every step leads to the next instant of a recording, whatever the agent
-    does. It is over after the last one; nobody says how well an agent would have walked."""
+    """A world that replays a recording: each step returns its next instant, whatever the action.
+
+    The episode ends after the last instant. Success cannot be measured here.
+    """
 
     rule = "recorded: the way is the driver's"
 
     def __init__(self, recording: Recording) -> None:
-        self.recording, self.sensors = recording, recording.sensors
-        self.at, self.done = 0, True
+        self.recording = recording
+        self.sensors = recording.sensors
+        self.index = 0
+        self.done = True
 
     def episode(self) -> Episode:
-        """What there is to walk: the drive, by its name and instruction."""
-        name, nowhere = self.recording.name, (0.0, 0.0, 0.0)
+        """Return the drive as an episode with its name and instruction."""
+        name = self.recording.name
+        origin = (0.0, 0.0, 0.0)
         return Episode(
             episode_id=name,
             trajectory_id=name,
             scene_id=name,
-            start_position=nowhere,
-            start_rotation=(*nowhere, 1.0),
+            start_position=origin,
+            start_rotation=(*origin, 1.0),
             goals=(),
             instruction=Instruction(self.recording.instruction),
             reference_path=(),
         )
 
     def reset(self, episode: Episode) -> Observation:
-        """Begin at the first instant."""
-        self.at, self.done = 0, False
-        return self._seen()
+        """Return the first instant."""
+        self.index = 0
+        self.done = False
+        return self._observation()
 
     def step(self, action: int) -> Observation:
-        """The next instant. Raises RuntimeError after the last one."""
+        """Return the next instant, or the last one again when the episode ends.
+
+        Raises:
+            RuntimeError: The episode is over.
+        """
         if self.done:
-            raise RuntimeError("The recording is over: reset first.")
-        self.at += 1
-        self.done = self.at >= len(self.recording.times)
-        return self._seen()
+            raise RuntimeError("The recording is over. Call reset() before step().")
+        self.index += 1
+        self.done = self.index >= len(self.recording.times)
+        return self._observation()
 
     def measures(self) -> dict[str, float]:
-        """None: the way was the driver's."""
+        """Return an empty dict: the driver, not the agent, chose the path."""
         return {}
 
-    def _seen(self) -> Observation:
-        at = min(self.at, len(self.recording.times) - 1)
-        held = self.recording
-        ready = {} if held.poses is None else {POSE: held.poses[at].astype(np.float32)}
-        frames = held.frames
-        return Observation(ready, lambda: {n: f[at].copy() for n, f in frames.items()}, frames)
+    def _observation(self) -> Observation:
+        index = min(self.index, len(self.recording.times) - 1)
+        poses = self.recording.poses
+        ready = {} if poses is None else {POSE: poses[index].astype(np.float32)}
+        frames = self.recording.frames
+        return Observation(ready, lambda: {n: f[index].copy() for n, f in frames.items()}, frames)
 
 
 @dataclass(frozen=True)
 class Step:
-    """How far apart the instants are that an agent is shown: as far as its own steps take it.
+    """Distance between two instants that an agent observes; by default one of its own steps.
 
-    metres, degrees: moved or turned since the last one. seconds: where poses are not known. Raises
-    ValueError for what is not above 0.
+    Attributes:
+        metres: Metres moved since the last instant.
+        degrees: Degrees turned since the last instant.
+        seconds: Seconds since the last instant; used where poses are unknown.
+
+    Raises:
+        ValueError: A value is not above 0.
     """
 
     metres: float = FORWARD_METRES
@@ -281,28 +333,38 @@ class Step:
     def __post_init__(self) -> None:
         for name, value in vars(self).items():
             if not (math.isfinite(value) and value > 0):
-                raise ValueError(f"step.{name}={value:g} must be above 0.")
+                raise ValueError(f"step.{name} must be above 0, got {value:g}.")
 
     def share(self, before: np.ndarray, after: np.ndarray) -> float:
-        """How much of a step lies between two poses [3]."""
+        """Return the distance between two poses [3] as a share of a step."""
         moved = float(np.hypot(*(after[:2] - before[:2]))) / self.metres
         return max(moved, abs(turn(before[2], after[2])) / math.radians(self.degrees))
 
     def choose(self, times: np.ndarray, poses: np.ndarray | None) -> np.ndarray:
-        """Which instants are shown: the first, each that is a step away from the one before, and
-        the last, in place of its neighbour if it stands where that does."""
+        """Choose the instants that an agent observes.
+
+        These are the first instant, each that is a step away from the one before, and the last.
+        The last replaces the one before it if both are at nearly the same pose.
+
+        Args:
+            times: float64 [N], seconds.
+            poses: float64 [N, 3], or None if unknown.
+
+        Returns:
+            Indices of the chosen instants, int [T].
+        """
         chosen = [0]
         for index in range(1, len(times)):
-            last = chosen[-1]
+            previous = chosen[-1]
             if poses is None:
-                away = times[index] - times[last] >= self.seconds
+                is_step = times[index] - times[previous] >= self.seconds
             else:
-                away = self.share(poses[last], poses[index]) > NEARLY
-            if away:
+                is_step = self.share(poses[previous], poses[index]) > STEP_TOLERANCE
+            if is_step:
                 chosen.append(index)
         end = len(times) - 1
         if chosen[-1] != end and poses is not None:
-            if len(chosen) > 1 and self.share(poses[chosen[-1]], poses[end]) < PAUSE:
+            if len(chosen) > 1 and self.share(poses[chosen[-1]], poses[end]) < MIN_LAST_STEP:
                 chosen.pop()
             chosen.append(end)
         return np.array(chosen)
@@ -310,10 +372,12 @@ class Step:
 
 @dataclass(frozen=True)
 class Driven:
-    """What was done at each of T steps, the last one included, at which the drive ends.
+    """The driver's movement at each of T steps; the last step is STOP.
 
-    actions: int [T], the nearest of an agent's actions, ``NONE`` where none is like it. metres:
-    float [T], gone ahead (below 0: back). radians: float [T], turned to the left.
+    Attributes:
+        actions: int [T], the nearest action of an agent, or ``NO_ACTION``.
+        metres: float [T], metres moved forward; negative when backwards.
+        radians: float [T], radians turned to the left.
     """
 
     actions: np.ndarray
@@ -322,42 +386,48 @@ class Driven:
 
 
 def turn(before: float, after: float) -> float:
-    """Radians turned to the left from one heading to another, -pi to pi."""
+    """Return the radians turned to the left from one heading to another, -pi to pi."""
     return float((after - before + math.pi) % (2 * math.pi) - math.pi)
 
 
-def driven(poses: np.ndarray) -> Driven:
-    """What whoever drove did at poses [T, 3]; at the last, STOP.
+def driver_actions(poses: np.ndarray) -> Driven:
+    """Return the movements between poses [T, 3]; the last action is STOP.
 
-    A step that did both counts as what it did more of, one unit being 0.25 m or 15 degrees.
+    A step that both moves and turns counts as the larger part, in units of 0.25 m and 15 degrees.
     """
     count = len(poses)
-    actions, metres, radians = np.full(count, STOP), np.zeros(count), np.zeros(count)
+    actions = np.full(count, STOP)
+    metres = np.zeros(count)
+    radians = np.zeros(count)
     for index in range(count - 1):
-        before, after = poses[index], poses[index + 1]
+        before = poses[index]
+        after = poses[index + 1]
         dx, dy = after[:2] - before[:2]
         radians[index] = turn(before[2], after[2])
         middle = before[2] + radians[index] / 2
         ahead = -dx * math.sin(middle) + dy * math.cos(middle)
-        aside = abs(dx * math.cos(middle) + dy * math.sin(middle))
+        sideways = abs(dx * math.cos(middle) + dy * math.sin(middle))
         metres[index] = ahead
         turned = abs(radians[index]) / math.radians(TURN_DEGREES)
-        if turned >= math.hypot(ahead, aside) / FORWARD_METRES:
-            actions[index] = LEFT if radians[index] > 0 else RIGHT if turned > 0 else NONE
+        if turned >= math.hypot(ahead, sideways) / FORWARD_METRES:
+            actions[index] = LEFT if radians[index] > 0 else RIGHT if turned > 0 else NO_ACTION
         else:
-            actions[index] = FORWARD if ahead > aside else NONE
+            actions[index] = FORWARD if ahead > sideways else NO_ACTION
     return Driven(actions, metres, radians)
 
 
-def strange(poses: np.ndarray, taken: Driven) -> tuple[int, int]:
-    """How many of the steps between poses [T, 3] that move, by ``MOVES`` or more, none of an
-    agent's actions is like, and how many move."""
-    moves = np.hypot(*np.diff(poses[:, :2], axis=0).T) >= MOVES
-    moves &= np.isin(taken.actions[:-1], (FORWARD, NONE))
-    return int((taken.actions[:-1][moves] == NONE).sum()), int(moves.sum())
+def count_off_heading(poses: np.ndarray, driven: Driven) -> tuple[int, int]:
+    """Count the moving steps between poses [T, 3] that go another way than the heading.
+
+    Returns:
+        Number of backward or sideways steps, and number of steps that move.
+    """
+    moves = np.hypot(*np.diff(poses[:, :2], axis=0).T) >= MIN_MOVE
+    moves &= np.isin(driven.actions[:-1], (FORWARD, NO_ACTION))
+    return int((driven.actions[:-1][moves] == NO_ACTION).sum()), int(moves.sum())
 
 
-def answered(actions: np.ndarray) -> Driven:
-    """What would have been done, had the driver taken ``actions``: whole steps."""
+def movements(actions: np.ndarray) -> Driven:
+    """Return the movements of a driver who takes ``actions`` in full steps."""
     turned = math.radians(TURN_DEGREES) * ((actions == LEFT) * 1.0 - (actions == RIGHT))
     return Driven(actions, FORWARD_METRES * (actions == FORWARD), turned)

@@ -1,7 +1,7 @@
-"""What a recording is to those who read it: instants with frames of named cameras, and poses.
+"""The interface of an opened recording: instants with frames of named cameras, and poses.
 
-A source knows when its frames were taken and where the agent was; frames are read for the instants
-that are asked for. ``folders.py`` and ``bags.py`` make sources of files.
+A source reads times and poses when it is opened, and frames only on request. ``folders.py`` and
+``bags.py`` open sources from files.
 """
 
 from __future__ import annotations
@@ -10,29 +10,40 @@ import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Protocol
+from typing import Any, Protocol
 
 import numpy as np
 
 from mitigate.core.observation import VIEW_STEP_DEGREES
 
-SLOP = 0.1  # seconds between frames of one instant, at most (ours; a frame at 10 Hz)
-GAP = 2.0  # seconds between two poses, at most, for a place between them to be known (ours)
-LONGEST = 1 << 20  # instants of a drive (ours): 9 hours at 30 Hz
-LARGEST_TEXT, LARGEST_WORDS = 1 << 28, 1 << 16  # bytes of a list, of an instruction (ours)
-NARROW, WIDE = 10.0, 179.0  # degrees that a camera sees
-LEVEL = 0.3  # of a direction's length lies level, or it has no heading: 73 degrees down (ours)
-LOW, BESIDE = 1.0, 4.0  # degrees from top to bottom; pictures from the middle to the centre (ours)
-ASPECT = 0.02  # share by which a picture's aspect may differ from its CameraInfo's (ours)
+# Heuristic limits.
+MAX_FRAME_GAP = 0.1  # seconds between frames of one instant: one frame at 10 Hz
+MAX_POSE_GAP = 2.0  # seconds between two poses that may be interpolated
+MAX_INSTANTS = 1 << 20  # of a drive: 9 hours at 30 Hz
+MAX_TEXT_BYTES = 1 << 28  # of a list of files or poses
+MAX_INSTRUCTION_BYTES = 1 << 16
+MIN_HFOV = 10.0  # horizontal field of view in degrees
+MAX_HFOV = 179.0
+MIN_VFOV = 1.0  # vertical field of view in degrees
+MAX_CENTRE_OFFSET = 4.0  # image widths or heights between the principal point and the middle
+MIN_LEVEL = 0.3  # horizontal share of a direction with a heading: at most 73 degrees up or down
+MAX_ASPECT_ERROR = 0.02  # relative difference between the aspects of an image and its CameraInfo
 
 
 @dataclass(frozen=True)
 class Lens:
-    """A pinhole camera: kind "rgb" or "depth"; yaw: degrees to the right of the heading.
+    """A pinhole camera, described by its field of view or by its intrinsics.
 
-    focal, centre: in pixels of pictures of ``size`` (width, height); None: what ``hfov``, the
-    horizontal field of view in degrees, gives. Raises ValueError for one that sees too little or
-    too much.
+    Attributes:
+        kind: "rgb" or "depth".
+        hfov: Horizontal field of view in degrees; ignored if ``focal`` is set.
+        yaw: Degrees to the right of the heading.
+        focal: Focal lengths (fx, fy) in pixels of an image of ``size``.
+        centre: Principal point (cx, cy) in pixels of an image of ``size``.
+        size: Width and height of the image in pixels.
+
+    Raises:
+        ValueError: The field of view or the principal point is out of range.
     """
 
     kind: str
@@ -43,49 +54,68 @@ class Lens:
     size: tuple[int, int] | None = None
 
     def __post_init__(self) -> None:
-        wide = self.hfov
+        hfov = self.hfov
         if self.focal is not None and self.size is not None:
-            wide = math.degrees(2 * math.atan2(self.size[0] / 2, self.focal[0]))
-        if not NARROW <= wide <= WIDE:
-            raise ValueError(f"A camera that sees {wide:.3g} degrees is none (10 to 179).")
+            hfov = math.degrees(2 * math.atan2(self.size[0] / 2, self.focal[0]))
+        if not MIN_HFOV <= hfov <= MAX_HFOV:
+            raise ValueError(
+                f"The horizontal field of view of a camera must be {MIN_HFOV:g} to {MAX_HFOV:g} "
+                f"degrees, got {hfov:.3g}."
+            )
         if self.focal is not None and self.size is not None and self.centre is not None:
-            tall = math.degrees(2 * math.atan2(self.size[1] / 2, self.focal[1]))
-            beside = max(abs(c - s / 2) / s for c, s in zip(self.centre, self.size, strict=True))
-            if not LOW <= tall <= WIDE or beside > BESIDE:
+            vfov = math.degrees(2 * math.atan2(self.size[1] / 2, self.focal[1]))
+            if not MIN_VFOV <= vfov <= MAX_HFOV:
                 raise ValueError(
-                    f"A camera that sees {tall:.3g} degrees from top to bottom, its centre "
-                    f"{beside:.3g} pictures beside the middle, is none."
+                    f"The vertical field of view of a camera must be {MIN_VFOV:g} to "
+                    f"{MAX_HFOV:g} degrees, got {vfov:.3g}."
+                )
+            offset = max(abs(c - s / 2) / s for c, s in zip(self.centre, self.size, strict=True))
+            if offset > MAX_CENTRE_OFFSET:
+                raise ValueError(
+                    "The principal point of a camera must be at most "
+                    f"{MAX_CENTRE_OFFSET:g} image sizes from the middle, got {offset:.3g}."
                 )
 
-    def of(self, height: int, width: int) -> tuple[float, float, float, float]:
-        """Focal lengths and centre (fx, fy, cx, cy) in pixels of pictures of this size. Raises
-        ValueError for pictures of another shape than ``size``."""
+    def intrinsics(self, height: int, width: int) -> tuple[float, float, float, float]:
+        """Return (fx, fy, cx, cy) in pixels of an image of this size.
+
+        Raises:
+            ValueError: The image has another aspect than ``size``.
+        """
         if self.focal is None or self.centre is None or self.size is None:
             focal = width / 2 / math.tan(math.radians(self.hfov) / 2)
             return focal, focal, width / 2, height / 2
-        across, down = width / self.size[0], height / self.size[1]
-        if abs(across / down - 1) > ASPECT:
+        scale_x = width / self.size[0]
+        scale_y = height / self.size[1]
+        if abs(scale_x / scale_y - 1) > MAX_ASPECT_ERROR:
             raise ValueError(
-                f"pictures of {width} x {height} are not of the camera that CameraInfo is of "
-                f"({self.size[0]} x {self.size[1]}): name its topic (topics.info=, "
-                "topics.depth_info=)"
+                f"images of {width} x {height} do not fit the CameraInfo, which is for "
+                f"{self.size[0]} x {self.size[1]}. Name the topic of their CameraInfo "
+                "(topics.info=, topics.depth_info=)"
             )
-        (fx, fy), (cx, cy) = self.focal, self.centre
-        return fx * across, fy * down, cx * across, cy * down
+        fx, fy = self.focal
+        cx, cy = self.centre
+        return fx * scale_x, fy * scale_y, cx * scale_x, cy * scale_y
 
     @property
     def view(self) -> int:
-        """The nearest of the panorama's views (``core/observation.py``)."""
+        """Index of the nearest view of the panorama, see ``core/observation.py``."""
         return round(self.yaw / VIEW_STEP_DEGREES) % round(360 / VIEW_STEP_DEGREES)
 
 
 class Source(Protocol):
-    """One drive.
+    """An opened drive of N instants.
 
-    times: float64 [N], seconds, growing. poses: float64 [N, 3] = (x, y, heading) in the plan frame
-    of ``core/observation.py``, or None where they are not known. stepped: each instant is one step
-    of an agent; else the camera's own rate. dropped: instants that were left out, as no pose or no
-    frame of the other camera was near.
+    Attributes:
+        name: Name of the drive.
+        instruction: Instruction text; may be empty.
+        cameras: Lens of each camera by name.
+        times: float64 [N], seconds, increasing.
+        poses: float64 [N, 3], (x, y, heading) in the plan frame of ``core/observation.py``, or
+            None if unknown.
+        stepped: Whether each instant is one step of an agent; otherwise a frame of the camera.
+        dropped: Number of instants left out because no pose or no frame of the other camera was
+            near in time.
     """
 
     @property
@@ -110,31 +140,50 @@ class Source(Protocol):
     def dropped(self) -> int: ...
 
     def frames(self, chosen: Sequence[int]) -> Iterator[dict[str, np.ndarray]]:
-        """Of each instant ``chosen``, in order, the frame of each camera: uint8 [H, W, 3], or
-        float32 metres [H, W], 0 where there is no reading. Raises ValueError for what is
-        damaged."""
+        """Yield the frame of each camera at each chosen instant, in order.
+
+        Args:
+            chosen: Increasing indices of instants.
+
+        Yields:
+            uint8 [H, W, 3], or float32 metres [H, W] with 0 for no reading, by camera.
+
+        Raises:
+            ValueError: A frame is damaged.
+        """
 
 
 def plan_pose(x: float, y: float, forward: np.ndarray) -> tuple[float, float, float]:
-    """The pose in the plan frame of an agent at (x, y) that faces ``forward`` [3] (z is up); its
-    heading is NaN where it faces up or down."""
-    level = math.hypot(forward[0], forward[1]) >= LEVEL
+    """Return the plan pose (x, y, heading) of an agent at (x, y) that faces ``forward`` [3].
+
+    z points up. The heading is NaN if ``forward`` points up or down.
+    """
+    level = math.hypot(forward[0], forward[1]) >= MIN_LEVEL
     return x, y, math.atan2(-forward[0], forward[1]) if level else math.nan
 
 
-def rotated(quaternion: Sequence[float], axis: Sequence[float]) -> np.ndarray:
-    """``axis`` [3] turned by a quaternion (x, y, z, w); NaN for one that is no rotation."""
-    found = np.asarray(quaternion, np.float64)
-    length = float(np.linalg.norm(found))
-    if not (found.shape == (4,) and np.isfinite(length) and length > 1e-6):
+def rotate(quaternion: Sequence[float], axis: Sequence[float]) -> np.ndarray:
+    """Rotate ``axis`` [3] by a quaternion (x, y, z, w); NaN if it is not a rotation."""
+    values = np.asarray(quaternion, np.float64)
+    length = float(np.linalg.norm(values))
+    if not (values.shape == (4,) and np.isfinite(length) and length > 1e-6):
         return np.full(3, np.nan)
-    x, y, z, w = found / length
-    u, v = np.array([x, y, z]), np.asarray(axis, np.float64)
+    x, y, z, w = values / length
+    u = np.array([x, y, z])
+    v = np.asarray(axis, np.float64)
     return v + 2 * np.cross(u, np.cross(u, v) + w * v)
 
 
-def near(times: np.ndarray, others: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Which of ``others`` (growing) is nearest to each of ``times``, and how far away."""
+def find_nearest(times: np.ndarray, others: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Find the element of ``others`` nearest to each of ``times``.
+
+    Args:
+        times: float64 [N], seconds.
+        others: float64 [M], seconds, increasing.
+
+    Returns:
+        Indices into ``others``, int [N], and distances in seconds, float64 [N].
+    """
     right = np.clip(np.searchsorted(others, times), 1, max(1, len(others) - 1))
     left = right - 1
     right = np.minimum(right, len(others) - 1)
@@ -142,36 +191,55 @@ def near(times: np.ndarray, others: np.ndarray) -> tuple[np.ndarray, np.ndarray]
     return nearest, np.abs(others[nearest] - times)
 
 
-def placed(times: np.ndarray, table: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Poses [N, 3] at ``times``, on the line between those of ``table`` [M, 4] = (time, x, y,
-    heading), and which are known: bool [N], none in a gap of more than ``GAP`` seconds."""
+def interpolate_poses(times: np.ndarray, table: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Interpolate poses at ``times``.
+
+    Args:
+        times: float64 [N], seconds.
+        table: float64 [M, 4], (time, x, y, heading) of the known poses.
+
+    Returns:
+        Poses, float64 [N, 3], and whether each is known, bool [N]. Poses in a gap of more than
+        ``MAX_POSE_GAP`` seconds are unknown.
+    """
     table = table[np.isfinite(table).all(1)]
     if not len(table):
         return np.zeros((len(times), 3)), np.zeros(len(times), bool)
-    at, first = np.unique(table[:, 0], return_index=True)
+    pose_times, first = np.unique(table[:, 0], return_index=True)
     poses = table[first, 1:]
-    headings = np.interp(times, at, np.unwrap(poses[:, 2]))
-    xy = [np.interp(times, at, poses[:, column]) for column in (0, 1)]
-    after = np.searchsorted(at, times)
-    inside = (after > 0) & (after < len(at))
-    gaps = np.diff(at)[np.clip(after - 1, 0, max(0, len(at) - 2))] if len(at) > 1 else np.inf
-    known = (inside & (gaps <= GAP)) | (near(times, at)[1] <= SLOP)
+    headings = np.interp(times, pose_times, np.unwrap(poses[:, 2]))
+    xy = [np.interp(times, pose_times, poses[:, column]) for column in (0, 1)]
+    after = np.searchsorted(pose_times, times)
+    inside = (after > 0) & (after < len(pose_times))
+    gaps: Any = np.inf
+    if len(pose_times) > 1:
+        gaps = np.diff(pose_times)[np.clip(after - 1, 0, max(0, len(pose_times) - 2))]
+    close = find_nearest(times, pose_times)[1] <= MAX_FRAME_GAP
+    known = (inside & (gaps <= MAX_POSE_GAP)) | close
     return np.stack([*xy, headings], 1), known
 
 
-def words(file: Path) -> str:
-    """The instruction in a text file; empty if there is none. Raises ValueError for a long one, and
-    for one that is not UTF-8."""
-    found = text(file, LARGEST_WORDS).strip() if file.is_file() else ""
-    if "\N{REPLACEMENT CHARACTER}" in found or "\0" in found:
-        raise ValueError(f"{file} must be UTF-8 text: save it again as UTF-8, or leave it out.")
-    return found
+def read_instruction(file: Path) -> str:
+    """Read the instruction from a text file; empty if the file does not exist.
+
+    Raises:
+        ValueError: The text is too long or not UTF-8.
+    """
+    instruction = read_text(file, MAX_INSTRUCTION_BYTES).strip() if file.is_file() else ""
+    if "\N{REPLACEMENT CHARACTER}" in instruction or "\0" in instruction:
+        raise ValueError(f"{file} must be UTF-8 text. Save it as UTF-8, or remove it.")
+    return instruction
 
 
-def text(file: Path, most: int = LARGEST_TEXT) -> str:
-    """What a text file holds. Raises ValueError if it has more than ``most`` bytes."""
-    with open(file, "rb") as held:
-        raw = held.read(min(most, file.stat().st_size) + 1)  # as much memory is taken for it
-    if len(raw) > most:
-        raise ValueError(f"{file} has more than {most} bytes: cut the recording.")
+def read_text(file: Path, max_bytes: int = MAX_TEXT_BYTES) -> str:
+    """Read a text file.
+
+    Raises:
+        ValueError: The file is larger than ``max_bytes``.
+    """
+    with open(file, "rb") as stream:
+        # read() allocates the size it is given, so give it no more than the file has
+        raw = stream.read(min(max_bytes, file.stat().st_size) + 1)
+    if len(raw) > max_bytes:
+        raise ValueError(f"{file} must have at most {max_bytes} bytes. Cut the recording.")
     return raw.decode("utf-8-sig", errors="replace")

@@ -1,8 +1,8 @@
-"""Bags of anybody, before and while ``rosbags`` reads them: nothing unpacks to more than allowed.
+"""Protect against decompression bombs and executable SQLite schemas in bags from untrusted sources.
 
-``rosbags`` unpacks chunks, messages and whole files without a bound, and asks SQLite for whatever
-a data base calls its tables. Its decompressors are replaced by ones that stop, once, for this
-process; data bases and metadata are looked at first.
+``rosbags`` decompresses chunks, messages and whole files without a limit, and queries whatever a
+database declares as its tables. This module replaces its decompressors, once per process, by ones
+with a limit. It checks databases and metadata before ``rosbags`` opens them.
 """
 
 from __future__ import annotations
@@ -18,37 +18,42 @@ from typing import Any
 from mitigate.core.files import FREE, RATIO
 
 METADATA = "metadata.yaml"
-LARGEST_METADATA = 1 << 20  # bytes (ours); one of 100 topics has 1e5
-PACKED = (".zstd", ".zst")
-_budgets: list[Budget] = []  # of the bags that are open, the newest last
+MAX_METADATA_BYTES = 1 << 20  # heuristic limit; the metadata of 100 topics has 1e5 bytes
+COMPRESSED = (".zstd", ".zst")
+_budgets: list[Budget] = []  # one per open bag, the newest last
 
 
 class Bomb(ValueError):
-    """Something unpacks to far more than it has."""
+    """Compressed data expand to far more bytes than they have."""
 
 
 class Budget:
-    """What a bag of ``size`` bytes may unpack to while it is read once."""
+    """Number of bytes that a bag of ``size`` bytes may expand to while it is read once."""
 
     def __init__(self, size: int) -> None:
-        self.most = self.left = FREE + RATIO * size
+        self.limit = self.left = FREE + RATIO * size
 
     def spend(self, count: int) -> None:
-        """Take ``count`` bytes. Raises Bomb if that is too many."""
+        """Subtract ``count`` bytes.
+
+        Raises:
+            Bomb: The budget is exceeded.
+        """
         self.left -= count
         if self.left < 0:
             raise Bomb(
-                f"it unpacks to more than {self.most >> 20} MiB, over {RATIO} times what it has, "
-                "as no drive does: do not use it, or unpack it yourself"
+                f"it unpacks to more than {self.limit >> 20} MiB, over {RATIO} times its size, "
+                "which no drive does. Do not use it, or unpack it yourself"
             )
 
 
 @contextmanager
 def bounded(path: Path) -> Iterator[None]:
-    """Within it, ``rosbags`` may read ``path`` (a file or a folder).
+    """Limit what ``rosbags`` may decompress while it reads ``path`` (a file or a folder).
 
-    Raises ValueError for a data base or metadata that no recorder writes; inside, what unpacks to
-    too much raises Bomb.
+    Raises:
+        ValueError: A database or metadata are not as a recorder writes them. Inside the context,
+            :class:`Bomb` if the bag expands to too many bytes.
     """
     files = [path] if path.is_file() else [file for file in path.iterdir() if file.is_file()]
     size = sum(file.stat().st_size for file in files)
@@ -64,104 +69,123 @@ def bounded(path: Path) -> Iterator[None]:
 
 def _check(files: list[Path], size: int) -> None:
     for file in files:
-        if file.name == METADATA and file.stat().st_size > LARGEST_METADATA:
-            raise ValueError(f"its {METADATA} has more than {LARGEST_METADATA} bytes")
+        if file.name == METADATA and file.stat().st_size > MAX_METADATA_BYTES:
+            raise ValueError(f"its {METADATA} has more than {MAX_METADATA_BYTES} bytes")
         if file.suffix == ".db3":
             check_tables(file)
-        if file.suffix in PACKED:  # rosbags unpacks these to the disk
-            with open(file, "rb") as packed, _zstd().open(packed, "rb") as unpacked:
+        if file.suffix in COMPRESSED:  # rosbags decompresses these to the disk
+            with open(file, "rb") as compressed, _zstd().open(compressed, "rb") as unpacked:
                 budget = Budget(size)
                 while block := unpacked.read(1 << 20):
                     budget.spend(len(block))
 
 
 def check_tables(file: Path) -> None:
-    """Raise ValueError for a data base in which a query of ours would run code of its own: views,
-    triggers, virtual tables and computed columns."""
+    """Check that a query of a database cannot run code that the database brings.
+
+    Raises:
+        ValueError: It has views, triggers, virtual tables or computed columns.
+    """
     try:
         with closing(sqlite3.connect(f"{file.resolve().as_uri()}?immutable=1", uri=True)) as base:
-            listed = base.execute("SELECT type, name, sql FROM sqlite_master LIMIT 1000").fetchall()
-            kinds = {kind for kind, _, _ in listed}
+            schema = base.execute("SELECT type, name, sql FROM sqlite_master LIMIT 1000").fetchall()
+            kinds = {kind for kind, _, _ in schema}
             computed = any(
                 column[6]
-                for kind, name, _ in listed
+                for kind, name, _ in schema
                 if kind == "table"
                 for column in base.execute("SELECT * FROM pragma_table_xinfo(?)", (name,))
             )
     except sqlite3.Error as error:
-        raise ValueError(f"its data base cannot be read ({error})") from error
-    virtual = any("virtual" in str(sql).lower().split()[:2] for _, _, sql in listed)
+        raise ValueError(f"its database cannot be read ({error})") from error
+    virtual = any("virtual" in str(sql).lower().split()[:2] for _, _, sql in schema)
     if not kinds <= {"table", "index"} or computed or virtual:
-        raise ValueError("its data base holds views, triggers or computed columns: do not use it")
+        raise ValueError(
+            "its database has views, triggers or computed columns, which no recorder writes. Do "
+            "not use it"
+        )
 
 
-def _spent(unpacked: bytes) -> bytes:
+def _count(unpacked: bytes) -> bytes:
+    """Subtract decompressed bytes from the budget of the newest bag, and return them."""
     if _budgets:
         _budgets[-1].spend(len(unpacked))
     return unpacked
 
 
-def _most() -> int:
-    """Bytes that may be unpacked now, and one more, by which too many are noticed."""
+def _max_length() -> int:
+    """Return one byte more than the budget allows, so that an excess is noticed."""
     return _budgets[-1].left + 1 if _budgets else FREE
 
 
-def whole(make: Callable[[], Any], data: bytes) -> bytes:
-    """Unpack ``data``, of one or several streams, by decompressors that ``make`` gives.
+def decompress_bounded(make: Callable[[], Any], data: bytes) -> bytes:
+    """Decompress one or several concatenated streams within the budget.
 
-    Raises Bomb for too much, EOFError for data that are cut short.
+    Args:
+        make: Returns a new decompressor.
+        data: The compressed bytes.
+
+    Returns:
+        The decompressed bytes.
+
+    Raises:
+        Bomb: The budget is exceeded.
+        EOFError: The data are incomplete.
     """
-    found, left = [], bytes(data)
+    blocks = []
+    left = bytes(data)
     while left:
         stream = make()
-        found.append(_spent(stream.decompress(left, max_length=_most())))
+        blocks.append(_count(stream.decompress(left, max_length=_max_length())))
         while not stream.eof:
             if stream.needs_input:
                 raise EOFError("compressed data are cut short")
-            found.append(_spent(stream.decompress(b"", max_length=_most())))
+            blocks.append(_count(stream.decompress(b"", max_length=_max_length())))
         left = stream.unused_data or b""
-    return b"".join(found)
+    return b"".join(blocks)
 
 
 class Zstd:
-    """In the place of the module ``zstd`` where ``rosbags`` reads."""
+    """Replacement of the module ``zstd`` that ``rosbags`` uses."""
 
     @staticmethod
     def decompress(data: bytes) -> bytes:
-        """As the module's."""
-        return whole(_zstd().ZstdDecompressor, data)
+        """Decompress within the budget."""
+        return decompress_bounded(_zstd().ZstdDecompressor, data)
 
     @staticmethod
     def open(file: Any, mode: str = "rb") -> io.BufferedIOBase:
-        """As the module's; files were counted before (:func:`bounded`)."""
+        """Open a compressed file, whose expanded size :func:`bounded` has checked."""
         return _zstd().open(file, mode)
 
 
 def _zstd() -> Any:
+    """Return the module ``zstd`` that ``rosbags`` imports."""
     from rosbags.rosbag2 import storage_mcap
 
-    found = storage_mcap.zstd
-    return found
+    module = storage_mcap.zstd
+    return module
 
 
 def _install() -> None:
-    """Put bounded decompressors in the place of those of ``rosbags``."""
+    """Replace the decompressors of ``rosbags`` by bounded ones."""
     from lz4.frame import LZ4FrameDecompressor
-    from rosbags.rosbag1 import reader as one
-    from rosbags.rosbag2 import reader as two
+    from rosbags.rosbag1 import reader as ros1_reader
+    from rosbags.rosbag2 import reader as ros2_reader
     from rosbags.rosbag2 import storage_mcap
 
     def lz4(data: bytes) -> bytes:
-        return whole(LZ4FrameDecompressor, data)
+        return decompress_bounded(LZ4FrameDecompressor, data)
 
-    one.decompressors.update(
-        {"none": _spent, "bz2": lambda data: whole(bz2.BZ2Decompressor, data), "lz4": lz4}
-    )
+    def bzip2(data: bytes) -> bytes:
+        return decompress_bounded(bz2.BZ2Decompressor, data)
+
+    ros1_reader.decompressors.update({"none": _count, "bz2": bzip2, "lz4": lz4})
     storage_mcap.DECOMPRESSORS.update(
         {
-            "": lambda data, size: _spent(data),
+            "": lambda data, size: _count(data),
             "lz4": lambda data, size: lz4(data),
             "zstd": lambda data, size: Zstd.decompress(data),
         }
     )
-    two.zstd = Zstd  # type: ignore[assignment]
+    ros2_reader.zstd = Zstd  # type: ignore[assignment]
