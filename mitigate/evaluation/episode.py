@@ -158,7 +158,7 @@ class _Walk:
         return ValueError(f"{self.name}, step {self.steps + 1}: {said(error)}")
 
     def measures(self) -> dict[str, Any]:
-        found: dict[str, Any] = {**self.met.measures(), "decisions": self.met.looks}
+        found: dict[str, Any] = {**self.met.measures(), "decisions": self.met.frames_read}
         plain = {n: v if lacking(v, ("item",)) else v.item() for n, v in found.items()}  # arrays
         found = {n: int(v) if isinstance(v, bool) else v for n, v in plain.items()}
         return {name: found.pop(name) for name in MEASURES if name in found} | found

@@ -217,7 +217,7 @@ class Traced(WorldWrapper):
         self.path = []
         return super().reset(episode)
 
-    def _seen(self, met: Observation) -> Observation:
+    def _observe(self, met: Observation) -> Observation:
         here = np.array(met[POSE][:2], np.float64)
         if not self.path or not np.array_equal(here, self.path[-1]):
             self.path.append(here)

@@ -214,7 +214,7 @@ class Guarded(WorldWrapper):
         super().__init__(world)
         self.guard = guard
 
-    def _seen(self, met: Observation) -> Observation:
+    def _observe(self, met: Observation) -> Observation:
         def observed() -> dict[str, Any]:
             shown = self.guard.observe(dict(met))
             return {name: shown[name] for name in met.frames}

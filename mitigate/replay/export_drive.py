@@ -1,6 +1,6 @@
-"""Write an oracle's walks as drives, to try ``mitigate replay`` on: ``mitigate export_drive OUT``.
+"""Record an oracle's episodes as drives, to try ``mitigate replay``: ``mitigate export_drive OUT``.
 
-OUT is a folder; each episode becomes a drive in it, as one RGB-D camera of 90 degrees would have
+OUT is a folder. Each episode becomes a drive in it, as one RGB-D camera of 90 degrees would have
 recorded it: a folder of frames, or a bag of ROS 1 or of ROS 2 (MCAP).
 """
 
@@ -28,9 +28,9 @@ from mitigate.core.output import output_folder
 from mitigate.corruptions.frame_files import counts
 
 FORMS = ("frames", "bag", "mcap")
-_OTHERS = re.compile(r"[^\w-]+")  # signs that the name of a drive does not have
-UNIT = 0.001  # metres of a count of its 16-bit depth
-SECOND = 1_000_000_000  # nanoseconds; a step takes one
+_NOT_IN_NAMES = re.compile(r"[^\w-]+")  # characters that are replaced in the name of a drive
+UNIT = 0.001  # metres per count of 16-bit depth
+SECOND = 1_000_000_000  # nanoseconds; each step lasts one second
 TOPICS = {
     RGB: "/camera/color/image_raw",
     DEPTH: "/camera/aligned_depth_to_color/image_raw",
@@ -41,7 +41,7 @@ TOPICS = {
 
 @dataclass
 class ExportDriveConfig:
-    """Types of ``conf/export_drive.yaml``; the meaning of each entry is written there."""
+    """Types of ``conf/export_drive.yaml``, which explains each entry."""
 
     split: str = "val_unseen"
     episodes: int = 3
@@ -56,9 +56,11 @@ conf.register("export_drive", ExportDriveConfig)
 def run(config: ExportDriveConfig, out: Path) -> list[Path]:
     """Write the drives into ``out`` and return their paths.
 
-    Each is there whole or not at all; beside a bag its words are written first. Raises ValueError
-    for an unknown form or split, for a world without an expert or with more than one camera, and,
-    before any walk, for a drive that is there already.
+    A drive is written completely or not at all.
+
+    Raises:
+        ValueError: The form or split is unknown, the world has no expert or several cameras, or a
+            drive already exists (checked before any episode runs).
     """
     from mitigate.core import build
     from mitigate.core.progress import Progress
@@ -70,47 +72,51 @@ def run(config: ExportDriveConfig, out: Path) -> list[Path]:
     env = open_entries(EnvConfig, config.env)
     world = build.Maker(env.world)()
     if len(world.sensors[RGB].shape) != 3:
-        raise ValueError("A drive has one camera: set env.views=1.")
-    chosen, written = episodes(env, config.split, config.episodes), []
-    paths = _paths(out, [episode.episode_id for episode in chosen], config.form)
-    progress = Progress("export_drive", len(chosen), unit="drive")
+        raise ValueError("A drive has one camera. Set env.views=1.")
+    listed = episodes(env, config.split, config.episodes)
+    paths = _drive_paths(out, [episode.episode_id for episode in listed], config.form)
+    progress = Progress("export_drive", len(listed), unit="drive")
     with output_folder(out) as root, progress:
-        for episode, path in zip(chosen, paths, strict=True):
-            steps, words = list(oracle(world, episode)), episode.instruction.text
+        for episode, path in zip(listed, paths, strict=True):
+            steps = list(oracle(world, episode))
+            instruction = episode.instruction.text
             root.check()
-            with tempfile.TemporaryDirectory(prefix=".drive.", dir=out) as aside:
-                draft = Path(aside) / path.stem
+            with tempfile.TemporaryDirectory(prefix=".drive.", dir=out) as temporary:
+                draft = Path(temporary) / path.stem
                 if config.form == "frames":
-                    write_frames(draft, steps, words)
+                    write_frames(draft, steps, instruction)
                 else:
                     draft = write_bag(draft, steps, config.form)
-                    write_bytes(path.with_suffix(".txt"), words.encode())
+                    # before the bag, so that a complete bag always has its instruction
+                    write_bytes(path.with_suffix(".txt"), instruction.encode())
                 draft.rename(path)
-            written.append(path)
             root.expected.append(path)
             progress.advance(note=path.name)
-    return written
+    return paths
 
 
-def _paths(out: Path, names: Sequence[str], form: str) -> list[Path]:
-    """Where the drives of episodes are written: what an id says is no path, and no suffix. Raises
-    ValueError for two that would be one, and for what is there."""
+def _drive_paths(out: Path, names: Sequence[str], form: str) -> list[Path]:
+    """Return the path of each episode's drive; ids are reduced to letters, digits, "_" and "-".
+
+    Raises:
+        ValueError: Two episodes have the same path, or a path already exists.
+    """
     suffix = ".bag" if form == "bag" else ""
-    plain = [_OTHERS.sub("-", name).strip("-") or "unnamed" for name in names]
-    paths = [out / f"{name}{suffix}" for name in plain]
-    for place, path in enumerate(paths):
+    safe_names = [_NOT_IN_NAMES.sub("-", name).strip("-") or "unnamed" for name in names]
+    paths = [out / f"{name}{suffix}" for name in safe_names]
+    for index, path in enumerate(paths):
         if path.exists():
-            raise ValueError(f"{path} is there already: name another folder, or delete it.")
-        if path in paths[:place]:
+            raise ValueError(f"{path} already exists. Name another folder, or delete it.")
+        if path in paths[:index]:
             raise ValueError(
-                f"Two episodes would be the drive {path}, {names[paths.index(path)]!r} and "
-                f"{names[place]!r}: give them ids that differ in letters or digits."
+                f"Episodes {names[paths.index(path)]!r} and {names[index]!r} have the same path "
+                f"{path}. Give them ids that differ in letters or digits."
             )
     return paths
 
 
 def oracle(world: Any, episode: Any) -> Iterator[dict[str, np.ndarray]]:
-    """What there is to see at each step of the expert's walk, the last one included."""
+    """Yield the observation of each step of the expert, the one before STOP included."""
     from mitigate.worlds.world import expert_of
 
     observation = world.reset(episode)
@@ -119,27 +125,30 @@ def oracle(world: Any, episode: Any) -> Iterator[dict[str, np.ndarray]]:
         observation = world.step(expert_of(world).action())
 
 
-def write_frames(path: Path, steps: Sequence[dict[str, np.ndarray]], words: str) -> None:
+def write_frames(path: Path, steps: Sequence[dict[str, np.ndarray]], instruction: str) -> None:
     """Write a drive as a folder: ``rgb/``, ``depth/``, ``poses.csv`` and ``instruction.txt``."""
     for number, step in enumerate(steps):
         write_bytes(path / RGB / f"{number:06d}.png", _png(step[RGB][..., ::-1]))
         write_bytes(path / DEPTH / f"{number:06d}.png", _png(counts(step[DEPTH][..., 0], UNIT)))
-    write_bytes(path / "instruction.txt", words.encode())
+    write_bytes(path / "instruction.txt", instruction.encode())
     with atomic_text(path / "poses.csv") as file:
         file.write("x,y,heading\n")
         file.writelines(",".join(f"{float(v):.6f}" for v in step[POSE]) + "\n" for step in steps)
 
 
 def _png(picture: np.ndarray) -> bytes:
-    done, encoded = cv2.imencode(".png", picture)
-    assert done
+    success, encoded = cv2.imencode(".png", picture)
+    assert success
     return encoded.tobytes()
 
 
 def write_bag(path: Path, steps: Sequence[dict[str, np.ndarray]], form: str) -> Path:
-    """Write a drive as a bag and return its path: one step a second, odometry in REP 103's axes.
+    """Write a drive as a bag and return its path.
 
-    Raises ValueError if there is one already.
+    Each step lasts one second. Odometry uses the axes of REP 103.
+
+    Raises:
+        ValueError: The bag already exists.
     """
     from rosbags.rosbag1 import Writer as Writer1
     from rosbags.rosbag2 import StoragePlugin
@@ -148,30 +157,30 @@ def write_bag(path: Path, steps: Sequence[dict[str, np.ndarray]], form: str) -> 
 
     path = path.with_suffix(".bag") if form == "bag" else path
     if path.exists():
-        raise ValueError(f"{path} is there already: name another folder, or delete it.")
+        raise ValueError(f"{path} already exists. Name another folder, or delete it.")
     make_folder(path.parent)
-    old = form == "bag"
-    store = get_typestore(Stores.ROS1_NOETIC if old else Stores.ROS2_HUMBLE)
-    writer = Writer1(path) if old else Writer2(path, version=9, storage_plugin=StoragePlugin.MCAP)
+    ros1 = form == "bag"
+    store = get_typestore(Stores.ROS1_NOETIC if ros1 else Stores.ROS2_HUMBLE)
+    writer = Writer1(path) if ros1 else Writer2(path, version=9, storage_plugin=StoragePlugin.MCAP)
+    serialize = store.serialize_ros1 if ros1 else store.serialize_cdr
     with writer:
-        made = {}
+        connections = {}
         for number, step in enumerate(steps):
-            for name, message in messages(store, step, number, old):
+            for name, message in messages(store, step, number, ros1):
                 kind = message.__msgtype__
-                if name not in made:
-                    made[name] = writer.add_connection(TOPICS[name], kind, typestore=store)
-                raw = (store.serialize_ros1 if old else store.serialize_cdr)(message, kind)
-                writer.write(made[name], number * SECOND, raw)
+                if name not in connections:
+                    connections[name] = writer.add_connection(TOPICS[name], kind, typestore=store)
+                writer.write(connections[name], number * SECOND, serialize(message, kind))
     return path
 
 
 def messages(
-    store: Any, step: dict[str, np.ndarray], number: int, old: bool
+    store: Any, step: dict[str, np.ndarray], number: int, ros1: bool
 ) -> Iterator[tuple[str, Any]]:
-    """The ROS messages of a step: odometry, CameraInfo, RGB and depth."""
+    """Yield the ROS messages of a step: odometry, CameraInfo, RGB and depth."""
     types = store.types
     time = types["builtin_interfaces/msg/Time"](sec=number, nanosec=0)
-    extra = {"seq": number} if old else {}
+    extra = {"seq": number} if ros1 else {}
     header = types["std_msgs/msg/Header"](stamp=time, frame_id="camera", **extra)
     yield POSE, _odometry(types, header, step[POSE])
     height, width = step[RGB].shape[:2]
@@ -187,14 +196,14 @@ def messages(
 
 
 def _odometry(types: Any, header: Any, pose: np.ndarray) -> Any:
-    """Odometry at a plan pose: ROS's yaw is the heading, a quarter turn on."""
+    """Return odometry at a plan pose; ROS's yaw is the heading plus a quarter turn."""
     half = (float(pose[2]) + np.pi / 2) / 2
     z, w = float(np.sin(half)), float(np.cos(half))
     point = types["geometry_msgs/msg/Point"](float(pose[0]), float(pose[1]), 0.0)
-    turned = types["geometry_msgs/msg/Quaternion"](0.0, 0.0, z, w)
+    orientation = types["geometry_msgs/msg/Quaternion"](0.0, 0.0, z, w)
     still = types["geometry_msgs/msg/Vector3"](0.0, 0.0, 0.0)
     covariance = np.zeros(36)
-    place = types["geometry_msgs/msg/Pose"](point, turned)
+    place = types["geometry_msgs/msg/Pose"](point, orientation)
     return types["nav_msgs/msg/Odometry"](
         header,
         "base_link",
@@ -205,27 +214,27 @@ def _odometry(types: Any, header: Any, pose: np.ndarray) -> Any:
     )
 
 
-_out: list[str] = []  # the folder of the command line
+_out: list[str] = []  # the folder on the command line
 
 
 @hydra.main(version_base="1.3", config_path=str(conf.CONF), config_name="export_drive")
 def hydra_main(cfg: DictConfig) -> None:
     """Hydra's entry."""
     if len(_out) != 1:
-        raise ValueError(f"One folder is needed, OUT, but there are {len(_out)}. See --help.")
+        raise ValueError(f"export_drive needs one folder, OUT, got {len(_out)}. See --help.")
     config = conf.typed(cfg, "export_drive")
     assert isinstance(config, ExportDriveConfig)
-    written = run(config, Path(_out[0]))
-    print("\n".join(f"wrote {path}" for path in written))
+    paths = run(config, Path(_out[0]))
+    print("\n".join(f"wrote {path}" for path in paths))
 
 
 def main() -> None:
     """Run from the command line."""
     arguments = sys.argv[1:]
     if not arguments or {"--help", "-h"} & set(arguments):
-        print(f"{__doc__}\nOptions, with what they are if nothing is said:\n")
+        print(f"{__doc__}\nOptions and their defaults:\n")
         print(conf.options_text("export_drive"))
         sys.exit(0 if arguments else 2)
     _out[:], sys.argv[1:] = paths_and_overrides(arguments)
-    again = "To run it again, once what it wrote is deleted"
+    again = "To run it again, after deleting what it wrote"
     conf.main(hydra_main, "export_drive", behind=_out, again=again)

@@ -1,9 +1,9 @@
-"""Take agents along recorded drives: ``mitigate replay DRIVE agents=[checkpoints/recurrent/base]``.
+"""Run agents on recorded drives: ``mitigate replay DRIVE agents=[checkpoints/recurrent/base]``.
 
-DRIVE is a folder of frames or a bag of ROS 1, ROS 2 or MCAP; several may be given. Each agent sees
-the drive as it was and under each corruption, and says at each step what it would do. Written are
-every decision (``decisions.jsonl``), how many of them a corruption changes (``table.md``,
-``changes.png``), and pictures of some that it changed.
+DRIVE is a folder of frames or a bag of ROS 1, ROS 2 or MCAP; several may be given. Each agent gets
+the clean drive and the drive under each corruption, and decides at each step what it would do. The
+output is every decision (``decisions.jsonl``), the share that each corruption changes
+(``table.md``, ``changes.png``), and pictures of some changed decisions.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ UNSAVED = ("out", "runs", "suite")  # options that change no result
 
 @dataclass
 class TopicsConfig:
-    """As ``worlds/recorded/topics.py`` has it."""
+    """Options ``topics.*``, see :class:`mitigate.worlds.recorded.Topics`."""
 
     rgb: str | None = None
     depth: str | None = None
@@ -47,7 +47,7 @@ class TopicsConfig:
 
 @dataclass
 class StepConfig:
-    """As ``worlds/recorded/steps.py`` has it."""
+    """Options ``step.*``, see :class:`mitigate.worlds.recorded.Step`."""
 
     metres: float = 0.25
     degrees: float = 15.0
@@ -56,7 +56,7 @@ class StepConfig:
 
 @dataclass
 class ReplayConfig:
-    """Types of ``conf/replay.yaml``; the meaning of each entry is written there."""
+    """Types of ``conf/replay.yaml``, which explains each entry."""
 
     agents: list[str] = MISSING
     instruction: str | None = None
@@ -78,7 +78,7 @@ class ReplayConfig:
 
     @property
     def names(self) -> list[str]:
-        """The conditions that are asked for, by name."""
+        """Names of the conditions to run."""
         return suite_conditions(self.suite) if self.conditions is None else self.conditions
 
 
@@ -86,15 +86,17 @@ conf.register("replay", ReplayConfig)
 
 
 def run(config: ReplayConfig, paths: Sequence[str]) -> Path:
-    """Take agents along the drives at ``paths``; return the folder of the report.
+    """Run agents on the drives at ``paths`` and return the folder of the report.
 
-    Raises ValueError and FileNotFoundError for what is missing, damaged or does not fit.
+    Raises:
+        FileNotFoundError: A drive or an agent does not exist.
+        ValueError: An option is invalid, or a drive is damaged or does not fit an agent.
     """
     from mitigate.guards.opening import open_guards
 
     check_options(config, paths)
     names = [name for name in config.names if name != "clean"]
-    met = conditions(["clean", *names], config.severity, config.severity_depth)
+    corruptions = conditions(["clean", *names], config.severity, config.severity_depth)
     guards = open_guards(None, config.restore)
     agents = load_agents(config.agents)
     out = Path(config.out or f"{config.runs}/replay/{_name(paths)}-s{config.severity:g}")
@@ -105,14 +107,14 @@ def run(config: ReplayConfig, paths: Sequence[str]) -> Path:
     recordings = load_recordings(config, paths, views, guards)
     with FolderLock(out) as lock:
         lock.expect(out / SETTINGS, out / DECISIONS, out / TABLE)
-        for name, corruption in product(agents, met):  # of an earlier run
+        for name, corruption in product(agents, corruptions):  # pictures of an earlier run
             _picture_file(out, name, corruption.name).unlink(missing_ok=True)
         with atomic_text(out / SETTINGS) as file:
             json.dump(settings, file, indent=1)
         return replay(
             agents,
             recordings,
-            met,
+            corruptions,
             out,
             severity=config.severity,
             seed=config.seed,
@@ -121,25 +123,28 @@ def run(config: ReplayConfig, paths: Sequence[str]) -> Path:
 
 
 def check_options(config: ReplayConfig, paths: Sequence[str]) -> None:
-    """Raise ValueError for options that make no sense, and without a drive."""
+    """Raise ValueError for invalid options, and without a drive."""
     if not paths:
         raise ValueError(
-            "No drive is given: mitigate replay FOLDER_OR_BAG agents=[checkpoints/recurrent/base]"
+            "A drive is missing: mitigate replay FOLDER_OR_BAG agents=[checkpoints/recurrent/base]"
         )
     if not config.agents:
-        raise ValueError("agents=[] are none: name folders of weights.")
+        raise ValueError("agents must list at least one folder of weights, got [].")
     if not 16 <= config.size <= 1024:
-        raise ValueError(f"size={config.size} must be 16 to 1024 pixels.")
+        raise ValueError(f"size must be 16 to 1024 pixels, got {config.size}.")
     if not {*config.names} - {"clean"} or config.severity == 0:
-        raise ValueError("Clean walks alone have nothing to compare: name a corruption.")
+        raise ValueError(
+            "Clean frames alone leave nothing to compare. Add a corruption to conditions=, with "
+            "severity above 0."
+        )
 
 
 def load_agents(weights: Sequence[str]) -> dict[str, Any]:
-    """The agents of folders of weights, by names that differ."""
+    """Load the agents from folders of weights, by unique names."""
     from mitigate.agents.loading import load
 
     if len(set(weights)) < len(weights):
-        raise ValueError(f"agents=[{','.join(weights)}] names one folder twice.")
+        raise ValueError(f"agents must be different folders, got [{','.join(weights)}].")
     names = [name_of(folder) for folder in weights]
     if len(set(names)) < len(names):
         names = [folder.rstrip("/") for folder in weights]
@@ -149,8 +154,12 @@ def load_agents(weights: Sequence[str]) -> dict[str, Any]:
 def load_recordings(
     config: ReplayConfig, paths: Sequence[str], views: set[int], guards: Guards = NO_GUARDS
 ) -> dict[int, list[Any]]:
-    """Every drive, for agents with a panorama (12) and for those with one camera (1). Raises
-    ValueError for a drive of which ``guards`` change no frame, before any frame is read."""
+    """Load every drive for each number of views in ``views`` (12: panorama, 1: one camera).
+
+    Raises:
+        ValueError: A drive has no frames that ``guards`` apply to (checked before any frame is
+            read), or no instruction, or two drives have the same name.
+    """
     from mitigate.worlds.recorded import Step, Topics, kinds, load, open_recording
 
     step = Step(**vars(config.step))
@@ -162,27 +171,28 @@ def load_recordings(
         yaw=config.yaw,
         cameras=config.cameras,
     )
-    found: dict[int, list[Any]] = {count: [] for count in views}
+    recordings: dict[int, list[Any]] = {count: [] for count in views}
     sources = [source for path in paths for source in open_drives(path)]
     for source, count in product(sources if guards else [], views):
         guards.check_shown(kinds(source, count), source.name)
     for source, count in product(sources, views):
         drive = load(source, views=count, size=config.size, step=step)
-        words = config.instruction or drive.instruction
-        if not words:
+        instruction = config.instruction or drive.instruction
+        if not instruction:
             raise ValueError(
-                f"{drive.name} says no instruction: give instruction='\"walk to the door\"'."
+                f"{drive.name} has no instruction. Set instruction='\"walk to the door\"'."
             )
-        found[count].append(replace(drive, instruction=words))
-    for drives in found.values():
-        twice = {drive.name for drive in drives if sum(d.name == drive.name for d in drives) > 1}
-        if twice:
-            raise ValueError(f"Two drives are called {twice.pop()!r}: rename one.")
-    return found
+        recordings[count].append(replace(drive, instruction=instruction))
+    for drives in recordings.values():
+        names = [drive.name for drive in drives]
+        duplicates = {name for name in names if names.count(name) > 1}
+        if duplicates:
+            raise ValueError(f"Two drives have the name {duplicates.pop()!r}. Rename one.")
+    return recordings
 
 
 def _name(paths: Sequence[str]) -> str:
-    """A name for the drives: of the first, and how many more."""
+    """Return a name for the drives: that of the first, and the number of others."""
     first = Path(paths[0])
     more = f"+{len(paths) - 1}" if len(paths) > 1 else ""
     return (first.stem if first.is_file() else first.name) + more
@@ -191,91 +201,111 @@ def _name(paths: Sequence[str]) -> str:
 def _settings(
     config: ReplayConfig, paths: Sequence[str], agents: Mapping[str, Any]
 ) -> dict[str, Any]:
-    """What makes the report what it is, as data."""
+    """Return everything that determines the report, as JSON data."""
     from mitigate.core.checkpoint import weights_sha
 
-    kept = {key: value for key, value in asdict(config).items() if key not in UNSAVED}
-    kept["conditions"] = config.conditions or suite_conditions(config.suite)
+    settings = {key: value for key, value in asdict(config).items() if key not in UNSAVED}
+    settings["conditions"] = config.conditions or suite_conditions(config.suite)
     shas = {name: weights_sha(agent) for name, agent in agents.items()}
-    return {**kept, "drives": [str(Path(path).resolve()) for path in paths], "weights": shas}
+    return {**settings, "drives": [str(Path(path).resolve()) for path in paths], "weights": shas}
 
 
 def _check_earlier(out: Path, settings: dict[str, Any]) -> None:
-    """Raise ValueError if ``out`` is no folder, or holds another report."""
-    again = "Name another folder (out=...), or delete this one."
+    """Raise ValueError if ``out`` is not a folder, or contains a report of other settings."""
+    fix = "Name another folder (out=...), or delete this one."
     if out.exists() and not out.is_dir():
-        raise ValueError(f"{out} is no folder, in which a replay is written. {again}")
+        raise ValueError(f"{out} must be a folder, which a replay writes into. {fix}")
     if not is_regular(out / SETTINGS):
         other_files = [out / name for name in (DECISIONS, TABLE) if (out / name).exists()]
         if other_files:
-            raise ValueError(f"{other_files[0]} was not written by a replay. {again}")
+            raise ValueError(f"{other_files[0]} was not written by a replay. {fix}")
         return
-    held = read_json(out / SETTINGS, again)
-    if not isinstance(held, dict):
-        raise ValueError(f"{out / SETTINGS} is not what a replay writes. {again}")
-    other = [name for name, value in settings.items() if held.get(name) != value]
-    if other:
+    earlier = read_json(out / SETTINGS, fix)
+    if not isinstance(earlier, dict):
+        raise ValueError(f"{out / SETTINGS} was not written by a replay. {fix}")
+    different = [name for name, value in settings.items() if earlier.get(name) != value]
+    if different:
+        name = different[0]
         raise ValueError(
-            f"{out} holds a replay with another {other[0]} ({short(held.get(other[0]))}). {again}"
+            f"{out} contains a replay with another {name} ({short(earlier.get(name))}). {fix}"
         )
 
 
 def replay(
     agents: Mapping[str, Any],
     recordings: Mapping[int, Sequence[Any]],
-    met: Sequence[Any],
+    corruptions: Sequence[Any],
     out: Path,
     *,
     severity: float,
     seed: int,
     guards: Guards = NO_GUARDS,
 ) -> Path:
-    """Walk ``agents`` (by name) along ``recordings`` (by their number of views) under the
-    corruptions ``met``, clean first, behind ``guards`` if there are any; write the report into
-    ``out`` and return it."""
+    """Run agents on recordings under corruptions and write the report.
+
+    Args:
+        agents: Agents by name.
+        recordings: Recordings by their number of views.
+        corruptions: Corruptions, clean first.
+        out: Folder of the report.
+        severity: Severity, for titles.
+        seed: Corruption seed.
+        guards: Guards between the drives and the agents.
+
+    Returns:
+        ``out``.
+    """
     from mitigate.core.progress import Progress
     from mitigate.replay import report
-    from mitigate.replay.walk import Answers, Changes, compare, lines, walk
+    from mitigate.replay.walk import Answers, Changes, compare, decision_lines, walk
 
-    found: dict[str, dict[str, Changes]] = {}
+    changes: dict[str, dict[str, Changes]] = {}
     pictures: list[Path] = []
     steps = [len(drive.times) for drive in next(iter(recordings.values()))]
-    total = len(agents) * len(met) * len(steps)
-    with Progress("replay", total, unit="walk") as progress, atomic_text(out / DECISIONS) as file:
+    total = len(agents) * len(corruptions) * len(steps)
+    with Progress("replay", total, unit="drive") as progress, atomic_text(out / DECISIONS) as file:
         for name, agent in agents.items():
             drives = recordings[agent.views]
             answers: dict[str, dict[str, Answers]] = {}
-            for corruption in met:
+            for corruption in corruptions:
                 reason = inapplicable(corruption, agent, drives)
                 if reason:
                     progress.advance(len(drives))
                     progress.say(f"{name}, {corruption.name}: not applicable, {reason}")
                     continue
-                here = answers.setdefault(corruption.name, {})
+                corrupted = answers.setdefault(corruption.name, {})
                 for drive in drives:
                     clean = answers["clean"].get(drive.name)
-                    here[drive.name] = walk(
+                    corrupted[drive.name] = walk(
                         agent, drive, corruption, seed, clean=clean, guards=guards
                     )
-                    told = {"agent": name, "condition": corruption.name}
-                    told |= {"severity": corruption.severity, "seed": seed}
-                    made = lines(told, drive, answers["clean"][drive.name], here[drive.name])
-                    file.writelines(json.dumps(line) + "\n" for line in made)
+                    labels = {
+                        "agent": name,
+                        "condition": corruption.name,
+                        "severity": corruption.severity,
+                        "seed": seed,
+                    }
+                    lines = decision_lines(
+                        labels, drive, answers["clean"][drive.name], corrupted[drive.name]
+                    )
+                    file.writelines(json.dumps(line) + "\n" for line in lines)
                     progress.advance(note=f"{name}, {corruption.name}")
-            known = answers["clean"]
-            found[name] = {n: compare(drives, known, a) for n, a in answers.items()}
-            pictures += _picture(name, agent, drives, met, found[name], answers, seed, out, guards)
-    text = report.table(found, severity, sum(steps), len(steps), guards)
+            clean_answers = answers["clean"]
+            changes[name] = {n: compare(drives, clean_answers, a) for n, a in answers.items()}
+            pictures += _draw_worst(
+                name, agent, drives, corruptions, changes[name], answers, seed, out, guards
+            )
+    text = report.table(changes, severity, sum(steps), len(steps), guards)
     with atomic_text(out / TABLE) as table:
         table.write(text)
     print(text.partition("\nFalse stops")[0])
-    pictures.insert(0, report.heatmap(found, severity, out / "changes.png"))
+    pictures.insert(0, report.heatmap(changes, severity, out / "changes.png"))
     print("\n".join(f"wrote {path}" for path in (out / DECISIONS, out / TABLE, *pictures)))
     return out
 
 
 def inapplicable(corruption: Any, agent: Any, drives: Sequence[Any]) -> str:
-    """Why a corruption cannot be met here; empty if it can."""
+    """Return why a corruption does not apply to an agent and drives; empty if it does."""
     from mitigate.agents.agent import as_agent
     from mitigate.corruptions.registry import parts
 
@@ -292,25 +322,25 @@ def inapplicable(corruption: Any, agent: Any, drives: Sequence[Any]) -> str:
     return ""
 
 
-def _picture(
+def _draw_worst(
     name: str,
     agent: Any,
     drives: Sequence[Any],
-    met: Sequence[Any],
-    found: Mapping[str, Any],
+    corruptions: Sequence[Any],
+    changes: Mapping[str, Any],
     answers: Mapping[str, Mapping[str, Any]],
     seed: int,
     out: Path,
     guards: Guards,
 ) -> list[Path]:
-    """A picture of decisions that the worst corruption of frames changed, if it changed any."""
+    """Draw decisions that the worst corruption of frames changed, if it changed any."""
     from mitigate.replay import report
     from mitigate.replay.walk import walk
 
-    seen = [c for c in met if c.name in found and {"rgb", "depth"} & set(c.modalities)]
-    if not seen:
+    visible = [c for c in corruptions if c.name in changes and {"rgb", "depth"} & {*c.modalities}]
+    if not visible:
         return []
-    worst = max(seen, key=lambda c: found[c.name].changed.value)
+    worst = max(visible, key=lambda c: changes[c.name].changed.value)
     differs = {
         drive.name: answers["clean"][drive.name].actions != answers[worst.name][drive.name].actions
         for drive in drives
@@ -320,16 +350,16 @@ def _picture(
     if not steps:
         return []
     clean = answers["clean"][drive.name]
-    again = walk(agent, drive, worst, seed, keep=steps, clean=clean, guards=guards)
+    corrupted = walk(agent, drive, worst, seed, keep=steps, clean=clean, guards=guards)
     path = _picture_file(out, name, worst.name)
-    return [report.picture(drive, worst, clean, again, path)]
+    return [report.picture(drive, worst, clean, corrupted, path)]
 
 
 def _picture_file(out: Path, name: str, condition: str) -> Path:
     return out / f"{name.replace('/', '-')}-{condition}.png"
 
 
-_paths: list[str] = []  # the drives of the command line
+_paths: list[str] = []  # the drives on the command line
 
 
 @hydra.main(version_base="1.3", config_path=str(conf.CONF), config_name="replay")
@@ -344,7 +374,7 @@ def main() -> None:
     """Run from the command line."""
     arguments = sys.argv[1:]
     if not arguments or {"--help", "-h"} & set(arguments):
-        print(f"{__doc__}\nOptions, with what they are if nothing is said:\n")
+        print(f"{__doc__}\nOptions and their defaults:\n")
         print(conf.options_text("replay"))
         sys.exit(0 if arguments else 2)
     _paths[:], sys.argv[1:] = paths_and_overrides(arguments)

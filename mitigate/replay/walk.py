@@ -1,6 +1,6 @@
-"""An agent taken along a recorded drive: what it would do at each step, whoever drives.
+"""Run an agent on a recorded drive and compare its decisions with those on clean frames.
 
-How much a corruption changes of its decisions is compared with intervals.
+The recording decides where the robot moves; the agent only decides what it would do at each step.
 """
 
 from __future__ import annotations
@@ -19,21 +19,24 @@ from mitigate.evaluation.bootstrap import Estimate
 from mitigate.evaluation.episode import action_of, instructed
 from mitigate.guards.guard import NO_GUARDS, Guards, guarded
 from mitigate.worlds.recorded import RecordedWorld, Recording
-from mitigate.worlds.recorded.recording import NONE, answered
+from mitigate.worlds.recorded.recording import NO_ACTION, movements
 from mitigate.worlds.world import Corrupted
 
 ACTIONS = {STOP: "stop", FORWARD: "forward", LEFT: "left", RIGHT: "right"}
-FAR = 0.5  # metres, two steps (ours)
-FEW = 8  # runs of steps that are too few to be resampled (ours)
-BLOCK = 10  # consecutive steps that are drawn as one: neighbours are alike (ours)
+# Heuristic limits.
+MIN_AIM_SHIFT = 0.5  # metres, two steps: an aim that moved less has not changed
+MIN_BLOCKS = 8  # fewer blocks of steps are too few for the bootstrap
+BLOCK_STEPS = 10  # consecutive steps are resampled together, because they are correlated
 
 
 @dataclass(frozen=True)
 class Answers:
-    """What an agent answered along a drive of T steps.
+    """The decisions of an agent on a drive of T steps.
 
-    actions: int [T]. aims: float [T, 2], plan metres that it is walking to, NaN where it has none.
-    seen: the frames of some steps as it saw them.
+    Attributes:
+        actions: int [T].
+        aims: float [T, 2], the plan position (metres) that the agent moves to, NaN if it has none.
+        seen: Frames of some steps as the agent received them, by step and sensor.
     """
 
     actions: np.ndarray
@@ -50,19 +53,37 @@ def walk(
     clean: Answers | None = None,
     guards: Guards = NO_GUARDS,
 ) -> Answers:
-    """Show ``agent`` the drive under ``corruption`` and return its answers.
+    """Run ``agent`` on a drive under ``corruption`` and return its decisions.
 
-    After each it is told what the driver did (``taken``, ``agents/agent.py``). Where that is not
-    known, it is told what it answered on clean frames (``clean``; None: this is that walk), so that
-    nothing but frames and words differs. ``keep``: steps whose frames are returned.
-    ``guards``: in front of the agent. Raises ValueError if the drive lacks what the agent reads.
+    After each step the agent is informed of the driver's movement (``Agent.taken``). If the
+    movement is unknown, it is informed of its own decision on clean frames instead, so that only
+    frames and instructions differ between the runs.
+
+    Args:
+        agent: The agent.
+        recording: The drive.
+        corruption: Corruption of frames and instruction; ``CLEAN`` for the reference run.
+        seed: Corruption seed.
+        keep: Steps whose frames are returned.
+        clean: Decisions on clean frames; None if this is the clean run.
+        guards: Guards between the drive and the agent.
+
+    Returns:
+        The decisions of the agent.
+
+    Raises:
+        ValueError: The drive lacks a sensor that the agent reads.
     """
     world = RecordedWorld(recording)
-    met = guarded(Corrupted(world, corruption, seed), guards)
-    done = recording.driven if clean is None else recording.driven or answered(clean.actions)
+    corrupted_world = guarded(Corrupted(world, corruption, seed), guards)
+    driven = recording.driven
+    if driven is None and clean is not None:
+        driven = movements(clean.actions)
     episode = world.episode()
-    observation = met.reset(episode)
-    actions, aims, seen = [], [], {}
+    observation = corrupted_world.reset(episode)
+    actions = []
+    aims = []
+    seen = {}
     contract = as_agent(agent)
     with instructed(agent, episode, corruption, seed, guards):
         for step in range(len(recording.times)):
@@ -70,29 +91,32 @@ def walk(
                 action = action_of(agent.act(observation), agent)
             except KeyError as error:
                 raise ValueError(
-                    f"{recording.name} does not fit {type(agent).__name__}: {error.args[0]}"
+                    f"{recording.name} lacks an input of {type(agent).__name__}: {error.args[0]}"
                 ) from error
             actions.append(action)
             aim = contract.aim
             aims.append((np.nan, np.nan) if aim is None else tuple(aim))
             if step in keep:
                 seen[step] = {name: np.asarray(observation[name]) for name in recording.frames}
-            if done is not None:
-                here = done.actions[step], done.metres[step], done.radians[step]
-                contract.taken(int(here[0]), float(here[1]), float(here[2]))
-            observation = met.step(action)
+            if driven is not None:
+                contract.taken(
+                    int(driven.actions[step]),
+                    float(driven.metres[step]),
+                    float(driven.radians[step]),
+                )
+            observation = corrupted_world.step(action)
     return Answers(np.array(actions), np.array(aims, np.float64), seen)
 
 
-def lines(
-    told: dict[str, Any], recording: Recording, clean: Answers, found: Answers
+def decision_lines(
+    labels: dict[str, Any], recording: Recording, clean: Answers, corrupted: Answers
 ) -> list[dict[str, Any]]:
-    """One entry a step: ``told``, and what the agent answered, on clean frames too."""
-    made = []
-    for step, action in enumerate(found.actions):
-        aim = found.aims[step]
+    """Return one JSON object per step: ``labels``, and the decision with and without corruption."""
+    lines = []
+    for step, action in enumerate(corrupted.actions):
+        aim = corrupted.aims[step]
         line = {
-            **told,
+            **labels,
             "recording": recording.name,
             "step": step,
             "time": round(float(recording.times[step]), 3),
@@ -103,19 +127,23 @@ def lines(
             line["driver"] = ACTIONS.get(int(recording.driven.actions[step]), "other")
         if np.isfinite(aim).all():
             line["aim"] = [round(float(value), 3) for value in aim]
-        made.append(line)
-    return made
+        lines.append(line)
+    return lines
 
 
 @dataclass(frozen=True)
 class Changes:
-    """Of an agent under one condition, over all drives.
+    """Changes of an agent's decisions under one condition, over all drives.
 
-    changed: share of the steps whose action differs from that on clean frames. stops, missed: steps
-    at which it stops and did not, and the other way round. aim: share of the steps at which the
-    point that it walks to moved by more than ``FAR``, None if it has none. agreement: share of the
-    steps at which it does what the driver did, of those that one of its actions can name, or None
-    where that is not known. steps: how many.
+    Attributes:
+        changed: Share of the steps whose action differs from that on clean frames.
+        stops: Number of steps with STOP here but not on clean frames.
+        missed: Number of steps with STOP on clean frames but not here.
+        aim: Share of the steps whose aim moved by more than ``MIN_AIM_SHIFT``; None if the agent
+            has no aim.
+        agreement: Share of the steps with the driver's action, among those that an action
+            describes; None if the driver's actions are unknown.
+        steps: Number of steps.
     """
 
     changed: Estimate
@@ -127,35 +155,46 @@ class Changes:
 
 
 def compare(
-    recordings: Sequence[Recording], clean: Mapping[str, Answers], found: Mapping[str, Answers]
+    recordings: Sequence[Recording], clean: Mapping[str, Answers], corrupted: Mapping[str, Answers]
 ) -> Changes:
-    """Compare answers with those on clean frames, by the drives' names."""
-    pairs = [(clean[r.name], found[r.name]) for r in recordings]
+    """Compare decisions with those on clean frames; both are given by the name of the drive."""
+    pairs = [(clean[r.name], corrupted[r.name]) for r in recordings]
     changed = [a.actions != b.actions for a, b in pairs]
     stops = sum(int(((b.actions == STOP) & (a.actions != STOP)).sum()) for a, b in pairs)
     missed = sum(int(((a.actions == STOP) & (b.actions != STOP)).sum()) for a, b in pairs)
     moved = [np.hypot(*(b.aims - a.aims).T) for a, b in pairs]
-    moved = [part[np.isfinite(part)] > FAR for part in moved if np.isfinite(part).any()]
-    known = [(r.driven.actions, found[r.name].actions) for r in recordings if r.driven is not None]
-    agrees = [(mine == his)[his != NONE] for his, mine in known if (his != NONE).any()]
+    moved = [part[np.isfinite(part)] > MIN_AIM_SHIFT for part in moved if np.isfinite(part).any()]
+    agrees = []
+    for recording in recordings:
+        if recording.driven is not None:
+            driver = recording.driven.actions
+            same = corrupted[recording.name].actions == driver
+            if (driver != NO_ACTION).any():
+                agrees.append(same[driver != NO_ACTION])
     return Changes(
-        _share(changed),
-        stops,
-        missed,
-        _share(moved) if moved else None,
-        _share(agrees) if agrees else None,
-        sum(map(len, changed)),
+        changed=_share(changed),
+        stops=stops,
+        missed=missed,
+        aim=_share(moved) if moved else None,
+        agreement=_share(agrees) if agrees else None,
+        steps=sum(map(len, changed)),
     )
 
 
-def _share(walks: Sequence[np.ndarray]) -> Estimate:
-    """The share of true steps with its interval: by resampling runs of ``BLOCK`` steps, or, of
-    fewer than ``FEW`` runs or runs that are alike, Wilson's score interval, each run counting
-    once."""
-    blocks = [part for walk in walks for part in _blocks(walk)]
-    true, steps = (np.array([measure(part) for part in blocks]) for measure in (np.sum, len))
+def _share(drives: Sequence[np.ndarray]) -> Estimate:
+    """Estimate the share of true steps, with its 95 % interval.
+
+    The interval resamples blocks of ``BLOCK_STEPS`` steps. With fewer than ``MIN_BLOCKS`` blocks,
+    or if all are equal, it is Wilson's score interval with one observation per block.
+
+    Args:
+        drives: bool [T] of each drive.
+    """
+    blocks = [block for drive in drives for block in _blocks(drive)]
+    true = np.array([block.sum() for block in blocks])
+    steps = np.array([len(block) for block in blocks])
     value = float(true.sum() / steps.sum())
-    if len(blocks) >= FEW and np.ptp(true / steps) > 0:
+    if len(blocks) >= MIN_BLOCKS and np.ptp(true / steps) > 0:
         return bootstrap.ratio(true, steps)
     n, z = len(blocks), bootstrap.Z
     middle = (value + z * z / (2 * n)) / (1 + z * z / n)
@@ -163,6 +202,6 @@ def _share(walks: Sequence[np.ndarray]) -> Estimate:
     return Estimate(value, max(0.0, float(middle - half)), min(1.0, float(middle + half)))
 
 
-def _blocks(walk: np.ndarray) -> list[np.ndarray]:
-    """Runs of about ``BLOCK`` steps, alike in length."""
-    return np.array_split(walk.astype(float), max(1, round(len(walk) / BLOCK)))
+def _blocks(drive: np.ndarray) -> list[np.ndarray]:
+    """Split a drive into blocks of about ``BLOCK_STEPS`` steps and nearly equal length."""
+    return np.array_split(drive.astype(float), max(1, round(len(drive) / BLOCK_STEPS)))

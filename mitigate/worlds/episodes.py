@@ -1,8 +1,8 @@
-"""Episode files in the VLN-CE format: one streaming reader and writer for R2R-CE, RxR-CE and ours.
+"""Read and write episode files in the VLN-CE format: R2R-CE, RxR-CE and this project's lists.
 
 A file is ``{"episodes": [...], ...}``, plain or gzipped JSON. Positions are metres in the VLN-CE
-frame ``(x, y up, z)``, rotations unit quaternions ``(x, y, z, w)``. One episode at a time is held
-in memory, whatever the size of the file; keys this code does not know come back when written.
+frame ``(x, y up, z)``, rotations are unit quaternions ``(x, y, z, w)``. Reader and writer stream:
+only one episode is in memory at a time. Unknown keys are preserved.
 """
 
 from __future__ import annotations
@@ -21,9 +21,10 @@ from mitigate.core.json_files import json_members
 from mitigate.core.names import short
 
 Vector = tuple[float, ...]
-FARTHEST = 1e6  # metres (ours)
-OFF_ONE = 1e-2  # of a quaternion's length, for digits that were cut (ours)
-TILTED = 0.1  # of a quaternion's x and z: 11 degrees (ours)
+# Heuristic limits.
+MAX_METRES = 1e6
+MAX_LENGTH_ERROR = 1e-2  # of a unit quaternion, for files with few digits
+MAX_TILT = 0.1  # of a quaternion's x and z: 11 degrees
 NEEDED = (
     "An episode needs episode_id, trajectory_id, scene_id, start_position [x, y, z], "
     "start_rotation [x, y, z, w], goals [{position, radius}], instruction {instruction_text} and "
@@ -34,7 +35,7 @@ NEEDED = (
 
 
 class Record:
-    """A JSON object of a file, read with errors that say where it stands."""
+    """A JSON object of a file; errors name the file and the position in it."""
 
     def __init__(self, raw: Any, path: Path | str, where: str) -> None:
         self.raw, self.path, self.where = raw, path, where
@@ -42,7 +43,7 @@ class Record:
             self.fail("is not a JSON object")
 
     def fail(self, problem: str) -> NoReturn:
-        """Raise ValueError with file, place, ``problem`` and what is needed."""
+        """Raise ValueError with the file, the position, ``problem`` and the expected format."""
         raise ValueError(f"{self.path}: {self.where} {problem}. {NEEDED}")
 
     def get(self, key: str, kinds: type | tuple[type, ...], default: Any = ...) -> Any:
@@ -53,14 +54,14 @@ class Record:
         if value is None:
             self.fail(f"lacks the key {key!r}")
         if not isinstance(value, kinds) or isinstance(value, bool):
-            self.fail(f"has a wrong {key!r}: {short(value)}")
+            self.fail(f"has an invalid {key!r}: {short(value)}")
         return value
 
     def metres(self, key: str) -> float | None:
-        """Return the finite number ``key``, 0 or more, None if it is absent."""
+        """Return the number ``key`` >= 0, or None if it is absent."""
         value = self.get(key, (int, float), None)
         if value is not None and not (_finite(value) and value >= 0):
-            self.fail(f"has a wrong {key!r}: metres from 0 on are needed, not {short(value)}")
+            self.fail(f"has an invalid {key!r}: it must be metres >= 0, got {short(value)}")
         return value
 
     def vector(self, key: str, size: int) -> Vector:
@@ -69,14 +70,15 @@ class Record:
 
     def rotation(self, key: str) -> Vector:
         """Return ``key`` as a unit quaternion (x, y, z, w) about the vertical y."""
-        found = self.vector(key, 4)
-        x, _, z, _ = found
-        if abs(math.hypot(*found) - 1) > OFF_ONE or max(abs(x), abs(z)) > TILTED:
+        quaternion = self.vector(key, 4)
+        x, _, z, _ = quaternion
+        length_error = abs(math.hypot(*quaternion) - 1)
+        if length_error > MAX_LENGTH_ERROR or max(abs(x), abs(z)) > MAX_TILT:
             self.fail(
-                f"has a wrong {key!r}: a unit quaternion [x, y, z, w] about the vertical y is "
-                f"needed, not {short(list(found))} (is it [w, x, y, z]?)"
+                f"has an invalid {key!r}: it must be a unit quaternion [x, y, z, w] about the "
+                f"vertical y, got {short(list(quaternion))} (is it [w, x, y, z]?)"
             )
-        return found
+        return quaternion
 
     def vectors(self, key: str, size: int) -> tuple[Vector, ...]:
         """Return ``key`` as a non-empty list of vectors."""
@@ -98,38 +100,53 @@ class Record:
 
     def _vector(self, key: str, value: Any, size: int) -> Vector:
         if not isinstance(value, list) or len(value) != size or not all(map(_finite, value)):
-            self.fail(f"has a wrong {key!r}: {size} finite numbers are needed, not {short(value)}")
+            self.fail(
+                f"has an invalid {key!r}: it must be {size} finite numbers, got {short(value)}"
+            )
         return tuple(map(float, value))
 
 
 def _finite(value: Any) -> bool:
-    return isinstance(value, (int, float)) and abs(value) <= FARTHEST  # not of NaN, nor of True
+    """Return whether a value is a number within ``MAX_METRES``; NaN is not."""
+    return isinstance(value, (int, float)) and abs(value) <= MAX_METRES
 
 
 IDS = ("episode_id", "trajectory_id")
-LONGEST_ID, LONGEST_TEXT = 200, 100_000  # characters (ours)
+MAX_ID = 200  # characters, a heuristic limit
+MAX_TEXT = 100_000  # characters, a heuristic limit
 KEYS = (
-    *("scene_id", "start_position", "start_rotation", "info", "goals", "instruction"),
+    "scene_id",
+    "start_position",
+    "start_rotation",
+    "info",
+    "goals",
+    "instruction",
     "reference_path",
 )
 
-# of an episode that is a seed, whose world reads nothing else of it
-_NOWHERE = {"scene_id": "", "start_position": [0, 0, 0], "start_rotation": [0, 0, 0, 1]}
+# Defaults of an episode with a seed, whose world reads nothing else.
+_SEEDED = {"scene_id": "", "start_position": [0, 0, 0], "start_rotation": [0, 0, 0, 1]}
 
 
 def from_vlnce(position: Vector) -> np.ndarray:
-    """VLN-CE position to plan metres, the frame of poses: float64 [2]."""
+    """Convert a VLN-CE position to the plan frame of poses, float64 [2] in metres."""
     return np.array([position[0], -position[2]], np.float64)
 
 
 def heading_of(rotation: Vector) -> float:
-    """Quaternion [x, y, z, w] about the vertical to a heading in radians."""
+    """Convert a quaternion [x, y, z, w] about the vertical to a heading in radians."""
     return float(2 * np.arctan2(rotation[1], rotation[3]))
 
 
 @dataclass(frozen=True)
 class Goal:
-    """Where to end: ``position`` [3] and success ``radius`` in metres, None if not in the file."""
+    """A goal of an episode.
+
+    Attributes:
+        position: VLN-CE position [3] in metres.
+        radius: Success radius in metres, or None if the file has none.
+        extra: Other keys of the file.
+    """
 
     position: Vector
     radius: float | None = None
@@ -138,7 +155,14 @@ class Goal:
 
 @dataclass(frozen=True)
 class Instruction:
-    """What to do: text, its tokens if the file has them, its language (RxR: ``en-US`` ...)."""
+    """An instruction.
+
+    Attributes:
+        text: The text.
+        tokens: Token ids, or None if the file has none.
+        language: Language, such as ``en-US`` in RxR.
+        extra: Other keys of the file.
+    """
 
     text: str
     tokens: tuple[int, ...] | None = None
@@ -148,10 +172,20 @@ class Instruction:
 
 @dataclass(frozen=True)
 class Episode:
-    """One episode; ids are strings here and get back the JSON type they had when written.
+    """An episode.
 
-    ``goals`` and ``reference_path`` [N][3] are empty only where a test split hides them.
-    ``geodesic_distance`` (metres, start to goal) is ``info["geodesic_distance"]``, or None.
+    Attributes:
+        episode_id: Id; always a string here, written with the JSON type that it was read with.
+        trajectory_id: Id of the path, likewise.
+        scene_id: Name of the scene.
+        start_position: VLN-CE position [3] in metres.
+        start_rotation: Quaternion [x, y, z, w].
+        goals: Goals; empty only where a test split hides them.
+        instruction: The instruction.
+        reference_path: VLN-CE positions [N][3]; empty only where a test split hides them.
+        geodesic_distance: Metres from start to goal, ``info["geodesic_distance"]``, or None.
+        info: The key ``info`` of the file.
+        extra: Other keys of the file.
     """
 
     episode_id: str
@@ -169,32 +203,42 @@ class Episode:
 
 @dataclass(frozen=True, eq=False)
 class GroundTruth:
-    """The path an annotator's route follows: ``locations`` float64 [N, 3] and its actions."""
+    """The annotated path of an episode: ``locations`` float64 [N, 3] and its actions."""
 
     locations: np.ndarray
     actions: tuple[int, ...] = ()
 
 
 def read_episodes(path: Path | str, *, hidden_goals: bool = False) -> Iterator[Episode]:
-    """Yield the episodes of ``path`` in order.
+    """Yield the episodes of a file in order.
 
-    ``hidden_goals`` accepts episodes without goals and reference path, as in test splits. Of one
-    that is a seed (``info["seed"]``, ``worlds/seeded.py``) an id and an instruction will do.
-    Raises FileNotFoundError, or ValueError naming file, episode and key, while iterating.
+    An episode with a seed (``info["seed"]``, see ``worlds/seeded.py``) needs only an id and an
+    instruction.
+
+    Args:
+        path: The file.
+        hidden_goals: Accept episodes without goals and reference path, as in test splits.
+
+    Yields:
+        The episodes.
+
+    Raises:
+        FileNotFoundError: The file does not exist.
+        ValueError: An episode is invalid; the message names file, episode and key.
     """
-    found = False
+    has_episodes = False
     for key, items in json_members(path, "episodes"):
         if key != "episodes":
             continue
-        found = True
+        has_episodes = True
         if not isinstance(items, Iterator):
             raise ValueError(
-                f"{path}: 'episodes' is {short(items)}, not a list. Correct the file, or download "
-                "it again."
+                f"{path}: 'episodes' must be a list, got {short(items)}. Correct the file, or "
+                "download it again."
             )
         for index, raw in enumerate(items):
-            yield _episode(raw, path, index, hidden_goals)
-    if not found:
+            yield _read_episode(raw, path, index, hidden_goals)
+    if not has_episodes:
         raise ValueError(
             f"{path} has no key 'episodes': it is not a VLN-CE episode file. The format is "
             '{"episodes": [...]}; ground truth (*_gt.json.gz) is read by read_ground_truth, and '
@@ -203,60 +247,85 @@ def read_episodes(path: Path | str, *, hidden_goals: bool = False) -> Iterator[E
 
 
 def share_of(items: Any, piece: int, pieces: int) -> Any:
-    """Of a list or range, of scenes say, what piece ``piece`` of ``pieces`` of every step draws
-    from: a worker process then opens only those of its pieces."""
+    """Return every n-th item of a list or range, so that workers split for example the scenes.
+
+    Args:
+        items: A list or range.
+        piece: Index of the worker's piece of a batch.
+        pieces: Number of pieces.
+    """
     return items[piece % len(items) :: pieces]
 
 
 def is_seed(value: Any) -> bool:
-    """Whether an environment can be seeded by ``value``: a whole number of 31 bits."""
+    """Return whether ``value`` is a valid seed of an environment: an integer of 31 bits."""
     return type(value) is int and 0 <= value < 1 << 31
 
 
 class ListedEpisodes:
     """Training episodes (``worlds/world.py``) drawn from a file.
 
-    Args: path: as :func:`read_episodes`; errors as there. Worker processes that draw different
-    pieces of a batch draw from different episodes, every n-th of the file.
+    Workers that draw different pieces of a batch draw from different episodes, every n-th of the
+    file.
+
+    Args:
+        path: An episode file.
+
+    Raises:
+        ValueError: The file has no episode, or as in :func:`read_episodes`.
     """
 
     def __init__(self, path: Path | str) -> None:
-        self.path, self._listed = str(path), list(read_episodes(path))
-        if not self._listed:
-            raise ValueError(f"{path} lists no episode to train on.")
+        self.path = str(path)
+        self._episodes = list(read_episodes(path))
+        if not self._episodes:
+            raise ValueError(f"{path} must contain at least one episode to train on.")
 
     def draw(self, rng: np.random.Generator, share: tuple[int, int] = (0, 1)) -> Episode:
-        """A function of the generator's state and of ``share``: (piece, of how many)."""
-        mine = share_of(self._listed, *share)
-        return mine[int(rng.integers(len(mine)))]
+        """Draw an episode, a function of the state of ``rng`` and of ``share``.
+
+        Args:
+            rng: Random generator.
+            share: (piece, number of pieces) of this worker.
+        """
+        episodes = share_of(self._episodes, *share)
+        return episodes[int(rng.integers(len(episodes)))]
 
     def identity(self) -> dict[str, str]:
-        """The hash of the file: a training is not continued on another."""
+        """Return the hash of the file; a training does not resume with another file."""
         return {"training_sha256": sha256(self.path)}
 
 
 def read_extras(path: Path | str) -> dict[str, Any]:
-    """Return what ``path`` holds beside its episodes, such as R2R-CE's ``instruction_vocab``."""
+    """Return the keys of a file except its episodes, such as R2R-CE's ``instruction_vocab``."""
     return {key: value for key, value in json_members(path, "episodes") if key != "episodes"}
 
 
 def write_episodes(
     path: Path | str, episodes: Iterable[Episode], extras: Mapping[str, Any] | None = None
 ) -> Path:
-    """Write a VLN-CE file (gzipped if the name ends in ``.gz``) and return its path.
+    """Write a VLN-CE file, completely or not at all.
 
-    ``extras`` are further top-level keys (see :func:`read_extras`). The file appears whole or not
-    at all. Numbers that JSON cannot hold (NaN, infinity) raise ValueError.
+    Args:
+        path: The file; gzipped if the name ends in ``.gz``.
+        episodes: The episodes.
+        extras: Other top-level keys, see :func:`read_extras`.
+
+    Returns:
+        The path.
+
+    Raises:
+        ValueError: A value cannot be written as JSON, such as NaN or infinity.
     """
     path = Path(path)
     with atomic_text(path) as file:
         file.write('{"episodes": [')
         for index, episode in enumerate(episodes):
             file.write(",\n" if index else "\n")
-            file.write(_json(to_json(episode), path, f"episode {episode.episode_id}"))
+            file.write(_dump(to_json(episode), path, f"episode {episode.episode_id}"))
         file.write("\n]")
         for key, value in (extras or {}).items():
-            file.write(f",\n{json.dumps(key)}: {_json(value, path, key)}")
+            file.write(f",\n{json.dumps(key)}: {_dump(value, path, key)}")
         file.write("}\n")
     return path
 
@@ -266,7 +335,7 @@ def read_ground_truth(path: Path | str) -> dict[str, GroundTruth]:
     truths = {}
     for key, value in json_members(path, "episodes"):
         if key == "episodes":
-            raise ValueError(f"{path} is an episode file: read it with read_episodes.")
+            raise ValueError(f"{path} is an episode file. Read it with read_episodes.")
         record = Record(value, path, f"ground-truth entry {key!r}")
         locations = record.vectors("locations", 3)
         truths[key] = GroundTruth(np.array(locations), tuple(record.get("actions", list, [])))
@@ -274,8 +343,8 @@ def read_ground_truth(path: Path | str) -> dict[str, GroundTruth]:
 
 
 def to_json(episode: Episode) -> dict[str, Any]:
-    """Return ``episode`` as the dictionary a VLN-CE file holds."""
-    written: dict[str, Any] = {
+    """Return an episode as a JSON object of a VLN-CE file."""
+    data: dict[str, Any] = {
         "episode_id": _identifier(episode, "episode_id"),
         "trajectory_id": _identifier(episode, "trajectory_id"),
         "scene_id": episode.scene_id,
@@ -287,28 +356,29 @@ def to_json(episode: Episode) -> dict[str, Any]:
         "reference_path": [list(point) for point in episode.reference_path],
     }
     if episode.geodesic_distance is not None:
-        written["info"]["geodesic_distance"] = episode.geodesic_distance
+        data["info"]["geodesic_distance"] = episode.geodesic_distance
     for key in ("info", "goals", "reference_path"):
-        if not written[key]:
-            del written[key]
-    return written | {key: value for key, value in episode.extra.items() if key not in IDS}
+        if not data[key]:
+            del data[key]
+    return data | {key: value for key, value in episode.extra.items() if key not in IDS}
 
 
-def _episode(raw: Any, path: Path | str, index: int, hidden_goals: bool) -> Episode:
-    identity = raw.get("episode_id") if isinstance(raw, dict) else None
+def _read_episode(raw: Any, path: Path | str, index: int, hidden_goals: bool) -> Episode:
+    episode_id = raw.get("episode_id") if isinstance(raw, dict) else None
     seeded = isinstance(raw, dict) and isinstance(raw.get("info"), dict) and "seed" in raw["info"]
     if seeded:
-        raw, hidden_goals = {"trajectory_id": identity, **_NOWHERE, **raw}, True
-    record = Record(raw, path, f"episode {index} of the list (episode_id {short(identity)})")
+        raw = {"trajectory_id": episode_id, **_SEEDED, **raw}
+        hidden_goals = True
+    record = Record(raw, path, f"episode {index} of the list (episode_id {short(episode_id)})")
     if seeded and not is_seed(raw["info"]["seed"]):
-        record.fail("has a wrong 'seed' in info: it must be a whole number from 0 to 2147483647")
+        record.fail("has an invalid 'seed' in info: it must be an integer from 0 to 2147483647")
     hide = hidden_goals and raw.get("goals") is None and raw.get("reference_path") is None
     info = record.get("info", dict, {})
     ids = {key: record.get(key, (int, str)) for key in IDS}
     for key, value in ids.items():
-        if not str(value) or len(str(value)) > LONGEST_ID or not str(value).isprintable():
+        if not str(value) or len(str(value)) > MAX_ID or not str(value).isprintable():
             record.fail(
-                f"has a wrong {key!r}: it must be one line of at most {LONGEST_ID} characters"
+                f"has an invalid {key!r}: it must be one line of at most {MAX_ID} characters"
             )
     return Episode(
         episode_id=str(ids["episode_id"]),
@@ -316,8 +386,8 @@ def _episode(raw: Any, path: Path | str, index: int, hidden_goals: bool) -> Epis
         scene_id=record.get("scene_id", str),
         start_position=record.vector("start_position", 3),
         start_rotation=record.rotation("start_rotation"),
-        goals=() if hide else tuple(map(_goal, record.records("goals"))),
-        instruction=_instruction(record),
+        goals=() if hide else tuple(map(_read_goal, record.records("goals"))),
+        instruction=_read_instruction(record),
         reference_path=() if hide else record.vectors("reference_path", 3),
         geodesic_distance=Record(info, path, f"{record.where}, info,").metres("geodesic_distance"),
         info=info,
@@ -325,7 +395,7 @@ def _episode(raw: Any, path: Path | str, index: int, hidden_goals: bool) -> Epis
     )
 
 
-def _goal(record: Record) -> Goal:
+def _read_goal(record: Record) -> Goal:
     return Goal(
         position=record.vector("position", 3),
         radius=record.metres("radius"),
@@ -333,13 +403,13 @@ def _goal(record: Record) -> Goal:
     )
 
 
-def _instruction(episode: Record) -> Instruction:
+def _read_instruction(episode: Record) -> Instruction:
     raw = episode.get("instruction", dict)
     record = Record(raw, episode.path, f"{episode.where}, instruction,")
     tokens = record.get("instruction_tokens", list, None)
     text = record.get("instruction_text", str)
-    if len(text) > LONGEST_TEXT:
-        record.fail(f"has an 'instruction_text' of more than {LONGEST_TEXT} characters")
+    if len(text) > MAX_TEXT:
+        record.fail(f"has an 'instruction_text' of more than {MAX_TEXT} characters")
     return Instruction(
         text=text,
         tokens=None if tokens is None else tuple(tokens),
@@ -354,27 +424,29 @@ def _goal_json(goal: Goal) -> dict[str, Any]:
 
 
 def _instruction_json(instruction: Instruction) -> dict[str, Any]:
-    written: dict[str, Any] = {"instruction_text": instruction.text}
+    data: dict[str, Any] = {"instruction_text": instruction.text}
     if instruction.tokens is not None:
-        written["instruction_tokens"] = list(instruction.tokens)
+        data["instruction_tokens"] = list(instruction.tokens)
     if instruction.language is not None:
-        written["language"] = instruction.language
-    return written | instruction.extra
+        data["language"] = instruction.language
+    return data | instruction.extra
 
 
 def _identifier(episode: Episode, key: str) -> int | str:
-    """Return an id as the file had it, unless it was replaced since."""
-    text, original = str(vars(episode)[key]), episode.extra.get(key)
+    """Return an id with the JSON type of the file, unless the id was replaced since."""
+    text = str(vars(episode)[key])
+    original = episode.extra.get(key)
     return original if isinstance(original, int) and str(original) == text else text
 
 
-def _json(value: Any, path: Path, name: str) -> str:
+def _dump(value: Any, path: Path, name: str) -> str:
+    """Return a value as JSON; raise ValueError if JSON cannot represent it."""
     try:
         text = json.dumps(value, ensure_ascii=False, allow_nan=False)
-        text.encode("utf-8")  # which half a character is not
+        text.encode("utf-8")  # fails for half a surrogate pair
         return text
     except (ValueError, TypeError) as error:
         raise ValueError(
-            f"{path}: {name} holds what JSON cannot ({error}): replace NaN, infinity, arrays and "
-            "numpy numbers by plain finite numbers, lists and strings."
+            f"{path}: {name} has a value that JSON cannot represent ({error}). Replace NaN, "
+            "infinity, arrays and numpy numbers by plain finite numbers, lists and strings."
         ) from error

@@ -1,4 +1,4 @@
-"""Any gymnasium environment that shows frames as a world, to evaluate in under the suite."""
+"""Use a gymnasium environment with frames as a world."""
 
 from __future__ import annotations
 
@@ -11,18 +11,24 @@ from mitigate.core.observation import DEPTH, POSE, RGB, Observation
 from mitigate.worlds.episodes import Episode
 from mitigate.worlds.seeded import SeededWorld, Success
 
-WHOLE = ""  # the name of an observation that is one frame
+WHOLE = ""  # the name of an observation that is a single frame
 
 
 class GymWorld(SeededWorld):
-    """Args:
-    env: with discrete actions. Its observation is an RGB frame (uint8 [H, W, 3] or [V, H, W, 3]) or
-    a ``Dict`` that holds one.
-    entries: of a ``Dict``, by default those that are called "rgb", "depth" and "pose"; one within
-    another is "camera.rgb". success: an entry of ``info``, or a function. The others: as
-    ``SeededWorld``.
+    """A gymnasium environment as a world.
 
-    Raises ValueError as ``SeededWorld`` does, and for actions that are not discrete.
+    Args:
+        env: An environment with discrete actions. Its observation is an RGB frame (uint8 [H, W, 3]
+            or [V, H, W, 3]) or a ``Dict`` that contains one.
+        entries: Names of the entries of a ``Dict``, by default "rgb", "depth" and "pose". Nested
+            entries are written as "camera.rgb".
+        success: An entry of ``info``, or a function.
+        unit: See :class:`~mitigate.worlds.seeded.SeededWorld`.
+        limit: See ``SeededWorld``.
+        rule: See ``SeededWorld``.
+
+    Raises:
+        ValueError: The actions are not discrete, or as in ``SeededWorld``.
     """
 
     def __init__(
@@ -38,36 +44,46 @@ class GymWorld(SeededWorld):
         space = env.action_space
         if _attribute(space, "n") is None or _attribute(space, "shape", ()) != ():
             raise ValueError(
-                f"The actions {env.action_space} are not discrete, and an agent answers with one "
-                "whole number: wrap the environment in a gymnasium.ActionWrapper with a Discrete "
-                "action_space, whose action() says what each number does."
+                f"The action space must be discrete, got {env.action_space}. Wrap the environment "
+                "in a gymnasium.ActionWrapper with a Discrete action_space, whose action() "
+                "converts each number."
             )
-        boxes = _by_name(env.observation_space)
-        known = {RGB: WHOLE} if WHOLE in boxes else {n: n for n in (RGB, DEPTH, POSE) if n in boxes}
-        most = {n: np.max(_attribute(b, "high", np.inf)) for n, b in boxes.items()}
-        arrays = {n: b for n, b in boxes.items() if b.shape is not None}  # no text, no Tuple
-        found = {n: (b.shape, str(b.dtype), float(most[n])) for n, b in arrays.items()}
-        super().__init__(found, entries or known, success, unit, limit, rule)
+        spaces = _by_name(env.observation_space)
+        default = {n: n for n in (RGB, DEPTH, POSE) if n in spaces}
+        if WHOLE in spaces:
+            default = {RGB: WHOLE}
+        arrays = {}
+        for name, space in spaces.items():
+            if space.shape is not None:  # text and Tuple have none
+                high = float(np.max(_attribute(space, "high", np.inf)))
+                arrays[name] = (space.shape, str(space.dtype), high)
+        super().__init__(arrays, entries or default, success, unit, limit, rule)
         self.env = env
 
     def reset(self, episode: Episode) -> Observation:
         seed = self._begin(episode)
         with self._calling(f"{type(self.env).__name__}.reset()"):
-            seen, self._info = self.env.reset(seed=seed)
-            parts = _by_name(seen)
+            observation, self._info = self.env.reset(seed=seed)
+            parts = _by_name(observation)
         return self._observation(parts)
 
     def step(self, action: int) -> Observation:
-        """Raises ValueError for an action that the environment does not have, and at the end of an
-        episode whose ``info`` does not say ``success``."""
-        self._check_going()
+        """Take an action.
+
+        Raises:
+            ValueError: The action does not exist, or ``info`` does not report success at the end of
+                the episode.
+        """
+        self._check_not_done()
         space = self.env.action_space
         if not 0 <= action < space.n:
-            raise ValueError(f"Unknown action {action}: the environment has {space.n}.")
+            raise ValueError(f"The action must be 0 to {space.n - 1}, got {action}.")
         first = int(_attribute(space, "start", 0))
         with self._calling(f"{type(self.env).__name__}.step()"):
-            seen, reward, terminated, truncated, info = self.env.step(action + first)
-            reward, over, parts = float(reward), bool(terminated or truncated), _by_name(seen)
+            observation, reward, terminated, truncated, info = self.env.step(action + first)
+            reward = float(reward)
+            over = bool(terminated or truncated)
+            parts = _by_name(observation)
             self._info = dict(info)
         self._end_step(reward, over)
         return self._observation(parts)
@@ -76,11 +92,11 @@ class GymWorld(SeededWorld):
         return self._info
 
 
-def _by_name(seen: Any) -> dict[str, Any]:
-    """The parts of an observation, or of its space, by dotted name; ``WHOLE`` if it has none."""
-    parts = _attribute(seen, "spaces", seen)
+def _by_name(observation: Any) -> dict[str, Any]:
+    """Return the parts of an observation or space by dotted name; ``WHOLE`` if it has none."""
+    parts = _attribute(observation, "spaces", observation)
     if not isinstance(parts, Mapping):
-        return {WHOLE: seen}
+        return {WHOLE: observation}
     return {
         f"{name}.{inner}".rstrip("."): part
         for name, value in parts.items()

@@ -1,10 +1,10 @@
-"""Corruptions for Habitat's observations, without Habitat: a function on dictionaries.
+"""Corrupt Habitat observations; a function on dictionaries that does not import Habitat.
 
-An observation of ETPNav and its kin has an entry for each camera: ``rgb``, ``rgb_30``, ...,
+An observation of ETPNav and similar agents has one entry per camera: ``rgb``, ``rgb_30``, ...,
 ``rgb_330`` and ``depth``, ``depth_30``, ..., ``depth_330``. The number is the camera's yaw in
-degrees from ``rgb`` and ``depth``. ETPNav gives camera ``rgb_A`` the orientation [0, +A, 0], and
-Habitat's y axis points up, so a growing number turns LEFT (and its policy reverses the order to
-have it clockwise). View k of ``mitigate.core.observation`` turns right: ``rgb_30`` is view 11.
+degrees. ETPNav gives camera ``rgb_A`` the orientation [0, +A, 0], and Habitat's y axis points up,
+so a larger number is further to the LEFT (its policy reverses the order to be clockwise). View k of
+``mitigate.core.observation`` is to the right: ``rgb_30`` is view 11.
 """
 
 from __future__ import annotations
@@ -41,29 +41,35 @@ def corrupt_habitat(
     turn: str = "left",
     normalised: bool = True,
 ) -> dict:
-    """A new observation with all cameras of the modality concerned corrupted as one panorama.
+    """Corrupt all cameras of the corruption's modality as one panorama.
 
-    Entries, their order, dtypes, shapes and ranges stay as they are; other entries are the same
-    objects. Depth is Habitat's, normalised by ``normalize_depth: True``: a hole of missing data
-    reads 0 (``sensor.missing`` = 0.0 metres), which Habitat writes too where nothing was hit; an
-    agent that takes 0 for "near" rather than "no reading" wants ``DepthSensor(missing=z_max)``.
+    Depth is Habitat's, normalised by ``normalize_depth: True``. Missing data read 0
+    (``sensor.missing`` = 0.0 metres), as Habitat writes where a ray hits nothing. For an agent that
+    reads 0 as "near", use ``DepthSensor(missing=z_max)``.
 
     Args:
-        obs: one instant of one environment: ``rgb*`` uint8 [H, W, 3], ``depth*`` float32 [H, W, 1]
-            or [H, W]; sizes may differ between the two, not within one.
-        corruption, key: what happens, and the name of the draw: Key(seed, episode id, step).
+        obs: One instant of one environment: ``rgb*`` uint8 [H, W, 3], ``depth*`` float32 [H, W, 1]
+            or [H, W]. All cameras of a modality have the same size.
+        corruption: The corruption.
+        key: Key of the draw: Key(seed, episode id, step).
         sensor: 0-10 m for R2R-CE (the default), ``DepthSensor(0.5, 5.0)`` for RxR-CE.
-        heading: the agent's, in radians, counter-clockwise (Habitat's ``compass`` and ``heading``
-            sensors give it), by which a flare stays at its place in the world.
-        turn: where ``rgb_30`` looks from ``rgb``: "left" (ETPNav) or "right".
+        heading: Heading of the agent in radians, counter-clockwise, as Habitat's ``compass`` and
+            ``heading`` sensors give it. It keeps a flare at its place in the world.
+        turn: Direction from ``rgb`` to ``rgb_30``: "left" (ETPNav) or "right".
         normalised: False for depth in metres.
 
-    Raises ValueError if there is no camera of the modality, if a camera's number is no multiple of
-    30 degrees below 360, if the sizes of a modality's cameras differ, and as ``corrupt_normalised``
-    does.
+    Returns:
+        A new dictionary with the same entries, order, dtypes, shapes and ranges. Entries that are
+        not corrupted are the same objects.
+
+    Raises:
+        ValueError: No camera has the modality, a camera is not at a multiple of 30 degrees below
+            360, the cameras of a modality differ in size, or as in ``corrupt_normalised``.
     """
     if turn not in TURNS:
-        raise ValueError(f"turn must be 'left' or 'right', where rgb_30 looks, but it is {turn!r}.")
+        raise ValueError(
+            f"turn must be 'left' or 'right', the direction from rgb to rgb_30, got {turn!r}."
+        )
     if len(check_corruption(corruption).parts) > 1:
         for part in corruption.parts:
             obs = corrupt_habitat(
@@ -83,28 +89,33 @@ def corrupt_habitat(
 
 
 def is_camera(entry: str) -> bool:
-    """Whether an entry of an observation is an RGB or depth camera by its name."""
+    """Return whether the name of an entry is that of an RGB or depth camera."""
     return _CAMERA.fullmatch(entry) is not None
 
 
 def check_cameras(entries: Iterable[str], names: Iterable[str]) -> None:
-    """Raise ValueError if one of the corruptions ``names`` corrupts what no camera gives."""
+    """Raise ValueError if a corruption needs a modality that no camera has.
+
+    Args:
+        entries: Names of the entries of an observation.
+        names: Names of corruptions.
+    """
     entries = list(entries)
-    given = {camera[1] for camera in map(_CAMERA.fullmatch, entries) if camera}
+    available = {camera[1] for camera in map(_CAMERA.fullmatch, entries) if camera}
     for name in names:
-        lost = registry.modality(name)
-        if lost not in given:
-            fit = ", ".join(name for name in NAMES if registry.modality(name) in given)
+        modality = registry.modality(name)
+        if modality not in available:
+            usable = ", ".join(name for name in NAMES if registry.modality(name) in available)
             raise ValueError(
-                f"{name!r} corrupts {lost}, but the observation holds no camera called {lost}, "
-                f"{lost}_30, ... (it holds {', '.join(entries) or 'nothing'}). "
-                f"{f'Draw only from names=[{fit}]' if fit else 'Rename the cameras'}, or give the "
-                f"robot a {lost} camera of that name."
+                f"{name!r} corrupts {modality}, but the observation has no camera named "
+                f"{modality}, {modality}_30, ... (its entries are {', '.join(entries) or 'none'}). "
+                f"{f'Draw only from names=[{usable}]' if usable else 'Rename the cameras'}, or add "
+                f"a {modality} camera with such a name."
             )
 
 
 def _views(obs: dict, modality: str, turn: str) -> dict[str, int]:
-    """The view number in ``mitigate.core.observation``' sense of each camera of a modality."""
+    """Return the view number (``mitigate.core.observation``) of each camera of a modality."""
     views: dict[str, int] = {}
     for entry in obs:
         camera = _CAMERA.fullmatch(entry)
@@ -113,35 +124,35 @@ def _views(obs: dict, modality: str, turn: str) -> dict[str, int]:
         steps = float(camera[2] or 0) / VIEW_STEP_DEGREES
         if steps != int(steps) or steps >= VIEWS:
             raise ValueError(
-                f"The camera {entry!r} is not at a multiple of {VIEW_STEP_DEGREES:g} degrees "
-                "below 360, but the suite's panoramas have 12 views 30 degrees apart. Corrupt this "
-                "camera by itself with mitigate.corruptions.corrupt."
+                f"A camera must be at a multiple of {VIEW_STEP_DEGREES:g} degrees below 360, got "
+                f"{entry!r}. Corrupt this camera separately with mitigate.corruptions.corrupt."
             )
         view = int(steps) if turn == "right" else -int(steps) % VIEWS
         if view in views.values():
-            twin = next(name for name, taken in views.items() if taken == view)
+            other = next(name for name, known in views.items() if known == view)
             raise ValueError(
-                f"The cameras {twin!r} and {entry!r} look the same way. Corrupt one of them by "
-                "itself with mitigate.corruptions.corrupt."
+                f"The cameras {other!r} and {entry!r} face the same way. Corrupt one of them "
+                "separately with mitigate.corruptions.corrupt."
             )
         views[entry] = view
     return views
 
 
 def _panorama(obs: dict, views: dict[str, int]) -> np.ndarray:
-    """[1 + last view, ...]: the frames at their views; views without a camera are zero."""
+    """Return the frames by view, [1 + last view, ...]; views without a camera are zero."""
     frames = {entry: np.asarray(obs[entry]) for entry in views}
     first = next(iter(frames.values()))
     for entry, frame in frames.items():
         if frame.shape != first.shape or frame.dtype != first.dtype:
             raise ValueError(
-                f"All cameras of a panorama must be alike, but {next(iter(frames))!r} is "
-                f"{first.dtype} {first.shape} and {entry!r} is {frame.dtype} {frame.shape}."
+                f"All cameras of a panorama must have the same dtype and shape, but "
+                f"{next(iter(frames))!r} is {first.dtype} {first.shape} and {entry!r} is "
+                f"{frame.dtype} {frame.shape}."
             )
     if first.ndim not in (2, 3):
         raise ValueError(
-            f"A camera's frame must be [H, W, channels] or [H, W], but the shape is {first.shape}. "
-            "Pass one instant of one environment at a time: every instant has its own key."
+            f"A camera's frame must be [H, W, channels] or [H, W], got {first.shape}. Pass one "
+            "instant of one environment at a time, because every instant has its own key."
         )
     panorama = np.zeros((1 + max(views.values()), *first.shape), first.dtype)
     for entry, view in views.items():

@@ -1,11 +1,11 @@
-"""Corruptions inside habitat-baselines: an observation transformer, and the sensor that keys it.
+"""An observation transformer for habitat-baselines that corrupts frames, and its key sensor.
 
-Importing this module registers both where habitat-lab and habitat-baselines are installed; without
-them the transformer is a plain torch module with the same three methods.
+Importing this module registers both if habitat-lab and habitat-baselines are installed. Without
+them the transformer is a torch module with the same three methods.
 
-habitat-baselines calls a transformer with a batch of frames and nothing else: no episode, no step,
-no mask. So the lab sensor ``CorruptionKeySensor`` adds the entry ``corruption_key`` to every
-observation; the transformer takes it out again, and the policy never meets it.
+habitat-baselines calls a transformer with a batch of frames only: no episode, step or mask. The lab
+sensor ``CorruptionKeySensor`` therefore adds the entry ``corruption_key`` to every observation. The
+transformer removes it, so the policy does not receive it.
 """
 
 from __future__ import annotations
@@ -30,27 +30,29 @@ try:
     from habitat_baselines.config.default_structured_configs import ObsTransformConfig
 except ImportError:
     baseline_registry = None
-    ObservationTransformer, ObsTransformConfig = torch.nn.Module, object
+    ObservationTransformer = torch.nn.Module
+    ObsTransformConfig = object
 
 KEY = "corruption_key"
-_HEADINGS = ("compass", "heading")  # sensors that give radians, counter-clockwise
+_HEADINGS = ("compass", "heading")  # sensors in radians, counter-clockwise
 
 
 class CorruptObservation(ObservationTransformer):
-    """Corrupts the cameras of a batch of Habitat observations (see ``corrupt_habitat``).
+    """Corrupt the cameras of a batch of Habitat observations (see ``corrupt_habitat``).
 
-    Batches hold ``corruption_key`` int64 [B, 2] (from ``CorruptionKeySensor``), ``rgb*`` uint8
+    A batch has ``corruption_key`` int64 [B, 2] (from ``CorruptionKeySensor``), ``rgb*`` uint8
     [B, H, W, 3] and ``depth*`` float32 [B, H, W, 1] in [0, 1]; tensors stay on their device. The
-    ``compass`` or ``heading`` sensor, if it is there, keeps a flare at its place in the world.
+    ``compass`` or ``heading`` sensor, if present, keeps a flare at its place in the world.
 
     Args:
-        schedule: which frame is corrupted by what.
-        seed: of every random draw.
-        sensor: depth range and sentinel.
-        turn: where ``rgb_30`` looks from ``rgb``: "left" (ETPNav) or "right".
+        schedule: The schedule that draws a corruption per frame.
+        seed: Corruption seed.
+        sensor: Depth range and value for no reading.
+        turn: Direction from ``rgb`` to ``rgb_30``: "left" (ETPNav) or "right".
 
-    Raises ValueError if the space, or a batch, has no camera for a corruption of the schedule;
-    ``forward`` also without ``corruption_key``, and as ``corrupt_habitat`` does.
+    Raises:
+        ValueError: The space or a batch has no camera for a corruption of the schedule. In
+            ``forward``: ``corruption_key`` is missing, or as in ``corrupt_habitat``.
     """
 
     def __init__(
@@ -62,27 +64,30 @@ class CorruptObservation(ObservationTransformer):
         turn: str = "left",
     ) -> None:
         super().__init__()
-        self.schedule, self.seed, self.turn = schedule, seed, turn
+        self.schedule = schedule
+        self.seed = seed
+        self.turn = turn
         self.sensor = sensor or DepthSensor()
         check_sensor(self.sensor)
         if turn not in TURNS:
-            raise ValueError(f"turn must be 'left' or 'right', but it is {turn!r}.")
+            raise ValueError(f"turn must be 'left' or 'right', got {turn!r}.")
 
     @classmethod
     def from_config(cls, config: Any) -> CorruptObservation:
         """Build from a ``CorruptObservationConfig``, or a mapping with any of its entries.
 
-        Raises ValueError for an entry that is none of them.
+        Raises:
+            ValueError: The mapping has an unknown entry.
         """
-        given = dict(config) if isinstance(config, Mapping) else dict(vars(config))
+        entries = dict(config) if isinstance(config, Mapping) else dict(vars(config))
         known = [field.name for field in fields(CorruptObservationConfig)]
-        for name in given:
+        for name in entries:
             if name not in known:
                 raise ValueError(
                     unknown("option of CorruptObservation", name, known)
-                    + " Pass the transformer's own part of the config, not the whole."
+                    + " Pass only the transformer's part of the config."
                 )
-        options = CorruptObservationConfig(**given)
+        options = CorruptObservationConfig(**entries)
         schedule = Schedule(
             options.mode,
             options.severity,
@@ -94,7 +99,7 @@ class CorruptObservation(ObservationTransformer):
         return cls(schedule, options.seed, sensor=sensor, turn=options.turn)
 
     def transform_observation_space(self, observation_space: Any, **kwargs: Any) -> Any:
-        """A copy of the space without ``corruption_key``; the rest does not change."""
+        """Return a copy of the space without ``corruption_key``."""
         space = copy.deepcopy(observation_space)
         space.spaces.pop(KEY, None)
         self._check(space.spaces)
@@ -102,7 +107,7 @@ class CorruptObservation(ObservationTransformer):
 
     @torch.no_grad()
     def forward(self, observations: dict[str, torch.Tensor]) -> dict[str, torch.Tensor]:
-        """The batch with corrupted cameras and without ``corruption_key``; the input stays."""
+        """Return a new batch with corrupted cameras, without ``corruption_key``."""
         keys = _keys(observations)
         self._check(observations)
         heading = next((observations[h] for h in _HEADINGS if h in observations), None)
@@ -115,7 +120,7 @@ class CorruptObservation(ObservationTransformer):
         for row, (episode, frame) in enumerate(keys):
             corruption, key = self.schedule.draw(self.seed, str(episode), frame)
             instant = {entry: views[row] for entry, views in frames.items()}
-            after = corrupt_habitat(
+            result = corrupt_habitat(
                 instant,
                 corruption,
                 key,
@@ -123,7 +128,7 @@ class CorruptObservation(ObservationTransformer):
                 heading=None if heading is None else float(heading[row].reshape(-1)[0]),
                 turn=self.turn,
             )
-            for entry, view in after.items():
+            for entry, view in result.items():
                 if view is not instant[entry]:
                     corrupted.setdefault(entry, frames[entry].copy())[row] = view
         out = copy.copy(observations)
@@ -139,58 +144,58 @@ class CorruptObservation(ObservationTransformer):
 
 @dataclass
 class CorruptObservationConfig(ObsTransformConfig):
-    """The options of ``CorruptObservation`` in a habitat-baselines config."""
+    """Options of ``CorruptObservation`` in a habitat-baselines config."""
 
     type: str = "CorruptObservation"
     mode: str = "per_episode"  # see mitigate.corruptions.Schedule
-    names: tuple[str, ...] = ()  # corruptions to draw from; empty means all 12
+    names: tuple[str, ...] = ()  # corruptions to draw from; empty: the standard suite
     severity: float = 0.6
-    severity_depth: float | None = None  # None means severity
+    severity_depth: float | None = None  # None: severity
     clean_share: float = 0.0
     seed: int = 0
     depth_min: float = 0.0  # metres; RxR-CE 0.5
     depth_max: float = 10.0  # metres; RxR-CE 5.0
-    depth_missing: float = 0.0  # metres that a hole reads
-    turn: str = "left"  # where rgb_30 looks from rgb
+    depth_missing: float = 0.0  # metres, value for no reading
+    turn: str = "left"  # direction from rgb to rgb_30
 
 
 def key_of(scene_id: str, episode_id: str | int, step: int) -> np.ndarray:
-    """int64 [2]: a number for the episode (63 bits of a digest of its ids), and the step.
+    """Return the key of an observation, int64 [2]: a number of the episode, and the step.
 
-    Of the scene's path only the file name counts. The same episode gets the same number each time
-    it is run, in every process.
+    The number is 63 bits of a digest of the episode id and the file name of the scene. It is the
+    same in every run and every process.
     """
     name = f"{str(scene_id).rpartition('/')[2]}/{episode_id}"
     return np.array([digest(Key(0, name), "habitat") >> 1, step], np.int64)
 
 
 class EpisodeSteps:
-    """Counts the steps of a Habitat environment from what its sensors are told."""
+    """Count the steps of a Habitat environment from the arguments of its sensors."""
 
     def __init__(self) -> None:
         self._step = 0
 
-    def key(self, episode: Any, **given: Any) -> np.ndarray:
-        """The key of one observation. Habitat passes ``action`` on a step and not on a reset."""
-        self._step = self._step + 1 if "action" in given else 0
+    def key(self, episode: Any, **arguments: Any) -> np.ndarray:
+        """Return the key of an observation; Habitat passes ``action`` on a step, not on a reset."""
+        self._step = self._step + 1 if "action" in arguments else 0
         return key_of(episode.scene_id, episode.episode_id, self._step)
 
 
 def _keys(observations: Mapping[str, torch.Tensor]) -> list[list[int]]:
-    given = observations.get(KEY)
-    if given is None or given.dtype != torch.int64 or given.shape[1:] != (2,):
-        what = "no" if given is None else f"{given.dtype} {tuple(given.shape)} as"
+    keys = observations.get(KEY)
+    if keys is None or keys.dtype != torch.int64 or keys.shape[1:] != (2,):
+        actual = "nothing" if keys is None else f"{keys.dtype} {tuple(keys.shape)}"
         raise ValueError(
-            f"The batch holds {what} {KEY!r}, but the corruption of a frame is keyed by it, int64 "
-            f"[B, 2]. Add {KEY!r} to the task's lab_sensors (importing mitigate.worlds."
-            "habitat_baselines registers it, see docs/corruption-entry-points.md); outside "
-            "habitat-baselines call mitigate.worlds.habitat.corrupt_habitat."
+            f"The batch must have {KEY!r}, int64 [B, 2], which keys the corruption of each frame, "
+            f"got {actual}. Add {KEY!r} to the task's lab_sensors (importing mitigate.worlds."
+            "habitat_baselines registers it, see docs/corruption-entry-points.md). Outside "
+            "habitat-baselines, call mitigate.worlds.habitat.corrupt_habitat."
         )
-    return given.tolist()
+    return keys.tolist()
 
 
 def _register() -> None:
-    """Make the transformer, the sensor and their configs known to Habitat."""
+    """Register the transformer, the sensor and their configs with Habitat."""
     from gym import spaces
     from habitat.config.default_structured_configs import LabSensorConfig
     from habitat.core.registry import registry
@@ -198,7 +203,7 @@ def _register() -> None:
     from hydra.core.config_store import ConfigStore
 
     class CorruptionKeySensor(Sensor):
-        """``corruption_key``: int64 [2], the episode's number and the step."""
+        """The entry ``corruption_key``, int64 [2]: number of the episode, and step."""
 
         def __init__(self, *args: Any, **kwargs: Any) -> None:
             self._steps = EpisodeSteps()

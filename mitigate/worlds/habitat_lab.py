@@ -1,4 +1,4 @@
-"""A panorama of cameras for habitat-lab 0.3, whose camera configs carry no name of their own.
+"""Camera configs of a panorama for habitat-lab 0.3, whose own camera configs have no name.
 
     from habitat.config import read_write
     from mitigate.worlds.habitat_lab import panorama
@@ -26,22 +26,30 @@ from mitigate.core.observation import HFOV_DEGREES, VIEW_STEP_DEGREES, VIEWS, Z_
 
 @dataclass
 class NamedRGBSensorConfig(HabitatSimRGBSensorConfig):
-    """An RGB camera whose entry in observations is ``uuid``."""
+    """An RGB camera whose entry in observations is named ``uuid``."""
 
     uuid: str = "rgb"
 
 
 @dataclass
 class NamedDepthSensorConfig(HabitatSimDepthSensorConfig):
-    """A depth camera whose entry in observations is ``uuid``."""
+    """A depth camera whose entry in observations is named ``uuid``."""
 
     uuid: str = "depth"
 
 
 def panorama(rgb: int = 224, depth: int = 256, height: float = 1.25) -> dict[str, Any]:
-    """Return sensors by name: 12 RGB and 12 depth cameras of as many pixels, each 30 degrees to the
-    left of the one before, ``height`` metres above the floor."""
-    found = {}
+    """Return 12 RGB and 12 depth cameras by name, each 30 degrees to the left of the one before.
+
+    Args:
+        rgb: Height and width of the RGB cameras in pixels.
+        depth: Height and width of the depth cameras in pixels.
+        height: Metres above the floor.
+
+    Returns:
+        Sensor configs by name.
+    """
+    sensors = {}
     for kind, name, size in (
         (NamedRGBSensorConfig, "rgb", rgb),
         (NamedDepthSensorConfig, "depth", depth),
@@ -49,7 +57,7 @@ def panorama(rgb: int = 224, depth: int = 256, height: float = 1.25) -> dict[str
         for k in range(VIEWS):
             angle = VIEW_STEP_DEGREES * k
             uuid = f"{name}_{angle:g}" if k else name
-            found[uuid] = kind(
+            sensors[uuid] = kind(
                 uuid=uuid,
                 width=size,
                 height=size,
@@ -58,5 +66,5 @@ def panorama(rgb: int = 224, depth: int = 256, height: float = 1.25) -> dict[str
                 orientation=[0.0, math.radians(angle), 0.0],
             )
             if kind is NamedDepthSensorConfig:
-                found[uuid].max_depth = Z_MAX
-    return found
+                sensors[uuid].max_depth = Z_MAX
+    return sensors

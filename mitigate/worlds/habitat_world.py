@@ -1,9 +1,9 @@
-"""Habitat as a world (``worlds/world.py``): any scene that habitat-sim loads, VLN-CE's episodes.
+"""Habitat as a world (``worlds/world.py``): any scene of habitat-sim with episodes of VLN-CE.
 
-habitat-sim 0.3 is not on the package index; how to get it, and scenes: ``docs/habitat.md``. The
-lab is not needed: cameras, actions and measures are VLN-CE's, and measures equal those of
-habitat-lab on the same walk (path by path, geodesics by the navmesh), but for nDTW: it is against
-an episode's reference path, where VLN-CE's is against the denser locations of ``*_gt.json``.
+habitat-sim 0.3 is not on the package index; ``docs/habitat.md`` explains how to get it and scenes.
+habitat-lab is not needed. Cameras, actions and measures are those of VLN-CE, and the measures equal
+those of habitat-lab for the same path. Only nDTW differs: it uses the reference path of an episode,
+while VLN-CE uses the denser locations of ``*_gt.json``.
 """
 
 from __future__ import annotations
@@ -40,25 +40,29 @@ from mitigate.worlds import measures
 from mitigate.worlds.episodes import Episode, from_vlnce
 from mitigate.worlds.world import Expert, World
 
-EYE = 1.25  # metres, the height of VLN-CE's cameras
-RADIUS, HEIGHT = 0.18, 1.5  # metres, of the agent
+CAMERA_HEIGHT = 1.25  # metres, as in VLN-CE
+RADIUS = 0.18  # metres, of the agent
+HEIGHT = 1.5  # metres, of the agent
 MOVES = {FORWARD: "move_forward", LEFT: "turn_left", RIGHT: "turn_right"}
-SNAP = 0.5  # metres that a start or goal may lie beside the navmesh (ours)
+MAX_SNAP = 0.5  # metres between a start or goal and the navmesh, a heuristic limit
 NAVMESH = {"agent_radius": RADIUS, "agent_height": HEIGHT}
 
 
 class HabitatWorld(World):
-    """One agent in scenes of habitat-sim, which a process has one simulator of.
+    """One agent in scenes of habitat-sim.
 
     Args:
-        scenes: the folder that scene ids are paths in. size: pixels of a square view. views: 12, a
-        panorama, or 1, a camera that looks ahead. rule: what counts as success, of
-        ``measures.RULES``, or "apartments" (STOP within 2 m). navmesh: settings of
-        ``habitat_sim.NavMeshSettings`` for scenes without a navmesh; a file or a mapping; None:
-        those in ``scenes/../navmesh.json``, if it is there. gpu: number of the device to render
-        on, -1 for none.
-    Raises ValueError for another number of views, an unknown rule, and without
-    habitat-sim when the first episode begins.
+        scenes: Folder that scene ids are relative to.
+        size: Height and width of a view in pixels.
+        views: 12 (panorama), or 1 (a camera that faces forward).
+        rule: Success rule of ``measures.RULES``, or "apartments" (STOP within 2 m).
+        navmesh: Settings of ``habitat_sim.NavMeshSettings`` for scenes without a navmesh: a file or
+            a mapping; None: those in ``scenes/../navmesh.json``, if it exists.
+        gpu: Index of the GPU to render on, -1 for the CPU.
+
+    Raises:
+        ValueError: ``views`` or ``rule`` is invalid. When the first episode starts: habitat-sim is
+            not installed.
     """
 
     def __init__(
@@ -74,25 +78,35 @@ class HabitatWorld(World):
         allowed = [name for name, known in rules.items() if not known.view_points]
         if rule in rules and rule not in allowed:
             raise ValueError(
-                f"rule={rule} counts from view points, which this world does not read. Choose one "
-                f"of: {', '.join(allowed)}."
+                f"rule={rule} needs view points, which this world does not have. Choose one of: "
+                f"{', '.join(allowed)}."
             )
         if rule not in allowed:
             raise ValueError(unknown("success rule", rule, allowed))
         if views not in (1, VIEWS):
-            raise ValueError(f"views={views}: an agent sees {VIEWS} views, or 1 ahead.")
-        self._given = {"scenes": str(scenes), "size": size, "views": views, "rule": rule}
-        self._given |= {"navmesh": navmesh, "gpu": gpu}
-        self.scenes_folder, self.size, self.views = Path(scenes), size, views
-        self._rule, self.rule = rules[rule], str(rules[rule])
+            raise ValueError(f"views must be {VIEWS} (panorama) or 1 (forward), got {views}.")
+        self._arguments = {
+            "scenes": str(scenes),
+            "size": size,
+            "views": views,
+            "rule": rule,
+            "navmesh": navmesh,
+            "gpu": gpu,
+        }
+        self.scenes_folder = Path(scenes)
+        self.size = size
+        self.views = views
+        self._rule = rules[rule]
+        self.rule = str(self._rule)
         self.sensors: dict[str, Sensor] = cameras(size, views)
-        self.navmesh = _navmesh(navmesh, self.scenes_folder)
+        self.navmesh = _navmesh_settings(navmesh, self.scenes_folder)
         self.gpu = gpu
         self._sim: Any = None
         self._scene = ""
 
     def __getstate__(self) -> dict[str, Any]:
-        return self._given
+        # a simulator cannot be pickled; the copy opens its own
+        return self._arguments
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         self.__init__(**state)  # type: ignore[misc]
@@ -104,9 +118,13 @@ class HabitatWorld(World):
         return self.stopped or self.steps >= MAX_STEPS
 
     def reset(self, episode: Episode) -> Observation:
-        """Raises FileNotFoundError for a scene that is not there, ValueError for an episode that
-        starts or ends off the navmesh."""
-        self._enter(episode.scene_id)
+        """Start an episode.
+
+        Raises:
+            FileNotFoundError: The scene does not exist.
+            ValueError: The start or a goal is not on the navmesh.
+        """
+        self._load_scene(episode.scene_id)
         self.episode = episode
         start = self._on_navmesh(episode.start_position, "starts")
         self.goals = [self._on_navmesh(g.position, "has a goal") for g in episode.goals]
@@ -118,10 +136,14 @@ class HabitatWorld(World):
         return self._observation()
 
     def step(self, action: int) -> Observation:
-        """One low-level action. Raises ValueError for one that does not exist, RuntimeError after
-        the last one."""
+        """Take a low-level action.
+
+        Raises:
+            ValueError: The action does not exist.
+            RuntimeError: The episode is over.
+        """
         if self.done:
-            raise RuntimeError("The episode is over: reset first.")
+            raise RuntimeError("The episode is over. Call reset() before step().")
         if action == STOP:
             self.stopped = True
         elif action in MOVES:
@@ -129,36 +151,41 @@ class HabitatWorld(World):
             self.path.append(self._position())
         else:
             raise ValueError(
-                f"Unknown action {action}; allowed: 0 STOP, 1 FORWARD, 2 LEFT, 3 RIGHT."
+                f"The action must be 0 STOP, 1 FORWARD, 2 LEFT or 3 RIGHT, got {action}."
             )
         self.steps += 1
         return self._observation()
 
     def measures(self) -> dict[str, float]:
-        """success, spl, path_length, geodesic_distance, distance_to_goal (metres), ndtw,
-        collisions and steps; success and spl as habitat-lab's Success and SPL. ndtw is to the
-        reference path, by the rule's metres."""
-        walked, left = np.array(self.path), self.distance_to_goal()
-        length = measures.path_length(walked)
-        won = self._rule.met(left, self.stopped)
+        """Return the measures of the episode so far; lengths and distances are metres.
+
+        success and spl are habitat-lab's Success and SPL. ndtw compares with the reference path, by
+        the rule's distance.
+        """
+        path = np.array(self.path)
+        distance = self.distance_to_goal()
+        length = measures.path_length(path)
+        succeeded = self._rule.met(distance, self.stopped)
         start = self.start_distance
-        found = {
-            "success": int(won),
-            "spl": round(measures.spl(won, start, length), 6) if math.isfinite(start) else 0.0,
+        values = {
+            "success": int(succeeded),
+            "spl": 0.0,
             "path_length": round(length, 4),
             "collisions": self.collisions,
             "steps": self.steps,
         }
-        distances = {"geodesic_distance": start, "distance_to_goal": left}
-        found |= {n: round(d, 4) for n, d in distances.items() if math.isfinite(d)}
+        if math.isfinite(start):
+            values["spl"] = round(measures.spl(succeeded, start, length), 6)
+        distances = {"geodesic_distance": start, "distance_to_goal": distance}
+        values |= {n: round(d, 4) for n, d in distances.items() if math.isfinite(d)}
         if self.episode.reference_path:
             reference = np.array(self.episode.reference_path)
-            by = self._rule.path_metres
-            found["ndtw"] = round(measures.ndtw(walked, reference, threshold=by), 6)
-        return found
+            ndtw = measures.ndtw(path, reference, threshold=self._rule.path_metres)
+            values["ndtw"] = round(ndtw, 6)
+        return values
 
     def distance_to_goal(self, position: np.ndarray | None = None) -> float:
-        """Geodesic metres from a position [3] (default: the agent's) to the nearest goal."""
+        """Return the geodesic metres from a position [3], or the agent, to the nearest goal."""
         import habitat_sim
 
         path = habitat_sim.MultiGoalShortestPath()
@@ -168,7 +195,7 @@ class HabitatWorld(World):
         return float(path.geodesic_distance)
 
     def expert(self) -> NavmeshExpert:
-        """The oracle of the episode that is on."""
+        """Return the oracle of the current episode."""
         return NavmeshExpert(self)
 
     def _observation(self) -> Observation:
@@ -179,27 +206,28 @@ class HabitatWorld(World):
         return Observation({POSE: pose}, self._frames, (RGB, DEPTH))
 
     def _frames(self) -> dict[str, np.ndarray]:
-        """RGB and depth as ``sensors`` says; depth beyond ``Z_MAX`` reads ``Z_MAX``."""
-        seen = self._sim.get_sensor_observations()
-        rgb = np.stack([seen[f"{RGB}{k}"][..., :3] for k in range(self.views)])
-        depth = np.stack([seen[f"{DEPTH}{k}"] for k in range(self.views)])[..., None]
+        """Render RGB and depth, see ``sensors``; depth is clipped to ``Z_MAX``."""
+        images = self._sim.get_sensor_observations()
+        rgb = np.stack([images[f"{RGB}{k}"][..., :3] for k in range(self.views)])
+        depth = np.stack([images[f"{DEPTH}{k}"] for k in range(self.views)])[..., None]
         depth = np.minimum(depth, np.float32(Z_MAX)).astype(np.float32)
         return {RGB: rgb, DEPTH: depth} if self.views > 1 else {RGB: rgb[0], DEPTH: depth[0]}
 
     # the simulator ----------------------------------------------------------------------------
 
-    def _enter(self, scene: str) -> None:
-        """Load a scene, if it is not the one that is there."""
+    def _load_scene(self, scene: str) -> None:
+        """Load a scene, unless it is already loaded."""
         if scene == self._scene:
             return
         file = self.scenes_folder / scene
         file = file if file.suffix else file.with_suffix(".glb")
         if not file.is_file():
             raise FileNotFoundError(
-                f"There is no scene {file}. Name the folder that holds the episodes' scenes: "
-                "env.scenes=FOLDER (mitigate export-scene writes the apartments')."
+                f"There is no scene {file}. Set env.scenes= to the folder with the scenes of the "
+                "episodes (mitigate export-scene writes those of the apartments)."
             )
-        settings, self._scene = self._settings(file), ""  # no scene, should it not load
+        settings = self._settings(file)
+        self._scene = ""  # in case loading fails
         if self._sim is None:
             self._sim = _habitat_sim().Simulator(settings)
         else:
@@ -209,14 +237,17 @@ class HabitatWorld(World):
         self._scene = scene
 
     def _settings(self, file: Path) -> Any:
-        """A configuration of habitat-sim: the cameras, VLN-CE's actions, sliding along walls."""
+        """Return a habitat-sim configuration: cameras, VLN-CE's actions, sliding along walls."""
         habitat_sim = _habitat_sim()
         backend = habitat_sim.SimulatorConfiguration()
-        backend.scene_id, backend.gpu_device_id = str(file), self.gpu
-        backend.enable_physics, backend.allow_sliding = False, True
+        backend.scene_id = str(file)
+        backend.gpu_device_id = self.gpu
+        backend.enable_physics = False
+        backend.allow_sliding = True
         backend.create_renderer = True
         agent = habitat_sim.agent.AgentConfiguration()
-        agent.radius, agent.height = RADIUS, HEIGHT
+        agent.radius = RADIUS
+        agent.height = HEIGHT
         agent.sensor_specifications = [
             self._camera(kind, k) for kind in (RGB, DEPTH) for k in range(self.views)
         ]
@@ -230,13 +261,15 @@ class HabitatWorld(World):
         return habitat_sim.Configuration(backend, [agent])
 
     def _camera(self, kind: str, view: int) -> Any:
-        """View ``view`` turns right by 30 degrees each; Habitat's yaw grows to the left."""
+        """Return the camera of a view, 30 degrees to the right per view; Habitat's yaw is left."""
         habitat_sim = _habitat_sim()
         spec = habitat_sim.CameraSensorSpec()
         kinds = {RGB: habitat_sim.SensorType.COLOR, DEPTH: habitat_sim.SensorType.DEPTH}
-        spec.uuid, spec.sensor_type = f"{kind}{view}", kinds[kind]
-        spec.resolution, spec.hfov = [self.size, self.size], HFOV_DEGREES
-        spec.position = [0.0, EYE, 0.0]
+        spec.uuid = f"{kind}{view}"
+        spec.sensor_type = kinds[kind]
+        spec.resolution = [self.size, self.size]
+        spec.hfov = HFOV_DEGREES
+        spec.position = [0.0, CAMERA_HEIGHT, 0.0]
         spec.orientation = [0.0, -math.radians(VIEW_STEP_DEGREES * view), 0.0]
         return spec
 
@@ -246,27 +279,31 @@ class HabitatWorld(World):
         settings.set_defaults()
         for name, value in self.navmesh.items():
             if name not in dir(settings):
-                raise ValueError(f"habitat-sim's NavMeshSettings have no {name}.")
+                raise ValueError(f"{name} must be an attribute of habitat-sim's NavMeshSettings.")
             setattr(settings, name, value)
         if not self._sim.recompute_navmesh(self._sim.pathfinder, settings):
-            raise ValueError(f"habitat-sim found nothing to walk on in {scene}.")
+            raise ValueError(
+                f"habitat-sim computed an empty navmesh for {scene}. Check the scene and navmesh=."
+            )
 
     def _on_navmesh(self, position: Any, what: str) -> np.ndarray:
-        """The point [3] of the navmesh nearest to a position."""
-        wanted = np.array(position, np.float32)
-        snapped = np.array(self._sim.pathfinder.snap_point(wanted), np.float32)
-        away = float(np.hypot(*(snapped - wanted)[[0, 2]]))
-        if not away <= SNAP:
+        """Return the point [3] of the navmesh nearest to a position."""
+        point = np.array(position, np.float32)
+        snapped = np.array(self._sim.pathfinder.snap_point(point), np.float32)
+        distance = float(np.hypot(*(snapped - point)[[0, 2]]))
+        if not distance <= MAX_SNAP:
             raise ValueError(
-                f"The episode {self.episode.episode_id} {what} at {list(position)}, {away:.1f} m "
-                f"beside the navmesh of {self.episode.scene_id}. Are scene and episodes of one "
-                "dataset, and the navmesh of an agent of this size?"
+                f"The episode {self.episode.episode_id} {what} at {list(position)}, "
+                f"{distance:.1f} m from the navmesh of {self.episode.scene_id}. Check that scene "
+                "and episodes belong to the same dataset, and that the navmesh is for an agent of "
+                "this size."
             )
         return snapped
 
     def _put(self, position: np.ndarray, rotation: Any) -> None:
         state = _habitat_sim().AgentState()
-        state.position, state.rotation = position, np.array(rotation, np.float64)
+        state.position = position
+        state.rotation = np.array(rotation, np.float64)
         self._sim.get_agent(0).set_state(state)
 
     def _position(self) -> np.ndarray:
@@ -276,62 +313,68 @@ class HabitatWorld(World):
         """Free the simulator."""
         if self._sim is not None:
             self._sim.close()
-            self._sim, self._scene = None, ""
+            self._sim = None
+            self._scene = ""
 
 
 class NavmeshExpert(Expert):
-    """Distances by the navmesh, and the greedy follower of them: it turns to the heading whose
-    step lowers the distance most."""
+    """Oracle with geodesic distances of the navmesh.
+
+    It greedily turns to the heading whose next step reduces the distance most.
+    """
 
     def __init__(self, world: HabitatWorld) -> None:
         self.world = world
 
     def distance(self, xy: np.ndarray) -> float:
-        """Geodesic metres from a plan position [2], on the floor where the agent is."""
+        """Return the geodesic metres from a plan position [2] on the agent's floor to the goal."""
         height = float(self.world._position()[1])
         return self.world.distance_to_goal(np.array([xy[0], height, -xy[1]], np.float32))
 
     def counts(self, metres: float) -> bool:
-        """Whether STOP so far from the goal is a success."""
+        """Return whether STOP at this distance from the goal is a success."""
         return self.world._rule.met(metres, True)
 
     def action(self) -> int:
-        """The low-level action that comes nearest to the goal."""
+        """Return the low-level action that leads nearest to the goal."""
         world = self.world
         if world.distance_to_goal() < world._rule.stop_within:
             return STOP
-        here, finder = world._position(), world._sim.pathfinder
+        position = world._position()
+        finder = world._sim.pathfinder
         rotation = world._sim.get_agent(0).get_state().rotation
         heading = 2 * math.atan2(float(rotation.imag[1]), float(rotation.real))
         turns = sorted(range(-12, 13), key=abs)
-        ends = []
+        distances = []
         for turn in turns:
             angle = heading + math.radians(TURN_DEGREES) * turn
             step = np.array([-math.sin(angle), 0.0, -math.cos(angle)]) * FORWARD_METRES
-            ends.append(world.distance_to_goal(np.array(finder.try_step(here, here + step))))
-        best = turns[int(np.argmin(ends))]
+            end = np.array(finder.try_step(position, position + step))
+            distances.append(world.distance_to_goal(end))
+        best = turns[int(np.argmin(distances))]
         return FORWARD if best == 0 else LEFT if best > 0 else RIGHT
 
 
 def _habitat_sim() -> Any:
-    for variable in ("HABITAT_SIM_LOG", "MAGNUM_LOG"):  # it warns of every scene's missing labels
+    """Import habitat-sim, without its log, which warns about missing labels of every scene."""
+    for variable in ("HABITAT_SIM_LOG", "MAGNUM_LOG"):
         os.environ.setdefault(variable, "quiet")
     try:
         import habitat_sim
     except ImportError as error:
         raise ValueError(
-            "The Habitat world needs habitat-sim 0.3, which is not on the package index: "
-            "docs/habitat.md says how to get it."
+            "The Habitat world needs habitat-sim 0.3, which is not on the package index. See "
+            "docs/habitat.md for how to get it."
         ) from error
     return habitat_sim
 
 
-def _navmesh(given: str | dict[str, Any] | None, scenes: Path) -> dict[str, Any]:
-    """Settings of a navmesh by name, as ``mitigate export-scene`` writes them."""
-    if given is None:
-        given = str(scenes.parent / "navmesh.json")
-        if not Path(given).is_file():
+def _navmesh_settings(navmesh: str | dict[str, Any] | None, scenes: Path) -> dict[str, Any]:
+    """Return navmesh settings by name; a file is as ``mitigate export-scene`` writes it."""
+    if navmesh is None:
+        navmesh = str(scenes.parent / "navmesh.json")
+        if not Path(navmesh).is_file():
             return dict(NAVMESH)
-    again = "Write it again with `mitigate export-scene`."
-    held = read_object(Path(given), again) if isinstance(given, str) else given
-    return {**NAVMESH, **{n: v for n, v in dict(held).items() if n != "camera_height"}}
+    fix = "Write it again with `mitigate export-scene`."
+    settings = read_object(Path(navmesh), fix) if isinstance(navmesh, str) else navmesh
+    return {**NAVMESH, **{n: v for n, v in dict(settings).items() if n != "camera_height"}}

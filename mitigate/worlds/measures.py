@@ -1,7 +1,7 @@
-"""Measures of one episode by VLN-CE's formulas, and rules of success.
+"""Measures of an episode by the formulas of VLN-CE, and success rules.
 
-Paths are ``[N, 2]`` or ``[N, 3]`` arrays of positions in metres, the two of a call in one frame.
-Distances "to the goal" and of the episode are geodesic, as the simulator measures them.
+Paths are ``[N, 2]`` or ``[N, 3]`` arrays of positions in metres; two paths of one call use the same
+frame. Distances to the goal are geodesic, as the simulator measures them.
 """
 
 from __future__ import annotations
@@ -16,22 +16,32 @@ SUCCESS_DISTANCE = 3.0  # metres; VLN-CE's TASK.SUCCESS_DISTANCE for R2R-CE and 
 
 
 def success(distance_to_goal: float, stopped: bool, *, threshold: float = SUCCESS_DISTANCE) -> bool:
-    """Return whether the agent said STOP strictly within ``threshold`` metres of the goal.
+    """Return whether the agent stopped strictly within ``threshold`` metres of the goal.
 
-    VLN-CE's rule. (ETPNav counts ``<=`` without STOP; habitat-lab's own VLN task has 0.2 m.)
-    A NaN distance raises ValueError; an infinite one (goal out of reach) is a failure.
+    This is the rule of VLN-CE. (ETPNav uses ``<=`` without STOP; habitat-lab's VLN task has 0.2 m.)
+    An infinite distance, an unreachable goal, is a failure.
+
+    Raises:
+        ValueError: The distance is NaN.
     """
     if math.isnan(distance_to_goal):
-        raise ValueError("The distance to the goal is NaN: give metres, or inf out of reach.")
+        raise ValueError(
+            "The distance to the goal must be metres, or inf if it is unreachable, got nan."
+        )
     return bool(stopped) and distance_to_goal < threshold
 
 
 @dataclass(frozen=True)
 class Rule:
-    """When an episode counts as a success: nearer than ``metres`` to the goal.
+    """A success rule: the episode ends nearer than ``metres`` to the goal.
 
-    name: of whose rule it is. stop: the agent must have said STOP. inclusive: at exactly that
-    distance, too. view_points: not the goal counts, but the nearest place to see it from.
+    Attributes:
+        name: Name of the benchmark that uses the rule.
+        metres: Maximum distance.
+        stop: Whether the agent must take STOP.
+        inclusive: Whether exactly ``metres`` is a success.
+        view_points: Whether the distance is to the nearest point that the goal is visible from,
+            instead of to the goal.
     """
 
     name: str
@@ -42,31 +52,35 @@ class Rule:
 
     @property
     def stop_within(self) -> float:
-        """Metres at which an oracle stops, from the goal or a view point as the rule counts them: 1
-        (ours), or the rule's where it counts less."""
+        """Distance in metres at which an oracle stops: 1 (heuristic), or the rule's if smaller."""
         return min(1.0, self.metres)
 
     @property
     def path_metres(self) -> float:
-        """Metres by which nDTW calls a walk near its path: the rule's, or VLN-CE's where success is
-        counted from view points, which lie on no path."""
+        """Threshold of nDTW in metres: the rule's, or VLN-CE's if the rule has view points.
+
+        View points do not lie on the reference path.
+        """
         return SUCCESS_DISTANCE if self.view_points else self.metres
 
     def met(self, distance: float, stopped: bool) -> bool:
-        """Whether it is a success to end ``distance`` metres away, with STOP or without. A NaN
-        distance raises ValueError."""
+        """Return whether an episode that ends ``distance`` metres away is a success.
+
+        Raises:
+            ValueError: The distance is NaN.
+        """
         if self.inclusive:
             distance = math.nextafter(distance, -math.inf)
         return success(distance, stopped or not self.stop, threshold=self.metres)
 
     def __str__(self) -> str:
-        """What result rows and tables carry."""
-        away = f"geodesic {'<=' if self.inclusive else '<'} {float(self.metres)} m"
-        away += " to a view point" if self.view_points else ""
-        return f"{self.name}: {f'STOP and {away}' if self.stop else f'{away}, STOP or not'}"
+        """Return the rule as rows and tables show it."""
+        distance = f"geodesic {'<=' if self.inclusive else '<'} {float(self.metres)} m"
+        distance += " to a view point" if self.view_points else ""
+        return f"{self.name}: {f'STOP and {distance}' if self.stop else f'{distance}, STOP or not'}"
 
 
-RULES = {  # by name, as options take them; the source of each is in docs/agents.md
+RULES = {  # by the name in options; the source of each is in docs/agents.md
     "vln_ce": Rule("vln", SUCCESS_DISTANCE),
     "etpnav": Rule("etpnav", 3.0, stop=False, inclusive=True),
     "habitat_vln": Rule("habitat-lab vln", 0.2),
@@ -76,7 +90,7 @@ RULES = {  # by name, as options take them; the source of each is in docs/agents
 
 
 def path_length(path: ArrayLike) -> float:
-    """Return the summed Euclidean length of the steps of ``path``, in metres."""
+    """Return the Euclidean length of ``path`` in metres."""
     steps = np.diff(_points(path, "path"), axis=0)
     return float(np.sqrt((steps**2).sum(axis=1)).sum())
 
@@ -84,12 +98,19 @@ def path_length(path: ArrayLike) -> float:
 def spl(succeeded: bool, geodesic_distance: float, length: float) -> float:
     """Return success weighted by path length, ``S L* / max(L*, L)`` (Anderson et al., 2018).
 
-    ``geodesic_distance`` L* is from start to goal, ``length`` L what was walked, both metres. An
-    episode that starts at its goal (L* = 0) and walks nowhere scores S.
+    An episode that starts at its goal (L* = 0) and does not move scores S.
+
+    Args:
+        succeeded: S.
+        geodesic_distance: L*, metres from start to goal.
+        length: L, length of the agent's path in metres.
+
+    Raises:
+        ValueError: A length is negative or not finite.
     """
     for name, metres in (("geodesic distance", geodesic_distance), ("path length", length)):
         if not 0 <= metres < math.inf:
-            raise ValueError(f"SPL needs a finite {name} >= 0 in metres, not {metres}.")
+            raise ValueError(f"The {name} of SPL must be finite metres >= 0, got {metres}.")
     longer = max(geodesic_distance, length)
     return float(succeeded) * (geodesic_distance / longer if longer else 1.0)
 
@@ -97,12 +118,15 @@ def spl(succeeded: bool, geodesic_distance: float, length: float) -> float:
 def dtw(path: ArrayLike, reference: ArrayLike) -> float:
     """Return the dynamic time warping cost of the two paths, in metres.
 
-    Exact: the dynamic programme over all alignments, vectorised along anti-diagonals. VLN-CE
-    calls ``fastdtw``, an approximation from above; its value is never below ours.
+    The value is exact: dynamic programming over all alignments, vectorised along anti-diagonals.
+    VLN-CE uses ``fastdtw``, an approximation that is never smaller.
     """
-    a, b = _points(path, "path"), _points(reference, "reference path")
+    a = _points(path, "path")
+    b = _points(reference, "reference path")
     if a.shape[1] != b.shape[1]:
-        raise ValueError(f"One path has {a.shape[1]} coordinates, the other {b.shape[1]}.")
+        raise ValueError(
+            f"Both paths must have 2 or 3 coordinates, got {a.shape[1]} and {b.shape[1]}."
+        )
     rows, columns = len(a), len(b)
     cost = np.sqrt(((a[:, None] - b[None]) ** 2).sum(axis=2))[:, ::-1]
     before, last = np.full((2, rows + 1), np.inf)  # at [i + 1]: cell (i, d - i) of d - 2, d - 1
@@ -130,7 +154,7 @@ def ndtw(path: ArrayLike, reference: ArrayLike, *, threshold: float = SUCCESS_DI
 def _points(path: ArrayLike, name: str) -> np.ndarray:
     points = np.asarray(path, float)
     if points.ndim != 2 or not len(points) or points.shape[1] not in (2, 3):
-        raise ValueError(f"The {name} has shape {points.shape}: [N, 2] or [N, 3] is needed, N > 0.")
+        raise ValueError(f"The {name} must be [N, 2] or [N, 3] with N > 0, got {points.shape}.")
     if not np.isfinite(points).all():
-        raise ValueError(f"The {name} holds NaN or infinity: give finite metres.")
+        raise ValueError(f"The {name} must be finite metres, got NaN or infinity.")
     return points

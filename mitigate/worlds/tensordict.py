@@ -1,6 +1,6 @@
-"""torchrl both ways: any world as an environment, and any environment with frames as a world.
+"""Use a world as a torchrl environment, and a torchrl environment as a world.
 
-Only this file, ``transforms.py`` and ``apartments/env.py`` import torchrl (4 s).
+Only this file, ``transforms.py`` and ``apartments/env.py`` import torchrl, which takes 4 s.
 """
 
 from __future__ import annotations
@@ -35,25 +35,30 @@ from mitigate.worlds.world import TrainingEpisodes, World
 
 
 class WorldEnv(EnvBase):
-    """Any world as a torchrl environment (``batch_size`` []).
+    """A world as a torchrl environment (``batch_size`` []).
 
-    Observation: an entry for each of the world's sensors, ``instruction`` (str), ``episode`` (str,
-    unique to each run of an episode) and ``frame`` int64 [1], the steps taken. Action: int64 from 0
-    to ``actions`` - 1, 0 is STOP. Reward float32 [1]: the world's ``success`` when the episode is
-    over, else 0. ``terminated`` on STOP, ``truncated`` at the world's own end.
+    Observations have an entry per sensor of the world, ``instruction`` (str), ``episode`` (str,
+    unique to each run of an episode) and ``frame`` (int64 [1], the number of steps). Actions are
+    int64 from 0 to ``actions`` - 1; 0 is STOP. The reward, float32 [1], is the world's ``success``
+    at the end of an episode, otherwise 0. ``terminated`` is set on STOP, ``truncated`` if the world
+    ends the episode.
 
     Args:
-        world: shared with nobody else.
-        episodes: a VLN-CE file or a list, run in order and over again; or training episodes
+        world: The world, used by this environment only.
+        episodes: A VLN-CE file or a list, run in order and repeatedly; or training episodes
             (``worlds/world.py``), drawn from ``seed``.
-        seed: of the drawn episodes; ``set_seed`` replaces it and starts from the first one again.
-        worker, workers: this environment runs the episodes ``worker``, ``worker + workers``, ...;
-            four environments that share the work and the seed meet what a single one meets.
+        actions: Number of actions.
+        seed: Seed of drawn episodes; ``set_seed`` replaces it and restarts with the first episode.
+        worker: Index of this environment; it runs the episodes ``worker``, ``worker + workers``,
+            ...
+        workers: Number of environments that share the episodes and the seed. Together they run the
+            same episodes as a single one.
 
-    Raises ValueError for an empty list and for a worker outside 0 ... workers - 1.
+    Raises:
+        ValueError: The list is empty, or ``worker`` is not in 0 ... workers - 1.
     """
 
-    key = "world env"  # of the draws of episodes
+    key = "world env"  # name of the random stream that draws episodes
 
     def __init__(
         self,
@@ -68,13 +73,16 @@ class WorldEnv(EnvBase):
         super().__init__(device="cpu", batch_size=[])
         if not 0 <= worker < workers:
             raise ValueError(
-                f"worker={worker} of workers={workers}: worker counts from 0 to {workers - 1}."
+                f"worker must be 0 to {workers - 1} with workers={workers}, got {worker}."
             )
-        self.world, self.actions, self.seed = world, actions, seed
+        self.world = world
+        self.actions = actions
+        self.seed = seed
         self.episodes: TrainingEpisodes | Sequence[Episode] = (
-            episodes if isinstance(episodes, TrainingEpisodes) else _listed(episodes)
+            episodes if isinstance(episodes, TrainingEpisodes) else _list_episodes(episodes)
         )
-        self.worker, self.workers = worker, workers
+        self.worker = worker
+        self.workers = workers
         self._number = worker
         self._make_specs()
 
@@ -95,37 +103,41 @@ class WorldEnv(EnvBase):
         )
 
     def _reset(self, tensordict: TensorDictBase | None = None, **kwargs: object) -> TensorDictBase:
-        self._episode, self._name = self._drawn(self._number)
+        self._episode, self._name = self._choose_episode(self._number)
         self._number += self.workers
         self._frame = 0
         return self._state(self.world.reset(self._episode), stopped=False)
 
     def _step(self, tensordict: TensorDictBase) -> TensorDictBase:
         action = int(tensordict["action"])
-        seen = self.world.step(action)
+        observation = self.world.step(action)
         self._frame += 1
-        won = float(self.world.measures()["success"]) if self.world.done else 0.0
-        return self._state(seen, stopped=action == STOP).set("reward", torch.tensor([won]))
+        reward = float(self.world.measures()["success"]) if self.world.done else 0.0
+        state = self._state(observation, stopped=action == STOP)
+        return state.set("reward", torch.tensor([reward]))
 
     def _set_seed(self, seed: int | None) -> None:
-        self.seed, self._number = 0 if seed is None else int(seed), self.worker
+        self.seed = 0 if seed is None else int(seed)
+        self._number = self.worker
 
-    def _drawn(self, number: int) -> tuple[Episode, str]:
-        """Episode ``number`` and its unique name: a function of (list or seed, number)."""
+    def _choose_episode(self, number: int) -> tuple[Episode, str]:
+        """Return episode ``number`` and its unique name, a function of (list or seed, number)."""
         if isinstance(self.episodes, TrainingEpisodes):
             rng = generator(self.seed, self.key, number)
-            episode, again = self.episodes.draw(rng, (0, 1)), number
+            episode = self.episodes.draw(rng, (0, 1))
+            repetition = number
         else:
-            again, place = divmod(number, len(self.episodes))
-            episode = self.episodes[place]
-        return episode, f"{episode.episode_id}@{again}" if again else episode.episode_id
+            repetition, index = divmod(number, len(self.episodes))
+            episode = self.episodes[index]
+        name = f"{episode.episode_id}@{repetition}" if repetition else episode.episode_id
+        return episode, name
 
-    def _state(self, seen: Observation, stopped: bool) -> TensorDictBase:
+    def _state(self, observation: Observation, stopped: bool) -> TensorDictBase:
         done = self.world.done
         over = {"done": done, "terminated": done and stopped, "truncated": done and not stopped}
         return TensorDict(
             {
-                **{name: torch.from_numpy(np.array(seen[name])) for name in self.world.sensors},
+                **{n: torch.from_numpy(np.array(observation[n])) for n in self.world.sensors},
                 INSTRUCTION: self._episode.instruction.text,
                 EPISODE: self._name,
                 FRAME: torch.tensor([self._frame]),
@@ -136,14 +148,20 @@ class WorldEnv(EnvBase):
 
 
 class EnvWorld(SeededWorld):
-    """Any torchrl environment that shows frames as a world, to evaluate in under the suite.
+    """A torchrl environment with frames as a world.
 
-    Args: env: not batched. entries: by default those that are called "rgb", "depth" and "pose"; one
-    within another is "camera.rgb". success: an entry of its tensordict, or a function.
-    The others: as ``SeededWorld``.
+    Args:
+        env: An environment that is not batched.
+        entries: Names of the entries, by default "rgb", "depth" and "pose". Nested entries are
+            written as "camera.rgb".
+        success: An entry of the tensordict, or a function.
+        unit: See :class:`~mitigate.worlds.seeded.SeededWorld`.
+        limit: See ``SeededWorld``.
+        rule: See ``SeededWorld``.
 
-    Raises ValueError as ``SeededWorld`` does, for an environment that is batched, and for actions
-    that are not one discrete number.
+    Raises:
+        ValueError: The environment is batched, its action is not one discrete number, or as in
+            ``SeededWorld``.
     """
 
     def __init__(
@@ -158,22 +176,23 @@ class EnvWorld(SeededWorld):
     ) -> None:
         if env.batch_size.numel() != 1:
             raise ValueError(
-                f"The environment has the batch size {list(env.batch_size)}: give one."
+                f"The batch size of the environment must be [] or [1], got {list(env.batch_size)}. "
+                "Pass a single environment."
             )
         action = env.full_action_spec
         actions = [action[key] for key in action.keys(True, True)]
         if len(actions) != 1 or not _is_discrete(actions[0]):
-            shown = ", ".join(f"{type(spec).__name__} {list(spec.shape)}" for spec in actions)
+            listed = ", ".join(f"{type(spec).__name__} {list(spec.shape)}" for spec in actions)
             raise ValueError(
                 "The actions of the environment must be one discrete number (Categorical or "
-                f"OneHot), got {shown}. Wrap it in a transform that turns a whole number into an "
-                "action of yours."
+                f"OneHot), got {listed}. Wrap the environment in a transform that converts a "
+                "number into its action."
             )
         spec = env.observation_spec
         specs = {_dotted(key): spec[key] for key in spec.keys(True, True)}
-        known = {name: name for name in (RGB, DEPTH, POSE) if name in specs}
-        found = {name: _measured(spec) for name, spec in specs.items()}
-        super().__init__(found, entries or known, success, unit, limit, rule)
+        default = {name: name for name in (RGB, DEPTH, POSE) if name in specs}
+        arrays = {name: _describe(spec) for name, spec in specs.items()}
+        super().__init__(arrays, entries or default, success, unit, limit, rule)
         self.env = env
 
     def reset(self, episode: Episode) -> Observation:
@@ -185,12 +204,16 @@ class EnvWorld(SeededWorld):
         return self._observation(parts)
 
     def step(self, action: int) -> Observation:
-        """Raises ValueError for an action that the environment does not have, and at the end of an
-        episode that has no entry ``success``."""
-        self._check_going()
+        """Take an action.
+
+        Raises:
+            ValueError: The action does not exist, or the environment does not report success at the
+                end of the episode.
+        """
+        self._check_not_done()
         spec = self.env.action_spec
         if not 0 <= action < spec.space.n:
-            raise ValueError(f"Unknown action {action}: the environment has {spec.space.n}.")
+            raise ValueError(f"The action must be 0 to {spec.space.n - 1}, got {action}.")
         chosen = torch.tensor(action)
         if isinstance(spec, OneHot):
             chosen = torch.nn.functional.one_hot(chosen, spec.space.n).to(spec.dtype)
@@ -212,7 +235,10 @@ class EnvWorld(SeededWorld):
 
 
 def _is_discrete(spec: Any) -> bool:
-    """Return whether an action is one number of ``spec.space.n``; subclasses hold several."""
+    """Return whether an action is one number below ``spec.space.n``.
+
+    Subclasses of these specs, such as MultiCategorical, are several numbers.
+    """
     return type(spec) in (Categorical, OneHot) and spec.shape.numel() == (
         spec.space.n if type(spec) is OneHot else 1
     )
@@ -222,16 +248,16 @@ def _dotted(key: str | tuple[str, ...]) -> str:
     return key if isinstance(key, str) else ".".join(key)
 
 
-def _listed(episodes: Any) -> list[Episode]:
-    if isinstance(episodes, (Path, str)):
-        found, place = list(read_episodes(episodes)), str(episodes)
-    else:
-        found, place = list(episodes), "the list"
-    if not found:
+def _list_episodes(episodes: Any) -> list[Episode]:
+    """Return the episodes of a file or an iterable; raise ValueError if there are none."""
+    is_file = isinstance(episodes, (Path, str))
+    listed = list(read_episodes(episodes)) if is_file else list(episodes)
+    if not listed:
         raise ValueError(
-            f"There is no episode in {place}: give at least one, or training episodes to draw from."
+            f"{episodes if is_file else 'The list'} must contain at least one episode. Add one, or "
+            "pass training episodes to draw from."
         )
-    return found
+    return listed
 
 
 def _spec_of(sensor: Sensor) -> Any:
@@ -245,11 +271,12 @@ def _spec_of(sensor: Sensor) -> Any:
     return Unbounded(shape=sensor.shape, dtype=dtype)
 
 
-def _measured(spec: Any) -> tuple[tuple[int, ...], str, float]:
-    """Shape, dtype and greatest value of an entry; infinity where it has no end, for which torchrl
-    has the greatest number of the dtype."""
-    shape, dtype = tuple(spec.shape), str(spec.dtype).removeprefix("torch.")
-    ends = isinstance(spec.space, ContinuousBox)
-    far = float(spec.space.high.max()) if ends else math.inf
-    endless = dtype.startswith("float") and far >= torch.finfo(spec.dtype).max / 2
-    return shape, dtype, math.inf if endless else far
+def _describe(spec: Any) -> tuple[tuple[int, ...], str, float]:
+    """Return shape, dtype and maximum of an entry; infinity if it is unbounded.
+
+    torchrl marks an unbounded entry by the largest number of its dtype.
+    """
+    dtype = str(spec.dtype).removeprefix("torch.")
+    high = float(spec.space.high.max()) if isinstance(spec.space, ContinuousBox) else math.inf
+    unbounded = dtype.startswith("float") and high >= torch.finfo(spec.dtype).max / 2
+    return tuple(spec.shape), dtype, math.inf if unbounded else high

@@ -1,4 +1,4 @@
-"""Corruptions inside torchrl: transforms for environments and replay buffers alike."""
+"""torchrl transforms that corrupt frames, for environments and replay buffers."""
 
 from __future__ import annotations
 
@@ -24,28 +24,30 @@ from mitigate.corruptions.schedule import drawn, names_of
 
 
 class CorruptObservation(Transform):
-    """Corrupts ``rgb`` and ``depth`` as a schedule says for (seed, ``episode``, ``frame``).
+    """Corrupt ``rgb`` and ``depth`` by a schedule, keyed by (seed, ``episode``, ``frame``).
 
-    The state of an episode (its corruption, the drops on its lens) is a function of the name in
-    ``episode``, which changes at every reset; nothing is kept here. So the pixels do not depend on
-    how many environments run side by side, on partial resets, or on whether a frame passes in an
-    environment (``_call``) or later, out of a replay buffer that stores clean frames (``forward``,
-    which also corrupts ``("next", ...)`` if it is there). An environment that names no episodes
-    takes an ``EpisodeCounter`` before this transform.
+    The transform has no state: everything about an episode (its corruption, the drops on its lens)
+    is a function of the name in ``episode``, which changes at every reset. The pixels therefore do
+    not depend on the number of parallel environments or on partial resets. They are also the same
+    when a frame is corrupted later, out of a replay buffer with clean frames (``forward``, which
+    also corrupts ``("next", ...)`` if present). An environment without episode names needs an
+    ``EpisodeCounter`` before this transform.
 
     Frames are RGB uint8 [*batch, H, W, 3] or [*batch, V, H, W, 3] and depth float32
-    [*batch, (V,) H, W, 1]: put it before transforms that move channels or make floats. Any batch
-    shape, any device; the work is done on the CPU and the result goes back to the frames' device.
+    [*batch, (V,) H, W, 1]. Put this transform before those that move channels or convert to float.
+    Any batch shape and device; the work is done on the CPU.
 
     Args:
-        schedule: which frame meets what, or the corruption that all meet.
-        seed: of every random draw.
-        rgb, depth: names of the two entries; an absent one is left out.
-        sensor: depth range and sentinel.
-        normalised: depth is in [0, 1] over the sensor's range instead of in metres.
+        schedule: The schedule that draws a corruption per frame, or one corruption for all frames.
+        seed: Corruption seed.
+        rgb: Name of the RGB entry; may be absent from the data.
+        depth: Name of the depth entry; may be absent from the data.
+        sensor: Depth range and value for no reading.
+        normalised: Whether depth is in [0, 1] over the sensor's range instead of in metres.
 
-    Raises ValueError if the data name no episode or frame or lack what the schedule corrupts, and
-    as ``corrupt_observation`` does.
+    Raises:
+        ValueError: On data: episode or frame are missing, the schedule corrupts a missing entry, or
+            as in ``corrupt_observation``.
     """
 
     def __init__(
@@ -70,14 +72,15 @@ class CorruptObservation(Transform):
     def _reset(
         self, tensordict: TensorDictBase | None, tensordict_reset: TensorDictBase
     ) -> TensorDictBase:
-        """Corrupt what was reset; torchrl drops the other rows and keeps those it had."""
+        """Corrupt the rows that were reset; torchrl ignores the other rows."""
         mask = _reset_mask(self, tensordict, tensordict_reset)
         return self._corrupt(tensordict_reset, mask.nonzero().flatten().tolist())
 
     def forward(self, tensordict: TensorDictBase) -> TensorDictBase:
-        """Stored data of any batch shape with corrupted frames.
+        """Return stored data of any batch shape with corrupted frames.
 
-        A new tensordict, as a buffer may hand out its very storage; other entries are shared.
+        The result is a new tensordict, because a buffer may return its storage; the other entries
+        are shared.
         """
         out = self._corrupt(tensordict.copy())
         following = out.get("next", None)
@@ -101,9 +104,9 @@ class CorruptObservation(Transform):
             if not corruption.modalities:
                 continue
             instant = {entry: views[row] for entry, views in frames.items()}
-            after = self._corrupt_instant(instant, corruption, key, self.sensor)
+            result = self._corrupt_instant(instant, corruption, key, self.sensor)
             for name in corruption.modalities:
-                corrupted.setdefault(name, frames[name].copy())[row] = after[name]
+                corrupted.setdefault(name, frames[name].copy())[row] = result[name]
         for name, views in corrupted.items():
             value = stored[name]
             data.set(
@@ -112,30 +115,30 @@ class CorruptObservation(Transform):
         return data
 
     def _check_entries(self, frames: Collection[str]) -> None:
-        """Raise ValueError at the first data, not when the draw first asks for what they lack."""
+        """Raise ValueError if the schedule may corrupt an entry that the data lack."""
         names = names_of(self.schedule)
-        lost = [name for name in names if registry.modality(name) not in frames]
-        if lost:
-            modality = registry.modality(lost[0])
-            fit = ", ".join(name for name in names if name not in lost)
+        missing = [name for name in names if registry.modality(name) not in frames]
+        if missing:
+            modality = registry.modality(missing[0])
+            usable = ", ".join(name for name in names if name not in missing)
             raise ValueError(
-                f"The schedule may draw {lost[0]!r}, which corrupts {modality}, but the data have "
-                f"no entry {self.entries[modality]!r}. "
-                f"{f'Draw only from names=[{fit}]' if fit else 'Choose other names'}, or say what "
-                f"the entry is called: CorruptObservation(..., {modality}=...)."
+                f"The schedule may draw {missing[0]!r}, which corrupts {modality}, but the data "
+                f"have no entry {self.entries[modality]!r}. "
+                f"{f'Draw only from names=[{usable}]' if usable else 'Choose other names'}, or "
+                f"name the entry: CorruptObservation(..., {modality}=...)."
             )
 
     def _draw(self, data: TensorDictBase) -> list[tuple[Corruption, Key]]:
-        """The corruption and key of every instant, in row-major order."""
-        present = set(data.keys())  # a tensordict has no `in` of its own
+        """Return the corruption and the key of every instant, in row-major order."""
+        present = set(data.keys())  # a tensordict does not support `in`
         missing = [name for name in (EPISODE, FRAME) if name not in present]
         if missing:
             raise ValueError(
-                f"CorruptObservation finds no {' and no '.join(map(repr, missing))} in the data, "
-                f"only {sorted(map(str, present))}. The environment must give 'episode' (a string "
-                "or int64 [1], unique to each run of an episode) and 'frame' (int64 [1]), as "
-                "ApartmentsEnv does, because every random draw is keyed by them; for another "
-                "environment put an EpisodeCounter() before this transform."
+                f"The data must have {' and '.join(map(repr, missing))}, which key every random "
+                f"draw, got only {sorted(map(str, present))}. The environment must provide "
+                "'episode' (a string or int64 [1], unique to each run of an episode) and 'frame' "
+                "(int64 [1]), as ApartmentsEnv does. Otherwise put an EpisodeCounter() before "
+                "CorruptObservation."
             )
         instants = data.select(EPISODE, FRAME).cpu().reshape(-1).unbind(0)
         return [
@@ -145,30 +148,32 @@ class CorruptObservation(Transform):
 
 
 class EpisodeCounter(Transform):
-    """Adds ``episode`` and ``frame``, int64 [*batch, 1], to an environment that has neither.
+    """Add ``episode`` and ``frame``, int64 [*batch, 1], to an environment that has neither.
 
-    ``episode`` numbers the runs of episodes and ``frame`` the steps since the reset. Row i of n
-    parallel ones runs the episodes i, i + n, i + 2 n, ...: a reset mask moves on only the rows that
-    it names, so the numbers do not depend on when the others end.
+    ``episode`` is the number of the run of an episode, ``frame`` the number of steps since the
+    reset. Row i of n parallel rows runs the episodes i, i + n, i + 2 n, ...; a reset advances only
+    the rows of its mask. The numbers of a row therefore do not depend on the other rows.
 
     Args:
-        worker, workers: this environment is number ``worker`` of ``workers`` equal ones in
-            processes of their own; their rows count as one batch.
+        worker: Index of this environment among those in separate processes; the rows of all
+            workers count as one batch.
+        workers: Number of environments in separate processes.
 
-    Raises ValueError for a worker outside 0 ... workers - 1.
+    Raises:
+        ValueError: ``worker`` is not in 0 ... workers - 1.
     """
 
     def __init__(self, worker: int = 0, workers: int = 1) -> None:
         if not 0 <= worker < workers:
             raise ValueError(
-                f"worker={worker} of workers={workers}: worker counts from 0 to {workers - 1}."
+                f"worker must be 0 to {workers - 1} with workers={workers}, got {worker}."
             )
         super().__init__(in_keys=[], out_keys=[EPISODE, FRAME])
         self.worker, self.workers = worker, workers
-        self._begun: torch.Tensor | None = None  # int64 [rows]: resets of each row so far
+        self._resets: torch.Tensor | None = None  # int64 [rows]: number of resets of each row
 
     def transform_observation_spec(self, observation_spec: Composite) -> Composite:
-        """The spec with the two entries added."""
+        """Return the spec with the two entries added."""
         shape = (*self.parent.batch_size, 1)
         for name in self.out_keys:
             observation_spec[name] = Unbounded(
@@ -181,10 +186,10 @@ class EpisodeCounter(Transform):
     ) -> TensorDictBase:
         mask = _reset_mask(self, tensordict, tensordict_reset)
         rows = mask.numel()
-        begun = torch.zeros(rows, dtype=torch.int64) if self._begun is None else self._begun
-        self._begun = begun + mask
-        place = self.worker * rows + torch.arange(rows)
-        number = place + (self._begun - 1).clamp(min=0) * rows * self.workers
+        resets = torch.zeros(rows, dtype=torch.int64) if self._resets is None else self._resets
+        self._resets = resets + mask
+        first = self.worker * rows + torch.arange(rows)
+        number = first + (self._resets - 1).clamp(min=0) * rows * self.workers
         shape, device = (*tensordict_reset.batch_size, 1), tensordict_reset.device
         tensordict_reset.set(EPISODE, number.reshape(shape).to(device))
         return tensordict_reset.set(FRAME, torch.zeros(shape, dtype=torch.int64, device=device))
@@ -194,14 +199,14 @@ class EpisodeCounter(Transform):
         return next_tensordict.set(FRAME, tensordict.get(FRAME) + 1)
 
     def forward(self, tensordict: TensorDictBase) -> TensorDictBase:
-        """Raise: stored data must hold the numbers that the environment gave them."""
+        """Raise RuntimeError, because stored data must have the numbers of the environment."""
         raise RuntimeError("EpisodeCounter belongs in an environment, not in a replay buffer.")
 
 
 def _reset_mask(
     transform: Transform, tensordict: TensorDictBase | None, reset: TensorDictBase
 ) -> torch.Tensor:
-    """bool [rows] on the CPU: which rows of the flattened batch are being reset."""
+    """Return which rows of the flattened batch are being reset, bool [rows] on the CPU."""
     parent = transform.parent
     name = "_reset" if parent is None else parent.reset_keys[0]
     mask = None if tensordict is None else tensordict.get(name, None)

@@ -1,7 +1,7 @@
-"""What evaluation, training and pictures know of a world, and the corrupted world.
+"""The contract of worlds, and the world that corrupts another one.
 
-A world gives observations of episodes and says how well they went; it knows no agent. How to bring
-one: ``docs/bring-your-own.md``.
+A world produces observations and measures episodes; it knows no agent. How to add a world is in
+``docs/bring-your-own.md``.
 """
 
 from __future__ import annotations
@@ -20,46 +20,51 @@ from mitigate.corruptions import Corruption, DepthSensor, Key, Schedule, corrupt
 from mitigate.corruptions.schedule import drawn
 from mitigate.worlds.episodes import Episode
 
-FARTHEST = 100.0  # metres: half of an indoor frame's readings are nearer (ours)
+MAX_MEDIAN_DEPTH = 100.0  # metres, heuristic: the median of an indoor depth frame is smaller
 
 
 class Expert:
-    """Base class of a shortest-path oracle: what it knows of the current episode.
+    """Base class of a shortest-path oracle for the current episode.
 
-    A subclass defines ``action`` for agents that act step by step, or ``distance`` for agents that
+    A subclass defines ``action`` for agents that act step by step, ``distance`` for agents that
     plan, or both.
     """
 
     def distance(self, xy: np.ndarray) -> float:
-        """Metres along the shortest path from the point ``xy`` [2] to the nearest goal; NaN where
-        that is unknown."""
+        """Return the metres along the shortest path from ``xy`` [2] to the nearest goal.
+
+        NaN if unknown.
+        """
         return math.nan
 
     def action(self) -> int:
-        """The low-level action that an oracle takes next."""
+        """Return the next low-level action."""
         raise NotImplementedError(f"{type(self).__name__} defines no action()")
 
     def counts(self, metres: float) -> bool:
-        """Whether STOP at that distance is a success; by default the agent's teacher decides."""
+        """Return whether STOP at this distance is a success.
+
+        By default it is, and the agent's teacher decides where to stop.
+        """
         return True
 
 
 class World:
-    """Base class of worlds: one agent in one place, an episode at a time.
+    """Base class of worlds: one agent, one episode at a time.
 
     A subclass defines ``reset``, ``step``, ``measures``, ``sensors`` and ``done``; the rest has
-    defaults. Objects of any other class work, too: :func:`as_world` fills in what they lack.
+    defaults. Objects of any other class work too: :func:`as_world` adds the missing defaults.
+
+    A class that defines ``beside()``, which returns another world like this one, can run several
+    episodes at the same time.
 
     Attributes:
-        sensors: what each entry of an observation is; the frames that are corrupted are called
-            "rgb" and "depth", and the place is "pose".
-        rule: what ``measures`` counts as success, in words, such as "STOP and geodesic < 3 m"; it
-            is part of every row.
-        done: whether the episode is over; no step may follow.
-        draw: draws the plan of the place on Matplotlib axes; None where there is no plan.
-
-    A class of worlds that defines ``beside()``, another world like this one, can run several
-    episodes at the same time.
+        sensors: Description of each entry of an observation. Frames to corrupt are named "rgb" and
+            "depth", the pose is named "pose".
+        rule: The success rule of ``measures`` in words, such as "STOP and geodesic < 3 m"; part of
+            every row.
+        done: Whether the episode is over; no step may follow.
+        draw: Function that draws a floor plan on Matplotlib axes; None if there is no plan.
     """
 
     rule: str
@@ -68,41 +73,48 @@ class World:
     draw: Callable[[Any], None] | None = None
 
     def reset(self, episode: Episode) -> Observation:
-        """Start an episode; frames are rendered when they are read.
+        """Start an episode and return its first observation; frames are rendered when read.
 
-        The arrays may be the world's own: copy them to keep them. Raises ValueError for an episode
-        of another world.
+        The world may reuse the arrays; copy them to keep them.
+
+        Raises:
+            ValueError: The episode does not belong to this world.
         """
         raise NotImplementedError(f"{type(self).__name__} defines no reset(episode)")
 
     def step(self, action: int) -> Observation:
-        """Take an action."""
+        """Take an action and return the next observation."""
         raise NotImplementedError(f"{type(self).__name__} defines no step(action)")
 
     def measures(self) -> dict[str, float]:
-        """How the episode went so far: ``success`` (0 or 1) and ``spl`` at least."""
+        """Return the measures of the episode so far, at least ``success`` (0 or 1) and ``spl``."""
         raise NotImplementedError(f"{type(self).__name__} defines no measures()")
 
     def expert(self) -> Any:
-        """The oracle (:class:`Expert`) of the current episode. None in a world without one: agents
-        can be evaluated there, not trained by imitation."""
+        """Return the oracle (:class:`Expert`) of the current episode, or None.
+
+        In a world without one, agents can be evaluated but not trained by imitation.
+        """
         return None
 
     def truth(self) -> Mapping[str, np.ndarray]:
-        """Labels of what is seen from here, arrays by name."""
+        """Return ground-truth labels of the current view, arrays by name."""
         return {}
 
     def remembering(self) -> AbstractContextManager:
-        """A context within which frames are kept between the conditions of an episode; no result
-        depends on it."""
+        """Return a context that caches frames between the conditions of an episode.
+
+        Results do not depend on it.
+        """
         return nullcontext()
 
 
 @runtime_checkable
 class Placeable(Protocol):
-    """A world that can look from anywhere, for pretraining without episodes.
+    """A world that can render from any pose, for pretraining without episodes.
 
-    scenes: names of the places to train in.
+    Attributes:
+        scenes: Names of the training scenes.
     """
 
     scenes: Sequence[str]
@@ -110,48 +122,65 @@ class Placeable(Protocol):
     @property
     def sensors(self) -> Mapping[str, Sensor]: ...
 
-    def enter(self, scene: str) -> None: ...
+    def enter(self, scene: str) -> None:
+        """Load a scene."""
 
     def point(self, rng: np.random.Generator) -> np.ndarray:
-        """A random point [2] of the scene where an agent can stand."""
+        """Return a random point [2] of the scene where an agent can stand."""
 
     def put(
         self, xy: np.ndarray, heading: float, *, views: Sequence[int] | None, rgb: bool
     ) -> tuple[dict[str, np.ndarray], Mapping[str, np.ndarray]]:
-        """Frames and pose from there, and the truth. ``views``: those that are needed, None: all;
-        the others may be 0. ``rgb`` False: colours are not needed."""
+        """Render from a pose.
+
+        Args:
+            xy: Plan position [2], metres.
+            heading: Radians, counter-clockwise.
+            views: Views that are needed; the others may be 0. None: all.
+            rgb: Whether RGB is needed.
+
+        Returns:
+            Frames with the pose, and ground-truth labels.
+        """
 
 
 @runtime_checkable
 class TrainingEpisodes(Protocol):
-    """Where the episodes of a training come from."""
+    """Source of training episodes."""
 
     def draw(self, rng: np.random.Generator, share: tuple[int, int]) -> Episode:
-        """An episode: a function of the generator's state and of ``share`` = (piece, of how many),
-        by which worker processes that draw different pieces of a batch may split the scenes."""
+        """Draw an episode, a function of the state of ``rng`` and of ``share``.
+
+        Args:
+            rng: Random generator.
+            share: (piece, number of pieces): workers that draw different pieces of a batch may
+                split the scenes.
+        """
 
 
 OPTIONAL = ("expert", "truth", "remembering", "draw")
 
 
 def as_world(world: Any) -> World:
-    """Return ``world``, or a view of it with the defaults of :class:`World` if its class does not
-    build on that. The world itself is not changed."""
+    """Return ``world`` as a :class:`World`.
+
+    An object of another class is wrapped to add the missing defaults; the object is not changed.
+    """
     return world if isinstance(world, World) else _WorldView(world)
 
 
 class WorldWrapper(World):
-    """A world whose observations are changed on their way to the agent; itself a world. A subclass
-    says how in ``_seen``."""
+    """Base class of worlds that change the observations of another world in ``_observe``."""
 
     def __init__(self, world: Any) -> None:
         self.world = world
         self._inner = as_world(world)
 
     def __getattr__(self, name: str) -> Any:
-        if name.startswith("__") or name in ("world", "_inner"):  # of a copy that is being made
+        # copy and pickle ask for these before __init__ has set them
+        if name.startswith("__") or name in ("world", "_inner"):
             raise AttributeError(name)
-        return getattr(self.world, name)  # whatever else the world has, such as point() and put()
+        return getattr(self.world, name)  # other attributes of the world, such as point() and put()
 
     @property
     def rule(self) -> str:  # type: ignore[override]
@@ -166,10 +195,10 @@ class WorldWrapper(World):
         return self._inner.done
 
     def reset(self, episode: Episode) -> Observation:
-        return self._seen(self._inner.reset(episode))
+        return self._observe(self._inner.reset(episode))
 
     def step(self, action: int) -> Observation:
-        return self._seen(self._inner.step(action))
+        return self._observe(self._inner.step(action))
 
     def measures(self) -> dict[str, float]:
         return self._inner.measures()
@@ -187,13 +216,13 @@ class WorldWrapper(World):
     def draw(self) -> Callable[[Any], None] | None:  # type: ignore[override]
         return self._inner.draw
 
-    def _seen(self, met: Observation) -> Observation:
-        """What the agent gets for an observation of the world."""
+    def _observe(self, observation: Observation) -> Observation:
+        """Return what the agent receives for an observation of the world."""
         raise NotImplementedError
 
 
 class _WorldView(World):
-    """An object of a user's class as a :class:`World`."""
+    """Wrap an object of a user's class as a :class:`World`."""
 
     def __init__(self, world: Any) -> None:
         self._world = world
@@ -222,38 +251,47 @@ class _WorldView(World):
 
 
 class Corrupted(WorldWrapper):
-    """A world whose frames meet a corruption, or what a schedule draws.
+    """A world whose frames are corrupted, by one corruption or by a schedule.
 
-    The draws are keyed by (seed, name, number of the look): an observation whose frames nobody
-    reads is no look. ``observation.clean`` is what it was before. ``name``: of the episode in the
-    keys; None: its id. Instructions are corrupted before the agent hears them
-    (``evaluation/episode.py``), not here.
+    Every draw is keyed by (seed, name, index of the read frame); an observation whose frames are
+    never read does not count. ``observation.clean`` is the clean observation. Instructions are
+    corrupted in ``evaluation/episode.py``, not here.
+
+    Args:
+        world: The world.
+        by: The corruption, or the schedule that draws one per frame.
+        seed: Corruption seed.
+        name: Name of the episode in the keys; None: its id.
     """
 
     def __init__(
         self, world: World, by: Corruption | Schedule, seed: int, name: str | None = None
     ) -> None:
         super().__init__(world)
-        self.by, self.seed, self.name = by, seed, name
-        self.looks = 0
-        self.last: dict[str, np.ndarray] | None = None  # frames that were read last
+        self.by = by
+        self.seed = seed
+        self.name = name
+        self.frames_read = 0
+        self.last: dict[str, np.ndarray] | None = None  # the corrupted frames that were read last
 
     def reset(self, episode: Episode) -> Observation:
-        """Begin an episode, and the count of looks."""
-        self.episode, self.looks, self.last = episode, 0, None
+        """Start an episode and restart the count of frames."""
+        self.episode = episode
+        self.frames_read = 0
+        self.last = None
         return super().reset(episode)
 
-    def _seen(self, clean: Observation) -> Observation:
+    def _observe(self, clean: Observation) -> Observation:
         if not isinstance(clean, Observation):
             raise ValueError(
-                f"{type(self.world).__name__} showed a {type(clean).__name__}: its reset() and "
-                "step() return an Observation, such as Observation({'pose': pose}, "
+                f"reset() and step() of {type(self.world).__name__} must return an Observation, "
+                f"got {type(clean).__name__}. Return for example Observation({{'pose': pose}}, "
                 "lambda: {'rgb': rgb}, ('rgb',)) (docs/bring-your-own.md)."
             )
 
         def corrupted() -> dict[str, np.ndarray]:
             corruption, key = self._draw()
-            self.looks += 1
+            self.frames_read += 1
             sensor = depth_sensor(self.world.sensors)
             self.last = corrupt_observation(dict(clean), corruption, key, sensor)
             return self.last
@@ -262,49 +300,60 @@ class Corrupted(WorldWrapper):
 
     def _draw(self) -> tuple[Corruption, Key]:
         name = self.episode.episode_id if self.name is None else self.name
-        return drawn(self.by, self.seed, name, self.looks)
+        return drawn(self.by, self.seed, name, self.frames_read)
 
 
 def depth_sensor(sensors: Mapping[str, Sensor]) -> DepthSensor:
-    """What the corruptions must know of a world's depth: its range, and what stands for no
-    reading. A range without an end is R2R-CE's."""
-    depth, usual = sensors.get(DEPTH), DepthSensor()
+    """Return the depth range and the value for no reading of a world's depth sensor.
+
+    An unlimited range is replaced by that of R2R-CE.
+    """
+    depth = sensors.get(DEPTH)
+    default = DepthSensor()
     if depth is None:
-        return usual
-    far = depth.high if math.isfinite(depth.high) else usual.z_max
-    return replace(
-        usual, z_max=far, missing=usual.missing if depth.missing is None else depth.missing
-    )
+        return default
+    z_max = depth.high if math.isfinite(depth.high) else default.z_max
+    missing = default.missing if depth.missing is None else depth.missing
+    return replace(default, z_max=z_max, missing=missing)
 
 
 def expert_of(world: World) -> Expert:
     """Return the expert of a world for the current episode.
 
-    Raises ValueError, naming the world, if it has none.
+    Raises:
+        ValueError: The world has no expert.
     """
     expert = as_world(world).expert()
     if expert is None:
-        own = world.world if isinstance(world, WorldWrapper) else world
+        inner = world.world if isinstance(world, WorldWrapper) else world
         raise ValueError(
-            f"{type(own).__name__} has no expert, so there is nobody to imitate there: give it an "
-            "expert() with the actions to take or distances to the goal (docs/bring-your-own.md)."
+            f"{type(inner).__name__} has no expert, which imitation needs. Define expert() with "
+            "the actions to take or the distances to the goal (docs/bring-your-own.md)."
         )
     return expert if isinstance(expert, Expert) else _ExpertView(expert)
 
 
 class _ExpertView(Expert):
-    """An object of a user's class as an :class:`Expert`."""
+    """Wrap an object of a user's class as an :class:`Expert`."""
 
     def __init__(self, expert: Any) -> None:
         take_over(self, expert, ("distance", "action", "counts"))
 
 
-def check_metres(depth: np.ndarray, whose: str, fix: str) -> None:
-    """Raise ValueError, with ``fix`` behind it, for ``depth`` (0: no reading) of ``whose`` frames
-    half of the readings are farther than ``FARTHEST``."""
-    known = depth[depth > 0]
-    if len(known) and float(np.median(known)) > FARTHEST:
-        middle = np.median(known)
+def check_metres(depth: np.ndarray, name: str, fix: str) -> None:
+    """Check that depth may be in metres.
+
+    Args:
+        depth: float32 of any shape, 0 for no reading.
+        name: Name of the depth in the message.
+        fix: What to do, the end of the message.
+
+    Raises:
+        ValueError: The median reading is above ``MAX_MEDIAN_DEPTH``.
+    """
+    readings = depth[depth > 0]
+    if len(readings) and float(np.median(readings)) > MAX_MEDIAN_DEPTH:
         raise ValueError(
-            f"Half of {whose} is farther than {middle:.0f} m: that is not metres. {fix}"
+            f"Half of {name} is farther than {np.median(readings):.0f} m: it is not in metres. "
+            f"{fix}"
         )

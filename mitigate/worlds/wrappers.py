@@ -1,4 +1,4 @@
-"""Corruptions inside gymnasium: a wrapper for RGB, depth and dictionary observations.
+"""A gymnasium wrapper that corrupts RGB, depth and dictionary observations.
 
 Needs the extra ``gymnasium``.
 """
@@ -32,32 +32,37 @@ from mitigate.corruptions.schedule import drawn, names_of
 
 
 class CorruptObservation(gymnasium.ObservationWrapper):
-    """Corrupts the frames of an environment as a schedule says, by (seed, episode, frame).
+    """Corrupt the frames of an environment by a schedule, keyed by (seed, episode, frame).
 
     The observation is an RGB frame (``Box`` uint8 [H, W, 3] or [V, H, W, 3]), a depth frame
-    (``Box`` float32 [H, W], [H, W, 1] or [V, H, W, 1]), or a ``Dict`` that holds one or both.
-    Spaces, dtypes, order and all other entries stay as they are. Wrap before frames are stacked,
-    transposed or made float, and wrap each environment of a vector environment by itself.
+    (``Box`` float32 [H, W], [H, W, 1] or [V, H, W, 1]), or a ``Dict`` that contains one or both.
+    Spaces, dtypes, order and all other entries do not change. Wrap before frames are stacked,
+    transposed or converted to float, and wrap each environment of a vector environment separately.
 
-    Episodes are named by the seed of ``reset(seed=n)`` and the resets since then: "n-0", "n-1",
-    ...; "unseeded-0" and so on before the first seed. ``frame`` counts the steps from the reset. So
-    the pixels are a function of (schedule, seed, reset seed, resets, steps) and of nothing else. An
-    environment that resets itself, as inside ``gymnasium.wrappers.Autoreset``, has a reset in the
-    step that follows the end of an episode.
+    Episodes are named by the seed of ``reset(seed=n)`` and the number of resets since then: "n-0",
+    "n-1", ...; before the first seed "unseeded-0" and so on. ``frame`` is the number of steps since
+    the reset. The pixels are a function of (schedule, seed, reset seed, resets, steps) only. An
+    environment that resets itself, as in ``gymnasium.wrappers.Autoreset``, resets in the step after
+    the end of an episode.
 
     Args:
-        env: the environment.
-        schedule: which frame meets what, or the corruption that all meet.
-        seed: of every random draw of the corruptions.
-        rgb, depth: names of the two entries of a ``Dict``.
-        pose: name of an entry float [3] = (x, y, heading in radians, counter-clockwise), by which a
-            flare stays at its place in the world; None if there is none.
-        sensor: depth range and sentinel.
-        normalised: depth is in [0, 1] over the sensor's range instead of in metres.
+        env: The environment.
+        schedule: The schedule that draws a corruption per frame, or one corruption for all frames.
+        seed: Corruption seed.
+        rgb: Name of the RGB entry of a ``Dict``.
+        depth: Name of the depth entry of a ``Dict``.
+        pose: Name of an entry float [3] = (x, y, heading in radians, counter-clockwise), which
+            keeps a flare at its place in the world; None if there is none.
+        sensor: Depth range and value for no reading.
+        normalised: Whether depth is in [0, 1] over the sensor's range instead of in metres.
 
-    ``corruption`` and ``key`` are those of the last frame. Raises ValueError if the space holds no
-    such frames, if the schedule draws what the space does not hold, or if the sensor's range and
-    the space's bounds disagree.
+    Attributes:
+        corruption: Corruption of the last frame.
+        key: Key of the last frame.
+
+    Raises:
+        ValueError: The space has no such frames, the schedule draws a corruption of a modality that
+            the space lacks, or the range of the sensor does not fit the bounds of the space.
     """
 
     def __init__(
@@ -77,7 +82,10 @@ class CorruptObservation(gymnasium.ObservationWrapper):
         self.sensor = sensor or DepthSensor()
         self.corruption: Corruption | None = None
         self.key: Key | None = None
-        self._source, self._resets, self._frame, self._over = "unseeded", 0, 0, False
+        self._source = "unseeded"
+        self._resets = 0
+        self._frame = 0
+        self._over = False
         self._corrupt = corrupt_normalised if normalised else corrupt_observation
         space = env.observation_space
         self._whole = _modality(space) if isinstance(space, gymnasium.spaces.Box) else None
@@ -87,22 +95,26 @@ class CorruptObservation(gymnasium.ObservationWrapper):
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
     ) -> tuple[Any, dict[str, Any]]:
-        """Begin the next episode; a seed begins the count of episodes anew."""
+        """Start the next episode; a seed restarts the count of episodes."""
         if seed is not None:
-            self._source, self._resets = str(seed), 0
+            self._source = str(seed)
+            self._resets = 0
         self._begin()
         return super().reset(seed=seed, options=options)
 
     def step(self, action: Any) -> tuple[Any, Any, bool, bool, dict[str, Any]]:
-        """Step the environment; the observation is that of the next frame.
+        """Step the environment and corrupt the observation.
 
-        After the end of an episode it is the first of the next one: the environment reset itself.
-        Raises gymnasium's ResetNeeded before the first reset.
+        A step after the end of an episode counts as a reset, because the environment reset itself.
+
+        Raises:
+            gymnasium.error.ResetNeeded: ``reset`` was never called.
         """
         observation, reward, terminated, truncated, info = self.env.step(action)
         if self._resets == 0:
             raise gymnasium.error.ResetNeeded(
-                "Call reset() before step(): every random draw is keyed by the episode it begins."
+                "reset() must be called before step(): it names the episode, which keys every "
+                "random draw."
             )
         if self._over:
             self._begin()
@@ -114,10 +126,11 @@ class CorruptObservation(gymnasium.ObservationWrapper):
     def _begin(self) -> None:
         self._episode = f"{self._source}-{self._resets}"
         self._resets += 1
-        self._frame, self._over = 0, False
+        self._frame = 0
+        self._over = False
 
     def observation(self, observation: Any) -> Any:
-        """The corrupted observation of the current frame; the given one is not modified."""
+        """Return the corrupted observation of the current frame; the argument is not modified."""
         self.corruption, self.key = drawn(self.schedule, self.seed, self._episode, self._frame)
         if self._whole is not None:
             frames = {self._whole: observation}
@@ -137,54 +150,55 @@ class CorruptObservation(gymnasium.ObservationWrapper):
 
     def _check(self, space: gymnasium.Space, normalised: bool) -> None:
         if self._whole is not None:
-            found: dict[str, Any] = {self._whole: space}
+            boxes: dict[str, Any] = {self._whole: space}
         elif isinstance(space, gymnasium.spaces.Dict):
-            found = {
+            boxes = {
                 name: space[self._entries[name]]
                 for name in (RGB, DEPTH)
                 if self._entries[name] in space.spaces
             }
-            for name, box in found.items():
+            for name, box in boxes.items():
                 if not isinstance(box, gymnasium.spaces.Box) or _modality(box) != name:
                     raise ValueError(_explain(name, self._entries[name], box))
             if POSE in self._entries and self._entries[POSE] not in space.spaces:
                 raise ValueError(
-                    f"pose={self._entries[POSE]!r} is no entry of the observation (it has "
-                    f"{', '.join(space.spaces)}). Name the one that holds x, y and heading, or "
-                    "pass pose=None: the flare then keeps its place in the picture."
+                    f"pose must be an entry of the observation ({', '.join(space.spaces)}), got "
+                    f"{self._entries[POSE]!r}. Name the entry with x, y and heading, or pass "
+                    "pose=None, which keeps the flare at its place in the image."
                 )
         else:
-            found = {}
-        if not found:
+            boxes = {}
+        if not boxes:
             raise ValueError(
-                f"The observation space {space} holds no frames: it must be a Box of uint8 "
-                "[H, W, 3] RGB or of float32 depth, or a Dict with such entries. Name them "
-                f"with rgb= and depth= if they are not called {self._entries[RGB]!r} and "
-                f"{self._entries[DEPTH]!r}, and wrap before frames are transposed or made float."
+                "The observation space must be a Box of uint8 [H, W, 3] RGB or of float32 depth, "
+                f"or a Dict with such entries, got {space}. Name the entries with rgb= and depth= "
+                f"if they are not {self._entries[RGB]!r} and {self._entries[DEPTH]!r}, and wrap "
+                "before frames are transposed or converted to float."
             )
         for name in names_of(self.schedule):
-            if modality(name) not in found:
+            if modality(name) not in boxes:
                 raise ValueError(
                     f"The schedule draws {name!r}, which corrupts {modality(name)}, but the "
-                    f"environment gives only {', '.join(found)}. Give the schedule names of "
-                    f"{', '.join(found)} corruptions, such as names=mitigate.corruptions."
-                    f"{'RGB' if RGB in found else 'DEPTH'}."
+                    f"environment has only {', '.join(boxes)}. Use only {', '.join(boxes)} "
+                    "corruptions, such as names=mitigate.corruptions."
+                    f"{'RGB' if RGB in boxes else 'DEPTH'}."
                 )
-        if DEPTH in found:
-            self._check_range(found[DEPTH], normalised)
+        if DEPTH in boxes:
+            self._check_range(boxes[DEPTH], normalised)
 
     def _check_range(self, box: gymnasium.spaces.Box, normalised: bool) -> None:
         check_sensor(self.sensor)
-        most, written = float(np.max(box.high)), max(self.sensor.z_max, self.sensor.missing)
-        if normalised and most > 1.0:
+        high = float(np.max(box.high))
+        largest = max(self.sensor.z_max, self.sensor.missing)
+        if normalised and high > 1.0:
             raise ValueError(
-                f"The depth space reaches {most:g}, but normalised depth ends at 1. Leave "
-                "normalised out for depth in metres."
+                f"The depth space must end at 1 if normalised=True, got {high:g}. Leave normalised "
+                "out for depth in metres."
             )
-        if not normalised and written > most:
+        if not normalised and largest > high:
             raise ValueError(
-                f"{self.sensor} writes depth up to {written:g} metres, but the depth space ends at "
-                f"{most:g}. Pass sensor=DepthSensor(z_max={most:g}), or normalised=True if depth "
+                f"{self.sensor} writes depth up to {largest:g} metres, but the depth space ends at "
+                f"{high:g}. Pass sensor=DepthSensor(z_max={high:g}), or normalised=True if depth "
                 "is in 0-1."
             )
 
@@ -200,10 +214,10 @@ def _modality(box: gymnasium.spaces.Box) -> str | None:
 
 
 def _explain(name: str, entry: str, box: gymnasium.Space) -> str:
-    wanted = "uint8 [H, W, 3] or [V, H, W, 3]"
+    expected = "uint8 [H, W, 3] or [V, H, W, 3]"
     if name == DEPTH:
-        wanted = "float32 [H, W], [H, W, 1] or [V, H, W, 1] in metres or normalised"
+        expected = "float32 [H, W], [H, W, 1] or [V, H, W, 1] in metres or normalised"
     return (
-        f"The entry {entry!r} must be a Box of {wanted}, but it is {box}. Wrap before frames are "
-        "transposed, stacked or made float."
+        f"The entry {entry!r} must be a Box of {expected}, got {box}. Wrap before frames are "
+        "transposed, stacked or converted to float."
     )

@@ -54,7 +54,7 @@ def test_add_cost_rejects_a_damaged_account(tmp_path, text):
 def test_habitat_world_rejects_a_damaged_navmesh(tmp_path, text):
     (tmp_path / "navmesh.json").write_text(text)
     with pytest.raises(ValueError, match=r"navmesh\.json"):
-        habitat_world._navmesh(None, tmp_path / "scenes")
+        habitat_world._navmesh_settings(None, tmp_path / "scenes")
 
 
 @pytest.mark.parametrize("line", [b"null", b"[]", b'{"job": 1}', b"{", b"\xff"])

@@ -1,4 +1,4 @@
-"""``mitigate replay``: what agents answer along a drive, and what a corruption changes of it."""
+"""``mitigate replay``: decisions of agents on a drive, and how corruptions change them."""
 
 from __future__ import annotations
 
@@ -27,24 +27,25 @@ from mitigate.replay.export_drive import write_frames
 from mitigate.replay.walk import Answers, _share, compare, walk
 from mitigate.worlds.apartments.tasks import load_episodes
 from mitigate.worlds.recorded import Recording, open_recording
-from mitigate.worlds.recorded.recording import NONE, answered
+from mitigate.worlds.recorded.recording import NO_ACTION, movements
 
 T = 30
 
 
 class ByBrightness:
-    """Goes on in bright frames and turns in dark ones; remembers what it was told."""
+    """Moves forward in bright frames and turns in dark ones; remembers what it was informed of."""
 
     views = 1
 
     def reset(self, instruction):
-        self.told, self.heard = instruction, []
+        self.instruction = instruction
+        self.movements = []
 
     def act(self, observation):
         return FORWARD if observation[RGB].mean() > 100 else RIGHT
 
     def taken(self, action, metres, radians):
-        self.heard.append((action, round(metres, 3), round(radians, 3)))
+        self.movements.append((action, round(metres, 3), round(radians, 3)))
 
 
 def drive(name="lab", driven=None) -> Recording:
@@ -54,50 +55,52 @@ def drive(name="lab", driven=None) -> Recording:
         DEPTH: rng.uniform(1, 5, (T, 16, 16, 1)).astype(np.float32),
     }
     poses = np.stack([np.zeros(T), 0.25 * np.arange(T), np.zeros(T)], 1)
-    done = None if driven is None else answered(np.array(driven))
-    return Recording(name, "go on", frames, np.arange(T) * 1.0, poses, done)
+    movement = None if driven is None else movements(np.array(driven))
+    return Recording(name, "go on", frames, np.arange(T) * 1.0, poses, movement)
 
 
-def test_an_agent_is_shown_every_step_and_told_what_the_driver_did():
-    agent, driven = ByBrightness(), [FORWARD] * (T - 1) + [STOP]
-    found = walk(agent, drive(driven=driven), CLEAN, 0)
-    assert agent.told == "go on"
-    assert found.actions.tolist() == [FORWARD] * T
-    assert agent.heard == [(FORWARD, 0.25, 0.0)] * (T - 1) + [(STOP, 0.0, 0.0)]
+def test_walk_informs_the_agent_of_the_driver():
+    agent = ByBrightness()
+    driven = [FORWARD] * (T - 1) + [STOP]
+    decisions = walk(agent, drive(driven=driven), CLEAN, 0)
+    assert agent.instruction == "go on"
+    assert decisions.actions.tolist() == [FORWARD] * T
+    assert agent.movements == [(FORWARD, 0.25, 0.0)] * (T - 1) + [(STOP, 0.0, 0.0)]
 
 
-def test_a_restorer_goes_over_the_frames_before_the_agent_does():
-    dark, looks = Corruption("low_light", 1.0), []
+def test_walk_applies_guards_before_the_agent():
+    dark = Corruption("low_light", 1.0)
+    observations = []
 
-    class Brightened(Guard):
+    class Brighten(Guard):
         def observe(self, observation):
-            looks.append(observation)
+            observations.append(observation)
             return {**observation, RGB: np.full_like(observation[RGB], 200)}
 
     assert set(walk(ByBrightness(), drive(), dark, 0).actions.tolist()) == {RIGHT}
-    found = walk(ByBrightness(), drive(), dark, 0, keep=[2], guards=Guards([Brightened()]))
-    assert found.actions.tolist() == [FORWARD] * T and len(looks) == T
-    assert (found.seen[2][RGB] == 200).all()
+    restored = walk(ByBrightness(), drive(), dark, 0, keep=[2], guards=Guards([Brighten()]))
+    assert restored.actions.tolist() == [FORWARD] * T and len(observations) == T
+    assert (restored.seen[2][RGB] == 200).all()
 
 
-def test_the_table_says_which_restorer_the_frames_went_through():
-    made = drive()
-    answers = {made.name: walk(ByBrightness(), made, CLEAN, 0)}
-    found = {"mine": {"clean": compare([made], answers, answers)}}
+def test_table_names_the_restorer():
+    recording = drive()
+    decisions = {recording.name: walk(ByBrightness(), recording, CLEAN, 0)}
+    changes = {"mine": {"clean": compare([recording], decisions, decisions)}}
     restorer = Restorer(sensors=[RGB], width=4)
-    said = f"Frames of rgb went through the restorer `{restorer.hash}`."
-    assert said in report.table(found, 0.6, T, 1, Guards([restorer]))
-    assert "restorer" not in report.table(found, 0.6, T, 1)
+    sentence = f"Frames of rgb went through the restorer `{restorer.hash}`."
+    assert sentence in report.table(changes, 0.6, T, 1, Guards([restorer]))
+    assert "restorer" not in report.table(changes, 0.6, T, 1)
 
 
-def test_where_nobody_knows_who_drove_all_walks_are_told_the_clean_answers():
+def test_walk_without_a_driver_informs_of_clean_decisions():
     agent, clean = ByBrightness(), walk(ByBrightness(), drive(), CLEAN, 0)
     dark = walk(agent, drive(), Corruption("low_light", 0.9), 0, clean=clean)
     assert (dark.actions == RIGHT).mean() > 0.9
-    assert agent.heard == [(FORWARD, 0.25, 0.0)] * T
+    assert agent.movements == [(FORWARD, 0.25, 0.0)] * T
 
 
-def test_a_corruption_changes_the_answers_and_is_the_same_again():
+def test_walk_repeats_the_same_corruption():
     dark = Corruption("low_light", 0.9)
     first, second = (walk(ByBrightness(), drive(), dark, 3, keep=[4]) for _ in range(2))
     assert (first.actions == RIGHT).mean() > 0.9
@@ -105,17 +108,17 @@ def test_a_corruption_changes_the_answers_and_is_the_same_again():
     assert first.seen[4][RGB].mean() < drive().frames[RGB][4].mean()
 
 
-def test_an_agent_that_reads_no_depth_keeps_everything_under_depth_corruption():
+def test_walk_of_an_rgb_agent_ignores_depth_corruptions():
     clean = walk(ByBrightness(), drive(), CLEAN, 0)
     holes = walk(ByBrightness(), drive(), Corruption("missing_data", 0.9), 0)
     assert np.array_equal(clean.actions, holes.actions)
 
 
-def test_a_drive_without_what_the_agent_reads_says_so():
-    half = drive()
-    half = Recording("lab", "go", {DEPTH: half.frames[DEPTH]}, half.times, half.poses, None)
-    with pytest.raises(ValueError, match="lab does not fit ByBrightness"):
-        walk(ByBrightness(), half, CLEAN, 0)
+def test_walk_rejects_a_drive_without_a_sensor():
+    full = drive()
+    depth = Recording("lab", "go", {DEPTH: full.frames[DEPTH]}, full.times, full.poses, None)
+    with pytest.raises(ValueError, match="lab lacks an input of ByBrightness"):
+        walk(ByBrightness(), depth, CLEAN, 0)
 
 
 def answers(actions, aims=None) -> Answers:
@@ -123,19 +126,19 @@ def answers(actions, aims=None) -> Answers:
     return Answers(np.array(actions), aims)
 
 
-def test_an_interval_holds_its_own_value_however_long_the_drives_are():
-    """Short drives are runs of few steps, which must not count as much as whole ones."""
-    walks = [np.zeros(14, bool)] * 40 + [np.ones(1, bool)] * 20
-    found = _share(walks)
-    assert found.value == pytest.approx(20 / 580)
-    assert found.low < found.value < found.high < 0.1
+def test_share_weights_blocks_by_length():
+    """Short drives are blocks of few steps, which must not weigh as much as full blocks."""
+    drives = [np.zeros(14, bool)] * 40 + [np.ones(1, bool)] * 20
+    estimate = _share(drives)
+    assert estimate.value == pytest.approx(20 / 580)
+    assert estimate.low < estimate.value < estimate.high < 0.1
 
 
-def test_changes_are_counted_against_clean_answers_and_against_the_driver():
+def test_compare_counts_changes_and_agreement():
     drives = [drive("a", [FORWARD] * T), drive("b", [LEFT] * T)]
     clean = {"a": answers([FORWARD] * T), "b": answers([FORWARD] * (T - 1) + [STOP])}
-    found = {"a": answers([FORWARD] * 15 + [STOP] * 15), "b": answers([FORWARD] * T)}
-    changes = compare(drives, clean, found)
+    corrupted = {"a": answers([FORWARD] * 15 + [STOP] * 15), "b": answers([FORWARD] * T)}
+    changes = compare(drives, clean, corrupted)
     assert changes.changed.value == pytest.approx(16 / 60)
     assert changes.changed.low < 16 / 60 < changes.changed.high
     assert (changes.stops, changes.missed, changes.steps) == (15, 1, 60)
@@ -143,37 +146,38 @@ def test_changes_are_counted_against_clean_answers_and_against_the_driver():
     assert changes.aim is None
 
 
-def test_steps_that_no_action_names_count_for_no_agreement():
-    back = drive("a", [NONE] * 10 + [FORWARD] * 20)
+def test_compare_ignores_steps_without_an_action():
+    back = drive("a", [NO_ACTION] * 10 + [FORWARD] * 20)
     same = {"a": answers([FORWARD] * T)}
     assert compare([back], same, same).agreement.value == 1.0
 
 
-def test_a_short_drive_has_an_honest_interval():
+def test_compare_gives_a_short_drive_a_wide_interval():
     short = compare([drive()], {"lab": answers([1] * 10)}, {"lab": answers([1, 2] * 5)})
     assert short.changed.low < 0.2 and short.changed.high > 0.8
 
 
-def test_the_aim_is_compared_where_both_have_one():
+def test_compare_ignores_missing_aims():
     here, there = np.zeros((T, 2)), np.tile([3.0, 4.0], (T, 1))
     here[:5] = np.nan
-    of = compare([drive()], {"lab": answers([1] * T, here)}, {"lab": answers([1] * T, there)})
-    assert of.aim.value == 1.0
+    changes = compare([drive()], {"lab": answers([1] * T, here)}, {"lab": answers([1] * T, there)})
+    assert changes.aim.value == 1.0
 
 
-def test_an_odometer_counts_what_was_done_in_place_of_its_answer():
-    told, own = Odometer(), Odometer()
+def test_odometer_replaces_an_action_by_the_movement():
+    corrected = Odometer()
+    direct = Odometer()
     turn = math.radians(15)
     for answer, done, metres, radians in (
         (FORWARD, LEFT, 0.0, turn), (RIGHT, FORWARD, 0.25, 0.0), (LEFT, LEFT, 0.0, turn),
     ):  # fmt: skip
-        told.add(answer)
-        told.correct(done, metres, radians)
-        own.add(done)
-    assert np.allclose(told.moves(), own.moves(), atol=1e-6)
+        corrected.add(answer)
+        corrected.correct(done, metres, radians)
+        direct.add(done)
+    assert np.allclose(corrected.moves(), direct.moves(), atol=1e-6)
 
 
-def test_an_odometer_counts_an_arc_as_it_was():
+def test_odometer_measures_an_arc():
     odometer = Odometer()
     for _ in range(4):
         odometer.add(LEFT)
@@ -184,30 +188,31 @@ def test_an_odometer_counts_an_arc_as_it_was():
 
 @pytest.fixture
 def mitigate(monkeypatch, capsys):
-    """Runs ``mitigate`` with some words; returns its status and what it printed and complained."""
+    """Run ``mitigate`` with arguments; returns its exit status, stdout and stderr."""
 
     def run(*words: str) -> tuple[int, str, str]:
-        monkeypatch.setattr(sys, "argv", sys.argv)  # which it replaces
+        monkeypatch.setattr(sys, "argv", sys.argv)  # restored afterwards: the command replaces it
         with pytest.raises(SystemExit) as ended:
             cli.main(words)
-        said, status = capsys.readouterr(), ended.value.code or 0
-        if isinstance(status, str):  # what the interpreter prints at the end
-            return 1, said.out, said.err + status
-        return status, said.out, said.err
+        output = capsys.readouterr()
+        status = ended.value.code or 0
+        if isinstance(status, str):  # a message, which the interpreter prints at exit
+            return 1, output.out, output.err + status
+        return status, output.out, output.err
 
     return run
 
 
-def test_the_command_writes_decisions_tables_and_pictures(tmp_path, mitigate):
+def test_replay_writes_decisions_tables_and_pictures(tmp_path, mitigate):
     drives = str(tmp_path / "drives")
-    status, _, wrong = mitigate("export_drive", drives, "episodes=1", "form=mcap", "env.size=64")
-    assert status == 0, wrong
+    status, _, errors = mitigate("export_drive", drives, "episodes=1", "form=mcap", "env.size=64")
+    assert status == 0, errors
     (bag,) = [path for path in (tmp_path / "drives").iterdir() if path.is_dir()]
     out = tmp_path / "out"
     options = ("conditions=[foreign_object,missing_data]", f"out={out}")
     agents = "agents=[checkpoints/recurrent/base,checkpoints/recurrent/teacher]"
-    status, printed, wrong = mitigate("replay", str(bag), agents, *options)
-    assert status == 0, wrong
+    status, printed, errors = mitigate("replay", str(bag), agents, *options)
+    assert status == 0, errors
     lines = [json.loads(line) for line in (out / "decisions.jsonl").read_text().splitlines()]
     steps = max(line["step"] for line in lines) + 1
     assert len(lines) == 2 * 3 * steps
@@ -215,10 +220,10 @@ def test_the_command_writes_decisions_tables_and_pictures(tmp_path, mitigate):
     clean = [line for line in lines if line["condition"] == "clean"]
     assert all(line["action"] == line["clean"] for line in clean)
     filtered = ("conditions=[missing_data]", f"out={tmp_path}/filtered", agents.split(",")[0] + "]")
-    status, _, wrong = mitigate(
+    status, _, errors = mitigate(
         "replay", str(bag), *filtered, "restore=tests.guards.filters:median"
     )
-    assert status == 0, wrong
+    assert status == 0, errors
     table = (tmp_path / "filtered/table.md").read_text()
     assert "Frames of rgb went through the restorer `" in table
     assert (out / "changes.png").is_file() and (out / "table.md").is_file()
@@ -226,17 +231,15 @@ def test_the_command_writes_decisions_tables_and_pictures(tmp_path, mitigate):
     assert "Foreign object" in printed
 
 
-def test_a_restorer_of_what_a_drive_does_not_show_is_refused_before_a_frame_is_read(
-    tmp_path, mitigate
-):
+def test_replay_rejects_an_unused_restorer_before_reading_frames(tmp_path, mitigate):
     colours = tmp_path / "lab/rgb"
     colours.mkdir(parents=True)
     for number in range(3):
         (colours / f"{number:06d}.png").write_bytes(b"not even a picture")
     Restorer(sensors=[DEPTH], depth_width=4).save(tmp_path / "mine")
     options = (f"restore={tmp_path}/mine", "agents=[checkpoints/recurrent/base]")
-    status, _, wrong = mitigate("replay", str(colours.parent), *options, f"out={tmp_path}/out")
-    assert status == 1 and "is for depth, but lab shows rgb: leave restore= out" in wrong
+    status, _, errors = mitigate("replay", str(colours.parent), *options, f"out={tmp_path}/out")
+    assert status == 1 and "is for depth, but lab shows rgb: leave restore= out" in errors
     assert not (tmp_path / "out").exists()
 
 
@@ -250,29 +253,27 @@ def test_replay_rejects_a_folder_of_another_command(tmp_path, mitigate, name):
 
 
 @pytest.mark.parametrize(
-    ("module", "options", "told"),
+    ("module", "options", "advice"),
     [
         (replay, ["agents=[a]", "seed=1"], "To run it again"),
-        (export_drive, ["episodes=1"], "To run it again, once what it wrote is deleted"),
+        (export_drive, ["episodes=1"], "To run it again, after deleting what it wrote"),
     ],
 )
-def test_one_that_is_stopped_says_the_whole_command_and_does_not_promise_to_go_on(
-    monkeypatch, mitigate, module, options, told
+def test_interrupted_command_prints_how_to_repeat_it(
+    monkeypatch, mitigate, module, options, advice
 ):
     def stopped(*_):
         raise KeyboardInterrupt
 
     monkeypatch.setattr(module, "run", stopped)
     name = module.__name__.rpartition(".")[2]
-    status, _, said = mitigate(name, "my drive", *options)
+    status, _, errors = mitigate(name, "my drive", *options)
     command = shlex.join(["mitigate", name, *options, "my drive"])
-    assert status == 130 and f"SIGINT: stopped. {told}: {command}\n" in said
+    assert status == 130 and f"SIGINT: stopped. {advice}: {command}\n" in errors
 
 
 @pytest.mark.parametrize("form", ["frames", "bag", "mcap"])
-def test_the_id_of_an_episode_is_no_path_and_a_drive_is_whole_or_not_there(
-    tmp_path, form, monkeypatch
-):
+def test_export_drive_makes_safe_paths_and_whole_drives(tmp_path, form, monkeypatch):
     options = [f"form={form}", "env.size=16", "episodes=2"]
     config = OmegaConf.to_object(load_config("export_drive", options))
     listed = [
@@ -286,15 +287,15 @@ def test_the_id_of_an_episode_is_no_path_and_a_drive_is_whole_or_not_there(
         with pytest.raises(OSError, match="No space left"):
             export_drive.run(config, out)
     assert [*out.iterdir()] == []
-    written = export_drive.run(config, out)
-    assert [path.stem for path in written] == ["é-0", "é-1"]
+    paths = export_drive.run(config, out)
+    assert [path.stem for path in paths] == ["é-0", "é-1"]
     assert [*tmp_path.iterdir()] == [tmp_path / "a"] and [*(tmp_path / "a").iterdir()] == [out]
-    found = [open_recording(path)[0] for path in written]
-    assert [drive.instruction for drive in found] == [e.instruction.text for e in listed]
-    with pytest.raises(ValueError, match="is there already: name another folder"):
+    drives = [open_recording(path)[0] for path in paths]
+    assert [drive.instruction for drive in drives] == [e.instruction.text for e in listed]
+    with pytest.raises(ValueError, match="already exists. Name another folder"):
         export_drive.run(config, out)
     listed[:] = [replace(listed[0], episode_id=name) for name in ("a/b", "a.b")]
-    with pytest.raises(ValueError, match="Two episodes would be the drive .*'a/b' and 'a.b'"):
+    with pytest.raises(ValueError, match="Episodes 'a/b' and 'a.b' have the same path"):
         export_drive.run(config, tmp_path / "other")
 
 
@@ -311,57 +312,58 @@ def lab(tmp_path):
     return str(path)
 
 
-def test_what_is_in_a_folder_stays_there_but_what_a_replay_wrote(tmp_path, lab, mitigate):
+def test_replay_keeps_other_files_of_its_folder(tmp_path, lab, mitigate):
     out = tmp_path / "out"
     out.mkdir()
     (out / "mine.png").write_text("a picture of mine")
     options = ("agents=[checkpoints/recurrent/base]", "conditions=[flare]", f"out={out}")
     for _ in range(2):
-        status, _, wrong = mitigate("replay", lab, *options)
-        assert status == 0, wrong
+        status, _, errors = mitigate("replay", lab, *options)
+        assert status == 0, errors
         assert (out / "mine.png").read_text() == "a picture of mine"
         (out / "recurrent-flare.png").write_text("of the run before")
-    status, _, wrong = mitigate("replay", lab, *options)
-    kept = out / "recurrent-flare.png"
-    assert status == 0 and (not kept.exists() or kept.read_bytes()[1:4] == b"PNG"), wrong
+    status, _, errors = mitigate("replay", lab, *options)
+    picture = out / "recurrent-flare.png"
+    assert status == 0 and (not picture.exists() or picture.read_bytes()[1:4] == b"PNG"), errors
     assert not (out / ".lock").exists()
 
 
-def test_a_folder_that_is_none_or_in_use_is_refused(tmp_path, lab, mitigate):
+def test_replay_rejects_a_file_or_a_folder_in_use(tmp_path, lab, mitigate):
     out = tmp_path / "out"
     options = ("agents=[checkpoints/recurrent/base]", "conditions=[flare]", f"out={out}")
     out.write_text("a file")
-    status, printed, wrong = mitigate("replay", lab, *options)
-    assert status == 1 and "out is no folder" in wrong and "read lab" not in printed + wrong
+    status, printed, errors = mitigate("replay", lab, *options)
+    assert status == 1 and "out must be a folder" in errors and "read lab" not in printed + errors
     out.unlink()
     out.mkdir()
-    for text, words in (("[1]", "is not what a replay writes"), ("{", "is cut short or damaged")):
+    for text, words in (("[1]", "was not written by a replay"), ("{", "is cut short or damaged")):
         (out / "replay.json").write_text(text)
-        status, _, wrong = mitigate("replay", lab, *options)
-        assert status == 1 and words in wrong and "Name another folder (out=...)" in wrong
+        status, _, errors = mitigate("replay", lab, *options)
+        assert status == 1 and words in errors and "Name another folder (out=...)" in errors
     (out / "replay.json").unlink()
     with FolderLock(out):
-        status, _, wrong = mitigate("replay", lab, *options)
-    assert status == 1 and "is in use" in wrong
+        status, _, errors = mitigate("replay", lab, *options)
+    assert status == 1 and "is in use" in errors
 
 
-def test_a_picture_that_cannot_be_written_is_no_picture_and_is_told(tmp_path):
-    made = drive()
-    clean = walk(ByBrightness(), made, CLEAN, 0)
-    dark = walk(ByBrightness(), made, Corruption("low_light", 0.9), 0, keep=[4])
+def test_report_raises_if_a_picture_cannot_be_written(tmp_path):
+    recording = drive()
+    clean = walk(ByBrightness(), recording, CLEAN, 0)
+    dark = walk(ByBrightness(), recording, Corruption("low_light", 0.9), 0, keep=[4])
     (tmp_path / "a.png").mkdir()
     with pytest.raises(OSError, match="a.png"):
-        report.picture(made, Corruption("low_light", 0.9), clean, dark, tmp_path / "a.png")
-    found = {"a|b$\\frac{$": {"low_light": compare([made], {"lab": clean}, {"lab": dark})}}
+        report.picture(recording, Corruption("low_light", 0.9), clean, dark, tmp_path / "a.png")
+    changes = {"a|b$\\frac{$": {"low_light": compare([recording], {"lab": clean}, {"lab": dark})}}
     with pytest.raises(OSError, match="a.png"):
-        report.heatmap(found, 0.6, tmp_path / "a.png")
+        report.heatmap(changes, 0.6, tmp_path / "a.png")
     assert [path.name for path in tmp_path.iterdir()] == ["a.png"]
-    assert "| a\\|b$" in report.table(found, 0.6, T, 1)
-    assert report.heatmap(found, 0.6, tmp_path / "b.png").is_file()  # a name is no formula
+    assert "| a\\|b$" in report.table(changes, 0.6, T, 1)
+    # Matplotlib must not read the name as a formula
+    assert report.heatmap(changes, 0.6, tmp_path / "b.png").is_file()
 
 
 @pytest.mark.parametrize(
-    ("options", "says"),
+    ("options", "message"),
     [
         ([], "FOLDER_OR_BAG"),
         (["none"], "no recording"),
@@ -372,7 +374,7 @@ def test_a_picture_that_cannot_be_written_is_no_picture_and_is_told(tmp_path):
         (["tests", "colour=red"], "colour"),
     ],
 )
-def test_a_users_mistake_is_one_paragraph(options, says, mitigate):
-    status, _, wrong = mitigate("replay", *(options or ["seed=1"]))
-    assert status != 0 and "Traceback" not in wrong
-    assert says in wrong
+def test_replay_explains_a_mistake_in_one_paragraph(options, message, mitigate):
+    status, _, errors = mitigate("replay", *(options or ["seed=1"]))
+    assert status != 0 and "Traceback" not in errors
+    assert message in errors

@@ -112,7 +112,7 @@ def test_a_failed_write_leaves_the_old_file_alone(tmp_path):
     path = write_json(tmp_path / "a.json", {"episodes": [R2R]})
     before = path.read_bytes()
     bad = [dataclasses.replace(e, geodesic_distance=float("nan")) for e in read_episodes(path)]
-    with pytest.raises(ValueError, match="episode 7 holds what JSON cannot"):
+    with pytest.raises(ValueError, match="episode 7 has a value that JSON cannot"):
         write_episodes(path, bad)
     assert path.read_bytes() == before
     assert [p.name for p in tmp_path.iterdir()] == ["a.json"]
@@ -171,21 +171,24 @@ def test_a_missing_key_is_named_with_file_and_episode(tmp_path, key):
 @pytest.mark.parametrize(
     ("changes", "message"),
     [
-        ({"start_position": [1, 2]}, "wrong 'start_position': 3 finite numbers"),
-        ({"start_rotation": [0, 0, 0, "w"]}, "wrong 'start_rotation': 4 finite numbers"),
+        ({"start_position": [1, 2]}, "invalid 'start_position': it must be 3 finite numbers"),
+        (
+            {"start_rotation": [0, 0, 0, "w"]},
+            "invalid 'start_rotation': it must be 4 finite numbers",
+        ),
         ({"start_rotation": [0.8, 0, 0.6, 0]}, r"\[0.8, 0.0, 0.6, 0.0\] \(is it \[w, x, y, z\]"),
         ({"start_rotation": [0, 0, 0, 0]}, "unit quaternion"),
         ({"start_rotation": [0, 0.9, 0, 0.9]}, "unit quaternion"),
         ({"start_rotation": [0.2, 0, 0, 0.98]}, "about the vertical"),
         ({"reference_path": []}, "has an empty 'reference_path'"),
-        ({"reference_path": [[0, 0, None]]}, "wrong 'reference_path'"),
+        ({"reference_path": [[0, 0, None]]}, "invalid 'reference_path'"),
         ({"goals": []}, "has an empty 'goals'"),
         ({"goals": [{"radius": 3.0}]}, r"goals\[0\], lacks the key 'position'"),
         ({"instruction": {}}, "instruction, lacks the key 'instruction_text'"),
-        ({"instruction": "go"}, "wrong 'instruction': 'go'"),
-        ({"scene_id": 5}, "wrong 'scene_id': 5"),
-        ({"info": {"geodesic_distance": "far"}}, "info, has a wrong 'geodesic_distance'"),
-        ({"info": {"geodesic_distance": -1.5}}, "metres from 0 on are needed, not -1.5"),
+        ({"instruction": "go"}, "invalid 'instruction': 'go'"),
+        ({"scene_id": 5}, "invalid 'scene_id': 5"),
+        ({"info": {"geodesic_distance": "far"}}, "info, has an invalid 'geodesic_distance'"),
+        ({"info": {"geodesic_distance": -1.5}}, "it must be metres >= 0, got -1.5"),
     ],
 )
 def test_a_wrong_value_is_named(tmp_path, changes, message):
@@ -219,7 +222,7 @@ def test_broken_files_are_refused(tmp_path):
 @pytest.mark.parametrize("held", [None, {}, "none", 3])
 def test_episodes_that_are_no_list_are_refused(tmp_path, held):
     path = write_json(tmp_path / "a.json", {"episodes": held})
-    with pytest.raises(ValueError, match=r"a\.json: 'episodes' is .*, not a list"):
+    with pytest.raises(ValueError, match=r"a\.json: 'episodes' must be a list, got"):
         list(read_episodes(path))
 
 
@@ -310,7 +313,7 @@ def test_of_an_episode_that_is_a_seed_an_id_and_an_instruction_will_do(tmp_path)
     (one,) = read_episodes(write_json(tmp_path / "least.json", {"episodes": [least]}))
     assert (one.episode_id, one.info, one.instruction.text) == ("a", {"seed": 7}, "Go.")
     wrong = {"episodes": [{**least, "info": {"seed": "abc"}}]}
-    with pytest.raises(ValueError, match="episode 0 .* has a wrong 'seed' in info"):
+    with pytest.raises(ValueError, match="episode 0 .* has an invalid 'seed' in info"):
         list(read_episodes(write_json(tmp_path / "wrong.json", wrong)))
     del least["info"]
     with pytest.raises(ValueError, match="lacks the key"):

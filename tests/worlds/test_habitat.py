@@ -76,11 +76,14 @@ def test_wrong_observations_are_explained(obs):
     hurt = Corruption("spatter", 0.5)
     small = {**obs, "rgb_60": obs["rgb_60"][:4]}
     for given, part in (
-        ({"rgb": obs["rgb"], "rgb_0": obs["rgb"]}, "'rgb' and 'rgb_0' look the same way"),
-        ({"rgb": obs["rgb"], "rgb_45": obs["rgb"]}, "'rgb_45' is not at a multiple of 30"),
-        ({"rgb_360": obs["rgb"]}, "'rgb_360' is not at a multiple"),
-        (small, "must be alike, but 'rgb' is uint8.*'rgb_60'"),
-        ({"depth": obs["depth"]}, r"holds no camera called rgb.*\(it holds depth\)"),
+        ({"rgb": obs["rgb"], "rgb_0": obs["rgb"]}, "'rgb' and 'rgb_0' face the same way"),
+        (
+            {"rgb": obs["rgb"], "rgb_45": obs["rgb"]},
+            "multiple of 30 degrees below 360, got 'rgb_45'",
+        ),
+        ({"rgb_360": obs["rgb"]}, "below 360, got 'rgb_360'"),
+        (small, "same dtype and shape, but 'rgb' is uint8.*'rgb_60'"),
+        ({"depth": obs["depth"]}, r"has no camera named rgb.*\(its entries are depth\)"),
         ({"rgb": obs["rgb"][None]}, "one instant of one environment"),
         ({"rgb": obs["rgb"] / np.float32(255)}, "RGB frames must be uint8"),
     ):

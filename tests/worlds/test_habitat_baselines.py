@@ -72,9 +72,15 @@ def test_the_observation_space_loses_the_key_alone():
 @pytest.mark.parametrize(
     ("entries", "parts"),
     [
-        (("rgb", "rgb_30", "compass"), ("camera called depth", "it holds rgb, rgb_30, compass")),
+        (
+            ("rgb", "rgb_30", "compass"),
+            ("camera named depth", "its entries are rgb, rgb_30, compass"),
+        ),
         (("rgb",), ("names=[motion_blur, low_light,", "foreign_object, black_out]")),
-        (("head_rgb", "head_depth"), ("it holds head_rgb, head_depth", "Rename the cameras")),
+        (
+            ("head_rgb", "head_depth"),
+            ("its entries are head_rgb, head_depth", "Rename the cameras"),
+        ),
     ],
     ids=str,
 )
@@ -86,7 +92,7 @@ def test_a_robot_without_a_camera_that_the_schedule_hurts_is_refused_at_once(ent
         lambda: transformer.transform_observation_space(Space(dict(batch))),
         lambda: transformer(batch),
     ):
-        with pytest.raises(ValueError, match="holds no camera") as error:
+        with pytest.raises(ValueError, match="has no camera") as error:
             call()
         assert all(part in str(error.value) for part in parts) and "\n" not in str(error.value)
     clean = habitat_baselines.CorruptObservation.from_config({"mode": "clean"})

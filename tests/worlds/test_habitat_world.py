@@ -42,9 +42,9 @@ def test_a_navmesh_is_the_named_one_or_lies_beside_the_scenes(tmp_path):
     "given, words",
     [
         ({"rule": "etpnaw"}, "no success rule 'etpnaw'. Did you mean etpnav"),
-        ({"rule": "objectnav"}, "view points, which this world does not read. Choose .*vln_ce"),
+        ({"rule": "objectnav"}, "view points, which this world does not have. Choose .*vln_ce"),
         ({"rule": "wmnav"}, "view points"),
-        ({"views": 4}, "12 views, or 1 ahead"),
+        ({"views": 4}, r"must be 12 \(panorama\) or 1"),
     ],
 )
 def test_what_it_cannot_do_is_refused_before_the_simulator_starts(given, words):
@@ -78,12 +78,12 @@ def test_a_scene_that_does_not_load_is_not_taken_for_the_one_before(tmp_path, mo
     library = type("habitat_sim", (), {"Simulator": Simulator, "NavMeshSettings": settings})
     monkeypatch.setattr(habitat_world, "_habitat_sim", lambda: library)
     monkeypatch.setattr(made, "_settings", str)
-    made._enter("a.glb")
+    made._load_scene("a.glb")
     monkeypatch.setattr(Simulator, "walkable", False)
-    with pytest.raises(ValueError, match=r"nothing to walk on in b\.glb"):
-        made._enter("b.glb")
+    with pytest.raises(ValueError, match=r"an empty navmesh for .*b\.glb"):
+        made._load_scene("b.glb")
     monkeypatch.setattr(Simulator, "walkable", True)
-    made._enter("a.glb")
+    made._load_scene("a.glb")
     assert made._sim.loaded == str(tmp_path / "a.glb")
 
 
@@ -107,7 +107,7 @@ def test_the_threshold_of_ndtw_is_the_metres_of_the_rule(rule, metres, monkeypat
 def test_after_stop_nothing_can_be_done(monkeypatch):
     made = begun("vln_ce", monkeypatch)
     made.step(STOP)
-    with pytest.raises(RuntimeError, match="over: reset first"):
+    with pytest.raises(RuntimeError, match="over. Call reset"):
         made.step(FORWARD)
     assert made.done and made.steps == 1
 

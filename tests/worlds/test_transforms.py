@@ -195,7 +195,7 @@ def test_frames_come_back_to_their_device():
 def test_wrong_use_is_explained():
     with pytest.raises(ValueError, match="put an EpisodeCounter"):
         TransformedEnv(Corridor(), CorruptObservation(HURT)).reset()
-    with pytest.raises(ValueError, match="worker counts from 0 to 1"):
+    with pytest.raises(ValueError, match="worker must be 0 to 1"):
         EpisodeCounter(worker=2, workers=2)
     with pytest.raises(RuntimeError, match="not in a replay buffer"):
         EpisodeCounter()(TensorDict({}, [2]))

@@ -118,7 +118,7 @@ def test_an_environment_that_resets_itself_begins_an_episode_as_a_reset_does():
 def test_a_step_before_the_first_reset_is_explained():
     room = Room(FRAME)
     room.time = 0
-    with pytest.raises(gymnasium.error.ResetNeeded, match=r"reset\(\) before step\(\)"):
+    with pytest.raises(gymnasium.error.ResetNeeded, match=r"called before step\(\)"):
         CorruptObservation(room, HURT_RGB).step(0)
     ordered = gymnasium.wrappers.OrderEnforcing(Room(FRAME))
     with pytest.raises(gymnasium.error.ResetNeeded, match="env.step"):  # the environment's own
@@ -168,20 +168,20 @@ def test_the_pose_keeps_a_flare_at_its_place_in_the_world():
     wanted = corrupt(clean["rgb"], "flare", 1.0, key=env.key, heading=heading)
     assert np.array_equal(seen["rgb"], wanted)
     assert not np.array_equal(wanted, corrupt(clean["rgb"], "flare", 1.0, key=env.key))
-    with pytest.raises(ValueError, match="pose='were' is no entry.*rgb, where"):
+    with pytest.raises(ValueError, match="pose must be an entry .*rgb, where.*'were'"):
         CorruptObservation(Room(space), Schedule.always("flare", 1.0), pose="were")
 
 
 @pytest.mark.parametrize(
     ("space", "options", "part"),
     [
-        (spaces.Box(0, 1, (24, 32, 3), np.float32), {}, "holds no frames"),
+        (spaces.Box(0, 1, (24, 32, 3), np.float32), {}, "must be a Box of uint8"),
         (spaces.Box(0, 255, (3, 24, 32), np.uint8), {}, "before frames are transposed"),
         (spaces.Dict({"rgb": METRES}), {}, "'rgb' must be a Box of uint8"),
-        (spaces.Dict({"image": FRAME}), {}, "Name them with rgb= and depth="),
-        (spaces.Discrete(3), {}, "holds no frames"),
-        (FRAME, {"names": DEPTH}, "corrupts depth, but the environment gives only rgb"),
-        (METRES, {"names": RGB}, "gives only depth.*mitigate.corruptions.DEPTH"),
+        (spaces.Dict({"image": FRAME}), {}, "Name the entries with rgb= and depth="),
+        (spaces.Discrete(3), {}, "must be a Box of uint8"),
+        (FRAME, {"names": DEPTH}, "corrupts depth, but the environment has only rgb"),
+        (METRES, {"names": RGB}, "has only depth.*mitigate.corruptions.DEPTH"),
         (spaces.Box(0, 5.0, (4, 4), np.float32), {"names": DEPTH}, r"DepthSensor\(z_max=5\)"),
     ],
     ids=str,
@@ -195,7 +195,7 @@ def test_wrong_spaces_are_explained(space, options, part):
 
 def test_metres_in_a_normalised_wrapper_are_refused():
     schedule = Schedule.always("multipath", 0.5)
-    with pytest.raises(ValueError, match="normalised depth ends at 1"):
+    with pytest.raises(ValueError, match="must end at 1 if normalised=True"):
         CorruptObservation(Room(METRES), schedule, normalised=True)
 
 

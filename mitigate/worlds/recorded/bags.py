@@ -199,9 +199,9 @@ class Bag:
                 unusable = hfov is not None and not _has_focal_length(message)
                 if kind not in lenses and not unusable:
                     lenses[kind] = read_lens(kind, message, self.path)
-        times = {name: _choose_clock(pairs) for name, pairs in stamps.items()}
-        timed = zip(times.pop(POSE), poses, strict=True)
-        return times, [(time, *pose) for time, pose in timed], lenses
+        seconds = {name: _choose_clock(pairs) for name, pairs in stamps.items()}
+        timed = zip(seconds.pop(POSE), poses, strict=True)
+        return seconds, [(time, *pose) for time, pose in timed], lenses
 
     def _lens_without_info(self, kind: str, hfov: float | None) -> Lens:
         if hfov is None:

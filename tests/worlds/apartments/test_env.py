@@ -155,10 +155,10 @@ def test_a_replay_buffer_of_clean_frames_gives_what_the_environment_gave(episode
 
 
 def test_wrong_use_is_explained(episodes):
-    with pytest.raises(ValueError, match="There is no episode in the list"):
+    with pytest.raises(ValueError, match="The list must contain at least one episode"):
         ApartmentsEnv([])
-    with pytest.raises(ValueError, match="worker counts from 0 to 1"):
+    with pytest.raises(ValueError, match="worker must be 0 to 1"):
         ApartmentsEnv(episodes, worker=2, workers=2)
     data = ApartmentsEnv(episodes, size=SIZE).reset().exclude("episode")
-    with pytest.raises(ValueError, match="finds no 'episode' in the data"):
+    with pytest.raises(ValueError, match="The data must have 'episode'"):
         CorruptObservation(HURT)(data)
