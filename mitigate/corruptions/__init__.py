@@ -1,4 +1,4 @@
-"""Corruptions: what can happen to a frame or an instruction, keyed and the same everywhere."""
+"""Corruptions of frames and instructions: pure functions of input, severity and key."""
 
 from mitigate.corruptions.depth_sensor import DepthSensor
 from mitigate.corruptions.example import example_depth, example_rgb

@@ -1,4 +1,4 @@
-"""Corrupt a folder of frames into another one: streaming, resumable, never half-written."""
+"""Corrupt the frames of a folder into another folder; resumable, files are written atomically."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from mitigate.core.observation import Z_MAX
 from mitigate.core.output import UnsafePathError, is_regular, lost, output_folder
 from mitigate.corruptions import frame_files
 from mitigate.corruptions.depth_sensor import DepthSensor
-from mitigate.corruptions.frame_files import MOST, RGB, Frame, Plan, make_plan, told
+from mitigate.corruptions.frame_files import MAX_COUNT, RGB, Frame, Plan, count_suffixes, make_plan
 from mitigate.corruptions.keying import Key
 from mitigate.corruptions.registry import known, version
 from mitigate.corruptions.suite import SUITE_VERSION, Corruption, check_name, corrupt
@@ -28,39 +28,36 @@ FORMATS = ("png", "same")
 
 @dataclass(frozen=True)
 class Settings:
-    """What is done to a folder. Raises ValueError for a value that is not allowed."""
+    """Options of the corruption of a folder; ValueError for an invalid value."""
 
     corruption: str
     severity: float
     seed: int = 0
-    episode: str = "folder"  # each folder is an episode, or "all" files are one
-    format: str = "png"  # what a JPEG becomes: PNG, or the "same" again
-    unit: float = UNITS["mm"]  # metres of one count of a 16-bit PNG
-    z_max: float = Z_MAX  # metres: the sensor's range, to which depth is clipped
-    missing: float = 0.0  # metres that a hole of missing data reads
+    episode: str = "folder"  # "folder": each folder is an episode; "all": one episode
+    format: str = "png"  # format of a corrupted JPEG: "png" or "same"
+    unit: float = UNITS["mm"]  # metres per count of a 16-bit PNG
+    z_max: float = Z_MAX  # metres, maximum that depth is clipped to
+    missing: float = 0.0  # metres, value of missing data
 
     def __post_init__(self) -> None:
         Corruption(self.corruption, self.severity)
         check_name(self.corruption, ("clean", *known("rgb", "depth")))
         if self.corruption == "clean":
-            raise ValueError("corruption=clean changes nothing: copy the folder instead.")
+            raise ValueError("corruption=clean changes nothing. Copy the folder instead.")
         choices = (("episode", self.episode, EPISODES), ("format", self.format, FORMATS))
         for name, value, allowed in choices:
             if value not in allowed:
-                raise ValueError(
-                    f"{name}={value} is not allowed: {name} is one of {', '.join(allowed)}."
-                )
+                raise ValueError(f"{name} must be one of {', '.join(allowed)}, got {value}.")
         if not 0.0 < self.unit < float("inf"):
             raise ValueError(
-                f"unit={self.unit} is not allowed: it is the metres of one count of a 16-bit PNG, "
-                "as mm, cm, m or a number above 0, such as 0.00025."
+                f"unit must be mm, cm, m or the metres per count of a 16-bit PNG above 0, such as "
+                f"0.00025, got {self.unit}."
             )
         if not self.missing >= 0.0:
             raise ValueError(
-                f"missing={self.missing:g} is not allowed: it is the metres that a hole of missing "
-                "data reads, 0 (no reading) or more."
+                f"missing must be 0 (no reading) or more metres, got {self.missing:g}."
             )
-        DepthSensor(z_max=self.z_max)  # raises ValueError for a range that is none
+        DepthSensor(z_max=self.z_max)  # checks z_max
 
     @property
     def sensor(self) -> DepthSensor:
@@ -68,23 +65,32 @@ class Settings:
 
 
 def run(source: Path | str, out: Path | str, settings: Settings) -> dict:
-    """Corrupt the frames of ``source`` (all folders in it) into the same tree in ``out``.
+    """Corrupt the frames of ``source`` and its folders into the same tree in ``out``.
 
-    Frames are numbered by name inside their episode, digits counting as numbers ("9" before
-    "10"); a bad file keeps its number. A file that is in ``out`` already is not written again.
-    Returns the summary, which is ``out/corrupt.json`` too: settings, counts and files left out.
+    Frames are numbered by name inside their episode, comparing digits as numbers ("9" before "10");
+    a damaged file keeps its number. A file that already is in ``out`` is not written again.
 
-    Raises FileNotFoundError if there is no folder or no frame, ValueError if one folder lies in the
-    other or if ``out`` was made with other settings or frames or by something else, OSError if it
-    cannot be written.
+    Args:
+        source: Folder with frames.
+        out: Folder of the results.
+        settings: The options.
+
+    Returns:
+        The summary, also written to ``out/corrupt.json``: settings, counts and files left out.
+
+    Raises:
+        FileNotFoundError: The folder does not exist or has no frame.
+        ValueError: One folder contains the other, or ``out`` was written with other settings or
+            frames, or by another program.
+        OSError: ``out`` cannot be written.
     """
     source, out = Path(source), Path(out)
     _check_folders(source, out)
-    wanted = Corruption(settings.corruption, settings.severity).modality
-    plan = make_plan(source, out, wanted, settings.episode)
+    modality = Corruption(settings.corruption, settings.severity).modality
+    plan = make_plan(source, out, modality, settings.episode)
     if not plan.frames:
-        raise FileNotFoundError(_nothing(source, wanted, settings, plan))
-    if any(frame.path.suffix.lower() == ".png" for frame in plan.frames) and wanted != RGB:
+        raise FileNotFoundError(_no_frames(source, modality, settings, plan))
+    if any(frame.path.suffix.lower() == ".png" for frame in plan.frames) and modality != RGB:
         _check_counts(settings)
     with output_folder(out, SUMMARY):
         return _corrupt_all(source, out, settings, plan)
@@ -94,18 +100,18 @@ def _corrupt_all(source: Path, out: Path, settings: Settings, plan: Plan) -> dic
     """Corrupt the frames of ``plan``; return the summary as :func:`run` does."""
     summary = _begin(out, settings, plan)
     outputs = {frame.path: _output(frame.path, settings.format) for frame in plan.frames}
-    given = set(outputs)
+    names = set(outputs)
     try:
         for frame in tqdm(plan.frames, desc=settings.corruption, unit="frame", disable=None):
             name, target = frame.path.as_posix(), outputs[frame.path]
             if name in plan.left_out:
                 continue
-            if target != frame.path and (target in given):
-                plan.left_out[name] = f"would become {target.name}, which is there: use format=same"
+            if target != frame.path and target in names:
+                plan.left_out[name] = f"would become {target.name}, which exists: use format=same"
             else:
                 _corrupt_frame(source, out, target, frame, settings, plan, summary)
-            given.add(target)
-    finally:  # so that an interrupted run need not compute its frames again
+            names.add(target)
+    finally:  # an interrupted run must not compute its frames again
         _write_summary(out, summary)
     missing = [
         out / outputs[frame.path]
@@ -128,11 +134,12 @@ def _corrupt_frame(
     plan: Plan,
     summary: dict,
 ) -> None:
-    """Write one frame unless ``out`` has it as this command writes it; record its checksum."""
-    name, checksums = target.as_posix(), summary["checksums"]
+    """Write a frame, unless ``out`` already has the same file, and record its checksum."""
+    name = target.as_posix()
+    checksums = summary["checksums"]
     files = (source / frame.path, out / target)
-    there = is_regular(out / target)
-    if there and name in checksums and checksums[name] == _checksum(*files):
+    exists = is_regular(out / target)
+    if exists and name in checksums and checksums[name] == _checksum(*files):
         summary["there"] += 1
         return
     key = Key(settings.seed, frame.episode, frame.number)
@@ -143,23 +150,22 @@ def _corrupt_frame(
         )
 
     try:
-        data = frame_files.corrupted(files[0], target.suffix, settings.unit, change)
-    except ValueError as error:  # LeftOutError, or a shape that the suite refuses
+        data = frame_files.corrupt_file(files[0], target.suffix, settings.unit, change)
+    except ValueError as error:  # LeftOutError, or a shape that the suite does not support
         plan.left_out[frame.path.as_posix()] = str(error)
         checksums.pop(name, None)
         return
-    if there and files[1].stat().st_size == len(data) and files[1].read_bytes() == data:
+    if exists and files[1].stat().st_size == len(data) and files[1].read_bytes() == data:
         summary["there"] += 1
     else:
         write_bytes(files[1], data)
         summary["written"] += 1
-        summary["replaced"] += [name] * there
+        summary["replaced"] += [name] * exists
     checksums[name] = _checksum(*files)
 
 
 def _checksum(read: Path, written: Path) -> str:
-    """Return one checksum of a frame as it was read and as it was written, "" if one of the files
-    cannot be read."""
+    """Return one checksum of the input and the output of a frame; "" if a file cannot be read."""
     try:
         return _short_hash(sha256(read) + sha256(written))
     except OSError:
@@ -167,17 +173,18 @@ def _checksum(read: Path, written: Path) -> str:
 
 
 def _output(path: Path, form: str) -> Path:
+    """Return the path of the result of a file."""
     jpeg = path.suffix.lower() in (".jpg", ".jpeg")
     return path.with_suffix(".png") if jpeg and form == "png" else path
 
 
-# ------------------------------------------------------------------------- the folder written
+# -------------------------------------------------------------------------- the output folder
 
 
 def _begin(out: Path, settings: Settings, plan: Plan) -> dict:
-    """Check what an earlier run left in ``out``, then note settings and episodes there."""
-    of_its_own = version(settings.corruption)
-    settings_now = {"suite_version": SUITE_VERSION, **of_its_own, **asdict(settings)}
+    """Check the results of an earlier run in ``out``, then write settings and episodes there."""
+    versions = {"suite_version": SUITE_VERSION, **version(settings.corruption)}
+    settings_now = {**versions, **asdict(settings)}
     checksums: dict[str, str] = {}
     if out.is_dir() and any(path.name[0] != "." for path in out.iterdir()):
         checksums = _check_earlier(out, settings_now, plan.episodes())
@@ -200,46 +207,48 @@ def _begin(out: Path, settings: Settings, plan: Plan) -> dict:
 
 
 def _check_earlier(out: Path, settings: dict, episodes: dict[str, list[str]]) -> dict[str, str]:
-    """Return the checksums that an earlier run recorded, none if an earlier version did.
+    """Return the checksums of an earlier run; empty if an earlier version wrote none.
 
-    Raises ValueError if ``out`` was not made with these settings and frames.
+    Raises:
+        ValueError: ``out`` was written with other settings or frames.
     """
     try:
         earlier = json.loads(read_regular(out / SUMMARY))
-        was, numbered = dict(earlier["settings"]), dict(earlier["episodes"])
-        known = {name: (int(e["frames"]), str(e["names"])) for name, e in numbered.items()}
+        earlier_settings = dict(earlier["settings"])
+        recorded = dict(earlier["episodes"]).items()
+        digests = {name: (int(e["frames"]), str(e["names"])) for name, e in recorded}
         checksums = {str(k): str(v) for k, v in dict(earlier.get("checksums", {})).items()}
     except FileNotFoundError:
         raise ValueError(
-            f"{out} holds files but no {SUMMARY}, so it was not made by this program. Name a new "
-            "or an empty folder."
+            f"{out} must be empty or have a {SUMMARY} of this program. Name a new or an empty "
+            "folder."
         ) from None
     except UnsafePathError:
         raise
     except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
         raise ValueError(
-            f"{out / SUMMARY} is damaged ({error}), so what {out} holds is not known. Name a new "
+            f"{out / SUMMARY} is damaged ({error}), so the content of {out} is unknown. Name a new "
             "folder, or delete this one."
         ) from error
-    other = [
-        f"{name}={was.get(name)} there, {name}={settings.get(name)} now"
-        for name in {**was, **settings}
-        if was.get(name) != settings.get(name)
+    different = [
+        f"{name}={earlier_settings.get(name)} there, {name}={settings.get(name)} now"
+        for name in {**earlier_settings, **settings}
+        if earlier_settings.get(name) != settings.get(name)
     ]
-    if other:
+    if different:
         raise ValueError(
-            f"{out} was made with other settings: {'; '.join(other)}. Name another folder, or "
+            f"{out} was made with other settings: {'; '.join(different)}. Name another folder, or "
             "delete this one."
         )
-    for name, (count, digest) in known.items():
+    for name, (count, digest) in digests.items():
         if _digest(episodes.get(name, [])[:count]) != digest:
             raise ValueError(
                 f"The first {count} frames of episode {name!r} are not those that {out} was made "
                 "from: files were added between them, removed or renamed, so their numbers "
-                "changed. Name another folder, or delete this one. (Frames added at the end are "
-                "fine.)"
+                "changed. Name another folder, or delete this one. (Frames may be added at the "
+                "end.)"
             )
-    counts = {name: count for name, (count, _) in known.items()}
+    counts = {name: count for name, (count, _) in digests.items()}
     _check_added(out, str(settings["format"]), episodes, counts)
     return checksums
 
@@ -247,17 +256,17 @@ def _check_earlier(out: Path, settings: dict, episodes: dict[str, list[str]]) ->
 def _check_added(
     out: Path, form: str, episodes: dict[str, list[str]], counts: dict[str, int]
 ) -> None:
-    """Refuse a frame that came later under the name that an earlier JPEG's result has."""
-    made: dict[str, str] = {}
+    """Raise ValueError for a new frame with the same name as the result of an earlier JPEG."""
+    sources: dict[str, str] = {}
     for name, frames in episodes.items():
         for frame in frames[: counts.get(name, 0)]:
-            made.setdefault(_output(Path(frame), form).as_posix(), frame)
+            sources.setdefault(_output(Path(frame), form).as_posix(), frame)
     for name, frames in episodes.items():
         for frame in frames[counts.get(name, 0) :]:
-            if frame in made:
+            if frame in sources:
                 raise ValueError(
-                    f"{frame} came after {out} was made, where {made[frame]} has taken its name. "
-                    "Rename it, or name another folder with format=same."
+                    f"{frame} was added after {out} was made, where {sources[frame]} has taken its "
+                    "name. Rename it, or name another folder with format=same."
                 )
 
 
@@ -273,7 +282,7 @@ def _write_summary(out: Path, summary: dict) -> None:
     write_bytes(out / SUMMARY, (json.dumps(summary, indent=1) + "\n").encode())
 
 
-# ------------------------------------------------------------------------------- user mistakes
+# -------------------------------------------------------------------------------- user errors
 
 
 def _check_folders(source: Path, out: Path) -> None:
@@ -281,31 +290,41 @@ def _check_folders(source: Path, out: Path) -> None:
         hint = " Put single files into a folder." if source.is_file() else " Check the path."
         raise FileNotFoundError(f"There is no folder {source}.{hint}")
     if out.exists() and not out.is_dir():
-        raise ValueError(f"{out} is a file: name a folder to write to.")
-    inside, outside = source.resolve(), out.resolve()
-    if inside == outside or inside in outside.parents or outside in inside.parents:
+        raise ValueError(f"{out} is a file. Name a folder to write to.")
+    real_source = source.resolve()
+    real_out = out.resolve()
+    if (
+        real_source == real_out
+        or real_source in real_out.parents
+        or real_out in real_source.parents
+    ):
         raise ValueError(
             f"{out} and {source} must not be the same folder nor one inside the other: results "
-            "would be read as frames, or overwrite them. Name a folder beside it."
+            "would be read as frames, or overwrite them. Name another folder."
         )
 
 
-def _nothing(source: Path, wanted: str, settings: Settings, plan: Plan) -> str:
-    takes = "8-bit RGB PNG or JPEG" if wanted == RGB else "16-bit grey PNG or NPY (metres)"
-    other = (
-        f"; {plan.other_modality} frames are of the other modality" if plan.other_modality else ""
-    )
-    other += f"; other files are not read: {told(plan.other_files)}" if plan.other_files else ""
+def _no_frames(source: Path, modality: str, settings: Settings, plan: Plan) -> str:
+    """Return the message for a folder without frames of the modality."""
+    formats = "8-bit RGB PNG or JPEG" if modality == RGB else "16-bit grey PNG or NPY (metres)"
+    other = ""
+    if plan.other_modality:
+        other += f"; {plan.other_modality} frames are of the other modality"
+    if plan.other_files:
+        other += f"; other files are not read: {count_suffixes(plan.other_files)}"
     return (
-        f"There is no {wanted} frame in {source}{other}. {settings.corruption} corrupts {wanted}: "
-        f"{takes} files, in the folder or in folders inside it."
+        f"There is no {modality} frame in {source}{other}. {settings.corruption} corrupts "
+        f"{modality}: {formats} files, in the folder or in folders inside it."
     )
 
 
 def _check_counts(settings: Settings) -> None:
-    most = max(settings.z_max, settings.missing)
-    if most > MOST * settings.unit:
+    """Raise ValueError if depth does not fit into a 16-bit PNG."""
+    largest = max(settings.z_max, settings.missing)
+    limit = MAX_COUNT * settings.unit
+    if largest > limit:
         raise ValueError(
-            f"Depth up to {most:g} metres does not fit into a 16-bit PNG with {settings.unit:g} "
-            f"metres a count: give z_max={MOST * settings.unit:g} or less, or another unit."
+            f"Depth must be at most {limit:g} metres to fit into a 16-bit PNG with "
+            f"{settings.unit:g} metres per count, got {largest:g}. Set z_max={limit:g} or less, or "
+            "another unit."
         )

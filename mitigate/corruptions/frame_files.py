@@ -1,8 +1,7 @@
-"""Frames in files: 8-bit RGB in PNG and JPEG, depth in 16-bit PNG and in NPY.
+"""Read and write frame files: 8-bit RGB in PNG and JPEG, depth in 16-bit PNG and in NPY.
 
-Also which files of a folder are frames, and in which order.
-
-Files are untrusted: they are decoded in full before anything is written, and never unpickled.
+Also finds the frames of a folder and their order. Files are untrusted: they are decoded completely
+before anything is written, and never unpickled.
 """
 
 from __future__ import annotations
@@ -23,12 +22,12 @@ from PIL import Image, ImageOps
 from mitigate.core.observation import DEPTH, RGB
 
 SUFFIXES = (".png", ".jpg", ".jpeg", ".npy")
-JPEG_QUALITY = 95  # (ours) with full colour resolution; used with format=same alone
-PNG_LEVEL = 3  # of zlib (ours): half the time of the default 6 for a few per cent more bytes
+JPEG_QUALITY = 95  # heuristic, with full colour resolution; used only with format=same
+PNG_LEVEL = 3  # of zlib: half the time of the default 6 for a few per cent more bytes
 PNG_START = b"\x89PNG\r\n\x1a\n"  # PNG specification, section 5.2
 COLOUR_TYPES = {0: "grey", 2: "RGB", 3: "palette", 4: "grey with alpha", 6: "RGB with alpha"}
-MOST_PIXELS = 1 << 26  # of a frame (ours): 8192 x 8192
-MOST = 65535  # counts of a 16-bit PNG
+MAX_PIXELS = 1 << 26  # of a frame, a heuristic limit: 8192 x 8192
+MAX_COUNT = 65535  # of a 16-bit PNG
 
 
 class LeftOutError(ValueError):
@@ -36,12 +35,13 @@ class LeftOutError(ValueError):
 
 
 def modality(path: Path) -> str:
-    """What a file holds, "rgb" or "depth": by its name and, for PNG, the header.
+    """Return the modality of a file, "rgb" or "depth", from its name and, for PNG, its header.
 
-    Raises LeftOutError if it is neither, or a pipe or device, which may never end.
+    Raises:
+        LeftOutError: It is neither, or a pipe or device, which may never end.
     """
     if os.path.exists(path) and not os.path.isfile(path):
-        raise LeftOutError("is no regular file")
+        raise LeftOutError("is not a regular file")
     suffix = path.suffix.lower()
     if suffix != ".png":
         return DEPTH if suffix == ".npy" else RGB
@@ -51,7 +51,7 @@ def modality(path: Path) -> str:
     except OSError as error:
         raise LeftOutError(f"cannot be read: {error.strerror}") from error
     if len(head) < 26 or not head.startswith(PNG_START):
-        raise LeftOutError("is no PNG file: it is cut short or damaged")
+        raise LeftOutError("is not a PNG file: it is cut short or damaged")
     bits, colour = struct.unpack("BB", head[24:26])
     if (bits, colour) in ((8, 2), (16, 0)):
         return RGB if colour == 2 else DEPTH
@@ -61,62 +61,76 @@ def modality(path: Path) -> str:
     )
 
 
-def corrupted(
+def corrupt_file(
     path: Path, suffix: str, unit: float, corrupt_frame: Callable[[np.ndarray], np.ndarray]
 ) -> bytes:
-    """The bytes of a file of the kind ``suffix`` with the corrupted frame of ``path``.
+    """Return the content of a file with the corrupted frame of ``path``.
 
-    ``corrupt_frame`` gets uint8 [H, W, 3] or float32 metres, the shape of the file; ``unit`` is
-    the metres of one count of a 16-bit PNG. Pixels that it leaves alone are written as they were.
-    Raises LeftOutError for a file that is damaged or of another kind.
+    Args:
+        path: The file to read.
+        suffix: Suffix of the format of the result.
+        unit: Metres per count of a 16-bit PNG.
+        corrupt_frame: Takes uint8 [H, W, 3] or float32 metres in the shape of the file. Pixels that
+            it does not change keep their stored values.
+
+    Raises:
+        LeftOutError: The file is damaged or of another format.
     """
-    what = modality(path)
-    if what == RGB:
+    if modality(path) == RGB:
         return _encode(Image.fromarray(corrupt_frame(_decode(path))), suffix)
     if path.suffix.lower() == ".npy":
         stored = _load(path)
         metres = stored.astype(np.float32)
-        after = corrupt_frame(metres)
+        corrupted = corrupt_frame(metres)
         with io.BytesIO() as file:
-            written = np.where(_same(after, metres), stored, after).astype(stored.dtype)
-            np.save(file, written)
+            merged = np.where(_same(corrupted, metres), stored, corrupted).astype(stored.dtype)
+            np.save(file, merged)
             return file.getvalue()
     stored = _decode(path)
     metres = (stored * unit).astype(np.float32)
-    after = corrupt_frame(metres)
-    written = np.where(_same(after, metres), stored, counts(after, unit))
-    return _encode(Image.fromarray(written), suffix)
+    corrupted = corrupt_frame(metres)
+    merged = np.where(_same(corrupted, metres), stored, counts(corrupted, unit))
+    return _encode(Image.fromarray(merged), suffix)
 
 
 def counts(metres: np.ndarray, unit: float) -> np.ndarray:
-    """Metres as uint16 counts of ``unit`` metres, as a 16-bit PNG holds them: 0 where nothing is
-    read, 1 or more elsewhere."""
+    """Convert metres to uint16 counts of ``unit`` metres, the pixels of a 16-bit PNG.
+
+    No reading becomes 0, all other depth 1 or more.
+    """
     valid = np.isfinite(metres) & (metres > 0)
-    return np.clip(np.rint(np.where(valid, metres, 0) / unit), valid, MOST).astype(np.uint16)
+    return np.clip(np.rint(np.where(valid, metres, 0) / unit), valid, MAX_COUNT).astype(np.uint16)
 
 
 def read(path: Path, unit: float) -> np.ndarray:
-    """The frame in a file: uint8 [H, W, 3], or float32 metres [H, W, 1]; ``unit`` and errors as
-    :func:`corrupted`."""
+    """Read a frame: uint8 [H, W, 3], or float32 metres [H, W, 1].
+
+    Args:
+        path: The file.
+        unit: Metres per count of a 16-bit PNG.
+
+    Raises:
+        LeftOutError: The file is damaged or of another format.
+    """
     if modality(path) == RGB:
         return _decode(path)
     metres = _load(path) if path.suffix.lower() == ".npy" else _decode(path) * unit
     if metres.ndim < 2 or metres.shape[2:] not in ((), (1,)) or not metres.size:
-        raise LeftOutError(f"has the shape {list(metres.shape)}: depth is [H, W] or [H, W, 1]")
-    with np.errstate(over="ignore"):  # becomes infinite
+        raise LeftOutError(f"has the shape {list(metres.shape)}: depth must be [H, W] or [H, W, 1]")
+    with np.errstate(over="ignore"):  # float64 beyond float32 becomes infinite
         return metres.astype(np.float32).reshape(*metres.shape[:2], 1)
 
 
 def _decode(path: Path) -> np.ndarray:
-    """uint8 [H, W, 3] or uint16 [H, W]; a JPEG is turned upright as its EXIF data say."""
+    """Decode uint8 [H, W, 3] or uint16 [H, W]; a JPEG is rotated by its EXIF data."""
     try:
         with Image.open(path, formats=("PNG", "JPEG")) as image:
-            if math.prod(image.size) > MOST_PIXELS:
+            if math.prod(image.size) > MAX_PIXELS:
                 raise ValueError(f"it has {image.size[0]} x {image.size[1]} pixels")
             image.load()
             mode = image.mode
             pixels = np.array(ImageOps.exif_transpose(image))
-    except Exception as error:  # whatever a decoder says of an untrusted file is the reason
+    except Exception as error:  # decoders raise many kinds of errors for untrusted files
         raise LeftOutError(f"cannot be decoded: {error}") from error
     if mode not in ("RGB", "I;16"):
         raise LeftOutError(f"has the colours {mode}: RGB must be 8-bit RGB")
@@ -124,12 +138,14 @@ def _decode(path: Path) -> np.ndarray:
 
 
 def _load(path: Path) -> np.ndarray:
+    """Load floating-point depth from NPY."""
     try:
-        mapped = np.load(path, mmap_mode="r", allow_pickle=False)  # no more than the file has
-        if isinstance(mapped, np.ndarray) and mapped.size > MOST_PIXELS:
+        # a memory map, so that a header with a false shape allocates nothing
+        mapped = np.load(path, mmap_mode="r", allow_pickle=False)
+        if isinstance(mapped, np.ndarray) and mapped.size > MAX_PIXELS:
             raise ValueError(f"it has {mapped.shape} numbers")
         stored = np.array(mapped) if isinstance(mapped, np.ndarray) else mapped
-    except Exception as error:  # as above
+    except Exception as error:  # numpy raises many kinds of errors for untrusted files
         raise LeftOutError(
             f"cannot be loaded with allow_pickle=False: {' '.join(str(error).split())[:200]}"
         ) from error
@@ -139,8 +155,8 @@ def _load(path: Path) -> np.ndarray:
     return stored
 
 
-def _same(after: np.ndarray, metres: np.ndarray) -> np.ndarray:
-    return (after == metres) | (np.isnan(after) & np.isnan(metres))
+def _same(corrupted: np.ndarray, metres: np.ndarray) -> np.ndarray:
+    return (corrupted == metres) | (np.isnan(corrupted) & np.isnan(metres))
 
 
 def _encode(image: Image.Image, suffix: str) -> bytes:
@@ -154,7 +170,7 @@ def _encode(image: Image.Image, suffix: str) -> bytes:
 
 @dataclass(frozen=True)
 class Frame:
-    """One input file, by its path inside the folder, and the key of its draw."""
+    """An input file, by its path in the folder, with the episode and the number of its key."""
 
     path: Path
     episode: str
@@ -163,7 +179,7 @@ class Frame:
 
 @dataclass
 class Plan:
-    """What a folder holds: frames in order, what is left out, and the suffixes of other files."""
+    """The content of a folder: frames in order, files left out, and suffixes of other files."""
 
     frames: list[Frame] = field(default_factory=list)
     left_out: dict[str, str] = field(default_factory=dict)  # file, or folder/ -> reason
@@ -171,18 +187,21 @@ class Plan:
     other_files: Counter[str] = field(default_factory=Counter)  # suffix -> files
 
     def episodes(self) -> dict[str, list[str]]:
-        """The names of the frames of each episode, in order."""
+        """Return the names of the frames of each episode, in order."""
         names: dict[str, list[str]] = {}
         for frame in self.frames:
             names.setdefault(frame.episode, []).append(frame.path.as_posix())
         return names
 
 
-def make_plan(source: Path, out: Path | None, wanted: str, episode: str) -> Plan:
-    """Find the frames of a modality. A file that is neither takes part as a bad frame.
+def make_plan(source: Path, out: Path | None, kind: str, episode: str) -> Plan:
+    """Find the frames of a modality; a damaged file keeps its number but is left out.
 
-    ``out``, where the results go (None: nowhere), is no part of ``source``, even if a link leads
-    there.
+    Args:
+        source: The folder, searched recursively.
+        out: Folder of the results, which is skipped even if a link leads there; None: none.
+        wanted: "rgb" or "depth".
+        episode: "folder" (each folder is an episode) or "all" (one episode).
     """
     plan = Plan()
     counts: dict[str, int] = {}
@@ -191,7 +210,7 @@ def make_plan(source: Path, out: Path | None, wanted: str, episode: str) -> Plan
             plan.other_files[path.suffix.lower()] += 1
             continue
         try:
-            if modality(source / path) != wanted:
+            if modality(source / path) != kind:
                 plan.other_modality += 1
                 continue
         except LeftOutError as error:
@@ -202,41 +221,42 @@ def make_plan(source: Path, out: Path | None, wanted: str, episode: str) -> Plan
     return plan
 
 
-def told(suffixes: Mapping[str, int]) -> str:
-    """Counts of files by suffix, the most frequent first: "3 .tif, 1 .webp"."""
-    most = sorted(suffixes, key=lambda suffix: (-suffixes[suffix], suffix))
-    return ", ".join(f"{suffixes[suffix]} {suffix or 'without suffix'}" for suffix in most)
+def count_suffixes(suffixes: Mapping[str, int]) -> str:
+    """Return counts of files by suffix as text, the most frequent first: "3 .tif, 1 .webp"."""
+    ordered = sorted(suffixes, key=lambda suffix: (-suffixes[suffix], suffix))
+    return ", ".join(f"{suffixes[suffix]} {suffix or 'without suffix'}" for suffix in ordered)
 
 
 def _files(source: Path, out: Path | None, plan: Plan) -> Iterator[Path]:
-    """Relative paths, folder by folder in natural order; hidden files and folders are passed by.
+    """Yield relative paths, folder by folder in natural order, without hidden files and folders.
 
     Links to folders are followed, but not in a circle and not into the real path ``out``.
     """
 
-    def complain(error: OSError) -> None:
+    def note_unreadable(error: OSError) -> None:
         folder = Path(error.filename).relative_to(source).as_posix()
         plan.left_out[f"{folder}/"] = f"cannot be read: {error.strerror}"
 
-    for folder, folders, files in os.walk(source, onerror=complain, followlinks=True):
-        here = Path(folder).relative_to(source)
+    for folder, folders, files in os.walk(source, onerror=note_unreadable, followlinks=True):
+        relative = Path(folder).relative_to(source)
         for name in sorted((name for name in files if name[0] != "."), key=natural):
-            yield here / name
-        seen = sorted((name for name in folders if name[0] != "."), key=natural)
-        barred = {name: _barred(source, here / name, out) for name in seen}
-        plan.left_out |= {f"{(here / n).as_posix()}/": why for n, why in barred.items() if why}
-        folders[:] = [name for name in seen if not barred[name]]
+            yield relative / name
+        visible = sorted((name for name in folders if name[0] != "."), key=natural)
+        reasons = {name: _skip_reason(source, relative / name, out) for name in visible}
+        plan.left_out |= {f"{(relative / n).as_posix()}/": why for n, why in reasons.items() if why}
+        folders[:] = [name for name in visible if not reasons[name]]
 
 
-def _barred(source: Path, folder: Path, out: Path | None) -> str:
-    """Why a folder must not be entered; empty if it may be."""
+def _skip_reason(source: Path, folder: Path, out: Path | None) -> str:
+    """Return why a folder must be skipped; empty if it must not."""
     real = (source / folder).resolve()
     if out in (real, *real.parents):
-        return "is where the results go"
-    around = {(source / parent).resolve() for parent in folder.parents}
-    return "leads back to a folder that it lies in" if real in around else ""
+        return "is the folder of the results"
+    ancestors = {(source / parent).resolve() for parent in folder.parents}
+    return "links back to a folder that contains it" if real in ancestors else ""
 
 
 def natural(name: str) -> tuple:
+    """Return a sort key that compares digits as numbers."""
     parts = re.split(r"([0-9]+)", name)
     return tuple(int(p) if i % 2 else p for i, p in enumerate(parts)), name

@@ -3,26 +3,26 @@
   IN          folder of frames, with any folders inside and links to folders: 8-bit RGB as PNG or
               JPEG; depth as 16-bit PNG, or as NPY float metres, [H, W], [H, W, 1] or with views
               first
-  OUT         folder for the corrupted frames; the tree and the names stay
+  OUT         folder for the corrupted frames, with the same tree and names
 
-  corruption  its name (see --list); frames of the other modality are passed by
+  corruption  its name (see --list); frames of the other modality are skipped
   severity    0 (clean) to 1 (worst)
-  seed        of every random draw (0)
+  seed        corruption seed (0)
   episode     folder: each folder is an episode, frames in the order of their names (default);
               all: all frames are one episode
-  unit        of 16-bit PNG: mm (default), cm, m, or the metres of one count, such as 0.00025
-  format      what a JPEG becomes: png, which keeps every pixel (default), or same: JPEG again,
-              under its own name, at quality 95
+  unit        of 16-bit PNG: mm (default), cm, m, or metres per count, such as 0.00025
+  format      format of a corrupted JPEG: png, which keeps every pixel (default), or same: JPEG
+              with the same name, at quality 95
   z_max       depth range in metres (10): valid depth beyond it is clipped
-  missing     metres that a hole of missing_data reads (0, which means no reading)
+  missing     value of missing data in metres (0: no reading)
 
-  --list      the corruptions: what they corrupt, what severity means, what is kept, the source
-  --help      this
+  --list      list the corruptions: what they corrupt, what severity means, their draws and source
+  --help      this help
 
-The same command goes on where it stopped, and writes frames again that were changed since.
-OUT/corrupt.json holds settings, counts, the files left out with the reason and a checksum of each
-frame; files of other kinds are left alone, and counted by suffix. Exit status: 0 done, 1 done but
-bad files were left out, 2 not done.
+The same command resumes an interrupted run, and writes changed frames again. OUT/corrupt.json has
+the settings, counts, the files left out with the reason, and a checksum of each frame. Files of
+other formats are not read, and counted by suffix. Exit status: 0 done, 1 done but bad files were
+left out, 2 not done.
 
 Example: mitigate corrupt recorded/ corrupted/ corruption=spatter severity=0.5
 """
@@ -36,14 +36,14 @@ from dataclasses import MISSING, fields
 from mitigate.core.options import asks_help, paths_and_options
 from mitigate.corruptions import folders, registry
 from mitigate.corruptions.folders import UNITS, Settings
-from mitigate.corruptions.frame_files import told
+from mitigate.corruptions.frame_files import count_suffixes
 from mitigate.corruptions.suite import check_name
 
-SHOWN = 5  # files left out that are named on the screen; all are in the summary
+MAX_LISTED = 5  # files that are printed; the summary has all
 
 
 def parse(arguments: Sequence[str]) -> tuple[str, str, Settings]:
-    """IN, OUT and the settings. Raises ValueError in one paragraph for what cannot be read."""
+    """Return IN, OUT and the settings; ValueError for invalid arguments."""
     known = [option.name for option in fields(Settings)]
     (source, out), options = paths_and_options(arguments, ("IN", "OUT"), known)
     return source, out, _settings(options)
@@ -53,8 +53,8 @@ def _settings(options: dict[str, str]) -> Settings:
     for option in fields(Settings):
         if option.default is MISSING and option.name not in options:
             raise ValueError(
-                f"{option.name}=... is missing, such as corruption=spatter severity=0.5. The "
-                "corruptions are listed by --list."
+                f"The option {option.name}= is missing. Write for example corruption=spatter "
+                "severity=0.5. List the corruptions with --list."
             )
     check_name(options["corruption"])
     return Settings(**{name: _value(name, text) for name, text in options.items()})  # type: ignore[arg-type]
@@ -70,7 +70,7 @@ def _value(name: str, text: str) -> str | int | float:
     except ValueError:
         kind = "a whole number" if name == "seed" else "a number"
         units = f" or one of {', '.join(UNITS)}" if name == "unit" else ""
-        raise ValueError(f"{name}={text} has the wrong type: it must be {kind}{units}.") from None
+        raise ValueError(f"{name} must be {kind}{units}, got {text}.") from None
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -89,7 +89,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         print(f"corrupt: {error}", file=sys.stderr)
         return 2
     except KeyboardInterrupt:
-        print("\ninterrupted: the same command goes on where it stopped", file=sys.stderr)
+        print("\ninterrupted: run the same command to resume", file=sys.stderr)
         return 130
     return _report(summary, out)
 
@@ -97,22 +97,22 @@ def main(argv: Sequence[str] | None = None) -> int:
 def _report(summary: dict, out: str) -> int:
     left_out = summary["left_out"]
     counts = [f"{summary['written']} frames written to {out}"]
-    counts += [f"{summary['there']} were there"] * (summary["there"] > 0)
-    counts += [f"{summary['other_modality']} of the other modality passed by"] * (
-        summary["other_modality"] > 0
-    )
-    others = told(summary["other_files"])
-    counts += [f"other files left alone: {others}"] * bool(others)
+    if summary["there"]:
+        counts.append(f"{summary['there']} already existed")
+    if summary["other_modality"]:
+        counts.append(f"{summary['other_modality']} of the other modality skipped")
+    if summary["other_files"]:
+        counts.append(f"other files not read: {count_suffixes(summary['other_files'])}")
     print("; ".join(counts))
     replaced = summary["replaced"]
     if replaced:
-        more = ", ..." if len(replaced) > SHOWN else ""
+        more = ", ..." if len(replaced) > MAX_LISTED else ""
         print(
-            f"{len(replaced)} frames differed from those that this command writes and were written "
-            f"again: {', '.join(replaced[:SHOWN])}{more}",
+            f"{len(replaced)} frames differed from the results of this command and were written "
+            f"again: {', '.join(replaced[:MAX_LISTED])}{more}",
             file=sys.stderr,
         )
-    for entry in left_out[:SHOWN]:
+    for entry in left_out[:MAX_LISTED]:
         print(f"left out: {entry['file']} {entry['reason']}", file=sys.stderr)
     if left_out:
         print(f"{len(left_out)} files left out, see {out}/{folders.SUMMARY}", file=sys.stderr)

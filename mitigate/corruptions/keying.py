@@ -1,12 +1,13 @@
-"""Keyed randomness: a draw is a function of (seed, episode, corruption, frame, view, pixel) alone.
+"""Keyed randomness: a draw is a function of (seed, episode, corruption, frame, view, pixel) only.
 
-A blake2b digest of the named parts gives 64 bits; an integer hash (splitmix64, Steele et al. 2014)
-of that digest plus a counter gives the numbers. No global state, no Python ``hash()``, no running
-generator: the same frame gets the same pixels in any batch, process, order or resumed run.
+A blake2b digest of the named parts gives 64 bits. An integer hash (splitmix64, Steele et al. 2014)
+of that digest plus a counter gives the numbers. There is no global state, no Python ``hash()`` and
+no generator with state: the same frame gets the same pixels in any batch, process, order or resumed
+run.
 
 Tables and masks are computed in float64 and rounded to fixed point or float32, and kernels use only
 basic arithmetic, so the last bit of a machine's ``exp`` does not reach the pixels. (After editing
-``mix``, delete ``__pycache__``: numba does not see that callers in other files changed.)
+``mix``, delete ``__pycache__``: numba does not notice that callers in other files changed.)
 """
 
 from __future__ import annotations
@@ -22,47 +23,52 @@ from typing import Any, ParamSpec, TypeVar
 import numpy as np
 from numba import njit
 
-MOST = 256 << 20  # bytes of all that is kept in a process (ours): 20 masks of 1080p
-MOST_KEPT = 256  # of small ones (ours)
+# Heuristic limits of the cache of a process.
+MAX_CACHE_BYTES = 256 << 20  # 20 masks of 1080p
+MAX_CACHE_ENTRIES = 256
 
 P = ParamSpec("P")
 T = TypeVar("T")
-_kept: dict[tuple, tuple[Any, int]] = {}  # by function and arguments, the longest unused first
+# by function and arguments: result and bytes, the least recently used first
+_cache: dict[tuple, tuple[Any, int]] = {}
 
 
-def cached(make: Callable[P, T]) -> Callable[P, T]:
-    """``make``, a pure function of hashable arguments that gives an array or a tuple of them, made
-    once while there is room: beyond ``MOST`` and ``MOST_KEPT`` what was longest unused goes.
+def cached(function: Callable[P, T]) -> Callable[P, T]:
+    """Cache the results of a pure function of hashable arguments.
 
-    There is no lock: threads at once make a thing twice, and a process may fork at any time.
+    The results are arrays or tuples of arrays. The least recently used are dropped beyond
+    ``MAX_CACHE_BYTES`` and ``MAX_CACHE_ENTRIES``. There is no lock, so that a process may fork at
+    any time; simultaneous threads may compute a result twice.
     """
 
-    @wraps(make)
-    def found(*given: P.args, **named: P.kwargs) -> T:
-        key = (make, given, *named.items())
-        entry = _kept.pop(key, None)
+    @wraps(function)
+    def lookup(*args: P.args, **kwargs: P.kwargs) -> T:
+        key = (function, args, *kwargs.items())
+        entry = _cache.pop(key, None)
         if entry is not None:
-            _kept[key] = entry
+            _cache[key] = entry
             return entry[0]
-        made = make(*given, **named)
-        _kept[key] = made, _bytes(made)
-        _make_room()
-        return made
+        result = function(*args, **kwargs)
+        _cache[key] = result, _bytes(result)
+        _evict()
+        return result
 
-    return found
-
-
-def _make_room() -> None:
-    """Drop what was longest unused, but never the newest."""
-    sizes = [*map(itemgetter(1), _kept.values())]  # at every miss: no loop of Python's
-    size, count = sum(sizes), len(sizes)
-    while count > 1 and (size > MOST or count > MOST_KEPT):
-        _, each = _kept.pop(next(iter(_kept), ()), (None, 0))
-        size, count = size - each, count - 1
+    return lookup
 
 
-def _bytes(made: Any) -> int:
-    parts = made if isinstance(made, tuple) else (made,)
+def _evict() -> None:
+    """Drop the least recently used results beyond the limits, but never the newest."""
+    sizes = [*map(itemgetter(1), _cache.values())]  # runs at every miss, so without a Python loop
+    size = sum(sizes)
+    count = len(sizes)
+    while count > 1 and (size > MAX_CACHE_BYTES or count > MAX_CACHE_ENTRIES):
+        _, dropped = _cache.pop(next(iter(_cache), ()), (None, 0))
+        size -= dropped
+        count -= 1
+
+
+def _bytes(result: Any) -> int:
+    parts = result if isinstance(result, tuple) else (result,)
     return sum(part.nbytes for part in parts if isinstance(part, np.ndarray))
 
 
@@ -80,11 +86,18 @@ _S30, _S27, _S31 = _U(30), _U(27), _U(31)
 
 @dataclass(frozen=True)
 class Key:
-    """Names one instant: ``seed``, the ``episode`` (any string) and the ``frame`` number in it.
+    """The key of an instant, which determines every random draw.
 
-    Lens dirt, flare position and the like follow (seed, episode); pixel noise follows the frame as
-    well. The per-frame regime is a new ``episode`` string for every frame, nothing else. Raises
-    ValueError for a seed or frame that is no whole number.
+    Lens dirt, flare position and the like depend on (seed, episode); pixel noise also on the frame.
+    A per-frame schedule uses a new ``episode`` for every frame.
+
+    Attributes:
+        seed: Corruption seed.
+        episode: Name of the episode.
+        frame: Number of the frame in the episode.
+
+    Raises:
+        ValueError: Seed or frame is not a whole number.
     """
 
     seed: int
@@ -96,13 +109,17 @@ class Key:
             index(self.seed), index(self.frame)
         except TypeError:
             raise ValueError(
-                f"The seed and the frame of a key must be whole numbers, but it has seed="
-                f"{self.seed!r}, frame={self.frame!r}. Write, for instance, Key(0, '17', frame=3)."
+                f"The seed and the frame of a key must be whole numbers, got seed={self.seed!r}, "
+                f"frame={self.frame!r}. Write for example Key(0, '17', frame=3)."
             ) from None
 
 
 def as_key(key: Key | int | str) -> Key:
-    """``key``; a whole number n is Key(n, "0"), a text t is Key(0, t). ValueError for the rest."""
+    """Return a Key: an int n becomes Key(n, "0"), a str t becomes Key(0, t).
+
+    Raises:
+        ValueError: ``key`` is neither a Key, an int nor a str.
+    """
     if isinstance(key, Key):
         return key
     if isinstance(key, str):
@@ -111,22 +128,22 @@ def as_key(key: Key | int | str) -> Key:
         return Key(int(key), "0")
     raise ValueError(
         "key must be a Key(seed, episode, frame), a whole number (the seed) or a text (the "
-        f"episode), but it is {key!r}. It names the random draw: equal keys give equal pixels."
+        f"episode), got {key!r}. Equal keys give equal pixels."
     )
 
 
 @lru_cache(maxsize=256)
 def _episode_hash(seed: int, episode: str, name: str) -> tuple:
-    """The hash state of these parts, to copy and go on from, and its digest as an integer."""
+    """Return the hash state of these parts, which callers copy and extend, and its digest."""
     text = "".join(f"{len(part)}:{part}" for part in (str(seed), episode, name))
     state = blake2b(text.encode("utf-8", "surrogatepass"), digest_size=8, person=b"mitigate")
     return state, int.from_bytes(state.digest(), "little")
 
 
 def digest(key: Key, name: str, *, frame: bool = False) -> int:
-    """64-bit digest of the episode scope, or of the frame scope, for the draw called ``name``.
+    """Return the 64-bit digest of the draw ``name`` for the episode, or for the frame.
 
-    In the frame scope, view k takes ``scramble(digest, k)``.
+    View k of a frame uses ``scramble(digest, k)``.
     """
     state, value = _episode_hash(int(key.seed), str(key.episode), name)
     if not frame:
@@ -137,7 +154,7 @@ def digest(key: Key, name: str, *, frame: bool = False) -> int:
 
 
 def scramble(value: int, counter: int) -> int:
-    """Splitmix64 output number ``counter`` of the stream ``value`` (Python integers)."""
+    """Return the splitmix64 output ``counter`` of the stream ``value`` (Python integers)."""
     z = (value + (counter + 1) * GOLDEN) & MASK
     z = ((z ^ (z >> 30)) * MIX_A) & MASK
     z = ((z ^ (z >> 27)) * MIX_B) & MASK
@@ -145,13 +162,13 @@ def scramble(value: int, counter: int) -> int:
 
 
 def uniform(value: int, counter: int = 0) -> float:
-    """Number ``counter`` of the stream ``value``, uniform in [0, 1), 53 bits."""
+    """Return number ``counter`` of the stream ``value``, uniform in [0, 1), 53 bits."""
     return (scramble(value, counter) >> 11) * 2.0**-53
 
 
 @njit(inline="always")
 def mix(value, counter):
-    """The compiled twin of ``scramble``: both arguments and the result are uint64."""
+    """Compute ``scramble`` in compiled code: arguments and result are uint64."""
     z = value + (counter + _U(1)) * _GOLDEN
     z = (z ^ (z >> _S30)) * _A
     z = (z ^ (z >> _S27)) * _B
@@ -165,14 +182,14 @@ def _fill_streams(value, out):
 
 
 def view_streams(key: Key, name: str, views: int) -> np.ndarray:
-    """uint64 [views]: the frame-scope digests of the draw called ``name``, one a view."""
+    """Return the digests of the draw ``name`` for each view of a frame, uint64 [views]."""
     out = np.empty(views, np.uint64)
     _fill_streams(_U(digest(key, name, frame=True)), out)
     return out
 
 
 def unit_normals(bits: int) -> np.ndarray:
-    """float64 [2^bits]: standard normal quantiles at the middles of equal bins, variance one."""
+    """Return standard normal quantiles of 2^bits equal bins, variance one, float64."""
     count = 1 << bits
     half = np.array([NormalDist().inv_cdf((i + 0.5) / count) for i in range(count // 2)])
     table = np.concatenate([half, -half[::-1]])
@@ -181,7 +198,7 @@ def unit_normals(bits: int) -> np.ndarray:
 
 @lru_cache(maxsize=1)
 def normal_table() -> np.ndarray:
-    """float32 [4096]: the quantiles that pixel noise looks up."""
+    """Return the quantiles that pixel noise looks up, float32 [4096]."""
     return unit_normals(NORMAL_BITS).astype(np.float32)
 
 
@@ -193,7 +210,7 @@ def _fill_normals(value, table, out):
 
 
 def normals(value: int, count: int) -> np.ndarray:
-    """float32 [count]: standard normals of the stream ``value``."""
+    """Return standard normals of the stream ``value``, float32 [count]."""
     out = np.empty(count, np.float32)
     _fill_normals(_U(value), normal_table(), out)
     return out
@@ -249,13 +266,20 @@ def _resize_torus(cells, height, width):
 
 @cached
 def field(value: int, height: int, width: int, correlation: float) -> tuple:
-    """A Gaussian random field on a torus, and the cells that it was resampled from.
+    """Draw a Gaussian random field on a torus.
 
-    ``correlation`` is the standard deviation of the smoothing kernel as a fraction of the shorter
-    side. The field is drawn on a grid whose shorter side has ``FIELD_SIDE`` cells and resampled, so
-    a frame and its half-size copy get the same pattern. A frame longer than 32:1 gets longer cells.
+    The field is drawn on a grid whose shorter side has ``FIELD_SIDE`` cells and resampled, so a
+    frame and its half-size copy get the same pattern. A frame longer than 32:1 gets longer cells.
 
-    Returns (float32 [height, width] with unit standard deviation, float32 [cells]).
+    Args:
+        value: Random stream.
+        height: Pixels.
+        width: Pixels.
+        correlation: Standard deviation of the smoothing kernel as a fraction of the shorter side.
+
+    Returns:
+        The field, float32 [height, width] with unit standard deviation, and the cells before
+        resampling, float32 [cells].
     """
     scale = FIELD_SIDE / min(height, width)
     rows, cols = (min(round(side * scale), FIELD_LONGEST) for side in (height, width))
@@ -270,6 +294,6 @@ def field(value: int, height: int, width: int, correlation: float) -> tuple:
 
 
 def top_share(cells: np.ndarray, share: float) -> float:
-    """The level that the top ``share`` of the cells reach; infinity for share 0."""
+    """Return the level that the top ``share`` of the cells reach; infinity for share 0."""
     place = cells.size - round(share * cells.size)
     return float("inf") if place == cells.size else float(np.partition(cells, place)[place])

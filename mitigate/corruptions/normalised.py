@@ -1,4 +1,4 @@
-"""Depth that a sensor has normalised to [0, 1], as Habitat's do: to metres, corrupted, and back."""
+"""Corrupt depth that is normalised to [0, 1], as Habitat's sensors do."""
 
 from __future__ import annotations
 
@@ -17,69 +17,81 @@ def corrupt_normalised(
     """``corrupt_observation`` for an observation whose ``depth`` is normalised.
 
     ``depth`` is float32 in [0, 1]: 0 means no reading (or not beyond ``sensor.z_min``), other
-    values v are z_min + v (z_max - z_min) metres. Pixels that the corruption does not touch, and
-    all that are 0, negative, NaN or infinite, come back bit for bit. A hole of missing data reads
-    ``sensor.missing`` metres: 0 for the default, 1 for ``DepthSensor(missing=z_max)``.
+    values v are z_min + v (z_max - z_min) metres. Pixels that the corruption does not change, and
+    all that are 0, negative, NaN or infinite, are returned bit for bit. Missing data become
+    ``sensor.missing`` metres: 0 by default, 1 for ``DepthSensor(missing=z_max)``.
 
-    Raises ValueError for depth above 1 (it is in metres), a negative sentinel, and as
-    ``corrupt_observation`` does.
+    Args:
+        obs: The observation.
+        corruption: The corruption.
+        key: Key of the random draws.
+        sensor: Depth range and value for no reading.
+
+    Returns:
+        A new dict; entries that are not corrupted are the same objects.
+
+    Raises:
+        ValueError: Depth is above 1 (in metres), ``sensor.missing`` is negative, or as in
+            ``corrupt_observation``.
     """
     check_sensor(sensor)
     if observation.DEPTH not in {*obs}.intersection(check_corruption(corruption).modalities):
         return corrupt_observation(obs, corruption, key, sensor)
     clean = np.ascontiguousarray(_checked(np.asarray(obs[observation.DEPTH])))
-    metres, range_ = np.empty_like(clean), _range(sensor)
-    most = _to_metres(clean.reshape(-1), *range_, metres.reshape(-1))
-    if most > 1.0:
+    metres = np.empty_like(clean)
+    range_ = _range(sensor)
+    maximum = _to_metres(clean.reshape(-1), *range_, metres.reshape(-1))
+    if maximum > 1.0:
         raise ValueError(
-            f"Normalised depth must be in 0-1, but this frame reaches {most:g}. Is it in metres? "
-            "Then say normalised=False, or call corrupt_observation."
+            f"Normalised depth must be in 0-1, got {maximum:g}. For depth in metres, set "
+            "normalised=False, or call corrupt_observation."
         )
     corrupted = corrupt_observation({**obs, observation.DEPTH: metres}, corruption, key, sensor)
-    made, out = np.ascontiguousarray(corrupted[observation.DEPTH]), np.empty_like(clean)
-    _normalise(made.reshape(-1), metres.reshape(-1), clean.reshape(-1), *range_, out.reshape(-1))
+    depth = np.ascontiguousarray(corrupted[observation.DEPTH])
+    out = np.empty_like(clean)
+    _normalise(depth.reshape(-1), metres.reshape(-1), clean.reshape(-1), *range_, out.reshape(-1))
     return {**corrupted, observation.DEPTH: out}
 
 
 def check_sensor(sensor: DepthSensor) -> None:
-    """Raise ValueError for a sentinel that normalised depth cannot hold: a negative one or NaN."""
+    """Raise ValueError if ``missing`` cannot be normalised: negative or NaN."""
     if not sensor.missing >= 0.0:
         raise ValueError(
-            f"{sensor} cannot be normalised: missing must be 0 (no reading) or more metres."
+            f"missing must be 0 (no reading) or more metres for normalised depth, got {sensor}."
         )
 
 
 def _checked(clean: np.ndarray) -> np.ndarray:
     if clean.dtype != np.float32:
         raise ValueError(
-            f"Normalised depth must be float32 in 0-1, but this frame is {clean.dtype}. Convert it "
-            "first: depth.astype(np.float32)."
+            f"Normalised depth must be float32 in 0-1, got {clean.dtype}. Convert it: "
+            "depth.astype(np.float32)."
         )
     return clean
 
 
 def _range(sensor: DepthSensor) -> tuple[np.float32, np.float32]:
-    """Nearest depth and extent of the range, in metres."""
+    """Return the minimum and the length of the range, in metres."""
     return np.float32(sensor.z_min), np.float32(sensor.z_max - sensor.z_min)
 
 
 @njit(cache=True)
 def _to_metres(clean, z_min, span, out):
-    """Metres of valid depth, 0 for the rest; returns the largest valid value."""
-    most = np.float32(0)
+    """Write the metres of valid depth, 0 for the rest, and return the largest valid value."""
+    maximum = np.float32(0)
     for i in range(clean.size):
         value = clean[i]
         if value > 0 and value < np.inf:
             out[i] = z_min + value * span
-            most = max(most, value)
+            maximum = max(maximum, value)
         else:
             out[i] = 0
-    return most
+    return maximum
 
 
 @njit(cache=True)
 def _normalise(corrupted, metres, clean, z_min, span, out):
-    """Back to [0, 1]; where ``corrupted`` still is ``metres``, the clean values themselves."""
+    """Normalise to [0, 1]; unchanged pixels keep their clean values."""
     for i in range(clean.size):
         depth = corrupted[i]
         if depth == metres[i]:

@@ -1,7 +1,7 @@
-"""One record a corruption: all that tables, pages, suites and benchmarks say of it.
+"""The record of a corruption: its function and everything that tables, pages and suites print.
 
-A corruption of your own is such a record, found by the entry point group ``mitigate.corruptions``
-(``docs/bring-your-own.md``); ours stand at the end of ``rgb.py``, ``eld.py``,
+A package can add a corruption by a record in the entry point group ``mitigate.corruptions``
+(``docs/bring-your-own.md``). The records of this project are at the end of ``rgb.py``, ``eld.py``,
 ``depth.py``, ``registry.py``, ``broad/__init__.py`` and the files of ``unseen``.
 """
 
@@ -19,20 +19,34 @@ VALIDATION, TEST = "validation", "test"  # halves of the unseen corruptions
 
 @dataclass(frozen=True)
 class Record:
-    """name: lower case with underscores. modality: what it corrupts, of ``MODALITIES``.
+    """A corruption.
 
-    apply: for RGB (views uint8 [V, H, W, 3], severity in (0, 1], key, heading or None) -> a new
-    array of the same shape; for depth (views float32 metres [V, H, W], severity, key, DepthSensor)
-    -> the same; it must be a pure function of these. None of an instruction's, which
-    ``corrupt_instruction`` changes.
-    severity: what s sets, in a few words. place: in tables, ascending. label: in tables, by default
-    the name in words. fails: what goes wrong in the world. formula: Markdown with the constants of
-    the code. sources: of the constants; source: the same in a word or two. episode, frame: what is
-    drawn once an episode, and anew for each frame. slip: how far it may change less at the next of
-    100 severities (SSIM, or metres). bars: milliseconds to stay under at 480x640 and 224x224;
-    reason: where the time goes. version: of an unseen or further one, whose rows are measured anew
-    when it changes; those of the suite have the suite's. half: of an unseen one, ``VALIDATION`` or
-    ``TEST``; methods may be chosen by the first, never by the second.
+    Attributes:
+        name: Lower case with underscores.
+        modality: What it corrupts, one of ``MODALITIES``.
+        apply: A pure function. For RGB: (views uint8 [V, H, W, 3], severity in (0, 1], key, heading
+            or None) -> new array of the same shape. For depth: (views float32 metres [V, H, W],
+            severity, key, DepthSensor) -> new array of the same shape. None for instructions, which
+            ``corrupt_instruction`` changes.
+        severity: What the severity s controls, in a few words.
+        place: Position in tables, ascending.
+        label: Title in tables; by default the name in words.
+        fails: The failure in the world that it models.
+        formula: Markdown with the constants of the code.
+        sources: Sources of the constants.
+        source: The sources in a word or two.
+        episode: What is drawn once per episode.
+        frame: What is drawn for each frame.
+        slip: How much the effect may shrink from one of 100 severities to the next (SSIM, metres).
+        bars: Time limits in milliseconds at 480x640 and at 224x224.
+        reason: What takes the time.
+        version: Version of a corruption outside the suite; rows of another version are not reused.
+            Those of the suite have the version of the suite.
+        half: Of an unseen corruption, ``VALIDATION`` or ``TEST``. Methods may be chosen on the
+            validation half only.
+
+    Raises:
+        ValueError: The name, modality, half or function is invalid.
     """
 
     name: str
@@ -56,24 +70,27 @@ class Record:
     def __post_init__(self) -> None:
         if self.modality not in MODALITIES:
             raise ValueError(
-                f"The corruption {self.name!r} has the modality {self.modality!r}, which must be "
-                f"one of {', '.join(MODALITIES)}."
+                f"The modality of corruption {self.name!r} must be one of "
+                f"{', '.join(MODALITIES)}, got {self.modality!r}."
             )
         if not self.name.replace("_", "").isalnum() or self.name != self.name.lower():
             raise ValueError(
-                f"A corruption's name is lower case with underscores, not {self.name!r}."
+                "The name of a corruption must be lower case letters, digits and underscores, got "
+                f"{self.name!r}."
             )
         if self.half not in ("", VALIDATION, TEST):
-            raise ValueError(f"A half is {VALIDATION!r} or {TEST!r}, not {self.half!r}.")
+            raise ValueError(f"half must be {VALIDATION!r} or {TEST!r}, got {self.half!r}.")
         if self.modality != "instruction" and not callable(self.apply):
-            raise ValueError(f"The corruption {self.name!r} needs a function that applies it.")
+            raise ValueError(
+                f"apply of corruption {self.name!r} must be a function, got {self.apply!r}."
+            )
 
     @classmethod
     def of(cls, modality: str, apply: Callable[..., np.ndarray], **fields: Any) -> Record:
-        """Return the record of a function, by its name."""
+        """Return the record of a function, with the name of the function."""
         return cls(apply.__name__, modality, apply, **fields)
 
     @property
     def title(self) -> str:
-        """Its name in tables."""
+        """Title in tables."""
         return self.label or self.name.replace("_", " ").capitalize()

@@ -1,8 +1,9 @@
-"""All corruptions there are: the suite, the unseen ones, and those that installed packages bring.
+"""All corruptions: the standard suite, the unseen ones, and those of installed packages.
 
-Every result row carries the version of the suite. An unseen or further one has a version of its own
-and is drawn or evaluated only where it is named. Two at once are a pair, such as
-``low_light+missing_data``: the first is applied first, and each draws what it draws alone.
+Every result row contains the version of the suite. Unseen corruptions and those of installed
+packages have separate versions, and are used only where they are named. Two corruptions at once are
+a pair, such as ``low_light+missing_data``: the first is applied first, and each makes the same
+draws as alone.
 """
 
 from __future__ import annotations
@@ -34,7 +35,7 @@ INSTRUCTIONS = (  # applied by instruction.py
 )
 
 
-GROUP = "mitigate.corruptions"  # of entry points: name = "package.module:RECORD"
+GROUP = "mitigate.corruptions"  # entry point group: name = "package.module:RECORD"
 SUITE = {
     record.name: record
     for record in sorted(
@@ -48,7 +49,7 @@ UNSEEN = {
         unseen.RECORDS, key=lambda r: (MODALITIES.index(r.modality), HALVES.index(r.half))
     )
 }
-BROAD = {record.name: record for record in broad.RECORDS}  # to train on, by modality
+BROAD = {record.name: record for record in broad.RECORDS}  # random compositions for training
 AND = "+"  # between the names of a pair
 HEAD = (
     "name",
@@ -62,15 +63,17 @@ HEAD = (
 
 
 @lru_cache(maxsize=1)
-def further() -> dict[str, Record]:
-    """Records of installed packages; one that is none, or has the name of another, is left out with
-    a warning, so that a package that nobody named stops nothing."""
-    found: dict[str, Record] = {}
+def plugin_records() -> dict[str, Record]:
+    """Return the records of installed packages.
+
+    An invalid record is left out with a warning, so that a package that is not used stops nothing.
+    """
+    records: dict[str, Record] = {}
     for point in entry_points(group=GROUP):
         try:
             record = point.load()
-            problem = _problem(record, {"clean", *SUITE, *UNSEEN, *BROAD, *found})
-        except Exception as error:  # of any kind: it is another package's code
+            problem = _problem(record, {"clean", *SUITE, *UNSEEN, *BROAD, *records})
+        except Exception as error:  # another package's code may raise anything
             problem = f"cannot be imported ({type(error).__name__}: {error})"
         if problem:
             warnings.warn(
@@ -79,29 +82,31 @@ def further() -> dict[str, Record]:
                 stacklevel=2,
             )
         else:
-            found[record.name] = record
-    return found
+            records[record.name] = record
+    return records
 
 
-def _problem(record: object, taken: set[str]) -> str:
+def _problem(record: object, names: set[str]) -> str:
+    """Return why a record of another package cannot be used; empty if it can."""
     if not isinstance(record, Record):
         return f"is a {type(record).__name__}, not a mitigate.corruptions.Record"
-    if record.name in taken:
-        return f"is called {record.name!r}, as another one is"
+    if record.name in names:
+        return f"has the name {record.name!r} of another corruption"
     if record.modality == "instruction":
-        return "corrupts instructions, which only ours do"
+        return "corrupts instructions, which packages cannot add"
     return ""
 
 
 def names(*modalities: str) -> tuple[str, ...]:
-    """Names of the suite's corruptions of ``modalities``, in their order."""
+    """Return the names of the suite's corruptions of ``modalities``, in order."""
     return tuple(name for name, record in SUITE.items() if record.modality in modalities)
 
 
 def unseen_names(*modalities: str, half: str = "") -> tuple[str, ...]:
-    """Names of the unseen corruptions of ``modalities``, of one half or of both.
+    """Return the names of the unseen corruptions of ``modalities``, of one half or of both.
 
-    Raises ValueError for a half that is none.
+    Raises:
+        ValueError: The half is unknown.
     """
     if half not in ("", *HALVES):
         raise ValueError(unknown("half of the unseen corruptions", half, HALVES))
@@ -113,53 +118,53 @@ def unseen_names(*modalities: str, half: str = "") -> tuple[str, ...]:
 
 
 def known(*modalities: str) -> tuple[str, ...]:
-    """As :func:`names`, with the unseen, the broad and the further ones behind."""
-    others = {**BROAD, **further()}.items()
-    own = names(*modalities) + unseen_names(*modalities)
-    return own + tuple(n for n, r in others if r.modality in modalities)
+    """Return all names of ``modalities``: suite, unseen, broad, and installed packages."""
+    others = {**BROAD, **plugin_records()}.items()
+    fixed = names(*modalities) + unseen_names(*modalities)
+    return fixed + tuple(n for n, r in others if r.modality in modalities)
 
 
 def broad_name(modality: str) -> str:
-    """The broad augmentation of a modality."""
+    """Return the name of the broad augmentation of a modality."""
     return next(name for name, record in BROAD.items() if record.modality == modality)
 
 
 def record(name: str) -> Record:
-    """The record of a known corruption; KeyError for another."""
-    return SUITE.get(name) or UNSEEN.get(name) or BROAD.get(name) or further()[name]
+    """Return the record of a corruption; KeyError if it is unknown."""
+    return SUITE.get(name) or UNSEEN.get(name) or BROAD.get(name) or plugin_records()[name]
 
 
 def parts(name: str) -> tuple[str, ...]:
-    """The corruptions that ``name`` stands for, in their order: one, or those of a pair."""
+    """Return the names in a pair, in order, or the one name."""
     return tuple(name.split(AND))
 
 
 def title(name: str) -> str:
-    """The name of a corruption in tables; of one that is not installed here, in words."""
+    """Return the title of a corruption in tables; it need not be installed."""
     if AND in name:
         return f" {AND} ".join(map(title, parts(name)))
-    if name in {**SUITE, **UNSEEN, **BROAD} or name in further():
+    if name in {**SUITE, **UNSEEN, **BROAD} or name in plugin_records():
         return record(name).title
     return name.replace("_", " ").capitalize()
 
 
 def version(name: str) -> dict[str, str]:
-    """What a row says of a corruption that is not, or not only, the suite's."""
-    own = (part for part in parts(name) if part != "clean" and part not in SUITE)
-    versions = [record(part).version for part in own]
+    """Return the entry ``version`` of a row; empty if all parts belong to the suite."""
+    others = (part for part in parts(name) if part != "clean" and part not in SUITE)
+    versions = [record(part).version for part in others]
     return {"version": AND.join(versions)} if versions else {}
 
 
 def modality(name: str) -> str:
-    """What the corruption ``name`` corrupts."""
+    """Return the modality that a corruption changes."""
     return record(name).modality
 
 
 def table() -> str:
-    """All corruptions of frames as lines of aligned columns, a heading first."""
-    found = [record(name) for name in known("rgb", "depth")]
+    """Return all corruptions of frames as text in aligned columns, with a heading."""
+    records = [record(name) for name in known("rgb", "depth")]
     rows = [
-        (r.name, r.modality, r.severity, r.episode, r.frame, r.source, _suite(r)) for r in found
+        (r.name, r.modality, r.severity, r.episode, r.frame, r.source, _suite(r)) for r in records
     ]
     rows = [HEAD, *rows]
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
@@ -168,6 +173,6 @@ def table() -> str:
 
 
 def _suite(record: Record) -> str:
-    """The smallest suite of ``conf/suite`` that has it; none has a further one."""
+    """Return the smallest suite of ``conf/suite`` with a corruption, or "-"."""
     short = {VALIDATION: "unseen_val", TEST: "unseen_test"}
     return "full" if record.name in SUITE else short.get(record.half, "-")

@@ -1,4 +1,4 @@
-"""Which frame is corrupted by what: clean, per frame, per episode, success-distributed."""
+"""Schedules that draw the corruption of each frame in training."""
 
 from __future__ import annotations
 
@@ -21,32 +21,36 @@ from mitigate.corruptions.suite import (
 )
 
 MODES = ("clean", "per_frame", "per_episode", "success_distributed")
-Severity = float | Sequence[float]  # one, or the ends of a range
+Severity = float | Sequence[float]  # one value, or the two ends of a range
 
 
 @dataclass
 class Schedule:
-    """Draws the corruption and the key of a frame.
+    """Draw the corruption and the key of each frame.
 
-    * ``clean``: nothing is corrupted.
-    * ``per_frame``: corruption and random state are drawn anew for every frame (transient).
-    * ``per_episode``: one corruption and one episode state for the whole episode (persistent).
-    * ``success_distributed``: per episode, corruption k with p_k proportional to
-      (1 - SR_k)^alpha + floor, where SR_k is its success rate in a prior evaluation.
+    Modes:
+        ``clean``: nothing is corrupted.
+        ``per_frame``: a corruption and a random state per frame (transient).
+        ``per_episode``: a corruption and a random state per episode (persistent).
+        ``success_distributed``: per episode, corruption k with p_k proportional to
+        (1 - SR_k)^alpha + floor, where SR_k is its success rate in an earlier evaluation.
 
     Args:
-        mode: one of MODES.
-        severity: s in [0, 1] of RGB corruptions, and of depth ones unless
-            ``severity_depth`` is given (the paper also trains at 0.9 / 0.8). Either may be a range
-            (low, high), from which each frame (per frame) or episode draws its own, uniformly.
-        clean_share: share of frames (per frame) or episodes that stay clean, in [0, 1].
-        names: the corruptions to draw from.
-        broad_share: share of the draws that are not clean, in [0, 1], in which a random composition
-            (``broad``) of the drawn corruption's modality takes its place.
-        alpha, floor: of the success-distributed weights; both >= 0, floor > 0 keeps all alive.
-        success: SR_k in [0, 1] by name; None means uniform weights until ``refresh``.
+        mode: One of MODES.
+        severity: s in [0, 1] of RGB corruptions, and of depth corruptions unless ``severity_depth``
+            is set (the paper also trains at 0.9 / 0.8). Either may be a range (low, high), from
+            which each frame (per frame) or episode draws uniformly.
+        severity_depth: s of depth corruptions; None: ``severity``.
+        clean_share: Share of frames (per frame) or episodes that stay clean, in [0, 1].
+        names: Corruptions to draw from.
+        broad_share: Share in [0, 1] of the corrupted frames or episodes that get a random
+            composition (``broad``) of the drawn corruption's modality instead.
+        alpha: Exponent of the success-distributed weights, >= 0.
+        floor: Minimum of the weights, >= 0; above 0, every corruption can be drawn.
+        success: SR_k in [0, 1] by name; None: uniform weights until ``refresh``.
 
-    Raises ValueError for anything outside these ranges.
+    Raises:
+        ValueError: An argument is out of range.
     """
 
     mode: str
@@ -62,14 +66,14 @@ class Schedule:
     def __post_init__(self) -> None:
         if self.mode not in MODES:
             raise ValueError(
-                f"There is no schedule mode {self.mode!r}. Allowed modes: {', '.join(MODES)}."
+                f"The schedule mode must be one of {', '.join(MODES)}, got {self.mode!r}."
             )
         self.severity = _checked(self.severity)
         if self.severity_depth is not None:
             self.severity_depth = _checked(self.severity_depth)
         if isinstance(self.names, str):
             raise ValueError(
-                f"names is a list of corruptions, such as [{self.names!r}], but it is the text "
+                f"names must be a list of corruptions, such as [{self.names!r}], got the text "
                 f"{self.names!r}."
             )
         self.names = tuple(
@@ -77,63 +81,69 @@ class Schedule:
         )
         if not self.names or len(set(self.names)) < len(self.names):
             raise ValueError(
-                f"A schedule needs at least one corruption and each only once, but names = "
-                f"{self.names}. Leave it out to draw from all of {', '.join(NAMES)}."
+                f"names must be at least one corruption and each only once, got {self.names}. "
+                f"Leave it out to draw from all of {', '.join(NAMES)}."
             )
         shares = {"clean_share": self.clean_share, "broad_share": self.broad_share}
         for name, share in shares.items():
             if not 0.0 <= share <= 1.0:
-                raise ValueError(f"{name} must be in [0, 1], but it is {share!r}.")
+                raise ValueError(f"{name} must be in [0, 1], got {share!r}.")
         if self.mode == "clean" and self.broad_share > 0.0:
             raise ValueError(
-                "The mode clean corrupts nothing, so there is nothing that broad_share = "
-                f"{self.broad_share!r} could be of: choose another mode (in a config: "
-                "schedule=per_episode), or leave it out."
+                f"broad_share must be 0 in the mode clean, which corrupts nothing, got "
+                f"{self.broad_share!r}. Choose another mode (in a config: schedule=per_episode), "
+                "or leave it out."
             )
         if not (0.0 <= self.alpha < math.inf and 0.0 <= self.floor < math.inf):
             raise ValueError(
-                f"alpha and floor must be finite and >= 0, but alpha = {self.alpha!r} and floor = "
+                f"alpha and floor must be finite and >= 0, got alpha = {self.alpha!r} and floor = "
                 f"{self.floor!r}."
             )
-        success, self.success = self.success, None
+        success = self.success
+        self.success = None
         self._weights = [1.0 / len(self.names)] * len(self.names)
         if success is not None:
             self.refresh(success)
 
     @classmethod
     def always(cls, name: str, severity: float) -> Schedule:
-        """The corruption ``name`` at ``severity`` in every frame of every episode, as evaluated."""
+        """Return a schedule with one corruption at ``severity`` in every frame, as evaluated."""
         return cls("per_episode", severity, clean_share=0.0, names=(name,))
 
     @property
     def weights(self) -> dict[str, float]:
-        """Probability of each corruption given that the frame is not clean; adds up to 1."""
+        """Probability of each corruption given that the frame is not clean; the sum is 1."""
         return dict(zip(self.names, self._weights, strict=True))
 
     def only(self, modality_: str) -> Schedule:
-        """The same, drawing corruptions of one modality alone. ValueError if it has none."""
+        """Return this schedule with the corruptions of one modality only; ValueError if none."""
         names = tuple(name for name in self.names if modality(name) == modality_)
         if not names:
-            raise ValueError(f"The schedule draws no {modality_} corruption: names={self.names}.")
+            raise ValueError(
+                f"names of the schedule must contain a {modality_} corruption, got {self.names}."
+            )
         return replace(self, names=names)
 
     def refresh(self, success: dict[str, float]) -> None:
         """Recompute the weights from success rates by name ("clean" and others are ignored).
 
-        A name that is absent keeps its last rate. Raises ValueError if it never had one, or if a
-        rate is outside [0, 1]. Other modes than success_distributed keep uniform weights.
+        A missing name keeps its last rate. Only success_distributed uses the rates; the other modes
+        keep uniform weights.
+
+        Raises:
+            ValueError: A corruption never had a rate, or a rate is outside [0, 1].
         """
         known = {**(self.success or {}), **success}
         missing = [name for name in self.names if name not in known]
         if missing:
             raise ValueError(
-                f"No success rate for {', '.join(missing)}. Evaluate these corruptions first, or "
-                "leave them out of the schedule's names."
+                f"Every corruption needs a success rate; {', '.join(missing)} have none. Evaluate "
+                "these corruptions first, or leave them out of the schedule's names."
             )
         rates = {name: float(known[name]) for name in self.names}
-        wrong = {name: rate for name, rate in rates.items() if not 0.0 <= rate <= 1.0}
-        if wrong:
-            raise ValueError(f"Success rates are shares in [0, 1], but got {wrong}.")
+        invalid = {name: rate for name, rate in rates.items() if not 0.0 <= rate <= 1.0}
+        if invalid:
+            raise ValueError(f"Success rates must be shares in [0, 1], got {invalid}.")
         self.success = rates
         if self.mode == "success_distributed":
             raw = [(1.0 - rate) ** self.alpha + self.floor for rate in rates.values()]
@@ -141,7 +151,7 @@ class Schedule:
             self._weights = [w / total if total > 0 else 1.0 / len(raw) for w in raw]
 
     def draw(self, seed: int, episode: str, frame: int) -> tuple[Corruption, Key]:
-        """The corruption and key of one frame: a function of the arguments and the weights."""
+        """Draw the corruption and the key of a frame, a function of arguments and weights."""
         episode = str(episode)
         if self.mode == "clean":
             return CLEAN, Key(seed, episode, frame)
@@ -158,23 +168,27 @@ class Schedule:
         return self.corruption(name, uniform(value, 2)), key
 
     def corruption(self, name: str, place: float = 0.5) -> Corruption:
-        """The corruption ``name`` at this schedule's severity for its modality; of a range, at
-        ``place`` between its ends (0 to 1, the middle unless told)."""
+        """Return a corruption at this schedule's severity for its modality.
+
+        Args:
+            name: Name of the corruption.
+            place: Position in a range of severities, from 0 (low) to 1 (high).
+        """
         depth = modality(name) == "depth" and self.severity_depth is not None
         severity: Any = self.severity_depth if depth else self.severity
         low, high = severity if isinstance(severity, tuple) else (severity, severity)
         return Corruption(name, low + place * (high - low))
 
     def state_dict(self) -> dict:
-        """JSON-able: what a checkpoint keeps so that the weights survive a resume."""
+        """Return the state for a checkpoint as JSON data, so that a resume has the same weights."""
         return {"success": None if self.success is None else dict(self.success)}
 
     def load_state_dict(self, state: dict) -> None:
         """Restore ``state_dict()``; ValueError if it lacks a corruption of this schedule."""
         if "success" not in state:
             raise ValueError(
-                f"This is not the state of a Schedule: it has no 'success' entry, only "
-                f"{sorted(state)}. Pass what state_dict() returned."
+                f"The state of a Schedule must have the entry 'success', got only {sorted(state)}. "
+                "Pass the result of state_dict()."
             )
         self.success = None
         self._weights = [1.0 / len(self.names)] * len(self.names)
@@ -183,9 +197,10 @@ class Schedule:
 
 
 def drawn(by: Corruption | Schedule, seed: int, episode: str, frame: int) -> tuple[Corruption, Key]:
-    """What ``by`` does to one frame, and the key: a corruption meets every frame.
+    """Return the corruption and the key of a frame; a plain corruption applies to every frame.
 
-    Raises ValueError if ``by`` is neither.
+    Raises:
+        ValueError: ``by`` is neither a Corruption nor a Schedule.
     """
     if isinstance(by, Schedule):
         return by.draw(seed, episode, frame)
@@ -193,7 +208,11 @@ def drawn(by: Corruption | Schedule, seed: int, episode: str, frame: int) -> tup
 
 
 def names_of(by: Corruption | Schedule) -> tuple[str, ...]:
-    """The corruptions that ``by`` may do, none if all is clean. ValueError if it is neither."""
+    """Return the names of the corruptions that ``by`` may apply; empty if all frames are clean.
+
+    Raises:
+        ValueError: ``by`` is neither a Corruption nor a Schedule.
+    """
     if isinstance(by, Schedule):
         return () if by.mode == "clean" else by.names
     return tuple(part.name for part in check_corruption(by).parts)
@@ -205,7 +224,7 @@ def _checked(severity: Severity) -> float | tuple[float, float]:
     ends = tuple(map(check_severity, severity))
     if len(ends) != 2 or ends[0] > ends[1]:
         raise ValueError(
-            f"A range of severities is [low, high] with low <= high, but got {list(severity)}. "
-            "Write, for instance, schedule.severity=[0.3,1.0]."
+            f"A range of severities must be [low, high] with low <= high, got {list(severity)}. "
+            "Write for example schedule.severity=[0.3,1.0]."
         )
     return ends[0], ends[1]

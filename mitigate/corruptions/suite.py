@@ -1,7 +1,6 @@
-"""The suite: names, checks and the two calls that everything else uses.
+"""Apply corruptions to frames: ``corrupt`` for a frame, ``corrupt_observation`` for an observation.
 
-``corrupt`` takes one modality of one instant, ``corrupt_observation`` an observation dict. Both
-are pure functions of (frame, name, severity, key, heading).
+Both are pure functions of (frame, name, severity, key, heading).
 """
 
 from __future__ import annotations
@@ -18,47 +17,47 @@ from mitigate.corruptions.depth_sensor import DepthSensor, check_unit
 from mitigate.corruptions.keying import Key, as_key
 from mitigate.corruptions.record import MODALITIES
 
-MOST_VIEWS = 36  # of one instant: R2R's discrete panoramas (3 elevations of 12); VLN-CE has 12
+MAX_VIEWS = 36  # of one instant: R2R's discrete panoramas (3 elevations of 12); VLN-CE has 12
 
 
 def rgb_views(frame: np.ndarray) -> np.ndarray:
-    """The frame as contiguous uint8 [V, H, W, 3]; ValueError for anything else."""
+    """Return the frame as contiguous uint8 [V, H, W, 3]; ValueError for another shape or dtype."""
     if frame.dtype != np.uint8:
         raise ValueError(
-            f"RGB frames must be uint8 in 0-255, but this one is {frame.dtype}. Convert it first: "
-            "np.rint(frame * 255).astype(np.uint8) if it is in 0-1, np.rint(frame).astype(np.uint8)"
-            " if it is in 0-255. Float frames are refused because pipelines such as CLIP's divide "
-            "by 255 only for uint8, so a float frame in 0-255 silently breaks them."
+            f"RGB frames must be uint8 in 0-255, got {frame.dtype}. Convert them: "
+            "np.rint(frame * 255).astype(np.uint8) if they are in 0-1, "
+            "np.rint(frame).astype(np.uint8) if they are in 0-255. Float frames are not supported, "
+            "because pipelines such as CLIP's divide by 255 only for uint8."
         )
     if frame.ndim not in (3, 4) or frame.shape[-1] != 3 or 0 in frame.shape:
         raise ValueError(
-            f"RGB frames must be [H, W, 3] or [views, H, W, 3], but the shape is {frame.shape}. "
-            "Move the channels last, drop an alpha channel, and corrupt a batch one instant at a "
-            "time: every instant has its own key."
+            f"RGB frames must be [H, W, 3] or [views, H, W, 3], got {frame.shape}. Move the "
+            "channels last, drop an alpha channel, and corrupt a batch one instant at a time, "
+            "because every instant has its own key."
         )
     return _one_instant(np.ascontiguousarray(frame if frame.ndim == 4 else frame[None]))
 
 
 def depth_views(frame: np.ndarray, sensor: DepthSensor, name: str) -> np.ndarray:
-    """The frame as contiguous float32 [V, H, W]; ValueError for anything else, millimetres and RGB
-    too."""
+    """Return the frame as contiguous float32 [V, H, W]; ValueError for RGB and millimetres too."""
     if frame.ndim > 2 and frame.shape[-1] == 3:
         raise ValueError(
-            f"{name} corrupts depth, and this looks like an RGB frame (the last axis of "
-            f"{frame.shape} is 3). On RGB: {', '.join(registry.known('rgb'))}. If it is depth of 3 "
-            "columns, give it a last axis of 1: frame[..., None]."
+            f"{name} needs a depth frame, got one that looks like RGB (the last axis of "
+            f"{frame.shape} is 3). Corruptions of RGB: {', '.join(registry.known('rgb'))}. For "
+            "depth with 3 columns, add a last axis of 1: frame[..., None]."
         )
     if frame.dtype != np.float32:
         raise ValueError(
-            f"Depth must be float32 in metres, but this frame is {frame.dtype}. Convert it first: "
-            "depth.astype(np.float32), divided by 1000 if it holds millimetres (uint16); a sensor "
-            "that normalises to 0-1 goes through DepthSensor(z_min, z_max).to_metres."
+            f"Depth must be float32 in metres, got {frame.dtype}. Convert it: "
+            "depth.astype(np.float32), divided by 1000 for millimetres (uint16). For depth "
+            "normalised to 0-1 use DepthSensor(z_min, z_max).to_metres."
         )
     shape = frame.shape[:-1] if frame.ndim > 2 and frame.shape[-1] == 1 else frame.shape
     if len(shape) not in (2, 3) or 0 in shape:
         raise ValueError(
-            f"Depth must be [H, W], [H, W, 1], [views, H, W] or [views, H, W, 1], but the shape is "
-            f"{frame.shape}. Corrupt a batch one instant at a time: every instant has its own key."
+            f"Depth must be [H, W], [H, W, 1], [views, H, W] or [views, H, W, 1], got "
+            f"{frame.shape}. Corrupt a batch one instant at a time, because every instant has its "
+            "own key."
         )
     views = frame.reshape((1, *shape) if len(shape) == 2 else shape)
     views = _one_instant(np.ascontiguousarray(views))
@@ -67,31 +66,33 @@ def depth_views(frame: np.ndarray, sensor: DepthSensor, name: str) -> np.ndarray
 
 
 def _one_instant(views: np.ndarray) -> np.ndarray:
-    """``views`` [V, ...] as they are; ValueError for more of them than a panorama has."""
-    if len(views) > MOST_VIEWS:
+    """Return ``views`` [V, ...]; ValueError for more views than a panorama has."""
+    if len(views) > MAX_VIEWS:
         raise ValueError(
-            f"There are {len(views)} views, but an instant has {MOST_VIEWS} at most. The leading "
-            "axis is the views of one panorama, which share one mask. Is it a batch? Corrupt it "
-            "one instant at a time: every instant has its own key."
+            f"An instant must have at most {MAX_VIEWS} views, got {len(views)}. The leading "
+            "axis is the views of one panorama, which share one mask. Corrupt a batch one instant "
+            "at a time, because every instant has its own key."
         )
     return views
 
 
-# changes when any pixel or word of any corruption changes, of frames and texts that keep the rules
-# of docs/corruptions.md and docs/instructions.md
+# Raise it when any pixel or word of any corruption changes, for inputs that follow
+# docs/corruptions.md and docs/instructions.md.
 SUITE_VERSION = "1.1"
 
 RGB = registry.names("rgb")
 DEPTH = registry.names("depth")
 NAMES = RGB + DEPTH
-# what is done to the words before an episode begins: see instruction.py
+# applied by instruction.py before an episode starts
 INSTRUCTION = registry.names("instruction")
 SENSOR = DepthSensor()
 
 
 def check_name(name: str, allowed: tuple[str, ...] | None = None) -> str:
-    """Return ``name``, or raise ValueError with the nearest allowed name; by default the
-    corruptions of frames, with those of installed packages, are allowed."""
+    """Return ``name``, or raise ValueError with the nearest allowed name.
+
+    By default all corruptions of frames are allowed, with those of installed packages.
+    """
     if name in (NAMES if allowed is None else allowed):
         return name
     allowed = registry.known("rgb", "depth") if allowed is None else allowed
@@ -99,41 +100,45 @@ def check_name(name: str, allowed: tuple[str, ...] | None = None) -> str:
         return name
     if name in INSTRUCTION:
         raise ValueError(
-            f"{name!r} corrupts instructions, and here frames are corrupted, by one of "
-            f"{', '.join(allowed)}. For instructions: mitigate corrupt_episodes, or in Python "
-            "corrupt_instruction."
+            f"The corruption must be one of frames ({', '.join(allowed)}), got {name!r}, which "
+            "corrupts instructions. For instructions use mitigate corrupt_episodes, or "
+            "corrupt_instruction in Python."
         )
     if registry.AND in str(name):
         raise ValueError(
-            f"{name!r} is a pair: it is a condition of an evaluation (conditions=[{name}]), and "
-            "Corruption holds it; here one corruption is meant."
+            f"The corruption must be a single one, got the pair {name!r}. A pair can be a "
+            f"condition of an evaluation (conditions=[{name}]) or a Corruption."
         )
     raise ValueError(unknown("corruption", name, allowed))
 
 
 def check_severity(severity: float) -> float:
-    """Return ``severity`` as a float in [0, 1], or raise ValueError (for NaN, text and truth values
-    too)."""
+    """Return ``severity`` as a float in [0, 1]; ValueError also for NaN, str and bool."""
     try:
         value = math.nan if isinstance(severity, (str, bool, np.bool_)) else float(severity)
     except (TypeError, ValueError):
         value = math.nan
     if not 0.0 <= value <= 1.0:
         raise ValueError(
-            f"Severity must be a number from 0 (clean) to 1 (worst), but it is {severity!r}. "
-            "The paper uses 0.6 for R2R and 0.5 for RxR and HM3D; percentages and the 1-5 scale "
-            "of ImageNet-C must be divided by 100 or 5 first."
+            f"Severity must be a number from 0 (clean) to 1 (worst), got {severity!r}. The paper "
+            "uses 0.6 for R2R and 0.5 for RxR and HM3D. Divide percentages by 100, and the 1-5 "
+            "scale of ImageNet-C by 5."
         )
     return value
 
 
 @dataclass(frozen=True)
 class Corruption:
-    """What is done: ``name`` ("clean", a known one, or a pair of them) at ``severity`` in [0, 1].
+    """A corruption, or a pair, at a severity.
 
-    A pair such as "low_light+missing_data" has one severity for both; the first is applied first.
-    Raises ValueError for an unknown name, one that is twice in a pair or "clean" in it, a severity
-    outside [0, 1], or "clean" with severity > 0.
+    Attributes:
+        name: "clean", the name of a corruption, or a pair such as "low_light+missing_data"; the
+            first of a pair is applied first.
+        severity: In [0, 1], the same for both of a pair.
+
+    Raises:
+        ValueError: The name is unknown, a pair is invalid, the severity is outside [0, 1], or
+            "clean" has a severity above 0.
     """
 
     name: str
@@ -147,42 +152,43 @@ class Corruption:
         object.__setattr__(self, "severity", check_severity(self.severity))
         if self.name == "clean" and self.severity > 0.0:
             raise ValueError(
-                f"'clean' has severity 0, but {self.severity} was given. Use CLEAN, or name the "
-                f"corruption that is meant: {', '.join((*NAMES, *INSTRUCTION))}."
+                f"The severity of 'clean' must be 0, got {self.severity}. Use CLEAN, or name a "
+                f"corruption: {', '.join((*NAMES, *INSTRUCTION))}."
             )
 
     @property
     def parts(self) -> tuple[Corruption, ...]:
-        """The corruptions of a pair in their order, one alone as it is; of "clean" none."""
+        """The single corruptions in order; empty for "clean"."""
         if self.name == "clean":
             return ()
-        found = registry.parts(self.name)
-        return (self,) if len(found) == 1 else tuple(Corruption(n, self.severity) for n in found)
+        names = registry.parts(self.name)
+        return (self,) if len(names) == 1 else tuple(Corruption(n, self.severity) for n in names)
 
     @property
     def modalities(self) -> tuple[str, ...]:
-        """What is corrupted, each once: of "rgb", "depth" and "instruction"."""
+        """The corrupted modalities: "rgb", "depth", "instruction"."""
         return tuple(dict.fromkeys(registry.modality(part.name) for part in self.parts))
 
     @property
     def modality(self) -> str:
-        """The same in one word: "rgb", "rgb+depth", or "none" for clean episodes."""
+        """The corrupted modalities in one word: "rgb", "rgb+depth", or "none" if clean."""
         return registry.AND.join(self.modalities) or "none"
 
 
 def _check_pair(name: str) -> None:
-    found = registry.parts(name)
-    if "clean" in found:
+    """Raise ValueError unless ``name`` is a pair of two different corruptions."""
+    names = registry.parts(name)
+    if "clean" in names:
         raise ValueError(
-            f"{name!r} is no pair: 'clean' is the absence of any corruption. Name the other one "
-            "alone, or a pair of two corruptions, such as low_light+missing_data."
+            f"A pair must not contain 'clean', which means no corruption, got {name!r}. Name the "
+            "other corruption alone, or a pair such as low_light+missing_data."
         )
-    for part in found:
+    for part in names:
         check_name(part, registry.known(*MODALITIES))
-    if len(found) != 2 or found[0] == found[1]:
+    if len(names) != 2 or names[0] == names[1]:
         raise ValueError(
-            f"{name!r} is no pair: it has two different names, such as low_light+missing_data, the "
-            "first applied first."
+            f"A pair must be two different corruptions, got {name!r}. Write for example "
+            "low_light+missing_data; the first is applied first."
         )
 
 
@@ -190,11 +196,11 @@ CLEAN = Corruption("clean", 0.0)
 
 
 def check_corruption(corruption: Corruption) -> Corruption:
-    """Return ``corruption``, or raise ValueError if it is a name or anything else."""
+    """Return ``corruption``, or raise ValueError if it is not a :class:`Corruption`."""
     if not isinstance(corruption, Corruption):
         raise ValueError(
-            f"What is done is a Corruption(name, severity), such as Corruption('spatter', 0.6), "
-            f"but it is {corruption!r:.60}."
+            f"The corruption must be a Corruption(name, severity), such as "
+            f"Corruption('spatter', 0.6), got {corruption!r:.60}."
         )
     return corruption
 
@@ -204,15 +210,14 @@ def check_heading(heading: float | None) -> float | None:
     if heading is None or (type(heading) is float and math.isfinite(heading)):
         return heading
     try:
-        told = np.asarray(heading)
-        value = float(told) if told.ndim == 0 and told.dtype.kind in "iuf" else math.nan
+        array = np.asarray(heading)
+        value = float(array) if array.ndim == 0 and array.dtype.kind in "iuf" else math.nan
     except (TypeError, ValueError):
         value = math.nan
     if not math.isfinite(value):
         raise ValueError(
-            f"The heading must be in finite radians, not {heading!r}. Pass heading=None, or an "
-            "observation without a pose, if it is not known: a flare then keeps its place in view "
-            "0."
+            f"The heading must be in finite radians, got {heading!r}. If it is unknown, pass "
+            "heading=None or an observation without a pose; a flare then keeps its place in view 0."
         )
     return value
 
@@ -230,79 +235,89 @@ def corrupt(
 
     Args:
         frame: uint8 [H, W, 3] or [V, H, W, 3] for RGB names; float32 metres [H, W], [H, W, 1],
-            [V, H, W] (W not 3) or [V, H, W, 1] for depth names. View k of V looks at yaw -30 k
-            degrees, level: the flare knows no elevation. V counts the views of one instant, 36 at
-            most: they share one mask. It is no batch axis; corrupt a batch one instant at a time,
-            each with its own key.
-        name: one of NAMES.
+            [V, H, W] (W not 3) or [V, H, W, 1] for depth names. View k of V has yaw -30 k degrees
+            and is level. V is the number of views of one instant, at most 36, which share one mask.
+            It is not a batch axis; corrupt a batch one instant at a time, each with its own key.
+        name: One of NAMES, or another known corruption of frames.
         severity: s in [0, 1]; 0 returns a bit-exact copy.
-        key: names the random draw; a whole number is a seed, a text an episode.
-        heading: the agent's heading in radians, counter-clockwise. The flare keeps its direction
-            in the world; None (unknown) keeps it at its place in view 0 instead.
-        sensor: depth range and sentinel.
+        key: Key of the random draws; an int is a seed, a str an episode.
+        heading: Heading of the agent in radians, counter-clockwise, so that a flare keeps its
+            direction in the world. None (unknown): the flare keeps its place in view 0.
+        sensor: Depth range and value for no reading.
 
-    Returns a new array of the same shape and dtype; the input is not modified.
-    Raises ValueError for a wrong name, severity, dtype, shape, heading or key, and for depth of
-    which over nine tenths are beyond three times the sensor's z_max: it is in millimetres.
+    Returns:
+        A new array of the same shape and dtype; the input is not modified.
+
+    Raises:
+        ValueError: An argument is invalid, or over nine tenths of the depth are beyond three times
+            the sensor's z_max, so it is probably in millimetres.
     """
     check_name(name)
     severity = check_severity(severity)
-    key, heading = as_key(key), check_heading(heading)
+    key = as_key(key)
+    heading = check_heading(heading)
     frame = np.asarray(frame)
     record = registry.record(name)
     rgb = record.modality == "rgb"
     views = rgb_views(frame) if rgb else depth_views(frame, sensor, name)
     if severity == 0.0:
         return frame.copy()
-    assert record.apply is not None, "names of frames have a function"
-    given = (severity, key, heading if rgb else sensor)
-    if name not in registry.further():
-        return record.apply(views, *given).reshape(frame.shape)
-    made = record.apply(views.copy(), *given)
-    array = isinstance(made, np.ndarray)
-    if not array or made.dtype != views.dtype or made.shape != views.shape:
-        given_back = f"{made.dtype} {made.shape}" if array else type(made).__name__
+    assert record.apply is not None, "corruptions of frames have a function"
+    arguments = (severity, key, heading if rgb else sensor)
+    if name not in registry.plugin_records():
+        return record.apply(views, *arguments).reshape(frame.shape)
+    result = record.apply(views.copy(), *arguments)
+    is_array = isinstance(result, np.ndarray)
+    if not is_array or result.dtype != views.dtype or result.shape != views.shape:
+        actual = f"{result.dtype} {result.shape}" if is_array else type(result).__name__
         raise ValueError(
-            f"The corruption {name!r} gave {given_back} for {views.dtype} {views.shape}: its "
-            "function must keep shape and dtype."
+            f"The function of corruption {name!r} must keep shape and dtype, got {actual} for "
+            f"{views.dtype} {views.shape}."
         )
-    return made.reshape(frame.shape)
+    return result.reshape(frame.shape)
 
 
 def corrupt_observation(
     obs: dict, corruption: Corruption, key: Key | int | str, sensor: DepthSensor = SENSOR
 ) -> dict:
-    """A new observation dict with what ``corruption`` concerns corrupted (``core/observation.py``).
+    """Corrupt the frames of an observation (``core/observation.py``).
 
-    The other entries are the same objects as in ``obs``. The heading is read from ``obs["pose"]``.
-    A corrupted instruction leaves the frames clean: ``corrupt_instruction`` changed the words.
-    Raises ValueError if the modality is missing, the pose is not [3] or ``corruption`` is none, and
-    as ``corrupt`` does.
+    Corruptions of instructions change nothing here; they are applied by ``corrupt_instruction``.
+
+    Args:
+        obs: The observation; the heading is read from ``obs["pose"]``, if present.
+        corruption: The corruption.
+        key: Key of the random draws.
+        sensor: Depth range and value for no reading.
+
+    Returns:
+        A new dict; entries that are not corrupted are the same objects.
+
+    Raises:
+        ValueError: The modality is missing, the pose is not [3], ``corruption`` is not a
+            Corruption, or as in ``corrupt``.
     """
-    found = dict(obs)
+    result = dict(obs)
     for part in check_corruption(corruption).parts:
         if part.modality != "instruction":
-            found |= _corrupted_entry(found, part, key, sensor)
-    return found
+            result |= _corrupt_entry(result, part, key, sensor)
+    return result
 
 
-def _corrupted_entry(
-    obs: dict, part: Corruption, key: Key | int | str, sensor: DepthSensor
-) -> dict:
-    """The entry that one corruption changes, by name."""
+def _corrupt_entry(obs: dict, part: Corruption, key: Key | int | str, sensor: DepthSensor) -> dict:
+    """Return the entry that one corruption changes, by name."""
     entry = observation.RGB if part.modality == "rgb" else observation.DEPTH
     if entry not in obs:
         raise ValueError(
-            f"{part.name!r} corrupts {entry!r}, which this observation does not hold (it "
-            f"holds {', '.join(map(repr, obs)) or 'nothing'}). Give the agent that sensor or leave "
-            f"{part.name!r} out of its suite."
+            f"{part.name!r} needs the entry {entry!r}, which the observation lacks (it has "
+            f"{', '.join(map(repr, obs)) or 'none'}). Add that sensor, or leave {part.name!r} out "
+            "of the suite."
         )
     pose = obs.get(observation.POSE)
     if pose is not None and np.shape(pose) != (3,):
         raise ValueError(
-            f"{observation.POSE!r} must be [3] = (x, y, heading), but its shape is "
-            f"{np.shape(pose)}. Leave it out if the heading is not known: a flare then keeps its "
-            "place in view 0."
+            f"{observation.POSE!r} must be [3] = (x, y, heading), got {np.shape(pose)}. Leave it "
+            "out if the heading is unknown; a flare then keeps its place in view 0."
         )
     heading = None if pose is None else float(pose[2])
     return {

@@ -24,7 +24,7 @@ from mitigate.core.observation import POSE, VIEW_STEP_DEGREES, VIEWS
 from mitigate.core.progress import Progress, say
 from mitigate.core.seeding import generator
 from mitigate.corruptions import Corruption, DepthSensor, Key, corrupt_observation, frame_files
-from mitigate.corruptions.frame_files import make_plan, told
+from mitigate.corruptions.frame_files import count_suffixes, make_plan
 from mitigate.worlds.episodes import read_episodes
 from mitigate.worlds.world import Placeable
 
@@ -193,7 +193,7 @@ class FolderFrames:
                 scenes.setdefault(scene, []).append(self.path / frame.path)
         self.left_out = _left_out(plan.left_out)
         if not scenes:
-            other = told(plan.other_files) or "none"
+            other = count_suffixes(plan.other_files) or "none"
             raise FileNotFoundError(
                 f"{self.path} holds no {self.sensor} frames: {plan.other_modality} of the other "
                 f"sensor, {self.left_out}, other files {other}. RGB is 8-bit RGB in PNG or JPEG, "

@@ -99,7 +99,7 @@ def test_conditions_take_the_severity_of_their_modality():
 
 def test_a_severity_out_of_range_is_refused_with_any_condition():
     for given in ((1.2, None), (0.5, 1.2)):
-        with pytest.raises(ValueError, match="from 0 .clean. to 1 .worst., but it is 1.2"):
+        with pytest.raises(ValueError, match="from 0 .clean. to 1 .worst., got 1.2"):
             evaluate.conditions(["clean"], *given)
 
 

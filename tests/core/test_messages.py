@@ -57,7 +57,7 @@ def evaluation(monkeypatch, tmp_path, weights, capsys):
 
 def test_a_severity_out_of_range(evaluation):
     text = evaluation("severity=1.2", "conditions=[clean,flare]")
-    for part in ("1.2", "from 0 (clean) to 1 (worst)", "divided by 100"):
+    for part in ("1.2", "from 0 (clean) to 1 (worst)", "by 100"):
         assert part in text
 
 

@@ -11,16 +11,16 @@ MASKED = ("low_light", "spatter", "flare", "haze", "scratches", "refraction")
 
 
 def held() -> int:
-    return sum(size for _, size in keying._kept.values())
+    return sum(size for _, size in keying._cache.values())
 
 
 @pytest.fixture
 def kept(monkeypatch):
     """A cache of its own, for 1 MB and 8 entries."""
-    monkeypatch.setattr(keying, "_kept", {})
-    monkeypatch.setattr(keying, "MOST", 1 << 20)
-    monkeypatch.setattr(keying, "MOST_KEPT", 8)
-    return keying._kept
+    monkeypatch.setattr(keying, "_cache", {})
+    monkeypatch.setattr(keying, "MAX_CACHE_BYTES", 1 << 20)
+    monkeypatch.setattr(keying, "MAX_CACHE_ENTRIES", 8)
+    return keying._cache
 
 
 def test_what_is_kept_in_all_is_bounded_by_bytes(kept):

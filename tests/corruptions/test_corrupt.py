@@ -99,7 +99,7 @@ def test_the_same_command_goes_on_and_new_frames_join_at_the_end(run, walk):
     again.unlink()
     save(walk / "in/a/frame12.png", RGB[3])
     status, out, _ = run(*SPATTER)
-    assert status == 0 and "2 frames written" in out and "12 were there" in out
+    assert status == 0 and "2 frames written" in out and "12 already existed" in out
     assert again.read_bytes() == whole
     wanted = corrupt(RGB[3], "spatter", 0.6, key=Key(0, "a", 12))
     assert np.array_equal(read(walk / "out/a/frame12.png"), wanted)
@@ -116,7 +116,7 @@ def test_other_settings_or_frames_in_the_same_folder_are_refused(run, walk):
     (walk / "out/corrupt.json").write_text('{"settings": 3}')
     assert "corrupt.json is damaged" in complaint(run(*SPATTER))
     (walk / "out/corrupt.json").unlink()
-    assert "was not made by this program" in complaint(run(*SPATTER))
+    assert "must be empty or have a corrupt.json of this program" in complaint(run(*SPATTER))
 
 
 def test_16_bit_depth_is_in_millimetres_unless_said_otherwise(run, tmp_path):
@@ -197,7 +197,7 @@ def test_files_that_are_left_alone_are_counted_by_suffix(run, walk):
     for name in ("y.webp", "x.TIF", "x.tif", "LICENSE"):
         (walk / "in/a" / name).write_bytes(b"x")
     status, out, _ = run(*SPATTER)
-    assert status == 0 and "other files left alone: 2 .tif, 1 without suffix, 1 .webp" in out
+    assert status == 0 and "other files not read: 2 .tif, 1 without suffix, 1 .webp" in out
     save(walk / "scans/0.tif", RGB[0])
     text = complaint(run(*SPATTER, source="scans", out="new"))
     assert "no rgb frame" in text and "not read: 1 .tif" in text and "PNG or JPEG" in text
@@ -285,7 +285,7 @@ def test_a_run_that_is_cut_off_leaves_whole_files_only(run, walk, monkeypatch):
     assert left == ["corrupt.json", "frame0.png", "frame1.png", "frame2.png"]
     monkeypatch.undo()
     status, out, _ = run(*SPATTER)
-    assert status == 0 and "10 frames written" in out and "3 were there" in out
+    assert status == 0 and "10 frames written" in out and "3 already existed" in out
 
 
 def test_folders_that_cannot_work_are_explained(run, walk):
@@ -308,21 +308,21 @@ def test_folders_that_cannot_work_are_explained(run, walk):
     ("options", "part"),
     [
         (("corruption=spater", "severity=0.5"), "Did you mean spatter"),
-        (("corruption=mask", "severity=0.5"), "For instructions: mitigate corrupt_episodes"),
-        ((*SPATTER, "missing=-7"), "missing=-7 is not allowed"),
+        (("corruption=mask", "severity=0.5"), "For instructions use mitigate corrupt_episodes"),
+        ((*SPATTER, "missing=-7"), "missing must be 0 (no reading) or more metres, got -7"),
         ((*SPATTER, "missing=nan"), "0 (no reading) or more"),
-        (("corruption=spatter", "severity=1.2"), "from 0 (clean) to 1 (worst), but it is 1.2"),
-        (("corruption=spatter", "severity=much"), "severity=much has the wrong type"),
+        (("corruption=spatter", "severity=1.2"), "from 0 (clean) to 1 (worst), got 1.2"),
+        (("corruption=spatter", "severity=much"), "severity must be a number, got much"),
         (("corruption=spatter", "severity=nan"), "from 0 (clean) to 1"),
-        (("corruption=spatter",), "severity=... is missing"),
-        (("severity=0.5",), "corruption=... is missing"),
+        (("corruption=spatter",), "option severity= is missing"),
+        (("severity=0.5",), "option corruption= is missing"),
         ((*SPATTER, "sed=3"), "Did you mean seed?"),
-        ((*SPATTER, "seed=1.5"), "it must be a whole number"),
+        ((*SPATTER, "seed=1.5"), "seed must be a whole number"),
         ((*SPATTER, "unit=inch"), "a number or one of mm, cm, m"),
-        ((*SPATTER, "unit=-1"), "metres of one count"),
-        ((*SPATTER, "episode=frame"), "episode is one of folder, all"),
-        ((*SPATTER, "format=jpg"), "format is one of png, same"),
-        ((*SPATTER, "z_max=0"), "no range in metres"),
+        ((*SPATTER, "unit=-1"), "metres per count"),
+        ((*SPATTER, "episode=frame"), "episode must be one of folder, all"),
+        ((*SPATTER, "format=jpg"), "format must be one of png, same"),
+        ((*SPATTER, "z_max=0"), "must be 0 <= z_min < z_max"),
         ((*SPATTER, "--seed=3"), "There is no option --seed=3"),
         ((*SPATTER, "third"), "there are 3"),
     ],
@@ -336,7 +336,7 @@ def test_wrong_options_are_explained(run, walk, options, part):
 def test_a_unit_too_small_for_the_range_is_refused(run, tmp_path):
     save(tmp_path / "in/0.png", COUNTS[0])
     text = complaint(run("corruption=multipath", "severity=1", "unit=0.0001"))
-    assert "does not fit into a 16-bit PNG" in text and "z_max=6.5535" in text
+    assert "to fit into a 16-bit PNG" in text and "z_max=6.5535" in text
 
 
 def test_the_list_names_every_corruption(capsys):
@@ -414,8 +414,8 @@ def test_corrupt_writes_changed_output_frames_again(run, walk, damage, earlier):
     count = 2 if damage is damage_by_swapping else 1
     status, out, err = run(*SPATTER)
     assert status == 0 and contents(walk / "out") == whole
-    assert f"{count} frames written" in out and f"{13 - count} were there" in out
-    assert f"{count} frames differed from those that this command writes" in err
+    assert f"{count} frames written" in out and f"{13 - count} already existed" in out
+    assert f"{count} frames differed from the results of this command" in err
     assert "a/frame3.png" in err
     found = summary(walk / "out")
     assert len(found["replaced"]) == count and len(found["checksums"]) == 13
@@ -444,7 +444,7 @@ def test_corrupt_keeps_the_checksums_of_an_interrupted_run(run, walk, monkeypatc
     monkeypatch.undo()
     assert len(summary(walk / "out")["checksums"]) == 3
     status, out, _ = run(*SPATTER)
-    assert status == 0 and "10 frames written" in out and "3 were there" in out
+    assert status == 0 and "10 frames written" in out and "3 already existed" in out
 
 
 def test_corrupt_rejects_checksums_of_another_form(run, walk):

@@ -38,7 +38,7 @@ def test_a_sheet_is_written_without_a_warning(suffix, tmp_path, scene, capfd):
         ("rgb.png", "sheet.png", "rgb.png is no whole .npy file"),
         ("empty.npy", "sheet.png", "empty.npy is no whole .npy file"),
         ("gone.npy", "sheet.png", "There is no file"),
-        ("mm.npy", "sheet.png", "is the depth in millimetres"),
+        ("mm.npy", "sheet.png", "If it is in millimetres"),
         ("depth.npy", "sheet.gif", "must end in .png"),
     ],
 )

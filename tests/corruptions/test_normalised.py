@@ -60,13 +60,13 @@ def test_the_sentinel_is_the_sensors(depth):
 
 def test_wrong_depth_and_sensors_are_refused(depth):
     hurt = Corruption("multipath", 0.5)
-    with pytest.raises(ValueError, match="reaches 3.*in metres"):
+    with pytest.raises(ValueError, match="got 3.*in metres"):
         corrupt_normalised({"depth": np.full((4, 4), 3, np.float32)}, hurt, KEY)
-    with pytest.raises(ValueError, match="must be float32 in 0-1, but this frame is float64"):
+    with pytest.raises(ValueError, match="must be float32 in 0-1, got float64"):
         corrupt_normalised({"depth": np.ones((4, 4))}, hurt, KEY)
-    with pytest.raises(ValueError, match="cannot be normalised"):
+    with pytest.raises(ValueError, match="for normalised depth"):
         corrupt_normalised({"depth": depth}, hurt, KEY, DepthSensor(missing=-1.0))
-    with pytest.raises(ValueError, match="does not hold"):
+    with pytest.raises(ValueError, match="lacks"):
         corrupt_normalised({"rgb": np.zeros((4, 4, 3), np.uint8)}, hurt, KEY)
 
 

@@ -39,9 +39,9 @@ def test_links_to_folders_are_followed_but_not_in_a_circle_nor_into_the_results(
             "a": 2, "again": 2, "b": 1, "linked": 1, "linked/c": 1,
         }  # fmt: skip
         assert {e["file"]: e["reason"] for e in found["left_out"]} == {
-            "b/up/": "leads back to a folder that it lies in",
-            "linked/c/round/": "leads back to a folder that it lies in",
-            "results/": "is where the results go",
+            "b/up/": "links back to a folder that contains it",
+            "linked/c/round/": "links back to a folder that contains it",
+            "results/": "is the folder of the results",
         }
     assert (walk / "out/linked/c/0.png").is_file() and not (walk / "out/linked").is_symlink()
 
@@ -52,7 +52,7 @@ def test_a_pipe_is_left_out_with_the_reason(walk):
     found = run(walk / "in/a", walk / "out", Settings("spatter", 0.6))
     assert found["written"] == 2
     left_out = {e["file"]: e["reason"] for e in found["left_out"]}
-    assert left_out == dict.fromkeys(("0.5.png", "2.jpg", "3.npy"), "is no regular file")
+    assert left_out == dict.fromkeys(("0.5.png", "2.jpg", "3.npy"), "is not a regular file")
 
 
 @pytest.mark.parametrize("lost", ["out", "out/a"])
@@ -74,6 +74,8 @@ def test_run_notices_a_lost_folder(walk, monkeypatch, lost):
 def test_run_rejects_a_link_among_its_results(walk):
     (walk / "out/a").symlink_to(walk / "elsewhere")
     kept = (walk / "elsewhere/0.png").read_bytes()
-    with pytest.raises(ValueError, match="out/a must be a folder|no corrupt.json"):
+    with pytest.raises(
+        ValueError, match="out/a must be a folder|must be empty or have a corrupt.json"
+    ):
         run(walk / "in", walk / "out", Settings("spatter", 0.6))
     assert (walk / "elsewhere/0.png").read_bytes() == kept

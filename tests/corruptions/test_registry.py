@@ -46,8 +46,8 @@ def test_a_wrong_record_is_refused():
 
     for wrong, said in (
         ({"modality": "sonar"}, "rgb, depth, instruction"),
-        ({"name": "Heavy Rain"}, "lower case with underscores"),
-        ({"apply": None}, "needs a function"),
+        ({"name": "Heavy Rain"}, "lower case letters"),
+        ({"apply": None}, "must be a function"),
     ):
         with pytest.raises(ValueError, match=said):
             Record(**{"name": "rain", "modality": "rgb", "apply": same, "severity": "s", **wrong})
@@ -80,7 +80,7 @@ def found(package, monkeypatch):
     """Lets this process find the package; when called, as it is now."""
 
     def forget():
-        registry.further.cache_clear()
+        registry.plugin_records.cache_clear()
         sys.modules.pop("rain", None)
         importlib.invalidate_caches()
 

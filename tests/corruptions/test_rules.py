@@ -134,7 +134,7 @@ def test_an_unknown_name_is_refused_with_the_nearest_one(panorama):
         corrupt(panorama[0], "motionblur", 0.5, key=KEY)
     with pytest.raises(ValueError, match="Choose one of: clean, motion_blur"):
         Corruption("fog", 0.5)
-    with pytest.raises(ValueError, match="severity 0"):
+    with pytest.raises(ValueError, match="must be 0, got"):
         Corruption("clean", 0.5)
 
 
@@ -172,8 +172,8 @@ def test_wrong_depth_shapes_are_refused(shape):
     ids=["uint8", "panorama", "as 36 views"],
 )
 def test_rgb_is_not_taken_for_depth_and_the_names_that_corrupt_it_are_told(frame):
-    told = "gaussian_noise corrupts depth.*RGB frame.*On RGB: .*low_light_noise.*impulse_noise"
-    with pytest.raises(ValueError, match=told):
+    message = "gaussian_noise needs a depth frame.*of RGB: .*low_light_noise.*impulse_noise"
+    with pytest.raises(ValueError, match=message):
         corrupt(frame, "gaussian_noise", 0.5, key=KEY)
     narrow = np.ones((4, 5, 3, 1), np.float32)
     assert corrupt(narrow, "gaussian_noise", 0.5, key=KEY).shape == narrow.shape
@@ -184,7 +184,7 @@ def test_rgb_is_not_taken_for_depth_and_the_names_that_corrupt_it_are_told(frame
 )
 def test_a_batch_is_no_panorama(frame):
     name = "spatter" if frame.dtype == np.uint8 else "missing_data"
-    with pytest.raises(ValueError, match="36 at most.*share one mask.*one instant at a time"):
+    with pytest.raises(ValueError, match="at most 36 views.*share one mask.*one instant at a time"):
         corrupt(frame, name, 0.5, key=KEY)
     assert corrupt(frame[:36], name, 0.5, key=KEY).shape == frame[:36].shape
 
@@ -246,5 +246,5 @@ def test_a_pose_of_another_shape_is_refused(panorama, pose):
 
 
 def test_an_observation_without_the_modality_is_refused(panorama):
-    with pytest.raises(ValueError, match="does not hold"):
+    with pytest.raises(ValueError, match="lacks"):
         corrupt_observation({"rgb": panorama[0]}, Corruption("multipath", 0.5), KEY)

@@ -143,7 +143,7 @@ def test_state_survives_json_and_gives_the_same_draws():
 @pytest.mark.parametrize(
     "arguments, message",
     [
-        ({"mode": "per_step"}, "Allowed modes: clean, per_frame"),
+        ({"mode": "per_step"}, "must be one of clean, per_frame"),
         ({"severity": 1.2}, "from 0 .clean. to 1"),
         ({"severity_depth": -1.0}, "from 0 .clean. to 1"),
         ({"severity": [0.3, 1.1]}, "from 0 .clean. to 1"),
@@ -158,7 +158,7 @@ def test_state_survives_json_and_gives_the_same_draws():
         ({"names": ("flare", "flare")}, "only once"),
         ({"alpha": -1.0}, "alpha and floor"),
         ({"floor": float("nan")}, "alpha and floor"),
-        ({"success": {"flare": 0.5}}, "No success rate for motion_blur"),
+        ({"success": {"flare": 0.5}}, "motion_blur.* have none"),
         ({"success": {**SUCCESS, "flare": 55.0}}, "shares in .0, 1."),
     ],
 )
@@ -168,10 +168,10 @@ def test_wrong_settings_are_refused(arguments, message):
 
 
 def test_a_foreign_state_is_refused():
-    with pytest.raises(ValueError, match="not the state of a Schedule"):
+    with pytest.raises(ValueError, match="must have the entry 'success'"):
         Schedule("clean", 0.6).load_state_dict({"weights": [1]})
 
 
 def test_one_name_instead_of_a_list_is_refused():
-    with pytest.raises(ValueError, match=r"names is a list of corruptions, such as \['spatter'\]"):
+    with pytest.raises(ValueError, match=r"names must be a list of .*such as \['spatter'\]"):
         Schedule("per_episode", 0.6, names="spatter")

@@ -193,7 +193,7 @@ def test_files_that_are_left_out_are_told_with_their_reasons(tmp_path, capsys):
     FolderFrames(str(tmp_path))
     said = " ".join(capsys.readouterr().out.split())
     assert "6 left out (5 as s0/b.png, which is a 8-bit RGB with alpha PNG" in said
-    assert "1 as s0/c.png, which is no PNG file" in said
+    assert "1 as s0/c.png, which is not a PNG file" in said
     for file in tmp_path.glob("s*/a.png"):
         file.unlink()
     with pytest.raises(FileNotFoundError, match=r"6 left out \(5 as s0/b.png"):

@@ -91,7 +91,7 @@ def test_wrong_observations_are_explained(obs):
             corrupt_habitat(given, hurt, KEY)
     with pytest.raises(ValueError, match="turn must be 'left' or 'right'"):
         corrupt_habitat(obs, hurt, KEY, turn="clockwise")
-    with pytest.raises(ValueError, match="reaches 4"):
+    with pytest.raises(ValueError, match="got 4"):
         corrupt_habitat(
             {"depth": np.full((4, 4, 1), 4, np.float32)}, Corruption("multipath", 1), KEY
         )

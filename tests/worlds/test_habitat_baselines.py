@@ -112,9 +112,9 @@ def test_it_is_built_from_its_config():
     for config, part in (
         ({"severty": 0.5}, "Did you mean severity"),
         ({"severity": 1.5}, "from 0 .clean. to 1"),
-        ({"depth_min": 5.0, "depth_max": 0.5}, "no range"),
+        ({"depth_min": 5.0, "depth_max": 0.5}, "0 <= z_min < z_max"),
         ({"turn": "up"}, "turn must be"),
-        ({"names": "low_light"}, r"names is a list of corruptions, such as \['low_light'\]"),
+        ({"names": "low_light"}, r"names must be a list of corruptions, such as \['low_light'\]"),
     ):
         with pytest.raises(ValueError, match=part):
             habitat_baselines.CorruptObservation.from_config(config)
