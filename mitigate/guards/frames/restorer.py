@@ -18,7 +18,7 @@ from mitigate.core.files import find
 from mitigate.core.names import unknown
 from mitigate.core.observation import DEPTH, RGB, Z_MAX
 from mitigate.corruptions.depth_sensor import DepthSensor, check_unit
-from mitigate.corruptions.suite import MOST_VIEWS
+from mitigate.corruptions.suite import MAX_VIEWS
 from mitigate.guards.frames import folder as folders
 from mitigate.guards.frames.choices import SENSORS
 from mitigate.guards.frames.sensor import CHANNELS, SensorRestorer
@@ -161,9 +161,9 @@ class Restorer(nn.Module, Guard):
             shape = (*shape, 1)
         if len(shape) == 3:
             shape = (1, *shape)
-        if len(shape) != 4 or shape[-1] != channels or 0 in shape or shape[0] > MOST_VIEWS:
+        if len(shape) != 4 or shape[-1] != channels or 0 in shape or shape[0] > MAX_VIEWS:
             raise ValueError(
-                f"A {sensor} frame is [H, W, {channels}], or up to {MOST_VIEWS} views of one "
+                f"A {sensor} frame is [H, W, {channels}], or up to {MAX_VIEWS} views of one "
                 f"instant [V, H, W, {channels}], but the shape is {list(frame.shape)}."
             )
         views = np.require(frame.reshape(shape), kind, ["C", "W"])
