@@ -1,6 +1,6 @@
 """The command ``mitigate``: ``mitigate train recipe=da_per_episode``.
 
-``python -m mitigate.train`` is the same. ``commands/`` holds such modules for the older commands.
+``python -m mitigate.train`` does the same; ``commands/`` holds such modules for the older commands.
 """
 
 from __future__ import annotations
@@ -17,8 +17,14 @@ from mitigate.core.names import unknown
 
 
 class Command(NamedTuple):
-    """A module whose ``main()`` reads ``sys.argv`` and returns an exit status, what it does, an
-    example of its options, and the extra of the package that it needs."""
+    """A command of the command line.
+
+    Attributes:
+        module: its ``main()`` reads ``sys.argv`` and returns an exit status.
+        about: what the command does, for the help.
+        example: example of its options, for the help.
+        extra: the extra of the package that it needs.
+    """
 
     module: str
     about: str
@@ -29,17 +35,17 @@ class Command(NamedTuple):
 COMMANDS = {
     "train": Command(
         "mitigate.training.train",
-        "train an agent by a recipe, then compare it with the one it was",
+        "train an agent with a recipe, and compare it before and after",
         "recipe=da_per_episode severity=0.6 seed=1",
     ),
     "evaluate": Command(
         "mitigate.evaluation.evaluate",
-        "success of an agent, clean and under every corruption",
+        "measure the success of an agent, clean and under every corruption",
         "checkpoint=checkpoints/base split=val_seen",
     ),
     "controls": Command(
         "mitigate.evaluation.controls",
-        "walk the shortest-path oracle and a random walker, which frame every result",
+        "run the shortest-path oracle and a random agent, the bounds of every result",
         "split=val_seen episodes=40",
     ),
     "table": Command(
@@ -49,7 +55,7 @@ COMMANDS = {
     ),
     "report": Command(
         "mitigate.evaluation.page.command",
-        "write result rows as one HTML file: tables that sort, heatmaps, episodes, walks",
+        "write result rows as one HTML file: sortable tables, heatmaps, episodes, paths",
         "runs/a runs/b --out report.html --walk base=checkpoints/base",
     ),
     "leaderboard": Command(
@@ -59,7 +65,7 @@ COMMANDS = {
     ),
     "table1": Command(
         "mitigate.training.table1",
-        "evaluate all kinds of agent, plain and hardened, under everything: the paper's Table I",
+        "evaluate all kinds of agent, plain and hardened: the paper's Table I",
         "table=objects jobs=2",
     ),
     "table2": Command(
@@ -79,7 +85,7 @@ COMMANDS = {
     ),
     "replay": Command(
         "mitigate.replay.replay",
-        "take agents along recorded drives (folders, ROS bags, MCAP) and compare their decisions",
+        "run agents on recorded drives (folders, ROS bags, MCAP) and compare their decisions",
         "drive.mcap agents=[checkpoints/recurrent/base] instruction='\"walk to the door\"'",
     ),
     "corrupt": Command(
@@ -96,7 +102,7 @@ COMMANDS = {
     ),
     "export_drive": Command(
         "mitigate.replay.export_drive",
-        "write an oracle's walks as recorded drives, to try replay on",
+        "write episodes of the oracle as recorded drives, to test replay",
         "drives/ episodes=3 form=mcap",
     ),
     "export": Command(
@@ -110,13 +116,15 @@ COMMANDS = {
         "habitat/ split=val_unseen scenes=3",
         "files",
     ),
-    "doctor": Command("mitigate.core.doctor", "say what this machine has and what is missing", ""),
+    "doctor": Command(
+        "mitigate.core.doctor", "report what this machine has and what is missing", ""
+    ),
 }
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
     """Run a command from the command line, and exit with its status."""
-    if os.getcwd() not in sys.path:  # as python -m does: a user's own modules lie there
+    if os.getcwd() not in sys.path:  # as python -m does, for modules of the user
         sys.path.insert(0, os.getcwd())
     name, *options = [*(sys.argv[1:] if arguments is None else arguments), ""]
     options = options[:-1]
@@ -131,21 +139,21 @@ def main(arguments: Sequence[str] | None = None) -> None:
         status = import_module(COMMANDS[name].module).main()
         sys.stdout.flush()
     except ModuleNotFoundError as error:
-        told = lacking(f"mitigate {name}", error, COMMANDS[name].extra)
-        if not told:
+        message = lacking(f"mitigate {name}", error, COMMANDS[name].extra)
+        if not message:
             raise
-        sys.exit(told)
-    except KeyboardInterrupt:  # commands that can go on catch it themselves, and say how
+        sys.exit(message)
+    except KeyboardInterrupt:  # commands that can resume catch it themselves and print how
         print(f"\nmitigate {name}: stopped.", file=sys.stderr)
         status = 128 + signal.SIGINT
-    except BrokenPipeError:  # whoever read what is printed, as head does, has read enough
+    except BrokenPipeError:  # the reader of the output, such as head, has closed it
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         status = 128 + signal.SIGPIPE
     sys.exit(status)
 
 
 def usage() -> str:
-    """Every command with what it does and an example."""
+    """Return the help: every command with a description and an example."""
     lines = ["Corrupt, train, measure and ship navigation agents.", ""]
     lines += ["usage: mitigate COMMAND [OPTIONS], each with --help", ""]
     for name, command in COMMANDS.items():

@@ -1,9 +1,8 @@
-"""Residual adapters in a frozen agent, taught to give for corrupted frames what the untouched agent
-gives for the clean ones.
+"""Train residual adapters in a frozen agent, so that corrupted frames give the clean features.
 
-The backbone stays as it is, bit for bit; only the adapters learn. Where they sit is the agent's
-setting (``agents/adapters.py`` puts them behind any module that gives a map). ``Adapt`` works on
-rolled-out episodes of any trainable agent, ``AdaptViews`` on random poses.
+Only the adapters train; the backbone does not change by one bit. A setting of the agent places them
+behind any module that returns a map (``agents/adapters.py``). ``Adapt`` trains on episodes of any
+trainable agent, ``AdaptViews`` on random poses.
 """
 
 from __future__ import annotations
@@ -25,16 +24,16 @@ from mitigate.training.parts import ADAPTERS, START
 from mitigate.training.poses import Poses
 from mitigate.training.rollouts import Rollouts
 
-HELD, FRESH = 1_000_000, 2_000_000  # numbers of steps that no training reaches
+HELD, FRESH = 1_000_000, 2_000_000  # step numbers that no training reaches
 
 
 class Adapt(Distil):
-    """Teach adapters on rollouts, with the agent itself without its adapters as the teacher.
+    """Train adapters on rollouts; the teacher is the agent without its adapters.
 
-    Args: as ``Distil``. By default the features alone are matched: w_il and w_kl are 0.
+    Arguments are those of ``Distil``. By default only features are matched: w_il and w_kl are 0.
 
     Raises:
-        ValueError: for an agent that has no adapters.
+        ValueError: The agent has no adapters.
     """
 
     def __init__(
@@ -64,32 +63,32 @@ class Adapt(Distil):
         self.backbone = backbone_sha(agent)
 
     def finish(self) -> None:
-        """Raise ValueError if the backbone is another than it was."""
+        """Raise ValueError if the backbone has changed."""
         check_backbone(self.agent, self.backbone)
 
     def evaluate(self, step: int) -> dict[str, float]:
-        """1 if the backbone is what it was when the adapters came in."""
+        """Return 1 if the backbone has not changed, else 0."""
         return {"backbone_unchanged": float(backbone_sha(self.agent) == self.backbone)}
 
 
 class AdaptViews(DistilViews):
-    """Teach adapters on random poses, with the agent itself without its adapters as the teacher.
+    """Train adapters on random poses; the teacher is the agent without its adapters.
 
-    ``finish`` sets the thresholds of the encoders' gates, if they have any, and scales adapters.
+    ``finish`` sets the thresholds of gates, if the encoders have any, and scales the adapters.
 
     Args:
         agent: its adapters in the encoders of the sensor of ``poses`` are trained in place.
         poses: the source of views.
         w_labels: as ``DistilViews``.
         w_feat: as ``DistilViews``.
-        w_gate: weight of the cross-entropy that teaches the gates which views are corrupted.
-        touched: share of clean views that a gate opens for after training.
-        held: clean panoramas that set the thresholds; no step draws them.
-        strength: share of the learned correction that the adapters make after training
+        w_gate: weight of the gates' cross-entropy (is a view corrupted or clean?).
+        touched: share of clean views for which a gate opens after training.
+        held: number of held-out clean panoramas that set the thresholds.
+        strength: share of the learned correction that the adapters apply after training
             (``agents.adapters.scale_adapters``).
 
     Raises:
-        ValueError: for an agent that has no adapters in these encoders, and for an invalid number.
+        ValueError: These encoders have no adapters, or a number is invalid.
     """
 
     teaches_gates = True
@@ -107,8 +106,8 @@ class AdaptViews(DistilViews):
     ) -> None:
         if not 0 < touched < 1 or not 0 < strength <= 1 or held < 1:
             raise ValueError(
-                f"touched={touched} and strength={strength} are shares, above 0 and up to 1 "
-                f"(touched: below), and held={held} is at least 1."
+                f"touched must be above 0 and below 1, got {touched}; strength must be above 0 and "
+                f"at most 1, got {strength}; held must be >= 1, got {held}."
             )
         check_weights(w_gate=w_gate)
         super().__init__(agent, poses, START, w_labels, w_feat, adapters_only=True)
@@ -138,8 +137,10 @@ class AdaptViews(DistilViews):
         return values
 
     def finish(self) -> None:
-        """Set the strength of the adapters and the gates' thresholds. Raises ValueError if the
-        backbone is another than it was."""
+        """Set the strength of the adapters and the thresholds of the gates.
+
+        Raises ValueError if the backbone has changed.
+        """
         check_backbone(self.agent, self.backbone)
         for name in self.agent.encoders[self.modality]:
             encoder = self.agent.parts()[name]
@@ -149,8 +150,10 @@ class AdaptViews(DistilViews):
             gate.calibrate(self._judged(gate, HELD, self.held, clean=True)[0], self.touched)
 
     def evaluate(self, step: int) -> dict[str, float]:
-        """1 if the backbone is what it was when the adapters came in; of a gate, whose threshold is
-        set at the end, the shares of other views that it opens for."""
+        """Return whether the backbone is unchanged, and the shares of views that gates open for.
+
+        The views are not those that set the thresholds, which are set at the end.
+        """
         values = {"backbone_unchanged": float(backbone_sha(self.agent) == self.backbone)}
         for gate in self.gates:
             few = -(-self.held // 3)
@@ -161,46 +164,48 @@ class AdaptViews(DistilViews):
         return values
 
     def _judged(self, gate: FrameGate, step: int, count: int, clean: bool) -> tuple[Tensor, Tensor]:
-        """What a gate says of the views of ``count`` panoramas: logits, and which are corrupted."""
+        """Return a gate's logits for the views of ``count`` panoramas, and which are corrupted."""
         poses = copy.copy(self.poses)
         poses.panoramas = count
         logits, corrupted = [], []
         for job in poses.jobs(step):
             batch = poses.collate([poses.work(job)])
-            shown = batch["clean" if clean else "frames"].to(gate.threshold.device)
-            self.agent.see(self.modality, shown)
+            images = batch["clean" if clean else "frames"].to(gate.threshold.device)
+            self.agent.see(self.modality, images)
             logits.append(gate.judged.logits.float())
-            corrupted.append(differ(shown, batch["clean"].to(shown.device)))
+            corrupted.append(differ(images, batch["clean"].to(images.device)))
         return torch.cat(logits), torch.cat(corrupted)
 
 
 def differ(frames: Tensor, clean: Tensor) -> Tensor:
-    """bool [P * V]: which views of two batches [P, V, H, W, c] are not equal; NaN equals NaN."""
+    """Return which views of two batches [P, V, H, W, c] differ: bool [P * V]; NaN equals NaN."""
     other = (frames != clean) & ~(frames.isnan() & clean.isnan())
     return other.flatten(0, 1).flatten(1).any(1)
 
 
 def share(values: Tensor, where: Tensor) -> Tensor:
-    """Mean of ``values`` [n] over those of ``where`` [n]; 0 of none."""
+    """Return the mean of ``values`` [n] where the mask ``where`` [n] is true; 0 if it never is."""
     return (values * where).sum() / where.sum().clamp(min=1)
 
 
-def check_backbone(agent: nn.Module, wanted: str) -> None:
-    """Raise ValueError unless all of ``agent`` but its adapters has the sha256 ``wanted``."""
-    if backbone_sha(agent) != wanted:
+def check_backbone(agent: nn.Module, expected: str) -> None:
+    """Raise ValueError unless ``agent`` without its adapters has the sha256 ``expected``."""
+    if backbone_sha(agent) != expected:
         raise ValueError(
-            f"The backbone of {type(agent).__name__} is another than before the training, though "
-            "only its adapters train: something in it changes in training mode, such as a count or "
-            "a mean of its own. Keep that still where its weights are frozen (requires_grad is "
-            "False), and train anew in another folder (folder=...)."
+            f"The backbone of {type(agent).__name__} has changed, although only its adapters "
+            "train: "
+            "something in it changes in training mode, such as a counter or a running mean. Do not "
+            "update it while its weights are frozen (requires_grad is False), and train again in "
+            "another folder (folder=...)."
         )
 
 
 def has_adapters(agent: nn.Module, *modules: nn.Module) -> None:
-    """Raise ValueError unless one of ``modules`` (none: the agent) has adapters; say how large."""
+    """Raise ValueError unless one of ``modules`` (default: the agent) has adapters; print their "
+    "size."""
     if not any(adapted(module) for module in modules or (agent,)):
         raise ValueError(
-            "The agent has no adapters there: give agent.adapters a target in its encoders, as "
+            "The encoders of the agent have no adapters. Set targets in agent.adapters, as "
             "conf/recipe/conv_adapter.yaml does, or call insert_adapters(agent, targets)."
         )
     say(f"adapters: {trainable_share(agent):.1%} of the backbone's weights")

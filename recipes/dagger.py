@@ -1,10 +1,10 @@
-"""DAgger: imitation on fresh walks and on walks kept from earlier steps.
+"""DAgger: imitation on new rollouts and on stored rollouts of earlier steps.
 
-Walking and looking cost more than learning. So some episodes are walked every few steps with the
-current policy and kept on disk, and each step learns from walks drawn from all that were kept (Ross
-et al. 2011 aggregate so; here the data grow all the time). The oracle's share of the decisions
-falls over the training. For agents whose walks are plain data (tensors, lists, text); otherwise as
-``recipes/imitate.py``, whose loss it uses.
+Rollouts cost more time than learning. So the current policy runs some episodes every few steps, and
+their rollouts are stored on disk. Each step learns from a random sample of all stored rollouts, an
+aggregated data set as in Ross et al. 2011 that grows during the training. The oracle's share of the
+decisions falls over time. The loss is that of ``recipes/imitate.py``. The rollouts of the agent
+must be plain data (tensors, lists, text).
 """
 
 from __future__ import annotations
@@ -26,25 +26,25 @@ from mitigate.training.rollouts import Rollouts, batch_of
 
 
 class Dagger(Imitate):
-    """Imitate the expert on fresh rollouts and on rollouts kept on disk.
+    """Imitate the expert on new rollouts and on stored rollouts.
 
-    The rollouts of a step depend on its weights alone and are written before they are learned from,
-    so a resumed run draws the same ones.
+    The rollouts of a step depend only on its weights and are stored before they are used, so a
+    resumed run draws the same ones.
 
     Args:
         agent: trained in place.
-        rollouts: run every ``every`` steps. ``follow_oracle`` is the expert's share of decisions
-            at the end: it falls from 1 over the first 0.6 of ``steps``.
-        folder: of the kept rollouts, one file per piece.
-        steps: of the training.
+        rollouts: source of rollouts, used every ``every`` steps. ``follow_oracle`` is the final
+            share of decisions by the expert: it falls from 1 over the first 0.6 of ``steps``.
+        folder: folder of the stored rollouts, one file per piece.
+        steps: number of steps of the training.
         train_parts: as ``Imitate``.
         every: steps between two rollouts.
-        walks: rollouts that a step learns from, fresh and kept ones.
+        walks: rollouts per step, new and stored.
         losses: as ``Imitate``.
 
     Raises:
-        ValueError: for an agent whose rollouts are not plain data, and for a schedule by success,
-            which an untrained agent does not have.
+        ValueError: The rollouts of the agent are not plain data, or the schedule is
+            success-distributed, which needs a trained agent.
     """
 
     sources: ClassVar[Mapping[str, Callable[..., Any]]] = {
@@ -56,7 +56,7 @@ class Dagger(Imitate):
         if as_agent(agent).plain_walks:
             return super().misfit(agent)
         return (
-            "its walks are no plain data, so none can be kept. Choose recipe=imitation, or "
+            "its rollouts are not plain data and cannot be stored. Choose recipe=imitation, or "
             "recipe=base if it stores features."
         )
 
@@ -80,19 +80,20 @@ class Dagger(Imitate):
         self.walks = walks
 
     def jobs(self, step: int) -> list[tuple]:
-        """As ``Rollouts.jobs``, each with the oracle's share; none where nothing is walked."""
+        """Return the jobs of ``Rollouts`` with the oracle's share; empty in steps without "
+        "rollouts."""
         if step % self.every:
             return []
         expert, jobs = falling_share(step, self.steps, self.least), super().jobs(step)
         return [(*job, expert) for job in jobs]
 
     def pieces(self) -> int:
-        """1: a step learns from walks that its own process has kept."""
+        """Return 1: a step learns from rollouts that its own process has stored."""
         return 1
 
     def work(self, job: tuple) -> Any:
-        *own, self.rollouts.follow_oracle = job
-        return self.rollouts.work(tuple(own))
+        *rollout_job, self.rollouts.follow_oracle = job
+        return self.rollouts.work(tuple(rollout_job))
 
     def batch(self, step: int) -> dict[str, Any]:
         return super().batch(step) if step % self.every == 0 else self.collate(step, [])
@@ -100,12 +101,12 @@ class Dagger(Imitate):
     def collate(self, step: int, pieces: list[Any]) -> dict[str, Any]:
         for number, (piece, _) in enumerate(pieces):
             self._keep(step, number, piece)
-        size = -(-self.rollouts.episodes // self.rollouts.pieces)  # walks of a piece
+        size = -(-self.rollouts.episodes // self.rollouts.pieces)  # rollouts per piece
         again = self._drawn(step, -(-self.walks // size) - len(pieces))
         return batch_of(self.rollouts.collate([*pieces, *((piece, None) for piece in again)]))
 
     def _drawn(self, step: int, count: int) -> list[Any]:
-        """Kept pieces, drawn from those of earlier steps."""
+        """Return ``count`` stored pieces, drawn from earlier steps."""
         pieces = range(self.rollouts.pieces)
         known = [(s, n) for s in range(0, step, self.every) for n in pieces]
         rng = generator(self.rollouts.seed, "kept walks", step)
@@ -117,27 +118,28 @@ class Dagger(Imitate):
         return self.folder / f"{step:06d}-{number}.pt"
 
     def _keep(self, step: int, number: int, piece: Any) -> None:
-        """Write a piece; floating tensors are kept as float16."""
+        """Store a piece, with floating tensors as float16."""
         if not _is_plain(piece):
             raise ValueError(
-                f"{type(self.rollouts.agent).__name__}.collect gives a {type(piece).__name__}, and "
-                "kept walks are read as data alone: make it of dicts, lists, texts, numbers and "
-                "tensors, as RecurrentAgent does, or train by recipes/imitate.py."
+                f"{type(self.rollouts.agent).__name__}.collect must return plain data, got "
+                f"{type(piece).__name__}: stored rollouts are read without running code. Return "
+                "dicts, lists, texts, numbers and tensors, as RecurrentAgent does, or choose "
+                "recipe=imitation."
             )
-        written = io.BytesIO()
-        torch.save(_floats(piece, torch.float16), written)
-        write_bytes(self._file(step, number), written.getvalue())
+        buffer = io.BytesIO()
+        torch.save(_floats(piece, torch.float16), buffer)
+        write_bytes(self._file(step, number), buffer.getvalue())
 
 
 def _read(file: Path) -> Any:
-    """A kept piece. Raises ValueError if it is gone or damaged: nothing can make it again."""
+    """Read a stored piece; raise ValueError if it is missing or damaged."""
     try:
         return _floats(torch.load(file, weights_only=True), torch.float32)
-    except Exception as error:  # of any kind, where the file is damaged
+    except Exception as error:  # a damaged file may raise any error
         raise ValueError(
-            f"The kept walk {file} is missing or damaged. A training by DAgger learns from walks "
-            "that it kept, and cannot go on without them: copy them back, or delete the run's "
-            "folder to begin anew."
+            f"The stored rollout {file} is missing or damaged. DAgger cannot resume without its "
+            "stored rollouts. Restore the file if you have a copy, or delete the folder of the run "
+            "to start again."
         ) from error
 
 
@@ -150,7 +152,7 @@ def _is_plain(data: Any) -> bool:
 
 
 def _floats(data: Any, dtype: torch.dtype) -> Any:
-    """``data`` with its floating tensors in ``dtype``."""
+    """Return ``data`` with its floating tensors in ``dtype``."""
     if isinstance(data, torch.Tensor):
         return data.to(dtype) if data.is_floating_point() else data
     if isinstance(data, dict):

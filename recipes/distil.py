@@ -1,13 +1,12 @@
-"""Teacher-student distillation: a frozen teacher sees clean what the student sees corrupted.
+"""Teacher-student distillation: a frozen teacher sees the clean frames of the student's views.
 
-``Distil`` works on rolled-out episodes of any trainable agent:
+``Distil`` works on episodes of any trainable agent:
 
     L = w_il L_imitation + w_kl T^2 KL(pi_T || pi_S) + w_feat sum of MSE(f_S, f_T)
 
-Under corruption the student may have other candidates than the teacher would (with depth gone it
-finds other places to go to). Both therefore answer over the same ones, the student's.
-``DistilViews`` works on random poses: the student's encoders learn to give for a corrupted view
-what the teacher's give for the clean one.
+Under corruption the student may find other candidates than the teacher: without depth it finds
+other places to go to. Both therefore score the candidates of the student. ``DistilViews`` works on
+random poses: the student's encoders learn to give the teacher's clean features for corrupted views.
 """
 
 from __future__ import annotations
@@ -30,24 +29,24 @@ from mitigate.training.rollouts import OnEpisodes, Rollouts
 class Distil(OnEpisodes):
     """Distil a teacher on rollouts: imitation, the teacher's policy and its features.
 
-    With ``w_kl = w_feat = 0`` this is imitation, bit for bit.
+    With ``w_kl = w_feat = 0`` this equals imitation, bit for bit.
 
     Args:
         agent: the student, trained in place.
         rollouts: the source of its decisions.
-        teacher: weights, or "start" for ``agent`` as it is now.
-        train_parts: as ``recipes/imitate.py``.
-        losses: as ``recipes/imitate.py``.
+        teacher: weights, or "start" for a copy of ``agent`` at the start of the stage.
+        train_parts: as ``Imitate``.
+        losses: as ``Imitate``.
         w_il: weight of the imitation loss.
         w_kl: weight of the policy loss.
         w_feat: weight of the feature loss.
-        temperature: of the policy loss.
-        match: which of the agent's features are matched; None: all. A feature that no trained
-            weight makes is not matched.
+        temperature: temperature of the policy loss.
+        match: names of the features to match; None matches all. A feature that does not depend
+            on a trained weight is not matched.
 
     Raises:
-        FileNotFoundError: for a missing teacher.
-        ValueError: as imitation does, and for an invalid weight or temperature.
+        FileNotFoundError: The teacher is missing.
+        ValueError: A weight or the temperature is invalid; or raised by ``Imitate``.
     """
 
     def __init__(
@@ -66,10 +65,10 @@ class Distil(OnEpisodes):
         super().__init__()
         check_weights(w_il=w_il, w_kl=w_kl, w_feat=w_feat)
         if not temperature > 0:
-            raise ValueError(f"recipe.temperature={temperature:g} must be above 0, as 2.")
+            raise ValueError(f"recipe.temperature must be above 0, such as 2, got {temperature:g}.")
         if not (w_il or w_kl or w_feat):
             raise ValueError(
-                "Nothing would be learned: w_il, w_kl and w_feat are 0. Set one of them above 0."
+                "Nothing would train: w_il, w_kl and w_feat are 0. Set one of them above 0."
             )
         self.agent = agent
         self.losses = loss_weights(agent, losses)
@@ -97,30 +96,29 @@ class Distil(OnEpisodes):
         check_losses(self.agent, self.losses, out)
         values = imitation(out, decisions, self.losses)
         with torch.no_grad():
-            wanted = self.teacher.decide(decisions, clean=True)
-        student, taught = (masked(x.logits, out.mask) for x in (out, wanted))
-        values["kl"] = policy_kl(student, taught, self.temperature)
+            target = self.teacher.decide(decisions, clean=True)
+        student, teacher = (masked(x.logits, out.mask) for x in (out, target))
+        values["kl"] = policy_kl(student, teacher, self.temperature)
         loss = self.w_il * values["loss"]
         if self.w_kl:
             loss = loss + self.w_kl * self.temperature**2 * values["kl"]
-        features = {n: f for n, f in out.features.items() if n in wanted.features}
+        features = {n: f for n, f in out.features.items() if n in target.features}
         features = matched(features, self.match)
         self._check(features)
         for name, feature in features.items():
-            values[f"feat_{name}"] = feature_loss(feature, wanted.features[name])
+            values[f"feat_{name}"] = feature_loss(feature, target.features[name])
             if self.w_feat and (feature.requires_grad or not torch.is_grad_enabled()):
                 loss = loss + self.w_feat * values[f"feat_{name}"]
         return {**values, "loss": loss}
 
     def _check(self, features: Mapping[str, Tensor]) -> None:
-        """Raise ValueError if nothing of the loss depends on a trained weight."""
+        """Raise ValueError if the loss depends on no trained weight."""
         learned = any(feature.requires_grad for feature in features.values())
         if torch.is_grad_enabled() and not (self.w_il or self.w_kl or learned):
             raise ValueError(
-                f"Nothing would be learned: decide() of {type(self.agent).__name__} returns no "
-                "features to match that a trained weight makes (it has "
-                f"{', '.join(features) or 'none'}), and w_il and w_kl are 0. Name them in "
-                "Output.features, or set w_il."
+                f"Nothing would train: decide() of {type(self.agent).__name__} returns no features "
+                f"that depend on a trained weight (it has {', '.join(features) or 'none'}), and "
+                "w_il and w_kl are 0. Return such features in Output.features, or set w_il."
             )
 
 
@@ -130,14 +128,14 @@ class DistilViews(OnViews):
     Args:
         agent: the student; its encoders of the sensor of ``poses`` are trained in place.
         poses: the source of views.
-        teacher: weights, or "start" for ``agent`` as it is now.
-        w_labels: weight of the labels' loss.
-        w_feat: weight of the features' loss.
-        adapters_only: train the agent's adapters and nothing else.
+        teacher: weights, or "start" for a copy of ``agent`` at the start of the stage.
+        w_labels: weight of the loss of labels.
+        w_feat: weight of the loss of features.
+        adapters_only: train only the agent's adapters.
 
     Raises:
-        FileNotFoundError: for a missing teacher.
-        ValueError: for adapters with gates, and for an invalid weight.
+        FileNotFoundError: The teacher is missing.
+        ValueError: Adapters have gates, or a weight is invalid.
     """
 
     teaches_gates: ClassVar[bool] = False
@@ -175,23 +173,25 @@ class DistilViews(OnViews):
     def forward(self, batch: dict[str, Any]) -> dict[str, Tensor]:
         out = self.agent.see(self.modality, batch["frames"], batch["targets"])
         with torch.no_grad():
-            wanted = self.teacher.see(self.modality, batch["clean"])
-        feat = feature_loss(out.features["views"], wanted.features["views"])
+            target = self.teacher.see(self.modality, batch["clean"])
+        feat = feature_loss(out.features["views"], target.features["views"])
         loss = self.w_labels * out.losses["labels"] + self.w_feat * feat
         return {"loss": loss, "feat": feat, **out.losses, **out.figures}
 
 
 def matched(features: Mapping[str, Tensor], names: Sequence[str] | None) -> dict[str, Tensor]:
-    """The features of ``names``, None: all. Raises ValueError for one that the agent has not."""
+    """Return the features of ``names`` (None: all); raise ValueError for an unknown name."""
     unknown = sorted(set(names or ()) - set(features))
     if unknown:
-        raise ValueError(f"match={unknown} is unknown; choose from {', '.join(features)}.")
+        raise ValueError(f"match must be names of {', '.join(features)}, got {unknown}.")
     return {n: f for n, f in features.items() if names is None or n in names}
 
 
 def policy_kl(student: Tensor, teacher: Tensor, temperature: float) -> Tensor:
-    """KL(pi_T || pi_S) of logits [B, n] at ``temperature``, mean over the batch; -inf is no
-    candidate, and must be so in both."""
+    """Return KL(pi_T || pi_S) of logits [B, n] at ``temperature``, the mean over the batch.
+
+    -inf marks entries that are not candidates; both must have the same ones.
+    """
     p = (teacher / temperature).log_softmax(-1)
     q = (student / temperature).log_softmax(-1)
     each = p.exp() * (p - q).masked_fill(teacher == float("-inf"), 0.0)
@@ -199,8 +199,11 @@ def policy_kl(student: Tensor, teacher: Tensor, temperature: float) -> Tensor:
 
 
 def feature_loss(student: Tensor, teacher: Tensor) -> Tensor:
-    """Mean squared error in units of the teacher's variance over all numbers. So the scale of the
-    whole does not matter; that of a part does: probabilities beside larger features weigh little
-    (0.3 to 5 % of the error, by encoder and corruption), and are taught by labels."""
+    """Return the mean squared error divided by the variance of the teacher's values.
+
+    So the overall scale does not matter, but the scale of a part does: probabilities next to larger
+    features contribute little (0.3 to 5 % of the error, measured by encoder and corruption). Labels
+    train them.
+    """
     error = (student.float() - teacher.float()).square().mean()
     return error / teacher.float().var().clamp(min=1e-6)

@@ -1,11 +1,11 @@
-"""Harden an image encoder from frames alone: corrupted frames must give the clean ones' features.
+"""Harden an image encoder with frames only: corrupted frames must give the clean features.
 
     L = w_feat mean of (f(corrupted) - f0(clean))^2 / v + w_gate BCE(gates, corrupted or not)
 
-f0 is the encoder as it came, and v how much its clean features differ between frames: a loss of 1
-is that of features that say nothing of the frame. Nothing else is needed: no label, action,
-instruction or policy. Some frames stay clean (``schedule.clean_share``): clean features must stay
-where the rest of an agent expects them; adapters with a gate learn to leave those frames alone.
+f0 is the original encoder, and v the variance of its clean features between frames, so features
+that are independent of the frame have a loss of 1. No label, action, instruction or policy is
+needed. Some frames stay clean (``schedule.clean_share``): the rest of an agent expects unchanged
+clean features, and adapters with a gate learn not to change those frames.
 """
 
 from __future__ import annotations
@@ -33,9 +33,9 @@ from mitigate.encoders.sources import TRAIN, UNSEEN, Frames, Source, collect, co
 from mitigate.training import success
 from mitigate.training.objective import Objective, check_weights
 
-SHOWN = 12  # frames in the log's picture
-MOST_KEPT = 1 << 30  # bytes of clean features kept from the start; more are computed at each step
-LOOKED_AT = 48  # frames that tell how much features differ where not all are kept (ours)
+SHOWN = 12  # frames in the picture of the log
+MOST_KEPT = 1 << 30  # bytes of cached clean features; above, they are computed at each step
+LOOKED_AT = 48  # frames that estimate the variance if not all features are cached (heuristic)
 
 
 def frame_source(
@@ -50,31 +50,32 @@ def frame_source(
 
 
 class HardenEncoder(Objective):
-    """Give for corrupted frames the features of the clean ones.
+    """Train an encoder to give the clean features for corrupted frames.
 
     Args:
         agent: the encoder; its adapters, or all of its weights, are trained in place.
-        source: where frames come from.
-        schedule: of corruptions; those of the encoder's sensor are drawn.
-        frames: read once, from the training scenes. Of files the unseen ones are read too, so that
-            an invalid one is found at once.
+        source: source of the frames.
+        schedule: schedule of corruptions; only those of the encoder's sensor are drawn.
+        frames: number of frames, read once from the training scenes. Unseen files are read too, so
+            that an invalid one is found at once.
         batch: frames per step.
-        micro_batch: of them in memory at once.
-        seed: of frames and corruptions.
+        micro_batch: frames in memory at once.
+        seed: seed of frames and corruptions.
         w_feat: weight of the error of features.
-        w_gate: weight of the gates' loss.
-        per_channel: whether v is of each channel, so that all count alike, or the mean of all.
+        w_gate: weight of the loss of gates.
+        per_channel: True divides by the variance of each channel, so that all count equally; False
+            divides by the mean variance.
 
     Raises:
-        ValueError: for an invalid number, and for a schedule that does not fit.
+        ValueError: A number is invalid, or the schedule does not fit.
     """
 
     sources: ClassVar[Mapping[str, Callable[..., Any]]] = {"source": frame_source}
     here = True  # the frames are in this process
     needs = ("choose_trained", "sensor", "model")
     otherwise = (
-        "This recipe takes an image encoder in an agent's place: agent=efficientnet_lite0, or "
-        "agent=encoder with agent.model=... for one of your own (docs/encoder.md)."
+        "This recipe trains an image encoder: set agent=efficientnet_lite0, or agent=encoder with "
+        "agent.model=... for your own encoder (docs/encoder.md)."
     )
 
     def __init__(
@@ -93,21 +94,22 @@ class HardenEncoder(Objective):
         super().__init__()
         if not 1 <= micro_batch <= batch or frames < 1:
             raise ValueError(
-                f"recipe.micro_batch ({micro_batch}) must be from 1 to recipe.batch ({batch}), and "
-                f"recipe.frames ({frames}) at least 1."
+                f"recipe.micro_batch must be from 1 to recipe.batch ({batch}), got {micro_batch}; "
+                f"recipe.frames must be >= 1, got {frames}."
             )
         check_weights(w_feat=w_feat, w_gate=w_gate)
         success.refuse(schedule)
         self.agent = agent
         self.batch_size = batch
         self.micro = micro_batch
-        agent.requires_grad_(False)  # of parameters of TorchScript that train there is no copy
+        agent.requires_grad_(False)  # trainable TorchScript parameters cannot be copied
         self.teacher = as_agent(agent).as_teacher().eval()
         agent.choose_trained()
         names = tuple(name for name in schedule.names if modality(name) == agent.sensor)
         if not names:
             raise ValueError(
-                f"schedule.names has no corruption of {agent.sensor}, which this encoder sees."
+                f"schedule.names must contain a corruption of {agent.sensor}, which this encoder "
+                "reads."
             )
         self.schedule = dataclasses.replace(schedule, names=names)
         self.source = source
@@ -126,11 +128,11 @@ class HardenEncoder(Objective):
         self._last: np.ndarray | None = None
 
     def identity(self) -> dict[str, str]:
-        found = {"encoder_sha256": checkpoint.weights_sha(self.teacher)}
+        hashes = {"encoder_sha256": checkpoint.weights_sha(self.teacher)}
         if self.source.files:
             assert self.frames is not None
-            found["frames_sha256"] = self.frames.sha256()
-        return found
+            hashes["frames_sha256"] = self.frames.sha256()
+        return hashes
 
     def start(self) -> None:
         if self.frames is None:
@@ -155,14 +157,14 @@ class HardenEncoder(Objective):
         return self.teacher(frames).float()
 
     def jobs(self, step: int) -> list[tuple[int, int, int]]:
-        """Step, place and number of each frame."""
+        """Return (step, position in the batch, index of the frame) of each frame."""
         assert self.frames is not None, "start() reads the frames"
         rng = generator(self.seed, "encoder batch", step)
         chosen = rng.integers(len(self.frames), size=self.batch_size).tolist()
         return [(step, place, index) for place, index in enumerate(chosen)]
 
     def work(self, job: tuple[int, int, int]) -> tuple[int, np.ndarray]:
-        """The number of a frame, and the frame corrupted."""
+        """Return the index of a frame and the corrupted frame."""
         step, place, index = job
         assert self.frames is not None
         corruption, key = self.schedule.draw(self.seed, f"{step}-{place}", 0)
@@ -170,9 +172,10 @@ class HardenEncoder(Objective):
 
     def collate(self, step: int, pieces: list[tuple[int, np.ndarray]]) -> dict[str, Any]:
         assert self.frames is not None
-        chosen, changed = [index for index, _ in pieces], [frame for _, frame in pieces]
+        chosen = [index for index, _ in pieces]
+        changed = [frame for _, frame in pieces]
         clean = [self.frames.frames[index] for index in chosen]
-        # black-out spares some
+        # Black-out leaves some frames unchanged.
         hit = [float(not np.array_equal(a, b)) for a, b in zip(changed, clean, strict=True)]
         self._last = np.stack(changed[:SHOWN])
         return {
@@ -183,17 +186,17 @@ class HardenEncoder(Objective):
         }
 
     def weight(self, batch: dict[str, Any]) -> float:
-        """Frames."""
+        """Return the number of frames."""
         return float(len(batch["frames"]))
 
     def _wanted(self, chosen: np.ndarray, clean: list[np.ndarray]) -> dict[str, Tensor]:
-        """The clean features of a step's frames, or the frames to compute them from."""
+        """Return the clean features of a step's frames, or the clean frames."""
         if self.targets is None:
             return {"clean": torch.from_numpy(np.stack(clean))}
         return {"wanted": self.targets[torch.from_numpy(chosen).to(self.targets.device)]}
 
     def micro_batches(self, batch: dict[str, Any]) -> list[dict[str, Any]]:
-        """Parts of the step's frames, each with its share of them."""
+        """Split the frames of a step; each part has its share of the frames."""
         tensors = {name: batch[name].split(self.micro) for name in batch if name != "episode_ids"}
         parts = [
             dict(zip(tensors, part, strict=True)) for part in zip(*tensors.values(), strict=True)
@@ -201,31 +204,31 @@ class HardenEncoder(Objective):
         return [{**part, "share": len(part["frames"]) / self.weight(batch)} for part in parts]
 
     def forward(self, batch: dict[str, Any]) -> dict[str, Tensor]:
-        wanted = batch["wanted"] if "wanted" in batch else self._clean(batch["clean"])
+        target = batch["wanted"] if "wanted" in batch else self._clean(batch["clean"])
         gates: list[Tensor] = []
         handles = [
-            module.register_forward_hook(lambda _, given, out: gates.append(out))
+            module.register_forward_hook(lambda _, _inputs, out: gates.append(out))
             for module in self.agent.modules()
             if isinstance(module, Gate)
         ]
         try:
-            found = self.agent(batch["frames"])
+            features = self.agent(batch["frames"])
         finally:
             for handle in handles:
                 handle.remove()
-        values = {"feat": ((found.float() - wanted).square() / self.variance).mean()}
+        values = {"feat": ((features.float() - target).square() / self.variance).mean()}
         loss = self.w_feat * values["feat"]
         if gates:
-            hit = batch["corrupted"]
+            corrupted = batch["corrupted"]
             values["gate"] = torch.stack(
-                [F.binary_cross_entropy_with_logits(gate.float(), hit) for gate in gates]
+                [F.binary_cross_entropy_with_logits(gate.float(), corrupted) for gate in gates]
             ).mean()
             loss = loss + self.w_gate * values["gate"]
-        values = {"loss": loss, **values, "cosine": cosine(found, wanted).mean()}
+        values = {"loss": loss, **values, "cosine": cosine(features, target).mean()}
         return {name: value * batch.get("share", 1.0) for name, value in values.items()}
 
     def evaluate(self, step: int) -> dict[str, float]:
-        """1 if the encoder's own weights are what they were, as they must be with adapters."""
+        """Return 1 if the encoder's own weights are unchanged (required with adapters), else 0."""
         return {"backbone_unchanged": float(backbone_sha(self.agent.model) == self.backbone)}
 
     def figures(self, step: int) -> dict[str, np.ndarray]:
@@ -233,9 +236,13 @@ class HardenEncoder(Objective):
 
 
 def variance(clean: Tensor, per_channel: bool) -> Tensor:
-    """How much features ``[n, C]``, ``[n, C, h, w]`` or ``[n, T, C]`` differ between frames, at the
-    same place: of each channel, in a shape that divides them, or the mean of all, a number. A
-    channel that hardly differs counts as if it had a hundredth of the mean."""
+    """Return the variance of features between frames, at the same position.
+
+    Args:
+        clean: features [n, C], [n, C, h, w] or [n, T, C].
+        per_channel: return the variance of each channel, in a shape that broadcasts, at least a
+            hundredth of the mean; else the mean of all.
+    """
     each = clean.var(0)
     channel = 0 if each.dim() == 3 else each.dim() - 1
     others = [axis for axis in range(each.dim()) if axis != channel]
@@ -244,6 +251,6 @@ def variance(clean: Tensor, per_channel: bool) -> Tensor:
     return each.clamp(min=0.01 * float(mean)) if per_channel else mean
 
 
-def cosine(found: Tensor, wanted: Tensor) -> Tensor:
-    """Cosine [n] between the features of each frame."""
-    return nn.functional.cosine_similarity(found.float().flatten(1), wanted.float().flatten(1))
+def cosine(features: Tensor, target: Tensor) -> Tensor:
+    """Return the cosine [n] between the features of each frame."""
+    return nn.functional.cosine_similarity(features.float().flatten(1), target.float().flatten(1))

@@ -1,10 +1,10 @@
 """Imitation of a world's expert with scheduled sampling, on corrupted frames.
 
 Every step rolls out a few training episodes with the current weights under the schedule's
-corruptions, then trains on all their decisions. Loss = cross-entropy to the expert, plus the
-agent's own auxiliary losses. The same recipe under three schedules gives ``da_per_frame``,
-``da_per_episode`` and ``da_success``. It trains any agent of ``agents/agent.py`` in any world that
-has an expert.
+corruptions, then trains on all their decisions. The loss is the cross-entropy to the expert plus
+the auxiliary losses of the agent. The same recipe with three schedules gives ``da_per_frame``,
+``da_per_episode`` and ``da_success``. It trains any agent of ``agents/agent.py`` in any world with
+an expert.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from mitigate.training.objective import check_weights
 from mitigate.training.parts import train_only
 from mitigate.training.rollouts import OnEpisodes, Rollouts
 
-DECAY = 0.6  # share of the steps until the oracle takes follow_oracle of the decisions (ours)
+DECAY = 0.6  # share of the steps after which the expert's share is follow_oracle (heuristic)
 
 
 class Imitate(OnEpisodes):
@@ -28,12 +28,12 @@ class Imitate(OnEpisodes):
     Args:
         agent: trained in place.
         rollouts: the source of its decisions.
-        train_parts: of the agent's ``parts()``, or "adapters"; the others stay frozen. "policy":
-            all but the encoders. None: all but the adapters.
-        losses: weights of the agent's auxiliary losses by name, where they differ from its own.
+        train_parts: names of the agent's ``parts()``, or "adapters"; other parts stay frozen.
+            "policy" means all except the encoders, None all except the adapters.
+        losses: weights of auxiliary losses by name, over the defaults of the agent.
 
     Raises:
-        ValueError: for an unknown part and for an invalid weight.
+        ValueError: A part is unknown, or a weight is invalid.
     """
 
     def __init__(
@@ -57,18 +57,20 @@ class Imitate(OnEpisodes):
 
 
 def imitation(out: Output, decisions: Decisions, weights: Mapping[str, float]) -> dict[str, Tensor]:
-    """Cross-entropy of ``out`` to the expert's answers, less their entropy, averaged by weight; the
-    auxiliary losses are added by ``weights``, 1 unless named.
+    """Return the imitation loss: weighted cross-entropy to the expert, minus the expert's entropy.
 
-    Returns "loss", and the parts and figures to log.
+    Auxiliary losses are added with their ``weights`` (default 1).
+
+    Returns:
+        "loss", and values to log.
     """
     assert out.logits is not None, "decide() gave no logits"
     logits, target = masked(out.logits, out.mask), decisions.target
     if logits.shape != target.shape or decisions.weight.shape != target.shape[:1]:
         raise ValueError(
-            f"decide() gave logits {list(logits.shape)} for targets {list(target.shape)} with "
-            f"weights {list(decisions.weight.shape)}: they must be [B, n], [B, n] and [B], of all "
-            "decisions that join() put together."
+            "decide() and join() must give logits [B, n], targets [B, n] and weights [B] for all "
+            f"decisions, got {list(logits.shape)}, {list(target.shape)} and "
+            f"{list(decisions.weight.shape)}."
         )
     log_p = logits.log_softmax(-1).masked_fill(logits == float("-inf"), 0.0)
     entropy = -(target * target.clamp(min=1e-9).log()).sum(-1)
@@ -82,32 +84,37 @@ def imitation(out: Output, decisions: Decisions, weights: Mapping[str, float]) -
 
 
 def falling_share(step: int, steps: int, least: float) -> float:
-    """The expert's share of the decisions at ``step``: it falls from 1 to ``least`` over the first
-    ``DECAY`` of ``steps``."""
+    """Return the expert's share of decisions at ``step``.
+
+    It falls from 1 to ``least`` over the first ``DECAY`` of ``steps``.
+    """
     return least + max(0.0, 1 - step / (DECAY * steps)) * (1 - least)
 
 
 def masked(logits: Tensor, mask: Tensor | None) -> Tensor:
-    """Logits with minus infinity for what may not be chosen."""
+    """Return logits with minus infinity where ``mask`` is False."""
     return logits if mask is None else logits.masked_fill(~mask, float("-inf"))
 
 
-def loss_weights(agent: Any, given: Mapping[str, float] | None) -> dict[str, float]:
-    """Weights of an agent's auxiliary losses by name: its own, and in their place those given.
-    Raises ValueError for one below 0, and for what is no mapping."""
-    if not isinstance(given or {}, Mapping):
-        raise ValueError(f"recipe.losses={given} must be weights by name, as {{distance: 0.3}}.")
-    check_weights(**{f"losses.{name}": value for name, value in (given or {}).items()})
-    return {**as_agent(agent).loss_weights, **(given or {})}
+def loss_weights(agent: Any, weights: Mapping[str, float] | None) -> dict[str, float]:
+    """Return the weights of an agent's auxiliary losses: its defaults, overridden by ``weights``.
+
+    Raises ValueError if they are not a mapping, or if a weight is below 0.
+    """
+    if not isinstance(weights or {}, Mapping):
+        raise ValueError(
+            f"recipe.losses must be weights by name, such as {{distance: 0.3}}, got {weights}."
+        )
+    check_weights(**{f"losses.{name}": value for name, value in (weights or {}).items()})
+    return {**as_agent(agent).loss_weights, **(weights or {})}
 
 
 def check_losses(agent: Any, weights: Mapping[str, float], out: Output) -> None:
-    """Raise ValueError for weights of a loss that ``agent`` neither returned in ``out`` nor names
-    itself."""
+    """Raise ValueError for the weight of a loss that ``agent`` does not have."""
     known = [*out.losses, *(n for n in as_agent(agent).loss_weights if n not in out.losses)]
     for name in weights:
         if name not in known:
             raise ValueError(
-                f"recipe.losses weights {name!r}, which decide() of {type(agent).__name__} does "
-                f"not return: its losses are {', '.join(known) or 'none'}."
+                f"recipe.losses has a weight of {name!r}, which decide() of {type(agent).__name__} "
+                f"does not return. Its losses are {', '.join(known) or 'none'}."
             )

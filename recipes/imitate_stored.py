@@ -1,7 +1,7 @@
-"""Imitation on stored features: no rendering, hundreds of decisions a step.
+"""Imitation on stored features: no rendering, hundreds of decisions per step.
 
-The encoders are frozen; their features of a lattice of poses of every scene are computed once. For
-an agent that has a ``store``. Otherwise as ``recipes/imitate.py``, whose loss it uses.
+The encoders are frozen; their features on a grid of poses of every scene are computed once. The
+agent must have a ``store``. The loss is that of ``recipes/imitate.py``.
 """
 
 from __future__ import annotations
@@ -29,19 +29,20 @@ class StoredRollouts:
 
     Args:
         agent: acts with its current weights; it has a ``store``.
-        world: makes a world of the scenes whose features are stored.
-        training: where episodes come from.
-        folder: of the stores.
-        steps: of the training.
-        episodes: per step.
-        follow_oracle: the expert's share of decisions at the end: it falls from 1 over the first
-            0.6 of ``steps``.
-        seed: of episodes, corruptions and actions.
-        schedule: of the corruptions of the variants.
-        variants: of each scene under corruptions of ``schedule``, stored beside the clean one.
+        world: makes a world with the scenes whose features are stored.
+        training: source of the episodes.
+        folder: folder of the stores.
+        steps: number of steps of the training.
+        episodes: number per step.
+        follow_oracle: final share of decisions by the expert; it falls from 1 over the first 0.6 of
+            ``steps``.
+        seed: seed of episodes, corruptions and actions.
+        schedule: schedule of corruptions of the variants.
+        variants: number of corrupted copies of each scene's features, in addition to the clean one.
 
     Raises:
-        ValueError: for no episodes, for an invalid share, and for a schedule by success.
+        ValueError: There are no episodes, the share is invalid, or the schedule is
+            success-distributed.
     """
 
     agent: Any
@@ -62,22 +63,24 @@ class StoredRollouts:
 
     def start(self, workers: int | None) -> None:
         """Make the store, in the precision of the training."""
-        drawn = {"schedule": self.schedule, "variants": self.variants, "seed": self.seed}
-        self.store = self.agent.store(self.world, self.folder, **(drawn if self.variants else {}))
+        variants = {"schedule": self.schedule, "variants": self.variants, "seed": self.seed}
+        self.store = self.agent.store(
+            self.world, self.folder, **(variants if self.variants else {})
+        )
         self.store.build(workers)
 
     @property
     def pieces(self) -> int:
-        """How many jobs every step has."""
+        """Number of jobs of every step."""
         return min(PIECES, self.episodes)
 
     def jobs(self, step: int) -> list[tuple]:
-        """(step, piece, of how many, episodes) of each piece."""
+        """Return one job per piece: (step, piece, pieces, episodes)."""
         parts = np.array_split(np.arange(self.episodes), self.pieces)
         return [(step, i, len(parts), len(part)) for i, part in enumerate(parts)]
 
     def work(self, job: tuple) -> Any:
-        """The decisions of a piece."""
+        """Return the decisions of a piece."""
         step, piece, pieces, count = job
         rngs = [generator(self.seed, "rollout", step, piece, i) for i in range(count)]
         episodes = [self.training.draw(rng, (piece, pieces)) for rng in rngs]
@@ -97,8 +100,8 @@ class ImitateStored(Objective):
     sources: ClassVar[Mapping[str, Callable[..., Any]]] = {"rollouts": StoredRollouts}
     needs = ("store", "stored_parts", *TRAINABLE)
     otherwise = (
-        "Only agents whose features are stored learn so (agent=topological); recipe=dagger trains "
-        "the others from nothing."
+        "This recipe needs an agent that stores features (agent=topological). recipe=dagger trains "
+        "other agents from scratch."
     )
 
     def __init__(

@@ -1,8 +1,8 @@
-"""Teach an agent's encoders on random poses, by the labels that a world gives for free.
+"""Train an agent's encoders on random poses with labels from the simulator.
 
-Of the apartments: which things, near things, colours and rooms show in the middle of each view
-(RGB), and where the agent can go straight (depth). The encoders of a sensor are independent of the
-others', so two stages teach them.
+In the apartments, RGB labels are the things, near things, colours and rooms in the middle of each
+view. Depth labels are the directions in which the agent can go straight. The encoders of the two
+sensors are independent, so each has its own stage.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from mitigate.training.poses import OnViews, Poses
 
 
 class Pretrain(OnViews):
-    """Teach encoders the labels that a world gives.
+    """Train encoders on labels of the world.
 
     Args:
         agent: its encoders of the sensor of ``poses`` are trained in place; it must be able to
@@ -39,21 +39,25 @@ class Pretrain(OnViews):
 
 
 def views_to_learn(agent: Any, modality: str, adapters_only: bool = False) -> dict[str, Any]:
-    """Let the encoders of ``modality`` train, or their adapters alone; return what
-    ``Poses.learn`` takes for them.
+    """Unfreeze the encoders of ``modality``, or only their adapters.
 
-    Of RGB every second view is learned from: neighbours overlap, and half of them teach as much.
-    Ring adapters see all views of a panorama, so an agent with adapters gets all. Raises ValueError
-    for an agent that cannot ``see`` and for an unknown modality.
+    RGB uses every second view: neighbours overlap, so half of the views are enough. Ring adapters
+    read all views of a panorama, so an agent with adapters uses all.
+
+    Returns:
+        The arguments of ``Poses.learn``.
+
+    Raises:
+        ValueError: The agent has no method ``see``, or the modality is unknown.
     """
     if not isinstance(agent, Seeing):
         raise ValueError(
-            f"{type(agent).__name__} cannot be taught on views alone: it has no see(sensor, "
-            "frames) (docs/bring-your-own.md). Leave out the stages that do (stages.NAME=null)."
+            f"{type(agent).__name__} cannot be trained on single views: it has no see(sensor, "
+            "frames) (docs/bring-your-own.md). Leave out those stages (stages.NAME=null)."
         )
     if modality not in agent.encoders:
         raise ValueError(
-            f"modality={modality!r} is unknown; choose {' or '.join(map(repr, agent.encoders))}."
+            f"modality must be {' or '.join(map(repr, agent.encoders))}, got {modality!r}."
         )
     module: Any = agent
     module.requires_grad_(False)

@@ -3,12 +3,12 @@
     L = mean over scales of |out - clean| + w_grad |their image gradients|
         + w_right mean of e / (e + TOLERANCE), e = |out - clean| of a pixel
 
-The last counts how many pixels are wrong rather than by how much: what is seen rightly beside
-drops, stripes or noise is to stay as it was. In the first term depth that is too far counts
-``w_far`` times: a way that is not there costs a walk, one that is not seen a detour. RGB counts in
-[0, 1], depth in metres over the range; pixels of depth that read nothing in the clean frame do not
-count. Nothing of an agent enters, so one restorer serves all. Its gate is trained afterwards, on
-maps that no longer change (``restore_gate.py``).
+The last term counts wrong pixels rather than the size of their error, so that correct pixels next
+to drops, stripes or noise stay unchanged. In the first term, depth that is too far is weighted by
+``w_far``: a path that does not exist can fail an episode, a path that is not seen costs a detour.
+RGB is in [0, 1], depth is divided by its range; depth pixels without a clean reading are ignored.
+The training does not use an agent, so one restorer fits all agents. Its gate is trained afterwards
+on fixed maps (``restore_gate.py``).
 """
 
 from __future__ import annotations
@@ -28,8 +28,8 @@ from mitigate.guards.frames.sensor import TOLERANCE, SensorRestorer
 from mitigate.training.objective import Objective, check_share, check_weights
 from mitigate.training.restoration_pairs import Pairs, pairs_of
 
-SCALES = (1, 4)  # pixels: errors of edges, and of surfaces (ours)
-RESTORER = "This recipe takes a restorer in an agent's place: agent=restorer (docs/restoration.md)."
+SCALES = (1, 4)  # pixels: errors of edges and of surfaces (heuristic)
+RESTORER = "This recipe trains a restorer: set agent=restorer (docs/restoration.md)."
 
 
 class Restore(Objective):
@@ -38,14 +38,14 @@ class Restore(Objective):
     Args:
         agent: the restorer; its network of the sensor of ``pairs`` is trained in place.
         pairs: the source of frames.
-        single: share of the steps whose views are shown one by one.
-        seed: of these steps.
+        single: share of steps that process each view separately.
+        seed: seed that chooses these steps.
         w_grad: weight of the error of image gradients.
         w_right: weight of the share of wrong pixels.
         w_far: factor on the error of depth that is too far.
 
     Raises:
-        ValueError: for an invalid number.
+        ValueError: A number is invalid.
     """
 
     sources: ClassVar[Mapping[str, Callable[..., Any]]] = {"pairs": pairs_of}
@@ -91,31 +91,32 @@ class Restore(Objective):
         return self.pairs.work(job)
 
     def collate(self, step: int, pieces: list[Any]) -> dict[str, Any]:
-        made = self.pairs.collate(pieces)
+        batch = self.pairs.collate(pieces)
         alone = generator(self.seed, "restore views", step).random() < self.single
-        views = made["frames"].shape[1] if self.pairs.ring and not alone else 1
-        return {**made, "views": views}
+        views = batch["frames"].shape[1] if self.pairs.ring and not alone else 1
+        return {**batch, "views": views}
 
     def weight(self, batch: dict[str, Any]) -> float:
-        """Views."""
+        """Return the number of views."""
         return float(batch["frames"].shape[0] * batch["frames"].shape[1])
 
     def forward(self, batch: dict[str, Any]) -> dict[str, Tensor]:
         views = batch["views"]
         frames, clean = batch["frames"].flatten(0, 1), batch["clean"].flatten(0, 1)
-        made = self.net(frames, views)
+        restored = self.net(frames, views)
         with torch.autocast(frames.device.type, enabled=False):
-            wanted, valid = self.net.scaled(clean)
+            target, valid = self.net.scaled(clean)
             seen, _ = self.net.scaled(frames)
-            loss = self._error(made, wanted, valid)
-            before, after = (((x - wanted).abs() * valid).mean() for x in (seen, made.detach()))
-        self._keep(frames, made, clean)
+            loss = self._error(restored, target, valid)
+            before, after = (((x - target).abs() * valid).mean() for x in (seen, restored.detach()))
+        self._keep(frames, restored, clean)
         return {"loss": loss, "before": before, "after": after}
 
-    def _error(self, out: Tensor, wanted: Tensor, valid: Tensor) -> Tensor:
-        """L1 at all scales, that of the image gradients, and the share of wrong pixels."""
+    def _error(self, out: Tensor, target: Tensor, valid: Tensor) -> Tensor:
+        """Return the sum of L1 at all scales, L1 of image gradients, and the share of wrong "
+        "pixels."""
         total = out.new_zeros(())
-        difference = (out - wanted) * valid
+        difference = (out - target) * valid
         charged = torch.where(difference > 0, self.w_far * difference, difference)
         for scale in SCALES:
             total = total + F.avg_pool2d(charged, scale).abs().mean() / len(SCALES)
@@ -130,10 +131,10 @@ class Restore(Objective):
     def _keep(self, frames: Tensor, out: Tensor, clean: Tensor) -> None:
         if not self.training:
             return
-        made = self.net.unscaled(out.detach()).to(frames.dtype)
-        rows = [part[:: max(1, len(part) // 12)][:12].cpu() for part in (frames, made, clean)]
+        restored = self.net.unscaled(out.detach()).to(frames.dtype)
+        rows = [part[:: max(1, len(part) // 12)][:12].cpu() for part in (frames, restored, clean)]
         self._shown = np.concatenate([side_by_side(row.numpy()) for row in rows])
 
     def figures(self, step: int) -> dict[str, np.ndarray]:
-        """Views of the last batch: corrupted, restored, clean."""
+        """Return views of the last batch: corrupted, restored, clean."""
         return {} if self._shown is None else {"restored": self._shown}

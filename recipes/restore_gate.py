@@ -1,12 +1,12 @@
-"""Train the gate of a restorer: which frames come nearer to the clean ones by being restored.
+"""Train the gate of a restorer: it decides which frames are closer to the clean ones when restored.
 
     L = BCE(gate, error after < ``BETTER`` error before, and at most ``SPENT`` fewer right pixels)
 
-By the mean error alone it is better to blur a frame of which a part is wrong; to who reads it, it
-is not. A frame that is neither clearly better afterwards nor clean or worse counts for neither. The
-maps that the gate reads do not change here, so they are computed once, for ``instants`` random
-instants, and learned from many times. Afterwards the threshold is set on clean frames of the
-training scenes that were held back: ``touched`` of them lie above it.
+By the mean error alone, blurring a partly wrong frame would count as better, but an agent loses
+details. A frame that is neither clearly better when restored, nor clean, nor worse, is ignored. The
+inputs of the gate do not change here, so they are computed once for ``instants`` random instants
+and used many times. Finally the threshold is set on held-out clean frames of the training scenes:
+a share ``touched`` of them is above it.
 """
 
 from __future__ import annotations
@@ -27,17 +27,23 @@ from mitigate.recipes.restore import RESTORER
 from mitigate.training.objective import Objective
 from mitigate.training.restoration_pairs import Pairs, pairs_of, with_clean_share
 
-CLEAN_SHARE = 0.35  # of the instants that are learned from (ours)
-BETTER = 0.85  # of the error before: what restoring must get below to be worth it (ours)
-SPENT = 0.15  # of the pixels (ours)
-# Steps, so that no instant is one that the network was trained on, and none serves two ends.
+CLEAN_SHARE = 0.35  # share of clean instants in the training (heuristic)
+BETTER = 0.85  # the restored error must be below this share of the error before (heuristic)
+SPENT = 0.15  # largest loss of right pixels, as a share of all pixels (heuristic)
+# First step numbers, so that instants were not used to train the network and serve one purpose.
 OFFSETS = {"held": 1_000_000, "fresh": 2_000_000, "corrupted": 3_000_000, "learned": 4_000_000}
 
 
 class Judged(NamedTuple):
-    """Of N instants of V views: stats [N, V, s] and textures [N, V, t], which the gate reads;
-    before, after [N]: mean error over the range as they are and as restored. spent [N]: share of
-    right pixels before less that afterwards (``frames.TOLERANCE``)."""
+    """Measures of N instants with V views.
+
+    Attributes:
+        stats: input of the gate [N, V, s].
+        textures: input of the gate [N, V, t].
+        before: mean error of the original frames [N], divided by the range.
+        after: mean error of the restored frames [N].
+        spent: share of right pixels before, minus that after [N] (``TOLERANCE``).
+    """
 
     stats: Tensor
     textures: Tensor
@@ -47,10 +53,10 @@ class Judged(NamedTuple):
 
     @property
     def wanted(self) -> tuple[Tensor, Tensor]:
-        """Which should be restored, and which are to be counted: bool [N] each."""
-        kept = self.spent <= SPENT
-        hit = (self.before > 0) & (self.after < BETTER * self.before) & kept
-        return hit, hit | (self.after >= self.before) | ~kept
+        """Which instants should be restored, and which count in the loss: bool [N] each."""
+        intact = self.spent <= SPENT
+        better = (self.before > 0) & (self.after < BETTER * self.before) & intact
+        return better, better | (self.after >= self.before) | ~intact
 
 
 class RestoreGate(Objective):
@@ -59,15 +65,15 @@ class RestoreGate(Objective):
     Args:
         agent: the restorer; the gate of its network of the sensor of ``pairs`` is trained in place.
         pairs: the source of frames.
-        instants: to learn from, and as many single views.
-        held: clean instants that set the threshold.
+        instants: number of training instants, and of single views.
+        held: number of held-out clean instants that set the threshold.
         batch: instants per step.
-        single: share of the steps that learn from single views.
+        single: share of steps that train on single views.
         touched: share of clean instants above the threshold.
-        seed: of the batches.
+        seed: seed of the batches.
 
     Raises:
-        ValueError: for an invalid number.
+        ValueError: A number is invalid.
     """
 
     sources: ClassVar[Mapping[str, Callable[..., Any]]] = {"pairs": pairs_of}
@@ -89,8 +95,9 @@ class RestoreGate(Objective):
         super().__init__()
         if not (0 <= single <= 1 and 0 < touched < 1 and min(instants, held, batch) >= 1):
             raise ValueError(
-                f"recipe.single ({single}) and recipe.touched ({touched}) are shares from 0 to 1; "
-                f"recipe.instants ({instants}), held ({held}) and batch ({batch}) at least 1."
+                "recipe.single and recipe.touched must be shares from 0 to 1, got "
+                f"{single} and {touched}; recipe.instants, held and batch must be >= 1, got "
+                f"{instants}, {held} and {batch}."
             )
         self.modality = pairs.sensor
         self.instants = instants
@@ -104,7 +111,7 @@ class RestoreGate(Objective):
         self.net.gate.requires_grad_(True)
         self.pairs = with_clean_share(pairs, CLEAN_SHARE)
         self.clean = with_clean_share(pairs, 1.0)
-        self.learned: list[Judged] = []  # of panoramas, if there are any, and of single views
+        self.learned: list[Judged] = []  # panoramas (if any), single views
 
     def identity(self) -> dict[str, str]:
         return self.pairs.identity()
@@ -116,7 +123,7 @@ class RestoreGate(Objective):
         self.learned = [self._judged(self.pairs, self.instants, "learned", ring) for ring in kinds]
 
     def pieces(self) -> int:
-        """1: a step is not shared."""
+        """Return 1: ranks cannot share a step."""
         return 1
 
     def batch(self, step: int) -> dict[str, Any]:
@@ -128,67 +135,68 @@ class RestoreGate(Objective):
 
     def forward(self, batch: dict[str, Any]) -> dict[str, Tensor]:
         judged = Judged(*(part.to(self.net.threshold.device) for part in batch["judged"]))
-        logits, (hit, counted) = self._logits(judged), judged.wanted
-        each = F.binary_cross_entropy_with_logits(logits, hit.float(), reduction="none")
-        total, right = counted.sum().clamp(min=1), (logits > 0) == hit
+        logits, (better, counted) = self._logits(judged), judged.wanted
+        each = F.binary_cross_entropy_with_logits(logits, better.float(), reduction="none")
+        total, right = counted.sum().clamp(min=1), (logits > 0) == better
         return {
             "loss": (each * counted).sum() / total,
             "accuracy": (right & counted).sum() / total,
-            "wanted": (hit & counted).sum() / total,
+            "wanted": (better & counted).sum() / total,
         }
 
     def _logits(self, judged: Judged) -> Tensor:
-        """[N]: each of the N is one instant."""
+        """Return the logit of each instant [N]."""
         stats, textures = (part.flatten(0, 1) for part in judged[:2])
         return self.net.gate(stats, textures, judged.stats.shape[1]).float()
 
     @torch.no_grad()
     def _judged(self, pairs: Pairs, count: int, which: str, ring: bool) -> Judged:
-        """What the gate reads of ``count`` instants, and what restoring them comes to; ``ring``:
-        of panoramas, or each view by itself."""
+        """Measure ``count`` instants; ``ring`` processes panoramas, else each view separately."""
         parts: list[tuple[Tensor, ...]] = []
-        step, have, device = OFFSETS[which], 0, self.net.threshold.device
+        step, collected, device = OFFSETS[which], 0, self.net.threshold.device
         with Progress(f"{self.modality}, {which}", count, unit="instant") as progress:
-            while have < count:
+            while collected < count:
                 batch = pairs.collate([pairs.work(job) for job in pairs.jobs(step)])
                 frames, clean = (batch[n].flatten(0, 1).to(device) for n in ("frames", "clean"))
                 parts.append(self._part(frames, clean, batch["frames"].shape[1] if ring else 1))
-                found, step = min(len(parts[-1][0]), count - have), step + 1
-                have += found
-                progress.advance(found)
+                added, step = min(len(parts[-1][0]), count - collected), step + 1
+                collected += added
+                progress.advance(added)
         return Judged(*(torch.cat(part)[:count] for part in zip(*parts, strict=True)))
 
     def _part(self, frames: Tensor, clean: Tensor, views: int) -> tuple[Tensor, ...]:
-        """The entries of :class:`Judged` for frames [n, H, W, c]."""
-        made = self.net(frames, views)
-        less = self.net.small(*self.net.scaled(frames))
-        read = (self.net.judge(*less, views)[0].stats, texture(*less))
-        wanted, valid = self.net.scaled(clean)
+        """Return the entries of :class:`Judged` for frames [n, H, W, c]."""
+        restored = self.net(frames, views)
+        small = self.net.small(*self.net.scaled(frames))
+        inputs = (self.net.judge(*small, views)[0].stats, texture(*small))
+        target, valid = self.net.scaled(clean)
         seen, _ = self.net.scaled(frames)
-        wrong = [((x - wanted).abs() * valid).mean(1) for x in (seen, made)]
+        wrong = [((x - target).abs() * valid).mean(1) for x in (seen, restored)]
         errors = [part.mean((1, 2)) for part in wrong]
         right = [(part < TOLERANCE).float().mean((1, 2)) for part in wrong]
-        parts = (*read, *errors, right[0] - right[1])
+        parts = (*inputs, *errors, right[0] - right[1])
         stats, textures, *others = (part.unflatten(0, (-1, views)) for part in parts)
         return stats, textures, *(part.mean(1) for part in others)
 
     @torch.no_grad()
     def finish(self) -> None:
-        """Set the threshold by the clean instants that were held back."""
+        """Set the threshold on held-out clean instants."""
         logits = self._logits(self._judged(self.clean, self.held, "held", self.pairs.ring))
         self.net.threshold.fill_(float(logits.quantile(1 - self.touched)))
 
     @torch.no_grad()
     def evaluate(self, step: int) -> dict[str, float]:
-        """Return the threshold, which is set at the end, with the shares above it of other clean
-        instants, and of corrupted ones that restoring makes clearly better."""
+        """Return the threshold, which is set at the end, and two shares above it.
+
+        They are measured on other clean instants, and on corrupted instants that become better.
+        """
         ring = self.pairs.ring
         fresh = self._judged(self.clean, -(-self.held // 3), "fresh", ring)
-        met = self._judged(self.pairs, -(-self.held // 3), "corrupted", ring)
+        corrupted = self._judged(self.pairs, -(-self.held // 3), "corrupted", ring)
         return {
             "threshold": float(self.net.threshold),
             "clean_touched": self._above(self._logits(fresh)),
-            "helped_found": self._above(self._logits(met)[met.wanted[0]]),
+            "helped_found": self._above(self._logits(corrupted)[corrupted.wanted[0]]),
         }
 
     def _above(self, logits: Tensor) -> float:

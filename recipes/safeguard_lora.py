@@ -1,7 +1,7 @@
 """LoRA fine-tuning of the safeguard's language model: corrupted text in, plain text out.
 
-Loss = cross-entropy on the completion alone, averaged over its tokens in the whole step. A step's
-pairs are grouped by length into micro-batches.
+The loss is the cross-entropy of the completion, averaged over its tokens in the whole step. The
+pairs of a step are grouped by length into micro-batches.
 """
 
 from __future__ import annotations
@@ -19,22 +19,26 @@ from mitigate.guards.text.language_models.tokens import collate, encode_pair
 from mitigate.guards.text.learning.data import Pair, draw_pair, read_chats, read_texts
 from mitigate.training.objective import Objective
 
-Encoded = tuple[int, list[int], list[int]]  # of a pair: its number, prompt and completion
-_HELD = 10**9  # pairs from here on are for evaluation
+Encoded = tuple[int, list[int], list[int]]  # number, prompt and completion of a pair
+_HELD = 10**9  # number of the first pair for evaluation
 
 
 class SafeguardLora(Objective):
-    """Args:
-    agent: the language model; its adapter is trained in place.
-    pairs: a step. micro_batch: pairs at once in memory.
-    files: episode files of R2R or RxR whose instructions are corrupted as well as our own.
-    chats: chat files (``messages``) of further pairs.
-    share: of a step's pairs that come from either, from both alike if both are given.
+    """Fine-tune the language model of the safeguard.
+
+    Args:
+        agent: the language model; its adapter is trained in place.
+        pairs: pairs per step.
+        micro_batch: pairs in memory at once.
+        files: episode files of R2R or RxR, additional instructions to corrupt.
+        chats: chat files (``messages``) with additional pairs.
+        share: share of pairs from these files; half from each kind if both are set.
+        seed: seed of the pairs.
     """
 
     ahead = True
     needs = ("rewrite", "tokenizer")
-    otherwise = "It takes a language model in an agent's place: agent=safeguard."
+    otherwise = "This recipe trains a language model: set agent=safeguard."
 
     def __init__(
         self,
@@ -49,13 +53,16 @@ class SafeguardLora(Objective):
         super().__init__()
         if not 1 <= micro_batch <= pairs:
             raise ValueError(
-                f"recipe.micro_batch ({micro_batch}) must be from 1 to recipe.pairs ({pairs})."
+                f"recipe.micro_batch must be from 1 to recipe.pairs ({pairs}), got {micro_batch}."
             )
-        self.agent, self.pairs, self.micro_batch = agent, pairs, micro_batch
+        self.agent = agent
+        self.pairs = pairs
+        self.micro_batch = micro_batch
         self.encode_pair = partial(encode_pair, agent.tokenizer, agent.prompt)  # without the agent
         self.texts = read_texts(files or [])
         self.chats = [pair for path in chats or [] for pair in read_chats(path)]
-        self.share, self.seed = share, seed
+        self.share = share
+        self.seed = seed
         self.read = [*(files or []), *(chats or [])]
         for name, parameter in agent.named_parameters():
             parameter.requires_grad_("lora_" in name)
@@ -68,10 +75,10 @@ class SafeguardLora(Objective):
         if not self.chats:
             return draw_pair(self.seed, index, self.texts, self.share)
         rng = generator(self.seed, "chat", index)
-        given = rng.random() < self.share
-        if given and not (self.texts and rng.random() < 0.5):
+        from_files = rng.random() < self.share
+        if from_files and not (self.texts and rng.random() < 0.5):
             return self.chats[int(rng.integers(len(self.chats)))]
-        return draw_pair(self.seed, index, self.texts, float(given))
+        return draw_pair(self.seed, index, self.texts, float(from_files))
 
     def jobs(self, step: int) -> list[int]:
         return list(range(step * self.pairs, (step + 1) * self.pairs))
@@ -80,14 +87,14 @@ class SafeguardLora(Objective):
         return (job, *self.encode_pair(self.pair(job)))
 
     def __getstate__(self) -> dict[str, Any]:
-        """What workers need: all but the language model, which is large."""
+        """Return the state for workers, without the large language model."""
         return {**self.__dict__, "_modules": {}}
 
     def collate(self, step: int, pieces: list[Encoded]) -> dict[str, Any]:
         return self._batch(pieces)
 
     def weight(self, batch: dict[str, Any]) -> float:
-        """Tokens of the completions."""
+        """Return the number of tokens of the completions."""
         return float(sum(int(group["completion"].sum()) for group in batch["groups"]))
 
     def _batch(self, pieces: list[Encoded]) -> dict[str, Any]:
@@ -102,18 +109,22 @@ class SafeguardLora(Objective):
         }
 
     def micro_batches(self, batch: dict[str, Any]) -> list[dict[str, Any]]:
-        """One group each, with its share of the step's tokens."""
+        """Return the groups, each with the number of tokens of the step."""
         tokens = self.weight(batch)
         return [{"group": group, "tokens": tokens} for group in batch["groups"]]
 
     def forward(self, batch: dict[str, Any]) -> dict[str, Tensor]:
         loss, correct = self.agent.loss(batch["group"])
-        own, tokens = batch["group"]["completion"].sum(), batch["tokens"]
-        return {"loss": loss / tokens, "accuracy": correct / tokens, "tokens": own.float()}
+        completion_tokens, tokens = batch["group"]["completion"].sum(), batch["tokens"]
+        return {
+            "loss": loss / tokens,
+            "accuracy": correct / tokens,
+            "tokens": completion_tokens.float(),
+        }
 
     def evaluate(self, step: int) -> dict[str, float]:
-        """Loss and accuracy on pairs that training never draws."""
+        """Return loss and accuracy on pairs that the training never draws."""
         pieces = [self.work(index) for index in range(_HELD, _HELD + 4 * self.pairs)]
-        held = self.micro_batches(self._batch(pieces))
-        values = [self(to_device(part, self.agent.device)) for part in held]
+        batches = self.micro_batches(self._batch(pieces))
+        values = [self(to_device(part, self.agent.device)) for part in batches]
         return {n: float(sum(part[n] for part in values)) for n in ("loss", "accuracy")}

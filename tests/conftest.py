@@ -1,4 +1,4 @@
-"""What all tests of a process share."""
+"""Set up all tests of a process: cached configs, marks of slow tests, the fork server."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ from mitigate.core import conf
 from mitigate.core.workers import context
 from mitigate.training.workers import PRELOAD
 
-PLACE = re.compile(r"(folder|runs|out)=(/[\w./-]+)")  # an option that names a folder of one test
+PLACE = re.compile(r"(folder|runs|out)=(/[\w./-]+)")  # options that name a folder of one test
 compose = conf.load_config
 composed: dict[tuple, DictConfig] = {}
 
 
-def load_config(primary: str, overrides: Iterable[str] = ()) -> DictConfig:
-    """Compose each set of options once per process: Hydra takes 0.2 s each time."""
-    overrides = [*overrides]
+def load_config(primary: str, words: Iterable[str] = ()) -> DictConfig:
+    """Compose each set of options once per process, since Hydra takes 0.2 s each time."""
+    overrides = [*words]
     places = dict(match.groups() for match in map(PLACE.fullmatch, overrides) if match)
     rest = tuple(option for option in overrides if not PLACE.fullmatch(option))
     if primary not in conf.TYPES or any(option.startswith("-") for option in rest):
@@ -52,17 +52,19 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     for item in items:
         if SLOW_FIXTURES & item._fixtureinfo.name2fixturedefs.keys():
             item.add_marker(pytest.mark.slow)
-        made = item._fixtureinfo.name2fixturedefs.values()
-        if any(found[-1].scope == "module" for found in made) and not item.get_closest_marker(
+        fixtures = item._fixtureinfo.name2fixturedefs.values()
+        if any(each[-1].scope == "module" for each in fixtures) and not item.get_closest_marker(
             "xdist_group"
         ):
             item.add_marker(pytest.mark.xdist_group(item.module.__name__))
 
 
 def pytest_collection_finish() -> None:
-    """Start the process that workers are forked from with what most of them import: it starts once
-    for all tests, and the first that asks for workers may need less. In a run of many tests only
-    (of pytest-xdist): a single one would wait for it."""
+    """Start the fork server with the modules that most workers import.
+
+    It starts once for all tests, and the first test that needs workers may preload less. Only runs
+    of many tests (pytest-xdist) start it here: a single test would wait for it.
+    """
     if "PYTEST_XDIST_WORKER" in os.environ:
         context(PRELOAD)
         forkserver.ensure_running()

@@ -134,7 +134,7 @@ def test_benchmark_takes_the_agent_and_the_world_of_the_page(folder):
 def test_the_exported_folder_fills_an_agent_that_its_user_built(folder):
     mine = sys.modules["corridor"].Policy(adapters=True)
     assert mitigate.load_hardened("hardened/corridor", agent=mine) is mine
-    with pytest.raises(ValueError, match=r"is of the agent corridor\.Policy"):
+    with pytest.raises(ValueError, match=r"belongs to the agent corridor\.Policy"):
         mitigate.load_hardened("hardened/corridor")
     page = (folder / "hardened/corridor/README.md").read_text()
     assert "Apache" not in page and "agent=Mine(...)" in page

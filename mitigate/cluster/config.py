@@ -10,7 +10,7 @@ from hydra.core.config_store import ConfigStore
 
 @dataclass
 class LauncherConfig:
-    """Worker processes of this machine. The entries are explained in ``conf/launcher``."""
+    """Worker processes on this machine. ``conf/launcher`` explains the entries."""
 
     name: str = "local"
 
@@ -28,7 +28,7 @@ class RayConfig(LauncherConfig):
 
 @dataclass
 class SlurmConfig(LauncherConfig):
-    """Jobs of a SLURM cluster, by submitit."""
+    """Jobs of a SLURM cluster, submitted by submitit."""
 
     name: str = "slurm"
     cluster: str = "slurm"

@@ -1,4 +1,4 @@
-"""Where the worker processes of an evaluation run: ``launcher=local | ray | slurm``."""
+"""Choose where worker processes run: ``launcher=local | ray | slurm``."""
 
 from __future__ import annotations
 
@@ -16,12 +16,16 @@ __all__ = ["LauncherConfig", "RayConfig", "SlurmConfig", "chosen", "count", "res
 
 
 def chosen(launcher: LauncherConfig) -> LauncherConfig:
-    """Return ``launcher``. Raises ValueError for a number that is too small, and for what can be
-    seen from here to be missing or misnamed, before any work is done."""
+    """Check ``launcher`` before any work is done, and return it.
+
+    Raises:
+        ValueError: A number is out of range, a package is missing, or the cluster is unknown or
+            cannot be reached.
+    """
     for name in ("cpus", "memory", "attempts", "processes", "minutes"):
         value = vars(launcher).get(name)
         if value is not None and not 0 < value < math.inf:
-            raise ValueError(f"launcher.{name}={value:g} must be above 0, and no infinity.")
+            raise ValueError(f"launcher.{name} must be > 0 and finite, got {value:g}.")
     if isinstance(launcher, RayConfig):
         ray_actors.check(launcher)
     if isinstance(launcher, SlurmConfig):
@@ -29,15 +33,25 @@ def chosen(launcher: LauncherConfig) -> LauncherConfig:
     return launcher
 
 
-def count(launcher: LauncherConfig, wanted: int | None, jobs: int, worth: int) -> int:
-    """How many workers to start (of SLURM: jobs); ``wanted`` None: as many as pay, which Ray is
-    asked for itself. Raises ValueError for fewer than 1."""
+def count(launcher: LauncherConfig, requested: int | None, jobs: int, worth: int) -> int:
+    """Return how many workers (for SLURM: jobs) to start.
+
+    Args:
+        launcher: where they run.
+        wanted: the requested number; None uses as many as are worth starting, or as the Ray cluster
+            has room for.
+        jobs: number of jobs.
+        worth: jobs per process below which its start takes longer than it saves.
+
+    Raises:
+        ValueError: ``wanted`` is less than 1.
+    """
     if launcher.name == "local":
-        return workers.count(wanted, jobs, worth)
-    if wanted is not None and wanted < 1:
-        raise ValueError(f"workers={wanted}: give 1 or more, or null.")
-    if wanted is not None:
-        return wanted
+        return workers.count(requested, jobs, worth)
+    if requested is not None and requested < 1:
+        raise ValueError(f"workers must be >= 1 or null, got {requested}.")
+    if requested is not None:
+        return requested
     if isinstance(launcher, SlurmConfig):
         return max(1, jobs // (worth * launcher.processes))
     assert isinstance(launcher, RayConfig)
@@ -51,9 +65,14 @@ def results(
     started: int,
     progress: Progress,
 ) -> Iterator[tuple[int, Any] | None]:
-    """As ``core.workers.results``, on ``started`` workers of the launcher: (number of the job, its
-    result) as they come, each once, whatever dies. Raises WorkersDied when a group of jobs was lost
-    too often, and what a job raises."""
+    """Yield (number of the job, its result) from ``started`` workers of the launcher.
+
+    Works as ``core.workers.results``: each result is yielded once, even if workers die.
+
+    Raises:
+        WorkersDied: A group of jobs was lost too often.
+        Exception: The error of a job.
+    """
     if isinstance(launcher, RayConfig):
         return ray_actors.results(task, groups, started, progress, launcher)
     if isinstance(launcher, SlurmConfig):

@@ -1,7 +1,7 @@
-"""Chains of programs, such as a training and its evaluation, as jobs of any launcher.
+"""Run chains of programs, such as a training and its evaluation, as jobs of any launcher.
 
-Each chain has a folder that all machines see and whose programs go on where they stopped: a chain
-whose machine died is begun again on another, and what it had finished is kept.
+Each chain has a folder that all machines can access, and its programs resume from that folder. If a
+machine dies, its chain starts again on another one and keeps its finished work.
 """
 
 from __future__ import annotations
@@ -24,16 +24,20 @@ from mitigate.core.files import make_folder
 from mitigate.core.output import open_output
 from mitigate.core.progress import Progress
 
-PAUSE = 0.1  # seconds between two looks at programs that run
-GRACE = 30.0  # seconds in which a program that was asked to end may save (ours)
+PAUSE = 0.1  # seconds between two checks of running programs
+GRACE = 30.0  # seconds that a program may take to save after SIGTERM (heuristic)
 
 
 @dataclass(frozen=True)
 class Chain:
-    """Programs that are run one after the other while each ends with 0.
+    """Programs that run one after the other while each exits with 0.
 
-    name: for lines about it. programs: (what it is, its words). log: gets their output. folder:
-    where they run. environment: beside that of whoever runs them.
+    Attributes:
+        name: name in messages.
+        programs: (kind of program, words of its command line) of each program.
+        log: file for their output.
+        folder: working directory.
+        environment: additional environment variables.
     """
 
     name: str
@@ -45,17 +49,18 @@ class Chain:
 
 @dataclass
 class Outcome:
-    """``problem``: what went wrong, empty if nothing did. ``seconds``: of CPUs, by program."""
+    """Result of a chain: its problem (empty on success), and CPU seconds by program."""
 
     problem: str = ""
     seconds: dict[str, float] = field(default_factory=dict)
 
 
 class Running:
-    """A chain that runs on this machine; :meth:`poll` until it gives an outcome."""
+    """A chain that runs on this machine; call :meth:`poll` until it returns an outcome."""
 
     def __init__(self, chain: Chain) -> None:
-        self.chain, self.outcome = chain, Outcome()
+        self.chain = chain
+        self.outcome = Outcome()
         self.left = list(chain.programs)
         make_folder(chain.log.parent)
         self._next()
@@ -68,14 +73,14 @@ class Running:
                 tied.words(list(words)),
                 cwd=chain.folder,
                 env={**os.environ, **chain.environment},
-                start_new_session=True,  # Ctrl-C reaches it once, through us
+                start_new_session=True,  # so that Ctrl-C reaches it only through this process
                 stdin=subprocess.DEVNULL,
                 stdout=log,
                 stderr=subprocess.STDOUT,
             )
 
     def poll(self) -> Outcome | None:
-        """The outcome; None while it runs."""
+        """Return the outcome, or None while a program runs."""
         ended, status, used = os.wait4(self.process.pid, os.WNOHANG)
         if not ended:
             return None
@@ -84,8 +89,8 @@ class Running:
         spent[self.what] = spent.get(self.what, 0.0) + used.ru_utime + used.ru_stime
         if self.process.returncode:
             log = self.chain.log
-            said = log.read_text("utf-8", "replace").strip() if log.is_file() else "its log is lost"
-            last = " ".join(said.splitlines()[-1:])[-400:]
+            text = log.read_text("utf-8", "replace").strip() if log.is_file() else "its log is lost"
+            last = " ".join(text.splitlines()[-1:])[-400:]
             self.outcome.problem = f"{self.what} ended with {self.process.returncode} ({last})"
         elif self.left:
             self._next()
@@ -93,7 +98,7 @@ class Running:
         return self.outcome
 
     def end(self) -> None:
-        """Ask the program that runs to save and end, and see to it that it does."""
+        """Ask the running program to save and end; kill it after ``GRACE`` seconds."""
         if self.process.returncode is not None:
             return
         with suppress(ProcessLookupError):
@@ -106,7 +111,7 @@ class Running:
 
 
 class ChainTask:
-    """Chains as what workers do (``core/workers.py``): the result is (problem, seconds)."""
+    """Run chains in workers (``core/workers.py``); a result is (problem, seconds)."""
 
     preload: ClassVar[str] = "mitigate.cluster.programs"
 
@@ -114,7 +119,7 @@ class ChainTask:
         return nullcontext()
 
     def work(self, jobs: Sequence[Chain]) -> Iterator[tuple[str, dict[str, float]]]:
-        """Run each chain to its end."""
+        """Run each chain to its end and yield its result."""
         for chain in jobs:
             running = Running(chain)
             try:
@@ -133,22 +138,27 @@ def run(
     jobs: int,
     launcher: LauncherConfig,
     progress: Progress,
-    told: Callable[[int, Outcome], None],
+    ended: Callable[[int, Outcome], None],
 ) -> None:
-    """Run ``chains``, ``jobs`` at a time, on the machines of ``launcher``; call ``told`` with the
-    number of each that ended and its outcome. When it is stopped, so are they, on this machine
-    after they saved. Raises WorkersDied for a chain that no worker survives."""
+    """Run ``chains``, ``jobs`` at a time, on the machines of ``launcher``.
+
+    Calls ``ended`` with the number and the outcome of each chain that ended. If this call is
+    interrupted, the chains are stopped too; those on this machine can save first.
+
+    Raises:
+        WorkersDied: A chain was lost with its worker too often.
+    """
     if launcher.name == "local":
-        return _run_here(list(enumerate(chains)), jobs, told)
+        return _run_here(list(enumerate(chains)), jobs, ended)
     groups = [[chain] for chain in chains]
-    for found in launchers.results(launcher, ChainTask(), groups, jobs, progress):
-        if found is not None:
-            problem, seconds = found[1]
-            told(found[0], Outcome(problem, dict(seconds)))
+    for item in launchers.results(launcher, ChainTask(), groups, jobs, progress):
+        if item is not None:
+            number, (problem, seconds) = item
+            ended(number, Outcome(problem, dict(seconds)))
 
 
 def _run_here(
-    waiting: list[tuple[int, Chain]], jobs: int, told: Callable[[int, Outcome], None]
+    waiting: list[tuple[int, Chain]], jobs: int, ended: Callable[[int, Outcome], None]
 ) -> None:
     running: dict[int, Running] = {}
     try:
@@ -160,10 +170,10 @@ def _run_here(
                 outcome = one.poll()
                 if outcome is not None:
                     del running[number]
-                    told(number, outcome)
+                    ended(number, outcome)
             time.sleep(PAUSE)
     finally:
-        for one in running.values():  # all at once, so that they save side by side
+        for one in running.values():  # signal all of them first, so that they save in parallel
             with suppress(ProcessLookupError):
                 one.process.send_signal(signal.SIGTERM)
         for one in running.values():
@@ -171,5 +181,5 @@ def _run_here(
 
 
 def python(*arguments: str) -> tuple[str, ...]:
-    """The words of ``python -m ...`` in this very Python."""
+    """Return the words of ``python -m ...`` for this Python."""
     return (sys.executable, "-m", *arguments)

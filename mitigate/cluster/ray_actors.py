@@ -1,8 +1,8 @@
-"""Workers as actors of a Ray cluster.
+"""Run workers as actors of a Ray cluster.
 
-The task, with the agent's weights, lies in Ray's object store: it is sent to each node once.
-Results stream back one by one. When an actor or its node dies, what it had not finished goes to
-another.
+The task, with the agent's weights, is in Ray's object store, so it is sent to each node once.
+Results stream back one by one. When an actor or its node dies, another actor takes over its
+unfinished jobs.
 """
 
 from __future__ import annotations
@@ -24,36 +24,43 @@ GIGABYTE = 1 << 30
 
 
 class Worker:
-    """What an actor does: the jobs of a group, one after the other."""
+    """An actor: runs the jobs of a group one after the other."""
 
     def __init__(self, task: Task) -> None:
-        self.task, self.around = task, ExitStack()
+        self.task = task
+        self.contexts = ExitStack()
 
     def started(self) -> None:
-        """Answered once the actor runs and is ready: one that waits for room in the cluster gets no
-        jobs, and what the task raises is told as its own error."""
-        self.around.enter_context(self.task.ready())
+        """Return once the actor runs and its task is ready.
+
+        Only then does it receive jobs: an actor may have to wait for room in the cluster. An error
+        of the setup is raised as itself.
+        """
+        self.contexts.enter_context(self.task.ready())
 
     def work(self, jobs: Sequence[Any]) -> Iterator[Any]:
-        """The result of each job, in order."""
+        """Yield the result of each job, in order."""
         yield from self.task.work(jobs)
 
 
 def check(launcher: RayConfig) -> None:
-    """Raise ValueError if ray is not installed, or for an address of no form that it knows."""
+    """Raise ValueError if ray is not installed or the address is not valid."""
     if find_spec("ray") is None:
         raise ValueError("launcher=ray needs ray: pip install -e '.[cluster]'.")
     address = launcher.address
     if address is not None and not re.fullmatch(r"auto|local|ray://\S+|\S+:\d+", address):
         raise ValueError(
-            f"launcher.address={short(address)} must be auto, ray://host:10001, host:6379, or null "
-            "for a cluster on this machine."
+            "launcher.address must be auto, ray://host:10001, host:6379, or null for a cluster on "
+            f"this machine, got {short(address)}."
         )
 
 
 def connect(launcher: RayConfig) -> Any:
-    """Ray, connected to the cluster of ``launcher``, or to one on this machine that ends with the
-    process. Raises ValueError as :func:`check`, and if there is no cluster."""
+    """Connect Ray to the cluster of ``launcher``, and return the module ray.
+
+    Without an address it starts a cluster on this machine, which ends with the process. Raises
+    ValueError as :func:`check`, and if there is no cluster.
+    """
     check(launcher)
     import ray
 
@@ -63,19 +70,19 @@ def connect(launcher: RayConfig) -> Any:
         except (ConnectionError, ValueError) as error:
             raise ValueError(
                 f"There is no Ray cluster at launcher.address={launcher.address} "
-                f"({str(error).splitlines()[0]}). Start one (ray start --head), or leave it out "
-                "for one on this machine."
+                f"({str(error).splitlines()[0]}). Start one (ray start --head), or leave out the "
+                "address to use this machine."
             ) from error
     return ray
 
 
 def room(launcher: RayConfig) -> int:
-    """How many workers the cluster has room for."""
-    held = connect(launcher).cluster_resources()
-    found = int(held.get("CPU", 1) // launcher.cpus)
+    """Return how many workers the cluster has room for."""
+    resources = connect(launcher).cluster_resources()
+    count = int(resources.get("CPU", 1) // launcher.cpus)
     if launcher.memory:
-        found = min(found, int(held.get("memory", 0) // (launcher.memory * GIGABYTE)))
-    return max(1, found)
+        count = min(count, int(resources.get("memory", 0) // (launcher.memory * GIGABYTE)))
+    return max(1, count)
 
 
 def results(
@@ -85,7 +92,7 @@ def results(
     progress: Progress,
     launcher: RayConfig,
 ) -> Iterator[tuple[int, Any] | None]:
-    """As ``launcher.results``."""
+    """Yield results as ``launcher.results`` does."""
     crew = _Crew(connect(launcher), task, groups, workers, progress, launcher)
     try:
         yield from crew.results()
@@ -94,7 +101,7 @@ def results(
 
 
 class _Crew:
-    """The actors, what each has to do, and the groups that none has yet."""
+    """The actors, their unfinished jobs, and the groups that no actor has received yet."""
 
     def __init__(
         self,
@@ -105,20 +112,24 @@ class _Crew:
         progress: Progress,
         launcher: RayConfig,
     ) -> None:
-        self.ray, self.launcher, self.progress = ray, launcher, progress
+        self.ray = ray
+        self.launcher = launcher
+        self.progress = progress
         self.waiting = deque((group, 1) for group in numbered(groups))
-        self.total, self.done = sum(len(group) for group, _ in self.waiting), 0
+        self.total = sum(len(group) for group, _ in self.waiting)
+        self.done = 0
         self.size = min(workers, len(self.waiting))
         self.task = ray.put(task)
         reserved = {"num_cpus": launcher.cpus, "max_restarts": 0}
         if launcher.memory:
             reserved["memory"] = int(launcher.memory * GIGABYTE)
-        self._reserved, self.failures = reserved, 0
+        self._reserved = reserved
+        self.failures = 0
         self.make = ray.remote(Worker).options(**reserved).remote
         self.name = task.name
         self.idle: list[Any] = []
-        self.starting: dict[Any, Any] = {}  # what they answer when they run: actor
-        # stream of results: (actor, jobs left, which attempt it is)
+        self.starting: dict[Any, Any] = {}  # answer of ``started``: actor
+        # stream of results: (actor, jobs left, number of the attempt)
         self.busy: dict[Any, tuple[Any, deque, int]] = {}
 
     def results(self) -> Iterator[tuple[int, Any] | None]:
@@ -145,7 +156,7 @@ class _Crew:
         self.starting[actor.started.remote()] = actor
 
     def _welcome(self, answer: Any) -> None:
-        """An actor runs, or died before it did."""
+        """Handle an actor that has started, or has died before its start."""
         actor = self.starting.pop(answer)
         try:
             self.ray.get(answer)
@@ -161,13 +172,13 @@ class _Crew:
             self.idle.append(actor)
 
     def _give(self, actor: Any, group: Sequence[tuple[int, Any]], attempt: int) -> None:
-        """Let ``actor`` begin a group."""
+        """Start a group of jobs on ``actor``."""
         work = actor.work.options(num_returns="streaming")
         stream = work.remote([job for _, job in group])
         self.busy[stream] = (actor, deque(group), attempt)
 
     def _hear(self, stream: Any) -> Iterator[tuple[int, Any]]:
-        """The next result of a stream, or the end of its group, or of its actor."""
+        """Yield the next result of a stream, or handle the end of its group or of its actor."""
         actor, left, attempt = self.busy[stream]
         try:
             result = self.ray.get(next(stream))
@@ -184,20 +195,20 @@ class _Crew:
             yield left.popleft()[0], result
 
     def _replace(self, left: deque, attempt: int, error: Exception) -> None:
-        """Another actor in the place of one that is lost; it may run anywhere in the cluster."""
+        """Start another actor for a lost one; it may run anywhere in the cluster."""
         self._start()
         if not left:
             return
         if attempt >= self.launcher.attempts:
             raise lost(self.name(left[0][1]), attempt, self.done, self.total) from None
         self.progress.say(
-            f"A worker was lost ({type(error).__name__}). What it had not finished "
-            f"({len(left)} jobs) starts again on another."
+            f"A worker was lost ({type(error).__name__}). Its unfinished jobs ({len(left)}) start "
+            "again on another."
         )
         self.waiting.appendleft((list(left), attempt + 1))
 
     def end(self) -> None:
-        """Let go of all actors."""
+        """Kill all actors."""
         busy = [actor for actor, _, _ in self.busy.values()]
         for actor in [*self.idle, *self.starting.values(), *busy]:
             self.ray.kill(actor)

@@ -1,9 +1,10 @@
-"""Workers as jobs of a SLURM cluster, submitted by submitit; or as processes of this machine, to
-try it (``launcher.cluster=local``).
+"""Run workers as jobs of a SLURM cluster, submitted by submitit.
 
-Each job takes a share of the groups, runs them in its own worker processes and appends a line for
-each result to a file in a folder that all nodes see. Whoever submitted them reads the lines as
-they come; when a job ends without having done its share, the rest is submitted again.
+``launcher.cluster=local`` runs them as processes of this machine, for a test.
+
+Each job takes a share of the groups and runs them in its own worker processes. It appends one line
+per result to a file in a folder that all nodes can access. The submitting process reads the lines
+as they arrive. When a job ends before its share is done, the rest is submitted again.
 """
 
 from __future__ import annotations
@@ -30,14 +31,22 @@ from mitigate.core.workers import SECOND, Task, lost, numbered
 from mitigate.core.workers import results as run_here
 
 CLUSTERS = ("slurm", "local")
-LATE = 30.0  # seconds that jobs without work may take to end (ours)
-TASK = "task.pickle"  # by whoever submits, for the jobs: no file from outside is unpickled
+LATE = 30.0  # seconds that finished jobs may take to end (heuristic)
+TASK = "task.pickle"  # written by the submitting process; no file from elsewhere is unpickled
 
 
 @dataclass
 class _Share:
-    """A job and the part of the work that it has: ``left`` by the jobs' numbers; ``read``: bytes of
-    ``lines`` that were read."""
+    """A submitted job and its part of the work.
+
+    Attributes:
+        job: submitit's job.
+        groups: groups of (number, job).
+        lines: file of its results.
+        left: jobs without a result, by number.
+        attempt: number of the attempt.
+        read: bytes of ``lines`` that were read.
+    """
 
     job: Any
     groups: Sequence[Sequence[tuple[int, Any]]]
@@ -54,8 +63,11 @@ def results(
     progress: Progress,
     launcher: SlurmConfig,
 ) -> Iterator[tuple[int, Any] | None]:
-    """As ``launcher.results``; ``workers`` is the number of jobs. Their folder is removed when all
-    is done; otherwise their logs stay in it, but never the task, with the agent's weights."""
+    """Yield results as ``launcher.results`` does; ``workers`` is the number of SLURM jobs.
+
+    The folder of the jobs is removed when all are done. After a failure their logs stay in it, but
+    not the task, which holds the agent's weights.
+    """
     check(launcher)
     folder = Path(launcher.folder).resolve() / f"{int(time.time())}-{os.getpid()}"
     executor = _executor(launcher, folder)
@@ -71,7 +83,7 @@ def results(
         submitted = len(running)
         while done < total:
             for held in list(running):
-                over = held.job.done()  # before its lines are read: nothing comes after
+                over = held.job.done()  # asked before its lines are read, so that no line is missed
                 for number, result in _fresh(held):
                     done += 1
                     yield number, result
@@ -93,12 +105,12 @@ def results(
         for held in running:
             held.job.cancel()
         (folder / TASK).unlink(missing_ok=True)
-        with suppress(OSError):  # it has the logs of jobs
+        with suppress(OSError):  # the folder holds logs
             folder.rmdir()
 
 
 def _end(running: list[_Share], folder: Path) -> None:
-    """Let the jobs, whose results are all here, end by themselves, and remove their folder."""
+    """Wait until jobs end whose results have all arrived, and remove their folder."""
     waited = time.monotonic()
     while running and time.monotonic() - waited < LATE:
         running[:] = [share for share in running if not share.job.done()]
@@ -108,14 +120,14 @@ def _end(running: list[_Share], folder: Path) -> None:
 
 
 def check(launcher: SlurmConfig) -> None:
-    """Raise ValueError if submitit is not installed, and for a cluster that cannot be reached."""
+    """Raise ValueError if submitit is not installed or the cluster cannot be reached."""
     if find_spec("submitit") is None:
         raise ValueError("launcher=slurm needs submitit: pip install -e '.[cluster]'.")
     if launcher.cluster not in CLUSTERS:
         raise ValueError(unknown("launcher.cluster", launcher.cluster, CLUSTERS))
     if launcher.cluster == "slurm" and shutil.which("sbatch") is None:
         raise ValueError(
-            "There is no SLURM here (no sbatch). Start this on a login node, or try it with "
+            "SLURM is not available here (no sbatch). Run this on a login node, or test it with "
             "launcher.cluster=local."
         )
 
@@ -142,7 +154,7 @@ def _submit(
     attempt: int,
     number: int,
 ) -> _Share:
-    """Submit a job for ``groups``."""
+    """Submit a job for ``groups`` and return its share."""
     lines = folder / f"results-{number}.jsonl"
     job = executor.submit(serve, folder / TASK, list(groups), launcher.processes, lines)
     return _Share(job, groups, lines, {n: j for group in groups for n, j in group}, attempt)
@@ -151,18 +163,21 @@ def _submit(
 def serve(
     task: Path, groups: Sequence[Sequence[tuple[int, Any]]], processes: int, lines: Path
 ) -> None:
-    """A job's life: run ``groups``, a line for each result, ``{"job": number, "result": ...}``, or
-    ``{"error": text}`` at a ValueError, which would come again on any node."""
+    """Run ``groups`` in a SLURM job and write one JSON line per result.
+
+    A line is ``{"job": number, "result": ...}``, or ``{"error": text}`` for a ValueError, which
+    would occur again on any node.
+    """
     with open(task, "rb") as file:
-        held: Task = pickle.load(file)
+        loaded: Task = pickle.load(file)
     numbers = [number for group in groups for number, _ in group]
     jobs = [[job for _, job in group] for group in groups]
-    opened = open_output(lines, "a", encoding="utf-8")
-    with opened as out, Progress("jobs", len(numbers)) as progress:
+    stream = open_output(lines, "a", encoding="utf-8")
+    with stream as out, Progress("jobs", len(numbers)) as progress:
         try:
-            for found in run_here(held, jobs, processes, progress):
-                if found is not None:
-                    out.write(json.dumps({"job": numbers[found[0]], "result": found[1]}) + "\n")
+            for item in run_here(loaded, jobs, processes, progress):
+                if item is not None:
+                    out.write(json.dumps({"job": numbers[item[0]], "result": item[1]}) + "\n")
                     out.flush()
                     progress.advance()
         except ValueError as error:
@@ -171,8 +186,10 @@ def serve(
 
 
 def _fresh(share: _Share) -> Iterator[tuple[int, Any]]:
-    """Results of a share that were not read before, each once; a line without end comes later.
-    Raises the ValueError that its job tells of."""
+    """Yield new results of a share, each once; an incomplete last line is read later.
+
+    Raises the ValueError that the job has written.
+    """
     if not share.lines.is_file():
         return
     with open(share.lines, "rb") as file:
@@ -181,42 +198,44 @@ def _fresh(share: _Share) -> Iterator[tuple[int, Any]]:
             if not line.endswith(b"\n"):
                 break
             share.read += len(line)
-            told = _parse(line, share.lines)
-            if "error" in told:
-                raise ValueError(told["error"])
-            if share.left.pop(told["job"], None) is not None:
-                yield told["job"], told["result"]
+            record = _parse(line, share.lines)
+            if "error" in record:
+                raise ValueError(record["error"])
+            if share.left.pop(record["job"], None) is not None:
+                yield record["job"], record["result"]
 
 
 def _parse(line: bytes, file: Path) -> dict[str, Any]:
-    """Return the result in one line. Raises ValueError, naming the file, if it is damaged."""
+    """Return the record in one line; raise ValueError, which names the file, if it is damaged."""
     try:
-        told: Any = json.loads(line)
+        record: Any = json.loads(line)
     except ValueError:
-        told = None
-    if not isinstance(told, dict) or not ("error" in told or {"job", "result"} <= told.keys()):
+        record = None
+    if not isinstance(record, dict) or not (
+        "error" in record or {"job", "result"} <= record.keys()
+    ):
         raise ValueError(
             f"{file} has a damaged line, {short(line.decode(errors='replace'))}. The results "
             "before it were kept. Run the same command again."
         )
-    return told
+    return record
 
 
 def _again(
     share: _Share, task: Task, launcher: SlurmConfig, progress: Progress, done: int, total: int
 ) -> int:
-    """Which attempt the rest of a share is. Raises WorkersDied after too many."""
+    """Return the number of the next attempt for a share; raise WorkersDied after too many."""
     try:
         problem: Any = share.job.exception()
-    except Exception as error:  # submitit's own, of a job that left no result
+    except Exception as error:  # submitit raises its own errors for jobs without a result
         problem = error
-    said = re.findall(r"^\w*(?:Error|Died|Exception): .*$", str(problem), re.MULTILINE)
-    cause = said[-1] if said else "it was killed, or ran out of time"
+    errors = re.findall(r"^\w*(?:Error|Died|Exception): .*$", str(problem), re.MULTILINE)
+    cause = errors[-1] if errors else "it was killed, or ran out of time"
     if share.attempt >= launcher.attempts:
         first = next(iter(share.left.values()))
         raise lost(f"{task.name(first)} ({cause})", share.attempt, done, total)
     progress.say(
-        f"job {share.job.job_id} ended early ({cause}). What it had not finished "
-        f"({len(share.left)}) is submitted again."
+        f"job {share.job.job_id} ended early ({cause}). Its unfinished work ({len(share.left)}) "
+        "is submitted again."
     )
     return share.attempt + 1

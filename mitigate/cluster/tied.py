@@ -1,8 +1,8 @@
 """Run a program that does not outlive its parent: ``python tied.py PARENT PROGRAM ARGUMENTS``.
 
-A worker of a cluster that is killed leaves its programs behind; these would go on writing where
-the next worker writes. Linux ends them with it (prctl(2)); elsewhere nothing is tied. A file to be
-run, in a bare Python, before it becomes the program.
+A killed worker of a cluster would leave its programs running, and they would write where the next
+worker writes. On Linux they end together with the worker (prctl(2)); on other systems they do not.
+This file runs in a plain Python, which then becomes the program.
 """
 
 import ctypes
@@ -16,8 +16,10 @@ PR_SET_PDEATHSIG = 1  # linux/prctl.h
 
 
 def words(program):
-    """The words of ``program`` (a list of them), tied to this process. Raises OSError if there is
-    no such program."""
+    """Return the command line that runs ``program`` (a list of words) tied to this process.
+
+    Raises OSError if there is no such program.
+    """
     if shutil.which(program[0]) is None:
         raise FileNotFoundError(errno.ENOENT, "there is no such program", program[0])
     return [sys.executable, "-S", "-E", __file__, str(os.getpid()), *program]
@@ -25,11 +27,13 @@ def words(program):
 
 def main() -> None:
     """Become the program that the command line names."""
-    parent, program = int(sys.argv[1]), sys.argv[2:]
-    signal.signal(signal.SIGINT, signal.SIG_DFL)  # workers ignore it, and what they start would
+    parent = int(sys.argv[1])
+    program = sys.argv[2:]
+    # Workers ignore it, and their programs would inherit that.
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
     if sys.platform == "linux":
         ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
-    if os.getppid() != parent:  # it ended before it could be told
+    if os.getppid() != parent:  # the parent ended before prctl
         sys.exit(f"process {parent}, which started {program[0]}, is gone")
     os.execvp(program[0], program)
 

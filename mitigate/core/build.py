@@ -16,25 +16,31 @@ from omegaconf import OmegaConf
 
 from mitigate.core.names import unknown
 
-NOT_LOADED = "Error loading"  # how Hydra's message begins for a _target_ that it cannot import
-PARTIAL = "_partial_"  # Hydra's mark: return a function that makes the object
-COLLECT = "builtins.dict"  # as a _target_: collects built arguments without calling anything
+NOT_LOADED = "Error loading"  # start of Hydra's message for a _target_ that cannot be imported
+PARTIAL = "_partial_"  # Hydra's key for "return a function that makes the object"
+COLLECT = "builtins.dict"  # a _target_ that only collects the built arguments
 
 
-def build(node: Mapping[str, Any], **given: Any) -> Any:
-    """Return the object that ``node`` describes; ``given`` are further keyword arguments.
+def build(node: Mapping[str, Any], **arguments: Any) -> Any:
+    """Return the object that ``node`` describes.
 
-    Lists and mappings inside arrive as plain lists and dicts, and an entry with ``_partial_: true``
-    as a :class:`Maker`. The ValueError or FileNotFoundError of a constructor reaches the user as
-    it was raised.
+    The constructor receives nested lists and mappings as plain lists and dicts, and an entry with
+    ``_partial_: true`` as a :class:`Maker`.
+
+    Args:
+        node: a mapping with ``_target_`` and the arguments of the target.
+        arguments: additional keyword arguments.
+
+    Raises:
+        ValueError, FileNotFoundError: raised by the constructor, passed on unchanged.
     """
     config = plain(node)
     makers = {k: Maker(v) for k, v in config.items() if isinstance(v, dict) and v.get(PARTIAL)}
     rest = OmegaConf.create({k: v for k, v in config.items() if k not in makers})
     try:
         make = instantiate(rest, _partial_=True, _convert_="all")
-        _check_arguments(config, (*config, *given))
-        return make(**makers, **given)  # not through instantiate, which would copy what is given
+        _check_arguments(config, (*config, *arguments))
+        return make(**makers, **arguments)  # instantiate would copy these arguments
     except InstantiationException as error:
         cause = error.__cause__
         while isinstance(cause, InstantiationException):
@@ -47,15 +53,15 @@ def build(node: Mapping[str, Any], **given: Any) -> Any:
 
 
 def arguments_of(node: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the arguments in ``node``, each built as :func:`build` builds it."""
+    """Return the arguments in ``node``, each built by :func:`build`."""
     return dict(build({**node, "_target_": COLLECT}))
 
 
 def argument_names(kind: Any) -> list[str]:
     """Return the arguments that a config may give to ``kind``.
 
-    A class with ``sources`` (``mitigate.training.objective``) takes those of its sources too, and
-    no source itself.
+    A class with ``sources`` (``mitigate.training.objective``) also takes the arguments of its
+    sources, but not the sources themselves.
     """
     sources: Mapping[str, Any] = getattr(kind, "sources", {})  # other classes and functions lack it
     names = [name for name in signature(kind).parameters if name not in sources]
@@ -79,9 +85,9 @@ def _check_arguments(node: Mapping[str, Any], names: Iterable[str]) -> None:
 
 
 class Maker:
-    """Make what a config describes, a new object with every call.
+    """Make the object that a config describes; each call makes a new one.
 
-    It can be pickled, so that worker processes make their own.
+    A Maker can be pickled, so that worker processes can make their own objects.
     """
 
     def __init__(self, node: Mapping[str, Any]) -> None:
@@ -115,8 +121,8 @@ def located(target: str) -> Any:
 
 def _not_loaded(error: object) -> str:
     return (
-        f"{' '.join(str(error).split())} A _target_ is module.Name, of a module that is installed, "
-        "in the folder you are in, or on PYTHONPATH."
+        f"{' '.join(str(error).split())} A _target_ must be module.Name. The module must be "
+        "installed, in the current folder, or on PYTHONPATH."
     )
 
 

@@ -1,8 +1,9 @@
-"""Weights: ``model.safetensors`` in a folder, to evaluate, ship or start from.
+"""Read and write weights: ``model.safetensors`` in a folder, or a single safetensors file.
 
-A folder has a manifest (``folders.py``), a single file has its sha256 beside it (``checksums.py``);
-either is compared before the weights are read. Weights without one, of an older version or from
-elsewhere, are read too. The states that a training resumes from are in ``training/states.py``.
+A folder has a manifest (``folders.py``); a single file has a sidecar with its sha256
+(``checksums.py``). Both are checked before the weights are read. Weights without a checksum, from
+an older version or another project, are read too. ``training/states.py`` holds the states that a
+training resumes from.
 """
 
 from __future__ import annotations
@@ -23,28 +24,29 @@ from mitigate.core.names import short
 
 WEIGHTS = "model.safetensors"
 CONFIG = "config.yaml"
-ADAPTER = ".adapter."  # in the names of adapters' tensors, see mitigate/agents/adapters.py
+ADAPTER = ".adapter."  # part of the names of adapter tensors (mitigate/agents/adapters.py)
 
 
 def weights_file(path: str | Path) -> Path:
-    """Return the safetensors file that ``path`` (the file or its folder) means.
+    """Return the safetensors file at ``path``, which names the file or its folder.
 
-    Raises FileNotFoundError if there is none.
+    Raises:
+        FileNotFoundError: There is no safetensors file.
     """
-    given = Path(path)
-    file = given if given.suffix == ".safetensors" else given / WEIGHTS
-    if given.is_file() and given != file:
+    path = Path(path)
+    file = path if path.suffix == ".safetensors" else path / WEIGHTS
+    if path.is_file() and path != file:
         raise FileNotFoundError(
-            f"{given} is no .safetensors file, and what else weights are kept in may run code when "
-            "it is opened. Write yours as safetensors: "
+            f"Weights must be a .safetensors file, got {path}. Other formats may run code when "
+            "they are opened. Write yours as safetensors: "
             'safetensors.torch.save_file(policy.state_dict(), "mine.safetensors").'
         )
     if not file.is_file():
         raise FileNotFoundError(
-            f"There are no weights at {given}: expected a .safetensors file or a folder that holds "
-            f"{WEIGHTS}, such as checkpoints/base. Train some with `make train RECIPE=base`, or as "
-            "docs/agents.md says for other kinds: RECIPE=dagger, for topological_imagenet "
-            "RECIPE=swap_encoder. Then name them: weights.base=runs/.../agent."
+            f"There are no weights at {path}: expected a .safetensors file or a folder that holds "
+            f"{WEIGHTS}, such as checkpoints/base. Train some with `make train RECIPE=base`; "
+            "docs/agents.md lists the recipes of other agents (RECIPE=dagger, or "
+            "RECIPE=swap_encoder for topological_imagenet). Then set weights.base=runs/.../agent."
         )
     return file
 
@@ -54,23 +56,23 @@ def save_weights(module: nn.Module, path: str | Path, *, half: bool = False) -> 
 
     Args:
         module: the module.
-        path: a folder, which gets ``model.safetensors`` and a manifest; or a ``.safetensors`` file,
-            which gets its sha256 beside it.
-        half: round floats to float16, as in the shipped weights: half the bytes.
+        path: a folder, for ``model.safetensors`` and a manifest; or a ``.safetensors`` file, which
+            gets a sidecar with its sha256.
+        half: round floats to float16, as in the shipped weights.
 
     Returns:
-        The file.
+        The safetensors file.
     """
-    given = Path(path)
-    if given.suffix == ".safetensors":
-        return checksums.write(given, lambda draft: write_tensors(module, draft, half=half))
-    with folders.write_folder(given, "weights") as draft:
+    path = Path(path)
+    if path.suffix == ".safetensors":
+        return checksums.write(path, lambda draft: write_tensors(module, draft, half=half))
+    with folders.write_folder(path, "weights") as draft:
         write_tensors(module, draft / WEIGHTS, half=half)
-    return given / WEIGHTS
+    return path / WEIGHTS
 
 
 def write_tensors(module: nn.Module, file: Path, *, half: bool = False) -> None:
-    """Write the tensors of ``module`` to ``file``, a draft; see :func:`save_weights`."""
+    """Write the tensors of ``module`` to the draft ``file``; see :func:`save_weights`."""
     tensors = {
         name: (value.half() if half and value.is_floating_point() else value).cpu().clone()
         for name, value in module.state_dict().items()
@@ -83,98 +85,107 @@ def write_tensors(module: nn.Module, file: Path, *, half: bool = False) -> None:
 
 
 def unwritten(file: Path, error: Exception) -> OSError:
-    """The error that says why a checkpoint could not be written, and what to do."""
+    """Return the error for a checkpoint that could not be written, with its cause and the fix."""
     cause = str(error).splitlines()[0][:200]
     return OSError(
-        f"A checkpoint could not be written to {file.parent} ({cause}): is the disk full "
-        f"({shutil.disk_usage(file.parent).free >> 20} MiB are free)? Checkpoints of before are "
-        "whole; free some room, and the same command goes on from the newest."
+        f"A checkpoint could not be written to {file.parent} ({cause}). Is the disk full "
+        f"({shutil.disk_usage(file.parent).free >> 20} MiB are free)? Earlier checkpoints are "
+        "complete. Free some space and run the same command again: it resumes from the newest."
     )
 
 
 def load_weights(module: nn.Module, path: str | Path) -> None:
-    """Fill ``module`` from :func:`save_weights`' file; names and shapes must match exactly, and
-    the kinds of numbers: floats of any width for floats, whole numbers for whole ones.
+    """Load weights that :func:`save_weights` wrote into ``module``.
 
-    Only adapters may be absent, all of them, from weights that were trained before they came in:
-    they stay as they are.
+    Names and shapes must match exactly. Float tensors may have another width; integers, booleans
+    and complex numbers must stay in their class. If the weights hold no adapters at all, as
+    weights trained before adapters were added, the adapters of ``module`` keep their values.
 
-    Raises FileNotFoundError or ValueError, naming the file and the first differences.
+    Raises:
+        FileNotFoundError: There is no safetensors file.
+        ValueError: The weights are damaged or do not fit; the message names the file and the first
+            differences.
     """
     file = weights_file(path)
     _fill(module, load_tensors(file), file)
 
 
 def not_finite(module: nn.Module) -> list[str]:
-    """Return the names of the parameters that hold NaN or infinity, and of the buffers that hold
-    NaN (infinity masks attention in some)."""
-    found = [n for n, p in module.named_parameters() if not torch.isfinite(p).all()]
-    return found + [n for n, b in module.named_buffers() if torch.isnan(b).any()]
+    """Return the names of parameters with NaN or infinity and of buffers with NaN.
+
+    Infinity is valid in a buffer: attention masks hold it.
+    """
+    names = [n for n, p in module.named_parameters() if not torch.isfinite(p).all()]
+    return names + [n for n, b in module.named_buffers() if torch.isnan(b).any()]
 
 
 def check_finite(module: nn.Module, what: str) -> None:
-    """Raise ValueError if the weights of ``module``, which are ``what``, are not all numbers."""
+    """Raise ValueError if weights of ``module`` are not finite; ``what`` names them."""
     bad = not_finite(module)
     if bad:
         raise ValueError(
-            f"{what} hold NaN or infinity, {len(bad)} tensors of them ({', '.join(bad[:3])}): the "
-            "training that made them went wrong. Choose other weights, or train again with a lower "
+            f"{what} hold NaN or infinity in {len(bad)} tensors ({', '.join(bad[:3])}): the "
+            "training that made them diverged. Choose other weights, or train again with a lower "
             "trainer.lr."
         )
 
 
 def load_part(module: nn.Module, name: str, path: str | Path) -> None:
-    """As :func:`load_weights`, of the part ``name`` alone, which is ``module``; what it has not,
-    such as a layer for a sensor that this agent lacks, is left out."""
-    file, prefix = weights_file(path), f"{name}."
-    found = {
+    """Load the part ``name`` of the weights at ``path`` into ``module``, as :func:`load_weights`.
+
+    Tensors that ``module`` lacks are skipped, such as a layer for a sensor that it does not read.
+    """
+    file = weights_file(path)
+    prefix = f"{name}."
+    tensors = {
         k.removeprefix(prefix): v for k, v in load_tensors(file).items() if k.startswith(prefix)
     }
-    if not found:
+    if not tensors:
         raise ValueError(f"The weights {file} hold no part {name!r}.")
-    own = {*module.state_dict(), *_borrowed(module)}
-    found = {name: value for name, value in found.items() if name in own}
-    _fill(module, found, file)
+    used = {*module.state_dict(), *_borrowed(module)}
+    tensors = {name: value for name, value in tensors.items() if name in used}
+    _fill(module, tensors, file)
 
 
-def _fill(module: nn.Module, found: dict[str, torch.Tensor], file: Path) -> None:
-    wanted = {k: v for k, v in module.state_dict().items() if isinstance(v, torch.Tensor)}
+def _fill(module: nn.Module, tensors: dict[str, torch.Tensor], file: Path) -> None:
+    """Load the tensors of ``file`` into ``module``; raise ValueError if they do not fit."""
+    expected = {k: v for k, v in module.state_dict().items() if isinstance(v, torch.Tensor)}
     borrowed = _borrowed(module)
-    wanted = {k: v for k, v in wanted.items() if k not in borrowed}
-    wanted |= {k: v for k, v in borrowed.items() if k in found}
-    if not any(ADAPTER in name for name in found):
-        wanted = {name: value for name, value in wanted.items() if ADAPTER not in name}
+    expected = {k: v for k, v in expected.items() if k not in borrowed}
+    expected |= {k: v for k, v in borrowed.items() if k in tensors}
+    if not any(ADAPTER in name for name in tensors):
+        expected = {name: value for name, value in expected.items() if ADAPTER not in name}
     wrong = sorted(
         name
-        for name in {*found, *wanted}
-        if name not in found or name not in wanted or not _fits(found[name], wanted[name])
+        for name in {*tensors, *expected}
+        if name not in tensors or name not in expected or not _fits(tensors[name], expected[name])
     )
     if wrong:
         raise ValueError(
-            f"The weights {file} do not fit this {type(module).__name__}: {len(wrong)} names are "
-            f"missing, unknown, of another shape or of other numbers ({', '.join(wrong[:4])} ...). "
-            "Build the agent with the config that made them (config.yaml beside them) or choose "
-            "other weights."
+            f"The weights {file} do not fit this {type(module).__name__}: {len(wrong)} tensors are "
+            f"missing, unknown, or of another shape or type ({', '.join(wrong[:4])} ...). "
+            "Build the agent with the config that made them (config.yaml in their folder) or "
+            "choose other weights."
         )
-    module.load_state_dict(found, strict=False)
+    module.load_state_dict(tensors, strict=False)
     check_finite(module, f"The weights {file}")
 
 
-def _fits(found: torch.Tensor, wanted: torch.Tensor) -> bool:
-    return found.shape == wanted.shape and _kind(found) == _kind(wanted)
+def _fits(value: torch.Tensor, expected: torch.Tensor) -> bool:
+    return value.shape == expected.shape and _kind(value) == _kind(expected)
 
 
 def _kind(value: torch.Tensor) -> str:
-    """Which numbers a tensor holds, of whatever width."""
+    """Return the class of numbers that a tensor holds, whatever their width."""
     if value.dtype == torch.bool:
-        return "truth"
+        return "bool"
     if value.is_complex():
         return "complex"
-    return "float" if value.is_floating_point() else "whole"
+    return "float" if value.is_floating_point() else "integer"
 
 
 def _borrowed(module: nn.Module) -> dict[str, torch.Tensor]:
-    """The tensors that a state dict leaves out where they are public ones (:func:`borrow`)."""
+    """Return the public tensors, which state dicts leave out (:func:`borrow`)."""
     return {
         f"{prefix}.{name}" if prefix else name: value
         for prefix, part in module.named_modules()
@@ -183,16 +194,20 @@ def _borrowed(module: nn.Module) -> dict[str, torch.Tensor]:
 
 
 def load_tensors(file: Path) -> dict[str, torch.Tensor]:
-    """Return the tensors of a safetensors file; ValueError if it is damaged, by its sidecar (if it
-    has one) or by itself, PermissionError if it may not be read."""
-    file.open("rb").close()  # tells what may not be read from what is damaged
+    """Return the tensors of a safetensors file, after a check of its sha256 if that is recorded.
+
+    Raises:
+        ValueError: The file is damaged.
+        PermissionError: The file may not be read.
+    """
+    file.open("rb").close()  # raises PermissionError, which does not mean damage
     problem = folders.problem(file)
     if not problem:
         try:
-            found = load_file(file)
-            bad = [name for name, value in found.items() if torch.isnan(value).any()]
+            tensors = load_file(file)
+            bad = [name for name, value in tensors.items() if torch.isnan(value).any()]
             if not bad:
-                return found
+                return tensors
             problem = f"holds NaN ({short(bad[0])})"
         except (SafetensorError, OSError, KeyError) as error:
             problem = f"cannot be read: {short(str(error), 200)}"
@@ -203,21 +218,22 @@ def load_tensors(file: Path) -> dict[str, torch.Tensor]:
 
 
 def _again(file: Path) -> str:
+    """Return what to do about damaged weights."""
     folder = file.resolve().parent
     if folder.name == "agent" and any(folder.parent.glob("*/step-*.pt")):  # as train.run writes it
         return (
-            "They are those of a run: the same `make train` command writes them again from the "
-            "run's checkpoints."
+            "They belong to a run: the same `make train` command writes them again from its "
+            "checkpoints."
         )
     manifest = file.with_name(folders.MANIFEST)
     note = manifest if manifest.is_file() else checksums.sidecar(file)
-    alone = f" If you know that {note.name} alone is damaged, delete it." if note.is_file() else ""
+    alone = f" If you know that only {note.name} is damaged, delete it." if note.is_file() else ""
     return f"Fetch or train them again.{alone}"
 
 
 @runtime_checkable
 class OwnFormat(Protocol):
-    """An agent with a format of its own, such as an adapter in PEFT's."""
+    """An agent that writes its own format, such as an adapter in the format of PEFT."""
 
     def save(self, folder: str | Path) -> Any: ...
 
@@ -225,13 +241,13 @@ class OwnFormat(Protocol):
 
 
 def save_agent(agent: nn.Module, folder: str | Path, config: str | None = None) -> None:
-    """Write what was trained into ``folder``, and its settings.
+    """Write the weights of ``agent`` and its settings into ``folder``.
 
     Args:
-        agent: written by its own ``save``, if it has one (:class:`OwnFormat`), else as
-            :func:`save_weights` does.
+        agent: written by its ``save`` method if it has one (:class:`OwnFormat`), else as by
+            :func:`save_weights`.
         folder: the folder.
-        config: text of ``config.yaml``; None: no such file.
+        config: text of ``config.yaml``; None writes no such file.
     """
     if isinstance(agent, OwnFormat):
         agent.save(folder)
@@ -245,7 +261,7 @@ def save_agent(agent: nn.Module, folder: str | Path, config: str | None = None) 
 
 
 def load_agent(agent: nn.Module, path: str | Path) -> None:
-    """Fill ``agent`` from what :func:`save_agent` wrote; raises as :func:`load_weights` does."""
+    """Load what :func:`save_agent` wrote into ``agent``; raises as :func:`load_weights` does."""
     if isinstance(agent, OwnFormat):
         agent.load(path)
     else:
@@ -253,9 +269,11 @@ def load_agent(agent: nn.Module, path: str | Path) -> None:
 
 
 def weights_sha(module: nn.Module, leave_out: str | None = None) -> str:
-    """Return the first 12 hex digits of the sha256 over names, types, shapes and bytes.
+    """Return the first 12 hex digits of the sha256 over names, dtypes, shapes and bytes.
 
-    ``leave_out``: names that hold this text do not count.
+    Args:
+        module: the module.
+        leave_out: text; tensors whose name contains it do not count.
     """
     sha = hashlib.sha256()
     for name, value in sorted(module.state_dict().items()):
@@ -266,17 +284,22 @@ def weights_sha(module: nn.Module, leave_out: str | None = None) -> str:
     return sha.hexdigest()[:12]
 
 
-# Public weights inside a module of ours are never copied into its checkpoints, only named there. A
-# checkpoint of such a module holds what differs from them, such as adapters, and the sha256 of the
-# file that they came from.
+# Public weights inside a module of this project are never copied into its checkpoints. Such a
+# checkpoint holds the tensors that differ from the public ones, such as adapters, and the sha256 of
+# the public file.
 
 
 def borrow(module: nn.Module, prefixes: tuple[str, ...], source: str, name: str) -> None:
-    """Leave the tensors of ``module`` whose names begin so out of its state dicts, while they are
-    as they are now, bit for bit; a state dict without them takes them from here.
+    """Leave public tensors of ``module`` out of its state dicts while they are unchanged.
 
-    ``source``: sha256 of the file that they came from, in hex; ``name``: what to call them in an
-    error. Loading a state dict that was made with others raises ValueError.
+    Loading a state dict without them fills in the public values. Loading a state dict that was made
+    with another public file raises ValueError.
+
+    Args:
+        module: the module.
+        prefixes: beginnings of the names of the public tensors.
+        source: sha256 of the public file, in hex.
+        name: name of the public weights in errors.
     """
     module.public_tensors = {  # type: ignore[assignment]
         key: value.clone() for key, value in module.state_dict().items() if key.startswith(prefixes)
@@ -289,18 +312,18 @@ def borrow(module: nn.Module, prefixes: tuple[str, ...], source: str, name: str)
 
 def _leave_out(module: Any, state: dict[str, Any], prefix: str, _: Any) -> None:
     for name, value in module.public_tensors.items():
-        held = state.get(prefix + name)
-        if held is not None and torch.equal(held.cpu(), value):
+        current = state.get(prefix + name)
+        if current is not None and torch.equal(current.cpu(), value):
             del state[prefix + name]
 
 
 def _fill_in(module: Any, state: dict[str, Any], prefix: str, *_: Any) -> None:
-    made_with = state.get(f"{prefix}public")
-    if made_with is not None and not torch.equal(made_with.cpu(), module.public.cpu()):
+    source = state.get(f"{prefix}public")
+    if source is not None and not torch.equal(source.cpu(), module.public.cpu()):
         raise ValueError(
-            f"These weights belong to {module.public_name} with sha256 "
-            f"{bytes(made_with.tolist()).hex()[:12]}, but the installed one has "
-            f"{bytes(module.public.tolist()).hex()[:12]}: install the version that they were made "
+            f"These weights need {module.public_name} with sha256 "
+            f"{bytes(source.tolist()).hex()[:12]}, but the installed one has "
+            f"{bytes(module.public.tolist()).hex()[:12]}. Install the version that they were made "
             "with."
         )
     for name, value in module.public_tensors.items():

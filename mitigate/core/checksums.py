@@ -1,9 +1,9 @@
-"""The sha256 of a single file in a sidecar beside it, in the format of ``sha256sum -c``.
+"""Keep the sha256 of a file in a sidecar file, in the format of ``sha256sum -c``.
 
-The states of a training have one. Folders have a manifest in its place (``core/folders.py``).
+The states of a training have sidecars. Folders have a manifest instead (``core/folders.py``).
 
-While a file is replaced, its sidecar lists the sums of the old one and of the new one: a program
-that is killed at any moment leaves a file that has one of them.
+While a file is replaced, its sidecar lists the sums of the old and of the new file. A program that
+is killed at any moment therefore leaves a file that matches its sidecar.
 """
 
 from __future__ import annotations
@@ -16,18 +16,18 @@ from typing import Any
 from mitigate.core.files import atomic_text, sha256, write_atomically
 
 SUFFIX = ".sha256"
-LARGEST = 4096  # characters of a sidecar, which has a line or two
+LARGEST = 4096  # characters of a sidecar (heuristic; it has one or two lines)
 DIGITS = 12  # hex digits of a fingerprint: 48 bits
 _LINE = re.compile(r"([0-9a-f]{64})  (.+)")
 
 
 def sidecar(path: Path) -> Path:
-    """Return where the sum of ``path`` is kept, whether it is there or not."""
+    """Return the path of the sidecar of ``path``, which may not exist."""
     return path.with_name(path.name + SUFFIX)
 
 
 def write(path: Path, write: Callable[[Path], Any]) -> Path:
-    """As :func:`mitigate.core.files.write_atomically`, with the file's sum beside it."""
+    """Write ``path`` as :func:`mitigate.core.files.write_atomically` does, with a sidecar."""
     digest = ""
 
     def write_and_announce(temporary: Path) -> None:
@@ -43,19 +43,25 @@ def write(path: Path, write: Callable[[Path], Any]) -> Path:
 
 
 def _sums_before(path: Path) -> list[str]:
-    """Return the sums of the file that is replaced, none if there is none."""
+    """Return the sums of the file that is replaced; an empty list if there is no file."""
     try:
         if sidecar(path).is_file() and path.is_file():
             return _sums(path)
         return [sha256(path)] if path.is_file() else []
-    except ValueError:  # a damaged sidecar goes with its file
+    except ValueError:  # a damaged sidecar is replaced together with its file
         return []
 
 
 def problem(path: Path) -> str:
-    """Return what is wrong with ``path`` by its sidecar (a predicate, such as "does not have the
-    sha256 ..."), empty if nothing is or if it has none. Raises PermissionError if it may not be
-    read, which is no damage."""
+    """Compare ``path`` with its sidecar and return what is wrong with it.
+
+    Returns:
+        A predicate such as "does not have the sha256 ..."; empty if the file is sound or has no
+        sidecar.
+
+    Raises:
+        PermissionError: The file may not be read, which does not mean damage.
+    """
     note = sidecar(path)
     if not note.is_file():
         return ""
@@ -68,13 +74,13 @@ def problem(path: Path) -> str:
 
 
 def delete(path: Path) -> None:
-    """Delete ``path`` and its sidecar, this one first: a file without one is no damaged file."""
+    """Delete ``path`` and its sidecar. The sidecar goes first: a file without one is valid."""
     sidecar(path).unlink(missing_ok=True)
     path.unlink(missing_ok=True)
 
 
 def delete_orphans(folder: Path, pattern: str) -> None:
-    """Delete the sidecars of files in ``folder`` that are gone; ``pattern`` is a glob of these."""
+    """Delete sidecars in ``folder`` whose file is gone; ``pattern`` is a glob of these files."""
     for note in folder.glob(pattern + SUFFIX):
         if not note.with_suffix("").is_file():
             note.unlink(missing_ok=True)
@@ -87,8 +93,8 @@ def _sums(path: Path) -> list[str]:
     if len(text) > LARGEST:
         raise ValueError("it is damaged")
     lines = text.splitlines()
-    found = [_LINE.fullmatch(line) for line in lines]
-    sums = [line[1] for line in found if line and line[2] == path.name]
+    matches = [_LINE.fullmatch(line) for line in lines]
+    sums = [line[1] for line in matches if line and line[2] == path.name]
     if not sums or len(sums) < len(lines):
         raise ValueError("it is damaged")
     return sums

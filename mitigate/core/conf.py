@@ -1,8 +1,8 @@
-"""Configs: compose, type and explain the options of a command; run its Hydra program.
+"""Compose and check the options of a command, run its Hydra program, and explain its errors.
 
 Each command registers the dataclass of its options when its module is imported (:func:`register`).
-A user's mistake ends in one paragraph: cause, choices, fix. Set ``HYDRA_FULL_ERROR=1`` to see the
-whole traceback instead.
+A user's mistake is explained in one paragraph: cause, allowed values, fix. Set
+``HYDRA_FULL_ERROR=1`` to see the whole traceback instead.
 """
 
 from __future__ import annotations
@@ -36,13 +36,14 @@ from mitigate.core.names import unknown
 from mitigate.core.options import check_dashes, config_folder, flags_first, without_config_folder
 from mitigate.core.signals import Ended, raise_ended
 
-CONF = PACKAGE / "conf"  # of a checkout: a link to its conf/
-TYPES: dict[str, type] = {}  # the dataclass of each conf/<name>.yaml that is registered
-FULL = "HYDRA_FULL_ERROR"  # what Hydra asks whether errors are shown whole
-# set beside it by main: programs that it starts do not show them whole
+CONF = PACKAGE / "conf"  # in a checkout, a link to its conf/
+TYPES: dict[str, type] = {}  # dataclass of each registered conf/<name>.yaml
+FULL = "HYDRA_FULL_ERROR"  # environment variable: Hydra shows whole tracebacks
+# Set by main together with FULL. It tells programs that main starts that the user did not set FULL.
 OURS = "MITIGATE_FULL_ERROR"
-HYDRAS = "Error executing job with overrides"  # hydra.core.utils, JobReturn.return_value
-WHOLE = "# @package _global_"  # Hydra's mark of a file that sets entries beside its own group
+# printed by Hydra (hydra.core.utils, JobReturn.return_value)
+HYDRAS = "Error executing job with overrides"
+WHOLE = "# @package _global_"  # first line of a file that also sets entries outside its group
 KINDS = {
     "Integer": "a whole number, such as 4",
     "Float": "a number, such as 0.6",
@@ -66,7 +67,7 @@ def typed(cfg: DictConfig, primary: str) -> Any:
     Entries that the dataclass does not declare become attributes; nodes without types are dicts.
 
     Raises:
-        ValueError: for an entry that refers to a missing one, or that is mandatory and not set.
+        ValueError: an entry refers to a missing one, or is mandatory and not set.
     """
     try:
         return OmegaConf.to_object(cfg)
@@ -81,20 +82,27 @@ def main(
     behind: Sequence[str] = (),
     again: str = "To go on",
 ) -> None:
-    """Call ``check`` and then ``program`` (a ``hydra.main`` function over ``conf/<primary>.yaml``);
-    for ``--help`` print the first lines of its module and every option instead. behind: words of
-    the command line that are not Hydra's, to be said behind the options in the command to go on.
-    again: what that command is for, where it does not go on.
+    """Run the Hydra program of a command and explain its errors.
 
-    Exits with status 1 and one paragraph for ValueError, OSError, config errors and what asks for
-    too much memory, with 130 for Ctrl-C and 143 for SIGTERM, saying how to go on.
+    ``--help`` prints the first lines of the module of ``program`` and every option instead.
+
+    Exits with status 1 and one paragraph for ValueError, OSError, errors in configs and requests
+    for too much memory. Exits with 130 for Ctrl-C and 143 for SIGTERM, and prints the command that
+    resumes.
+
+    Args:
+        program: a ``hydra.main`` function over ``conf/<primary>.yaml``.
+        primary: name of the config.
+        check: called before ``program``.
+        behind: words of the command line that are not Hydra's; they end the printed command.
+        again: what the printed command does, if it does not resume.
     """
     if {"--help", "-h"} & set(sys.argv[1:]):
         print(help_text(sys.modules[program.__module__].__doc__ or "", primary))
         return
     if os.environ.get(FULL) and OURS not in os.environ:
         return program()
-    os.environ.update({FULL: "1", OURS: "1"})  # lets errors through to here
+    os.environ.update({FULL: "1", OURS: "1"})  # makes Hydra raise errors instead of exiting
     if threading.current_thread() is threading.main_thread():
         signal.signal(signal.SIGTERM, raise_ended)
     try:
@@ -102,8 +110,8 @@ def main(
             check()
         check_dashes(sys.argv[1:])
         sys.argv[1:] = flags_first(sys.argv[1:])
-        for told in notices(primary, sys.argv[1:]):
-            print(told, file=sys.stderr)
+        for notice in notices(primary, sys.argv[1:]):
+            print(notice, file=sys.stderr)
         with _without_hydras_line():
             program()
     except (HydraException, OmegaConfBaseException) as error:
@@ -111,10 +119,10 @@ def main(
     except (ValueError, OSError) as error:
         sys.exit(f"error: {said(error)}")
     except (MemoryError, RuntimeError, OverflowError) as error:
-        told = too_much(error)
-        if not told:
+        message = too_much(error)
+        if not message:
             raise
-        sys.exit(f"error: {told}")
+        sys.exit(f"error: {message}")
     except KeyboardInterrupt as error:
         command = shlex.join([*sys.argv[0].split(), *sys.argv[1:], *behind])
         print(f"\n{str(error) or 'SIGINT'}: stopped. {again}: {command}", file=sys.stderr)
@@ -125,14 +133,16 @@ def main(
 
 @contextmanager
 def _without_hydras_line() -> Iterator[None]:
-    """Leave out the line with which Hydra announces an error: users' are explained in a paragraph,
-    and others come with a traceback."""
+    """Drop the line with which Hydra announces an error.
+
+    Users' errors are explained in a paragraph, and others have a traceback.
+    """
     with redirect_stderr(_Quieter(sys.stderr)):
         yield
 
 
 class _Quieter:
-    """A stream that leaves out what begins with ``HYDRAS``."""
+    """A stream that drops lines that begin with ``HYDRAS``."""
 
     def __init__(self, stream: TextIO) -> None:
         self._stream = stream
@@ -141,7 +151,7 @@ class _Quieter:
         return len(text) if text.startswith(HYDRAS) else self._stream.write(text)
 
     def __getattr__(self, name: str) -> Any:
-        return getattr(self._stream, name)  # all else is the stream's own
+        return getattr(self._stream, name)  # everything else behaves as the stream
 
 
 def explain(error: Exception, primary: str, options: Sequence[str] = ()) -> str:
@@ -152,8 +162,8 @@ def explain(error: Exception, primary: str, options: Sequence[str] = ()) -> str:
         return unknown(group, name, [o for o in error.options if not o.endswith("_schema")])
     if isinstance(error, OverrideParseException):
         return (
-            f"Cannot read the option {error.override!r}: write key=value, like severity=0.6, and "
-            "put a value that holds = , or spaces in quotes twice: 'checkpoint=\"my=agent\"'."
+            f"Cannot read the option {error.override!r}: write key=value, such as severity=0.6. A "
+            "value that holds = , or spaces needs two pairs of quotes: 'checkpoint=\"my=agent\"'."
         )
     key = _first(r"Could not (?:override|delete from config\.) '([^']+)'", text)
     if key is not None:
@@ -161,9 +171,7 @@ def explain(error: Exception, primary: str, options: Sequence[str] = ()) -> str:
     missing = _first(r"Interpolation key '([^']+)' not found", text)
     if missing is not None:
         key = _first(r"full_key: (\S+)", text) or "another entry"
-        return (
-            f"There is no {missing}, and {key} is what that is: leave it in its place, or set both."
-        )
+        return f"{key} refers to {missing}, which does not exist. Keep {missing}, or set both."
     override = _first(r"Error merging override ([^=\s]+=.*)", text)
     value = _first(r"Value '(.*)' (?:of type '\w+' could not be|is not a valid)", text)
     if value is not None:
@@ -181,10 +189,10 @@ def explain(error: Exception, primary: str, options: Sequence[str] = ()) -> str:
 def load_config(primary: str, words: Sequence[str] = ()) -> DictConfig:
     """Compose ``conf/<primary>.yaml`` with ``words`` of a command line, outside a Hydra program.
 
-    They are overrides, and maybe a folder with more configs (``--config-dir=mine``).
+    The words are overrides, and optionally a folder with more configs (``--config-dir=mine``).
 
     Raises:
-        ValueError: if no imported module has registered the types of this file.
+        ValueError: no imported module has registered the types of this file.
     """
     if primary not in TYPES:
         raise ValueError(
@@ -202,9 +210,11 @@ def load_config(primary: str, words: Sequence[str] = ()) -> DictConfig:
 
 
 def notices(primary: str, options: Sequence[str]) -> list[str]:
-    """What is to be said of the entries that ``options`` add to ``conf/<primary>.yaml``
-    (``+columns.mine=[...]``): Hydra puts a new list or mapping in the place of one that is there,
-    and adds an entry that no program reads, without a word."""
+    """Return warnings about entries that ``options`` add, such as ``+columns.mine=[...]``.
+
+    Without a warning, Hydra replaces an existing list or mapping, and adds an entry that no program
+    reads.
+    """
     added = {
         option[1:].partition("=")[0]: option.partition("=")[2][:1] in "[{"
         for option in options
@@ -212,91 +222,103 @@ def notices(primary: str, options: Sequence[str]) -> list[str]:
     }
     if not added:
         return []
-    own, others = without_config_folder(options)
+    folder_words, overrides = without_config_folder(options)
     try:
-        cfg = load_config(primary, [*own, *(o for o in others if re.match(r"[^-+].*=|~", o))])
-    except (HydraException, OmegaConfBaseException):  # which the program itself explains
+        cfg = load_config(
+            primary, [*folder_words, *(o for o in overrides if re.match(r"[^-+].*=|~", o))]
+        )
+    except (HydraException, OmegaConfBaseException):  # the program itself explains it
         return []
     folders = (CONF, config_folder(options) or CONF)
     return [
-        told
+        notice
         for key, whole in added.items()
         if not any((folder / key.partition("@")[0]).is_dir() for folder in folders)
-        and (told := _notice(key, whole, OmegaConf.select(cfg, key) is not None, [*map(str, cfg)]))
+        and (
+            notice := _notice(key, whole, OmegaConf.select(cfg, key) is not None, [*map(str, cfg)])
+        )
     ]
 
 
-def _notice(key: str, whole: bool, there: bool, names: list[str]) -> str:
-    if there and not whole:
-        return ""  # which Hydra refuses
-    if there:
-        return f"{key} is there already, and +{key}= replaces it. To add one, give it another name."
+def _notice(key: str, whole: bool, exists: bool, names: list[str]) -> str:
+    """Return the warning for ``+key=``; ``whole``: its value is a list or a mapping."""
+    if exists and not whole:
+        return ""  # Hydra rejects it
+    if exists:
+        return f"{key} already exists, and +{key}= replaces it. To add one, use another name."
     if "." in key:
         return ""
     near = difflib.get_close_matches(key, names, n=1)
     hint = f" Did you mean {near[0]}=...?" if near else ""
-    return f"+{key}= adds an option that only configs of your own can use.{hint}"
+    return f"+{key}= adds an option that only your own configs can use.{hint}"
 
 
 def help_text(about: str, primary: str) -> str:
-    """What ``--help`` prints: ``about``, and :func:`options_text`."""
-    options = f"Options, with what they are if nothing is said:\n\n{options_text(primary)}"
+    """Return what ``--help`` prints: ``about`` and the options."""
+    options = f"Options with their defaults:\n\n{options_text(primary)}"
     return f"{about}\n{options}" + (f"\n\n{_recipes()}" if primary == "train" else "")
 
 
 def _recipes() -> str:
-    """A line for each recipe: the first sentence of its file."""
+    """Return one line per recipe, with the first sentence of its file."""
     lines = ["Recipes (recipes/README.md):", ""]
     for file in sorted((CONF / "recipe").glob("*.yaml")):
         text = file.read_text(encoding="utf-8").removeprefix(WHOLE).strip()
         comment = takewhile(lambda line: line.startswith("#"), text.splitlines())
-        told = re.split(r"\. |: make |\.$", " ".join(line[1:].strip() for line in comment))[0]
-        lines += textwrap.wrap(f"  {file.stem:17s} {told}", 100, subsequent_indent=" " * 20)
+        sentence = re.split(r"\. |: make |\.$", " ".join(line[1:].strip() for line in comment))[0]
+        lines += textwrap.wrap(f"  {file.stem:17s} {sentence}", 100, subsequent_indent=" " * 20)
     return "\n".join(lines)
 
 
 def options_text(primary: str) -> str:
-    """Every option of ``conf/<primary>.yaml`` with its comment, also those that stand in a comment
-    since the recipes set them; those that choose a file of ``conf/`` come first, with what there
-    is."""
-    own, _, _ = (CONF / f"{primary}.yaml").read_text(encoding="utf-8").partition("\nhydra:")
-    lines = [re.sub(r"^# (\w+: .*#)", r"\1", line) for line in own.splitlines()]
-    kept = [line for line in lines if re.match(r" *\w+:.*#|\w+: \S", line)]
+    """Return every option of ``conf/<primary>.yaml`` with its comment.
+
+    Options that choose a file of ``conf/`` come first, with their choices. Options that recipes set
+    are listed too; in the file they are commented out.
+    """
+    text, _, _ = (CONF / f"{primary}.yaml").read_text(encoding="utf-8").partition("\nhydra:")
+    lines = [re.sub(r"^# (\w+: .*#)", r"\1", line) for line in text.splitlines()]
+    options = [line for line in lines if re.match(r" *\w+:.*#|\w+: \S", line)]
     groups = [
         f"{name}: {chosen or 'null'}  # {_choices(name, primary)}"
         for name, chosen in _chosen(primary).items()
     ]
-    return "\n".join(groups + kept)
+    return "\n".join(groups + options)
 
 
 def _choices(group: str, primary: str) -> str:
-    """The files of a group; of ``agent`` those that walk episodes, and for a training, which has
-    recipes for them, the others apart."""
+    """Return the files of a group.
+
+    The group ``agent`` lists agents that can run episodes. A training lists the others separately,
+    since it has recipes for them.
+    """
     files = sorted((CONF / group).glob("*.yaml"))
     if group != "agent":
         return ", ".join(path.stem for path in files)
     others = [path.stem for path in files if not walks(path)]
     text = ", ".join(path.stem for path in files if walks(path))
-    own = f"; walk no episodes, for recipes of their own: {', '.join(others)}"
-    return text + (own if primary == "train" else "")
+    parts = f"; cannot run episodes, have their own recipes: {', '.join(others)}"
+    return text + (parts if primary == "train" else "")
 
 
 def walks(file: Path) -> bool:
-    """Whether the agent of a ``file`` of ``conf/agent`` walks episodes: such a file also says which
-    weights are shipped and what is asked of the world, so it is one of the whole config."""
+    """Return whether the agent of a ``file`` of ``conf/agent`` can run episodes.
+
+    Such a file also names the shipped weights and options of the world, so it sets entries of the
+    whole config.
+    """
     return file.read_text(encoding="utf-8").startswith(WHOLE)
 
 
 def _chosen(primary: str) -> dict[str, str | None]:
-    """The groups of ``conf/<primary>.yaml`` and what of each it chooses."""
+    """Return the groups of ``conf/<primary>.yaml`` and the file that it chooses from each."""
     entries = OmegaConf.load(CONF / f"{primary}.yaml").defaults
     pairs = [pair for entry in entries if isinstance(entry, DictConfig) for pair in entry.items()]
-    found = {str(name): chosen for name, chosen in pairs}
-    return {name: chosen for name, chosen in found.items() if "/" not in name}
+    return {str(name): chosen for name, chosen in pairs if "/" not in str(name)}
 
 
 def composed(primary: str, words: Sequence[str] = ()) -> DictConfig:
-    """:func:`load_config`, which raises ValueError, in one paragraph, for what is wrong."""
+    """Compose a config as :func:`load_config`, with every error explained as a ValueError."""
     try:
         return load_config(primary, words)
     except (HydraException, OmegaConfBaseException) as error:
@@ -304,48 +326,52 @@ def composed(primary: str, words: Sequence[str] = ()) -> DictConfig:
 
 
 def _chosen_by(options: Sequence[str], primary: str) -> DictConfig:
-    """The config with what ``options`` choose of its groups (``agent=recurrent``), and no more."""
-    own, others = without_config_folder(options)
-    groups = [o for o in others if o.partition("=")[0] in _chosen(primary)]
-    return load_config(primary, [*own, *groups])
+    """Return the config with only the ``options`` that choose a file (``agent=recurrent``)."""
+    folder_words, overrides = without_config_folder(options)
+    groups = [o for o in overrides if o.partition("=")[0] in _chosen(primary)]
+    return load_config(primary, [*folder_words, *groups])
 
 
 def _unknown_key(key: str, cfg: DictConfig, primary: str) -> str:
+    """Return the paragraph for an option that the config does not have."""
     parent = key.rpartition(".")[0]
     while parent and not isinstance(OmegaConf.select(cfg, parent), DictConfig):
         parent = parent.rpartition(".")[0]
     if not parent:
         return unknown("option", key, {*map(str, cfg), *_chosen(primary)})
-    held = OmegaConf.select(cfg, parent)
-    taken = [f"+{parent}.{name}" for name in _arguments(held)]
-    if f"+{key}" in taken:
-        return f"{key} is not set so far: to add it, write +{key}=VALUE."
-    if not held:
+    node = OmegaConf.select(cfg, parent)
+    additions = [f"+{parent}.{name}" for name in _arguments(node)]
+    if f"+{key}" in additions:
+        return f"{key} is not set yet. To add it, write +{key}=VALUE."
+    if not node:
         return f"There is no option {key!r}: {parent} is empty. To add one, write +{key}=VALUE."
-    return unknown("option", key, [*(f"{parent}.{name!s}" for name in held), *taken])
+    return unknown("option", key, [*(f"{parent}.{name!s}" for name in node), *additions])
 
 
 def _arguments(node: DictConfig) -> list[str]:
-    """What a ``_target_`` of this project takes beside what ``node`` sets; those of others are not
-    imported."""
+    """Return arguments of the ``_target_`` of ``node`` that ``node`` does not set.
+
+    Only targets of this project are imported; empty for others.
+    """
     target = str(node.get("_target_", ""))
     if not target.startswith(f"{PACKAGE.name}."):
         return []
-    given = ("agent", *map(str, node))
-    return [name for name in argument_names(get_object(target)) if name not in given]
+    known = ("agent", *map(str, node))
+    return [name for name in argument_names(get_object(target)) if name not in known]
 
 
 def _misfit(key: str, value: str, cfg: DictConfig) -> str:
-    held = OmegaConf.select(cfg, key)
-    if not isinstance(held, DictConfig) or not held:
+    """Return the paragraph for a value that does not fit the entry ``key``."""
+    node = OmegaConf.select(cfg, key)
+    if not isinstance(node, DictConfig) or not node:
         return f"{key} cannot be {value}."
-    names = [str(name) for name in held]
+    names = [str(name) for name in node]
     return (
-        f"{key} cannot be {value}: it holds {', '.join(names)}. Set one of these, as "
+        f"{key} cannot be {value}: it holds {', '.join(names)}. Set one of these: "
         f"{key}.{names[0]}=VALUE."
     )
 
 
 def _first(pattern: str, text: str) -> str | None:
-    found = re.search(pattern, text)
-    return found.group(1) if found else None
+    match = re.search(pattern, text)
+    return match.group(1) if match else None

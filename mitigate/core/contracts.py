@@ -1,4 +1,4 @@
-"""How objects of users' own classes meet a contract that has optional members."""
+"""Read optional members from objects of users' classes."""
 
 from __future__ import annotations
 
@@ -7,20 +7,20 @@ from typing import Any
 
 
 def read(thing: Any, *names: str, default: Any = None) -> Any:
-    """Return the first of the attributes ``names`` that an object of an unknown class has."""
+    """Return the first attribute of ``names`` that ``thing`` has, else ``default``."""
     for name in names:
-        if hasattr(thing, name):  # any class may be asked
+        if hasattr(thing, name):  # the class is unknown
             return getattr(thing, name)
     return default
 
 
 def take_over(view: Any, thing: Any, names: Iterable[str]) -> None:
-    """Give ``view``, which has defaults, those of the members ``names`` that ``thing`` has."""
+    """Copy the members ``names`` that ``thing`` has to ``view``, over its defaults."""
     for name in names:
-        if hasattr(thing, name):  # the one place where a user's object is asked for these
+        if hasattr(thing, name):  # the only place that reads them from a user's object
             setattr(view, name, getattr(thing, name))
 
 
 def lacking(thing: Any, names: Sequence[str]) -> list[str]:
-    """Return the members ``names`` that ``thing`` does not have, or has empty, as defaults are."""
+    """Return the members ``names`` that ``thing`` lacks or that are empty (the default)."""
     return [name for name in names if not getattr(thing, name, None)]

@@ -1,4 +1,4 @@
-"""Say what this machine has and what is missing: ``make doctor``. Needs only Python itself."""
+"""Report what this machine has and what is missing: ``make doctor``. Needs only Python itself."""
 
 from __future__ import annotations
 
@@ -33,13 +33,13 @@ EXTRAS = {
     "onnx": ("onnx", "onnxruntime", "onnxscript"),
     "bench": ("miniworld", "albumentations", "kornia"),
 }
-LEVELS = {  # of an x86 processor's vector units, each above the one before: flags that it takes
+LEVELS = {  # vector instructions of x86 processors, in ascending order: required CPU flags
     "AVX2": {"avx2"},
     "AVX-512": {"avx512f", "avx512bw", "avx512dq", "avx512vl"},
     "native bf16": {"avx512_bf16"},
     "bf16 matrices (AMX)": {"amx_bf16", "amx_tile"},
 }
-CAPS = {  # how many of the levels a value of the variable leaves; one that is not here: all
+CAPS = {  # environment variable: {value: number of allowed levels}; other values allow all
     "ONEDNN_MAX_CPU_ISA": {
         "SSE41": 0, "AVX": 0, "AVX2": 1, "AVX2_VNNI": 1, "AVX2_VNNI_2": 1, "AVX512_CORE": 2,
         "AVX512_CORE_VNNI": 2, "AVX512_CORE_BF16": 3, "AVX512_CORE_FP16": 3,
@@ -47,13 +47,18 @@ CAPS = {  # how many of the levels a value of the variable leaves; one that is n
     "ATEN_CPU_CAPABILITY": {"default": 0, "avx2": 1},
 }  # fmt: skip
 COMPILERS = ("c++", "g++", "clang++")
-OLDEST = (3, 10)  # Python, as pyproject.toml says
-ROOM = 5.0  # GB of disk for the environment, runs and caches (ours)
+OLDEST = (3, 10)  # oldest Python, as in pyproject.toml
+ROOM = 5.0  # GB of disk for the environment, runs and caches (heuristic)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Print the report; return 0 if training can run here, else 1. It takes no options but
-    ``--help``; another ends with status 2."""
+    """Print the report.
+
+    The only option is ``--help``; any other exits with status 2.
+
+    Returns:
+        0 if training can run on this machine, else 1.
+    """
     parser = argparse.ArgumentParser(prog="mitigate doctor", description=__doc__)
     parser.parse_args(arguments)
     problems = [*_machine(), *_packages(), *_renderer(), *_files()]
@@ -66,25 +71,25 @@ def _machine() -> list[str]:
     _line("system", f"{platform.system()} {platform.machine()}")
     _line("cores", _cores())
     _line("processor", processor(_flags(), os.environ))
-    _line("C++ compiler", compiler() or "missing (torch.compile needs one, training does not)")
+    _line("C++ compiler", compiler() or "missing (only torch.compile needs one)")
     free = shutil.disk_usage(".").free / 1e9
     _line("disk", f"{free:.0f} GB free")
     problems = []
     if sys.version_info < OLDEST:
         problems.append("Python 3.10 or newer is needed: make PYTHON=python3.10 ...")
     if free < ROOM:
-        problems.append(f"Only {free:.1f} GB of disk are free; {ROOM:g} GB are advisable.")
+        problems.append(f"Only {free:.1f} GB of disk are free; {ROOM:g} GB are recommended.")
     return problems
 
 
 def _cores() -> str:
-    there = os.cpu_count() or 1
-    usable = len(os.sched_getaffinity(0)) if sys.platform == "linux" else there
-    return str(there) if usable == there else f"{usable} of {there}"
+    total = os.cpu_count() or 1
+    usable = len(os.sched_getaffinity(0)) if sys.platform == "linux" else total
+    return str(total) if usable == total else f"{usable} of {total}"
 
 
 def _flags() -> set[str]:
-    """Flags of the first processor in /proc/cpuinfo; empty where there are none."""
+    """Return the flags of the first processor in /proc/cpuinfo; empty if it has none."""
     try:
         lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
     except OSError:
@@ -93,9 +98,9 @@ def _flags() -> set[str]:
 
 
 def processor(flags: set[str], environment: Mapping[str, str]) -> str:
-    """Say which levels a processor with ``flags`` has, and which of them ``environment`` forbids.
+    """Describe the levels of a processor with ``flags``, and those that ``environment`` forbids.
 
-    Without native bf16, torch emulates bf16, which takes several times as long as fp32.
+    Without native bf16, torch emulates bf16, which is several times slower than fp32.
     """
     if not flags:
         return "unknown (no flags in /proc/cpuinfo)"
@@ -113,7 +118,7 @@ def processor(flags: set[str], environment: Mapping[str, str]) -> str:
 
 
 def compiler() -> str | None:
-    """Return the path of a C++ compiler, the one named by CXX if that is set, or None."""
+    """Return the path of the C++ compiler that CXX names, or of any if CXX is not set, or None."""
     named = os.environ.get("CXX", "").split()[:1]
     return next((path for name in named or COMPILERS if (path := shutil.which(name))), None)
 
@@ -132,16 +137,16 @@ def _packages() -> list[str]:
 
 
 def cuda() -> str:
-    """Say which GPUs torch sees, or why it sees none."""
+    """Describe the GPUs that torch sees, or why it sees none."""
     try:
         import torch
-    except Exception as error:  # whatever a broken installation says belongs in the report
+    except Exception as error:  # any error of a broken installation belongs in the report
         return f"torch cannot be imported: {error}"
     if torch.cuda.is_available():
         count = torch.cuda.device_count()
         names = ", ".join(torch.cuda.get_device_name(number) for number in range(count))
         return f"sees {names} (CUDA {torch.version.cuda})"
-    built = f"CUDA {torch.version.cuda}" if torch.version.cuda else "CPUs alone"
+    built = f"CUDA {torch.version.cuda}" if torch.version.cuda else "CPUs only"
     return f"sees no GPU (built for {built})"
 
 
@@ -155,7 +160,7 @@ def _version(name: str) -> str | None:
 def _renderer() -> list[str]:
     try:
         size = _software_frame()
-    except Exception as error:  # whatever the engine says belongs in the report
+    except Exception as error:  # any error of the engine belongs in the report
         _line("renderer", f"fails: {error}")
         return [f"Panda3D's software renderer (p3tinydisplay) does not work here: {error}"]
     _line("renderer", f"p3tinydisplay draws offscreen ({size[0]}x{size[1]})")
@@ -189,12 +194,16 @@ def _software_frame() -> tuple[int, int]:
 
 def _files() -> list[str]:
     root = Path(__file__).resolve().parents[2]
-    wanted = {"conf": "options", "recipes": "recipes", "checkpoints/base": "the shipped base agent"}
+    required = {
+        "conf": "options",
+        "recipes": "recipes",
+        "checkpoints/base": "the shipped base agent",
+    }
     problems = []
-    for name, what in wanted.items():
-        there = (root / name).is_dir() or (root / "mitigate" / name).is_dir()
-        _line(name, "there" if there else "missing")
-        if not there:
+    for name, what in required.items():
+        exists = (root / name).is_dir() or (root / "mitigate" / name).is_dir()
+        _line(name, "found" if exists else "missing")
+        if not exists:
             problems.append(f"{name}/ ({what}) is missing: run from a checkout of the repository.")
     return problems
 

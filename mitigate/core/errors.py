@@ -1,4 +1,4 @@
-"""Errors that a setting, a file, the system or a missing package brings about, in one paragraph."""
+"""Explain errors caused by a setting, a file, the system or a missing package in one paragraph."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ from pathlib import Path
 
 from mitigate.core.files import PACKAGE
 
-RECIPES = (PACKAGE / "recipes").resolve()  # of a checkout: a link
-# what extras of pyproject.toml bring, by the names that are imported
+RECIPES = (PACKAGE / "recipes").resolve()  # a link in a checkout
+# import names of the packages in the extras of pyproject.toml
 PACKAGES = frozenset({
     "hydra", "matplotlib", "omegaconf", "panda3d", "peft", "PIL", "rosbags", "sacrebleu",
     "safetensors", "tensorboard", "torch", "torchrl", "tqdm", "transformers", "yaml",
@@ -20,50 +20,56 @@ _INSTALLED = {"site-packages", "dist-packages"}
 
 
 def said(error: ValueError | OSError) -> str:
-    """An error in one paragraph: ours as it is; out of the user's own code with its place there; of
-    the system's what it said, of which file, and what may help."""
+    """Return the paragraph for an error.
+
+    An error of the user's code gets its place in that code. An error of the system gets the name of
+    its file, and a fix if the disk is full.
+    """
     if not isinstance(error, OSError) or error.strerror is None:
         place = own_place(error)
         return f"{error} (raised in {place})" if place else str(error)
-    told = f"{error.strerror}: {error.filename}" if error.filename else str(error.strerror)
+    message = f"{error.strerror}: {error.filename}" if error.filename else str(error.strerror)
     if error.errno in (errno.ENOSPC, errno.EDQUOT, errno.EFBIG):
-        told += (
-            ". What was finished is kept whole: free some room, and the same command goes on from "
-            "there."
+        message += (
+            ". Finished results are complete. Free some space and run the same command again to "
+            "resume."
         )
-    return told
+    return message
 
 
 def own_place(error: BaseException) -> str:
-    """File, line and function of the user's own code in which ``error`` was raised, by it or by a
-    library that it called; empty if it was raised by this project, or by a library for it."""
-    found = ""
+    """Return the file, line and function of the user's code that raised ``error``.
+
+    A library that the user's code called counts as the user's code. Empty if this project raised
+    the error, or a library that it called.
+    """
+    place = ""
     for frame in traceback.extract_tb(error.__traceback__):
         file = Path(frame.filename).resolve()
         if file.is_relative_to(PACKAGE) or file.is_relative_to(RECIPES):
-            found = ""
+            place = ""
         elif file.is_file() and not (_INSTALLED & {*file.parts} or file.is_relative_to(_STANDARD)):
-            found = f"{frame.filename}, line {frame.lineno}, {frame.name}()"
-    return found
+            place = f"{frame.filename}, line {frame.lineno}, {frame.name}()"
+    return place
 
 
 def too_much(error: Exception) -> str:
-    """What is said of an error that a setting or a file brings about; empty for any other."""
+    """Return the paragraph for an error that a too large setting or file caused; else empty."""
     cause = " ".join(str(error).split())[:200]
     memory = isinstance(error, MemoryError) or "allocate memory" in cause
     nested = isinstance(error, RecursionError)
     if not (memory or nested or isinstance(error, OverflowError)):
         return ""
-    what = "more memory than there is" if memory else "too many levels" if nested else ""
+    what = "more memory than available" if memory else "too many levels" if nested else ""
     return (
-        f"A setting or a file asks for {what or 'too great a number'} ("
-        f"{cause or type(error).__name__}). Look at "
+        f"A setting or a file asks for {what or 'too large a number'} ("
+        f"{cause or type(error).__name__}). Check "
         "the last option or file that you changed; HYDRA_FULL_ERROR=1 shows where it was used."
     )
 
 
 def lacking(what: str, error: ModuleNotFoundError, extra: str = "train") -> str:
-    """What ``what`` needs and how to install it; empty if what is missing is no such package."""
+    """Return how to install the package that ``what`` needs; empty if no extra has it."""
     name = (error.name or "").partition(".")[0]
     if name not in PACKAGES:
         return ""

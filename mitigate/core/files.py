@@ -1,4 +1,4 @@
-"""Files written whole or not at all; text, gzipped or not, opened by content, streamed."""
+"""Find files of the project, read text and gzip safely, and write files atomically."""
 
 from __future__ import annotations
 
@@ -20,32 +20,32 @@ from mitigate.core import output
 
 GZIP_MAGIC = b"\x1f\x8b"  # RFC 1952
 RECORDING = "recording.json"  # in the folder of a recording by `mitigate run record=FOLDER`
-RATIO = 128  # bytes that a gzipped byte may unpack to, beyond FREE (ours); our files have 15 to 31
+# A gzip file may unpack to FREE + RATIO * its size in bytes (heuristic; our files have ratios of 15
+# to 31).
+RATIO = 128
 FREE = 1 << 24
 
-
 PACKAGE = Path(__file__).resolve().parents[1]  # the folder of mitigate
-ROOT = PACKAGE.parent  # of the checkout, or of all installed packages
-
+ROOT = PACKAGE.parent  # the checkout, or the folder of all installed packages
 
 WEIGHTS = "checkpoints"  # first part of the names of shipped weights: checkpoints/base
-WEIGHTS_PACKAGE = "mitigate_weights"  # of the distribution mitigate-weights
+WEIGHTS_PACKAGE = "mitigate_weights"  # import name of the distribution mitigate-weights
 WEIGHTS_VARIABLE = "MITIGATE_WEIGHTS"  # names a folder with the content of checkpoints/
 
 
 def find(path: str | Path) -> Path:
-    """Return where a file or folder of the project is.
+    """Return the path of a file or folder of the project.
 
     Configs name shipped weights and episodes as ``checkpoints/base`` and ``mitigate/worlds/...``.
 
     Args:
-        path: as it is from the current folder, or as in a checkout; ``~`` is the home folder.
+        path: relative to the current folder or to a checkout; ``~`` is the home folder.
 
     Returns:
         The first of :func:`places` that exists; else ``path`` itself.
 
     Raises:
-        FileNotFoundError: for shipped weights (``checkpoints/...``) that are in no place.
+        FileNotFoundError: shipped weights (``checkpoints/...``) were not found anywhere.
     """
     candidates = places(path)
     place = next((candidate for candidate in candidates if candidate.exists()), candidates[0])
@@ -62,9 +62,12 @@ def find(path: str | Path) -> Path:
 
 
 def places(path: str | Path) -> list[Path]:
-    """Return where ``path`` is looked for, in this order: as it is from the current folder, in the
-    package mitigate-weights, in the checkout, in the folder that ``MITIGATE_WEIGHTS`` names."""
-    path = Path(os.path.expanduser(path))  # stays as it is for an unknown user
+    """Return the paths that are searched for ``path``, in order.
+
+    These are: the current folder, the package mitigate-weights, the checkout, and the folder in
+    ``MITIGATE_WEIGHTS``.
+    """
+    path = Path(os.path.expanduser(path))  # unchanged if the user is unknown
     if path.parts[:1] != (WEIGHTS,):
         return [path, ROOT / path, PACKAGE / path]
     package = find_spec(WEIGHTS_PACKAGE)
@@ -76,12 +79,14 @@ def places(path: str | Path) -> list[Path]:
 
 
 def open_text(path: Path | str) -> io.TextIOWrapper:
-    """Open ``path`` for reading as UTF-8, behind the byte order mark that editors of Windows put
-    first; gzip is told by the first two bytes, not by the name.
+    """Open ``path`` for reading as UTF-8; a byte order mark is skipped.
 
-    Raises FileNotFoundError, with the nearest names in the folder, if there is no such file, and
-    UnsafePathError for a FIFO, a socket or a device.
-    Reading raises BadGzipFile for a gzip file that is damaged, cut short or a bomb (``RATIO``).
+    Gzip is recognised by the first two bytes, not by the name. Reading raises BadGzipFile for a
+    gzip file that is damaged, cut short or unpacks to too many bytes (``RATIO``).
+
+    Raises:
+        FileNotFoundError: There is no such file; the message gives the nearest names.
+        UnsafePathError: The path is a FIFO, a socket or a device.
     """
     path = Path(path)
     if not output.is_regular(path):
@@ -94,34 +99,34 @@ def open_text(path: Path | str) -> io.TextIOWrapper:
 
 
 class _Unpacked(gzip.GzipFile):
-    """What a gzip file holds. All that can be wrong with it raises BadGzipFile."""
+    """The content of a gzip file; reading raises BadGzipFile for every kind of damage."""
 
     def __init__(self, path: Path, mode: str) -> None:
         super().__init__(path, mode)
-        self._most, self._held = FREE + RATIO * path.stat().st_size, 0
+        self._limit = FREE + RATIO * path.stat().st_size
+        self._unpacked = 0
 
     def read(self, size: int | None = -1) -> bytes:
-        """As a file's; at most one byte more than allowed is unpacked."""
-        wanted = self._most + 1 - self._held if size is None or size < 0 else size
-        return self._checked(super().read, wanted)
+        """Read as a file does; unpack at most one byte more than allowed."""
+        count = self._limit + 1 - self._unpacked if size is None or size < 0 else size
+        return self._checked(super().read, count)
 
     def read1(self, size: int = -1) -> bytes:
-        """As a buffered file's."""
+        """Read as a buffered file does."""
         return self._checked(super().read1, size)
 
     def _checked(self, read: Callable[[int], bytes], size: int) -> bytes:
         try:
-            found = read(size)
+            content = read(size)
         except (EOFError, zlib.error) as error:
             raise gzip.BadGzipFile(f"the gzip data are cut short or damaged ({error})") from error
-        self._held += len(found)
-        if self._held > self._most:
+        self._unpacked += len(content)
+        if self._unpacked > self._limit:
             raise gzip.BadGzipFile(
-                f"it unpacks to more than {self._most >> 20} MiB, over {RATIO} times what it has, "
-                "as no file of ours does: do not use it, or unpack it yourself and name the plain "
-                "file"
+                f"it unpacks to more than {self._limit >> 20} MiB, over {RATIO} times its size: do "
+                "not use it, or unpack it yourself and name the plain file"
             )
-        return found
+        return content
 
 
 def read_regular(path: Path | str) -> str:
@@ -131,9 +136,9 @@ def read_regular(path: Path | str) -> str:
 
 
 def make_folder(folder: Path | str) -> Path:
-    """Make ``folder`` with those above it, unless it is there; return it.
+    """Make ``folder`` with its parents unless it exists, and return it.
 
-    Raises OSError as :func:`writing`, and as :func:`mitigate.core.output.check` does.
+    Raises OSError as :func:`mitigate.core.output.writing` and ``check`` do.
     """
     with output.writing(folder):
         output.make_checked(folder)
@@ -142,9 +147,12 @@ def make_folder(folder: Path | str) -> Path:
 
 @contextmanager
 def _draft(path: Path) -> Iterator[Path]:
-    """Yield an empty neighbour of ``path``, which is flushed to disk and becomes ``path`` if the
-    block ends without an error, with the mode that the umask gives. Makes the folder."""
-    # a random part: nobody can put a link at a name that is not known
+    """Yield an empty file in the folder of ``path``, which becomes ``path`` after the block.
+
+    The file is flushed to disk and gets the mode of the umask. It is deleted if the block raises.
+    The folder is made if needed.
+    """
+    # The random part prevents that someone places a link at a predictable name.
     temporary = path.with_name(f".{path.name}.{secrets.token_hex(4)}.{os.getpid()}.tmp")
     with output.writing(path):
         output.make_checked(path.parent)
@@ -154,11 +162,11 @@ def _draft(path: Path) -> Iterator[Path]:
         yield temporary
         with output.writing(path):
             output.check(path)
-            temporary.chmod(mode)  # safetensors puts a private file in its place
+            temporary.chmod(mode)  # safetensors replaces it with a file of mode 600
             with open(temporary, "rb+") as file:
                 os.fsync(file.fileno())
             os.replace(temporary, path)
-    except (OSError, RuntimeError):  # torch raises RuntimeError for a folder that is gone
+    except (OSError, RuntimeError):  # torch raises RuntimeError if the folder is gone
         output.check(path)
         raise
     finally:
@@ -169,8 +177,8 @@ def _draft(path: Path) -> Iterator[Path]:
 def atomic_text(path: Path | str) -> Iterator[TextIO]:
     """Yield a UTF-8 text file that becomes ``path`` only if the block ends without an error.
 
-    A name ending in ``.gz`` is gzipped, without time stamp or name: equal text, equal bytes.
-    Raises OSError, as :func:`writing`, if it cannot be written.
+    A name ending in ``.gz`` is gzipped without time stamp and name, so equal texts give equal
+    bytes. Raises OSError, as :func:`mitigate.core.output.writing`, if it cannot be written.
     """
     path = Path(path)
     with _draft(path) as temporary, open(temporary, "wb") as raw:
@@ -187,8 +195,10 @@ def atomic_text(path: Path | str) -> Iterator[TextIO]:
 
 
 def put_folder(draft: Path, target: Path, old: Path) -> None:
-    """Rename ``draft`` to ``target``. What was there becomes ``old``, and comes back if that fails;
-    the three are on one disk."""
+    """Rename ``draft`` to ``target``; an existing ``target`` is renamed to ``old``.
+
+    It is renamed back if this fails. All three must be on one disk.
+    """
     if target.exists():
         target.rename(old)
     try:
@@ -210,9 +220,9 @@ def sha256(path: Path | str) -> str:
 
 
 def write_atomically(path: Path, write: Callable[[Path], Any]) -> Path:
-    """Call ``write`` on a temporary neighbour of ``path``, flush it to disk, then rename it.
+    """Call ``write`` on a temporary file in the folder of ``path``, flush it, then rename it.
 
-    Raises OSError, as :func:`writing`, if there is no place for it.
+    Raises OSError, as :func:`mitigate.core.output.writing`, if it cannot be written.
     """
     with _draft(path) as temporary:
         write(temporary)
@@ -225,38 +235,41 @@ def write_atomically(path: Path, write: Callable[[Path], Any]) -> Path:
 
 
 def write_bytes(path: Path | str, data: bytes) -> None:
-    """Write ``data`` to ``path``, which is there whole or not at all. Makes the folder. Raises
-    OSError as :func:`writing`."""
+    """Write ``data`` to ``path`` atomically, and make its folder if needed.
+
+    Raises OSError as :func:`mitigate.core.output.writing`.
+    """
     with _draft(Path(path)) as temporary, output.writing(path):
         temporary.write_bytes(data)
 
 
 def write_text(path: Path | str, text: str) -> None:
-    """Write ``text`` as UTF-8, as :func:`write_bytes` does."""
+    """Write ``text`` as UTF-8 to ``path`` atomically."""
     write_bytes(path, text.encode())
 
 
 def write_figure(path: Path | str, figure: Any, **options: Any) -> Path:
-    """Write a matplotlib ``figure`` to ``path``, as :func:`write_bytes` does.
+    """Write a matplotlib ``figure`` to ``path`` atomically.
 
     Args:
-        path: The picture; its suffix says the format.
+        path: The picture; its suffix gives the format.
         figure: A ``matplotlib.figure.Figure``.
         options: Other arguments of ``savefig``, such as ``dpi``.
     """
     path = Path(path)
-    drawn = io.BytesIO()
-    figure.savefig(drawn, format=path.suffix[1:], **options)
-    write_bytes(path, drawn.getvalue())
+    picture = io.BytesIO()
+    figure.savefig(picture, format=path.suffix[1:], **options)
+    write_bytes(path, picture.getvalue())
     return path
 
 
 def _absent(path: Path) -> str:
+    """Return the paragraph for a file that does not exist."""
     names = [p.name for p in path.parent.iterdir()] if path.parent.is_dir() else []
     near = difflib.get_close_matches(path.name, names, n=3, cutoff=0.5)
     if path.is_dir():
         return f"{path} is a folder, not a file: name a file in it."
     if not path.parent.is_dir():
-        return f"There is no file {path}, nor its folder: check the path."
-    found = f"the nearest names there are {', '.join(near)}" if near else "nothing there is near"
-    return f"There is no file {path}; {found}. Check the path."
+        return f"There is no file {path}, and no folder {path.parent}. Check the path."
+    hint = f"the nearest names there are {', '.join(near)}" if near else "no name there is similar"
+    return f"There is no file {path}; {hint}. Check the path."

@@ -1,14 +1,14 @@
-"""Folders of weights: written as a whole, listed in one manifest, compared with it before use.
+"""Write folders of weights atomically, with a manifest, and check them before use.
 
 Every folder that this project ships or trains has the same layout::
 
     manifest.json      the kind of folder, and the size and sha256 of every file
-    config.yaml        settings: plain data (``core/settings.py``), never instantiated as it stands
+    config.yaml        settings: plain data (``core/settings.py``), never instantiated directly
     *.safetensors      weights
     card.json, README.md, program.*    optional
 
-A folder of an ecosystem keeps its own names beside the manifest, such as ``adapter_config.json`` of
-PEFT. Folders that earlier versions wrote are read by ``core/older_folders.py``.
+A folder in the format of another library keeps the names of that library, such as
+``adapter_config.json`` of PEFT. ``core/older_folders.py`` reads folders of earlier versions.
 
 Files are replaced one by one. Meanwhile, the manifest lists the new files and the files that they
 replace, so a folder is either the old one or the new one, or it is rejected.
@@ -41,7 +41,7 @@ _SHA256 = re.compile(r"[0-9a-f]{64}")
 
 
 class Entry(NamedTuple):
-    """A file of a manifest; ``size`` in bytes, None where an older layout does not record it."""
+    """A file of a manifest; ``size`` is in bytes, None if an older layout does not record it."""
 
     sha256: str
     size: int | None = None
@@ -117,9 +117,9 @@ def _replace(draft: Path, folder: Path, kind: str) -> None:
 
 
 def seal(folder: str | Path, kind: str) -> None:
-    """Write the manifest of the files that ``folder`` holds, which is no longer changed by others.
+    """Write the manifest of the files in ``folder``.
 
-    Use it for a folder that is made aside and renamed into place as a whole.
+    Use it for a complete folder that will be renamed into place; nothing else may change it.
     """
     _write_manifest(Path(folder), Manifest(kind, _entries(Path(folder)), {}))
 
@@ -145,14 +145,14 @@ def _entries(folder: Path) -> dict[str, Entry]:
 
 
 def _sound_files(folder: Path, new: Iterable[str]) -> dict[str, Entry]:
-    """Return the files that are replaced, none if they are damaged: they must not become sound."""
+    """Return the files that are replaced; empty if any is damaged, so that none becomes valid."""
     try:
         manifest = check(folder)
         if manifest is not None:
             return manifest.files
-        held = [folder / name for name in new if (folder / name).is_file()]
-        sound = not any(checksums.problem(file) for file in held)
-        entries = {file.name: Entry(sha256(file), file.stat().st_size) for file in held}
+        present = [folder / name for name in new if (folder / name).is_file()]
+        sound = not any(checksums.problem(file) for file in present)
+        entries = {file.name: Entry(sha256(file), file.stat().st_size) for file in present}
         return entries if sound else {}
     except (ValueError, OSError):
         return {}
@@ -183,22 +183,24 @@ def read_manifest(folder: str | Path, again: str = AGAIN) -> Manifest | None:
         entries = {name: Entry(str(digest)) for name, digest in listed.items()}
         _check_names(folder / older_folders.CARD, entries)
         return Manifest("hardened", entries, {}, older_folders.CARD)
-    held = read_object(file, again)
-    kind = held.get("kind")
-    if held.get("format") != FORMAT or not isinstance(kind, str) or "files" not in held:
-        raise ValueError(f"{file} must be a manifest of format {FORMAT} with kind, files. {again}")
+    record = read_object(file, again)
+    kind = record.get("kind")
+    if record.get("format") != FORMAT or not isinstance(kind, str) or "files" not in record:
+        raise ValueError(
+            f"{file} must be a manifest of format {FORMAT} with kind and files. {again}"
+        )
     return Manifest(
         kind,
-        _read_entries(file, held["files"], again),
-        _read_entries(file, held.get("replaced", {}), again),
+        _read_entries(file, record["files"], again),
+        _read_entries(file, record.get("replaced", {}), again),
     )
 
 
-def _read_entries(file: Path, held: Any, again: str) -> dict[str, Entry]:
-    if not isinstance(held, dict) or len(held) > MOST_FILES:
+def _read_entries(file: Path, listed: Any, again: str) -> dict[str, Entry]:
+    if not isinstance(listed, dict) or len(listed) > MOST_FILES:
         raise ValueError(f"{file} must list at most {MOST_FILES} files by name. {again}")
     entries = {}
-    for name, entry in held.items():
+    for name, entry in listed.items():
         size, digest = (entry.get(k) if isinstance(entry, dict) else None for k in _KEYS)
         if type(size) is not int or not isinstance(digest, str) or not _SHA256.fullmatch(digest):
             raise ValueError(f"{file} must give bytes and sha256 of {short(name)}. {again}")
@@ -215,8 +217,8 @@ def _check_names(file: Path, names: Iterable[str]) -> None:
         plain = Path(name).name == name and name not in ("", ".", "..") and name.isprintable()
         if not plain or len(name.encode()) > LONGEST:
             raise ValueError(
-                f"{file} lists {short(name)}, which is no plain file name. Do not use this folder: "
-                "its manifest was not written by this project."
+                f"{file} lists {short(name)}, which is not a plain file name. Do not use this "
+                "folder: its manifest was not written by this project."
             )
 
 
@@ -228,7 +230,7 @@ def check(
     Args:
         folder: the folder.
         optional: names that may be missing.
-        again: what to do about a damaged folder, the end of each message.
+        again: what to do about a damaged folder; ends each message.
 
     Raises:
         FileNotFoundError: A file is missing.
@@ -265,17 +267,19 @@ def _compare(
 
 
 def _matches(file: Path, entry: Entry) -> bool:
-    """Compare a file with its entry; one of another size is not read."""
+    """Return whether a file matches its entry; a file of another size is not read."""
     return entry.size in (None, file.stat().st_size) and sha256(file) == entry.sha256
 
 
 def problem(file: Path) -> str:
-    """Return what is wrong with ``file`` by the manifest of its folder, or by the sidecar of an
-    older version: a predicate such as "does not have the sha256 ...". Empty: nothing is wrong, or
-    nothing lists the file.
+    """Compare ``file`` with the manifest of its folder, or with the sidecar of an older version.
+
+    Returns:
+        A predicate such as "does not have the sha256 ..."; empty if the file is sound or if nothing
+        lists it.
 
     Raises:
-        PermissionError: The file cannot be read, which is no damage.
+        PermissionError: The file cannot be read, which does not mean damage.
     """
     try:
         manifest = read_manifest(file.parent)

@@ -1,4 +1,4 @@
-"""JSON of anybody: small files at once, large ones by value; what is wrong is a ValueError."""
+"""Read untrusted JSON: small files at once, large files value by value."""
 
 from __future__ import annotations
 
@@ -14,15 +14,19 @@ from mitigate.core.files import open_text
 from mitigate.core.names import short
 from mitigate.core.output import is_regular
 
-CHUNK = 1 << 16  # characters read at a time (ours)
-LARGEST_VALUE = 1 << 25  # characters of one JSON value; more means a broken file (ours)
-LARGEST_JSON = 1 << 24  # bytes of a JSON file that is read at once; a card has 1e4 (ours)
+CHUNK = 1 << 16  # characters read at a time (heuristic)
+LARGEST_VALUE = 1 << 25  # characters of one JSON value; more means a broken file (heuristic)
+LARGEST_JSON = 1 << 24  # bytes of a JSON file that is read at once (heuristic; a card has 1e4)
 
 
 def read_json(path: Path, again: str) -> Any:
-    """Return what the JSON file ``path`` holds, which may be of anybody: at most ``LARGEST_JSON``
-    bytes, finite numbers alone. Raises ValueError, which ends in ``again`` (what to do), and
-    UnsafePathError for a FIFO, a socket or a device."""
+    """Return the value in the untrusted JSON file ``path``.
+
+    Raises:
+        ValueError: The file has more than ``LARGEST_JSON`` bytes, holds a number that is not
+            finite, or is damaged. The message ends with ``again``.
+        UnsafePathError: The path is a FIFO, a socket or a device.
+    """
     is_regular(path)
     with open(path, "rb") as file:
         raw = file.read(LARGEST_JSON + 1)
@@ -35,7 +39,7 @@ def read_json(path: Path, again: str) -> Any:
 
 
 def read_object(path: Path, again: str) -> dict[str, Any]:
-    """Return the JSON object in ``path``, read as :func:`read_json` reads it.
+    """Return the JSON object in ``path``, read by :func:`read_json`.
 
     Raises:
         ValueError: The file is damaged or holds another kind of value, such as null or a list. The
@@ -48,26 +52,26 @@ def read_object(path: Path, again: str) -> dict[str, Any]:
 
 
 def parse_json(text: str | bytes) -> Any:
-    """As ``json.loads``, but NaN, infinity and numbers that would become one are ValueErrors."""
+    """Parse JSON as ``json.loads``; raise ValueError for numbers that are not finite."""
     return json.loads(text, parse_constant=_no_number, parse_float=_finite)
 
 
 def _no_number(name: str) -> NoReturn:
-    raise ValueError(f"{name} is no number of JSON")
+    raise ValueError(f"{name} is not a JSON number")
 
 
 def _finite(digits: str) -> float:
     value = float(digits)
     if not math.isfinite(value):
-        raise ValueError(f"{digits:.20} is too great a number")
+        raise ValueError(f"{digits:.20} is too large a number")
     return value
 
 
 def json_members(path: Path | str, streamed: str) -> Iterator[tuple[str, Any]]:
     """Yield the (key, value) pairs of the JSON object in ``path``, one value in memory at a time.
 
-    The value of the key ``streamed``, if it is a list, comes as an iterator over its items.
-    Raises ValueError if the file is no JSON object, is malformed, cut short or not text, or if
+    If the value of the key ``streamed`` is a list, it is yielded as an iterator over its items.
+    Raises ValueError if the file is not a JSON object, is malformed, cut short or not text, or if
     anything follows the object.
     """
     with open_text(path) as file:
@@ -76,12 +80,12 @@ def json_members(path: Path | str, streamed: str) -> Iterator[tuple[str, Any]]:
         for _ in json_file.until("}"):
             key = json_file.value()
             if not isinstance(key, str):
-                raise ValueError(f"{path} has a key that is no text: {key!r:.60}.")
+                raise ValueError(f"The keys of {path} must be text, got {key!r:.60}.")
             json_file.expect(":", "':' after a key")
             if key == streamed and json_file.accept("["):
                 items = (json_file.value() for _ in json_file.until("]"))
                 yield key, items
-                for _ in items:  # what the caller left unread
+                for _ in items:  # skip what the caller did not read
                     pass
             else:
                 yield key, json_file.value()
@@ -89,14 +93,17 @@ def json_members(path: Path | str, streamed: str) -> Iterator[tuple[str, Any]]:
 
 
 class _JsonFile:
-    """Reads JSON from an open text file value by value; ``_at`` is the place in the buffer."""
+    """Read JSON from an open text file value by value; ``_at`` is the position in the buffer."""
 
     _decode = json.JSONDecoder().raw_decode
     _space = re.compile(r"[ \t\r\n]*")
 
     def __init__(self, file: TextIO, path: Path | str) -> None:
-        self._file, self._path = file, path
-        self._text, self._at, self._before = "", 0, 0
+        self._file = file
+        self._path = path
+        self._text = ""
+        self._at = 0
+        self._before = 0  # characters before the buffer
 
     def until(self, bracket: str) -> Iterator[None]:
         """Yield before each comma-separated item, up to the closing ``bracket``."""
@@ -109,19 +116,19 @@ class _JsonFile:
             self.expect(",", f"',' or '{bracket}'")
 
     def expect(self, character: str, name: str) -> None:
-        """Pass ``character`` or raise."""
+        """Skip ``character``, or raise ValueError."""
         if not self.accept(character):
             self._fail(f"expected {name}")
 
     def accept(self, character: str) -> bool:
-        """Pass white space, and ``character`` if it comes next; return whether it did."""
+        """Skip white space, and ``character`` if it comes next; return whether it did."""
         while True:
             self._at = self._space.match(self._text, self._at).end()  # type: ignore[union-attr]
             if self._at < len(self._text) or not self._more():
                 break
-        found = self._text.startswith(character, self._at)
-        self._at += len(character) * found
-        return found
+        accepted = self._text.startswith(character, self._at)
+        self._at += len(character) * accepted
+        return accepted
 
     def end(self) -> None:
         """Raise if anything but white space is left."""
@@ -130,7 +137,7 @@ class _JsonFile:
             self._fail("expected the end of the file")
 
     def value(self) -> Any:
-        """Return the next JSON value, reading on until it is whole."""
+        """Return the next JSON value; read more of the file until it is complete."""
         self.accept("")
         while True:
             try:
@@ -141,13 +148,13 @@ class _JsonFile:
             except json.JSONDecodeError as error:
                 if len(self._text) - self._at > LARGEST_VALUE or not self._more():
                     self._fail(error.msg)
-            except ValueError as error:  # a number of more digits than Python converts
+            except ValueError as error:  # a number with more digits than Python converts
                 self._fail(str(error))
             except RecursionError:
                 self._fail("too many levels")
 
     def _more(self) -> bool:
-        """Append what comes next, as much as is held, and drop what is done."""
+        """Drop the parsed part of the buffer, and read as many characters as remain in it."""
         self._before += self._at
         self._text = self._text[self._at :]
         self._at = 0
@@ -160,7 +167,7 @@ class _JsonFile:
 
     def _fail(self, problem: str) -> NoReturn:
         raise ValueError(
-            f"{self._path} is not whole JSON: {problem}, near character "
+            f"{self._path} is not complete JSON: {problem}, near character "
             f"{self._before + self._at}. It is cut short, damaged or another kind of file: "
             "download or write it again."
         )

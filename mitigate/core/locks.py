@@ -1,4 +1,4 @@
-"""One process at a time in a folder, and nothing left there of those that were killed."""
+"""Lock a folder for one process, and delete what killed processes left in it."""
 
 from __future__ import annotations
 
@@ -19,37 +19,45 @@ from mitigate.core.files import make_folder
 from mitigate.core.output import writing
 
 NAME = ".lock"
-_LEFT = re.compile(r"\..+\.(\d+)\.tmp")  # as mitigate/core/files.py names what is not yet whole
-# by this process, which a record lock would let in twice, and which would lose it with any file of
-# that path that it closes
-_held: dict[Path, IO[str]] = {}
+# Names of unfinished files, as mitigate/core/files.py writes them.
+_DRAFT = re.compile(r"\..+\.(\d+)\.tmp")
+# Locks of this process. A record lock would let the same process in twice, and the process loses it
+# when it closes any file of that path.
+_locks: dict[Path, IO[str]] = {}
 
 
 class FolderLock:
-    """Use it as a context manager around all that is written to ``folder``, which it makes, and to
-    the folders of the names ``within`` it.
+    """Context manager that locks ``folder`` while a process writes to it; makes the folder.
 
-    It is a record lock of the system (``fcntl``) on a file in the folder: it ends with its process,
-    however that ends, is not inherited by workers, and holds for other machines where the file
-    system has locks for them. Where it has none, nothing is locked.
+    The lock is a record lock of the system (``fcntl``) on a file in the folder. It ends with its
+    process, however that ends. Workers do not inherit it. It holds for other machines if the file
+    system supports that; a file system without locks is not locked.
 
-    While it is held, every write below the folder checks that folder and lock are still the same
-    (``core/output.py``), as does the end of the block.
+    While it is locked, every write below the folder checks that the folder and the lock file are
+    still the same (``core/output.py``). The end of the block checks it too.
 
-    Raises ValueError, naming the process, if another one is there or if the lock file is not a
-    regular file; OSError if the folder cannot be written; FolderLostError if it was removed.
+    Args:
+        folder: the folder.
+        within: names of folders inside it that the process also writes.
+
+    Raises:
+        ValueError: Another process has the lock (the message names it), or the lock file is not a
+            regular file.
+        OSError: The folder cannot be written.
+        FolderLostError: The folder was removed.
     """
 
     def __init__(self, folder: str | Path, within: Iterable[str] = ()) -> None:
-        self.folder, self.within = Path(folder), tuple(within)
+        self.folder = Path(folder)
+        self.within = tuple(within)
         self.path = self.folder.resolve() / NAME
         self._file: IO[str] | None = None
         self._root: output.Root | None = None
 
     def __enter__(self) -> FolderLock:
         make_folder(self.folder)
-        if self.path in _held:
-            raise ValueError(self._taken(_held[self.path]))
+        if self.path in _locks:
+            raise ValueError(self._taken(_locks[self.path]))
         while True:
             with writing(self.folder):
                 file = output.open_output(self.path, "a+", encoding="utf-8")
@@ -65,9 +73,9 @@ class FolderLock:
                 return self
             if output.is_same(os.fstat(file.fileno()), self.path):
                 break
-            file.close()  # the one before us deleted it in this moment
+            file.close()  # the previous process has just deleted it
         self._file = file
-        _held[self.path] = file
+        _locks[self.path] = file
         file.truncate(0)
         json.dump({"pid": os.getpid(), "host": socket.gethostname(), "command": _command()}, file)
         file.flush()
@@ -76,7 +84,7 @@ class FolderLock:
         return self
 
     def expect(self, *paths: Path) -> None:
-        """Have the end of the block check that the files ``paths`` exist."""
+        """Check at the end of the block that the files ``paths`` exist."""
         if self._root is not None:
             self._root.expected += paths
 
@@ -95,11 +103,12 @@ class FolderLock:
             status = os.fstat(self._file.fileno())
             if output.is_same(status, self.path):  # else it is the lock of another process
                 self.path.unlink(missing_ok=True)
-            _held.pop(self.path, None)
+            _locks.pop(self.path, None)
             self._file.close()
             self._file = None
 
     def _taken(self, file: IO[str]) -> str:
+        """Return the message that another process has the lock."""
         file.seek(0)
         try:
             note = json.loads(file.read(4096))
@@ -107,17 +116,19 @@ class FolderLock:
         except (ValueError, TypeError, KeyError):
             who = "another process"
         return (
-            f"{self.folder} is in use: {who} is writing there. Wait for it or stop it, or name "
-            "another folder (folder=... of a training, out=... of an evaluation)."
+            f"{self.folder} is in use: {who} is writing there. Wait for it or stop it, or choose "
+            "another folder (folder=... for a training, out=... for an evaluation)."
         )
 
 
 def delete_leftovers(folder: Path, within: Iterable[str] = ()) -> list[Path]:
-    """Delete what processes that are no more left in mid-write in ``folder``, and in those of the
-    names ``within`` it that are no run of their own; return it. Nothing further below is theirs.
+    """Delete unfinished files that ended processes left in ``folder``, and return them.
 
-    Call it with the lock: what has the number of this process is of one before it, as in a
-    container that is started again.
+    The folders ``within`` it are searched too, except those that have their own lock. Deeper
+    folders are not.
+
+    Call it with the lock: an unfinished file with the number of this process then belongs to an
+    earlier process, as in a container that was restarted.
     """
     inside = [folder / name for name in within if not (folder / name / NAME).exists()]
     inside = [place for place in inside if not place.is_symlink()]
@@ -126,15 +137,15 @@ def delete_leftovers(folder: Path, within: Iterable[str] = ()) -> list[Path]:
 
 
 def delete_abandoned(drafts: Iterable[Path], own: bool = False) -> list[Path]:
-    """Delete those of ``drafts`` whose process is no more; return them.
+    """Delete ``drafts`` whose process has ended, and return them.
 
     Args:
-        drafts: Files and folders that may be drafts of ``mitigate/core/files.py``.
-        own: Whether drafts of this process are abandoned too.
+        drafts: Files and folders that may be unfinished files of ``mitigate/core/files.py``.
+        own: Whether those of this process are abandoned too.
     """
     abandoned = []
     for path in drafts:
-        name = _LEFT.fullmatch(path.name)
+        name = _DRAFT.fullmatch(path.name)
         if name and ((own and int(name[1]) == os.getpid()) or not is_alive(int(name[1]))):
             abandoned.append(path)
     for path in abandoned:
@@ -146,7 +157,7 @@ def delete_abandoned(drafts: Iterable[Path], own: bool = False) -> list[Path]:
 
 
 def is_alive(pid: int) -> bool:
-    """Whether there is such a process on this machine, of any user."""
+    """Return whether a process ``pid`` of any user runs on this machine."""
     try:
         os.kill(pid, 0)
     except (ProcessLookupError, OverflowError):

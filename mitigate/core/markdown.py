@@ -9,7 +9,7 @@ from collections.abc import Iterable, Sequence
 def markdown_of(name: str) -> str:
     """Escape a name from an untrusted file, so that Markdown shows it as text on one line."""
     return re.sub(
-        r"[\\|`*~\[\]!]|<(?=\S)|^#", lambda found: f"\\{found[0]}", " ".join(name.split())
+        r"[\\|`*~\[\]!]|<(?=\S)|^#", lambda match: f"\\{match[0]}", " ".join(name.split())
     )
 
 

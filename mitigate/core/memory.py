@@ -17,23 +17,24 @@ class Memory:
     """
 
     def __init__(self, limit: int) -> None:
-        self.limit, self.held = limit, 0
-        self._kept: OrderedDict[Hashable, tuple] = OrderedDict()
+        self.limit = limit
+        self.held = 0
+        self._results: OrderedDict[Hashable, tuple] = OrderedDict()
 
     def __len__(self) -> int:
-        return len(self._kept)
+        return len(self._results)
 
     def recall(self, key: Hashable, make: Callable[[], tuple]) -> Any:
         """Return the cached result of ``key``, or call ``make`` and cache its result."""
-        if key in self._kept:
-            self._kept.move_to_end(key)
-            return self._kept[key]
-        made = make()
-        self._kept[key] = made
-        self.held += _bytes(made)
-        while self.held > self.limit and len(self._kept) > 1:
-            self.held -= _bytes(self._kept.popitem(last=False)[1])
-        return made
+        if key in self._results:
+            self._results.move_to_end(key)
+            return self._results[key]
+        result = make()
+        self._results[key] = result
+        self.held += _bytes(result)
+        while self.held > self.limit and len(self._results) > 1:
+            self.held -= _bytes(self._results.popitem(last=False)[1])
+        return result
 
 
 def give_back() -> None:

@@ -1,5 +1,4 @@
-"""How messages name things; the one answer to a name that does not exist: what was meant, and what
-there is."""
+"""Phrases of messages: unknown names, counts, and values in short form."""
 
 from __future__ import annotations
 
@@ -9,8 +8,13 @@ from pathlib import Path
 
 
 def unknown(what: str, name: object, allowed: Iterable[str]) -> str:
-    """Return the paragraph for an unknown ``name`` of the kind ``what``, with the nearest; what is
-    allowed keeps its order, and is sorted where it has none."""
+    """Return the paragraph for an unknown ``name``, with the nearest and all allowed names.
+
+    Args:
+        what: kind of thing, such as "corruption".
+        name: the unknown name.
+        allowed: the names that exist; sorted if they have no order.
+    """
     allowed = list(allowed) if isinstance(allowed, (list, tuple, Mapping)) else sorted(allowed)
     near = difflib.get_close_matches(str(name), allowed, n=1)
     hint = f" Did you mean {near[0]}?" if near else ""
@@ -23,16 +27,20 @@ def counted(count: int, what: str) -> str:
 
 
 def short(value: object, most: int = 60) -> str:
-    """Return how a message shows a ``value`` that may be of anybody: on one line, printable, at
-    most about ``most`` characters."""
+    """Return an untrusted ``value`` as printable text on one line.
+
+    The text has at most about ``most`` characters.
+    """
     text = ascii(value[: most + 1] if isinstance(value, str) else value)
     return text if len(text) <= most + 2 else f"{text[:most]}..."
 
 
 def name_of(weights: str) -> str:
-    """Return the name of weights by their path: of the run, for a run's ``agent`` folder; of the
-    kind of agent, for its shipped weights (``checkpoints/frontier/base``: frontier, and
-    ``.../teacher``: frontier_teacher)."""
+    """Return a name for the weights at a path.
+
+    It is the name of the run for the ``agent`` folder of a run. For shipped weights it is the kind
+    of agent: ``checkpoints/frontier/base`` is "frontier", ``.../teacher`` "frontier_teacher".
+    """
     path = Path(weights.removesuffix(".safetensors"))
     while path.name in ("model", "agent", "run"):
         path = path.parent

@@ -23,7 +23,7 @@ DEPTH = "depth"
 POSE = "pose"
 CLEAN_RGB = "clean_rgb"  # in training batches: the frames before the corruption
 CLEAN_DEPTH = "clean_depth"
-# what torchrl environments add: text, the name of this run of an episode, low-level steps taken
+# added by torchrl environments: text, name of this run of the episode, low-level steps taken
 INSTRUCTION = "instruction"
 EPISODE = "episode"
 FRAME = "frame"
@@ -41,12 +41,18 @@ MAX_STEPS = 500  # VLN-CE
 
 @dataclass(frozen=True)
 class Sensor:
-    """What one entry of an observation is.
+    """Description of one entry of an observation.
 
-    kind: "rgb", "depth", "pose" or "text". shape: of the array; views first where there are
-    several. unit: "m" for depth. hfov: horizontal field of view in degrees. yaws: of the views, in
-    degrees to the right of the heading. low, high: of valid values. missing: what stands for "no
-    reading".
+    Attributes:
+        kind: "rgb", "depth", "pose" or "text".
+        shape: shape of the array; the first axis counts views if there are several.
+        dtype: numpy name of the dtype.
+        unit: "m" for depth.
+        hfov: horizontal field of view in degrees.
+        yaws: directions of the views, in degrees to the right of the heading.
+        low: least valid value.
+        high: greatest valid value.
+        missing: value that means "no reading".
     """
 
     kind: str
@@ -61,9 +67,12 @@ class Sensor:
 
 
 def cameras(size: int, views: int = VIEWS) -> dict[str, Sensor]:
-    """The sensors of the module's docstring, with views of ``size`` pixels.
+    """Return the sensors of this module's docstring.
 
-    ``views`` 1: one camera that looks ahead; its frames have no first axis, ``[H, W, c]``.
+    Args:
+        size: height and width of a view in pixels.
+        views: number of views. 1 is a single camera that looks ahead; its frames ``[H, W, c]`` have
+            no axis of views.
     """
     yaws = tuple(VIEW_STEP_DEGREES * k for k in range(views))
     shape = (views, size, size) if views > 1 else (size, size)
@@ -79,7 +88,7 @@ def sensor_lines(sensors: Mapping[str, Sensor], read: Any = None) -> tuple[str, 
 
     Args:
         sensors: the sensors of the world.
-        read: ``sensors`` of the agent; all sensors count unless it names some of them.
+        read: ``sensors`` of the agent; if it names none of them, all sensors are listed.
     """
     names = read if isinstance(read, Sequence) and {*map(str, read)} & {*sensors} else sensors
     lines = []
@@ -95,12 +104,13 @@ def sensor_lines(sensors: Mapping[str, Sensor], read: Any = None) -> tuple[str, 
 
 
 class Observation(Mapping[str, Any]):
-    """One instant; its frames are made when one of them is first read.
+    """One instant, with frames that are made when one of them is first read.
 
     Args:
-        ready: entries that are there, such as the pose.
-        make: returns the frames; None: all entries are ready.
-        frames: their names. clean: the observation before its corruption; None: this one is clean.
+        ready: available entries, such as the pose.
+        make: returns the frames; None if all entries are ready.
+        frames: names of the frames.
+        clean: the observation before its corruption; None if this one is clean.
     """
 
     def __init__(
@@ -111,20 +121,22 @@ class Observation(Mapping[str, Any]):
         *,
         clean: Observation | None = None,
     ) -> None:
-        self.ready, self.frames = dict(ready), tuple(frames)
-        self._make, self._clean = make, clean
-        self._made: dict[str, Any] | None = None
+        self.ready = dict(ready)
+        self.frames = tuple(frames)
+        self._make = make
+        self._clean = clean
+        self._frame_data: dict[str, Any] | None = None
 
     @property
     def clean(self) -> Observation:
-        """What there was to see before the corruption."""
+        """The observation before the corruption."""
         return self if self._clean is None else self._clean
 
     def __getitem__(self, name: str) -> Any:
         if name in self.frames:
-            if self._made is None:
-                self._made = dict(self._make()) if self._make else {}
-            return self._made[name]
+            if self._frame_data is None:
+                self._frame_data = dict(self._make()) if self._make else {}
+            return self._frame_data[name]
         return self.ready[name]
 
     def __iter__(self) -> Iterator[str]:

@@ -1,8 +1,8 @@
-"""Layouts of folders that earlier versions wrote, for ``core/folders.py`` alone.
+"""Read folders of earlier versions; only ``core/folders.py`` uses this module.
 
-- Weights, adapters, encoders, restorers and safeguards had a sidecar ``<file>.sha256`` beside the
-  weights (``core/checksums.py``), or nothing.
-- Hardened folders had the sha256 of every file in ``card.json``, and of the card itself.
+- Weights, adapters, encoders, restorers and safeguards had a sidecar ``<file>.sha256``
+  (``core/checksums.py``), or no checksum.
+- The ``card.json`` of a hardened folder had the sha256 of every file and of the card itself.
 """
 
 from __future__ import annotations
@@ -13,14 +13,16 @@ from pathlib import Path
 from typing import Any
 
 from mitigate.core.json_files import read_object
+from mitigate.core.names import short
 
 CARD = "card.json"
 FORMAT = 1
 
 
 def card_files(folder: Path, again: str) -> dict[str, Any] | None:
-    """Return the sha256 of every file that the card of a hardened ``folder`` lists, by name; None
-    for another folder.
+    """Return the sha256 of every file in the card of a hardened folder, by name.
+
+    Returns None for any other folder.
 
     Raises:
         ValueError: The card is damaged. The message ends with ``again``.
@@ -30,11 +32,13 @@ def card_files(folder: Path, again: str) -> dict[str, Any] | None:
     if "sha256" not in card:
         return None
     if card.get("format") != FORMAT:
-        raise ValueError(f"{file} is no card of format {FORMAT}, the one this code reads. {again}")
+        raise ValueError(
+            f"{file} must be a card of format {FORMAT}, got {short(card.get('format'))}. {again}"
+        )
     if card["sha256"] != card_sha(card):
         raise ValueError(f"{file} does not have the sha256 that it states: it was changed. {again}")
     if not isinstance(card.get("files"), dict):
-        raise ValueError(f"{file} lacks files. {again}")
+        raise ValueError(f"{file} has no list of files. {again}")
     return dict(card["files"])
 
 
@@ -45,5 +49,5 @@ def card_sha(card: dict[str, Any]) -> str:
 
 
 def without_sums(card: dict[str, Any]) -> dict[str, Any]:
-    """Return a card as it is written today, when the manifest holds the sums."""
+    """Return a card without its checksums, which the manifest holds today."""
     return {name: value for name, value in card.items() if name not in ("sha256", "files")}

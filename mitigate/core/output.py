@@ -16,7 +16,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import IO, Any
 
-# mode: flags beside those for reading and writing; the file is truncated after it was checked
+# Flags of each mode, without those for reading and writing. Files are truncated after the check.
 _FLAGS = {
     "w": os.O_CREAT,
     "a": os.O_CREAT | os.O_APPEND,
@@ -62,22 +62,26 @@ class Root:
     seen: set[Path] = field(default_factory=set)
 
     def inner(self, path: Path) -> Path | None:
-        """Return the absolute ``path`` relative to the folder, None if it lies outside."""
+        """Return the absolute ``path`` relative to the folder; None if it lies outside."""
         for place in self.places:
             if path.is_relative_to(place):
                 return path.relative_to(place)
         return None
 
     def check(self) -> None:
-        """Raise FolderLostError if the folder or its lock is not the one that was opened."""
+        """Raise FolderLostError if the folder or its lock file was removed or replaced."""
         if not is_same(os.fstat(self.descriptor), self.places[0], follow_links=True):
             raise lost(self.folder)
         if self.lock is not None and not is_same(self.lock[1], self.lock[0]):
             raise lost(self.lock[0])
 
     def check_inside(self, inner: Path) -> None:
-        """Raise UnsafePathError if a folder of ``inner`` is a link, FolderLostError if one that
-        existed is missing."""
+        """Check the folders on the path ``inner``.
+
+        Raises:
+            UnsafePathError: One of them is a link.
+            FolderLostError: One that existed is missing.
+        """
         place = self.places[0]
         for part in inner.parts:
             place = place / part
@@ -133,8 +137,8 @@ def register(folder: Path | str, lock: IO[str] | None = None) -> Root:
     folder = Path(folder)
     places = (Path(os.path.abspath(folder)), folder.resolve())
     descriptor = os.open(folder, os.O_RDONLY | os.O_DIRECTORY)
-    held = None if lock is None else (Path(lock.name), os.fstat(lock.fileno()))
-    root = Root(folder, places, descriptor, held)
+    lock_state = None if lock is None else (Path(lock.name), os.fstat(lock.fileno()))
+    root = Root(folder, places, descriptor, lock_state)
     _roots.append(root)
     return root
 
@@ -148,16 +152,18 @@ def unregister(root: Root) -> None:
 
 @contextmanager
 def writing(path: Path | str) -> Iterator[None]:
-    """Around what writes ``path``, a file or a folder: the error of the system, of the same type,
-    says that it cannot be written and what to do."""
+    """Explain errors of the system while the block writes the file or folder ``path``.
+
+    The error keeps its type; its message says that the path cannot be written and what to do.
+    """
     try:
         yield
     except OSError as error:
-        if error.strerror is None:  # it says so already
+        if error.strerror is None:  # already explained
             raise
         raise type(error)(
-            f"Cannot write {path}: {error.strerror}. Free the space or the permission, or name "
-            "another folder; what was finished is kept whole."
+            f"Cannot write {path}: {error.strerror}. Free some space, change the permissions, or "
+            "choose another folder. Finished results are complete."
         ) from error
 
 
@@ -209,7 +215,7 @@ def forget(folder: Path | str) -> None:
 
 
 def delete_folder(folder: Path | str) -> None:
-    """Delete ``folder`` with all that is in it, if it exists. Never deletes through a link.
+    """Delete ``folder`` with its content, if it exists. Never deletes through a link.
 
     Raises:
         UnsafePathError: If ``folder`` is a link, a FIFO or a file, or lies behind a link in an
@@ -262,7 +268,7 @@ def open_output(path: Path | str, mode: str = "w", **options: Any) -> IO[Any]:
 
     Args:
         path: The file. Its folder must exist.
-        mode: As of ``open``: "w", "a", "x" or "r+", with "b" and "+".
+        mode: A mode of ``open``: "w", "a", "x" or "r+", with "b" and "+".
         options: Other arguments of ``open``, such as ``encoding``.
 
     Raises:
@@ -293,8 +299,10 @@ def open_output(path: Path | str, mode: str = "w", **options: Any) -> IO[Any]:
 
 
 def _check_kind(path: Path | str) -> None:
-    """Raise UnsafePathError for what is not a regular file, before it is opened: opening a device
-    may already change its state."""
+    """Raise UnsafePathError unless ``path`` is a regular file or does not exist.
+
+    Call it before opening: opening a device may change its state.
+    """
     try:
         mode = os.lstat(path).st_mode
     except FileNotFoundError:

@@ -39,8 +39,8 @@ def strip(views: np.ndarray, order: Sequence[int] = AHEAD_IN_THE_MIDDLE) -> np.n
 
 def picture(observation: Mapping[str, Any] | None) -> np.ndarray | None:
     """Return RGB, or else depth, of an observation as uint8 [H, W, 3]; None if it has neither."""
-    held = observation or {}
-    frame = next((np.asarray(held[name]) for name in (RGB, DEPTH) if name in held), None)
+    entries = observation or {}
+    frame = next((np.asarray(entries[name]) for name in (RGB, DEPTH) if name in entries), None)
     if frame is None:
         return None
     views = frame if frame.ndim == 4 else frame[None]

@@ -1,9 +1,9 @@
 """Report the progress of a long job: a tqdm bar in a terminal, plain lines elsewhere.
 
 While a :class:`Progress` is open, a daemon thread (the clock) prints the progress of the innermost
-one whenever nothing was printed for ``EVERY`` seconds, even if the job does not advance; tqdm
-prints only when it does. The clock stops while a single call holds the interpreter lock; torch,
-numpy, sleeps and subprocesses release it.
+one when nothing was printed for ``EVERY`` seconds, even if the job does not advance. tqdm alone
+prints only when the job advances. The clock cannot print while a single call holds the interpreter
+lock; torch, numpy, sleeps and subprocesses release it.
 """
 
 from __future__ import annotations
@@ -22,27 +22,30 @@ from mitigate.core.names import counted
 EVERY = 10.0  # seconds without a line after which the clock prints one
 REDRAW = 1.0  # seconds between redraws of a bar
 
-_lock = threading.RLock()  # of what follows and of standard output
+_lock = threading.RLock()  # guards the variables below and standard output
 _changed = threading.Condition(_lock)  # wakes the clock
 _open: list[Progress] = []  # outermost first
-_spoke = 0.0  # time.monotonic() of the last plain line
+_last_line = 0.0  # time.monotonic() of the last plain line
 _thread: threading.Thread | None = None  # the clock while it runs
 
 
 class Progress:
     """Progress of a job of ``total`` units, of which ``start`` are done; a context manager.
 
-    Raises ValueError when ``start`` does not lie between 0 and ``total``.
+    Raises ValueError unless ``start`` is between 0 and ``total``.
     """
 
     def __init__(self, title: str, total: int, *, unit: str = "step", start: int = 0) -> None:
         if not 0 <= start <= total:
             raise ValueError(
                 f"Progress of {title!r}: start={start} must be at least 0 and at most "
-                f"total={total}. Pass the number of {unit}s in all and of those done before."
+                f"total={total}. Pass the number of all {unit}s and of those already done."
             )
-        self.title, self.total, self.unit = title, total, unit
-        self.start = self.done = start
+        self.title = title
+        self.total = total
+        self.unit = unit
+        self.start = start
+        self.done = start
         self.note = ""
         self._began = time.monotonic()
         self._bar: tqdm | None = None
@@ -58,10 +61,10 @@ class Progress:
                     unit=self.unit,
                     file=sys.stdout,
                     dynamic_ncols=True,
-                    leave=None,  # nested ones vanish
+                    leave=None,  # nested bars disappear
                 )
             else:
-                before = f", {self.start} of them done before" if self.start else ""
+                before = f", {self.start} already done" if self.start else ""
                 say(f"{self.title}: {counted(self.total, self.unit)}{before}")
             _open.append(self)
             _start_clock()
@@ -69,7 +72,7 @@ class Progress:
 
     def __exit__(self, kind: type[BaseException] | None, *_: Any) -> None:
         with _lock:
-            if self in _open:  # it is not in a forked child
+            if self in _open:  # a forked child has emptied the list
                 _open.remove(self)
             _changed.notify_all()
             if self._bar is not None:
@@ -79,7 +82,7 @@ class Progress:
                 say(self._line(f"{end} {duration(time.monotonic() - self._began)}"))
 
     def advance(self, count: int = 1, note: str = "") -> None:
-        """Count ``count`` units as done (0 is allowed); an empty ``note`` keeps the latest one."""
+        """Count ``count`` units as done (may be 0); an empty ``note`` keeps the previous one."""
         with _lock:
             self.done += count
             self.note = note or self.note
@@ -94,14 +97,15 @@ class Progress:
 
     def line(self) -> str:
         """Return e.g. ``train: step 120/700, 3.1 steps/s, 3 min 10 s left, loss 0.31``."""
-        elapsed, now = time.monotonic() - self._began, self.done - self.start
+        elapsed = time.monotonic() - self._began
+        now = self.done - self.start
         if now <= 0:
             return self._line(f"{duration(elapsed)} so far")
         rate = _rate(now / max(elapsed, 1e-9), self.unit)
         return self._line(f"{rate}, {duration(self.left())} left")
 
     def left(self) -> float:
-        """Return the seconds that the rest takes at the mean pace so far; infinite before that."""
+        """Return the seconds left at the mean pace so far; infinite before the first unit."""
         now = self.done - self.start
         pace = (time.monotonic() - self._began) / now if now > 0 else math.inf
         return (self.total - self.done) * pace if self.done < self.total else 0.0
@@ -112,15 +116,15 @@ class Progress:
 
 
 def say(text: str) -> None:
-    """Print one line at once, above the bars if there are any."""
-    global _spoke
+    """Print one line immediately, above any bars."""
+    global _last_line
     with _lock:
         if any(progress._bar is not None for progress in _open):
             tqdm.write(text, file=sys.stdout)
             sys.stdout.flush()
         else:
             print(text, flush=True)
-        _spoke = time.monotonic()
+        _last_line = time.monotonic()
 
 
 def duration(seconds: float) -> str:
@@ -139,7 +143,7 @@ def _rate(per_second: float, unit: str) -> str:
     if per_second < 1:
         each = 1 / per_second
         took = f"{each:.3g} s" if each < 60 else duration(each)
-        return f"{took} {'an' if unit[0] in 'aeiou' else 'a'} {unit}"
+        return f"{took} per {unit}"
     return f"{per_second:.3g} {unit}s/s"
 
 
@@ -151,26 +155,26 @@ def _start_clock() -> None:
 
 
 def _clock() -> None:
-    """Keep lines or bars coming while anything is open."""
+    """Print lines or refresh bars while any progress is open."""
     global _thread
     with _changed:
         try:
             while _open:
-                _changed.wait(_tell())
-        except (OSError, ValueError):  # standard output is closed; the job itself may go on
+                _changed.wait(_report())
+        except (OSError, ValueError):  # standard output is closed; the job itself continues
             pass
         finally:
             _thread = None
 
 
-def _tell() -> float:
-    """Redraw the bars, or print a line if it is time; return the seconds until the next look."""
+def _report() -> float:
+    """Redraw the bars, or print a line if it is due; return the seconds until the next call."""
     bars = [progress._bar for progress in _open if progress._bar is not None]
     if bars:
         for bar in bars:
             bar.refresh()
         return REDRAW
-    left = _spoke + EVERY - time.monotonic()
+    left = _last_line + EVERY - time.monotonic()
     if left > 0:
         return left
     say(_open[-1].line())

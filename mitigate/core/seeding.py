@@ -1,4 +1,4 @@
-"""Keyed random numbers: every draw is a function of a key, never of what was drawn before.
+"""Keyed random numbers: every draw depends only on a key, never on earlier draws.
 
 A key is a tuple of integers and strings, such as ``(seed, "rollout", step)``. The same key gives
 the same numbers in any process and in any order; Python's ``hash()`` (salted per process) is
@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-if TYPE_CHECKING:  # torch is slow to import, and most callers need numpy's generators alone
+if TYPE_CHECKING:  # torch is slow to import, and most callers need only numpy's generators
     import torch
 
 Key = int | str
@@ -34,15 +34,17 @@ def torch_generator(*key: Key) -> torch.Generator:
     """Return a fresh CPU torch generator for ``key``."""
     import torch
 
-    made = torch.Generator()
-    made.manual_seed(digest(*key) & (2**63 - 1))
-    return made
+    rng = torch.Generator()
+    rng.manual_seed(digest(*key) & (2**63 - 1))
+    return rng
 
 
 def check(seed: int) -> None:
-    """Raise ValueError for a user's seed that rows cannot hold."""
+    """Raise ValueError for a seed that does not fit into a row."""
     if not -(2**63) < seed < 2**63:
-        raise ValueError("seed is too great: give a whole number between -2^63 and 2^63: seed=1.")
+        raise ValueError(
+            f"seed must be a whole number between -2^63 and 2^63, got {seed}. Set e.g. seed=1."
+        )
 
 
 def seed_everything(*key: Key) -> None:
@@ -68,7 +70,7 @@ def global_state() -> dict:
 
 
 def set_global_state(state: dict) -> None:
-    """Put back what :func:`global_state` returned."""
+    """Restore the state that :func:`global_state` returned."""
     import torch
 
     name, words, position, has_gauss, gauss = state["numpy"]

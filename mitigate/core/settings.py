@@ -1,7 +1,7 @@
-"""Settings that come with weights: plain data of a fixed schema, read here and nowhere else.
+"""Read the settings that come with weights: plain data of a fixed schema.
 
-A folder of weights may come from anybody. Its ``config.yaml`` is YAML without anchors, tags and
-interpolations; nothing in it is resolved, instantiated or run.
+A folder of weights may be untrusted. Its ``config.yaml`` is YAML without anchors, tags and
+interpolations; nothing in it is resolved, instantiated or run. Only this module reads such files.
 """
 
 from __future__ import annotations
@@ -18,67 +18,74 @@ from mitigate.core import names
 from mitigate.core.files import PACKAGE
 from mitigate.core.output import is_regular
 
-LARGEST = 1 << 16  # bytes of a file; the config of a run has about 4000 (ours)
-DEEPEST = 16  # levels of lists and mappings; the config of a run has 8 (ours)
-GREATEST = 1 << 53  # of a whole number: above it, floats skip some (IEEE 754)
-UNRESOLVED = ("${", "???")  # what OmegaConf would resolve, or take for a missing value
+LARGEST = 1 << 16  # bytes of a file (heuristic; the config of a run has about 4000)
+DEEPEST = 16  # levels of lists and mappings (heuristic; the config of a run has 8)
+GREATEST = 1 << 53  # greatest whole number; greater floats are not exact (IEEE 754)
+UNRESOLVED = ("${", "???")  # OmegaConf would resolve these, or read them as missing values
 _SHOWN = 60  # characters of a key or value that a message repeats
 _WARNING = "Settings that come with weights are plain data: do not use this folder."
 
 
 def read(file: Path) -> dict[str, Any]:
-    """Return the YAML mapping in ``file``: None, bools, finite numbers, strings, lists and
-    str-keyed dicts of these.
+    """Return the YAML mapping in ``file``.
 
-    Raises ValueError for anything else, a file of more than ``LARGEST`` bytes, more than
-    ``DEEPEST`` levels, a key that comes twice, and an OmegaConf interpolation.
+    Values are None, bools, finite numbers, strings, and lists and str-keyed dicts of these.
+
+    Raises:
+        ValueError: The file holds another type of value, more than ``LARGEST`` bytes or ``DEEPEST``
+            levels, a repeated key, or an OmegaConf interpolation.
     """
     is_regular(file)  # a FIFO would wait forever
-    with open(file, "rb") as opened:
-        raw = opened.read(LARGEST + 1)
+    with open(file, "rb") as stream:
+        raw = stream.read(LARGEST + 1)
     if len(raw) > LARGEST:
         raise ValueError(f"{file} has more than {LARGEST} bytes. {_WARNING}")
     try:
-        found = yaml.load(raw.decode("utf-8"), _PlainLoader)
+        settings = yaml.load(raw.decode("utf-8"), _PlainLoader)
     except (yaml.YAMLError, ValueError, OverflowError, RecursionError) as error:
         cause = " ".join(str(error).split())
-        raise ValueError(f"{file} is no plain YAML ({cause}). {_WARNING}") from error
-    if not isinstance(found, dict):
+        raise ValueError(f"{file} is not plain YAML ({cause}). {_WARNING}") from error
+    if not isinstance(settings, dict):
         raise ValueError(
-            f"{file} holds no mapping, and so no settings of an agent: fetch or write it again."
+            f"{file} must hold a mapping with the settings of an agent. Fetch or write it again."
         )
-    for key, value in _entries(found):
+    for key, value in _entries(settings):
         problem = _problem(value)
         if problem:
             raise ValueError(f"{file}: {_short(key)} {problem}. {_WARNING}")
-    return found
+    return settings
 
 
 def read_agent(file: Path, target: str, known: Collection[str]) -> dict[str, Any]:
-    """Return the settings under ``agent`` in ``file`` but ``_target_``, which must be ``target``.
+    """Return the settings under ``agent`` in ``file``, without ``_target_``.
 
-    Args: known: the settings that the agent has. Raises ValueError as :func:`read`; also if there
-    are none, for those of another agent, for a setting not in ``known`` and for any other key that
-    begins with "_" (Hydra's own begin so).
+    Args:
+        file: the YAML file.
+        target: required value of ``_target_``, if the file has one.
+        known: names of the settings of the agent.
+
+    Raises:
+        ValueError: as :func:`read`; or the settings are missing, belong to another agent, are not
+            in ``known``, or have a key that begins with "_", as keys of Hydra do.
     """
     settings = read(file).get("agent")
     if not isinstance(settings, dict):
         raise ValueError(
-            f"{file} has no settings of an agent: it must hold a mapping called agent, as `make "
-            "train` writes it. Fetch the folder again, or train again."
+            f"{file} must hold the settings of an agent (a mapping called agent), as `make train` "
+            "writes it. Fetch the folder again, or train again."
         )
-    found = settings.pop("_target_", target)
-    if found != target:
+    found_target = settings.pop("_target_", target)
+    if found_target != target:
         raise ValueError(
-            f"{file} is of the agent {_short(found)}, but the agent here is {target}: choose the "
-            f"agent that the weights belong to (agent={named(found) or '...'}; in Python, "
-            "mitigate.load(folder, agent=...) fills one that you built)."
+            f"{file} belongs to the agent {_short(found_target)}, but the agent here is {target}. "
+            f"Choose the agent of these weights (agent={named(found_target) or '...'}; in Python, "
+            "mitigate.load(folder, agent=...) fills an agent that you built)."
         )
     for key, _ in _entries(settings):
         if any(part.startswith("_") for part in key.split(".")):
             raise ValueError(
-                f"{file}: agent.{_short(key)} begins with '_', as what names a class to build "
-                f"does. {_WARNING}"
+                f"{file}: agent.{_short(key)} begins with '_', as keys that name a class to build "
+                f"do. {_WARNING}"
             )
     for name in settings:
         if name not in known:
@@ -87,7 +94,7 @@ def read_agent(file: Path, target: str, known: Collection[str]) -> dict[str, Any
 
 
 def named(target: object) -> str:
-    """What ``agent=`` calls an agent of the class ``target``; empty if it is none of ours."""
+    """Return the value of ``agent=`` for the class ``target``; empty if there is none."""
     files = sorted((PACKAGE / "conf" / "agent").glob("*.yaml"))
     for file in files:
         lines = file.read_text(encoding="utf-8").splitlines()
@@ -97,14 +104,14 @@ def named(target: object) -> str:
 
 
 def unknown(file: Path | str, key: str, allowed: Collection[str]) -> str:
-    """Return what is wrong with ``key`` (dotted) in ``file``, of which ``allowed`` are known."""
+    """Return the message for the unknown dotted ``key`` in ``file``."""
     parent, _, name = key.rpartition(".")
     problem = names.unknown(f"setting of {parent}", _short(name), sorted(allowed))
     return f"{file}: {problem} Use the version of the agent that the weights belong to."
 
 
 class _PlainLoader(yaml.SafeLoader):
-    """SafeLoader that refuses what plain data does not need, before it is expanded."""
+    """SafeLoader that rejects what plain data does not need, before it is expanded."""
 
     _depth = 0
 
@@ -125,17 +132,17 @@ class _PlainLoader(yaml.SafeLoader):
         counts = Counter(key.value for key, _ in node.value if isinstance(key, yaml.ScalarNode))
         twice = [key for key, count in counts.items() if count > 1]
         if twice:
-            raise ValueError(f"the key {_short(twice[0])} comes twice")
+            raise ValueError(f"the key {_short(twice[0])} occurs twice")
         return super().construct_mapping(node, deep)
 
 
 def _entries(value: Any, key: str = "") -> Iterator[tuple[str, Any]]:
-    """Yield every value below ``value`` with its dotted key; a key itself as a value, too."""
+    """Yield every value below ``value`` with its dotted key, and each invalid key as a tuple."""
     if isinstance(value, dict):
         for name, item in value.items():
             inner = f"{key}.{name}" if key else str(name)
             if not isinstance(name, str) or _problem(name):
-                yield inner, (name,)  # no plain data, whatever it is
+                yield inner, (name,)  # a tuple is never plain data
             yield inner, item
             yield from _entries(item, inner)
     elif isinstance(value, list):
@@ -145,19 +152,19 @@ def _entries(value: Any, key: str = "") -> Iterator[tuple[str, Any]]:
 
 
 def _problem(value: Any) -> str:
-    """Return why ``value`` (what it holds aside) is no plain data, empty if it is."""
+    """Return why ``value`` is not plain data, without its items; empty if it is."""
     if isinstance(value, tuple):
-        return "is no plain key"
+        return "is not a plain key"
     if isinstance(value, str):
-        found = [mark for mark in UNRESOLVED if mark in value]
-        return f"holds {found[0]}, which OmegaConf would resolve" if found else ""
+        marks = [mark for mark in UNRESOLVED if mark in value]
+        return f"holds {marks[0]}, which OmegaConf would resolve" if marks else ""
     if isinstance(value, float) and not math.isfinite(value):
-        return f"is {value}, no finite number"
+        return f"must be a finite number, got {value}"
     if type(value) is int and abs(value) > GREATEST:
-        return "is too great a number"
+        return "is too large a number"
     if value is None or isinstance(value, (bool, int, float, list, dict)):
         return ""
-    return f"is a {type(value).__name__}, not null, a truth value, a number, text, list or mapping"
+    return f"must be null, true, false, a number, text, list or mapping, got {type(value).__name__}"
 
 
 def _short(value: Any) -> str:

@@ -1,6 +1,6 @@
 """Signals that end a command: Ctrl-C, and SIGTERM as ``timeout``, SLURM and containers send it.
 
-A command that is ended says how to go on, and exits as a shell expects: 130 or 143.
+A command that is ended prints how to resume, and exits as a shell expects: 130 or 143.
 """
 
 from __future__ import annotations
@@ -25,14 +25,18 @@ class Ended(KeyboardInterrupt):
 
 
 def raise_ended(number: int, frame: FrameType | None) -> None:
-    """A signal handler: raises :class:`Ended` wherever the command is."""
+    """Raise :class:`Ended`; a signal handler."""
     raise Ended(number)
 
 
 class Held:
-    """The handler of a block that holds signals. ``number``: of the first that came, None while
-    none did; ``again``: whether another came. ``outer``: the handlers of before, which are told of
-    a signal if they hold signals themselves."""
+    """The signal handler of a block that delays signals.
+
+    Attributes:
+        number: number of the first signal; None before it.
+        again: whether another signal followed.
+        outer: the previous handlers. A signal is passed to them if they delay signals too.
+    """
 
     def __init__(self) -> None:
         self.number: int | None = None
@@ -49,39 +53,46 @@ class Held:
         self.number = number
 
     def check(self) -> None:
-        """Raise :class:`Ended` if a signal came."""
+        """Raise :class:`Ended` if a signal was received."""
         if self.number is not None:
             raise Ended(self.number)
 
     @property
     def nested(self) -> bool:
-        """Whether a block around it holds signals, too."""
+        """Whether an outer block delays signals too."""
         return any(isinstance(handler, Held) for handler in self.outer.values())
 
 
 @contextmanager
 def held(on: bool = True) -> Iterator[Held]:
-    """Within it, if ``on``, the first signal only sets ``number``, here and in each such block
-    around it, so that what is at hand can be finished and saved; a second one ends it at once. In
-    threads other than the main one nothing is held."""
-    found = Held()
+    """Delay the first signal during the block, so that current work can be finished and saved.
+
+    The signal sets ``number``, here and in each outer block of this kind. A second signal ends the
+    command immediately. Only the main thread can delay signals.
+
+    Args:
+        on: False delays nothing.
+    """
+    handler = Held()
     if not on or threading.current_thread() is not threading.main_thread():
-        yield found
+        yield handler
         return
     try:
         for number in ENDING:
-            signal.signal(number, found)
-        yield found
-    finally:
-        for number, handler in found.outer.items():
             signal.signal(number, handler)
+        yield handler
+    finally:
+        for number, previous in handler.outer.items():
+            signal.signal(number, previous)
 
 
 @contextmanager
 def unbroken() -> Iterator[None]:
-    """Within it nothing is interrupted: what native code does not survive, what is to be whole. A
-    signal that came raises :class:`Ended` at its end, unless a block around it holds signals, which
-    is told; a second one does so at once."""
+    """Do not interrupt the block, for native code and for writes that must be complete.
+
+    A signal raises :class:`Ended` at the end of the block, unless an outer block delays signals. A
+    second signal raises it immediately.
+    """
     with held() as ending:
         yield
     if not ending.nested:
@@ -89,9 +100,12 @@ def unbroken() -> Iterator[None]:
 
 
 def start_worker(process: BaseProcess) -> None:
-    """Start a worker's ``process``, in which these signals wait until it calls
-    :func:`leave_to_parent`: what it imports before knows nothing of them."""
-    resource_tracker.ensure_running()  # which lets signals through when it starts
+    """Start the ``process`` of a worker with these signals blocked.
+
+    They stay blocked until the worker calls :func:`leave_to_parent`, so they cannot interrupt its
+    imports.
+    """
+    resource_tracker.ensure_running()  # its start unblocks signals
     before = signal.pthread_sigmask(signal.SIG_BLOCK, ENDING)
     try:
         process.start()
@@ -100,8 +114,11 @@ def start_worker(process: BaseProcess) -> None:
 
 
 def leave_to_parent() -> None:
-    """Ignore these signals in a worker: they reach a command's whole process group, and the parent
-    finishes what is at hand and ends the workers."""
+    """Ignore these signals in a worker.
+
+    They reach the whole process group of a command. The parent finishes the current work and ends
+    the workers.
+    """
     for number in ENDING:
         signal.signal(number, signal.SIG_IGN)
     signal.pthread_sigmask(signal.SIG_UNBLOCK, ENDING)

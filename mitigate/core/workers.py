@@ -1,8 +1,8 @@
-"""Worker processes that cannot hang: a dead one is noticed at once, and its jobs are done again.
+"""Run jobs in worker processes; a worker that dies is noticed at once and its jobs run again.
 
-Each worker has a pipe of its own and is given one group of jobs at a time; results come back one
-by one. When a worker dies its pipe closes, so nothing waits for it. Workers are ended by the
-process that started them; if that was killed, each ends after the job at hand.
+Each worker has its own pipe and receives one group of jobs at a time; results come back one by one.
+When a worker dies, its pipe closes, so nothing waits for it. The process that started the workers
+ends them; if that process was killed, each worker ends after its current job.
 """
 
 from __future__ import annotations
@@ -26,114 +26,128 @@ from mitigate.core.errors import said
 from mitigate.core.progress import Progress, duration
 from mitigate.core.signals import held, leave_to_parent, start_worker
 
-SECOND = 1.0  # between two looks at workers that say nothing
-STUCK = 60.0  # seconds with one job after which a worker is reported, and again after as many
+SECOND = 1.0  # seconds to wait for messages before silent workers are checked
+STUCK = 60.0  # seconds with one job between two reports of a worker
 DEATHS = 1  # workers that are replaced
-ALONE = "give workers=1, or define what it holds at the head of a module"
+ALONE = "set workers=1, or define its classes at the top level of a module"
 
 
 class Task(Protocol):
-    """What workers do. Each gets a copy of it (by pickle), made in the process that asks."""
+    """The work of worker processes; each worker receives a pickled copy."""
 
-    preload: ClassVar[str]  # module that all workers need, imported once for all of them
+    preload: ClassVar[str]  # module that all workers need; imported once
 
     def ready(self) -> AbstractContextManager[None]:
-        """Around all jobs of a process: what it sets up once, and puts back."""
+        """Return the context around all jobs of a process, for setup and cleanup."""
         ...
 
     def work(self, jobs: Sequence[Any]) -> Iterator[Any]:
-        """The result of each job of a group, in order."""
+        """Yield the result of each job of a group, in order."""
         ...
 
     def name(self, job: Any) -> str:
-        """The job in a few words, for a line about a worker that is stuck with it."""
+        """Return a short name of the job, for messages."""
         ...
 
 
 class WorkersDied(ValueError):
-    """Workers died more often than they are replaced; the results so far were handed out."""
+    """More workers died than are replaced; the results so far were yielded."""
 
 
 def lost(what: str, attempts: int, done: int, total: int) -> WorkersDied:
-    """The error for a group of jobs that no worker finished."""
+    """Return the error for a group of jobs that no worker finished."""
     return WorkersDied(
         f"{what} was lost with its worker {attempts} times. {done} of {total} jobs are finished. "
-        "Look at the nodes' logs; if memory ran out, reserve more (launcher.memory=4)."
+        "Check the logs of the nodes; if memory ran out, reserve more (launcher.memory=4)."
     )
 
 
 def cores() -> int:
-    """Processor cores that this process may use; the environment variable PYTHON_CPU_COUNT, which
-    Python itself reads from 3.13 on, says another number."""
-    told = os.environ.get("PYTHON_CPU_COUNT", "")
-    if told.isdigit() and int(told) > 0:
-        return int(told)
+    """Return the number of processor cores that this process may use.
+
+    The environment variable PYTHON_CPU_COUNT overrides it, as in Python 3.13 and later.
+    """
+    override = os.environ.get("PYTHON_CPU_COUNT", "")
+    if override.isdigit() and int(override) > 0:
+        return int(override)
     return len(os.sched_getaffinity(0)) if sys.platform == "linux" else os.cpu_count() or 1
 
 
-def count(wanted: int | None, jobs: int, worth: int) -> int:
-    """How many processes to start for ``jobs``.
+def count(requested: int | None, jobs: int, worth: int) -> int:
+    """Return how many processes to start.
 
-    ``wanted``; None: as many as there are cores, but none for less than ``worth`` jobs, below
-    which starting it takes longer than it saves. Raises ValueError for fewer than 1.
+    Args:
+        wanted: the requested number; None uses one per core.
+        jobs: number of jobs.
+        worth: jobs per process below which its start takes longer than it saves.
+
+    Raises:
+        ValueError: ``wanted`` is less than 1.
     """
-    if wanted is not None and wanted < 1:
-        raise ValueError(f"workers={wanted}: give 1 or more processes, or null for one a core.")
-    return wanted or max(1, min(cores(), jobs // worth))
+    if requested is not None and requested < 1:
+        raise ValueError(f"workers must be >= 1 or null (one per core), got {requested}.")
+    return requested or max(1, min(cores(), jobs // worth))
 
 
 def results(
     task: Task, groups: Sequence[Sequence[Any]], workers: int, progress: Progress
 ) -> Iterator[tuple[int, Any] | None]:
-    """Yield (number of the job, its result) as they come, jobs numbered through all groups.
+    """Yield (number of the job, its result) as results arrive.
 
-    The jobs of a group run one after the other in one process: this one if ``workers`` is 1, else
-    one of so many. None is yielded at least every ``SECOND`` while workers are awaited. The first
-    worker that dies is replaced, and what it had not finished runs again in a fresh process; at
-    the next, WorkersDied is raised. What a job raises is raised here.
+    Jobs are numbered across all groups. The jobs of a group run in order in one process: in this
+    one if ``workers`` is 1, else in a worker. None is yielded at least every ``SECOND`` while
+    workers are awaited.
+
+    The first worker that dies is replaced, and its unfinished jobs run again in a new process.
+
+    Raises:
+        WorkersDied: A second worker died.
+        Exception: The error of a job.
     """
-    given = numbered(groups)
-    workers = min(workers, len(given))
+    work = numbered(groups)
+    workers = min(workers, len(work))
     if workers > 1:
-        yield from _Crew(task, given, workers, progress).results()
-    elif given:
+        yield from _Crew(task, work, workers, progress).results()
+    elif work:
         with task.ready():
-            for group in given:
-                found = task.work([job for _, job in group])
+            for group in work:
+                outputs = task.work([job for _, job in group])
                 for number, _ in group:
-                    with held() as ending:  # a job that was begun is finished
-                        result = next(found)
+                    with held() as ending:  # finish a job that has started
+                        result = next(outputs)
                     yield number, result
                     ending.check()
 
 
 def numbered(groups: Sequence[Sequence[Any]]) -> list[list[tuple[int, Any]]]:
-    """The jobs of each group with their numbers, counted through all groups; no empty group."""
+    """Return the jobs of each non-empty group with their numbers, counted across all groups."""
     numbers = itertools.count()
     return [[(next(numbers), job) for job in group] for group in groups if len(group)]
 
 
 class _Worker:
-    """One process, what it still has to do, and when it last said something."""
+    """One process, its unfinished jobs, and the time of its last message."""
 
     def __init__(self, context: Any, task: bytes) -> None:
         self.pipe, theirs = context.Pipe()
         self.process = context.Process(target=_serve, args=(theirs, task), daemon=True)
         start_worker(self.process)
-        theirs.close()  # so that its death closes the pipe
+        theirs.close()  # so that the death of the process closes the pipe
         self.left: deque[tuple[int, Any]] = deque()
-        self.heard = self.told = time.monotonic()
+        self.heard = time.monotonic()
+        self.reported = self.heard
 
     def give(self, group: Sequence[tuple[int, Any]]) -> None:
-        jobs = packed([job for _, job in group], "What a worker is to do", ALONE)
+        jobs = packed([job for _, job in group], "A job of a worker", ALONE)
         self.left.extend(group)
-        self.heard = self.told = time.monotonic()
-        with suppress(OSError):  # it is dead, as whoever reads the pipe will see
+        self.heard = time.monotonic()
+        self.reported = self.heard
+        with suppress(OSError):  # the process is dead; the reader of the pipe will notice
             self.pipe.send_bytes(jobs)
 
     def end(self) -> str:
-        """Make sure that it is dead; say what it died of."""
-        self.process.join(SECOND)  # its exit code may come a moment after its pipe closed
+        """Make sure that the process has ended, and return the cause."""
+        self.process.join(SECOND)  # the exit code may arrive after the pipe closed
         code = self.process.exitcode
         self.process.kill()
         self.process.join()
@@ -146,7 +160,7 @@ class _Worker:
 
 
 class _Crew:
-    """The workers and the groups that none of them has yet."""
+    """The workers and the groups that no worker has received yet."""
 
     def __init__(
         self,
@@ -155,11 +169,14 @@ class _Crew:
         workers: int,
         progress: Progress,
     ) -> None:
-        self.task, self.progress = task, progress
+        self.task = task
+        self.progress = progress
         self.waiting = deque(groups)
-        self.total, self.done, self.deaths = sum(map(len, groups)), 0, 0
+        self.total = sum(map(len, groups))
+        self.done = 0
+        self.deaths = 0
         self.context = context(task.preload)
-        self.copy = packed(task, "The agent or its world", ALONE)  # tensors do not become shared
+        self.copy = packed(task, "The agent or its world", ALONE)  # tensors are copied, not shared
         self.crew: list[_Worker] = []
         self.size = workers
 
@@ -168,7 +185,7 @@ class _Crew:
             for _ in range(self.size):
                 self.crew.append(_Worker(self.context, self.copy))
             while self.done < self.total:
-                with held() as ending:  # what is there to hear is handed out before it ends
+                with held() as ending:  # yield results that have arrived before ending
                     for worker in self.crew:
                         if not worker.left and self.waiting:
                             worker.give(self.waiting.popleft())
@@ -190,31 +207,32 @@ class _Crew:
                 if not worker.pipe.poll():
                     return
                 result, error = worker.pipe.recv()
-            except (EOFError, OSError):  # it died, maybe in the middle of a message
+            except (EOFError, OSError):  # the worker died, possibly within a message
                 self._replace(worker)
                 return
             if error is not None:
                 raise error[0] from error[1]
-            worker.heard = worker.told = time.monotonic()
+            worker.heard = time.monotonic()
+            worker.reported = worker.heard
             self.done += 1
             yield worker.left.popleft()[0], result
 
     def _replace(self, worker: _Worker) -> None:
-        """Put a fresh process in the place of a dead one, if it is the first."""
+        """Replace a dead worker by a new process, if it is the first; else raise WorkersDied."""
         cause = worker.end()
         self.crew.remove(worker)
         self.deaths += 1
         if self.deaths > DEATHS:
-            own = " A script keeps what it calls under `if __name__ == '__main__':`, since each "
-            own += "worker reads it."
+            hint = " A script must keep its calls under `if __name__ == '__main__':`, since each "
+            hint += "worker imports it."
             raise WorkersDied(
                 f"A second worker process was {cause}. {self.done} of {self.total} jobs are "
-                f"finished. There were {self.size} workers: give fewer (workers=1 takes the least "
-                f"memory), or free some memory.{own if cause.startswith('ended with') else ''}"
+                f"finished. There were {self.size} workers: use fewer (workers=1 takes the least "
+                f"memory), or free some memory.{hint if cause.startswith('ended with') else ''}"
             )
         self.progress.say(
-            f"A worker process was {cause}. What it had not finished "
-            f"({len(worker.left)} jobs) starts again in a fresh one."
+            f"A worker process was {cause}. Its unfinished jobs ({len(worker.left)}) start again "
+            "in a new one."
         )
         if worker.left:
             self.waiting.appendleft(list(worker.left))
@@ -223,31 +241,42 @@ class _Crew:
     def _report_stuck(self) -> None:
         now = time.monotonic()
         for worker in self.crew:
-            if worker.left and now - worker.told > STUCK:
-                worker.told = now
+            if worker.left and now - worker.reported > STUCK:
+                worker.reported = now
                 self.progress.say(
-                    f"worker process {worker.process.pid} has been at "
+                    f"worker process {worker.process.pid} has been running "
                     f"{self.task.name(worker.left[0][1])} for {duration(now - worker.heard)}"
                 )
 
 
 def packed(thing: Any, what: str, instead: str, *, shared: bool = False) -> bytes:
-    """``thing`` for other processes, by value; ``shared``: its tensors by shared memory, for one
-    process that reads it once. Raises ValueError, which names ``what`` it is and what to do
-    ``instead``, where it cannot be pickled."""
+    """Return ``thing`` pickled for other processes.
+
+    Args:
+        thing: the object.
+        what: name of the object in the error.
+        instead: what to do if it cannot be pickled, for the error.
+        shared: pass its tensors by shared memory, for one process that reads them once.
+
+    Raises:
+        ValueError: ``thing`` cannot be pickled.
+    """
     try:
         return bytes(ForkingPickler.dumps(thing)) if shared else pickle.dumps(thing)
-    except Exception as error:  # of any kind: what is in it pickles itself
+    except Exception as error:  # objects inside may raise any error
         cause = " ".join(str(error).split())[:300]
         raise ValueError(
-            f"{what} cannot be sent to other processes ({type(error).__name__}: {cause}): "
-            f"{instead}."
+            f"{what} cannot be sent to other processes ({type(error).__name__}: {cause}). To fix "
+            f"it, {instead}."
         ) from error
 
 
 def context(preload: str) -> Any:
-    """Where workers come from: a process that has imported ``preload`` and forks, if there can be
-    one (the next crew then starts at once), else fresh interpreters."""
+    """Return the multiprocessing context that starts workers.
+
+    If available it is a fork server that has imported ``preload``, so that later workers start
+    fast; else each worker is a new interpreter.
+    """
     if "forkserver" not in multiprocessing.get_all_start_methods():
         return multiprocessing.get_context("spawn")
     context = multiprocessing.get_context("forkserver")
@@ -256,14 +285,14 @@ def context(preload: str) -> Any:
 
 
 def _serve(pipe: Connection, copy: bytes) -> None:
-    """A worker's life: groups of jobs in, (result, None) or (None, error) out."""
+    """Run a worker: receive groups of jobs, send (result, None) or (None, error)."""
     leave_to_parent()
     try:
         task: Task = _unpacked(copy)
         with task.ready():
             while jobs := _next(pipe):
                 for result in task.work(jobs):
-                    what = "What a worker found"
+                    what = "The result of a worker"
                     pipe.send_bytes(packed((result, None), what, ALONE, shared=True))
     except Exception as error:
         with suppress(OSError):  # the parent is gone
@@ -271,11 +300,13 @@ def _serve(pipe: Connection, copy: bytes) -> None:
 
 
 def _unpacked(copy: bytes) -> Any:
-    """What :func:`packed` made; ValueError for a class below ``if __name__ == "__main__":``."""
+    """Unpickle; raise ValueError for a class below ``if __name__ == "__main__":``."""
     try:
         return pickle.loads(copy)
     except AttributeError as error:
-        raise ValueError(f"A worker process cannot read its task ({error}): {ALONE}.") from error
+        raise ValueError(
+            f"A worker process cannot read its task ({error}). To fix it, {ALONE}."
+        ) from error
 
 
 def _next(pipe: Connection) -> list[Any]:
@@ -287,8 +318,11 @@ def _next(pipe: Connection) -> list[Any]:
 
 
 def portable(error: Exception) -> tuple[Exception, Exception]:
-    """``error``, a ValueError with the place in a user's code, and a cause that shows the worker's
-    traceback; a RuntimeError with its text in place of one that cannot be pickled."""
+    """Return an error that can be sent to the parent, and a cause with the worker's traceback.
+
+    A ValueError gets its place in the user's code. An error that cannot be pickled becomes a
+    RuntimeError with the same text.
+    """
     cause = RuntimeError(f"in a worker process:\n{traceback.format_exc()}")
     error = ValueError(said(error)) if type(error) is ValueError else error
     try:

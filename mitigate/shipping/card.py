@@ -1,5 +1,7 @@
-"""The card of a hardened checkpoint: what made it and what it reached, and the README from it,
-with the front matter that Hugging Face reads."""
+"""Write the card of a hardened checkpoint: its training, its results, and a README from them.
+
+The README has the front matter that Hugging Face reads.
+"""
 
 from __future__ import annotations
 
@@ -24,19 +26,24 @@ from mitigate.evaluation.rows import Row
 from mitigate.evaluation.sections import Retained, Section, label, sections
 
 VERSIONS = ("mitigate", "torch", "numpy", "safetensors", "panda3d")
-CODE = ("mitigate", "conf", "recipes", "pyproject.toml")  # of a checkout: what makes a folder
+# paths of a checkout that determine the content of a folder
+CODE = ("mitigate", "conf", "recipes", "pyproject.toml")
 LIBRARY = "mitigate"
-TASK = "robotics"  # of Hugging Face's list of tasks, the one for agents that move
+TASK = "robotics"  # the task for moving agents in Hugging Face's list
 TAGS = ("embodied-navigation", "robustness", "sensor-corruption", "safetensors")
-DATASET = "mitigate-episodes"  # ours; no data set of the hub
-LICENCE, UNKNOWN = "Apache-2.0", "other"  # of our agents; Hugging Face's word where it is not said
+DATASET = "mitigate-episodes"  # a name of this project; the hub has no such data set
+LICENCE = "Apache-2.0"  # of agents of this project
+UNKNOWN = "other"  # Hugging Face's word for an unknown licence
 
 
 def facts(cfg: dict[str, Any], agent: Any) -> dict[str, Any]:
-    """Return what the resolved config ``cfg`` of a run and this checkout say about ``agent``.
+    """Return the entries of a card that describe how ``agent`` was made.
 
-    Raises FileNotFoundError if the base or a teacher that the run names is gone, ValueError for an
-    entry of ``cfg`` that no training writes.
+    They come from the resolved config ``cfg`` of the run and from this checkout.
+
+    Raises:
+        FileNotFoundError: The base or a teacher of the run is missing.
+        ValueError: An entry of ``cfg`` is not one that a training writes.
     """
     _check(cfg)
     teachers = sorted({path for path in _teachers(cfg.get("stages")) if path != "start"})
@@ -61,52 +68,58 @@ def facts(cfg: dict[str, Any], agent: Any) -> dict[str, Any]:
 
 
 def reference(weights: str) -> dict[str, str]:
-    """Return the path of ``weights`` (below the current folder: relative) and its sha256."""
-    held = find(weights)
-    own = loading.adapters_only(held)
-    file = held / adapters.WEIGHTS if own else checkpoint.weights_file(held)
+    """Return the path of ``weights`` (relative if below the current folder) and its sha256."""
+    path = find(weights)
+    adapters_only = loading.adapters_only(path)
+    file = path / adapters.WEIGHTS if adapters_only else checkpoint.weights_file(path)
     return {"weights": weights.removeprefix(f"{Path.cwd()}/"), "sha256": sha256(file)}
 
 
 def commit() -> str | None:
-    """Return the git commit of the checkout; None outside one, and without git."""
+    """Return the git commit of the checkout; None outside a checkout or without git."""
     return _git("rev-parse", "HEAD") or None
 
 
 def uncommitted() -> bool:
-    """Whether the checkout's code or configs are not those of its commit."""
+    """Return whether code or configs of the checkout differ from its commit."""
     return bool(_git("--no-optional-locks", "status", "--porcelain", "--", *CODE))
 
 
 def _git(*words: str) -> str:
-    """What git says of the checkout; empty outside one, and without git."""
-    if not (ROOT / ".git").exists():  # installed: a repository around it is another's
+    """Return the output of git in the checkout; empty outside a checkout or without git."""
+    if not (ROOT / ".git").exists():  # installed: an enclosing repository is another project
         return ""
     try:
-        found = subprocess.run(["git", *words], cwd=ROOT, capture_output=True, text=True)
+        process = subprocess.run(["git", *words], cwd=ROOT, capture_output=True, text=True)
     except OSError:
         return ""
-    return found.stdout.strip() if found.returncode == 0 else ""
+    return process.stdout.strip() if process.returncode == 0 else ""
 
 
 def weights_of(row: Row) -> str:
-    """Return the hash of the weights that a row is of; rows of before had it as their agent's."""
+    """Return the hash of the weights of a row; older rows have it under ``agent``."""
     return str(row.get("weights", row["agent"]))
 
 
 def metrics(rows: Iterable[Row], agents: set[str]) -> list[dict[str, Any]]:
-    """Return SR, SPL and PRS with 95 % intervals of the rows of ``agents`` (their weights' sha).
+    """Return SR, SPL and PRS with 95 % intervals, from the rows of ``agents``.
 
-    One entry for each split, suite, rule and severity; intervals are [value, low, high], as in
-    the report. The rows of other agents are left out.
+    Args:
+        rows: result rows; rows of other agents are ignored.
+        agents: hashes of their weights.
+
+    Returns:
+        One entry per split, suite, rule and severity; intervals are [value, low, high].
     """
     mine = [{**row, "name": "agent", "agent": "agent"} for row in rows if weights_of(row) in agents]
     return [_entry(section) for section in sections(mine)] if mine else []
 
 
 def rows_agent(rows: Iterable[Row], agents: set[str]) -> list[str]:
-    """Return what ``agent`` says in the rows of ``agents`` (their weights' sha): the hash of all
-    that made the agent, by which tables and the leaderboard name it."""
+    """Return the fingerprints in the rows of ``agents``, which are hashes of weights.
+
+    Tables and the leaderboard name agents by fingerprint.
+    """
     return sorted({str(row["agent"]) for row in rows if weights_of(row) in agents})
 
 
@@ -142,13 +155,14 @@ def _entry(section: Section) -> dict[str, Any]:
 
 
 def _heading(section: Section, block: str, found: Retained) -> str:
-    """What a PRS is over: a block, and how many of its corruptions if those are not all."""
-    held, whole = len(found.corruptions), section.whole(block)
-    return block if held >= whole else f"{block}, {held} of {whole}"
+    """Return the block of a PRS, and how many of its corruptions it covers if not all."""
+    count = len(found.corruptions)
+    whole = section.whole(block)
+    return block if count >= whole else f"{block}, {count} of {whole}"
 
 
-def _interval(found: Estimate) -> list[float | None]:
-    return [_number(found.value), _number(found.low), _number(found.high)]
+def _interval(estimate: Estimate) -> list[float | None]:
+    return [_number(estimate.value), _number(estimate.low), _number(estimate.high)]
 
 
 def _number(value: float) -> float | None:
@@ -179,15 +193,15 @@ def _origin(card: dict[str, Any]) -> str:
 
 
 def _hashes(card: dict[str, Any]) -> str:
-    """The hash of the weights, as exported and before, and the agents of their rows, if known."""
-    own, before = card["agent"], card.get("run_agent", card["agent"])
-    rounded = f" (`{before}` before rounding)" if before != own else ""
-    named = " and ".join(f"`{agent}`" for agent in card.get("rows_agent", ()))
-    return f"Weights `{own}`{rounded}" + (f", in rows the agent {named}" if named else "")
+    """Return the hashes of the exported and the original weights, and the fingerprints in rows."""
+    exported, before = card["agent"], card.get("run_agent", card["agent"])
+    rounded = f" (`{before}` before rounding)" if before != exported else ""
+    names = " and ".join(f"`{agent}`" for agent in card.get("rows_agent", ()))
+    return f"Weights `{exported}`{rounded}" + (f", in rows the agent {names}" if names else "")
 
 
 def _exported(card: dict[str, Any]) -> str:
-    """At which commit, where that is known."""
+    """Return the commit of the export, if known."""
     changed = ", with uncommitted changes" if card.get("uncommitted") else ""
     return f", exported at commit `{card['commit']}`{changed}" if card["commit"] else ""
 
@@ -210,16 +224,16 @@ def _table(entry: dict[str, Any]) -> str:
     )
 
 
-def _cell(found: list[float | None]) -> str:
-    texts = ["–" if value is None else f"{value:.3f}" for value in found]
-    if len(found) == 1:
+def _cell(numbers: list[float | None]) -> str:
+    texts = ["–" if value is None else f"{value:.3f}" for value in numbers]
+    if len(numbers) == 1:
         return texts[0]
-    own = f"[{texts[1]}, {texts[2]}]" if found[1] != found[2] else NO_INTERVAL
-    return f"{texts[0]} {own}"
+    interval = f"[{texts[1]}, {texts[2]}]" if numbers[1] != numbers[2] else NO_INTERVAL
+    return f"{texts[0]} {interval}"
 
 
 def _use(card: dict[str, Any]) -> str:
-    listed = "card.json" if "files" in card else "manifest.json"  # of an older version, of today
+    listed = "card.json" if "files" in card else "manifest.json"  # older folders, current folders
     load = f'mitigate.load_hardened("checkpoints/hardened/{card["name"]}"'
     if not card.get("program", True):
         own = loading.is_ours(card.get("class", ""))
@@ -251,34 +265,35 @@ def _use(card: dict[str, Any]) -> str:
 
 
 def _check(cfg: dict[str, Any]) -> None:
-    """Raise ValueError for what a card would repeat of a config that may be anybody's."""
+    """Raise ValueError for entries of an untrusted config that must not appear in a card."""
     schedule = cfg.get("schedule") or {}
-    held = {**cfg, **(schedule if isinstance(schedule, dict) else {})}
-    name, stages = held.get("name"), held.get("stages") or {}
-    good = {
+    entries = {**cfg, **(schedule if isinstance(schedule, dict) else {})}
+    name, stages = entries.get("name"), entries.get("stages") or {}
+    valid = {
         "name": isinstance(name, str) and name.isprintable() and "`" not in name,
-        "severity": _is_span(held.get("severity")),
-        "severity_depth": held.get("severity_depth") is None or _is_span(held["severity_depth"]),
-        "seed": type(held.get("seed")) is int,
+        "severity": _is_span(entries.get("severity")),
+        "severity_depth": entries.get("severity_depth") is None
+        or _is_span(entries["severity_depth"]),
+        "seed": type(entries.get("seed")) is int,
         "schedule": isinstance(schedule, dict),
         "stages": isinstance(stages, dict)
         and all(isinstance(stage or {}, dict) for stage in stages.values()),
     }
-    for key in [key for key, fine in good.items() if not fine]:
+    for key in [key for key, ok in valid.items() if not ok]:
         raise ValueError(
-            f"The run's config.yaml says {key}={short(held.get(key))}, which no training writes: "
-            "export the run's folder as `make train` left it."
+            f"The run's config.yaml has {key}={short(entries.get(key))}, which no training writes. "
+            "Export the folder as `make train` wrote it."
         )
 
 
 def _is_span(severity: Any) -> bool:
-    """Whether it is a number, or a list of some."""
-    found = severity if isinstance(severity, list) and severity else [severity]
-    return all(type(number) in (int, float) for number in found)
+    """Return whether ``severity`` is a number or a non-empty list of numbers."""
+    numbers = severity if isinstance(severity, list) and severity else [severity]
+    return all(type(number) in (int, float) for number in numbers)
 
 
 def _precision(stages: dict[str, Any]) -> str:
-    """In which precision the stages were trained, "fp32" or "bf16", both if they differ."""
+    """Return the precision of the stages: "fp32", "bf16", or both if they differ."""
     settings = [(stage or {}).get("trainer") or {} for stage in stages.values()]
     return " and ".join(sorted({s["precision"] for s in settings if s.get("precision")}))
 
@@ -286,8 +301,8 @@ def _precision(stages: dict[str, Any]) -> str:
 def _teachers(node: Any) -> list[str]:
     if not isinstance(node, dict):
         return []
-    found = [value for key, value in node.items() if key == "teacher" and isinstance(value, str)]
-    return found + [path for value in node.values() for path in _teachers(value)]
+    paths = [value for key, value in node.items() if key == "teacher" and isinstance(value, str)]
+    return paths + [path for value in node.values() for path in _teachers(value)]
 
 
 def _version(package: str) -> str | None:
@@ -301,14 +316,14 @@ def _version(package: str) -> str | None:
 
 
 def front_matter(card: dict[str, Any]) -> str:
-    """Return what stands above a README for Hugging Face: YAML between two lines of ``---``.
+    """Return the front matter of a README for Hugging Face: YAML between two lines of ``---``.
 
     ``hf upload`` of a folder makes a model page from it, with library, licence, tags and metrics
-    (docs/deployment.md); ``model-index`` is left out where there are no metrics. The form:
+    (docs/deployment.md). Without metrics there is no ``model-index``. The format is described in
     https://github.com/huggingface/hub-docs/blob/main/modelcard.md
     """
     kind = "adapters" if card["adapters_only"] else "full-weights"
-    held: dict[str, Any] = {
+    fields: dict[str, Any] = {
         "library_name": LIBRARY,
         "license": str(card["license"]).lower(),
         "pipeline_tag": TASK,
@@ -316,14 +331,13 @@ def front_matter(card: dict[str, Any]) -> str:
     }
     results = [_result(entry) for entry in card["metrics"]]
     if results:
-        held["model-index"] = [{"name": card["name"], "results": results}]
-    text = yaml.dump(held, Dumper=_Quoting, sort_keys=False, allow_unicode=True)
+        fields["model-index"] = [{"name": card["name"], "results": results}]
+    text = yaml.dump(fields, Dumper=_Quoting, sort_keys=False, allow_unicode=True)
     return f"---\n{text}---\n"
 
 
 class _Quoting(yaml.SafeDumper):
-    """Quotes texts that YAML 1.2, which the hub reads, takes for numbers and PyYAML's 1.1 does
-    not: 1e3, 08."""
+    """Quote texts that are numbers in YAML 1.2 (the hub) but not in YAML 1.1 (PyYAML): 1e3, 08."""
 
 
 def _represent(dumper: yaml.SafeDumper, text: str) -> yaml.ScalarNode:
@@ -365,12 +379,12 @@ def _result(entry: dict[str, Any]) -> dict[str, Any]:
 
 def _metric(title: str, value: float, low: float | None, high: float | None) -> dict[str, Any]:
     kind = title.partition(" (")[0].partition(",")[0]
-    found: dict[str, Any] = {"type": _tag(kind), "name": title, "value": value}
+    metric: dict[str, Any] = {"type": _tag(kind), "name": title, "value": value}
     if low is not None and high is not None:
-        found["args"] = {"interval": [low, high], "level": LEVEL, "resamples": RESAMPLES}
-    return found
+        metric["args"] = {"interval": [low, high], "level": LEVEL, "resamples": RESAMPLES}
+    return metric
 
 
 def _tag(text: str) -> str:
-    """Return ``text`` as the hub writes tags: small letters, digits and dashes."""
+    """Return ``text`` as a tag of the hub: lower-case letters, digits and dashes."""
     return re.sub(r"[^a-z0-9]+", "-", text.lower()).strip("-")

@@ -1,8 +1,9 @@
-"""Write a run's agent as a folder to ship (``export_command.py`` is its command line).
+"""Export the agent of a run as a folder to ship (``export_command.py`` is the command line).
 
-``checkpoints/hardened/<name>`` gets the weights (or adapters and a reference to their base),
-``config.yaml``, ``program.pt2``, a card and a README. The folder is made aside, reloaded in a fresh
-process and renamed into place only if the outputs on a fixed probe are the same.
+``checkpoints/hardened/<name>`` contains the weights (or adapters and a reference to their base),
+``config.yaml``, ``program.pt2``, a card and a README. The folder is written to a temporary place
+and reloaded in a new process. It is renamed to its final place only if the outputs on a fixed probe
+are the same.
 """
 
 from __future__ import annotations
@@ -40,18 +41,23 @@ from mitigate.worlds.episodes import Episode
 from mitigate.worlds.world import World
 
 HARDENED = Path("checkpoints/hardened")
-# largest absolute difference of an output on the probe (ours; logits are of the order of 1 to 10)
-RELOADED = 1e-5  # the folder in a fresh process against the agent in this one
-EXPORTED = 1e-3  # program.pt2, and the ONNX files, against the agent
-ROUNDED = 0.1  # the float16 weights against the run's float32 ones
-WALKS = 2  # episodes that a reloaded agent of another class must walk alike (heuristic)
+# Largest absolute differences of outputs on the probe (heuristic; logits are about 1 to 10).
+RELOADED = 1e-5  # the folder in a new process, compared with the agent in this process
+EXPORTED = 1e-3  # program.pt2 and the ONNX files, compared with the agent
+ROUNDED = 0.1  # the float16 weights, compared with the float32 weights of the run
+WALKS = 2  # episodes in which a reloaded agent of another class is compared (heuristic)
 _RUN = "import sys; from mitigate.shipping import export; export.{}(*sys.argv[1:])"
 _TRAIN = "Run `make train` to the end, then name its folder (runs/...)."
 
 
 class Walks:
-    """What an exported folder is checked by: ``episodes`` walked clean, in a fresh process, by the
-    agent that ``make_agent`` makes and the folder fills, in what ``make_world`` makes."""
+    """Check of an exported folder: clean episodes in a new process.
+
+    Args:
+        make_agent: makes an agent, which loads the folder.
+        make_world: makes the world.
+        episodes: episodes to run; the first ``WALKS`` are used.
+    """
 
     def __init__(
         self,
@@ -59,14 +65,15 @@ class Walks:
         make_world: Callable[[], World],
         episodes: Sequence[Episode],
     ) -> None:
-        self.make_agent, self.make_world = make_agent, make_world
+        self.make_agent = make_agent
+        self.make_world = make_world
         self.episodes = list(episodes)[:WALKS]
 
     def measures(self, agent: Any) -> list[dict[str, Any]]:
-        """How ``agent`` walks, the hash of its weights first."""
+        """Return the hash of the weights of ``agent``, and the measures of each episode."""
         world = self.make_world()
-        walked = [run_episode(agent.eval(), world, e, CLEAN, 0) for e in self.episodes]
-        return [{"weights": checkpoint.weights_sha(agent)}, *walked]
+        results = [run_episode(agent.eval(), world, e, CLEAN, 0) for e in self.episodes]
+        return [{"weights": checkpoint.weights_sha(agent)}, *results]
 
 
 def export(
@@ -82,21 +89,30 @@ def export(
     """Write the agent of the finished run folder ``run`` to ``out/name`` and return that folder.
 
     Args:
-        rows: row files or folders with the agent's evaluation; the run folder's own are found.
-        overwrite: replace ``out/name``, if that is a hardened folder. onnx: write the two networks
-            as ONNX files too. walks: for an agent of another class than ours, how to make it and
-            what to check it by; its folder holds no programs.
-    Raises FileNotFoundError if ``run`` holds no finished run, ValueError for a run of what ships as
-    it is, if ``out/name`` exists (with ``overwrite``: as anything else), if ``rows`` say nothing
-    about this agent, or if the written folder does not reload to the same outputs; then nothing is
-    written.
+        run: folder of a finished run.
+        name: name of the new folder.
+        out: folder that contains it.
+        rows: row files or folders with the agent's evaluation; those of the run are found.
+        overwrite: replace ``out/name`` if that is a hardened folder.
+        onnx: also write the two networks as ONNX files.
+        walks: check of an agent of another class; its folder has no programs.
+
+    Raises:
+        FileNotFoundError: ``run`` holds no finished run.
+        ValueError: The run cannot be exported, ``out/name`` exists (with ``overwrite``: and is not
+            a hardened folder), ``rows`` has no rows of this agent, or the new folder does not
+            reload to the same outputs. Nothing is written.
     """
     if not re.fullmatch(r"\w[\w.+-]*", name):
-        raise ValueError(f"{name!r} is no name for a folder: use letters, digits and . _ + -")
+        raise ValueError(
+            f"The name of the folder must consist of letters, digits and . _ + -, got {name!r}."
+        )
     target = out / name
     _check_free(target, overwrite)
     if onnx and walks is not None:
-        raise ValueError("--onnx is for the topological agent: folders of others hold no programs.")
+        raise ValueError(
+            "--onnx works only for the topological agent: folders of other agents have no programs."
+        )
     cfg, agent = finished(run, walks)
     watched = output_folder(out, name)
     with watched, tempfile.TemporaryDirectory(prefix=f".{name}.", dir=out) as aside:
@@ -110,8 +126,10 @@ def export(
 def finished(run: Path, walks: Walks | None = None) -> tuple[dict[str, Any], Any]:
     """Return the config and the agent of the finished run in the folder ``run``.
 
-    Raises FileNotFoundError if there is none, ValueError for a run of what ships as it is, of a
-    kind of agent that needs ``walks``, and for weights that do not fit float16.
+    Raises:
+        FileNotFoundError: There is no finished run.
+        ValueError: The run cannot be exported, its kind of agent needs ``walks``, or its weights do
+            not fit float16.
     """
     weights, config = run / "agent" / checkpoint.WEIGHTS, run / loading.CONFIG
     loading.refuse_what_ships_as_it_is(run)
@@ -124,8 +142,8 @@ def finished(run: Path, walks: Walks | None = None) -> tuple[dict[str, Any], Any
     kind = loading.kind_of(config)
     if walks is None and kind != loading.TARGET:
         raise ValueError(
-            f"{run} holds a {kind.rpartition('.')[2]}, of which a folder without programs is "
-            "written: give walks to check it by (on the command line: "
+            f"{run} holds a {kind.rpartition('.')[2]}, which is exported without programs and is "
+            "checked by running episodes. Pass walks=Walks(...) (on the command line: "
             f"agent={settings.named(kind)})."
         )
     agent = loading.build_from(config) if walks is None else walks.make_agent()
@@ -133,7 +151,7 @@ def finished(run: Path, walks: Walks | None = None) -> tuple[dict[str, Any], Any
     if walks is None and not all(
         torch.isfinite(value.half()).all() for value in agent.state_dict().values()
     ):
-        raise ValueError(f"{weights} holds numbers that are not finite in float16.")
+        raise ValueError(f"{weights} must be finite in float16, but some numbers are not.")
     return settings.read(config), agent.eval()
 
 
@@ -141,15 +159,15 @@ def add_programs(folder: Path) -> Path:
     """Write ``program.pt2`` of the hardened ``folder`` again and list it in the card.
 
     Returns:
-        The file, whose outputs on the probe are those of the agent.
+        The file. Its outputs on the probe were compared with those of the agent.
 
     Raises:
-        FileNotFoundError: if ``folder`` is not a whole hardened folder.
-        ValueError: also for an agent without programs, and for other outputs.
+        FileNotFoundError: ``folder`` is not a complete hardened folder.
+        ValueError: The folder is damaged, its agent has no programs, or the outputs differ.
     """
     card = loading.check_hardened(folder)
     if not card.get("program", True):
-        raise ValueError(f"{folder} holds an agent of a class for which there are no programs.")
+        raise ValueError(f"{folder} holds an agent of a class without programs.")
     agent = loading.load_hardened(folder)
     size = json.loads((folder / loading.INPUTS).read_text(encoding="utf-8"))["size"]
     exported = programs.export_programs(agent, size)
@@ -172,12 +190,12 @@ def add_programs(folder: Path) -> Path:
 
 
 def _check_free(target: Path, overwrite: bool) -> None:
-    """Raise ValueError unless ``target`` is free, or a folder of ours that may be replaced."""
+    """Raise ValueError unless ``target`` is free, or a hardened folder that may be replaced."""
     if not os.path.lexists(target):
         return
     if not overwrite:
         raise ValueError(
-            f"{target} exists already: choose another name, or replace it with --overwrite."
+            f"{target} already exists. Choose another name, or replace it with --overwrite."
         )
     try:
         if target.is_symlink():
@@ -185,14 +203,20 @@ def _check_free(target: Path, overwrite: bool) -> None:
         loading.read_card(target)
     except (ValueError, OSError) as error:
         raise ValueError(
-            f"{target} is not replaced: --overwrite replaces folders that `mitigate export` wrote, "
-            f"and nothing else ({error}). Choose another name, or move it away yourself."
+            f"{target} was not replaced: --overwrite replaces only folders that `mitigate export` "
+            f"wrote ({error}). Choose another name, or move it away."
         ) from error
 
 
 def check_outputs(folder: str, expected: str) -> None:
-    """Raise ValueError unless the agent and the program in ``folder`` give the outputs in the
-    safetensors file ``expected`` on the probe. Run by ``export`` in a fresh process."""
+    """Raise ValueError unless agent and program in ``folder`` give the ``expected`` outputs.
+
+    ``export`` runs this in a new process.
+
+    Args:
+        folder: the hardened folder.
+        expected: safetensors file of the outputs on the probe.
+    """
     wanted = _open(load_file(expected))
     agent = loading.load_hardened(folder)
     size = json.loads((Path(folder) / loading.INPUTS).read_text(encoding="utf-8"))["size"]
@@ -219,11 +243,12 @@ def _write(
     walks: Walks | None,
 ) -> None:
     """Fill ``draft`` and check it."""
-    config = yaml.safe_dump({**cfg, "folder": None}, sort_keys=False)  # where it ran is no matter
+    # The path of the run does not matter.
+    config = yaml.safe_dump({**cfg, "folder": None}, sort_keys=False)
     config = config.replace(f"{Path.cwd()}/", "")
     write_text(draft / loading.CONFIG, config)
     adapters_only = _only_adapters_trained(cfg, agent)
-    known = facts(cfg, agent)  # before the slow part: what is missing shows at once
+    known = facts(cfg, agent)  # before the slow part, to find missing files at once
     shipped = agent
     if adapters_only:
         adapters.write_adapters(agent, draft)
@@ -243,7 +268,7 @@ def _write(
         "format": loading.FORMAT,
         "name": name,
         **known,
-        "agent": checkpoint.weights_sha(shipped),  # of the weights alone, as run_agent
+        "agent": checkpoint.weights_sha(shipped),  # hash of the weights, as run_agent
         "run_agent": checkpoint.weights_sha(agent),
         "rows_agent": rows_agent(found, weights),
         "adapters_only": adapters_only,
@@ -253,9 +278,9 @@ def _write(
     write_text(draft / loading.README, readme(card))
     _write_json(draft / loading.CARD, card)
     for file in draft.iterdir():
-        file.chmod(0o644)  # safetensors are written for their owner alone
+        file.chmod(0o644)  # safetensors writes files with mode 600
     folders.seal(draft, "hardened")
-    print("reloading in a fresh process", flush=True)
+    print("reloading in a new process", flush=True)
     if walks is None:
         _reload(draft, wanted)
     else:
@@ -265,8 +290,11 @@ def _write(
 def _programs(
     draft: Path, agent: TopologicalAgent, shipped: TopologicalAgent, onnx: bool
 ) -> tuple[dict[str, Any], dict[str, Tensor]]:
-    """Write the exported programs of ``shipped``; what the card says of them, and the outputs on
-    the probe."""
+    """Write the exported programs of ``shipped``.
+
+    Returns:
+        Entries of the card about them, and the outputs of ``shipped`` on the probe.
+    """
     size = agent.rgb_encoder.size
     given = programs.probe(agent, size)
     print("exporting the programs", flush=True)
@@ -295,7 +323,7 @@ def _programs(
 
 
 def _only_adapters_trained(cfg: dict[str, Any], agent: Any) -> bool:
-    """Whether all but the adapters of ``agent`` is, bit for bit, what the run started from."""
+    """Return whether only the adapters of ``agent`` differ from the first weights of the run."""
     init = find(cfg.get("init") or "")
     if not adapters.adapted(agent) or not cfg.get("init") or loading.adapters_only(init):
         return False
@@ -303,7 +331,7 @@ def _only_adapters_trained(cfg: dict[str, Any], agent: Any) -> bool:
     adapters.remove_adapters(base)
     try:
         checkpoint.load_weights(base, init)
-    except ValueError:  # a base with adapters of its own
+    except ValueError:  # a base that has adapters
         return False
     return adapters.backbone_sha(base) == adapters.backbone_sha(agent)
 
@@ -326,9 +354,11 @@ def _rows(run: Path, rows: list[Path | str], agents: set[str]) -> list[Row]:
 
 
 def _of_one_agent(own: list[Row], given: list[Row], weights: set[str]) -> Iterator[Row]:
-    """The rows of ``weights``, of one agent: with a sensor blanked, or behind a safeguard, the same
-    weights are another. Where there are several, the run's own rows say which it is; raises
-    ValueError if they do not."""
+    """Yield the rows of ``weights`` that belong to a single agent.
+
+    The same weights with a blanked sensor or a guard are another agent. If there are several, the
+    rows of the run decide. Raises ValueError if they do not.
+    """
     rows = [row for row in result_rows.upsert(own, given) if weights_of(row) in weights]
     for sha in weights:
         mine = [row for row in rows if weights_of(row) == sha]
@@ -337,14 +367,14 @@ def _of_one_agent(own: list[Row], given: list[Row], weights: set[str]) -> Iterat
         if len(known) > 1:
             names = sorted({f"{row['name']} ({row['agent']})" for row in mine})
             raise ValueError(
-                f"The rows given are of several agents with these weights: {', '.join(names)}. "
-                "Name the files of one (--rows ...)."
+                f"The rows belong to several agents with these weights: {', '.join(names)}. Name "
+                "the files of one of them (--rows ...)."
             )
         yield from (row for row in mine if row["agent"] in known)
 
 
 def _reload(draft: Path, wanted: dict[str, Tensor]) -> None:
-    """Run :func:`check_outputs` in a fresh process; ValueError with its last words if it fails."""
+    """Run :func:`check_outputs` in a new process; raise ValueError if it fails."""
     with tempfile.TemporaryDirectory() as folder:
         expected = Path(folder) / "expected.safetensors"
         save_file(_open(wanted), expected)
@@ -352,18 +382,21 @@ def _reload(draft: Path, wanted: dict[str, Tensor]) -> None:
 
 
 def _reload_walks(draft: Path, agent: nn.Module, walks: Walks) -> None:
-    """Raise ValueError unless a fresh process reloads ``draft`` to an agent that walks as ``agent``
-    does."""
+    """Run :func:`check_walks` in a new process; raise ValueError if it fails."""
     with tempfile.TemporaryDirectory() as folder:
         given, expected = Path(folder, "walks"), Path(folder, "expected.json")
-        given.write_bytes(pickle.dumps((sys.path, walks)))  # ours, for the process started here
+        # Written here for the process that is started here.
+        given.write_bytes(pickle.dumps((sys.path, walks)))
         expected.write_text(json.dumps(walks.measures(agent)), encoding="utf-8")
         _run_apart("check_walks", "agent", draft, given, expected)
 
 
 def _run_apart(check: str, what: str, *paths: Path) -> None:
-    """Call the function ``check`` of this module in a fresh process; ValueError with its last words
-    if it fails: the folder does not reload to the same ``what``."""
+    """Call the function ``check`` of this module in a new process.
+
+    If it fails, raise ValueError with the last line of its output: the folder does not reload to
+    the same ``what``.
+    """
     root = str(Path(__file__).resolve().parents[2])
     done = subprocess.run(
         [sys.executable, "-c", _RUN.format(check), *map(str, paths)],
@@ -373,19 +406,23 @@ def _run_apart(check: str, what: str, *paths: Path) -> None:
     )
     if done.returncode:
         last = (done.stderr.strip().splitlines() or ["no message"])[-1]
-        raise ValueError(f"The folder does not reload to the same {what} ({last}); nothing written")
+        raise ValueError(
+            f"The folder does not reload to the same {what} ({last}). Nothing was written."
+        )
 
 
 def check_walks(draft: str, given: str, expected: str) -> None:
-    """Raise ValueError if the agent in ``draft`` walks otherwise than ``expected`` says. Run by
-    :func:`_reload_walks` in a fresh process."""
+    """Raise ValueError if episodes of the agent in ``draft`` differ from those in ``expected``.
+
+    :func:`_reload_walks` runs this in a new process.
+    """
     path, walks = pickle.loads(Path(given).read_bytes())
     sys.path[:] = path
     agent = loading.load_hardened(draft, agent=walks.make_agent())
     found = json.loads(json.dumps(walks.measures(agent)))
     wanted = json.loads(Path(expected).read_text(encoding="utf-8"))
     if found != wanted:
-        raise ValueError(f"it walks {found}, and walked {wanted}")
+        raise ValueError(f"its episodes gave {found}, expected {wanted}")
 
 
 def _open(tensors: dict[str, Tensor]) -> dict[str, Tensor]:

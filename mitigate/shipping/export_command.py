@@ -1,8 +1,9 @@
-"""Write a run's agent as a folder to ship: ``mitigate export runs/a my_agent``.
+"""Export the agent of a run as a folder to ship: ``mitigate export runs/a my_agent``.
 
-``checkpoints/hardened/<name>`` gets the weights (or adapters and a reference to their base),
-``config.yaml``, ``program.pt2``, a card and a README. The folder is made aside, reloaded in a fresh
-process and renamed into place only if the outputs on a fixed probe are the same.
+``checkpoints/hardened/<name>`` contains the weights (or adapters and a reference to their base),
+``config.yaml``, ``program.pt2``, a card and a README. The folder is written to a temporary place
+and reloaded in a new process. It is renamed to its final place only if the outputs on a fixed probe
+are the same.
 
 ``mitigate export checkpoints/hardened/harden --programs`` writes a missing ``program.pt2`` of such
 a folder.
@@ -21,12 +22,12 @@ from mitigate.core.options import paths_and_overrides
 from mitigate.evaluation import config as options
 from mitigate.evaluation.episode_lists import episodes
 
-if TYPE_CHECKING:  # nothing slow is imported before main() has read the command line
+if TYPE_CHECKING:  # main() reads the command line before slow imports
     from mitigate.shipping.export import Walks
 
 
 def main() -> None:
-    """Read the command line."""
+    """Run from the command line."""
     parser = argparse.ArgumentParser(
         prog="mitigate export",
         description=__doc__,
@@ -37,47 +38,50 @@ def main() -> None:
     parser.add_argument(
         "overrides",
         nargs="*",
-        default=[],  # or argparse counts them among those that are required
+        default=[],  # else argparse requires at least one
         metavar="key=value",
-        help="of an agent of your own: agent=policy env=corridor, as for mitigate evaluate",
+        help="parsed of your own agent: agent=policy env=corridor, as for mitigate evaluate",
     )
-    parser.add_argument("--config-dir", type=Path, help="where such configs are")
+    parser.add_argument("--config-dir", type=Path, help="folder of your own configs")
     parser.add_argument(
         "--out",
         type=Path,
         default=argparse.SUPPRESS,
-        help="folder to write it in (default checkpoints/hardened)",
+        help="folder that contains the new folder (default checkpoints/hardened)",
     )
-    parser.add_argument("--rows", nargs="+", default=[], help="row files of its evaluation")
+    parser.add_argument(
+        "--rows", nargs="+", default=[], help="row files of the evaluation of this agent"
+    )
     parser.add_argument("--overwrite", action="store_true", help="replace a folder of that name")
-    parser.add_argument("--onnx", action="store_true", help="ONNX files too (extra `onnx`)")
+    parser.add_argument("--onnx", action="store_true", help="also write ONNX files (extra `onnx`)")
     parser.add_argument(
         "--programs", action="store_true", help="write program.pt2 of the hardened folder RUN"
     )
-    given = vars(parser.parse_intermixed_args())
-    required = ("run",) if given["programs"] else ("run", "name")
-    if missing := [name for name in required if given[name] is None]:
+    parsed = vars(parser.parse_intermixed_args())
+    required = ("run",) if parsed["programs"] else ("run", "name")
+    if missing := [name for name in required if parsed[name] is None]:
         parser.error(f"the following arguments are required: {', '.join(missing)}")
-    if given["programs"] and given["name"] is not None:
-        parser.error("--programs takes one hardened folder and no name.")
+    if parsed["programs"] and parsed["name"] is not None:
+        parser.error("--programs takes one hardened folder, and no name.")
     from mitigate.agents import loading
     from mitigate.shipping.export import add_programs, export
 
-    if given.pop("programs"):
+    if parsed.pop("programs"):
         try:
-            print(f"wrote {add_programs(given['run'])}")
+            print(f"wrote {add_programs(parsed['run'])}")
         except (ValueError, OSError) as error:
             sys.exit(f"error: {conf.said(error)}")
         return
-    overrides, configs = given.pop("overrides"), given.pop("config_dir")
-    given["rows"], more = paths_and_overrides(given["rows"])
+    overrides = parsed.pop("overrides")
+    configs = parsed.pop("config_dir")
+    parsed["rows"], more = paths_and_overrides(parsed["rows"])
     try:
-        chosen = [*overrides, *more]
-        if not any(option.lstrip("+").startswith("agent=") for option in chosen):
-            chosen += _own_kind(given["run"])
-        if any(option.lstrip("+").startswith("agent=") for option in chosen):
-            given["walks"] = _walks_of(given["run"], chosen, configs)
-        folder = export(given.pop("run"), given.pop("name"), **given)
+        words = [*overrides, *more]
+        if not any(option.lstrip("+").startswith("agent=") for option in words):
+            words += _own_kind(parsed["run"])
+        if any(option.lstrip("+").startswith("agent=") for option in words):
+            parsed["walks"] = _walks_of(parsed["run"], words, configs)
+        folder = export(parsed.pop("run"), parsed.pop("name"), **parsed)
     except (ValueError, OSError) as error:
         sys.exit(f"error: {conf.said(error)}")
     card = loading.read_card(folder)
@@ -87,7 +91,7 @@ def main() -> None:
 
 
 def _own_kind(run: Path) -> list[str]:
-    """The option that names the agent of ``run`` where it is one of ours that has no programs."""
+    """Return the option for the agent of ``run``, if it is shipped without programs."""
     from mitigate.agents import loading
 
     config = run / loading.CONFIG
@@ -97,8 +101,10 @@ def _own_kind(run: Path) -> list[str]:
 
 
 def _walks_of(run: Path, overrides: list[str], configs: Path | None) -> Walks:
-    """How to make the agent and the world that ``overrides`` name; the agent's settings are those
-    beside the run's weights, read as data."""
+    """Return how to make the agent and the world that ``overrides`` name.
+
+    The settings of the agent are read as data from the folder of the run.
+    """
     from mitigate.agents import building
     from mitigate.shipping.export import WALKS, Walks
 

@@ -19,7 +19,10 @@ from typing import Any
 import torch
 from torch import Tensor, nn
 from torch.export import Dim, ExportedProgram
-from torch.export.pt2_archive._package import load_pt2, package_pt2  # several programs in one file
+from torch.export.pt2_archive._package import (  # stores several programs in one file
+    load_pt2,
+    package_pt2,
+)
 from torch.func import functional_call
 
 from mitigate.agents.text import MAX_WORDS
@@ -59,11 +62,11 @@ MEANINGS = {
     "degrees right, distance d is 0.25 (d + 1) m",
     "logits": "float32 [B, 1 + N + G]: scores, -inf where not allowed",
 }
-TIMED = 20  # calls of each network that a latency is the median of
+TIMED = 20  # calls of each network for a latency
 
 
 class Perceive(nn.Module):
-    """``perceive`` of :data:`INPUTS`, eager."""
+    """The eager network ``perceive`` of :data:`INPUTS`."""
 
     def __init__(self, agent: TopologicalAgent) -> None:
         super().__init__()
@@ -75,7 +78,7 @@ class Perceive(nn.Module):
 
 
 class Decide(nn.Module):
-    """``decide`` of :data:`INPUTS`, eager."""
+    """The eager network ``decide`` of :data:`INPUTS`."""
 
     def __init__(self, agent: TopologicalAgent) -> None:
         super().__init__()
@@ -98,7 +101,7 @@ class Decide(nn.Module):
 
 
 class Stored(nn.Module):
-    """``network`` with the tensors that it uses kept as float16 where that loses nothing."""
+    """``network`` with the tensors that it uses, stored as float16 if that is exact."""
 
     def __init__(self, network: nn.Module, inputs: tuple[Tensor, ...]) -> None:
         super().__init__()
@@ -122,20 +125,20 @@ def networks(agent: TopologicalAgent) -> dict[str, nn.Module]:
 def export_programs(agent: TopologicalAgent, size: int) -> dict[str, ExportedProgram]:
     """Return both networks as exported programs for views of ``size`` pixels.
 
-    P, E, L, B, N and G of :data:`INPUTS` are free from 1 on (L up to ``MAX_WORDS``).
+    The sizes P, E, L, B, N and G of :data:`INPUTS` are free, at least 1 (L up to ``MAX_WORDS``).
     """
-    made = {}
-    given = probe(agent, size)
+    exported = {}
+    inputs_by_name = probe(agent, size)
     for name, network in networks(agent).items():
-        inputs = tuple(given[key] for key in INPUTS[name])
+        inputs = tuple(inputs_by_name[key] for key in INPUTS[name])
         shapes = (free_dimensions(name),)  # one entry: Stored takes all inputs as *inputs
         stored = Stored(network, inputs).eval()
-        made[name] = torch.export.export(stored, inputs, dynamic_shapes=shapes)
-        made[name].example_inputs = None  # frames; nothing needs them
-        _drop_type_checks(made[name])
-        for node in made[name].graph.nodes:  # where lines of code lay on this machine
+        exported[name] = torch.export.export(stored, inputs, dynamic_shapes=shapes)
+        exported[name].example_inputs = None  # not needed
+        _drop_type_checks(exported[name])
+        for node in exported[name].graph.nodes:  # paths of this machine
             node.meta.pop("stack_trace", None)
-    return made
+    return exported
 
 
 def free_dimensions(name: str) -> tuple[dict[int, Any], ...]:
@@ -144,22 +147,28 @@ def free_dimensions(name: str) -> tuple[dict[int, Any], ...]:
 
 
 def save_programs(programs: dict[str, ExportedProgram], file: Path) -> None:
-    """Write both programs to one ``.pt2`` file. Raises OSError if that cannot be written: torch,
-    which would end the process then, writes to memory."""
+    """Write both programs to one ``.pt2`` file; raise OSError if that fails.
+
+    torch writes to memory first, because it would end the process if a write to disk failed.
+    """
     with io.BytesIO() as packed:
         package_pt2(packed, exported_programs=programs)
         write_bytes(file, packed.getvalue())
 
 
 def load_programs(file: Path) -> dict[str, Callable[..., tuple[Tensor, ...]]]:
-    """Return the programs of :func:`save_programs` by name. Only for files you trust: torch reads
-    parts of such a file with pickle."""
+    """Return the programs of :func:`save_programs` by name.
+
+    Use it only for files that you trust: torch reads parts of such a file with pickle.
+    """
     return {name: p.module() for name, p in load_pt2(str(file)).exported_programs.items()}
 
 
 def probe(agent: TopologicalAgent, size: int, seed: int = 0) -> dict[str, Tensor]:
-    """Return fixed inputs of both networks, every entry of :data:`INPUTS`: noise as frames, three
-    panoramas, two decisions, each with padding."""
+    """Return fixed inputs of both networks, with every entry of :data:`INPUTS`.
+
+    They have noise as frames, three panoramas, and two decisions with padding.
+    """
     draw = torch_generator(seed, "export probe", size)
 
     def integers(low: int, high: int, *shape: int) -> Tensor:
@@ -186,21 +195,25 @@ def probe(agent: TopologicalAgent, size: int, seed: int = 0) -> dict[str, Tensor
 
 
 @torch.no_grad()
-def outputs(programs: dict[str, Any], given: dict[str, Tensor]) -> dict[str, Tensor]:
-    """Return what both networks, eager or exported, make of a probe, by the outputs' names.
+def outputs(programs: dict[str, Any], probe_inputs: dict[str, Tensor]) -> dict[str, Tensor]:
+    """Return the outputs of both networks, eager or exported, on a probe, by name.
 
-    ``decide`` gets the view tokens that ``perceive`` found, not the probe's.
+    ``decide`` gets the view tokens of ``perceive``, not those of the probe.
     """
-    found: dict[str, Tensor] = {}
+    results: dict[str, Tensor] = {}
     for name in (PERCEIVE, DECIDE):
-        inputs = {**given, **found}
-        found |= zip(OUTPUTS[name], programs[name](*(inputs[k] for k in INPUTS[name])), strict=True)
-    return found
+        inputs = {**probe_inputs, **results}
+        results |= zip(
+            OUTPUTS[name], programs[name](*(inputs[k] for k in INPUTS[name])), strict=True
+        )
+    return results
 
 
 def difference(one: dict[str, Tensor], two: dict[str, Tensor]) -> float:
-    """Return the largest absolute difference of any output; infinite if an -inf is not in both, or
-    if a NaN is in either."""
+    """Return the largest absolute difference of any output.
+
+    It is infinite if an -inf is not in both, or if either has a NaN.
+    """
     gaps = [0.0]
     for name, a in one.items():
         b = two[name]
@@ -213,32 +226,40 @@ def difference(one: dict[str, Tensor], two: dict[str, Tensor]) -> float:
 
 @torch.no_grad()
 def latency(kinds: dict[str, dict[str, Any]], agent: TopologicalAgent, size: int) -> dict[str, Any]:
-    """Return milliseconds a call of each network of each kind, taking turns in one run.
+    """Measure the milliseconds per call of each network of each kind, interleaved in one run.
 
-    Args: kinds: such as ``{"eager": networks(agent), "exported": ...}``. One panorama, then one
-    decision among three nodes and four ghosts. Returns, by kind and network, the fastest of
-    ``TIMED`` calls ("wall") and the median processor time of all threads ("cpu"), which other
-    programs disturb less.
+    A call has one panorama, and then one decision among three nodes and four ghosts.
+
+    Args:
+        kinds: networks by kind, such as ``{"eager": networks(agent), "exported": ...}``.
+        agent: the agent, for the probe.
+        size: width of the views in pixels.
+
+    Returns:
+        By kind and network, the fastest of ``TIMED`` calls ("wall") and the median processor time
+        of all threads ("cpu"), which other programs disturb less.
     """
-    given = probe(agent, size)
-    one = {name: tensor[:1] for name, tensor in given.items()} | {"views": given["views"]}
+    inputs_by_name = probe(agent, size)
+    single = {name: tensor[:1] for name, tensor in inputs_by_name.items()} | {
+        "views": inputs_by_name["views"]
+    }
     times: dict[tuple[str, str], list[tuple[float, float]]] = {}
-    for _ in range(3 + TIMED):  # three to warm up
+    for _ in range(3 + TIMED):  # three calls warm up
         for kind, programs in kinds.items():
             for name in (PERCEIVE, DECIDE):
-                inputs = [one[key] for key in INPUTS[name]]
+                inputs = [single[key] for key in INPUTS[name]]
                 wall, cpu = time.perf_counter(), time.process_time()
                 programs[name](*inputs)
-                taken = (time.perf_counter() - wall, time.process_time() - cpu)
-                times.setdefault((kind, name), []).append(taken)
-    found: dict[str, Any] = {"threads": torch.get_num_threads(), "calls": TIMED}
+                spent = (time.perf_counter() - wall, time.process_time() - cpu)
+                times.setdefault((kind, name), []).append(spent)
+    report: dict[str, Any] = {"threads": torch.get_num_threads(), "calls": TIMED}
     for (kind, name), seconds in times.items():
         walls, cpus = zip(*seconds[3:], strict=True)
-        found.setdefault(kind, {})[name] = {
+        report.setdefault(kind, {})[name] = {
             "wall": round(1e3 * min(walls), 2),
             "cpu": round(1e3 * statistics.median(cpus), 2),
         }
-    return found
+    return report
 
 
 def description(agent: TopologicalAgent, size: int) -> dict[str, Any]:
@@ -261,7 +282,7 @@ def description(agent: TopologicalAgent, size: int) -> dict[str, Any]:
 
 
 def _used(network: nn.Module, inputs: tuple[Tensor, ...]) -> list[str]:
-    """Names of the parameters that the outputs depend on, and of all buffers."""
+    """Return the names of parameters that the outputs depend on, and of all buffers."""
     parameters = dict(network.named_parameters())
     before = {name: p.requires_grad for name, p in parameters.items()}
     network.requires_grad_(True)
@@ -275,7 +296,7 @@ def _used(network: nn.Module, inputs: tuple[Tensor, ...]) -> list[str]:
 
 
 def _drop_type_checks(program: ExportedProgram) -> None:
-    """Take out the checks of the stored tensors' types: over a hundred calls that cannot fail."""
+    """Remove the type checks of stored tensors: over a hundred calls that cannot fail."""
     graph = program.graph_module.graph
     for node in list(graph.nodes):
         if node.target is torch.ops.aten._assert_tensor_metadata.default:
@@ -289,11 +310,11 @@ def _smallest(tensor: Tensor) -> Tensor:
 
 
 def _free(shape: str) -> dict[int, Any]:
-    """Dynamic dimensions of a shape in :data:`INPUTS`: those of one letter, and their sums."""
+    """Return the dynamic dimensions of a shape in :data:`INPUTS`: single letters and their sums."""
     free: dict[int, Any] = {}
     for place, name in enumerate(shape.strip("[]").split(", ")):
         if "+" in name:
-            free[place] = Dim.AUTO  # torch finds out that it is 1 + N + G
+            free[place] = Dim.AUTO  # torch derives that it is 1 + N + G
         elif name.isupper():
             free[place] = Dim(name, min=1, max=MAX_WORDS if name == "L" else None)
     return free
@@ -316,14 +337,14 @@ def save_onnx(agent: TopologicalAgent, size: int, folder: Path, most: float) -> 
         raise ValueError(
             f"ONNX files need the extra onnx ({error}): pip install -e '.[onnx]'."
         ) from error
-    given = probe(agent, size)
+    inputs = probe(agent, size)
     files = []
     for name, network in networks(agent).items():
         files.append(folder / f"{name}.onnx")
         keys = tuple(INPUTS[name])
         torch.onnx.export(
             network.eval(),
-            tuple(given[key] for key in keys),
+            tuple(inputs[key] for key in keys),
             files[-1],
             dynamo=True,
             dynamic_shapes=free_dimensions(name),
@@ -337,11 +358,14 @@ def save_onnx(agent: TopologicalAgent, size: int, folder: Path, most: float) -> 
 
 
 def check_onnx(folder: Path, agent: TopologicalAgent, size: int, most: float) -> None:
-    """Raise ValueError if an output of the ONNX files in ``folder`` on the probe, whole or with its
-    first decision alone, differs from the agent's by more than ``most``."""
+    """Raise ValueError if outputs of the ONNX files in ``folder`` differ from those of the agent.
+
+    The probe is used with all of its decisions and with only its first one. Differences up to
+    ``most`` are allowed.
+    """
     import onnxruntime
 
-    eager, given = networks(agent), probe(agent, size)
+    eager, probe_inputs = networks(agent), probe(agent, size)
     sessions = {
         name: _Session(
             onnxruntime.InferenceSession(str(folder / f"{name}.onnx")),
@@ -349,9 +373,9 @@ def check_onnx(folder: Path, agent: TopologicalAgent, size: int, most: float) ->
         )
         for name in eager
     }
-    first = {name: tensor[:1] for name, tensor in given.items()}
-    kept = ("rgb", "depth", "views")
-    for inputs in (given, {**first, **{name: given[name] for name in kept}}):
+    first = {name: tensor[:1] for name, tensor in probe_inputs.items()}
+    shared = ("rgb", "depth", "views")
+    for inputs in (probe_inputs, {**first, **{name: probe_inputs[name] for name in shared}}):
         gap = difference(outputs(eager, inputs), outputs(sessions, inputs))
         if not gap <= most:
             raise ValueError(
@@ -360,7 +384,7 @@ def check_onnx(folder: Path, agent: TopologicalAgent, size: int, most: float) ->
 
 
 class _Session:
-    """An onnxruntime session, called like the network that it was made from."""
+    """An onnxruntime session that is called like the original network."""
 
     def __init__(self, session: Any, keys: tuple[str, ...]) -> None:
         self._session, self._keys = session, keys

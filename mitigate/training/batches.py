@@ -1,7 +1,7 @@
-"""The batches of an objective, made of pieces by workers, some steps early, or in this process.
+"""Make the batches of an objective from pieces, in workers ahead of time or in this process.
 
-How many pieces a step has does not depend on the number of workers, and each is the same wherever
-it is made. So any number of workers, none included, gives the same batches.
+The number of pieces of a step does not depend on the number of workers, and a piece is the same
+wherever it is made. So any number of workers, including none, gives the same batches.
 """
 
 from __future__ import annotations
@@ -18,15 +18,15 @@ from mitigate.training.objective import Objective, do
 from mitigate.training.ranks import Ranks
 from mitigate.training.workers import Workers
 
-AHEAD = 4  # steps whose pieces are ordered before they are needed (ours)
+AHEAD = 4  # steps whose pieces are ordered before they are needed (heuristic)
 
 
 class Batches:
     """The batches of ``objective`` up to ``steps``, made on ``device`` in the precision ``kind``.
 
     Pieces that do not depend on the weights (``objective.ahead``) are ordered ``AHEAD`` steps
-    early. Those that do are ordered ``lag`` steps early, with weights that old. None is ordered
-    across a multiple of ``save_every``, so a run resumed from there makes the same ones.
+    early. Other pieces are ordered ``lag`` steps early, with the weights of that time. No piece is
+    ordered across a multiple of ``save_every``, so a resumed run makes the same pieces.
     """
 
     def __init__(
@@ -40,14 +40,19 @@ class Batches:
         lag: int = 0,
         save_every: int = 0,
     ) -> None:
-        self.objective, self.steps, self.kind, self.device = objective, steps, kind, device
+        self.objective = objective
+        self.steps = steps
+        self.kind = kind
+        self.device = device
         self.workers = workers if workers is not None and len(workers) else None
-        self.ranks, self.lag, self.save_every = ranks or Ranks(), lag, save_every
+        self.ranks = ranks or Ranks()
+        self.lag = lag
+        self.save_every = save_every
         self._ordered: deque[tuple[int, Callable[[], list[Any]]]] = deque()  # step, its pieces
         self._taken = False
 
     def batch(self, step: int) -> dict[str, Any]:
-        """Return the batch of ``step``; steps are asked for in order."""
+        """Return the batch of ``step``; call it for each step in order."""
         objective = self.objective
         early = not objective.here and (
             self.workers is not None or (self.lag and not objective.ahead)
@@ -65,34 +70,34 @@ class Batches:
             later = self._newest(step) + 1
             self._order(later, self._jobs(later))
         ordered, receive = self._ordered.popleft()
-        assert ordered == step, f"step {step} was asked for, {ordered} is next"
+        assert ordered == step, f"batch({step}) was called, but {ordered} is next"
         return objective.collate(step, receive())
 
     def _last(self, step: int) -> int:
-        """The last step whose pieces may be ordered when ``step`` is due."""
+        """Return the last step whose pieces may be ordered when ``step`` is due."""
         if self.objective.ahead:
             return min(step + AHEAD, self.steps - 1)
         saved = step - step % self.save_every + self.save_every if self.save_every else self.steps
         return min(step + self.lag, saved - 1, self.steps - 1)
 
     def _newest(self, step: int) -> int:
-        """The last step whose pieces are ordered."""
+        """Return the last step whose pieces are ordered."""
         return self._ordered[-1][0] if self._ordered else step - 1
 
     def _jobs(self, step: int) -> list[Any]:
-        """This rank's jobs of a step; none if the objective makes its batches alone."""
+        """Return this rank's jobs of a step; empty if the objective has no jobs."""
         jobs = self.objective.jobs(step)
         return self.ranks.share(jobs) if jobs else []
 
     def _alone(self, step: int) -> dict[str, Any]:
-        """The batch of ``step``, made in this process."""
+        """Make the batch of ``step`` in this process."""
         if self.ranks.count == 1:
             return self.objective.batch(step)
         jobs = self.ranks.share(self.objective.jobs(step))
         return self.objective.collate(step, [do(self.objective, job) for job in jobs])
 
     def _order(self, step: int, jobs: list[Any]) -> None:
-        """Have the pieces of ``step`` made, with the weights of now."""
+        """Order the pieces of ``step``, made with the current weights."""
         if self.workers is None:
             with precision.computing(self.kind, self.device):
                 pieces = [do(self.objective, job) for job in jobs]
@@ -106,6 +111,8 @@ class Batches:
         self._ordered.append((step, partial(self.workers.receive, len(jobs), turn)))
 
     def _turn(self, step: int) -> int:
-        """Whose turn ``step`` is; jobs that need the weights of now are never of two steps at
-        once."""
+        """Return the turn of ``step`` among workers for several steps.
+
+        It is 0 if jobs need the current weights: then only one step is ordered at a time.
+        """
         return step if self.objective.ahead or self.lag else 0

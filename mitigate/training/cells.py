@@ -1,4 +1,4 @@
-"""The options of a table, and its cells: a column with one seed, its training and evaluations."""
+"""Options of a table, and its cells: one column with one seed, its training and evaluations."""
 
 from __future__ import annotations
 
@@ -25,15 +25,16 @@ from mitigate.training import config as train_options
 
 LOG, OPTIONS = "log.txt", "options.json"
 EXAMPLES = {"columns": "agent=recurrent", "evaluations": "suite=pairs"}
-OF_AGENT = ("agent=", "env=", "env.", "+env.", "--config-dir=")  # of a training, for evaluations
-CELLS = ("agent", "checkpoint", "name", "seed", "out")  # a further evaluation does not say these
-PLACES = ("seed", "folder", "out", "workers", "evaluation")  # nor a column these
-MEASURED = ("split", "episodes", "conditions", "severity")  # nor, if it does not train, these
+# Of a training, passed on to evaluations.
+OF_AGENT = ("agent=", "env=", "env.", "+env.", "--config-dir=")
+CELLS = ("agent", "checkpoint", "name", "seed", "out")  # not allowed in an additional evaluation
+PLACES = ("seed", "folder", "out", "workers", "evaluation")  # not allowed in a column
+MEASURED = ("split", "episodes", "conditions", "severity")  # nor in a column without training
 
 
 @dataclass
 class TablesConfig:
-    """Types of ``conf/table2.yaml`` and ``conf/table1.yaml``, where each entry's meaning is."""
+    """Types of ``conf/table2.yaml`` and ``conf/table1.yaml``, which explain each entry."""
 
     runs: str = "runs"
     out: str = "runs/table"
@@ -61,7 +62,7 @@ def read_options(cfg: DictConfig) -> TablesConfig:
     """Return the composed options of a table as typed data.
 
     Raises:
-        ValueError: for an entry that refers to a missing one.
+        ValueError: An entry refers to a missing one.
     """
     config: TablesConfig = conf.typed(cfg, "table2")
     config.suite = open_entries(SuiteConfig, config.suite)
@@ -70,31 +71,31 @@ def read_options(cfg: DictConfig) -> TablesConfig:
 
 @dataclass(frozen=True)
 class Cell:
-    """One column under one seed, in a folder of its own."""
+    """One column under one seed, in its own folder."""
 
     column: str
     options: tuple[str, ...]
     seed: int
     folder: Path
-    train: tuple[str, ...] = ()  # further options of its training
+    train: tuple[str, ...] = ()  # additional options of its training
 
     @property
     def trains(self) -> bool:
-        """Whether the agent is trained; else its options name one that is there already."""
+        """Whether the agent is trained; else its options name existing weights."""
         return any(option.startswith("recipe=") for option in self.options)
 
     @property
     def agent(self) -> tuple[str, ...]:
-        """What an evaluation must know of the agent: its kind, its world and its weights."""
+        """Options of an evaluation: kind of agent, world and weights."""
         if self.trains:
-            given = (*self.options, *self.train)
-            kind = tuple(o for o in given if o.startswith(OF_AGENT))
+            options = (*self.options, *self.train)
+            kind = tuple(option for option in options if option.startswith(OF_AGENT))
             return (*kind, f"checkpoint={self.folder / 'run' / 'agent'}")
         return self.options
 
     @property
     def training(self) -> list[str]:
-        """The options of its training."""
+        """Options of its training."""
         return [
             *self.options,
             *self.train,
@@ -106,38 +107,45 @@ class Cell:
 
     @property
     def evaluation(self) -> Path:
-        """The folder of the cell's result rows."""
+        """Folder of the cell's result rows."""
         return self.further("")
 
     def further(self, name: str) -> Path:
-        """The folder of the rows of a further evaluation."""
+        """Return the folder of the rows of an additional evaluation; "" is the main one."""
         return self.folder / (f"evaluation-{name}" if name else "evaluation")
 
     def left(self, kind: str) -> list[tuple[str, int]]:
-        """The files that a program of ``commands`` adds to, with their times: one that had nothing
-        to do leaves them as they were."""
+        """Return the output files of a program of ``commands`` with their times.
+
+        A program that had nothing to do does not change them.
+        """
         rows = self.further(kind.removeprefix("evaluate").strip()) / ROWS
         files = [*(self.folder / "run").glob("*/step-*.pt")] if kind == "train" else [rows]
         return sorted((str(file), file.stat().st_mtime_ns) for file in files if file.is_file())
 
     def commands(self, config: TablesConfig) -> list[tuple[str, list[str]]]:
-        """What makes the cell: ("train", "evaluate" or "evaluate NAME", arguments after
-        ``python -m``)."""
-        found = []
+        """Return the programs that make the cell.
+
+        Each is ("train", "evaluate" or "evaluate NAME"; arguments after ``python -m``).
+        """
+        commands = []
         if self.trains:
-            found.append(("train", ["mitigate.train", *self.training]))
+            commands.append(("train", ["mitigate.train", *self.training]))
         main = [f"conditions=[{','.join(measured(config))}]"]
         for name, options in {"": main, **listed(config.evaluations, "evaluations")}.items():
             kind = f"evaluate {name}" if name else "evaluate"
-            found.append((kind, ["mitigate.evaluate", *self.measurement(config, name, options)]))
-        return found
+            commands.append((kind, ["mitigate.evaluate", *self.measurement(config, name, options)]))
+        return commands
 
     def measurement(self, config: TablesConfig, name: str, options: Sequence[str]) -> list[str]:
-        """The options of one of the cell's evaluations; ``options`` are those that it has beside,
-        or in place of, the table's; of episodes at most as many as that has."""
+        """Return all options of one of the cell's evaluations.
+
+        ``options`` add to or override those of the table. The evaluation has at most as many
+        episodes as the table.
+        """
         return [
             f"name={self.column}",
-            *self.agent,  # which may have a name of its own
+            *self.agent,  # may set another name
             f"seed={self.seed}",
             f"split={config.split}",
             f"episodes={'null' if config.episodes is None else config.episodes}",
@@ -147,7 +155,7 @@ class Cell:
         ]
 
     def chain(self, config: TablesConfig) -> programs.Chain:
-        """The programs that make the cell, on one core."""
+        """Return the programs that make the cell, on one core."""
         return programs.Chain(
             f"{self.column}, seed {self.seed}",
             tuple((kind, programs.python(*words)) for kind, words in self.commands(config)),
@@ -157,36 +165,36 @@ class Cell:
         )
 
     def keep(self) -> None:
-        """Write down what the agent of its rows is made by."""
+        """Record the options that make the agent of its rows."""
         with atomic_text(self.folder / OPTIONS) as file:
-            json.dump(self._made_by, file)
+            json.dump(self._agent_options, file)
 
     def check_kept(self) -> None:
         """Raise ValueError if its folder holds the rows of another agent."""
         file = self.folder / OPTIONS
-        begun = (self.folder / "run").exists() or (self.evaluation / ROWS).is_file()
-        if not (begun and file.is_file()):
+        started = (self.folder / "run").exists() or (self.evaluation / ROWS).is_file()
+        if not (started and file.is_file()):
             return
-        held = read_json(file, f"Delete {self.folder}, or choose another out=.")
-        if not isinstance(held, list):
+        recorded = read_json(file, f"Delete {self.folder}, or choose another out=.")
+        if not isinstance(recorded, list):
             raise ValueError(
-                f"{file} must hold a list of options, got {short(held)}. Delete {self.folder}, or "
-                "choose another out=."
+                f"{file} must hold a list of options, got {short(recorded)}. Delete "
+                f"{self.folder}, or choose another out=."
             )
-        if held != self._made_by:
+        if recorded != self._agent_options:
             raise ValueError(
-                f"{self.folder} holds rows of an agent that was made by {held}, and the column is "
-                f"{self._made_by}: they would stand beside each other. Choose another out=, give "
-                "the column another name, or delete that folder."
+                f"{self.folder} holds rows of an agent with the options {recorded}, but the column "
+                f"has {self._agent_options}: the table would mix both. Choose another out=, rename "
+                "the column, or delete that folder."
             )
 
     @property
-    def _made_by(self) -> list[str]:
+    def _agent_options(self) -> list[str]:
         return [*self.options, *(self.train if self.trains else ())]
 
 
 def _at_most(most: int | None, option: str) -> str:
-    """An option of an evaluation: one that asks for more than ``most`` episodes asks for these."""
+    """Return ``option``, with its number of episodes limited to ``most``."""
     name, _, value = option.partition("=")
     if name != "episodes" or most is None or not (value == "null" or value.isdecimal()):
         return option
@@ -194,11 +202,12 @@ def _at_most(most: int | None, option: str) -> str:
 
 
 def cells(config: TablesConfig) -> list[Cell]:
-    """All cells of the table, seed by seed, so that a partial table holds every column."""
+    """Return all cells of the table, seed by seed, so that a partial table has every column."""
     columns = listed(config.columns, "columns")
     if not config.seeds or not columns or config.jobs < 1:
         raise ValueError(
-            f"columns, seeds ({config.seeds}) and jobs ({config.jobs}) must not be empty or 0."
+            f"columns and seeds must not be empty and jobs must be >= 1, got {len(columns)} "
+            f"columns, seeds={config.seeds} and jobs={config.jobs}."
         )
     out = Path(config.out)
     return [
@@ -209,39 +218,45 @@ def cells(config: TablesConfig) -> list[Cell]:
 
 
 def listed(entries: Mapping[str, Any], place: str) -> dict[str, tuple[str, ...]]:
-    """The options of each of the ``columns`` or ``evaluations``; one that is null is left out.
-    Raises ValueError for what is no list of options."""
-    found = {str(name): options for name, options in entries.items() if options is not None}
-    for name, options in found.items():
+    """Return the options of each entry of ``columns`` or ``evaluations``, without null entries.
+
+    Raises ValueError for an entry that is not a list of options.
+    """
+    lists = {str(name): options for name, options in entries.items() if options is not None}
+    for name, options in lists.items():
         if not isinstance(options, list) or not all(isinstance(o, str) for o in options):
             raise ValueError(
                 f"{place}.{name}={options} must be a list of options, in quotes for the shell: "
                 f"'{place}.{name}=[\"{EXAMPLES[place]}\"]'."
             )
-    return {name: tuple(options) for name, options in found.items()}
+    return {name: tuple(options) for name, options in lists.items()}
 
 
 def measured(config: TablesConfig) -> list[str]:
-    """The names of the conditions that every cell is evaluated under."""
+    """Return the names of the conditions that every cell is evaluated under."""
     return list(config.suite.conditions if config.conditions is None else config.conditions)
 
 
-def check(made: Sequence[Cell], config: TablesConfig) -> None:
-    """Raise ValueError for seeds that come twice, for options of a column or a further evaluation,
-    a split and conditions that there are not, and for a cell that holds another agent's rows."""
+def check(table_cells: Sequence[Cell], config: TablesConfig) -> None:
+    """Check the options of a table before any cell runs.
+
+    Raises:
+        ValueError: A seed is repeated, an option, split or condition does not exist, or a cell
+            holds rows of another agent.
+    """
     from mitigate.training import plan  # brings torch
 
     if len({*config.seeds}) < len(config.seeds):
-        raise ValueError(f"seeds={config.seeds} names one twice: two cells would be one folder.")
-    own = "which gives each cell a seed, a folder and one core, and evaluates it itself."
-    _check_own(config.train, PLACES, own)
+        raise ValueError(f"seeds must be different, got {config.seeds}. Remove the repeated one.")
+    reason = "which gives each cell a seed, a folder and one core, and evaluates it."
+    _check_own(config.train, PLACES, reason)
     conditions(measured(config), config.severity, None)
-    for cell in made:
+    for cell in table_cells:
         cell.check_kept()
         if cell.seed == config.seeds[0]:
             try:
-                taken = PLACES if cell.trains else (*PLACES, *MEASURED)
-                _check_own(cell.options, taken, "for all columns alike.")
+                reserved = PLACES if cell.trains else (*PLACES, *MEASURED)
+                _check_own(cell.options, reserved, "the same for all columns.")
                 if cell.trains:
                     plan.check(train_options.read(conf.composed("train", cell.training)))
                 evaluation = evaluation_of(cell.agent)
@@ -254,11 +269,12 @@ def check(made: Sequence[Cell], config: TablesConfig) -> None:
             _check_own(
                 options,
                 CELLS,
-                f"which has {', '.join(CELLS)} from its columns and seeds. A further evaluation "
-                "may have suite, conditions, severity, severity_depth, split, episodes, safeguard, "
+                f"which takes {', '.join(CELLS)} from its columns and seeds. An additional "
+                "evaluation "
+                "may set suite, conditions, severity, severity_depth, split, episodes, safeguard, "
                 "restore and entries of env and agent.",
             )
-            evaluation = evaluation_of(made[0].measurement(config, name, options))
+            evaluation = evaluation_of(table_cells[0].measurement(config, name, options))
             names, severity = evaluation.condition_names, evaluation.severity
             conditions(names, severity, evaluation.severity_depth)
             episodes(evaluation.env, evaluation.split, evaluation.episodes)
@@ -267,14 +283,17 @@ def check(made: Sequence[Cell], config: TablesConfig) -> None:
             raise ValueError(f"Evaluation {name}: {error}") from error
 
 
-def _check_own(options: Sequence[str], taken: Sequence[str], why: str) -> None:
-    """Raise ValueError for options that the table sets: they would do nothing, make rows another
-    agent's, or put them where the table does not look."""
+def _check_own(options: Sequence[str], reserved: Sequence[str], why: str) -> None:
+    """Raise ValueError for options that the table itself sets.
+
+    They would have no effect, change the agent of the rows, or put the rows where the table does
+    not read them.
+    """
     for option in options:
         key = option.lstrip("+~").partition("=")[0]
         whole = "evaluation" if key.startswith("evaluation.") else key
-        if whole in taken:
-            raise ValueError(f"{option} is for the table to say, {why}")
+        if whole in reserved:
+            raise ValueError(f"{option} is set by the table, {why}")
 
 
 def evaluation_of(options: Sequence[str]) -> EvaluateConfig:

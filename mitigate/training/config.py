@@ -27,11 +27,11 @@ from mitigate.evaluation.config import (
     open_entries,
 )
 
-LONGEST = 100  # characters of the options in a folder's name; longer ones end in a digest
+LONGEST = 100  # characters of options in the name of a folder; longer names end in a digest
 COUNT = 10**9  # steps; at 1000 steps per second a training would take 11 days
 EPISODES = 100_000  # per step, a generous bound
 PROCESSES = 256  # a generous bound
-LIMITS: dict[str, tuple[float, float]] = {  # least and greatest; all are finite numbers
+LIMITS: dict[str, tuple[float, float]] = {  # least and greatest value; all are finite
     "steps": (1, COUNT),
     "keep": (1, 10**6),
     "lr": (1e-12, 100.0),
@@ -42,33 +42,37 @@ LIMITS: dict[str, tuple[float, float]] = {  # least and greatest; all are finite
     **dict.fromkeys(("eval_every", "figure_every"), (0, COUNT)),
 }
 MEANS = {
-    "grad_clip": ": a norm above 0, or 0 to clip nothing",
+    "grad_clip": ": a norm above 0, or 0 for no clipping",
     "steps": ", at least 1",
     "keep": ", at least 1",
     "lr": ", above 0",
 }
-OPTIONS: dict[str, tuple[float, float, str]] = {  # of a run: least, greatest and what it is
-    "severity": (0, 1, "a severity from 0 (clean) to 1 (strongest), as severity=0.6"),
-    "severity_depth": (0, 1, "a severity from 0 (clean) to 1 (strongest), or null: as severity"),
-    "rollouts": (1, EPISODES, "a number of episodes a step, as rollouts=24"),
+OPTIONS: dict[str, tuple[float, float, str]] = {  # of a run: least value, greatest value, meaning
+    "severity": (0, 1, "a severity from 0 (clean) to 1 (strongest), such as severity=0.6"),
+    "severity_depth": (0, 1, "a severity from 0 (clean) to 1 (strongest); null uses severity"),
+    "rollouts": (1, EPISODES, "a number of episodes per step, such as rollouts=24"),
     "refresh_episodes": (
         1,
         EPISODES,
-        "a number of episodes that a success rate is measured on, as refresh_episodes=8",
+        "a number of episodes per measured success rate, such as refresh_episodes=8",
     ),
     "workers": (
         0,
         PROCESSES,
-        "a number of processes that make batches, 0 for none beside this one, or null for one a "
-        "core, 8 at most",
+        "a number of processes that make batches; 0 uses only this process, null uses one per "
+        "core, at most 8",
     ),
-    "evaluation.workers": (1, PROCESSES, "a number of processes that walk, or null for one a core"),
+    "evaluation.workers": (
+        1,
+        PROCESSES,
+        "a number of processes that run episodes; null uses one per core",
+    ),
 }
 
 
 @dataclass
 class TrainerConfig:
-    """Settings of a Trainer; None: the stage's value, or else the Trainer's default."""
+    """Settings of a Trainer; None means the value of the stage, else the Trainer's default."""
 
     steps: int | None = None
     lr: float | None = None
@@ -113,7 +117,7 @@ class StageConfig:
 
 @dataclass
 class TrainConfig:
-    """Types of ``conf/train.yaml``; the meaning of each entry is written there."""
+    """Types of ``conf/train.yaml``, which explains each entry."""
 
     name: str = MISSING
     seed: int = 0
@@ -146,7 +150,7 @@ class TrainConfig:
 
     @property
     def has_base(self) -> bool:
-        """Whether the run starts from whole weights, which are evaluated too."""
+        """Whether the run starts from complete weights, which are evaluated too."""
         return bool(self.init and not self.init_parts)
 
 
@@ -154,7 +158,7 @@ conf.register("train", TrainConfig)
 
 
 def either(first: Any, second: Any) -> Any:
-    """Resolve ``${either:${trainer.steps},${stages.policy.trainer.steps}}``: the first, if set."""
+    """Resolve ``${either:a,b}``: the first value if it is set, else the second."""
     return second if first is None else first
 
 
@@ -165,7 +169,7 @@ def read(cfg: DictConfig) -> TrainConfig:
     """Return the composed options of a training as typed data, with a folder.
 
     Raises:
-        ValueError: for an entry that refers to a missing one.
+        ValueError: An entry refers to a missing one.
     """
     cfg = cfg.copy()
     cfg.folder = cfg.folder or default_folder(cfg)  # other entries refer to it
@@ -176,7 +180,7 @@ def read(cfg: DictConfig) -> TrainConfig:
 
 
 def plain_data(value: Any) -> Any:
-    """Return a config as dicts, lists and numbers, which ``config.yaml`` holds."""
+    """Return a config as dicts, lists and numbers, as ``config.yaml`` stores it."""
     if is_dataclass(value) and not isinstance(value, type):
         value = vars(value)  # with the entries that it does not declare
     if isinstance(value, Mapping):
@@ -202,7 +206,8 @@ def check_values(config: TrainConfig) -> None:
         value = numbers[name]
         if value is not None and not in_range(value, low, high):
             raise ValueError(
-                f"{name}={number_text(value)} must be from {low:g} to {high:g}: it is {meaning}."
+                f"{name} must be from {low:g} to {high:g}, got {number_text(value)}. It is "
+                f"{meaning}."
             )
     seeding.check(config.seed)
     for stage in config.active_stages.values():
@@ -228,13 +233,13 @@ def check_trainer(settings: Mapping[str, Any]) -> None:
 
 
 def check_limits(settings: Mapping[str, Any]) -> None:
-    """Raise ValueError for a number among a trainer's ``settings`` that is out of its range."""
+    """Raise ValueError for a trainer setting that is out of its range."""
     for name, (low, high) in LIMITS.items():
         value = settings.get(name)
         if value is not None and not in_range(value, low, high):
             raise ValueError(
-                f"trainer.{name}={number_text(value)} must be a number from {low:g} to {high:g}"
-                f"{MEANS.get(name, '')}. Set it on the command line, e.g. trainer.steps=100 "
+                f"trainer.{name} must be a number from {low:g} to {high:g}{MEANS.get(name, '')}, "
+                f"got {number_text(value)}. Set it on the command line, e.g. trainer.steps=100 "
                 "trainer.lr=1e-3."
             )
 

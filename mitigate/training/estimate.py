@@ -1,4 +1,4 @@
-"""How long a training takes here, as its first line says."""
+"""Estimate how long a training takes, for its first line of output."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ from mitigate.training import states
 from mitigate.training.config import TrainConfig
 
 EPISODE_COST = 0.12  # seconds of one core for an evaluated episode, measured on the reference
-EPISODES = 300  # assumed length of an evaluation's whole list, which need not be opened
+EPISODES = 300  # assumed length of a whole list of episodes, which is not opened for the estimate
 
 
 def describe(config: TrainConfig, folder: Path) -> str:
-    """Return one line: what a run is going to do and about how long that takes here."""
+    """Return one line: what a run will do, and about how long it takes on this machine."""
     parts = [f"{name} {count} steps" for name, count in _steps(config).items()]
     if _episodes(config):
         count = config.evaluation.episodes
@@ -27,17 +27,17 @@ def describe(config: TrainConfig, folder: Path) -> str:
         parts.append(f"{1 + config.has_base} x {listed} x {measured}")
     total = estimate(config, folder)
     about = "no estimate" if math.isnan(total) else f"about {duration(60 * math.ceil(total / 60))}"
-    return f"{config.name}: {', '.join(parts)}: {about} on this machine; all goes to {folder}"
+    return f"{config.name}: {', '.join(parts)}: {about} on this machine; output in {folder}"
 
 
 def estimate(config: TrainConfig, folder: Path) -> float:
-    """Return the seconds that the rest of a run takes here; NaN if a cost is unknown.
+    """Return the seconds left of a run on this machine; NaN if a cost is unknown.
 
-    Costs are seconds on the machine of ``precision.REFERENCE``. A stage lists its seconds per step
-    with the topological agent, and another kind of agent its factors (``cost`` in its config), from
-    trainings that were timed.
+    Costs are seconds on the machine of ``precision.REFERENCE``, measured in trainings. A stage
+    lists its seconds per step with the topological agent. Other kinds of agent list factors
+    (``cost`` in their config).
     """
-    costs: list[tuple[float, float | None]] = []  # count, and seconds of each
+    costs: list[tuple[float, float | None]] = []  # count, seconds per unit
     for name, count in _steps(config).items():
         done = states.checkpoints(folder / name)
         left = count - (states.steps_done(done[-1]) if done else 0)
@@ -55,7 +55,7 @@ def _steps(config: TrainConfig) -> dict[str, int]:
 
 
 def _episodes(config: TrainConfig) -> int:
-    """Return how many episodes run after the training; 0 where another report is made."""
+    """Return how many episodes run after the training; 0 for another kind of report."""
     if not config.evaluation.enabled or config.report != REPORT:
         return 0
     count = config.evaluation.episodes or EPISODES

@@ -1,4 +1,4 @@
-"""What a run says: TensorBoard scalars and pictures, and a progress bar or plain lines."""
+"""Log a run: TensorBoard scalars and pictures, and a progress bar or plain lines."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ import numpy as np
 from mitigate.core import output, progress
 from mitigate.core.files import make_folder
 
-CPU = "cpu_s_per_step"  # scalar: CPU seconds of this process, all threads, since the last line
+CPU = "cpu_s_per_step"  # scalar: CPU seconds per step of this process, all threads
 
 
 class Journal:
@@ -21,8 +21,8 @@ class Journal:
 
     While it is open, every write below its folder checks that the folder was not removed.
 
-    It shows a :class:`~mitigate.core.progress.Progress`: a bar in a terminal, else plain lines, to
-    which :meth:`scalars` with ``line=True`` adds one with all its values.
+    It shows a :class:`~mitigate.core.progress.Progress`: a bar in a terminal, else plain lines.
+    :meth:`scalars` with ``line=True`` adds a line with all its values.
     """
 
     def __init__(self, folder: Path, *, total: int, start: int = 0, name: str = "train") -> None:
@@ -35,7 +35,7 @@ class Journal:
         self._name = name
         self._progress = progress.Progress(name, total, start=start)
         self._measured = start, time.process_time()
-        self._told: dict[str, list[float]] = defaultdict(list)  # one need not be in every batch
+        self._values: dict[str, list[float]] = defaultdict(list)  # a batch may lack some
         self._since = start, time.monotonic()
 
     def __enter__(self) -> Journal:
@@ -53,19 +53,23 @@ class Journal:
             output.unregister(self._root)
 
     def advance(self, values: dict[str, float]) -> None:
-        """Count one step, and keep its ``values`` for :meth:`means`."""
+        """Count one step, and collect its ``values`` for :meth:`means`."""
         for name, value in values.items():
-            self._told[name].append(value)
+            self._values[name].append(value)
         self._progress.advance()
 
     def means(self, step: int, **values: float) -> None:
-        """Log, after ``step`` updates, the means of what was kept since the last time, ``values``,
-        and how many steps were taken in a second."""
-        means = {name: sum(told) / len(told) for name, told in self._told.items()}
+        """Log means of the collected values, additional ``values``, and the steps per second.
+
+        Args:
+            step: number of updates so far.
+            values: values to log as they are.
+        """
+        means = {name: sum(items) / len(items) for name, items in self._values.items()}
         before, then = self._since
         pace = (self._progress.done - before) / max(1e-9, time.monotonic() - then)
         self.scalars(step, {**means, **values, "steps_per_s": pace})
-        self._told.clear()
+        self._values.clear()
         self._since = self._progress.done, time.monotonic()
 
     def scalars(self, step: int, values: dict[str, float], *, line: bool = True) -> None:
@@ -82,11 +86,11 @@ class Journal:
         self._measured = self._progress.done, time.process_time()
         steps = max(1, self._progress.done - before)
         self._writer.add_scalar(CPU, (self._measured[1] - then) / steps, step)
-        shown = [f"{name} {value:.4g}" for name, value in values.items()]
-        self._progress.advance(0, note=shown[0])
+        texts = [f"{name} {value:.4g}" for name, value in values.items()]
+        self._progress.advance(0, note=texts[0])
         if not sys.stdout.isatty():
             left = progress.duration(self._progress.left())
-            self.say("  ".join([f"step {step}/{self._progress.total}", *shown, f"{left} left"]))
+            self.say("  ".join([f"step {step}/{self._progress.total}", *texts, f"{left} left"]))
 
     def figures(self, step: int, pictures: dict[str, np.ndarray]) -> None:
         """Log uint8 pictures ``[H, W, 3]``."""

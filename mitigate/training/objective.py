@@ -1,4 +1,4 @@
-"""An objective: a loss and the source of its batches. The trainer asks for nothing else.
+"""Define objectives: a loss and the source of its batches, all that the trainer needs.
 
 A stage of a recipe (YAML) names an objective and lists its arguments. :class:`ObjectiveSpec` gives
 each argument to the constructor that names it: that of the objective or that of its source.
@@ -41,8 +41,8 @@ class Objective(nn.Module):
         here: run jobs in the training process, never in a worker.
         ahead: jobs depend on no weights, so workers may run them ahead of time.
         needs: names of the agent's attributes that the objective uses.
-        otherwise: a sentence that says what to do if the agent lacks one of them.
-        workers: processes that ``jobs`` may start; None: one per core, 0: none.
+        otherwise: what to do if the agent lacks one of them, for the message.
+        workers: processes that ``jobs`` may start; None is one per core, 0 is none.
     """
 
     sources: ClassVar[Mapping[str, Callable[..., Any]]] = {}
@@ -54,32 +54,34 @@ class Objective(nn.Module):
 
     @classmethod
     def misfit(cls, agent: Any) -> str:
-        """Return why this objective cannot train ``agent`` and what to do, "" if it can.
+        """Return why this objective cannot train ``agent`` and what to do; empty if it can.
 
-        The plan of a run asks before the first stage begins.
+        The plan of a run calls this before the first stage.
         """
         absent = lacking(agent, cls.needs)
         return f"it has no {', '.join(absent)}. {cls.otherwise}" if absent else ""
 
     def train(self, mode: bool = True) -> Any:
-        """As a module's; frozen normalisations keep their statistics (``hold_statistics``)."""
+        """Set the mode; frozen normalisations keep their statistics (``hold_statistics``)."""
         super().train(mode)
         hold_statistics(self)
         return self
 
     def start(self) -> None:
-        """Make what must be there before the first batch, such as a cache of features; called once,
-        under the trainer's precision."""
+        """Prepare for the first batch, for example a cache of features.
+
+        Called once, in the trainer's precision.
+        """
 
     def batch(self, step: int) -> dict[str, Any]:
         """Return the batch of ``step`` (from 0): a pure function of (seed, step, weights).
 
-        Tensors are moved to the training device. ``episode_ids`` (list of str), if there, are
-        named when the loss is not finite. Anything built up over steps (a buffer) must be rebuilt
-        from the seed and the weights or saved as extra state, or a resumed run will differ.
+        Tensors are moved to the training device. The message for a loss that is not finite names
+        ``episode_ids`` (list of str), if present. State that grows over steps (a buffer) must be
+        rebuilt from the seed and the weights, or saved as extra state; else a resumed run differs.
 
-        An objective defines this, or :meth:`jobs`, :meth:`work` and :meth:`collate`, of which this
-        then makes it without worker processes.
+        An objective defines this method, or :meth:`jobs`, :meth:`work` and :meth:`collate`. The
+        default calls those three, without worker processes.
         """
         jobs = self.jobs(step)
         if not jobs:
@@ -87,52 +89,60 @@ class Objective(nn.Module):
         return self.collate(step, [do(self, job) for job in jobs])
 
     def jobs(self, step: int) -> list[Any]:
-        """Return the pieces of work that the batch of ``step`` is made from, for worker processes;
-        none if :meth:`batch` makes it alone.
+        """Return the jobs of the batch of ``step``, for worker processes.
 
-        How many there are must not depend on the number of workers. A job is all that
-        :meth:`work` needs beside the settings, the seed and the weights, such as the step, the
-        piece's number and the schedule's state; it is pickled, as is the objective.
+        The list is empty if :meth:`batch` makes the batch alone. The number of jobs must not depend
+        on the number of workers. A job holds what :meth:`work` needs in addition to the settings,
+        the seed and the weights: the step, the number of the piece, the state of the schedule. Jobs
+        and objectives are pickled.
         """
         return []
 
     def pieces(self) -> int | None:
-        """Return how many jobs every step has, of which ranks have shares; asked before the first
-        stage of a run begins. 1: one process alone can train so. None: it shows at the first step.
+        """Return the number of jobs of every step, which ranks share.
+
+        Called before the first stage. 1 means that a single process must train. None means that the
+        number is known at the first step.
         """
         return None
 
     def work(self, job: Any) -> Any:
-        """Return what ``job`` asks for, picklable: a pure function of job, seed and weights.
+        """Return the picklable result of ``job``: a pure function of job, seed and weights.
 
         Called in eval mode without gradients, on a copy of the objective in a worker process.
         """
         raise NotImplementedError(f"{type(self).__name__} has jobs, but defines no work(job)")
 
     def collate(self, step: int, pieces: list[Any]) -> dict[str, Any]:
-        """Return the batch of ``step`` from what its jobs gave, in their order."""
+        """Return the batch of ``step`` from the results of its jobs, in order."""
         raise NotImplementedError(f"{type(self).__name__} has jobs, but defines no collate")
 
     def micro_batches(self, batch: dict[str, Any]) -> list[dict[str, Any]]:
-        """Return the parts of ``batch`` that go forward and backward one after the other, so that
-        memory is that of one; their gradients and values are added up. By default it is one part:
-        the batch."""
+        """Split ``batch`` into parts that go forward and backward one after the other.
+
+        Memory is then that of one part. Gradients and values of the parts are summed. By default
+        the whole batch is one part.
+        """
         return [batch]
 
     def weight(self, batch: dict[str, Any]) -> float:
-        """Return how much a rank's batch counts beside those of the others: what its losses are
-        means over. By default that of its decisions, if it has any, else 1."""
+        """Return the weight of a rank's batch in means over ranks.
+
+        It is the total weight that its losses average over. By default that of its decisions, or 1
+        without decisions.
+        """
         decisions = batch.get("decisions")
         return 1.0 if decisions is None else float(decisions.weight.sum())
 
     def forward(self, batch: dict[str, Any]) -> dict[str, Tensor]:
-        """Return scalars: ``loss`` (differentiable) and whatever else is worth logging."""
+        """Return scalars: ``loss`` (differentiable) and values to log."""
         raise NotImplementedError(f"{type(self).__name__} defines no forward(batch)")
 
     def parameter_groups(self) -> list[dict[str, Any]]:
         """Return AdamW groups; ``lr`` and ``weight_decay`` in a group override the trainer's.
 
-        By default matrices and kernels decay; biases, norms and other vectors do not.
+        By default, weight decay applies to matrices and kernels, not to biases, norms and other
+        vectors.
         """
         trained = [p for p in self.parameters() if p.requires_grad]
         return [
@@ -141,16 +151,18 @@ class Objective(nn.Module):
         ]
 
     def identity(self) -> dict[str, str]:
-        """Return what the result depends on beside the settings, such as a teacher's sha256.
+        """Return inputs that the settings do not contain, such as a teacher's sha256.
 
-        It is kept in the checkpoints: a run is not resumed under another.
+        Checkpoints record it: a run is not resumed with another identity.
         """
         return {}
 
     def finish(self) -> None:
-        """Set what follows from the trained weights, such as a gate's threshold; called after the
-        last update, in eval mode without gradients, and again with the same weights if the run was
-        ended meanwhile."""
+        """Set values that follow from the trained weights, such as the threshold of a gate.
+
+        Called after the last update, in eval mode without gradients. If the run is interrupted, it
+        is called again with the same weights.
+        """
 
     def evaluate(self, step: int) -> dict[str, float]:
         """Return scalars measured after ``step`` updates; called every ``eval_every`` steps."""
@@ -163,11 +175,11 @@ class Objective(nn.Module):
 
 @torch.no_grad()
 def do(objective: Objective, job: Any) -> Any:
-    """Return ``objective.work(job)``, done in eval mode and, on a CPU, on one thread."""
+    """Return ``objective.work(job)``, run in eval mode and on one CPU thread."""
     threads = torch.get_num_threads()
     training = objective.training
     try:
-        torch.set_num_threads(1)  # sums in the same order in any number of processes
+        torch.set_num_threads(1)  # same order of sums with any number of processes
         return objective.eval().work(job)
     finally:
         objective.train(training)
@@ -177,49 +189,55 @@ def do(objective: Objective, job: Any) -> Any:
 def accumulate(
     objective: Objective, batch: dict[str, Any], kind: str, device: torch.device
 ) -> dict[str, Tensor]:
-    """Go forward in the precision ``kind``, and backward, over the parts of ``batch``; return the
-    sums of what ``forward`` gave. A part whose loss is not finite has no gradient."""
+    """Run forward in the precision ``kind`` and backward over the parts of ``batch``.
+
+    A part whose loss is not finite gets no gradient.
+
+    Returns:
+        The sums of the values that ``forward`` returned.
+    """
     values: dict[str, Tensor] = {}
     for part in objective.micro_batches(batch):
         with computing(kind, device):
-            found = _checked(objective, objective(part))
-        if torch.isfinite(found["loss"]):
-            found["loss"].backward()
-        fresh = {name: torch.as_tensor(value).detach() for name, value in found.items()}
+            outputs = _checked(objective, objective(part))
+        if torch.isfinite(outputs["loss"]):
+            outputs["loss"].backward()
+        fresh = {name: torch.as_tensor(value).detach() for name, value in outputs.items()}
         values = {name: values.get(name, 0) + value for name, value in fresh.items()}
     return values
 
 
-def _checked(objective: Objective, found: Any) -> dict[str, Any]:
-    """What ``forward`` gave. Raises ValueError unless these are numbers with a loss to learn by."""
+def _checked(objective: Objective, outputs: Any) -> dict[str, Any]:
+    """Return the values of ``forward``; raise ValueError unless they are numbers with a loss."""
     wrong = ""
-    if not isinstance(found, dict) or "loss" not in found:
-        given = ", ".join(map(repr, found)) if isinstance(found, dict) else type(found).__name__
-        wrong = f'returned no "loss", but {given or "nothing"}'
+    if not isinstance(outputs, dict) or "loss" not in outputs:
+        returned = (
+            ", ".join(map(repr, outputs)) if isinstance(outputs, dict) else type(outputs).__name__
+        )
+        wrong = f'returned no "loss", but {returned or "nothing"}'
     else:
-        for name, value in found.items():
+        for name, value in outputs.items():
             if not isinstance(value, (Tensor, np.ndarray, Real)):
                 wrong = f"returned {name!r} as {type(value).__name__}"
             elif isinstance(value, (Tensor, np.ndarray)) and math.prod(value.shape) != 1:
                 wrong = f"returned {name!r} of shape {list(value.shape)}"
-    if not wrong and not (isinstance(found["loss"], Tensor) and found["loss"].requires_grad):
+    if not wrong and not (isinstance(outputs["loss"], Tensor) and outputs["loss"].requires_grad):
         wrong = 'returned a "loss" that depends on no weight that trains (is it detached?)'
     if wrong:
         raise ValueError(
-            f"forward() of {type(objective).__name__} {wrong}: it returns a dict of single "
-            'numbers, of which "loss" is a tensor to go backward from (recipes/README.md, "A new '
-            'objective").'
+            f"forward() of {type(objective).__name__} {wrong}. It must return a dict of single "
+            'numbers, with a differentiable tensor "loss" (recipes/README.md, "A new objective").'
         )
-    return found
+    return outputs
 
 
 @dataclass(frozen=True)
 class ObjectiveSpec:
-    """What builds the objective of a stage: its class, and the arguments of each constructor.
+    """The class of a stage's objective and the arguments of each constructor.
 
     Attributes:
         target: the ``_target_`` of the stage's config.
-        arguments: of the objective's own constructor, as plain data.
+        arguments: arguments of the objective's constructor, as plain data.
         source: arguments of the source's constructor; None if the objective makes its own batches.
         parameter: the objective's parameter that takes the source.
     """
@@ -234,31 +252,31 @@ class ObjectiveSpec:
         """Split the flat ``recipe`` node of a stage by the signatures of both constructors.
 
         Raises:
-            ValueError: for an argument that neither of them has, for a class that is no objective,
-                and for one that takes no agent.
+            ValueError: Neither constructor has an argument, or the class is not an objective or
+                takes no agent.
         """
         target = str(recipe["_target_"])
         kind = located(target)
         check_kind(kind, target)
-        given = {name: value for name, value in recipe.items() if name != "_target_"}
-        parameter = _source_of(kind, given)
-        own, others = split_arguments(kind, parameter, given, target)
-        return cls(target, own, others if parameter else None, parameter)
+        arguments = {name: value for name, value in recipe.items() if name != "_target_"}
+        parameter = _source_of(kind, arguments)
+        objective_arguments, source_arguments = split_arguments(kind, parameter, arguments, target)
+        return cls(target, objective_arguments, source_arguments if parameter else None, parameter)
 
     def build(self, agent: nn.Module) -> Objective:
         """Build the objective for ``agent``; it chooses which parameters train.
 
         Raises:
-            ValueError: if the target builds something else, and as its constructor does.
+            ValueError: The target does not build an objective; or raised by its constructor.
         """
         for parameter in agent.parameters():
             parameter.requires_grad_(parameter.is_floating_point())  # 8-bit weights never train
         kind = located(self.target)
-        given: dict[str, Any] = {"agent": agent}
+        modules: dict[str, Any] = {"agent": agent}
         if self.source is not None:
             make_source = kind.sources[self.parameter]
-            given[self.parameter] = make_source(agent=agent, **arguments_of(self.source))
-        objective = kind(**arguments_of(self.arguments), **given)
+            modules[self.parameter] = make_source(agent=agent, **arguments_of(self.source))
+        objective = kind(**arguments_of(self.arguments), **modules)
         if not isinstance(objective, Objective):
             raise ValueError(not_an_objective(self.target))
         return objective
@@ -272,17 +290,19 @@ def split_arguments(
     An argument that both constructors name goes to both. Raises ValueError for one that neither
     names.
     """
-    own_names, own_open = _parameters(kind)
+    names, is_open = _parameters(kind)
     source_names, source_open = _parameters(kind.sources[parameter]) if parameter else ((), False)
-    names = [n for n in (*own_names, *source_names) if n != parameter]
+    allowed = [n for n in (*names, *source_names) if n != parameter]
     for name in given:
-        if not (name.startswith("_") or name in names or own_open or source_open):
-            raise ValueError(f"{target}: {unknown('argument', name, [*dict.fromkeys(names)])}")
-    others = {
-        n: v for n, v in given.items() if n in source_names or (source_open and n not in own_names)
+        if not (name.startswith("_") or name in allowed or is_open or source_open):
+            raise ValueError(f"{target}: {unknown('argument', name, [*dict.fromkeys(allowed)])}")
+    source_arguments = {
+        n: v for n, v in given.items() if n in source_names or (source_open and n not in names)
     }
-    own = {n: v for n, v in given.items() if n in own_names or n not in others}
-    return own, others
+    objective_arguments = {
+        n: v for n, v in given.items() if n in names or n not in source_arguments
+    }
+    return objective_arguments, source_arguments
 
 
 def _parameters(kind: Any) -> tuple[tuple[str, ...], bool]:
@@ -296,7 +316,7 @@ def _parameters(kind: Any) -> tuple[tuple[str, ...], bool]:
 
 
 def _source_of(kind: Any, given: Container[str]) -> str:
-    """Return the parameter of ``kind`` that takes its source, "" without one or if it is given."""
+    """Return the parameter of ``kind`` that takes its source; "" if none or already set."""
     if not is_objective(kind):
         return ""
     names, _ = _parameters(kind)
@@ -304,14 +324,14 @@ def _source_of(kind: Any, given: Container[str]) -> str:
 
 
 def is_objective(kind: Any) -> bool:
-    """Return whether ``kind`` is a class of objectives, not a function that makes one."""
+    """Return whether ``kind`` is a subclass of Objective, not a function that makes one."""
     return isinstance(kind, type) and issubclass(kind, Objective)
 
 
 def check_kind(kind: Any, target: str) -> None:
-    """Raise ValueError for a class that is no objective, or whose constructor takes no agent.
+    """Raise ValueError for a class that is not an objective or takes no agent.
 
-    A function is checked by what it returns.
+    A function is not checked here; its result is.
     """
     if not isinstance(kind, type):
         return
@@ -320,30 +340,32 @@ def check_kind(kind: Any, target: str) -> None:
     names, is_open = _parameters(kind)
     if "agent" not in names and not is_open:
         raise ValueError(
-            f"{target} takes no agent: give its constructor a parameter agent, the module that it "
-            "trains."
+            f"{target} takes no agent. Give its constructor a parameter agent, the module to train."
         )
 
 
 def not_an_objective(target: str) -> str:
-    """Return the message for a ``target`` that is no objective."""
+    """Return the message for a ``target`` that is not an objective."""
     return (
-        f"{target} is no objective: make it a subclass of mitigate.training.objective.Objective "
+        f"{target} is not an objective. Make it a subclass of "
+        "mitigate.training.objective.Objective "
         '(recipes/README.md, "A new objective").'
     )
 
 
 def check_weights(**weights: float) -> None:
-    """Raise ValueError unless every weight of a loss is from 0 (no such loss) to ``WEIGHT``."""
+    """Raise ValueError unless every weight of a loss is from 0 (unused) to ``WEIGHT``."""
     for name, value in weights.items():
         if not in_range(value, 0, WEIGHT):
             raise ValueError(
-                f"recipe.{name}={number_text(value)} must be a number from 0 to {WEIGHT:g}: it is "
-                "the weight of a loss, and 0 leaves that out."
+                f"recipe.{name} must be a number from 0 to {WEIGHT:g}, got {number_text(value)}. "
+                "It is the weight of a loss; 0 disables the loss."
             )
 
 
 def check_share(name: str, value: float) -> None:
     """Raise ValueError unless ``value`` is a share from 0 to 1."""
     if not in_range(value, 0, 1):
-        raise ValueError(f"recipe.{name}={number_text(value)} must be a share from 0 to 1, as 0.5.")
+        raise ValueError(
+            f"recipe.{name} must be a share from 0 to 1, such as 0.5, got {number_text(value)}."
+        )

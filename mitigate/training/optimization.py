@@ -1,4 +1,4 @@
-"""AdamW over what a recipe trains, and the course of its learning rate."""
+"""AdamW over the trained parameters, and the schedule of its learning rate."""
 
 from __future__ import annotations
 
@@ -15,27 +15,36 @@ def check(schedule: str) -> None:
     """Raise ValueError unless ``schedule`` is one of ``SCHEDULES``."""
     if schedule not in SCHEDULES:
         known = ", ".join(SCHEDULES)
-        raise ValueError(f"trainer.schedule={schedule} is unknown; choose one of {known}.")
+        raise ValueError(f"trainer.schedule must be one of {known}, got {schedule}.")
 
 
 def adamw(groups: list[dict[str, Any]], name: str, lr: float, weight_decay: float) -> AdamW:
-    """An optimizer of what is not frozen in ``groups``; ``lr`` and ``weight_decay`` are for groups
-    that name none.
+    """Return AdamW over the parameters of ``groups`` that are not frozen.
 
-    Raises ValueError, with the stage's ``name``, if all is frozen.
+    Args:
+        groups: parameter groups, which may set ``lr`` and ``weight_decay``.
+        name: name of the stage, for the error.
+        lr: learning rate of the other groups.
+        weight_decay: weight decay of the other groups.
+
+    Raises:
+        ValueError: Every parameter is frozen.
     """
-    kept = [{**g, "params": [p for p in g["params"] if p.requires_grad]} for g in groups]
-    kept = [group for group in kept if group["params"]]
-    if not kept:
+    trained = [{**g, "params": [p for p in g["params"] if p.requires_grad]} for g in groups]
+    trained = [group for group in trained if group["params"]]
+    if not trained:
         raise ValueError(
             f"{name} has nothing to train: every parameter is frozen. Unfreeze a part of the agent."
         )
-    return AdamW(kept, lr=lr, weight_decay=weight_decay)
+    return AdamW(trained, lr=lr, weight_decay=weight_decay)
 
 
 def scheduler(optimizer: AdamW, steps: int, warmup: int, schedule: str) -> LambdaLR:
-    """The learning rate rises from 0 over ``warmup`` updates, then follows ``schedule``, which
-    ends at 0 after ``steps`` unless it is constant."""
+    """Return the schedule of the learning rate.
+
+    It rises from 0 over ``warmup`` updates, then follows ``schedule``. It ends at 0 after ``steps``
+    unless it is constant.
+    """
     return LambdaLR(optimizer, lambda step: _rate(step, steps, warmup, schedule))
 
 

@@ -1,4 +1,4 @@
-"""Which parts of an agent train, and the teachers made of agents."""
+"""Choose which parts of an agent train, and make teachers from agents."""
 
 from __future__ import annotations
 
@@ -17,27 +17,32 @@ from mitigate.core.contracts import lacking
 from mitigate.core.files import find
 from mitigate.core.names import unknown
 
-ADAPTERS = "adapters"  # in a list of parts: all of them, wherever they are
-POLICY = "policy"  # in place of a list of parts: all but the encoders
-TRAINABLE = ("parts", "collect", "join", "decide")  # what an agent has that learns on episodes
+ADAPTERS = "adapters"  # in a list of parts: all adapters of the agent
+POLICY = "policy"  # instead of a list of parts: all parts except the encoders
+TRAINABLE = ("parts", "collect", "join", "decide")  # members of agents that learn on episodes
 SEEING = ("parts", "encoders", "labels", "see")  # ... whose encoders learn on single observations
 OWN = "Choose an agent that has these (docs/agents.md), or give it these (docs/bring-your-own.md)."
-START = "start"  # as a teacher: the agent as it is when the stage begins
+START = "start"  # a teacher: a copy of the agent at the start of the stage
 
 
 def policy_parts(agent: Any) -> list[str]:
-    """The names of an agent's parts that are not its encoders (``agents/agent.py``: Seeing)."""
+    """Return the names of an agent's parts that are not encoders."""
     encoders = {name for names in as_agent(agent).encoders.values() for name in names}
     return [name for name in agent.parts() if name not in encoders]
 
 
 def train_only(agent: nn.Module, parts: Iterable[str] | str | None) -> None:
-    """Freeze all of ``agent`` but ``parts``, names of its ``parts()``; "policy": all but the
-    encoders; None: all train.
+    """Freeze every parameter of ``agent`` outside ``parts``.
 
-    Adapters train only if "adapters" is named, wherever they are. Raises ValueError for an unknown
-    part, for parameters that are in no part, for adapters with gates, which no episode teaches, and
-    for an agent that is not trainable.
+    Adapters train only if "adapters" is one of the parts.
+
+    Args:
+        agent: the agent.
+        parts: names of its ``parts()``; "policy" means all except the encoders, None means all.
+
+    Raises:
+        ValueError: A part is unknown, a parameter is in no part, adapters to train have gates
+            (which episodes cannot train), or the agent is not trainable.
     """
     if not isinstance(agent, Trainable):
         absent = lacking(agent, TRAINABLE)
@@ -45,21 +50,21 @@ def train_only(agent: nn.Module, parts: Iterable[str] | str | None) -> None:
             f"{type(agent).__name__} cannot be trained on episodes: it has no "
             f"{', '.join(absent)} (mitigate/agents/agent.py, docs/bring-your-own.md)."
         )
-    own = agent.parts()
-    parts = policy_parts(agent) if parts == POLICY else tuple(own if parts is None else parts)
+    modules = agent.parts()
+    parts = policy_parts(agent) if parts == POLICY else tuple(modules if parts is None else parts)
     for part in parts:
-        if part not in (*own, ADAPTERS):
-            raise ValueError(unknown("part of the agent", part, (*own, ADAPTERS)))
-    held = {id(p) for module in own.values() for p in module.parameters()}
-    stray = [name for name, p in agent.named_parameters() if id(p) not in held]
-    if stray:
+        if part not in (*modules, ADAPTERS):
+            raise ValueError(unknown("part of the agent", part, (*modules, ADAPTERS)))
+    known = {id(p) for module in modules.values() for p in module.parameters()}
+    missing = [name for name, p in agent.named_parameters() if id(p) not in known]
+    if missing:
         raise ValueError(
-            f"parts() of {type(agent).__name__} leaves out {', '.join(stray[:4])}: every parameter "
-            "belongs to a part, or nobody could say whether it trains."
+            f"parts() of {type(agent).__name__} leaves out {', '.join(missing[:4])}: every "
+            "parameter must belong to a part, so that it is clear whether it trains."
         )
     if ADAPTERS in parts:
         refuse_gates(agent)
-    for name, module in own.items():
+    for name, module in modules.items():
         module.requires_grad_(name in parts)
     freeze(agent)
     for parameter in adapter_parameters(agent):
@@ -67,17 +72,19 @@ def train_only(agent: nn.Module, parts: Iterable[str] | str | None) -> None:
 
 
 def refuse_gates(module: nn.Module) -> None:
-    """Raise ValueError if adapters of ``module`` have a gate: only random views with their clean
-    ones beside them (``recipes/adapt.py``) teach it when to open."""
+    """Raise ValueError if adapters of ``module`` have a gate.
+
+    Only pairs of corrupted and clean views (``recipes/adapt.py``) train gates.
+    """
     if any(isinstance(adapter, FrameGate) for adapter in adapters_of(module)):
         raise ValueError(
-            "Nothing in this recipe teaches the gates of agent.adapters.gates when to open: leave "
-            "them out, or choose recipe=harden or conv_adapter."
+            "This recipe cannot train the gates of agent.adapters.gates. Leave them out, or choose "
+            "recipe=harden or conv_adapter."
         )
 
 
 def freeze(agent: nn.Module) -> None:
-    """Freeze what an agent calls ``frozen``, but for adapters."""
+    """Freeze the modules in ``frozen`` of an agent, except their adapters."""
     for name in as_agent(agent).frozen:
         module = agent.get_submodule(name)
         adapters = {id(p) for p in adapter_parameters(module)}
@@ -87,36 +94,46 @@ def freeze(agent: nn.Module) -> None:
 
 
 def hold_statistics(module: nn.Module, around: Sequence[nn.Parameter] = ()) -> None:
-    """Put the frozen normalisations with running statistics (BatchNorm) below ``module`` in eval
-    mode: in training mode every batch moves these, though no weight trains. One without weights of
-    its own is frozen if all are of the nearest module around it that has some, but for adapters
-    (``around``: those of a module above)."""
-    own = [p for name, p in module.named_parameters() if checkpoint.ADAPTER not in f".{name}"]
-    around = own or around
+    """Put frozen normalisations with running statistics (BatchNorm) in ``module`` in eval mode.
+
+    In training mode every batch would change the statistics, although no weight trains. A
+    normalisation without weights counts as frozen if all weights of the nearest enclosing module
+    with weights are frozen, without adapters.
+
+    Args:
+        module: the module.
+        around: weights of the enclosing module.
+    """
+    weights = [p for name, p in module.named_parameters() if checkpoint.ADAPTER not in f".{name}"]
+    around = weights or around
     for child in module.children():
         hold_statistics(child, around)
         if isinstance(child, _NormBase):
-            judged = [*child.parameters()] or around
-            frozen = bool(judged) and not any(p.requires_grad for p in judged)
+            relevant = [*child.parameters()] or around
+            frozen = bool(relevant) and not any(p.requires_grad for p in relevant)
             child.train(child.training and not frozen)
 
 
 def load_teacher(agent: nn.Module, weights: str | None) -> nn.Module:
-    """A frozen copy of ``agent`` without its adapters, with ``weights``: a file or folder, or
-    "start" for those that ``agent`` has now.
+    """Return a frozen copy of ``agent`` without its adapters.
 
-    Raises ValueError for weights that are adapters alone or do not fit, FileNotFoundError for
-    weights that are not there.
+    Args:
+        agent: the agent.
+        weights: a file or folder with the weights of the teacher; "start" uses the current weights.
+
+    Raises:
+        ValueError: The weights are only adapters, or do not fit.
+        FileNotFoundError: The weights do not exist.
     """
     if weights is None:
         raise ValueError(
-            f"No teacher is shipped for {type(agent).__name__}: train one, such as by `make train "
-            "RECIPE=da_per_episode`, and name its folder (teacher=runs/.../agent), or "
-            "name the agent as it is now: start."
+            f"No teacher is shipped for {type(agent).__name__}. Train one, for example with `make "
+            "train RECIPE=da_per_episode`, and set teacher=runs/.../agent. Or set teacher=start to "
+            "use the agent at the start of the stage."
         )
     if (find(weights) / ADAPTERS_FILE).is_file():
         raise ValueError(
-            f"{weights} holds adapters alone, and a teacher needs whole weights: name a folder "
+            f"{weights} holds only adapters, but a teacher needs complete weights. Choose a folder "
             f"with {checkpoint.WEIGHTS}, such as checkpoints/teacher."
         )
     teacher = as_agent(agent).as_teacher()
@@ -126,6 +143,6 @@ def load_teacher(agent: nn.Module, weights: str | None) -> nn.Module:
         except FileNotFoundError as error:
             raise FileNotFoundError(
                 f"There is no teacher at {weights}. Train one with `make train "
-                "RECIPE=da_per_episode` and name its folder (teacher=runs/.../agent)."
+                "RECIPE=da_per_episode` and set teacher=runs/.../agent."
             ) from error
     return teacher.requires_grad_(False).eval()

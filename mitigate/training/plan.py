@@ -1,11 +1,11 @@
 """The plan of a training: everything that is decided before the first step.
 
-:func:`check` rejects options that make no sense whatever the agent. :func:`plan` then decides, in
-this order, as the functions below stand:
+:func:`check` rejects options that are wrong for every agent. :func:`plan` then decides, in
+the order of the functions below:
 
-1. It builds the agent, with the settings that it inherits from the weights it starts from.
-2. It leaves out stages that have nothing to train in this agent, and corruptions that it does not
-   read, and says so.
+1. It builds the agent, with the settings that it inherits from its first weights.
+2. It leaves out stages that have nothing to train in this agent, and corruptions of sensors that it
+   does not read, and prints this.
 3. It plans each stage: the objective with its arguments, and the settings of the trainer.
 4. It checks that agent, world, folder and stages fit together.
 """
@@ -57,11 +57,11 @@ class StagePlan:
     """One stage that will run.
 
     Attributes:
-        name: of the stage, and of its subfolder.
-        folder: its checkpoints and logs.
-        objective: what to train, with its arguments.
+        name: name of the stage and of its subfolder.
+        folder: folder of its checkpoints and logs.
+        objective: the objective, with its arguments.
         trainer: the settings of the Trainer that are set.
-        identity: the settings part of the stage's fingerprint; a run is not resumed under another.
+        identity: the settings part of the stage's fingerprint; a run is not resumed with another.
     """
 
     name: str
@@ -73,14 +73,14 @@ class StagePlan:
 
 @dataclass(frozen=True)
 class Plan:
-    """A training, decided.
+    """The plan of a training.
 
     Attributes:
-        config: the options, with what this plan changed in them.
-        folder: of the run.
-        agent: to train, with its first weights.
-        stages: in order.
-        workers: processes that make batches.
+        config: the options, with the changes of this plan.
+        folder: folder of the run.
+        agent: the agent with its first weights.
+        stages: stages in order.
+        workers: number of processes that make batches.
     """
 
     config: TrainConfig
@@ -91,25 +91,25 @@ class Plan:
 
 
 def check(config: TrainConfig) -> None:
-    """Raise ValueError for options that are well typed but make no sense."""
+    """Raise ValueError for options that have valid types but cannot work."""
     check_values(config)
     name, env, stages = config.name, config.env, config.active_stages
     if not stages:
         raise ValueError(f"The recipe {name} has no stages: its YAML must list at least one.")
     if env.training is None and config.report == REPORT:
         raise ValueError(
-            f"The world {env.name} has no training episodes: give its config an entry "
-            "training, such as {_target_: mitigate.worlds.episodes.ListedEpisodes, path: x.json}."
+            f"The world {env.name} has no training episodes. Add an entry training to its config, "
+            "such as {_target_: mitigate.worlds.episodes.ListedEpisodes, path: x.json}."
         )
     complete = [stage for stage in stages if _target_of(stages[stage])]
     other = next((stage for stage in stages if stage not in complete), None)
     if other is not None:
         raise ValueError(
-            f"The recipe {name} has no stage {other!r}: its stages are {', '.join(complete)}. "
-            "Leave out what sets another one (experiment=frozen fits imitation and da_* only)."
+            f"The recipe {name} has no stage {other!r}; its stages are {', '.join(complete)}. "
+            "Remove options of other stages (experiment=frozen fits only imitation and da_*)."
         )
     listed = config.report == REPORT or env.episodes
-    if config.evaluation.enabled and listed:  # a mistake must not show only after the training
+    if config.evaluation.enabled and listed:  # find mistakes before the training
         count = config.evaluation.episodes
         episodes(env, config.evaluation.split, count if count is None else min(count, 1))
         measured = conditions(config.suite.conditions, config.severity, config.severity_depth)
@@ -122,17 +122,17 @@ def _target_of(stage: StageConfig) -> str:
 
 
 def plan(config: TrainConfig, ranks: Ranks) -> Plan:
-    """Decide everything about a training of checked options (:func:`check`).
+    """Plan a training with checked options (:func:`check`).
 
     Prints a line for each decision that a user may not expect.
 
     Raises:
-        ValueError: for options, a recipe, an agent, a world or a folder that do not fit together.
-        FileNotFoundError: for missing weights.
+        ValueError: Options, recipe, agent, world or folder do not fit together.
+        FileNotFoundError: Weights are missing.
     """
     config = copy.deepcopy(config)
     folder = Path(config.folder or "")
-    inherited = begun_from(config.agent, config.init)  # rejects the weights of another kind
+    inherited = begun_from(config.agent, config.init)  # rejects weights of another kind of agent
     node = config.agent if config.init_parts else inherited
     agent = build_agent(node, weights=config.init, seed=config.seed, parts=config.init_parts)
     check_teacher(config)
@@ -147,17 +147,17 @@ def plan(config: TrainConfig, ranks: Ranks) -> Plan:
 
 
 def check_teacher(config: TrainConfig) -> None:
-    """Raise ValueError for a teacher that no stage learns from."""
+    """Raise ValueError for a teacher that no stage uses."""
     taught = any("teacher" in stage.recipe for stage in config.active_stages.values())
     if config.teacher is not None and not taught:
         raise ValueError(
-            f"teacher={config.teacher} would have no effect: recipe={config.name} does not distil. "
-            "Leave it out, or choose recipe=ts_distill or stacked."
+            f"teacher={config.teacher} would have no effect: recipe={config.name} does not use a "
+            "teacher. Leave it out, or choose recipe=ts_distill or stacked."
         )
 
 
 def warn_unused_schedule(config: TrainConfig) -> None:
-    """Say so if no stage draws from the ``schedule``, or if a severity option does not reach it."""
+    """Warn if no stage uses the ``schedule``, or if it does not use a severity option."""
     schedule = config.schedule or {}
     mode = schedule.get("mode")
     if mode is None or (mode == "clean" and not schedule.get("broad_share")):
@@ -165,33 +165,33 @@ def warn_unused_schedule(config: TrainConfig) -> None:
     if not _contains([s.recipe for s in config.active_stages.values()], schedule["_target_"]):
         say(
             f"the schedule (mode {mode}) has no effect: recipe={config.name} draws no corruptions "
-            f"in {', '.join(config.stages)}. One that trains under corruptions is "
+            f"in {', '.join(config.stages)}. To train under corruptions, choose "
             "recipe=da_per_episode"
         )
         return
     default: Any = OmegaConf.load(CONF / "train.yaml")
-    for key, asked in (("severity", config.severity), ("severity_depth", config.severity_depth)):
-        drawn = schedule.get(key)
-        if asked not in (None, default[key], drawn):
-            whole = "as schedule.severity" if drawn is None else drawn
+    for key, value in (("severity", config.severity), ("severity_depth", config.severity_depth)):
+        used = schedule.get(key)
+        if value not in (None, default[key], used):
+            text = "the value of schedule.severity" if used is None else used
             say(
-                f"{key}={asked:g} is of the evaluation alone: recipe={config.name} trains at "
-                f"schedule.{key}, which is {whole}"
+                f"{key}={value:g} affects only the evaluation: recipe={config.name} trains at "
+                f"schedule.{key}, which is {text}"
             )
 
 
 def _contains(node: Any, target: str) -> bool:
-    """Return whether a config names the class ``target`` somewhere in ``node``."""
+    """Return whether ``node`` contains the ``_target_`` ``target`` at any depth."""
     if isinstance(node, dict):
         return node.get("_target_") == target or _contains([*node.values()], target)
     return isinstance(node, list) and any(_contains(part, target) for part in node)
 
 
 def leave_out_stages(config: TrainConfig, agent: nn.Module) -> None:
-    """Set the stages that have nothing to train in ``agent`` to None, and say so.
+    """Set stages that have nothing to train in ``agent`` to None, and print them.
 
     Raises:
-        ValueError: if no stage is left, except for a blinded agent that is evaluated as it is.
+        ValueError: No stage is left. A blinded agent may have none; it is only evaluated.
     """
     for name, stage in config.active_stages.items():
         reason = nothing_to_train(stage.recipe, agent)
@@ -204,9 +204,8 @@ def leave_out_stages(config: TrainConfig, agent: nn.Module) -> None:
     blind = config.agent.get("blind")
     if not (config.evaluation.enabled and blind):
         raise ValueError(
-            f"Nothing of {type(agent).__name__} would be trained: the recipe {config.name} has no "
-            "other stages than those that were left out. Choose another recipe or agent "
-            "(recipes/README.md, docs/agents.md)."
+            f"The recipe {config.name} cannot train {type(agent).__name__}: all of its stages were "
+            "left out. Choose another recipe or agent (recipes/README.md, docs/agents.md)."
         )
     say(f"nothing is trained: the agent is evaluated with agent.blind={list(blind)}")
 
@@ -214,7 +213,7 @@ def leave_out_stages(config: TrainConfig, agent: nn.Module) -> None:
 def nothing_to_train(recipe: Mapping[str, Any], agent: nn.Module) -> str | None:
     """Return why a stage has nothing to train in this kind of agent, or None.
 
-    The agent lacks the sensor, stores no features, or learns nothing but encoders.
+    The agent lacks the sensor, stores no features, or can only train encoders.
     """
     sensor = recipe.get("modality")
     kind = type(agent).__name__
@@ -224,14 +223,14 @@ def nothing_to_train(recipe: Mapping[str, Any], agent: nn.Module) -> str | None:
     if recipe.get("variants") and lacking(agent, ["store"]):
         return f"{kind} stores no features"
     if recipe.get("train_parts") == POLICY and encoders and not policy_parts(agent):
-        return f"nothing but encoders is learned in {kind}"
+        return f"{kind} can only train encoders"
     return None
 
 
 def _leave_out_views(config: TrainConfig, agent: nn.Module) -> None:
-    """Set stages that learn on random poses to None where the agent or the world lacks something.
+    """Set stages that use random poses to None if the agent or the world does not support them.
 
-    Where no other stage could train the agent they stay, and :func:`check_fit` rejects them.
+    They stay if no other stage can train the agent; :func:`check_fit` then rejects them.
     """
     kinds = {name: located(_target_of(stage)) for name, stage in config.active_stages.items()}
     views = [name for name, kind in kinds.items() if is_objective(kind) and kind.needs == SEEING]
@@ -251,29 +250,30 @@ def _leave_out_views(config: TrainConfig, agent: nn.Module) -> None:
 
 
 def _misfit(kind: Any, agent: nn.Module) -> str:
-    """Return why an objective cannot train ``agent``; "" for what is no class of an objective."""
+    """Return why an objective cannot train ``agent``; "" if it can or is not a class."""
     return str(kind.misfit(agent)) if is_objective(kind) else ""
 
 
 def warn_warmup(config: TrainConfig) -> None:
-    """Say so if a stage ends before its learning rate has risen to its value."""
+    """Warn if a stage ends before its warmup."""
     for name, stage in config.active_stages.items():
         settings = stage.settings(config.trainer)
-        steps, warmup = settings.get("steps", 0), settings.get("warmup", 0)
+        steps = settings.get("steps", 0)
+        warmup = settings.get("warmup", 0)
         if 0 < steps <= warmup:
             say(
-                f"{name}: its {steps} steps are over before the learning rate has risen, for which "
-                f"it takes {warmup}: set trainer.warmup below trainer.steps"
+                f"{name}: it ends after {steps} steps, before the warmup of {warmup} steps is "
+                "over: set trainer.warmup below trainer.steps"
             )
 
 
 def drop_unread_corruptions(config: TrainConfig, agent: nn.Module) -> None:
-    """Take corruptions of frames that ``agent`` does not read out of the stages' schedules.
+    """Remove corruptions of sensors that ``agent`` does not read from the stages' schedules.
 
-    In their place it would train on clean frames. Prints which are dropped.
+    They would leave its frames clean. Prints the removed corruptions.
 
     Raises:
-        ValueError: if a schedule draws no others.
+        ValueError: A schedule has no other corruptions.
     """
     declared = as_agent(agent).sensors
     sensors = (RGB, DEPTH) if declared is None else declared
@@ -287,17 +287,17 @@ def drop_unread_corruptions(config: TrainConfig, agent: nn.Module) -> None:
         schedule = build(node)
         if not isinstance(schedule, Schedule) or schedule.mode == "clean":
             continue
-        kept = [n for n in schedule.names if modality(n) not in unread]
-        if not kept:
+        remaining = [n for n in schedule.names if modality(n) not in unread]
+        if not remaining:
             raise ValueError(
                 f"{cause}, and the schedule of the stage {name} draws only "
-                f"{', '.join(schedule.names)}: it would train on clean frames. Name corruptions of "
-                f"what it reads, of {', '.join(names(*sensors))} (schedule.names=[...]), or choose "
-                "another agent (docs/agents.md)."
+                f"{', '.join(schedule.names)}: it would train on clean frames. Choose from "
+                f"{', '.join(names(*sensors))} (schedule.names=[...]), or choose another agent "
+                "(docs/agents.md)."
             )
-        if len(kept) < len(schedule.names):
-            dropped |= dict.fromkeys(n for n in schedule.names if n not in kept)
-            stage.recipe["schedule"] = {**node, "names": kept}
+        if len(remaining) < len(schedule.names):
+            dropped |= dict.fromkeys(n for n in schedule.names if n not in remaining)
+            stage.recipe["schedule"] = {**node, "names": remaining}
     if dropped:
         say(f"{cause}: the schedule leaves out {', '.join(dropped)}")
 
@@ -306,7 +306,7 @@ def plan_stages(config: TrainConfig, agent: nn.Module, folder: Path) -> list[Sta
     """Return the stages that will run.
 
     Raises:
-        ValueError: for a stage that cannot train ``agent``, and as :meth:`ObjectiveSpec.of` does.
+        ValueError: A stage cannot train ``agent``; or raised by :meth:`ObjectiveSpec.of`.
     """
     _check_settings(config.agent, agent)
     stages = []
@@ -336,22 +336,22 @@ def _check_settings(node: Mapping[str, Any], agent: nn.Module) -> None:
     wrong = sorted(name for name in _settings_of(agent) if name not in known)
     if wrong:
         raise ValueError(
-            f"settings() of {type(agent).__name__} names {', '.join(wrong)}, which its constructor "
-            "does not take: return its arguments, so that the agent can be built again."
+            f"settings() of {type(agent).__name__} has {', '.join(wrong)}, which its constructor "
+            "does not take. Return arguments of the constructor, so that the agent can be rebuilt."
         )
 
 
 def _settings_of(agent: Any) -> dict[str, Any]:
-    """Return the settings of an agent; those of users need not have ``settings()``."""
+    """Return the settings of an agent; users' agents may lack ``settings()``."""
     return dict(getattr(agent, "settings", dict)())
 
 
 def check_fit(config: TrainConfig, agent: nn.Module, stages: list[StagePlan], ranks: Ranks) -> None:
-    """Check world, folder and stages against the agent before a step is taken.
+    """Check world, folder and stages against the agent before the first step.
 
     Raises:
-        ValueError: for a world that shows another number of views, for a folder with another run,
-            and for more ``ranks`` than a step has pieces.
+        ValueError: The world has another number of views, the folder holds another run, or there
+            are more ``ranks`` than a step has pieces.
     """
     contract = as_agent(agent)
     if contract.views is not None or contract.sensors is not None:
@@ -370,10 +370,12 @@ def check_folder(config: TrainConfig, stages: list[StagePlan]) -> None:
             continue
         if name not in config.stages:
             raise ValueError(
-                f"{folder} holds a run of another recipe: it has trained a stage {name}, and the "
-                f"recipe {config.name} has {', '.join(config.stages)}. {states.OTHER_FOLDER}"
+                f"{folder} holds a run of another recipe: it has a stage {name}, but the recipe "
+                f"{config.name} has {', '.join(config.stages)}. {states.OTHER_FOLDER}"
             )
-        if name in planned:  # the trainer compares all of it, but only when its stage begins
+        if (
+            name in planned
+        ):  # the trainer compares the whole identity, but only at the start of the stage
             try:
                 recorded = read_object(file, states.OTHER_FOLDER)
             except ValueError:  # damaged: the checkpoints hold it too
@@ -383,20 +385,20 @@ def check_folder(config: TrainConfig, stages: list[StagePlan]) -> None:
 
 
 def check_stages(name: str, agent: nn.Module, stages: list[StagePlan], ranks: Ranks) -> None:
-    """Build the objectives of all stages on a copy of ``agent``, up to the first of a user.
+    """Build the objectives of all stages on a copy of ``agent``, up to the first user's objective.
 
-    A mistake in the last stage must not show only after the others have trained. What a user's
-    stage leaves, and what later stages need of that, is unknown before.
+    This finds a mistake in a later stage before the first one trains. What a user's objective
+    changes in the agent is unknown before it has trained.
 
     Raises:
-        ValueError: for more ``ranks`` than pieces, and as the objectives do.
-        FileNotFoundError: as the objectives do.
+        ValueError: There are more ``ranks`` than pieces; or raised by an objective.
+        FileNotFoundError: raised by an objective.
     """
-    if len(stages) < 2 and ranks.count == 1:  # the first one is built next
+    if len(stages) < 2 and ranks.count == 1:  # the only stage is built next
         return
     try:
         copied = copy.deepcopy(agent)
-    except Exception:  # of any kind: an agent that cannot be copied may still be trained
+    except Exception:  # any error: an agent that cannot be copied may still be trained
         return
     for stage in stages:
         if not stage.objective.target.startswith(OURS):
@@ -408,10 +410,10 @@ def check_stages(name: str, agent: nn.Module, stages: list[StagePlan], ranks: Ra
 
 
 def agent_config(node: Mapping[str, Any], agent: nn.Module) -> dict[str, Any]:
-    """Return the config that is written beside the weights of ``agent``.
+    """Return the config that is written with the weights of ``agent``.
 
-    It holds the agent's own ``settings()``, such as its vocabulary. Which classes are inside is for
-    the reader's own config to say.
+    It holds the agent's ``settings()``, such as its vocabulary. It names no classes inside the
+    agent: the config of the reader decides those.
     """
 
     def data(value: Any) -> Any:
@@ -419,6 +421,6 @@ def agent_config(node: Mapping[str, Any], agent: nn.Module) -> dict[str, Any]:
             return {k: data(v) for k, v in value.items() if not str(k).startswith("_")}
         return value
 
-    barred = as_agent(agent).own_config_only
-    config = {name: value for name, value in data(node).items() if name not in barred}
+    excluded = as_agent(agent).own_config_only
+    config = {name: value for name, value in data(node).items() if name not in excluded}
     return {"_target_": node["_target_"], **config, **data(_settings_of(agent))}

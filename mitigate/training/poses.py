@@ -1,5 +1,7 @@
-"""Batches of corrupted panoramas from random poses with their labels, for objectives that teach
-encoders. They depend on no weights, so workers make them ahead of time."""
+"""Make batches of corrupted panoramas from random poses, with labels, to train encoders.
+
+The batches do not depend on weights, so workers make them ahead of time.
+"""
 
 from __future__ import annotations
 
@@ -20,11 +22,11 @@ from mitigate.training.success import DrawsBySuccess
 from mitigate.worlds.episodes import share_of
 from mitigate.worlds.world import Placeable, TrainingEpisodes, depth_sensor
 
-PIECE = 6  # panoramas that one job renders (ours)
+PIECE = 6  # panoramas that one job renders (heuristic)
 VIEWS_ALONE = (
-    f"This stage teaches encoders on views alone. {OWN} Of the recipes, imitation, da_per_frame, "
-    "da_per_episode, da_success and ts_distill do without, for agents that learn on episodes; so "
-    "does one of your own with recipes/adapt.py (Adapt)."
+    f"This stage trains encoders on single views. {OWN} The recipes imitation, da_per_frame, "
+    "da_per_episode, da_success and ts_distill train on episodes instead; so does your own recipe "
+    "with recipes/adapt.py (Adapt)."
 )
 
 
@@ -33,19 +35,19 @@ class Poses(DrawsBySuccess):
     """The source of batches of panoramas from random poses, corrupted and clean.
 
     Args:
-        agent: whose success rates a success-distributed schedule without rates starts from.
-        world: makes a world that can look from anywhere (``worlds/world.py``).
-        training: the episodes of a measurement of success rates.
+        agent: its success rates are measured if a success-distributed schedule has none.
+        world: makes a world with random poses (``Placeable`` in ``worlds/world.py``).
+        training: episodes for measurements of success rates.
         modality: the sensor, "rgb" or "depth".
-        schedule: which panorama is corrupted by what; None: frames stay clean.
-        panoramas: per batch.
-        seed: of poses and corruptions.
-        refresh_episodes: episodes per corruption of such a measurement.
-        own: draw corruptions of this sensor alone; else those of the other leave its frames clean.
+        schedule: chooses the corruption of each panorama; None keeps frames clean.
+        panoramas: number per batch.
+        seed: seed of poses and corruptions.
+        refresh_episodes: episodes per corruption of a measurement.
+        own: draw only corruptions of this sensor; else corruptions of other sensors leave its
+            frames clean.
 
     Raises:
-        ValueError: for an unknown sensor, for no panoramas, and for a world that cannot look from
-            anywhere.
+        ValueError: The sensor is unknown, there are no panoramas, or the world has no random poses.
     """
 
     agent: Any
@@ -60,7 +62,7 @@ class Poses(DrawsBySuccess):
 
     def __post_init__(self) -> None:
         if self.modality not in ("rgb", "depth"):
-            raise ValueError(f"modality={self.modality!r} is unknown; choose 'rgb' or 'depth'.")
+            raise ValueError(f"modality must be 'rgb' or 'depth', got {self.modality!r}.")
         check_panoramas(self.panoramas)
         self.sensor = self.modality
         self.schedule = self.schedule or Schedule("clean", 0.0)
@@ -72,10 +74,11 @@ class Poses(DrawsBySuccess):
         self._last: np.ndarray | None = None
 
     def learn(self, label: str, every: int) -> None:
-        """Give ``label``, an entry of the world's truth, as targets; without it they are empty.
+        """Choose the targets and views of later batches; without this call targets are empty.
 
-        Learn from every second view of a panorama only (2), since neighbours overlap, or from all
-        of them (1).
+        Args:
+            label: entry of the world's truth to use as targets.
+            every: 1 uses all views of a panorama, 2 every second one, since neighbours overlap.
         """
         self.label = label
         self.every = every
@@ -87,24 +90,27 @@ class Poses(DrawsBySuccess):
     def placed(self) -> Placeable:
         """The world of this process."""
         if self._placed is None:
-            made = self.world()
-            if not isinstance(made, Placeable):
+            world = self.world()
+            if not isinstance(world, Placeable):
                 raise ValueError(
-                    f"{type(made).__name__} cannot look from anywhere (scenes, enter, point, put), "
-                    "so encoders cannot be taught on random poses there. Leave out the stages that "
-                    "do (stages.NAME=null), or give the world these (docs/bring-your-own.md)."
+                    f"{type(world).__name__} has no random poses (scenes, enter, point, put), so "
+                    "it "
+                    "cannot train encoders on them. Leave out those stages (stages.NAME=null), or "
+                    "add these methods to the world (docs/bring-your-own.md)."
                 )
-            self._placed = made
+            self._placed = world
         return self._placed
 
     @property
     def pieces(self) -> int:
-        """How many jobs every step has."""
+        """Number of jobs of every step."""
         return -(-self.panoramas // PIECE)
 
     def jobs(self, step: int, workers: int | None = None) -> list[tuple]:
-        """(step, piece, of how many, panoramas, the schedule's state) of each piece; ``workers``:
-        processes that measure success rates where there are none."""
+        """Return one job per piece: (step, piece, pieces, panoramas, state of the schedule).
+
+        ``workers`` processes measure success rates if the schedule needs them and has none.
+        """
         if self.schedule.mode == "success_distributed" and self.schedule.success is None:
             self.refresh(step, workers)
         pieces = self.pieces
@@ -113,7 +119,7 @@ class Poses(DrawsBySuccess):
         return [(step, piece, pieces, count, state) for piece, count in enumerate(counts)]
 
     def work(self, job: tuple) -> list[tuple[np.ndarray, ...]]:
-        """(frames, the same before the corruption, labels) of each random pose of a piece."""
+        """Return (corrupted frames, clean frames, labels) of each random pose of a piece."""
         step, piece, pieces, count, state = job
         self.set_schedule(state)
         rng = generator(self.seed, "perception", self.sensor, step, piece)
@@ -121,7 +127,7 @@ class Poses(DrawsBySuccess):
         return [self._panorama(rng, scenes, f"{step}-{piece}-{i}") for i in range(count)]
 
     def collate(self, pieces: list[list[tuple]]) -> dict[str, Any]:
-        """The pieces as tensors "frames", "clean" and "targets"."""
+        """Return the pieces as tensors "frames", "clean" and "targets"."""
         rows = [row for piece in pieces for row in piece]
         names = ("frames", "clean", "targets")
         self._last = rows[-1][0]
@@ -131,37 +137,38 @@ class Poses(DrawsBySuccess):
         }
 
     def figures(self) -> dict[str, np.ndarray]:
-        """The last views of the last batch: of RGB side by side, of depth in metres as grey."""
+        """Return the last views of the last batch side by side; depth is drawn as grey."""
         return {} if self._last is None else {"views": side_by_side(self._last)}
 
     def _panorama(self, rng: np.random.Generator, scenes: Any, name: str) -> tuple[np.ndarray, ...]:
-        """Frames, the same before the corruption, and labels of one random pose."""
+        """Return corrupted frames, clean frames and labels of one random pose."""
         self.placed.enter(scenes[int(rng.integers(len(scenes)))])
         xy = self.placed.point(rng)
         if len(self.placed.sensors[self.sensor].yaws) == 1:
-            looks = [self._look(xy, rng, name, i) for i in range(VIEWS // self.every)]
-            return tuple(np.stack(part) for part in zip(*looks, strict=True))
+            rows = [self._view(xy, rng, name, i) for i in range(VIEWS // self.every)]
+            return tuple(np.stack(part) for part in zip(*rows, strict=True))
         heading = float(rng.uniform(-np.pi, np.pi))
         first = int(rng.integers(self.every)) if self.every > 1 else 0
         views = list(range(first, VIEWS, self.every))
         clean, truth = self.placed.put(xy, heading, views=views, rgb=self.sensor == RGB)
-        # a corruption may show another view's picture: a view not rendered has that of one that was
-        shown = [views[(view - first) // self.every % len(views)] for view in range(VIEWS)]
-        clean = {**clean, self.sensor: clean[self.sensor][shown]}
-        drawn = self.schedule.draw(self.seed, name, 0)
-        frames = corrupt_observation(clean, *drawn, depth_sensor(self.placed.sensors))
+        # A corruption may replace a view by another one, so views that were not rendered repeat
+        # others.
+        sources = [views[(view - first) // self.every % len(views)] for view in range(VIEWS)]
+        clean = {**clean, self.sensor: clean[self.sensor][sources]}
+        corruptions = self.schedule.draw(self.seed, name, 0)
+        frames = corrupt_observation(clean, *corruptions, depth_sensor(self.placed.sensors))
         target = self._target(truth)
         target = target[views] if len(target) == VIEWS else target
         return frames[self.sensor][views], clean[self.sensor][views], target
 
-    def _look(
+    def _view(
         self, xy: np.ndarray, rng: np.random.Generator, name: str, number: int
     ) -> tuple[np.ndarray, ...]:
-        """As :meth:`_panorama`, of one view of one camera."""
+        """Return the same as :meth:`_panorama` for one view of a single camera."""
         heading = float(rng.uniform(-np.pi, np.pi))
         clean, truth = self.placed.put(xy, heading, views=None, rgb=self.sensor == RGB)
-        drawn = self.schedule.draw(self.seed, name, number)
-        frames = corrupt_observation(clean, *drawn, depth_sensor(self.placed.sensors))
+        corruptions = self.schedule.draw(self.seed, name, number)
+        frames = corrupt_observation(clean, *corruptions, depth_sensor(self.placed.sensors))
         return frames[self.sensor], clean[self.sensor], self._target(truth)
 
     def _target(self, truth: Mapping[str, np.ndarray]) -> np.ndarray:
@@ -169,7 +176,7 @@ class Poses(DrawsBySuccess):
 
 
 class OnViews(Objective):
-    """An objective that teaches encoders on the views of the ``poses`` that it receives."""
+    """An objective that trains encoders on the views of its source ``poses``."""
 
     sources: ClassVar[Mapping[str, Callable[..., Any]]] = {"poses": Poses}
     ahead = True
@@ -190,7 +197,7 @@ class OnViews(Objective):
         return self.poses.collate(pieces)
 
     def weight(self, batch: dict[str, Any]) -> float:
-        """Panoramas, or views of one camera."""
+        """Return the number of panoramas, or of views of a single camera."""
         return float(len(batch["frames"]))
 
     def figures(self, step: int) -> dict[str, np.ndarray]:
@@ -206,4 +213,4 @@ class OnViews(Objective):
 def check_panoramas(panoramas: int) -> None:
     """Raise ValueError for less than one panorama per step."""
     if panoramas < 1:
-        raise ValueError(f"recipe.panoramas={panoramas} a step are none: give 1 or more.")
+        raise ValueError(f"recipe.panoramas must be >= 1 per step, got {panoramas}.")

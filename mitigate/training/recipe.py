@@ -1,4 +1,4 @@
-"""The former name of :mod:`mitigate.training.objective`, for subclasses that users wrote."""
+"""Deprecated name of :mod:`mitigate.training.objective`, for subclasses of users."""
 
 from __future__ import annotations
 

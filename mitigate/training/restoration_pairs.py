@@ -1,5 +1,5 @@
-"""Pairs of corrupted and clean frames to learn from: panoramas of random poses of a world, or the
-frames of a folder."""
+"""Sources of pairs of corrupted and clean frames: random poses of a world, or a folder of "
+"frames."""
 
 from __future__ import annotations
 
@@ -23,42 +23,45 @@ GROUP = 12  # frames of a folder that count as one panorama of a batch
 
 
 class PosePairs(Poses):
-    """Panoramas of random poses (``training/poses.py``); of a world with one camera, views of
-    random poses."""
+    """Panoramas from random poses (``training/poses.py``), or views if the world has one camera."""
 
-    ring = False  # whether the views of an instant are of one panorama
+    ring = False  # whether the views of an instant form a panorama
 
     def start(self) -> None:
-        """Learn from the world what its views are; ValueError if it cannot look from anywhere or
-        has no such sensor."""
+        """Read the number of views from the world.
+
+        Raises ValueError if the world has no random poses or lacks the sensor.
+        """
         if self.sensor not in self.placed.sensors:
             raise ValueError(
-                f"{type(self.placed).__name__} shows no {self.sensor}: set agent.sensors to what "
-                f"it shows ({', '.join(self.placed.sensors)})."
+                f"{type(self.placed).__name__} has no {self.sensor}. Set agent.sensors to sensors "
+                f"that it has ({', '.join(self.placed.sensors)})."
             )
         self.ring = len(self.placed.sensors[self.sensor].yaws) > 1
 
     def identity(self) -> dict[str, str]:
-        """Nothing: poses follow from the settings."""
+        """Return nothing: poses follow from the settings."""
         return {}
 
     def collate(self, pieces: list[Any]) -> dict[str, Any]:
-        """As :meth:`Poses.collate`, without targets."""
-        made = super().collate(pieces)
-        return {"frames": made["frames"], "clean": made["clean"]}
+        """Return the batch of :meth:`Poses.collate` without targets."""
+        batch = super().collate(pieces)
+        return {"frames": batch["frames"], "clean": batch["clean"]}
 
 
 @dataclass(eq=False, repr=False)
 class FramePairs:
-    """Frames of a folder, each corrupted as an instant of its own (``encoders/sources.py``).
+    """Frames of a folder, each corrupted as a separate instant (``encoders/sources.py``).
 
     Attributes:
-        source: of the frames.
-        schedule: of corruptions of ``sensor``.
-        count: frames that are read, once.
-        panoramas: groups of ``GROUP`` frames of a step.
-        seed: of frames and corruptions.
-        depth: what depth is in them.
+        source: where the frames come from.
+        schedule: schedule of corruptions of ``sensor``.
+        sensor: "rgb" or "depth".
+        count: number of frames, read once.
+        panoramas: groups of ``GROUP`` frames per step.
+        seed: seed of frames and corruptions.
+        depth: properties of depth in the frames.
+        frames: the frames after :meth:`start`.
     """
 
     source: Source
@@ -69,46 +72,46 @@ class FramePairs:
     seed: int
     depth: DepthSensor
     frames: Frames | None = None
-    ring: ClassVar[bool] = False  # each frame is an instant of its own
+    ring: ClassVar[bool] = False  # each frame is a separate instant
 
     def __post_init__(self) -> None:
         check_panoramas(self.panoramas)
 
     def start(self) -> None:
-        """Read the frames, once."""
+        """Read the frames on the first call."""
         if self.frames is None:
             self.frames = collect(self.source, TRAIN, self.count, self.seed)
 
     def identity(self) -> dict[str, str]:
-        """The sum of the frames."""
+        """Return the sha256 of the frames."""
         self.start()
         assert self.frames is not None
         return {"frames_sha256": self.frames.sha256()}
 
     def __getstate__(self) -> dict[str, Any]:
-        """Without the frames, of which workers get those of their jobs."""
+        """Return the state without the frames; workers receive those of their jobs."""
         return {**self.__dict__, "frames": None}
 
     def jobs(self, step: int) -> list[tuple[int, int, Frames]]:
-        """(step, group, its frames) of each group."""
+        """Return one job per group: (step, group, its frames)."""
         assert self.frames is not None, "start() reads the frames"
-        made = []
+        jobs = []
         for group in range(self.panoramas):
             rng = generator(self.seed, "restore frames", step, group)
-            made.append((step, group, self.frames.some(rng.integers(len(self.frames), size=GROUP))))
-        return made
+            jobs.append((step, group, self.frames.some(rng.integers(len(self.frames), size=GROUP))))
+        return jobs
 
     def work(self, job: tuple[int, int, Frames]) -> tuple[np.ndarray, np.ndarray]:
-        """Corrupted and clean frames [GROUP, H, W, c] of a group."""
+        """Return corrupted and clean frames [GROUP, H, W, c] of a group."""
         step, group, clean = job
         frames = []
         for index in range(len(clean)):
-            drawn = self.schedule.draw(self.seed, f"{step}-{group}-{index}", 0)
-            frames.append(corrupted(clean, index, *drawn, self.depth))
+            corruptions = self.schedule.draw(self.seed, f"{step}-{group}-{index}", 0)
+            frames.append(corrupted(clean, index, *corruptions, self.depth))
         return np.stack(frames), clean.frames
 
     def collate(self, pieces: list[Any]) -> dict[str, Any]:
-        """The groups as tensors "frames" and "clean"."""
+        """Return the groups as tensors "frames" and "clean"."""
         frames, clean = (np.stack(part) for part in zip(*pieces, strict=True))
         return {"frames": torch.from_numpy(frames), "clean": torch.from_numpy(clean)}
 
@@ -126,24 +129,24 @@ def pairs_of(
     frames: int = 4800,
     seed: int = 0,
 ) -> Pairs:
-    """Return the pairs of an ``env`` config: of a world, or of a folder of frames.
+    """Return the source of pairs for an ``env`` config: a world or a folder of frames.
 
-    A folder has no ``training`` episodes, and ``frames`` of it are read, once.
+    A folder has no ``training`` episodes; ``frames`` frames of it are read once.
 
     Raises:
-        ValueError: for a schedule by success.
+        ValueError: The schedule is success-distributed.
     """
     success.refuse(schedule)
     if training is None:
         depth = replace(SENSOR, z_max=agent.parts()[modality].far)
         source = source_of(world, modality, None, "", None)
-        own = schedule.only(modality)
-        return FramePairs(source, own, modality, frames, panoramas, seed, depth)
+        sensor_schedule = schedule.only(modality)
+        return FramePairs(source, sensor_schedule, modality, frames, panoramas, seed, depth)
     return PosePairs(agent, world, training, modality, schedule, panoramas, seed, own=True)
 
 
 def with_clean_share(pairs: Pairs, share: float) -> Pairs:
-    """Return ``pairs`` of which a ``share`` stays clean; neither has been started."""
+    """Return a copy of ``pairs`` of which a ``share`` stays clean; call it before ``start``."""
     copied = copy.copy(pairs)
     copied.schedule = replace(pairs.schedule, clean_share=share)
     return copied

@@ -1,7 +1,7 @@
-"""Batches of decisions that an agent takes in corrupted worlds, for objectives that imitate.
+"""Make batches of an agent's decisions in corrupted worlds, for objectives that imitate.
 
-Every step rolls out a few training episodes with the current weights under the schedule's
-corruptions; its batch is all their decisions.
+Every step runs a few training episodes with the current weights under the corruptions of the
+schedule; its batch holds all their decisions.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from mitigate.training.parts import OWN, TRAINABLE
 from mitigate.training.success import DrawsBySuccess, prior_rates
 from mitigate.worlds.world import Corrupted, TrainingEpisodes, World
 
-PIECES = 4  # jobs that the episodes of a step are shared out to (ours)
+PIECES = 4  # jobs that share the episodes of a step (heuristic)
 
 
 @dataclass(eq=False, repr=False)
@@ -32,19 +32,19 @@ class Rollouts(DrawsBySuccess):
     Args:
         agent: acts with its current weights, and gives the batches (``agents/agent.py``).
         world: makes a world.
-        training: where episodes come from.
-        schedule: which frame is corrupted by what, a success-distributed one by success rates of
-            ``agent``; None: frames stay clean.
-        episodes: per step.
-        follow_oracle: share of their decisions that the expert takes.
-        seed: of episodes, corruptions and actions.
-        prior: rows of one earlier evaluation, from which a success-distributed schedule starts.
-        refresh_every: steps between two measurements of the success rates that such a schedule
-            draws by; 0: none after the first, which is made where there are no rates.
-        refresh_episodes: training episodes per corruption of such a measurement.
+        training: source of the episodes.
+        schedule: chooses the corruption of each frame; a success-distributed schedule uses success
+            rates of ``agent``. None keeps frames clean.
+        episodes: number per step.
+        follow_oracle: share of decisions that the expert takes.
+        seed: seed of episodes, corruptions and actions.
+        prior: rows of one earlier evaluation, the first success rates of the schedule.
+        refresh_every: steps between two measurements of success rates; 0 measures only if there are
+            no rates.
+        refresh_episodes: training episodes per corruption of a measurement.
 
     Raises:
-        ValueError: for no episodes, for an invalid share, and as ``prior_rates`` does.
+        ValueError: There are no episodes, or a share is invalid; or raised by ``prior_rates``.
     """
 
     agent: Any
@@ -69,28 +69,27 @@ class Rollouts(DrawsBySuccess):
             self.schedule.refresh(prior_rates(self.prior))
 
     def keep_clean(self, *teachers: Any) -> None:
-        """Keep the observations before their corruption too.
-
-        ``teachers`` precompute from them what no trained weight changes.
-        """
+        """Also keep clean observations; ``teachers`` precompute their fixed features from them."""
         self.clean = True
         self.teachers = teachers
 
     @property
     def pieces(self) -> int:
-        """How many jobs every step has."""
+        """Number of jobs of every step."""
         return min(PIECES, self.episodes)
 
     def identity(self) -> dict[str, str]:
-        """Hashes of the files that the batches are made of."""
+        """Return hashes of the files that the batches depend on."""
         prior = {} if self.prior is None else {"prior_sha256": sha256(self.prior)}
-        # users' episodes may come from no files
+        # users' episodes may not come from files
         files: dict[str, str] = getattr(self.training, "identity", dict)()
         return {**files, **prior}
 
     def jobs(self, step: int, workers: int | None = None) -> list[tuple]:
-        """(step, piece, of how many, episodes, the schedule's state) of each piece; ``workers``:
-        processes that measure success rates where they are due."""
+        """Return one job per piece: (step, piece, pieces, episodes, state of the schedule).
+
+        ``workers`` processes measure success rates when they are due.
+        """
         due = bool(self.refresh_every) and step % self.refresh_every == 0
         due = due and not (step == 0 and self.prior)
         if self.schedule.mode == "success_distributed" and (due or self.schedule.success is None):
@@ -100,7 +99,8 @@ class Rollouts(DrawsBySuccess):
         return [(step, i, len(parts), len(part), state) for i, part in enumerate(parts)]
 
     def work(self, job: tuple) -> tuple[Any, np.ndarray | None]:
-        """What was decided in the episodes of a piece, and a picture of the last look."""
+        """Return the decisions in the episodes of a piece, and a picture of the last "
+        "observation."""
         step, piece, pieces, count, state = job
         self.set_schedule(state)
         rngs = [generator(self.seed, "rollout", step, piece, i) for i in range(count)]
@@ -109,20 +109,20 @@ class Rollouts(DrawsBySuccess):
             Corrupted(self.world(), self.schedule, self.seed, f"{step}-{piece}-{i}")
             for i in range(count)
         ]
-        made = self.agent.collect(
+        decisions = self.agent.collect(
             worlds, episodes, expert_share=self.follow_oracle, rngs=rngs, clean=self.clean
         )
         for teacher in self.teachers:
-            made = as_agent(teacher).precompute(made, clean=True)
-        return made, picture(worlds[0].last)
+            decisions = as_agent(teacher).precompute(decisions, clean=True)
+        return decisions, picture(worlds[0].last)
 
     def collate(self, pieces: list[tuple]) -> Decisions:
-        """The decisions of all pieces."""
+        """Return the decisions of all pieces."""
         self.picture = pieces[0][1] if pieces[0][1] is not None else self.picture
         return self.agent.join([piece for piece, _ in pieces])
 
     def figures(self) -> dict[str, np.ndarray]:
-        """A panorama as the agent saw it in the last batch."""
+        """Return an observation of the agent from the last batch."""
         return {} if self.picture is None else {"seen": self.picture}
 
 
@@ -131,7 +131,7 @@ class OnEpisodes(Objective):
 
     sources: ClassVar[Mapping[str, Callable[..., Any]]] = {"rollouts": Rollouts}
     needs = TRAINABLE
-    otherwise = f"This recipe learns from episodes that the agent walks. {OWN}"
+    otherwise = f"This recipe trains on episodes that the agent runs. {OWN}"
     rollouts: Rollouts
 
     def identity(self) -> dict[str, str]:
@@ -150,7 +150,7 @@ class OnEpisodes(Objective):
         return batch_of(self.rollouts.collate(pieces))
 
     def evaluate(self, step: int) -> dict[str, float]:
-        """The schedule's weights, for the log."""
+        """Return the weights of the schedule, for the log."""
         return {f"p/{name}": p for name, p in self.rollouts.schedule.weights.items()}
 
     def figures(self, step: int) -> dict[str, np.ndarray]:
@@ -164,11 +164,11 @@ class OnEpisodes(Objective):
 
 
 def batch_of(decisions: Decisions) -> dict[str, Any]:
-    """Decisions as the trainer takes a batch."""
+    """Return decisions as a batch for the trainer."""
     return {"decisions": decisions, "episode_ids": [str(name) for name in decisions.episode_ids]}
 
 
 def check_episodes(episodes: int) -> None:
     """Raise ValueError for less than one episode per step."""
     if episodes < 1:
-        raise ValueError(f"episodes={episodes} a step are none: give 1 or more (rollouts=20).")
+        raise ValueError(f"episodes per step must be >= 1, got {episodes}. Set e.g. rollouts=20.")

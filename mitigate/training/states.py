@@ -1,7 +1,7 @@
-"""States of a training: ``step-00001000.pt`` holds all that a run needs to go on bit for bit.
+"""States of a training: ``step-00001000.pt`` holds all that a run needs to resume bit for bit.
 
-They are whole or not there: atomic writes, rotation, loading that runs no code. Beside each lies
-its sha256 (``core/checksums.py``), which is compared before the file is read.
+They are written atomically and rotated, and loading runs no code. A sidecar holds the sha256 of
+each (``core/checksums.py``), which is checked before the file is read.
 """
 
 from __future__ import annotations
@@ -24,25 +24,27 @@ _NAME = re.compile(r"step-(\d{8})\.pt")
 
 
 class Damaged(ValueError):
-    """A checkpoint is cut short, or not the bytes that were written."""
+    """A checkpoint is cut short, or its bytes have changed."""
 
 
 def checkpoints(folder: Path) -> list[Path]:
     """Return the checkpoints in ``folder``, oldest first."""
-    found = [path for path in Path(folder).glob("step-*.pt") if _NAME.fullmatch(path.name)]
-    return sorted(found)
+    return sorted(path for path in Path(folder).glob("step-*.pt") if _NAME.fullmatch(path.name))
 
 
 def steps_done(path: Path) -> int:
-    """Return the number of updates that a checkpoint's name states."""
-    found = _NAME.fullmatch(path.name)
-    assert found, f"{path} is no checkpoint's name"
-    return int(found[1])
+    """Return the number of updates in the name of a checkpoint."""
+    match = _NAME.fullmatch(path.name)
+    assert match, f"{path} is not the name of a checkpoint"
+    return int(match[1])
 
 
 def save(folder: Path, state: dict[str, Any], *, keep: int = 2) -> Path:
-    """Write ``state`` as ``step-<state["step"]>.pt``, then delete the older ones but the newest
-    ``keep - 1``. One of a later step, which was damaged when the run went on, stays."""
+    """Write ``state`` as ``step-<state["step"]>.pt`` and delete older checkpoints.
+
+    ``keep`` checkpoints stay. A checkpoint of a later step, which was damaged when the run resumed,
+    also stays.
+    """
     assert set(REQUIRED) <= {"format", *state}, f"state lacks {set(REQUIRED) - set(state)}"
     path = Path(folder) / f"step-{state['step']:08d}.pt"
     checksums.write(path, lambda file: _torch_save({"format": FORMAT, **state}, file))
@@ -56,37 +58,39 @@ def save(folder: Path, state: dict[str, Any], *, keep: int = 2) -> Path:
 def load(path: Path) -> dict[str, Any]:
     """Return the state in ``path`` (tensors on the CPU).
 
-    Raises FileNotFoundError if it is missing, Damaged if it is cut short or not what was written,
-    ValueError if it is not a checkpoint of this trainer, or whole and still cannot be read.
+    Raises:
+        FileNotFoundError: The file is missing.
+        Damaged: It is cut short or its bytes have changed.
+        ValueError: It is not a checkpoint of this trainer, or is intact but cannot be read.
     """
     path = Path(path)
     if not path.is_file():
         raise FileNotFoundError(f"There is no checkpoint {path}: check the path.")
-    noted = checksums.sidecar(path).is_file()
-    problem = checksums.problem(path) if noted else _zip_problem(path)
+    has_sum = checksums.sidecar(path).is_file()
+    problem = checksums.problem(path) if has_sum else _zip_problem(path)
     if problem:
-        raise Damaged(_broken(path, f"{problem}: it, or the sum, is cut short or damaged"))
+        raise Damaged(_broken(path, f"{problem}: the file or its checksum is cut short or damaged"))
     try:
         state = torch.load(path, map_location="cpu", weights_only=True)
-    except Exception as error:  # of any kind, where the file was not written by torch
-        if noted:  # it is, to the byte: memory ran out, or it holds what is not plain data
+    except Exception as error:  # any error, if torch did not write the file
+        if has_sum:  # intact: memory ran out, or it holds more than plain data
             cause = " ".join(str(error).split())[:300]
-            what = f"The checkpoint {path} is whole, but cannot be read: {cause}"
+            what = f"The checkpoint {path} is intact, but cannot be read: {cause}"
             raise ValueError(what) from error
         raise Damaged(_broken(path, "is cut short, damaged or not a torch file")) from error
     missing = [k for k in REQUIRED if k not in state] if isinstance(state, dict) else REQUIRED
     if missing:
-        raise ValueError(_broken(path, f"lacks {', '.join(missing)}: another program wrote it"))
+        raise ValueError(_broken(path, f"has no {', '.join(missing)}: another program wrote it"))
     if state["format"] != FORMAT:
-        raise ValueError(_broken(path, f"has format {state['format']}, this code reads {FORMAT}"))
+        raise ValueError(_broken(path, f"must have format {FORMAT}, got {state['format']}"))
     return state
 
 
 def load_newest(folder: Path) -> tuple[Path, dict[str, Any]] | None:
-    """Return the newest sound checkpoint in ``folder`` and its state, None if there is none at all.
+    """Return the newest intact checkpoint in ``folder`` and its state; None if there are none.
 
-    Prints a line for each damaged one that is passed over. Raises Damaged if all are damaged (none
-    is deleted), and as :func:`load` does.
+    Prints a line for each damaged checkpoint that is skipped. Raises Damaged if all are damaged
+    (none is deleted), and as :func:`load` does.
     """
     damaged: list[Path] = []
     for path in reversed(checkpoints(folder)):
@@ -96,14 +100,14 @@ def load_newest(folder: Path) -> tuple[Path, dict[str, Any]] | None:
             damaged.append(path)
             continue
         for other in damaged:
-            print(f"{other} is damaged; going on from {path.name}", flush=True)
+            print(f"{other} is damaged; resuming from {path.name}", flush=True)
         return path, state
     if damaged:
         raise Damaged(
             f"Every checkpoint in {folder} is cut short or damaged ("
-            f"{', '.join(path.name for path in damaged)}); none was deleted. Copy them back if you "
-            f"have them elsewhere. If their {checksums.SUFFIX} files alone are damaged, delete "
-            "these; to train from the start, delete the folder. Then run the same command again."
+            f"{', '.join(path.name for path in damaged)}); none was deleted. Restore them if you "
+            f"have a copy. If only their {checksums.SUFFIX} files are damaged, delete these. To "
+            "train from the start, delete the folder. Then run the same command again."
         )
     return None
 
@@ -121,7 +125,7 @@ def differences(old: Any, new: Any, path: str = "") -> list[str]:
 
 
 def check_same(folder: Path, old: dict[str, Any], new: dict[str, Any]) -> None:
-    """Raise ValueError if the run in ``folder`` was begun with the config ``old``, not ``new``."""
+    """Raise ValueError if the run in ``folder`` has another config (``old``) than ``new``."""
     different = differences(old, new)
     if different:
         raise ValueError(
@@ -131,37 +135,39 @@ def check_same(folder: Path, old: dict[str, Any], new: dict[str, Any]) -> None:
 
 
 def as_json(config: dict[str, Any]) -> dict[str, Any]:
-    """``config`` as JSON gives it back: a checkpoint is read without running code, and so holds
-    plain data alone."""
-    held: dict[str, Any] = json.loads(json.dumps(config))
-    return held
+    """Return ``config`` as JSON reads it back.
+
+    A checkpoint holds only plain data, since it is read without running code.
+    """
+    data: dict[str, Any] = json.loads(json.dumps(config))
+    return data
 
 
 def _zip_problem(path: Path) -> str:
-    """Return what is wrong with a file of ``torch.save`` by the checksums that zip files hold."""
+    """Return what is wrong with a file of ``torch.save``, by the checksums of its zip archive."""
     try:
         with zipfile.ZipFile(path) as archive:
             packed = any(part.compress_type != zipfile.ZIP_STORED for part in archive.infolist())
             wrong = None if packed else archive.testzip()
-    except Exception:  # zipfile meets a damaged file with errors of many kinds
-        return "is no whole zip file, as torch writes"
+    except Exception:  # zipfile raises many kinds of errors for damaged files
+        return "is not a complete zip file, as torch writes"
     if packed:
-        return "is compressed, as torch's files are not"
-    return f"has other bytes in {wrong} than were written" if wrong else ""
+        return "is compressed, unlike files of torch"
+    return f"has changed bytes in {wrong}" if wrong else ""
 
 
 def _broken(path: Path, cause: str) -> str:
     older = [other.name for other in checkpoints(path.parent) if other.name < path.name]
     fix = (
-        f"An older checkpoint is kept: run the same command again, which goes on from {older[-1]}."
+        f"An older checkpoint exists: run the same command again to resume from {older[-1]}."
         if older
-        else f"No older checkpoint lies beside it: delete {path.name} to train from the start."
+        else f"There is no older checkpoint: delete {path.name} to train from the start."
     )
     return f"The checkpoint {path} ({path.stat().st_size} bytes) {cause}. {fix}"
 
 
 def _torch_save(state: dict[str, Any], file: Path) -> None:
-    """As ``torch.save``, where a write that fails is an OSError as elsewhere."""
+    """Call ``torch.save``; raise OSError if the write fails."""
     try:
         torch.save(state, file)
     except RuntimeError as error:

@@ -1,4 +1,4 @@
-"""Success rates by corruption, which a success-distributed schedule draws by."""
+"""Measure success rates by corruption, for success-distributed schedules."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from mitigate.worlds.world import TrainingEpisodes, World
 
 
 class DrawsBySuccess:
-    """What sources of batches share whose schedule may draw by the success rates of their agent."""
+    """Base of sources of batches whose schedule may use success rates of their agent."""
 
     agent: Any
     world: Callable[[], Any]
@@ -29,7 +29,8 @@ class DrawsBySuccess:
     refresh_episodes: int
 
     def refresh(self, step: int, workers: int | None = None) -> None:
-        """Measure the success under every corruption on training episodes, for the schedule."""
+        """Measure the success under every corruption on training episodes, and update the "
+        "schedule."""
         rates = measure(
             self.agent,
             self.schedule,
@@ -44,7 +45,7 @@ class DrawsBySuccess:
         hold_statistics(self.agent.train())
 
     def set_schedule(self, state: dict[str, Any]) -> None:
-        """Draw as the schedule did when a job was ordered."""
+        """Restore the state that the schedule had when a job was ordered."""
         if state != self.schedule.state_dict():
             self.schedule.load_state_dict(state)
 
@@ -60,66 +61,85 @@ def measure(
     step: int,
     workers: int | None = None,
 ) -> dict[str, float]:
-    """Success of ``agent`` under every corruption of ``schedule``, in [0, 1] by name.
+    """Measure the success of ``agent`` under every corruption of ``schedule``.
 
-    ``episodes`` of ``training`` are drawn from (seed, step), the same ones under every corruption,
-    and walked in what ``world`` makes. ``agent`` is a module with reset and act; it is left in eval
-    mode. ``workers``: processes, on which the rates do not depend; 0: this one alone; None: one a
-    core if there is work for them, and this one alone for an agent on a GPU.
+    Every corruption runs the same episodes, drawn from (seed, step).
+
+    Args:
+        agent: a module with ``reset`` and ``act``; it is left in eval mode.
+        schedule: its corruptions are measured.
+        world: makes a world.
+        training: source of the episodes.
+        episodes: number of episodes per corruption.
+        seed: seed of episodes and corruptions.
+        step: step of the training.
+        workers: number of processes, which does not change the rates. 0 uses only this process.
+            None uses one per core if that saves time, and only this process for an agent on a GPU.
+
+    Returns:
+        Success in [0, 1] by name of the corruption.
     """
     rng = generator(seed, "refresh", step)
-    drawn = [training.draw(rng, (0, 1)) for _ in range(episodes)]
-    met = [schedule.corruption(name) for name in schedule.names]
-    groups = [[(e, c, {"corruption": c.name, "seed": seed}) for c in met] for e in drawn]
+    drawn_episodes = [training.draw(rng, (0, 1)) for _ in range(episodes)]
+    corruptions = [schedule.corruption(name) for name in schedule.names]
+    groups = [
+        [(e, c, {"corruption": c.name, "seed": seed}) for c in corruptions] for e in drawn_episodes
+    ]
     task = EpisodeTask(agent.eval(), world)
     on_gpu = any(p.device.type != "cpu" for p in agent.parameters())
     if workers == 0 or (workers is None and on_gpu):
         workers = 1
-    total = len(drawn) * len(met)
+    total = len(drawn_episodes) * len(corruptions)
     started = processes.count(workers, total, WORTH)
-    with Progress(f"success at step {step}", total, unit="walk") as progress:
-        found = []
+    with Progress(f"success at step {step}", total, unit="episode") as progress:
+        measures = []
         for item in processes.results(task, groups, started, progress):
             if item is not None:
-                found.append(item[1])
+                measures.append(item[1])
                 progress.advance()
-    return success_rates(found)
+    return success_rates(measures)
 
 
 def refuse(schedule: Schedule | None) -> None:
-    """Raise ValueError for a schedule by success, in a recipe that measures none."""
+    """Raise ValueError for a success-distributed schedule in a recipe that measures no success."""
     if schedule is not None and schedule.mode == "success_distributed":
         raise ValueError(
-            "Nothing in this recipe measures success, by which schedule=success_distributed draws: "
-            "choose schedule=per_episode or per_frame."
+            "schedule=success_distributed needs success rates, which this recipe does not measure. "
+            "Choose schedule=per_episode or per_frame."
         )
 
 
 def prior_rates(path: Path | str) -> dict[str, float]:
-    """Success by corruption in a file of result rows. Says of which split they are: a training that
-    draws by them has seen it.
+    """Return the success by corruption in a file of result rows.
 
-    Raises FileNotFoundError or ValueError for a file that is not there or broken, and ValueError
-    if it mixes agents, splits or severities.
+    Prints their split, since a training that uses them must be evaluated on other episodes.
+
+    Raises:
+        FileNotFoundError: The file is missing.
+        ValueError: The file is damaged, or mixes agents, splits or severities.
     """
-    found = read(path)
+    rows = read(path)
     kinds = {
-        "agents": {f"{row['name']} {row['agent']}" for row in found},
-        "splits": {row["split"] for row in found},
-        "severities": {f"{row['severity']:g}" for row in found} - {"0"},
+        "agents": {f"{row['name']} {row['agent']}" for row in rows},
+        "splits": {row["split"] for row in rows},
+        "severities": {f"{row['severity']:g}" for row in rows} - {"0"},
     }
-    for what, held in kinds.items():
-        if len(held) > 1:
+    for what, values in kinds.items():
+        if len(values) > 1:
             raise ValueError(
-                f"{path} holds rows of several {what} ({', '.join(sorted(held))}), so its success "
-                "rates say nothing about one agent. Name a file of one evaluation (prior=...)."
+                f"{path} holds rows of several {what} ({', '.join(sorted(values))}), so its "
+                "success "
+                "rates do not describe one agent. Name a file of one evaluation (prior=...)."
             )
-    say(f"draws by the success on {', '.join(kinds['splits'])} in {path}: report on other episodes")
-    return success_rates(found)
+    say(
+        f"uses success rates on {', '.join(kinds['splits'])} from {path}: evaluate on other "
+        "episodes"
+    )
+    return success_rates(rows)
 
 
 def success_rates(results: list[dict[str, Any]]) -> dict[str, float]:
-    """Mean success by corruption of rows or measures; clean ones are left out."""
+    """Return the mean success by corruption of rows or measures, without clean ones."""
     names = {row["corruption"] for row in results} - {"clean"}
     return {
         n: float(np.mean([r["success"] for r in results if r["corruption"] == n]))

@@ -1,8 +1,8 @@
-"""Many trainings or evaluations: ``mitigate sweep recipe=imitation,stacked seed=0,1``.
+"""Run many trainings or evaluations: ``mitigate sweep recipe=imitation,stacked seed=0,1``.
 
-Each combination of values is a run in a folder of its own, on this machine or on those of
-``launcher``. A failed one does not stop the others; the same command again goes on with what is
-missing. All end in one table. ``--config-dir FOLDER`` names configs of your own, for all runs.
+Each combination of values is a run in its own folder, on this machine or on the machines of
+``launcher``. A failed run does not stop the others; the same command again resumes missing runs.
+All results go into one table. ``--config-dir FOLDER`` names a folder with your own configs.
 """
 
 from __future__ import annotations
@@ -31,12 +31,12 @@ from mitigate.guards.text.addresses import check_arguments
 
 COMMANDS = ("train", "evaluate")
 LOGS = "logs"
-LONGEST = 100  # characters of a log's name (ours)
+LONGEST = 100  # characters of the name of a log (heuristic)
 
 
 @dataclass
 class SweepConfig:
-    """Types of ``conf/sweep.yaml``; the meaning of each entry is written there."""
+    """Types of ``conf/sweep.yaml``, which explains each entry."""
 
     command: str = "train"
     runs: str = "sweeps/default"
@@ -51,28 +51,29 @@ OWN = re.compile(r"(command|runs|jobs|launcher(\.[\w.]+)?)=")
 def run_all(config: SweepConfig, options: Sequence[str]) -> None:
     """Run every combination of ``options``, then write and print the table of ``config.runs``.
 
-    Raises ValueError for options that the command does not have, before anything runs, and for
-    runs that failed, after the others are done and the table is written.
+    Raises:
+        ValueError: An option is unknown (before anything runs), or runs failed (after the others
+            are done and the table is written).
     """
     if config.command not in COMMANDS:
         raise ValueError(unknown("command", config.command, COMMANDS))
     if config.jobs < 1:
-        raise ValueError(f"jobs={config.jobs} is none: give 1 or more runs at a time.")
+        raise ValueError(f"jobs must be >= 1 run at a time, got {config.jobs}.")
     configs, options = without_config_folder(options)
-    made = [[*configs, *chosen] for chosen in combinations(options)]
+    runs = [[*configs, *chosen] for chosen in combinations(options)]
     _check_own(options)
     from mitigate.agents.building import with_kind  # brings torch
     from mitigate.evaluation import evaluate  # noqa: F401 - registers its options
     from mitigate.training import train  # noqa: F401 - registers its options
 
-    for chosen in made:
+    for chosen in runs:
         conf.composed(config.command, with_kind(chosen) if config.command == "evaluate" else chosen)
-    chains = [chain(config, chosen, made) for chosen in made]
+    chains = [chain(config, chosen, runs) for chosen in runs]
     problems = run_chains("sweep", "run", chains, config.jobs, config.launcher)
     if len(problems) < len(chains):
         write_table([Path(config.runs)], Path(config.runs))
     if problems:
-        again = "Run again to go on with them; their output is in"
+        again = "Run the same command again to resume them; their output is in"
         raise ValueError(
             f"{len(problems)} of {len(chains)} runs failed. {again} {config.runs}/{LOGS}. "
             + " ".join(problems)
@@ -89,12 +90,15 @@ def run_chains(
 ) -> list[str]:
     """Run ``chains``, ``jobs`` at a time, on the machines of the launcher ``place``.
 
-    Print a line for each that ended, call ``ended`` with its number, and return what went wrong.
+    Prints a line for each chain that ended and calls ``ended`` with its number and outcome.
+
+    Returns:
+        One line for each chain that failed.
     """
     problems = []
     with Progress(title, len(chains), unit=unit) as progress:
 
-        def told(number: int, outcome: programs.Outcome) -> None:
+        def report(number: int, outcome: programs.Outcome) -> None:
             ended(number, outcome)
             line = f"{chains[number].name}: {outcome.problem or 'done'}"
             if outcome.problem:
@@ -102,7 +106,7 @@ def run_chains(
             progress.say(line)
             progress.advance()
 
-        programs.run(chains, jobs, launcher.chosen(place), progress, told)
+        programs.run(chains, jobs, launcher.chosen(place), progress, report)
     return problems
 
 
@@ -111,31 +115,31 @@ def _check_own(options: Sequence[str]) -> None:
     for option in options:
         if option.lstrip("+~").partition("=")[0] in ("out", "folder"):
             raise ValueError(
-                f"{option} is one folder, and every run of a sweep has its own: set runs=FOLDER, "
-                "in which they are."
+                f"{option} is a single folder, but every run of a sweep has its own. Set "
+                "runs=FOLDER for the folder that contains them."
             )
 
 
 def combinations(options: Sequence[str]) -> list[list[str]]:
-    """Each combination of the options' values, by Hydra's grammar: ``seed=0,1``, ``range(3)``.
+    """Return each combination of values, by Hydra's grammar: ``seed=0,1``, ``range(3)``.
 
-    Raises ValueError for what cannot be read.
+    Raises ValueError for an option that Hydra cannot parse.
     """
     try:
-        found = OverridesParser.create().parse_overrides(list(options))
+        overrides = OverridesParser.create().parse_overrides(list(options))
     except HydraException as error:
         raise ValueError(conf.explain(error, "train")) from error
     values = [
         [f"{option.get_key_element()}={value}" for value in option.sweep_string_iterator()]
         if option.is_sweep_override()
-        else [given]
-        for given, option in zip(options, found, strict=True)
+        else [text]
+        for text, option in zip(options, overrides, strict=True)
     ]
     return [list(chosen) for chosen in product(*values)]
 
 
 def _name(options: Sequence[str]) -> str:
-    """Options in signs that a file name may have."""
+    """Return options as text that is valid in a file name."""
     named = ",".join(without_config_folder(options)[1])
     return re.sub(r"[^A-Za-z0-9._+-]+", "_", named.replace("=", "-")) or "default"
 
@@ -143,21 +147,24 @@ def _name(options: Sequence[str]) -> str:
 def chain(
     config: SweepConfig, options: Sequence[str], combined: Sequence[Sequence[str]] = ()
 ) -> programs.Chain:
-    """The run of one combination; a digest tells it from one of ``combined`` whose name would be
-    the same (``checkpoint=a/b`` and ``a_b``)."""
+    """Return the programs of one combination.
+
+    Its name ends in a digest if another one of ``combined`` would have the same name, as
+    ``checkpoint=a/b`` and ``checkpoint=a_b``.
+    """
     _, named = without_config_folder(options)
     name = _name(options)
     if len(name) > LONGEST or [*map(_name, combined)].count(name) > 1:
         name = f"{name[:LONGEST]}-{seeding.digest(*named):032x}"[: LONGEST + 9]
     words = [f"mitigate.{config.command}", *options, f"runs={config.runs}"]
-    if config.command == "evaluate":  # which would put two seeds into one folder
+    if config.command == "evaluate":  # its default folder does not contain the seed
         words.append(f"out={Path(config.runs) / name}")
     share = config.jobs > 1 or config.launcher.name != "local"
     count = max(1, cores() // config.jobs) if config.launcher.name == "local" else 1
     cpus = config.launcher.cpus if isinstance(config.launcher, RayConfig) else 1
     count = max(count, int(cpus))
     return programs.Chain(
-        " ".join(named) or "as it is",
+        " ".join(named) or "default options",
         ((config.command, programs.python(*words)),),
         (Path(config.runs) / LOGS / f"{name}.txt").resolve(),
         Path.cwd(),
@@ -166,18 +173,20 @@ def chain(
 
 
 def main() -> int:
-    """Run from the command line; return the exit status: 2, and the help, where there is nothing
-    to combine."""
-    given = sys.argv[1:]
-    own = [option for option in given if OWN.match(option)]
-    options = [option for option in given if not OWN.match(option)]
+    """Run from the command line and return the exit status.
+
+    Without options to combine, print the help and return 2.
+    """
+    words = sys.argv[1:]
+    sweep_options = [option for option in words if OWN.match(option)]
+    options = [option for option in words if not OWN.match(option)]
     if not without_config_folder(options)[1]:
         print(conf.help_text(__doc__ or "", "sweep"))
-        print("sweep: give options to combine, such as seed=0,1.", file=sys.stderr)
+        print("sweep: set options to combine, such as seed=0,1.", file=sys.stderr)
         return 2
 
     def program() -> None:
-        run_all(conf.typed(conf.load_config("sweep", own), "sweep"), options)
+        run_all(conf.typed(conf.load_config("sweep", sweep_options), "sweep"), options)
 
     conf.main(program, "sweep", lambda: check_arguments(options))
     return 0

@@ -1,8 +1,8 @@
-"""All methods side by side, the paper's Table II: ``mitigate table2 seeds=[0] jobs=2``.
+"""Compare all methods, the paper's Table II: ``mitigate table2 seeds=[0] jobs=2``.
 
-Trains and evaluates every column for every seed, several cells at a time. The same command again
-goes on where the last one stopped. ``evaluations=beyond`` measures each cell under more than the
-table's suite; each of these has a report of its own.
+Trains and evaluates every column for every seed, several cells at a time. Run the same command
+again to resume. ``evaluations=beyond`` also measures each cell under other suites; each of them has
+its own report.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from mitigate.training.tables import run
 
 @hydra.main(version_base="1.3", config_path=str(conf.CONF), config_name="table2")
 def hydra_main(cfg: DictConfig) -> None:
-    """Hydra's entry."""
+    """Run as a Hydra program."""
     run(cfg)
 
 

@@ -1,10 +1,9 @@
-"""Tables of columns and seeds, as the paper's Table I (all kinds of agent) and II (all methods).
+"""Make tables of columns and seeds: the paper's Table I (kinds of agent) and Table II (methods).
 
-Trains and evaluates every column for every seed, several cells at a time, each in processes of its
-own, on this machine or on those of ``launcher``. The same command again goes on where the last one
-stopped: trainings resume, evaluations go on, finished cells are kept. Then the report is written
-from the rows of all cells. ``evaluations=beyond`` measures each cell under more than the table's
-suite; each of these has a report of its own.
+Every column is trained and evaluated for every seed, several cells at a time. Each cell runs in its
+own processes, on this machine or on the machines of ``launcher``. The same command again resumes
+trainings and evaluations and keeps finished cells. Then the report is written from the rows of all
+cells. ``evaluations=beyond`` also measures each cell under other suites; each has its own report.
 """
 
 from __future__ import annotations
@@ -42,60 +41,63 @@ COST, REPORT = "cost.json", "overview.md"
 
 
 def run(cfg: DictConfig) -> Path:
-    """Make the table of composed options (:func:`make_table`)."""
+    """Make the table of composed options; see :func:`make_table`."""
     return make_table(read_options(cfg))
 
 
 def make_table(config: TablesConfig) -> Path:
-    """Make all cells and the report; return the report's path.
+    """Make all cells and the report; return the path of the report.
 
-    With ``config.rows`` the report is made of those rows, and no cell is run. Raises ValueError for
-    settings that make no sense, before a cell is run, and if a cell failed (after the others are
-    done), with the end of its log; FileNotFoundError for rows that are not there.
+    With ``config.rows`` the report is made from those rows, and no cell runs.
+
+    Raises:
+        ValueError: Settings are invalid (before a cell runs), or a cell failed (after the others
+            are done); the message has the end of its log.
+        FileNotFoundError: Rows are missing.
     """
     out = Path(config.out)
     if config.rows:
         return write_report(config, out, list(config.rows))
-    made = cells(config)
-    check(made, config)
+    table_cells = cells(config)
+    check(table_cells, config)
     with output_folder(out):
-        return _make_cells(made, config, out)
+        return _make_cells(table_cells, config, out)
 
 
-def _make_cells(made: Sequence[Cell], config: TablesConfig, out: Path) -> Path:
+def _make_cells(table_cells: Sequence[Cell], config: TablesConfig, out: Path) -> Path:
     """Make the cells and write the report into ``out``; raise as :func:`make_table` does."""
-    failed = make(made, config) or [
+    failed = make(table_cells, config) or [
         f"{cell.column}, seed {cell.seed}: its rows in {cell.evaluation} were removed by another "
         "program after they were measured."
-        for cell in made
+        for cell in table_cells
         if not _rows(cell.evaluation)
     ]
-    if len(failed) == len(made):
+    if len(failed) == len(table_cells):
         raise ValueError("Every cell failed. " + " ".join(failed))
-    problem = "Some cells failed; run again to go on with them. " + " ".join(failed)
-    measured = [cell.evaluation for cell in made if _rows(cell.evaluation)]
+    problem = "Some cells failed. Run the same command again to resume them. " + " ".join(failed)
+    measured = [cell.evaluation for cell in table_cells if _rows(cell.evaluation)]
     if failed and not measured:
         raise ValueError(problem)
     report = write_report(config, out, measured)
-    written = [report, *write_further(made, config, out)]
+    written = [report, *write_further(table_cells, config, out)]
     if failed:
         raise ValueError(problem)
     print("\n".join(f"wrote {path}" for path in (*written, *draw_walks(config, out))), flush=True)
     return report
 
 
-def make(made: Sequence[Cell], config: TablesConfig) -> list[str]:
-    """Train and evaluate all cells, ``config.jobs`` at a time; return what went wrong."""
-    chains = [cell.chain(config) for cell in made]
-    for cell in made:
+def make(table_cells: Sequence[Cell], config: TablesConfig) -> list[str]:
+    """Train and evaluate all cells, ``config.jobs`` at a time; return the problems."""
+    chains = [cell.chain(config) for cell in table_cells]
+    for cell in table_cells:
         cell.keep()
     before = [
         {kind: cell.left(kind) for kind, _ in chain.programs}
-        for cell, chain in zip(made, chains, strict=True)
+        for cell, chain in zip(table_cells, chains, strict=True)
     ]
 
     def ended(number: int, outcome: programs.Outcome) -> None:
-        cell = made[number]
+        cell = table_cells[number]
         idle = {kind for kind, left in before[number].items() if left == cell.left(kind) != []}
         failed = bool(outcome.problem)
         spent = {k: s for k, s in outcome.seconds.items() if failed or k not in idle}
@@ -105,7 +107,7 @@ def make(made: Sequence[Cell], config: TablesConfig) -> list[str]:
 
 
 def _add_cost(path: Path, spent: dict[str, float]) -> None:
-    """Add CPU seconds to a cell's account, which counts all its runs that had something to do."""
+    """Add CPU seconds to the total of a cell, which counts all runs that did some work."""
     cost = _read_cost(path) if is_regular(path) else {}
     for kind, seconds in spent.items():
         cost[kind] = round(cost.get(kind, 0.0) + seconds, 2)
@@ -115,7 +117,7 @@ def _add_cost(path: Path, spent: dict[str, float]) -> None:
 
 def _read_cost(path: Path) -> dict[str, float]:
     """Return a cell's CPU seconds by program. Raises ValueError if the file is damaged."""
-    again = "Delete the file: the cell's CPU time is then counted from the next run on."
+    again = "Delete the file. The CPU time of the cell is then counted from the next run."
     cost = read_object(path, again)
     for kind, seconds in cost.items():
         if isinstance(seconds, bool) or not isinstance(seconds, (int, float)):
@@ -126,62 +128,68 @@ def _read_cost(path: Path) -> dict[str, float]:
 
 
 def write_report(config: TablesConfig, out: Path, paths: Sequence[Path | str]) -> Path:
-    """Write ``table.md`` with its pictures, and ``overview.md`` with the paper beside it, from
-    the rows under ``paths``."""
-    from mitigate.evaluation import report  # brings matplotlib
+    """Write the report of the rows under ``paths``.
 
-    found = gather(paths)
-    report.write(found, out)
-    made = [
+    ``table.md`` has pictures; ``overview.md`` also shows the figures of the paper.
+    """
+    from mitigate.evaluation import report  # imports matplotlib
+
+    rows = gather(paths)
+    report.write(rows, out)
+    chosen = [
         section
-        for section in sections(found)
+        for section in sections(rows)
         if section.grid.split == config.split
         and (section.severity == config.severity or not section.blocks)  # clean rows have none
     ]
-    if not made:
-        held = sorted({f"{row['split']} at {row['severity']:g}" for row in found})
+    if not chosen:
+        available = sorted({f"{row['split']} at {row['severity']:g}" for row in rows})
         raise ValueError(
             f"There are no rows of {config.split} at severity {config.severity:g}, only of "
-            f"{', '.join(held)}. Set split= and severity=."
+            f"{', '.join(available)}. Set split= and severity=."
         )
     figures = {name: list(values) for name, values in config.paper.items()}
     spent = {} if config.rows else costs(out)
     with atomic_text(out / REPORT) as file:
-        file.write("\n".join(report.beside(section, figures, spent) for section in made))
+        file.write("\n".join(report.beside(section, figures, spent) for section in chosen))
     print((out / REPORT).read_text(encoding="utf-8"), flush=True)
     return out / REPORT
 
 
-def write_further(made: Sequence[Cell], config: TablesConfig, out: Path) -> list[Path]:
-    """Write ``NAME/table.md`` with its pictures for each further evaluation, and return their
-    paths. Each has a table of its own: its episodes need not be those of the others."""
+def write_further(table_cells: Sequence[Cell], config: TablesConfig, out: Path) -> list[Path]:
+    """Write ``NAME/table.md`` with pictures for each additional evaluation; return the paths.
+
+    Each has its own table, since its episodes may differ.
+    """
     from mitigate.evaluation import report  # brings matplotlib
 
     written = []
     for name in listed(config.evaluations, "evaluations"):
-        paths = [cell.further(name) for cell in made if _rows(cell.further(name))]
+        paths = [cell.further(name) for cell in table_cells if _rows(cell.further(name))]
         if paths:
             written.append(report.write(gather(paths), out / name)[0])
     return written
 
 
 def draw_walks(config: TablesConfig, out: Path) -> list[Path]:
-    """Write pictures of episodes that the last of ``config.walks`` wins back for the first, by the
-    agents of the first seed, behind what their cells put in front of them; nothing if one of them
-    has no cell."""
+    """Draw episodes that the first column of ``config.walks`` fails and the last one solves.
+
+    The agents of the first seed run again, with the guards of their cells. Nothing is drawn if a
+    column has no cell.
+    """
     from mitigate.evaluation.trajectories import write_pictures  # brings matplotlib
     from mitigate.guards.opening import open_guards
 
-    held = {cell.column: cell for cell in cells(config) if cell.seed == config.seeds[0]}
-    missing = [column for column in config.walks if column not in held]
+    by_column = {cell.column: cell for cell in cells(config) if cell.seed == config.seeds[0]}
+    missing = [column for column in config.walks if column not in by_column]
     if missing:
-        say(f"no pictures of walks: {', '.join(missing)} of walks= is no column")
+        say(f"no pictures of episodes: {', '.join(missing)} in walks= is not a column")
     if not config.walks or missing:
         return []
-    made = {_named(held[column].folder): held[column] for column in config.walks}
-    nodes = {name: evaluation_of(cell.agent) for name, cell in made.items()}
+    by_name = {_named(by_column[column].folder): by_column[column] for column in config.walks}
+    nodes = {name: evaluation_of(cell.agent) for name, cell in by_name.items()}
     agents: dict[str, Any] = {
-        n: load(c.agent, c.checkpoint, overrides=made[n].agent) for n, c in nodes.items()
+        n: load(c.agent, c.checkpoint, overrides=by_name[n].agent) for n, c in nodes.items()
     }
     env = next(iter(nodes.values())).env
     world, chosen = build.maker(env.world)(), episodes(env, config.split, config.episodes)
@@ -189,39 +197,43 @@ def draw_walks(config: TablesConfig, out: Path) -> list[Path]:
         name: open_guards(node.safeguard, node.restore, world.sensors)
         for name, node in nodes.items()
     }
-    drawn = {episode.episode_id for episode in chosen}
-    found = [
+    episode_ids = {episode.episode_id for episode in chosen}
+    rows = [
         row
-        for row in gather([cell.evaluation for cell in made.values()])
+        for row in gather([cell.evaluation for cell in by_name.values()])
         if row["split"] == config.split
         and row["severity"] in (0.0, config.severity)
-        and row["episode_id"] in drawn
+        and row["episode_id"] in episode_ids
     ]
     folder, seed = out / "pictures", config.seeds[0]
-    return write_pictures(agents, world, chosen, found, folder, seed=seed, guards=guards)
+    return write_pictures(agents, world, chosen, rows, folder, seed=seed, guards=guards)
 
 
 def costs(out: Path) -> dict[str, dict[str, float]]:
-    """Mean CPU minutes of a cell by what they were spent on ("train", "evaluate", ...), and by
-    the column that its rows name."""
+    """Return the mean CPU minutes per cell, by program ("train", "evaluate", ...) and column.
+
+    Columns have the names in the rows.
+    """
     spent: dict[str, dict[str, list[float]]] = {}
     for path in sorted((out / "cells").glob(f"*/{COST}")):
         column = _named(path.parent)
         for kind, seconds in _read_cost(path).items():
             spent.setdefault(kind, {}).setdefault(column, []).append(seconds / 60)
     return {
-        kind: {column: sum(held) / len(held) for column, held in columns.items()}
+        kind: {column: sum(minutes) / len(minutes) for column, minutes in columns.items()}
         for kind, columns in sorted(spent.items(), key=lambda item: (item[0] != "train", item[0]))
     }
 
 
 def _named(folder: Path) -> str:
-    """The column of a cell's rows, which names what stands in front of the agent, too; of a cell
-    without rows that of the folder."""
-    found = _rows(folder / "evaluation")
-    return str(found[0]["name"]) if found else folder.name.rpartition("-seed")[0]
+    """Return the name in the rows of a cell, which includes guards.
+
+    A cell without rows has the name of its folder.
+    """
+    rows = _rows(folder / "evaluation")
+    return str(rows[0]["name"]) if rows else folder.name.rpartition("-seed")[0]
 
 
 def _rows(folder: Path) -> list[Row]:
-    """The rows that an evaluation has left in ``folder`` so far."""
+    """Return the rows in ``folder``; empty if there are none."""
     return read(folder / ROWS) if is_regular(folder / ROWS) else []

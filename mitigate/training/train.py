@@ -1,8 +1,7 @@
-"""Train an agent by a recipe: ``mitigate train recipe=da_per_episode severity=0.6``.
+"""Train an agent with a recipe: ``mitigate train recipe=da_per_episode severity=0.6``.
 
-A recipe names one or more stages; one agent goes through them in order, each in a subfolder of the
-run. The same command again goes on where the last one stopped. Afterwards the agent is evaluated
-before and after.
+A recipe has one or more stages, which train one agent in order, each in a subfolder of the run. Run
+the same command again to resume. At the end the agent is evaluated before and after the training.
 """
 
 from __future__ import annotations
@@ -22,12 +21,15 @@ from mitigate.training import config as options
 
 
 def run(cfg: DictConfig) -> Path:
-    """Train as ``cfg`` says, evaluate, and return the run's folder.
+    """Train with the options ``cfg``, evaluate, and return the folder of the run.
 
-    The folder holds ``config.yaml``, one subfolder for each stage, ``agent/model.safetensors``, and
-    what the evaluation writes. Raises ValueError or FileNotFoundError for a user's mistake.
+    The folder holds ``config.yaml``, one subfolder per stage, ``agent/model.safetensors``, and the
+    results of the evaluation. Raises ValueError or FileNotFoundError for a user's mistake.
     """
-    from mitigate.training.plan import check, plan  # brings torch, which --help need not wait for
+    from mitigate.training.plan import (  # imports torch, which is slow and not needed for --help
+        check,
+        plan,
+    )
     from mitigate.training.ranks import Ranks
     from mitigate.training.stages import run_plan
 
@@ -48,7 +50,9 @@ def hydra_main(cfg: DictConfig) -> None:
     try:
         run(cfg)
     except Exception as error:
-        if HydraConfig.get().mode == RunMode.MULTIRUN:  # Hydra goes on and shows the first only
+        if (
+            HydraConfig.get().mode == RunMode.MULTIRUN
+        ):  # Hydra continues and shows only the first error
             print(f"failed: {cfg.folder}: {error}", file=sys.stderr, flush=True)
         raise
 

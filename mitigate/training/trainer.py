@@ -1,8 +1,8 @@
-"""The one training loop: step, log, evaluate, save, resume. It knows no objective by name.
+"""The training loop of every objective: step, log, evaluate, save, resume.
 
-Data order and noise are functions of (seed, step): the global generators are set anew at each
-step, so neither logging, nor evaluation, nor a kill and a resume changes the weights by one bit
-(on the same machine, with the same number of threads, and without a lag: recipes/README.md).
+Data order and noise are functions of (seed, step): the global generators are reset at each step. So
+logging, evaluation, or a kill and a resume do not change the weights by one bit (on the same
+machine, with the same number of threads, and without a lag: recipes/README.md).
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ from mitigate.training.objective import Objective, accumulate
 from mitigate.training.ranks import Ranks
 from mitigate.training.workers import Workers
 
-# settings that the weights depend on: a run is not resumed under others
+# settings that change the weights: a run is not resumed with other values
 FIXED = ("steps", "lr", "weight_decay", "warmup", "schedule", "grad_clip", "seed", "precision")
 
 
@@ -47,7 +47,7 @@ class Trainer:
         objective: what to train; see :class:`mitigate.training.objective.Objective`.
         steps: number of updates.
         folder: holds ``step-*.pt`` and TensorBoard files; a checkpoint there is resumed.
-        lr, weight_decay: AdamW's, for groups that name none.
+        lr, weight_decay: for parameter groups that set none.
         warmup: updates over which the learning rate rises from 0.
         schedule: learning rate after warm-up, one of ``optimization.SCHEDULES``; it ends at 0
             unless constant.
@@ -55,22 +55,22 @@ class Trainer:
         log_every, save_every, eval_every, figure_every: in updates; 0 means never (a checkpoint is
             always written at the end).
         keep: how many checkpoints to keep.
-        lag: updates that the weights may be behind which batches are made with, so that workers
-            make several steps' batches at once; 0 waits for each. What it trains depends on it,
-            not on the number of workers.
-        seed: of data order and noise.
-        precision: one of ``precision.CHOICES``, of all that networks compute here; bf16 is
-            autocast, weights stay float32. A checkpoint keeps what "auto" was; a run that is
-            resumed goes on in that.
-        device: "auto" (CUDA if there), or any torch device.
-        workers: processes that make batches (``Objective.jobs``); None makes them in this one, to
-            the same bits.
+        lag: number of updates by which the weights that make batches may be old, so that workers
+            can make batches of several steps at once; 0 waits for each batch. The result depends
+            on the lag, not on the number of workers.
+        seed: seed of data order and noise.
+        precision: one of ``precision.CHOICES``, for everything that networks compute here; bf16 is
+            autocast, weights stay float32. A checkpoint records the choice of "auto"; a resumed
+            run keeps it.
+        device: "auto" (CUDA if available), or any torch device.
+        workers: processes that make batches (``Objective.jobs``); None makes the same batches in
+            this process.
         ranks: processes that train together; the first one logs and saves.
-        name: of the stage in what is printed; empty: of the objective's class.
-        config: JSON-able description of the run. A checkpoint made under another is refused.
+        name: name of the stage in messages; by default the class of the objective.
+        config: JSON-able description of the run. A checkpoint with another one is rejected.
 
     Raises:
-        ValueError: for a setting out of its range.
+        ValueError: A setting is out of its range.
     """
 
     objective: Objective
@@ -101,7 +101,7 @@ class Trainer:
         check_limits(vars(self))
         self.folder = Path(self.folder)
         self.device = device_of(self.device)
-        self.asked = self.precision
+        self.requested_precision = self.precision
         self.precision = self.ranks.of_first(choose(self.precision, self.device))
         self.objective = self.objective.to(self.device)
         self.name = self.name or type(self.objective).__name__
@@ -115,21 +115,22 @@ class Trainer:
             self.optimizer, self.steps, self.warmup, self.schedule
         )
         self.trained = [p for group in self.optimizer.param_groups for p in group["params"]]
-        self._saved, self._finished = 0, False  # steps in a checkpoint; whether it needs no more
+        self._saved = 0  # steps in the newest checkpoint
+        self._finished = False  # whether that checkpoint is complete
 
     def fit(self) -> Objective:
-        """Train, from the newest checkpoint in the folder if there is one; return the objective.
+        """Train, from the newest checkpoint in the folder if any, and return the objective.
 
-        Raises LossNotFinite, and ValueError for a checkpoint that cannot be resumed.
+        Raises:
+            LossNotFinite: The loss, its gradient or the weights are not finite.
+            ValueError: The checkpoint cannot be resumed.
         """
         start = self._resume()
         if self._finished:
             say(f"{self.name}: already trained for {start} steps in {self.folder}")
             return self.objective
         count = len(self.workers) if self.workers is not None else 0
-        say(
-            f"{self.name}: in {self.precision} on {self.device}, batches by {count or 'no'} workers"
-        )
+        say(f"{self.name}: {self.precision} on {self.device}, {count or 'no'} workers make batches")
         log = self.folder if self.ranks.first else self.folder / f"rank-{self.ranks.number}"
         with Journal(log, total=self.steps, start=start, name=self.name) as journal:
             if start:
@@ -137,13 +138,13 @@ class Trainer:
             with computing(self.precision, self.device):
                 self.objective.start()
             self.objective.train()
-            with held(self.ranks.count == 1) as ending:  # ranks are ended by who started them
+            with held(self.ranks.count == 1) as ending:  # torchrun ends its ranks
                 self._train(start, journal, ending)
                 self._finish(journal, ending)
         return self.objective
 
     def _train(self, start: int, journal: Journal, ending: Held) -> None:
-        """Take the steps from ``start`` on; the last one is saved as not finished."""
+        """Train from step ``start``; the last checkpoint is saved as not finished."""
         batches = Batches(
             self.objective,
             self.workers,
@@ -163,7 +164,7 @@ class Trainer:
                 journal.means(done, lr=self._lr())
             with self._kept(done, ending):
                 if done < self.steps:
-                    self._look(done, journal, ending)
+                    self._evaluate_due(done, journal, ending)
                 if done == self.steps or (self.save_every and done % self.save_every == 0):
                     self._save(done)
                     self.ranks.wait()
@@ -171,8 +172,10 @@ class Trainer:
 
     @contextmanager
     def _kept(self, done: int, ending: Held) -> Iterator[None]:
-        """Around what moves no weight: if a signal ends it, ``done`` steps are saved. A second
-        signal ends all at once."""
+        """Save ``done`` steps if a signal interrupts the block, which must not change weights.
+
+        A second signal ends the run without saving.
+        """
         try:
             yield
         except Ended:
@@ -184,14 +187,14 @@ class Trainer:
             raise
 
     def _finish(self, journal: Journal, ending: Held) -> None:
-        """Set what follows from the trained weights, and save them as finished."""
+        """Call ``finish`` of the objective, and save the weights as finished."""
         with self._kept(self.steps, ending):
             seeding.seed_everything(self.seed, "finish")
             self.objective.eval()
             with torch.no_grad():
                 self.objective.finish()
             self.objective.train()
-            self._look(self.steps, journal, ending)
+            self._evaluate_due(self.steps, journal, ending)
             self._save(self.steps, finished=True)
             self.ranks.wait()
             ending.check()
@@ -200,7 +203,7 @@ class Trainer:
         return bool(every) and (done % every == 0 or done == self.steps)
 
     def _batch(self, step: int, batches: Batches) -> tuple[dict[str, Any], float]:
-        """The batch of ``step``, and the seconds that it was waited for."""
+        """Return the batch of ``step``, and the seconds of waiting for it."""
         began = time.monotonic()
         rank = (self.ranks.number,) if self.ranks.number else ()  # dropout differs between ranks
         seeding.seed_everything(self.seed, "step", step, *rank)
@@ -222,19 +225,21 @@ class Trainer:
 
     def _diverged(self, step: int, loss: Tensor, norm: Tensor, batch: dict[str, Any]) -> str:
         episodes = ", ".join(map(str, batch.get("episode_ids", [])[:16])) or "none named"
-        kept = states.checkpoints(self.folder)
-        own = type(self.objective).__name__
-        kind = "" if own == self.name else f" ({own})"
-        last = f"The last good checkpoint is {kept[-1]}" if kept else "No checkpoint was saved yet"
+        saved = states.checkpoints(self.folder)
+        objective = type(self.objective).__name__
+        kind = "" if objective == self.name else f" ({objective})"
+        last = (
+            f"The last good checkpoint is {saved[-1]}" if saved else "No checkpoint was saved yet"
+        )
         return (
             f"Training stopped at step {step} of {self.name}{kind}: the loss is {loss.item():g} "
             f"and its gradient norm {norm.item():g}, which must be finite. Episodes of that batch: "
             f"{episodes}. {last}; the step was not applied. Lower trainer.lr, use "
-            "trainer.precision=fp32, or look at those episodes."
+            "trainer.precision=fp32, or check those episodes."
         )
 
-    def _look(self, done: int, journal: Journal, ending: Held) -> None:
-        """Evaluate and draw what is due after ``done`` steps, unless a signal came."""
+    def _evaluate_due(self, done: int, journal: Journal, ending: Held) -> None:
+        """Evaluate and log figures if due after ``done`` steps, unless a signal was received."""
         if ending.number is None and self._due(self.eval_every, done):
             self._evaluate(done, journal)
         if ending.number is None and self._due(self.figure_every, done):
@@ -247,8 +252,8 @@ class Trainer:
         self.objective.train()
         if values:
             journal.scalars(done, {f"eval/{k}": v for k, v in values.items()}, line=False)
-            shown = "  ".join(f"{name} {value:.4g}" for name, value in values.items())
-            journal.say(f"evaluated at step {done}  {shown}")
+            text = "  ".join(f"{name} {value:.4g}" for name, value in values.items())
+            journal.say(f"evaluated at step {done}  {text}")
 
     def _lr(self) -> float:
         return max(group["lr"] for group in self.optimizer.param_groups)
@@ -261,9 +266,9 @@ class Trainer:
         bad = checkpoint.not_finite(self.objective)
         if bad:
             raise LossNotFinite(
-                f"Training stopped: after step {done} of {self.name} the weights are no finite "
-                f"numbers ({', '.join(bad[:3])}), so nothing was saved of that step. Lower "
-                f"trainer.lr ({self._lr():g} now), or use trainer.precision=fp32."
+                f"Training stopped: after step {done} of {self.name} the weights are not finite "
+                f"({', '.join(bad[:3])}), so that step was not saved. Lower trainer.lr "
+                f"({self._lr():g} now), or use trainer.precision=fp32."
             )
         state = {
             "step": done,
@@ -278,27 +283,28 @@ class Trainer:
         give_back()
 
     def _keep_precision(self, config: dict[str, Any]) -> None:
-        """Go on in the precision of the checkpoint, if none was asked for by name."""
-        kept = config.get("trainer", {}).get("precision")
-        if self.asked != "auto" or kept in (None, self.precision):
+        """Keep the precision of the checkpoint, unless the user chose one."""
+        precision = config.get("trainer", {}).get("precision")
+        if self.requested_precision != "auto" or precision in (None, self.precision):
             return
         cost = (
             "which is up to 2 times slower here"
-            if kept == "fp32"
+            if precision == "fp32"
             else "which is slower here (3 to 10 times on a processor without bf16)"
         )
         say(
-            f"{self.name}: goes on in {kept}, as it began, {cost} than {self.precision}. To train "
-            f"in {self.precision}, start anew in another folder (folder=...)."
+            f"{self.name}: resumes in its first precision {precision}, {cost} than "
+            f"{self.precision}. To "
+            f"train in {self.precision}, start again in another folder (folder=...)."
         )
-        self.precision = self.config["trainer"]["precision"] = kept
+        self.precision = self.config["trainer"]["precision"] = precision
 
     def _resume(self) -> int:
-        """Load the newest sound checkpoint, if any, and return the number of updates done."""
-        found = states.load_newest(self.folder)
-        if found is None:
+        """Load the newest intact checkpoint, if any, and return its number of updates."""
+        newest = states.load_newest(self.folder)
+        if newest is None:
             return 0
-        path, state = found
+        path, state = newest
         self._keep_precision(state["config"])
         states.check_same(self.folder, states.as_json(state["config"]), self.config)
         try:
@@ -307,10 +313,10 @@ class Trainer:
         except (RuntimeError, ValueError, KeyError) as error:
             raise ValueError(
                 f"The checkpoint {path} does not fit {self.name} as configured now: "
-                f"{str(error).splitlines()[0]} Choose another folder or delete it."
+                f"{str(error).splitlines()[0]} Choose another folder, or delete it."
             ) from error
         self.scheduler.load_state_dict(state["scheduler"])
         seeding.set_global_state(state["rng"])
-        self._saved = int(state["step"])  # older versions saved the last one when it was finished
+        self._saved = int(state["step"])  # older versions have no "finished"
         self._finished = self._saved >= self.steps and bool(state.get("finished", True))
         return self._saved

@@ -1,8 +1,8 @@
 """Worker processes that make the pieces of an objective's batches.
 
-An objective names the jobs of a step (``objective.py``); each is a pure function of itself, the
-seed and the weights, and is done on one thread. Unlike those of ``core/workers.py``, which end with
-their one task, these live through all stages of a training, and receive new weights.
+An objective defines the jobs of a step (``objective.py``). A job is a pure function of its content,
+the seed and the weights, and runs on one thread. Workers of ``core/workers.py`` end with their
+task; these live through all stages of a training and receive new weights.
 """
 
 from __future__ import annotations
@@ -25,21 +25,22 @@ from mitigate.core.signals import leave_to_parent, start_worker
 from mitigate.core.workers import WorkersDied, context, packed, portable
 from mitigate.training.objective import Objective, do
 
-MOST = 8  # workers worth starting: the recipes make 2 to 4 pieces of a step, some steps ahead
-PRELOAD = "mitigate.evaluation.evaluator"  # has what takes long to import
-STUCK = 60.0  # seconds without a word after which an awaited worker is reported (ours)
-TRIM_EVERY = 8  # jobs of a worker; after each it costs 7 % of their time, after 8 less than 1 %
-ALONE = "make it of plain data, or train with workers=0"
-DEATHS = 1  # times that a worker is started anew before the training stops
+MOST = 8  # more workers do not help: recipes have 2 to 4 pieces per step, some steps ahead
+PRELOAD = "mitigate.evaluation.evaluator"  # imports the slow modules
+STUCK = 60.0  # seconds of silence after which an awaited worker is reported (heuristic)
+TRIM_EVERY = 8  # jobs between two trims of memory; every job would cost 7 % of the time, 8 jobs 1 %
+ALONE = "use plain data, or train with workers=0"
+DEATHS = 1  # times that a worker is replaced before the training stops
 
 
 class Workers:
-    """``count`` processes; job i of a step is done by worker ``i % count``, or, where there are
-    workers for several steps at once, by that of the step's turn. Either way a worker meets one
-    number i only, modulo the jobs of a step, so it opens the scenes of that piece alone.
+    """``count`` worker processes of a training; a context manager.
 
-    They live through all stages of a training, so apartments and scenes that one stage has built
-    serve the next. Use it as a context manager.
+    Worker ``i % count`` runs job i of a step. With enough workers for several steps at once, the
+    turn of the step chooses the worker. Either way a worker always gets the same piece of a step,
+    so it opens only the scenes of that piece.
+
+    Workers live through all stages, so a stage reuses the scenes that an earlier one has built.
     """
 
     def __init__(self, count: int) -> None:
@@ -56,7 +57,7 @@ class Workers:
             worker.close()
 
     def take(self, objective: Objective, kind: str) -> None:
-        """Give every worker its own copy of ``objective``, to compute in the precision ``kind``.
+        """Send every worker a copy of ``objective``, to compute in the precision ``kind``.
 
         Raises ValueError if the objective cannot be pickled.
         """
@@ -65,9 +66,9 @@ class Workers:
             worker.take(packed, kind)
 
     def send_weights(self, objective: Objective) -> None:
-        """Bring the copies of the trained weights and of all buffers up to date.
+        """Send the current trained weights and all buffers to the workers.
 
-        They are sent as they are now: tensors would be shared, and change while a worker reads.
+        They are sent by value: shared tensors would change while a worker reads them.
         """
         trained = {
             name: p.detach().cpu() for name, p in objective.named_parameters() if p.requires_grad
@@ -78,36 +79,39 @@ class Workers:
             worker.renew(weights)
 
     def order(self, jobs: list[Any], turn: int = 0) -> None:
-        """Have ``jobs`` done; :meth:`receive` returns what they give. What is ordered at once goes
-        to as many workers as there are if its ``turn`` goes up by one from order to order."""
+        """Start ``jobs``; :meth:`receive` returns their results.
+
+        Several orders at once use all workers if ``turn`` increases by one per order.
+        """
         for worker, job in zip(self._of(len(jobs), turn), jobs, strict=True):
             worker.order(job)
 
     def receive(self, count: int, turn: int = 0) -> list[Any]:
-        """Return what the next ``count`` jobs gave, in the order of one :meth:`order`.
+        """Return the results of the next ``count`` jobs, in the order of one :meth:`order`.
 
-        Raises what a job raised, and WorkersDied.
+        Raises WorkersDied, or the error of a job.
         """
         return [worker.receive() for worker in self._of(count, turn)]
 
     def _of(self, jobs: int, turn: int) -> list[_Worker]:
-        """Who does each of ``jobs``."""
+        """Return the worker of each of ``jobs``."""
         first = jobs * (turn % max(1, len(self) // max(1, jobs)))
         return [self._all[(first + index) % len(self)] for index in range(jobs)]
 
 
 class _Worker:
-    """One process and what it was given to do, each job with the weights that it is done with."""
+    """One process and its pending jobs, each with the weights that it needs."""
 
     def __init__(self, number: int) -> None:
-        self.number, self.deaths = number, 0
+        self.number = number
+        self.deaths = 0
         self.objective: tuple[bytes, str] | None = None
-        self.weights: bytes | None = None  # None: those of the objective
+        self.weights: bytes | None = None  # None: the weights of the objective
         self.pending: deque[tuple[bytes | None, bytes]] = deque()
         self._start()
 
     def take(self, packed: bytes, kind: str) -> None:
-        if self.pending:  # of an objective that was given up: nobody will ask for them
+        if self.pending:  # jobs of an abandoned objective
             self._restart()
             self.pending.clear()
         self.objective, self.weights = (packed, kind), None
@@ -131,9 +135,9 @@ class _Worker:
             waited = time.monotonic()
             while not self.connection.poll(STUCK):
                 for_long = duration(time.monotonic() - waited)
-                say(f"worker {self.number} ({self.process.pid}) says nothing for {for_long}")
+                say(f"worker {self.number} ({self.process.pid}) has been silent for {for_long}")
             kind, value = self.connection.recv()
-        except (EOFError, OSError):  # also "got end of file during message": it died in a word
+        except (EOFError, OSError):  # includes a death within a message
             self._replace()
             return self.receive()
         self.pending.popleft()
@@ -149,11 +153,11 @@ class _Worker:
             self.process.kill()
 
     def _start(self) -> None:
-        made = context(PRELOAD)
-        self.connection, other = made.Pipe()
-        self.process = made.Process(target=_serve, args=(other,), daemon=True)
+        processes = context(PRELOAD)
+        self.connection, other = processes.Pipe()
+        self.process = processes.Process(target=_serve, args=(other,), daemon=True)
         start_worker(self.process)
-        other.close()  # so that the worker's death ends the connection
+        other.close()  # so that the death of the worker closes the connection
 
     def _replace(self) -> None:
         self.process.join(timeout=1)
@@ -164,23 +168,23 @@ class _Worker:
             cause = (
                 "it was killed, most likely because the memory ran out"
                 if killed
-                else "what it printed says why"
+                else "see its output for the cause"
             )
             raise WorkersDied(
-                f"The {what}, and not for the first time: {cause}. Checkpoints are kept. Run the "
-                "same command again, with fewer processes: workers=1, or 0 for none."
+                f"The {what}, for the second time: {cause}. Checkpoints are complete. Run the same "
+                "command again with fewer processes: workers=1, or 0 for none."
             )
         self.deaths += 1
-        say(f"{what}; a new one does its work again")
+        say(f"{what}; a new one repeats its work")
         self._restart()
         self.send(("objective", *self.objective))
-        given: bytes | None = None
+        sent: bytes | None = None
         for weights, job in self.pending:
-            if weights is not None and weights is not given:
+            if weights is not None and weights is not sent:
                 self.send(("weights", weights))
-            given = weights
+            sent = weights
             self.send(("job", job))
-        if self.weights is not None and self.weights is not given:
+        if self.weights is not None and self.weights is not sent:
             self.send(("weights", self.weights))
 
     def _restart(self) -> None:
@@ -190,64 +194,67 @@ class _Worker:
 
 
 def _packed(objective: Objective) -> bytes:
-    own = "keep what cannot be pickled out of its attributes, or train with workers=0"
+    hint = "remove attributes that cannot be pickled, or train with workers=0"
     device = next((p.device for p in objective.parameters()), torch.device("cpu"))
-    if device.type == "cpu":  # it stays as it is
-        return packed(objective, type(objective).__name__, own)
+    if device.type == "cpu":
+        return packed(objective, type(objective).__name__, hint)
     try:
-        return packed(objective.cpu(), type(objective).__name__, own)
+        return packed(objective.cpu(), type(objective).__name__, hint)
     finally:
         objective.to(device)
 
 
 def _serve(connection: Connection) -> None:
-    """The life of a worker: messages in, the results of jobs out, until the connection ends."""
+    """Run a worker: receive messages and send results of jobs until the connection ends."""
     leave_to_parent()
-    told: SimpleQueue[bytes | None] = SimpleQueue()
-    Thread(target=_listen, args=(connection, told), daemon=True).start()
+    messages: SimpleQueue[bytes | None] = SimpleQueue()
+    Thread(target=_listen, args=(connection, messages), daemon=True).start()
     try:
-        _work(connection, told)
+        _work(connection, messages)
     except (BrokenPipeError, ConnectionResetError):
         pass  # the parent is gone
-    except Exception as error:  # of the program: an objective that cannot be unpacked here, say
+    except Exception as error:  # for example an objective that cannot be unpickled here
         with suppress(OSError):
             connection.send(("error", portable(error)))
 
 
-def _work(connection: Connection, told: SimpleQueue) -> None:
+def _work(connection: Connection, messages: SimpleQueue) -> None:
     objective, kind, weights, done = Objective(), "fp32", {}, 0
-    while (message := told.get()) is not None:
-        name, *given = pickle.loads(message)
+    while (message := messages.get()) is not None:
+        name, *content = pickle.loads(message)
         if name == "objective":
-            objective, kind = pickle.loads(given[0]), given[1]
+            objective, kind = pickle.loads(content[0]), content[1]
             weights = {**dict(objective.named_parameters()), **dict(objective.named_buffers())}
         elif name == "weights":
             with torch.no_grad():
-                for entry, value in pickle.loads(given[0]).items():
+                for entry, value in pickle.loads(content[0]).items():
                     weights[entry].copy_(value)
         else:
-            connection.send_bytes(_answer(objective, given[0], kind))
+            connection.send_bytes(_answer(objective, content[0], kind))
             done += 1
             if done % TRIM_EVERY == 0:
                 give_back()
 
 
-def _listen(connection: Connection, told: SimpleQueue) -> None:
-    """Hear the parent while a piece is made or given back: it may have weights to send meanwhile,
-    and neither would go on if both waited to be heard. None at the end."""
+def _listen(connection: Connection, messages: SimpleQueue) -> None:
+    """Receive messages of the parent in a thread, and put None at the end.
+
+    The parent may send weights while the worker sends a result; without the thread both would wait
+    for each other.
+    """
     try:
         while True:
-            told.put(connection.recv_bytes())
+            messages.put(connection.recv_bytes())
     except (EOFError, OSError):
-        told.put(None)
+        messages.put(None)
 
 
 def _answer(objective: Objective, job: bytes, kind: str) -> bytes:
-    """What a packed job gives, or the error that it raises, packed."""
+    """Return the pickled result of a pickled job, or its error."""
     device = next((p.device for p in objective.parameters()), torch.device("cpu"))
     try:
         with precision.computing(kind, device):
-            made = do(objective, pickle.loads(job))
-        return packed(("done", made), "A piece of a batch", ALONE, shared=True)
+            piece = do(objective, pickle.loads(job))
+        return packed(("done", piece), "A piece of a batch", ALONE, shared=True)
     except Exception as error:
         return pickle.dumps(("error", portable(error)))

@@ -225,7 +225,7 @@ def test_a_card_reads_no_file_outside_its_folder(tmp_path, name):
         (tmp_path / each).write_text("x")
     files = {name: "0"} | dict.fromkeys(needed, agents.sha256(tmp_path / needed[0]))
     (tmp_path / agents.CARD).write_text(json.dumps(card(files=files)))
-    refused(lambda: agents.load_hardened(tmp_path), "no plain file name")
+    refused(lambda: agents.load_hardened(tmp_path), "not a plain file name")
 
 
 SHAPE = {"channels": 3, "reduction": 1, "kernel": 3}

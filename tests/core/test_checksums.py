@@ -86,7 +86,7 @@ def test_without_a_sidecar_no_flipped_bit_changes_what_a_checkpoint_says(tmp_pat
     path.write_bytes(sound)
     at = sound.index(STATE["model"]["w"].numpy().tobytes())
     path.write_bytes(flipped(sound, 8 * at + 77))
-    with pytest.raises(states.Damaged, match="has other bytes"):
+    with pytest.raises(states.Damaged, match="has changed bytes"):
         states.load(path)
 
 
@@ -100,18 +100,18 @@ def test_a_truncated_checkpoint_is_passed_over(tmp_path, share, noted, capsys):
         note_of(path).unlink()
     assert states.load_newest(tmp_path)[0].name == "step-00000001.pt"
     said = capsys.readouterr().out
-    assert said == f"{path} is damaged; going on from step-00000001.pt\n"
+    assert said == f"{path} is damaged; resuming from step-00000001.pt\n"
 
 
 @pytest.mark.parametrize("text", ["", "\n", "0" * 64, "0" * 64 + "  other\n", "\xff", "x  model"])
 def test_a_damaged_sidecar_is_named_and_may_be_deleted(tmp_path, text):
     file = checkpoint.save_weights(nn.Linear(3, 2), tmp_path / "model.safetensors")
     note_of(file).write_bytes(text.encode("latin-1"))
-    with pytest.raises(ValueError, match="model.safetensors.sha256 alone is damaged, delete it"):
+    with pytest.raises(ValueError, match="only model.safetensors.sha256 is damaged, delete it"):
         checkpoint.load_weights(nn.Linear(3, 2), tmp_path)
     path = states.save(tmp_path, state(1))
     note_of(path).write_bytes(text.encode("latin-1"))
-    with pytest.raises(states.Damaged, match=r"If their \.sha256 files alone are damaged"):
+    with pytest.raises(states.Damaged, match=r"If only their \.sha256 files are damaged"):
         states.load_newest(tmp_path)
     for kept in (file, path):
         note_of(kept).unlink()

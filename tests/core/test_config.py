@@ -335,7 +335,7 @@ def test_what_is_replaced_is_said_once_on_standard_error(monkeypatch, capsys):
     monkeypatch.setattr(sys, "argv", ["mitigate table1", "+columns.recurrent=[agent=recurrent]"])
     conf.main(lambda: None, "table1")
     said = capsys.readouterr().err
-    assert said.count("columns.recurrent is there already, and +columns.recurrent= replaces") == 1
+    assert said.count("columns.recurrent already exists, and +columns.recurrent= replaces") == 1
 
 
 AGENTS = sorted(path.stem for path in (conf.CONF / "agent").glob("*.yaml"))
@@ -346,7 +346,7 @@ def test_help_of_evaluate_lists_the_agents_that_walk_and_that_of_train_says_who_
     agent = get_object(conf.load_config("train", [f"agent={name}"]).agent._target_)
     (shown,) = re.findall(r"^agent: topological  # (.*)$", conf.options_text("evaluate"), re.M)
     (training,) = re.findall(r"^agent: topological  # (.*)$", conf.options_text("train"), re.M)
-    walking, others = training.split("; walk no episodes, for recipes of their own: ")
+    walking, others = training.split("; cannot run episodes, have their own recipes: ")
     able = hasattr(agent, "reset") and hasattr(agent, "act")
     assert shown == walking and (name in walking.split(", ")) == able
     assert (name in others.split(", ")) == (not able)
@@ -372,7 +372,9 @@ def test_what_an_entry_refers_to_and_is_not_there_is_named():
     cfg = OmegaConf.create({"first": "${stages.mine.teacher}", "stages": {}})
     with pytest.raises(OmegaConfBaseException) as found:
         OmegaConf.resolve(cfg)
-    assert "There is no stages.mine.teacher, and" in conf.explain(found.value, "train")
+    assert "refers to stages.mine.teacher, which does not exist" in conf.explain(
+        found.value, "train"
+    )
 
 
 @pytest.mark.parametrize(

@@ -72,7 +72,7 @@ def test_a_missing_compiler_is_no_problem(capsys, monkeypatch):
     monkeypatch.setattr(doctor, "compiler", lambda: None)
     problems = doctor._machine()
     out = capsys.readouterr().out
-    assert "missing (torch.compile needs one, training does not)" in out
+    assert "missing (only torch.compile needs one)" in out
     assert not any("compiler" in problem for problem in problems)
 
 
@@ -109,7 +109,7 @@ def test_it_takes_no_options_and_says_so_in_place_of_a_report(given, status, mon
     [
         (True, "12.8", "sees H100, H100 (CUDA 12.8)"),
         (False, "12.8", "sees no GPU (built for CUDA 12.8)"),
-        (False, None, "sees no GPU (built for CPUs alone)"),
+        (False, None, "sees no GPU (built for CPUs only)"),
     ],
 )
 def test_what_torch_sees_of_cuda_is_said(there, built, said, monkeypatch):

@@ -107,7 +107,7 @@ def test_a_second_training_or_evaluation_in_a_folder_is_refused(tmp_path, name):
 def test_a_folder_that_cannot_be_made_is_named_with_what_to_do(tmp_path):
     (tmp_path / "file").write_text("x")
     for place in (tmp_path / "file/under", Path("/proc/under")):
-        with pytest.raises(OSError, match=f"Cannot write {place}: .* or name another folder"):
+        with pytest.raises(OSError, match=f"Cannot write {place}: .* choose another folder"):
             FolderLock(place).__enter__()
 
 

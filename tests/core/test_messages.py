@@ -83,7 +83,7 @@ def test_an_encoder_that_an_extra_brings(monkeypatch):
 
 def test_weights_of_another_kind_name_what_to_choose(evaluation):
     text = evaluation("checkpoint=checkpoints/frontier/base")
-    assert "is of the agent mitigate.agents.frontier.FrontierAgent" in text
+    assert "belongs to the agent mitigate.agents.frontier.FrontierAgent" in text
     assert "(agent=frontier;" in text
 
 
@@ -127,7 +127,7 @@ def test_weights_cut_short(evaluation, weights, tmp_path):
 def test_weights_of_another_agent(evaluation, tmp_path):
     checkpoint.save_weights(torch.nn.Linear(2, 2), tmp_path)
     text = evaluation(f"checkpoint={tmp_path}")
-    for part in ("do not fit this TopologicalAgent", "bias", "config.yaml beside them"):
+    for part in ("do not fit this TopologicalAgent", "bias", "config.yaml in their folder"):
         assert part in text
 
 

@@ -7,7 +7,7 @@ import pytest
 from mitigate.core import conf, options
 from mitigate.core.options import asks_help, check_paths, paths_and_options
 
-REPLACES = "{0} is there already, and +{0}= replaces it."
+REPLACES = "{0} already exists, and +{0}= replaces it."
 
 
 @pytest.mark.parametrize(
@@ -30,7 +30,7 @@ def test_an_option_that_is_added_in_the_place_of_another_is_told(primary, given,
 
 def test_an_added_option_that_no_program_reads_is_told_with_what_was_meant():
     (told,) = conf.notices("evaluate", ["+episode=9", "++seed=3", "split=val_seen"])
-    assert told.startswith("+episode= adds an option that only configs of your own can use.")
+    assert told.startswith("+episode= adds an option that only your own configs can use.")
     assert told.endswith("Did you mean episodes=...?")
 
 
@@ -50,7 +50,7 @@ def test_an_added_file_of_a_group_is_no_such_option(tmp_path):
     ],
 )
 def test_dashes_are_answered_with_how_the_option_is_written(line, shown):
-    with pytest.raises(ValueError, match=f"options are written {shown}, without dashes"):
+    with pytest.raises(ValueError, match=f"Write {shown}, without dashes"):
         options.check_dashes(line)
 
 
@@ -109,10 +109,10 @@ def test_paths_and_options_may_stand_in_any_order():
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
-        ([], "takes 1 path, IN, but there are none"),
-        (["a", "b"], "there are 2: a, b"),
+        ([], "takes 1 path, IN, got none"),
+        (["a", "b"], "got 2: a, b"),
         (["a", "sede=1"], "Did you mean seed"),
-        (["a", "seed=1", "seed=2"], "seed is given twice: '1' and '2'"),
+        (["a", "seed=1", "seed=2"], "seed is set twice: '1' and '2'"),
         (["a", "--seed"], "There is no option --seed"),
     ],
 )
@@ -127,7 +127,7 @@ def test_nothing_and_a_wish_show_the_help():
 
 def test_an_option_among_paths_is_answered_with_how_options_are_written(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    with pytest.raises(ValueError, match=r"no file out=report. Options are written --out DIR here"):
+    with pytest.raises(ValueError, match=r"no file out=report. Write options here as --out DIR"):
         check_paths(["runs/a", "out=report"], "--out DIR")
     (tmp_path / "out=report").mkdir()
     check_paths(["runs/a", "out=report", "runs/seed=0"], "--out DIR")

@@ -91,7 +91,7 @@ def test_a_run_goes_on_in_its_own_precision_on_another_machine(tmp_path, monkeyp
     resumed = Trainer(TinyRecipe(), steps=4, save_every=2, folder=tmp_path)
     resumed.fit()
     assert resumed.precision == "bf16"
-    assert "goes on in bf16, as it began" in capsys.readouterr().out
+    assert "resumes in its first precision bf16" in capsys.readouterr().out
 
 
 def test_another_precision_asked_for_by_name_is_another_run(tmp_path):

@@ -85,11 +85,11 @@ def test_a_line_says_pace_time_left_and_the_latest_note(monkeypatch):
     assert bar.line() == ("perception_rgb: step 120/700, 2 steps/s, 4 min 50 s left, loss 0.31")
     now[0] += 190
     bar.advance(0, note="loss 0.3")
-    assert bar.line() == "perception_rgb: step 120/700, 10 s a step, 1 h 36 min left, loss 0.3"
+    assert bar.line() == "perception_rgb: step 120/700, 10 s per step, 1 h 36 min left, loss 0.3"
     bar.unit = "episode"
-    assert "10 s an episode" in bar.line()
+    assert "10 s per episode" in bar.line()
     now[0] += 3600
-    assert "3 min 10 s an episode" in bar.line()
+    assert "3 min 10 s per episode" in bar.line()
 
 
 def test_an_advance_without_a_note_keeps_the_latest():
@@ -152,7 +152,7 @@ def test_an_exception_passes_and_the_last_line_says_where_it_stopped(capsys):
 def test_a_resumed_job_says_what_was_done_before(capsys):
     with Progress("maps", 9, start=4):
         pass
-    assert lines(capsys)[0] == "maps: 9 steps, 4 of them done before"
+    assert lines(capsys)[0] == "maps: 9 steps, 4 already done"
 
 
 def test_start_must_lie_within_the_total():

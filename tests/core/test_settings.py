@@ -162,7 +162,7 @@ def test_a_key_of_hydras_own_is_refused(tmp_path, own):
 )
 def test_another_target_is_refused(tmp_path, target):
     said = refusals(folder_with(tmp_path, agent_yaml(_target_=target)))
-    assert all(f"is of the agent {target}" in text for text in said)
+    assert all(f"belongs to the agent {target}" in text for text in said)
 
 
 def bomb(levels: int = 40) -> str:

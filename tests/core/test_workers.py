@@ -100,7 +100,7 @@ def test_one_dead_worker_is_noticed_at_once_and_its_jobs_run_again(how, tmp_path
     began = time.monotonic()
     found, said = run(Squares(tmp_path), groups("", how, ""))
     assert found == {n: n**2 for n in range(9)} and time.monotonic() - began < 10
-    assert len(said) == 1 and "SIGKILL" in said[0] and "(2 jobs) starts again in a fresh" in said[0]
+    assert len(said) == 1 and "SIGKILL" in said[0] and "jobs (2) start again in a new" in said[0]
 
 
 def test_a_second_death_ends_with_what_is_finished_and_what_to_do(tmp_path):
@@ -122,7 +122,8 @@ def test_a_worker_without_progress_is_reported_and_not_killed(tmp_path, monkeypa
     monkeypatch.setattr(workers, "SECOND", 0.1)
     found, said = run(Squares(tmp_path), groups("wait", ""))
     assert found == {n: n**2 for n in range(6)}
-    assert any("has been at number 1 for 1 s" in line for line in said)  # others may be, under load
+    # Others may be, under load.
+    assert any("has been running number 1 for 1 s" in line for line in said)
 
 
 ENDLESS = """
@@ -197,7 +198,7 @@ def test_as_many_workers_as_cores_but_none_for_a_few_jobs(monkeypatch):
     monkeypatch.setattr(workers, "cores", lambda: 4)
     assert [workers.count(None, jobs, 10) for jobs in (0, 9, 29, 1000)] == [1, 1, 2, 4]
     assert workers.count(3, 1, 10) == 3
-    with pytest.raises(ValueError, match="workers=0: give 1 or more"):
+    with pytest.raises(ValueError, match="workers must be >= 1 or null .one per core., got 0"):
         workers.count(0, 100, 10)
 
 
@@ -242,15 +243,15 @@ class Guarded(Squares):
 
 
 def test_a_task_that_workers_do_not_find_is_told_with_a_way_out(tmp_path):
-    with pytest.raises(ValueError, match="cannot read its task.*Guarded.*head of a module"):
+    with pytest.raises(ValueError, match="cannot read its task.*Guarded.*top level of a module"):
         list(results(Guarded(tmp_path), groups(1, 2), 2, Lines()))
 
 
 @pytest.mark.parametrize(
     ("action", "kind", "words"),
     [
-        (lambda: 0, ValueError, "What a worker is to do cannot be sent .* workers=1"),
-        ("a generator", ValueError, "What a worker found cannot be sent .* workers=1"),
+        (lambda: 0, ValueError, "A job of a worker cannot be sent .* workers=1"),
+        ("a generator", ValueError, "The result of a worker cannot be sent .* workers=1"),
         (Unreadable(), OSError, "no job can be made"),
     ],
     ids=["job", "result", "unread job"],

@@ -324,7 +324,7 @@ def test_folders_that_cannot_work_are_explained(run, walk):
         ((*SPATTER, "format=jpg"), "format must be one of png, same"),
         ((*SPATTER, "z_max=0"), "must be 0 <= z_min < z_max"),
         ((*SPATTER, "--seed=3"), "There is no option --seed=3"),
-        ((*SPATTER, "third"), "there are 3"),
+        ((*SPATTER, "third"), "got 3"),
     ],
     ids=str,
 )

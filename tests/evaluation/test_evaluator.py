@@ -145,7 +145,7 @@ def test_progress_counts_walks_of_which_an_episode_has_one_a_condition(tmp_path,
     shown = capsys.readouterr().out
     assert "test, val_seen: 2 walks" in shown and "walk 2/2, done in" in shown
     evaluate(Straight(1), partial(Won, SIZE), episodes, [*met, Corruption("flare", 0.3)], **options)
-    assert "3 walks, 2 of them done before" in capsys.readouterr().out
+    assert "3 walks, 2 already done" in capsys.readouterr().out
 
 
 def test_corruptions_change_what_the_agent_does(finished):

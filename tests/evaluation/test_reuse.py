@@ -136,7 +136,7 @@ def test_a_killed_worker_changes_neither_rows_nor_file(tmp_path, capsys):
     alone = run(Mortal(tmp_path, deaths=0), tmp_path / "alone.jsonl", 1)
     assert run(Mortal(tmp_path), tmp_path / "killed.jsonl", 2) == alone
     assert (tmp_path / "killed.jsonl").read_bytes() == (tmp_path / "alone.jsonl").read_bytes()
-    assert "starts again in a fresh" in capsys.readouterr().out
+    assert "again in a new" in capsys.readouterr().out
 
 
 def test_a_second_death_keeps_the_rows_and_says_how_to_go_on(tmp_path):

@@ -97,5 +97,5 @@ def test_walks_that_are_no_plain_data_are_refused(tmp_path):
 
 
 def test_a_schedule_by_success_is_refused(tmp_path):
-    with pytest.raises(ValueError, match="Nothing in this recipe measures success"):
+    with pytest.raises(ValueError, match="which this recipe does not measure"):
         recipe(tmp_path, schedule=Schedule("success_distributed", 0.6))

@@ -200,7 +200,7 @@ def test_at_the_end_the_adapters_of_its_sensor_make_the_share_that_is_asked_for(
     made = assemble(AdaptViews, resumed, modality="rgb", **VIEWS, strength=0.25)
     Trainer(made, steps=2, folder=tmp_path / "0.25", seed=0, save_every=1).fit()
     assert weights_sha(resumed) == weights_sha(agents[1]) != weights_sha(agents[0])
-    with pytest.raises(ValueError, match="strength=0 are shares"):
+    with pytest.raises(ValueError, match="strength must be above 0 and at most 1, got 0"):
         assemble(AdaptViews, resumed, modality="rgb", **VIEWS, strength=0)
 
 
@@ -245,7 +245,7 @@ def test_the_threshold_of_a_gate_is_set_on_held_back_clean_views():
     drawn = [made.poses.jobs(step) for step in (HELD, FRESH)]
     assert not {job[0] for jobs in drawn for job in jobs} & {*range(100_000)}
     assert 0 <= values["clean_opened"] < 1 and 0 <= values["corrupted_opened"] <= 1
-    with pytest.raises(ValueError, match="touched=0 and strength=1.0 are shares"):
+    with pytest.raises(ValueError, match="touched must be above 0 and below 1, got 0"):
         assemble(AdaptViews, agent, modality="rgb", **VIEWS, touched=0)
 
 
@@ -326,7 +326,7 @@ def test_a_missing_teacher_is_an_error_that_names_the_command(tmp_path):
 
 
 def test_adapters_alone_are_no_teacher():
-    with pytest.raises(ValueError, match="holds adapters alone"):
+    with pytest.raises(ValueError, match="holds only adapters"):
         assemble(
             DistilViews,
             small(),
@@ -391,7 +391,7 @@ def test_an_unknown_feature_is_refused(teacher):
     ("options", "words"),
     [
         ({"temperature": 0.0}, "recipe.temperature=0 must be above 0"),
-        ({"w_kl": -1.0}, "recipe.w_kl=-1 must be a number from 0"),
+        ({"w_kl": -1.0}, "recipe.w_kl must be a number from 0 to 1e.09, got -1"),
         ({"w_il": 0.0, "w_kl": 0.0, "w_feat": 0.0}, "learned: w_il, w_kl and w_feat are 0"),
     ],
 )
@@ -417,15 +417,15 @@ def test_of_two_ranks_the_one_with_more_panoramas_counts_more():
 
 
 def test_adapters_are_asked_for_where_there_are_none():
-    with pytest.raises(ValueError, match="no adapters there"):
+    with pytest.raises(ValueError, match="have no adapters"):
         assemble(AdaptViews, small(), modality="rgb", **VIEWS)
 
 
 def test_gates_that_nothing_teaches_are_refused():
     gated = {**ADAPTERS, "gates": ["rgb_encoder.stem"]}
-    with pytest.raises(ValueError, match=r"teaches the gates.*recipe=harden"):
+    with pytest.raises(ValueError, match=r"cannot train the gates.*recipe=harden"):
         assemble(DistilViews, small(adapters=gated), modality="rgb", teacher="start", **VIEWS)
-    with pytest.raises(ValueError, match="teaches the gates"):
+    with pytest.raises(ValueError, match="cannot train the gates"):
         assemble(
             Imitate,
             small(adapters=gated),

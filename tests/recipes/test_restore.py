@@ -189,5 +189,5 @@ def test_a_schedule_by_success_is_refused_where_nothing_measures_it(tmp_path):
     source = {"world": partial(FolderFrames, str(tmp_path)), "training": None, "modality": RGB}
     schedule = Schedule("success_distributed", 0.6)
     for kind in (Restore, RestoreGate):
-        with pytest.raises(ValueError, match="Nothing in this recipe measures success"):
+        with pytest.raises(ValueError, match="which this recipe does not measure"):
             assemble(kind, Restorer([RGB], width=4), **source, schedule=schedule)

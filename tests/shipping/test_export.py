@@ -350,7 +350,7 @@ def test_a_card_that_lacks_a_file_is_refused(copied, name):
 @pytest.mark.parametrize("name", ["../outside", "/etc/hostname", "..", "a/b"])
 def test_a_card_may_name_no_file_outside_its_folder(copied, name):
     relist(copied, lambda files: files.update({name: files["config.yaml"]}))
-    with pytest.raises(ValueError, match="no plain file name"):
+    with pytest.raises(ValueError, match="not a plain file name"):
         loading.load_hardened(copied)
 
 
@@ -415,7 +415,7 @@ def test_a_folder_of_another_agent_than_its_card_says_is_refused(copied):
 )
 def test_a_card_lists_only_names_that_can_be_held_and_shown(copied, name):
     relist(copied, lambda files: files.update({name: files["config.yaml"]}))
-    with pytest.raises(ValueError, match="no plain file name") as told:
+    with pytest.raises(ValueError, match="not a plain file name") as told:
         loading.load_hardened(copied)
     assert str(told.value).isprintable() and len(str(told.value)) < 500
 
@@ -479,14 +479,14 @@ def test_overwrite_replaces_nothing_but_a_hardened_folder(place, copied, tmp_pat
     else:
         target.symlink_to(copied if kind == "link" else tmp_path / "nowhere")
     before = sorted(p.name for p in tmp_path.rglob("*"))
-    with pytest.raises(ValueError, match="is not replaced"):
+    with pytest.raises(ValueError, match="was not replaced"):
         export.export(place / "runs/whole", "mine", out=tmp_path, overwrite=True)
     assert sorted(p.name for p in tmp_path.rglob("*")) == before
 
 
 @pytest.mark.parametrize("name", ["../mine", "", ".hidden", "a/b"])
 def test_a_name_is_one_folder(place, tmp_path, name):
-    with pytest.raises(ValueError, match="no name for a folder"):
+    with pytest.raises(ValueError, match="name of the folder must"):
         export.export(place / "runs/whole", name, out=tmp_path)
 
 

@@ -154,7 +154,7 @@ def test_a_worker_that_is_killed_is_replaced_and_nothing_is_lost(how, where, tmp
     with Workers(2) as workers:
         found = trained(tmp_path / "killed", workers, fatal=str(mark), **how)
     assert found == trained(tmp_path / "whole", None, **how)
-    assert "ended with code -9; a new one does its work again" in capsys.readouterr().out
+    assert "ended with code -9; a new one repeats its work" in capsys.readouterr().out
 
 
 def test_a_worker_that_is_killed_again_ends_the_training_with_advice(tmp_path):
@@ -232,4 +232,4 @@ def test_a_worker_that_stands_still_is_reported_until_it_goes_on(tmp_path, monke
         going_on.start()
         assert trained(tmp_path / "stopped", pool) == wanted
         going_on.join()
-    assert f"worker 0 ({process}) says nothing for" in capsys.readouterr().out
+    assert f"worker 0 ({process}) has been silent for" in capsys.readouterr().out

@@ -59,8 +59,8 @@ def refusal(folder, *options: str) -> str:
     [
         ("base", "recurrent", ["stage planner", "store", "recipe=dagger"]),
         ("base", "frontier", ["stage planner", "store", "recipe=dagger"]),
-        ("swap_encoder", "recurrent", ["is of the agent", "TopologicalAgent"]),
-        ("dagger", "topological", ["stage policy", "no plain data", "recipe=imitation"]),
+        ("swap_encoder", "recurrent", ["belongs to the agent", "TopologicalAgent"]),
+        ("dagger", "topological", ["stage policy", "not plain data", "recipe=imitation"]),
         ("encoder", "recurrent", ["stage encoder", "agent=efficientnet_lite0"]),
         ("restore", "frontier", ["stage rgb", "agent=restorer"]),
         ("da_per_episode", "restorer", ["stage perception_rgb", "no labels, see"]),
@@ -106,8 +106,8 @@ def test_severities_of_the_options_act_on_the_evaluation_alone_where_a_range_is_
     assert build(cfg.schedule) == build(conf.load_config("train", options[:1]).schedule)
     plan.warn_unused_schedule(read(cfg))
     said = capsys.readouterr().out
-    assert "severity=0.9 is of the evaluation alone" in said and "which is [0.3, 1.0]" in said
-    assert "severity_depth=0.8 is of the evaluation alone" in said
+    assert "severity=0.9 affects only the evaluation" in said and "which is [0.3, 1.0]" in said
+    assert "severity_depth=0.8 affects only the evaluation" in said
     plan.warn_unused_schedule(load(*options[:1]))
     plan.warn_unused_schedule(load("recipe=da_per_frame", *options[1:]))
     assert not capsys.readouterr().out
@@ -129,8 +129,8 @@ def test_the_oracles_share_falls_over_the_steps_that_are_taken(recipe):
 def test_a_stage_that_ends_in_its_warmup_is_told(capsys):
     plan.warn_warmup(load("trainer.steps=40"))
     assert capsys.readouterr().out == (
-        "perception_rgb: its 40 steps are over before the learning rate has risen, for which it "
-        "takes 50: set trainer.warmup below trainer.steps\n"
+        "perception_rgb: it ends after 40 steps, before the warmup of 50 steps is over: "
+        "set trainer.warmup below trainer.steps\n"
     )
     plan.warn_warmup(load("trainer.steps=40", "debug=smoke"))
     assert not capsys.readouterr().out
@@ -285,10 +285,10 @@ def test_ranks_that_a_later_stage_has_no_pieces_for_are_refused_at_once(
 @pytest.mark.parametrize(
     ("target", "words"),
     [
-        ("tests.tiny.TinyAgent", "tests.tiny.TinyAgent is no objective: make it a subclass"),
-        ("tests.training.test_fitting.NoAgent", "takes no agent: give its constructor"),
+        ("tests.tiny.TinyAgent", "tests.tiny.TinyAgent is not an objective. Make it a subclass"),
+        ("tests.training.test_fitting.NoAgent", "takes no agent. Give its constructor"),
         ("tests.training.test_fitting.no_recipe", "no_recipe is no objective"),
-        ("tests.tiny.Nope", "tests.tiny.Nope.* A _target_ is module.Name"),
+        ("tests.tiny.Nope", "tests.tiny.Nope.* A _target_ must be module.Name"),
     ],
 )
 def test_a_target_that_is_no_recipe_for_an_agent_is_told_as_that(tmp_path, target, words):

@@ -56,14 +56,14 @@ def test_without_options_to_combine_it_shows_how_and_runs_nothing(given, monkeyp
     assert sweep.main() == 2 and not fake
     shown = capsys.readouterr()
     assert "mitigate sweep recipe=imitation,stacked seed=0,1" in shown.out
-    assert "jobs: 1  # runs at a time" in shown.out and "give options to combine" in shown.err
+    assert "jobs: 1  # runs at a time" in shown.out and "set options to combine" in shown.err
 
 
 @pytest.mark.parametrize(
     ("command", "option"), [("evaluate", "out=x"), ("train", "folder=x"), ("train", "+out=x")]
 )
 def test_one_folder_for_all_runs_is_refused(tmp_path, fake, command, option):
-    with pytest.raises(ValueError, match=r"is one folder, .* set runs=FOLDER"):
+    with pytest.raises(ValueError, match=r"is a single folder, .* Set runs=FOLDER"):
         sweep.run_all(config(tmp_path, f"command={command}"), ["seed=0,1", option])
     assert not fake
 

@@ -124,17 +124,17 @@ def test_what_is_measured_can_be_chosen(tmp_path, option):
         ('+columns.mine=["agent=recurent"]', "Column mine: .*Did you mean recurrent?"),
         ('+columns.mine=["recipe=harden","agent.sze=3"]', "Column mine: .*agent.size?"),
         ("+columns.mine=recurrent", "columns.mine=recurrent must be a list of options"),
-        ('+columns.mine=["recipe=harden","severity=7"]', "Column mine: severity=7 must be from 0"),
+        ('+columns.mine=["recipe=harden","severity=7"]', "Column mine: severity must be from 0"),
         ('+columns.mine=["recipe=harden","trainer.schedule=cosin"]', "Column mine: .*cosine"),
         ('+columns.mine=["recipe=harden","seed=3"]', "Column mine: seed=3 is for the table"),
         (
             '+columns.mine=["severity=0.9"]',
-            "Column mine: severity=0.9 is for the table to say, for",
+            "Column mine: severity=0.9 is set by the table, the",
         ),
-        ('train=["folder=x"]', "folder=x is for the table to say, which gives each cell a seed"),
-        ('train=["workers=4"]', "workers=4 is for the table to say"),
-        ('train=["evaluation.episodes=3"]', "evaluation.episodes=3 is for the table to say"),
-        ("seeds=[0,1,0]", r"seeds=\[0, 1, 0\] names one twice"),
+        ('train=["folder=x"]', "folder=x is set by the table, which gives each cell a seed"),
+        ('train=["workers=4"]', "workers=4 is set by the table"),
+        ('train=["evaluation.episodes=3"]', "evaluation.episodes=3 is set by the table"),
+        ("seeds=[0,1,0]", r"seeds must be different, got \[0, 1, 0\]"),
         ("split=val_unsen", "no split 'val_unsen'. Did you mean val_unseen?"),
         ("conditions=[clen]", "no condition 'clen'. Did you mean clean?"),
     ],
@@ -161,7 +161,7 @@ def test_a_column_of_other_options_is_refused_where_it_has_rows(tmp_path, quick)
 
 def test_walks_of_what_is_no_column_are_told(tmp_path, capsys):
     assert tables.draw_walks(config(tmp_path, walks=["base", "stacked"]), tmp_path) == []
-    assert "no pictures of walks: stacked of walks= is no column" in capsys.readouterr().out
+    assert "no pictures of episodes: stacked in walks= is not a column" in capsys.readouterr().out
 
 
 def test_a_score_that_is_undefined_or_of_few_corruptions_says_so(tmp_path, quick):

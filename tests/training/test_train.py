@@ -127,7 +127,7 @@ def test_a_damaged_checkpoint_is_passed_over_and_the_run_ends_the_same(tmp_path,
     newest = states.checkpoints(tmp_path / "second")[-1]
     os.truncate(newest, newest.stat().st_size // 2)
     train.run(config(tmp_path))
-    assert f"{newest} is damaged; going on from step-00000004.pt" in capsys.readouterr().out
+    assert f"{newest} is damaged; resuming from step-00000004.pt" in capsys.readouterr().out
     assert same(wanted, weights(tmp_path)) and states.load(newest)["step"] == 6
 
 
@@ -147,17 +147,19 @@ def test_a_negative_number_of_workers_is_refused(tmp_path):
     with pytest.raises(ValueError, match="or null for one a core"):
         train.run(config(tmp_path, "workers=-1"))
     for wrong in (0, -3):  # which showed only after the training
-        with pytest.raises(ValueError, match=f"evaluation.workers={wrong} must be from 1 to 256"):
+        with pytest.raises(
+            ValueError, match=f"evaluation.workers must be from 1 to 256, got {wrong}"
+        ):
             train.run(config(tmp_path, f"evaluation.workers={wrong}"))
 
 
 @pytest.mark.parametrize(
     ("option", "words"),
     [
-        ("severity=1.5", "severity=1.5 must be from 0 to 1: it is a severity"),
+        ("severity=1.5", "severity must be from 0 to 1, got 1.5. It is a severity"),
         ("severity_depth=nan", "severity_depth=nan must be"),
-        ("rollouts=0", "rollouts=0 must be from 1 to 100000"),
-        ("refresh_episodes=0", "refresh_episodes=0 must be"),
+        ("rollouts=0", "rollouts must be from 1 to 100000, got 0"),
+        ("refresh_episodes=0", "refresh_episodes must be .* got 0"),
         ("trainer.schedule=cosin", "cosine, constant, linear"),
         ("trainer.precision=fp8", "auto, fp32, bf16"),
         ("+trainer.warmpu=3", "no setting of a trainer 'trainer.warmpu'.*mean trainer.warmup"),

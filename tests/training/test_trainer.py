@@ -145,7 +145,7 @@ def test_after_any_flipped_bit_the_older_checkpoint_is_used(tmp_path, capsys):
         newest.write_bytes(flipped(sound, int(bit)))
         made = recipe()
         assert Trainer(made, steps=20, save_every=5, folder=tmp_path)._resume() == 15
-        assert f"{newest} is damaged; going on from step-00000015.pt" in capsys.readouterr().out
+        assert f"{newest} is damaged; resuming from step-00000015.pt" in capsys.readouterr().out
     assert same(whole, trained(tmp_path)) and states.load(newest)["step"] == 20
 
 
@@ -251,7 +251,7 @@ def test_a_folder_with_another_run_is_refused_by_naming_the_difference(tmp_path)
         ({"lr": float("inf")}, "trainer.lr=inf .* above 0"),
         ({"lr": float("nan")}, "trainer.lr=nan"),
         ({"lr": -1e-3}, "above 0"),
-        ({"lr": 1e9}, "trainer.lr=1e[+]09 must be a number from"),
+        ({"lr": 1e9}, "trainer.lr must be a number from"),
         ({"weight_decay": float("inf")}, "trainer.weight_decay"),
         ({"weight_decay": -1.0}, "trainer.weight_decay"),
         ({"warmup": -5}, "trainer.warmup=-5"),
@@ -303,7 +303,7 @@ def test_weights_that_are_no_numbers_are_not_saved(tmp_path):
             with torch.no_grad():
                 self.agent.body[0].weight[0, 0] = float("inf")
 
-    with pytest.raises(LossNotFinite, match=r"no finite numbers \(agent.body.0.weight\)"):
+    with pytest.raises(LossNotFinite, match=r"not finite \(agent.body.0.weight\)"):
         Trainer(Poisoned(), steps=9, folder=tmp_path, save_every=3).fit()
     assert [p.name for p in states.checkpoints(tmp_path)][-1] == "step-00000006.pt"
 
@@ -311,7 +311,7 @@ def test_weights_that_are_no_numbers_are_not_saved(tmp_path):
 @pytest.mark.skipif(torch.cuda.is_available(), reason="there is CUDA")
 def test_a_gpu_that_is_not_there_is_named(tmp_path):
     with pytest.raises(
-        ValueError, match="trainer.device=cuda cannot be used here .it is not there"
+        ValueError, match="trainer.device=cuda cannot be used here .it is not available"
     ):
         trained(tmp_path, device="cuda")
 

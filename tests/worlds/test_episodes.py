@@ -215,7 +215,7 @@ def test_broken_files_are_refused(tmp_path):
     }
     for name, content in cases.items():
         (tmp_path / name).write_bytes(content)
-        with pytest.raises(ValueError, match=f"{name}(: episode 0| is not whole JSON)"):
+        with pytest.raises(ValueError, match=f"{name}(: episode 0| is not complete JSON)"):
             list(read_episodes(tmp_path / name))
 
 

@@ -32,7 +32,7 @@ OWN = {  # what a recipe needs to be small, or to run at all
                 "stages.gate_depth.recipe.instants=8", "stages.gate_depth.recipe.held=4"),
 }  # fmt: skip
 STATUS = {signal.SIGTERM: 143, signal.SIGINT: 130, signal.SIGKILL: -signal.SIGKILL}
-BEGUN = "batches by"  # in the line with which a stage begins
+BEGUN = "workers make batches"  # in the line with which a stage begins
 REPLACED = "a new one does its work"  # in the line that tells a worker's death
 NOTICED = 10.0  # seconds that this mostly takes; it comes when the worker's work is missed
 TRIES = 4  # to come in before the training is done
@@ -154,7 +154,7 @@ def flipped(training: Training) -> str:
         held[training.rng.randrange(len(held))] ^= 0xFF
     found.write_bytes(bytes(held))
     command = training.start()
-    told = f"{found.name} is damaged; going on from"
+    told = f"{found.name} is damaged; resuming from"
     command.wait_for(lambda: told in command.said())
     missing = "" if told in command.said() else f"nothing said of {found.name}: {command.end()}"
     return problem or missing or training.ended_by(command, signal.SIGTERM)
@@ -193,7 +193,7 @@ def one_refused(both: list[Command]) -> str:
 def worker_killed(training: Training) -> str:
     """A process that makes batches is killed."""
     command = training.under_way()
-    if not command.runs() or "batches by no workers" in command.said():
+    if not command.runs() or "no workers make batches" in command.said():
         training.ended_by(command, signal.SIGTERM)
         return "not run: it has no workers"
     found = workers(command)

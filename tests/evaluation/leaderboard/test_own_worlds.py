@@ -168,7 +168,7 @@ def test_benchmark_reuses_rows_of_a_version_and_runs_another_again(walk, capsys)
     first = walk(Hidden(1), version="1")
     capsys.readouterr()
     assert walk(Hidden(1), version="1").agents == first.agents
-    assert "all done before" in capsys.readouterr().out
+    assert "all already done" in capsys.readouterr().out
     assert walk(Hidden(2), version="2").agents != first.agents
     with pytest.raises(ValueError, match="version must be a non-empty string, got 2"):
         walk(Hidden(2), version=2)

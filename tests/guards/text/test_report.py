@@ -46,7 +46,7 @@ def test_the_command_writes_tables_and_repairs(tmp_path, capsys):
 def test_only_positive_counts_are_taken(count, capsys):
     with pytest.raises(SystemExit):
         report.main(["classifier", "--voices", "test", "--count", count])
-    assert f"'{count}' must be a whole number from 1 on" in capsys.readouterr().err
+    assert f"must be a whole number >= 1, got '{count}'" in capsys.readouterr().err
 
 
 def test_a_file_without_instructions_is_told(tmp_path):
