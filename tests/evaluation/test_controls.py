@@ -98,7 +98,7 @@ def test_controls_warns_of_conflicting_rows_and_notices_lost_ones(
         ("episodes=0", "episodes=0 is none: give a whole number, 1 or more"),
         ("split=val_sen", "Did you mean val_seen?"),
         ("env=corridor", "There is no env 'corridor'"),
-        ("--split", "options are written split=VALUE"),
+        ("--split", "Write split=VALUE"),
         ("severity=0.9", "severity=0.9 has no effect"),
         ("agent=recurrent", "agent=recurrent has no effect"),
     ],

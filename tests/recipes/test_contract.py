@@ -38,7 +38,7 @@ def test_what_may_not_be_chosen_takes_no_part_in_the_loss():
 
 
 def test_logits_of_another_shape_than_the_targets_name_the_contract():
-    with pytest.raises(ValueError, match=r"logits \[2, 4\] for targets \[3, 4\]"):
+    with pytest.raises(ValueError, match=r"got \[2, 4\], \[3, 4\] and"):
         imitation(Output(torch.zeros(2, 4)), decisions(torch.zeros(3, 4)), {})
 
 

@@ -546,7 +546,7 @@ def test_rows_of_another_agent_are_no_metrics_of_this_one(place, tmp_path):
 )
 def test_what_no_training_writes_into_a_config_is_told_by_its_key(key, value):
     cfg = {"name": "tiny", "severity": 0.6, "severity_depth": None, "seed": 3} | {key: value}
-    with pytest.raises(ValueError, match=rf"config\.yaml says {key}="):
+    with pytest.raises(ValueError, match=rf"config\.yaml has {key}="):
         cards.facts(cfg, None)
 
 

@@ -60,7 +60,7 @@ def test_rates_do_not_depend_on_the_number_of_processes(capsys):
         measure(agent, schedule, world, DrawnEpisodes(2), **options, workers=n) for n in (0, 1, 2)
     )
     assert none == alone == two == {"low_light": 0.0, "missing_data": 1.0} and not agent.training
-    assert "success at step 60: 4 walks" in capsys.readouterr().out
+    assert "success at step 60: 4 episodes" in capsys.readouterr().out
 
 
 def test_episodes_are_walked_in_fp32_inside_a_training_in_bf16():

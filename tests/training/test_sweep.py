@@ -116,7 +116,7 @@ def test_combinations_whose_names_would_be_one_have_a_digest_each(tmp_path):
 
 def test_a_failed_run_stops_no_other_and_the_table_is_written(tmp_path, fake):
     options = ["severity=0.3,0.6", "seed=0,1"]
-    with pytest.raises(ValueError, match="2 of 4 runs failed.*Run again"):
+    with pytest.raises(ValueError, match="2 of 4 runs failed.*Run the same command again"):
         sweep.run_all(config(tmp_path, "jobs=2", "launcher=ray"), options)
     assert len(fake[0][0]) == 4 and fake[0][1:] == (2, "ray")
     assert "severity=0.6" in (tmp_path / "table.md").read_text(encoding="utf-8")
@@ -126,7 +126,7 @@ def test_a_failed_run_stops_no_other_and_the_table_is_written(tmp_path, fake):
     ("own", "options", "said"),
     [
         (["command=trian"], [], "Did you mean train"),
-        (["jobs=0"], [], "jobs=0"),
+        (["jobs must be >= 1"], [], "jobs must be >= 1"),
         ([], ["recipe=stacked,da_per_fram"], "Did you mean da_per_frame"),
         ([], ["sevrity=0.1"], "Did you mean severity"),
         ([], ["severity=high"], "must be a number"),

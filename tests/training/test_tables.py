@@ -109,11 +109,14 @@ def test_what_is_measured_can_be_chosen(tmp_path, option):
         ('+evaluations.mine=["restore=nope"]', "Evaluation mine: There is no restorer at nope"),
         ('+evaluations.mine=["safeguard=nope"]', "Evaluation mine: There is no safeguard 'nope'"),
         ('+evaluations.mine=["safeguard=reader+none"]', "mine: There is no safeguard"),
-        ('+evaluations.mine=["out=x"]', "Evaluation mine: out=x is for the table.* may have suite"),
-        ('+evaluations.mine=["name=x"]', "Evaluation mine: name=x is for the table"),
-        ('+evaluations.mine=["seed=5"]', "Evaluation mine: seed=5 is for the table"),
-        ('+evaluations.mine=["checkpoint=x"]', "Evaluation mine: checkpoint=x is for the table"),
-        ('+evaluations.mine=["agent=recurrent"]', "Evaluation mine: agent=recurrent is for the"),
+        (
+            '+evaluations.mine=["out=x"]',
+            "Evaluation mine: out=x is set by the table.* may set suite",
+        ),
+        ('+evaluations.mine=["name=x"]', "Evaluation mine: name=x is set by the table"),
+        ('+evaluations.mine=["seed=5"]', "Evaluation mine: seed=5 is set by the table"),
+        ('+evaluations.mine=["checkpoint=x"]', "Evaluation mine: checkpoint=x is set by the table"),
+        ('+evaluations.mine=["agent=recurrent"]', "Evaluation mine: agent=recurrent is set by the"),
         ("+evaluations.mine=[1]", "evaluations.mine=.1. must be a list of options"),
         ('+columns.mine=["restore=nope"]', "Column mine: There is no restorer at nope"),
         (
@@ -126,7 +129,7 @@ def test_what_is_measured_can_be_chosen(tmp_path, option):
         ("+columns.mine=recurrent", "columns.mine=recurrent must be a list of options"),
         ('+columns.mine=["recipe=harden","severity=7"]', "Column mine: severity must be from 0"),
         ('+columns.mine=["recipe=harden","trainer.schedule=cosin"]', "Column mine: .*cosine"),
-        ('+columns.mine=["recipe=harden","seed=3"]', "Column mine: seed=3 is for the table"),
+        ('+columns.mine=["recipe=harden","seed=3"]', "Column mine: seed=3 is set by the table"),
         (
             '+columns.mine=["severity=0.9"]',
             "Column mine: severity=0.9 is set by the table, the",

@@ -144,7 +144,7 @@ def test_the_same_command_writes_a_finished_runs_damaged_weights_again(tmp_path)
 
 
 def test_a_negative_number_of_workers_is_refused(tmp_path):
-    with pytest.raises(ValueError, match="or null for one a core"):
+    with pytest.raises(ValueError, match="null uses one per core"):
         train.run(config(tmp_path, "workers=-1"))
     for wrong in (0, -3):  # which showed only after the training
         with pytest.raises(
@@ -157,7 +157,7 @@ def test_a_negative_number_of_workers_is_refused(tmp_path):
     ("option", "words"),
     [
         ("severity=1.5", "severity must be from 0 to 1, got 1.5. It is a severity"),
-        ("severity_depth=nan", "severity_depth=nan must be"),
+        ("severity_depth=nan", "severity_depth must be from 0 to 1, got nan"),
         ("rollouts=0", "rollouts must be from 1 to 100000, got 0"),
         ("refresh_episodes=0", "refresh_episodes must be .* got 0"),
         ("trainer.schedule=cosin", "cosine, constant, linear"),

@@ -33,7 +33,7 @@ OWN = {  # what a recipe needs to be small, or to run at all
 }  # fmt: skip
 STATUS = {signal.SIGTERM: 143, signal.SIGINT: 130, signal.SIGKILL: -signal.SIGKILL}
 BEGUN = "workers make batches"  # in the line with which a stage begins
-REPLACED = "a new one does its work"  # in the line that tells a worker's death
+REPLACED = "a new one repeats its work"  # in the line that tells a worker's death
 NOTICED = 10.0  # seconds that this mostly takes; it comes when the worker's work is missed
 TRIES = 4  # to come in before the training is done
 DISK = 800  # MB of the file system that is filled
