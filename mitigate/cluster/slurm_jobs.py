@@ -71,9 +71,9 @@ def results(
     check(launcher)
     folder = Path(launcher.folder).resolve() / f"{int(time.time())}-{os.getpid()}"
     executor = _executor(launcher, folder)
-    given = numbered(groups)
-    total, done = sum(map(len, given)), 0
-    shares = [given[at::workers] for at in range(min(workers, len(given)))]
+    work = numbered(groups)
+    total, done = sum(map(len, work)), 0
+    shares = [work[at::workers] for at in range(min(workers, len(work)))]
     running: list[_Share] = []
     try:
         write_bytes(folder / TASK, pickle.dumps(task))
@@ -82,17 +82,21 @@ def results(
         progress.say(f"{len(running)} jobs submitted; their logs are in {folder}")
         submitted = len(running)
         while done < total:
-            for held in list(running):
-                over = held.job.done()  # asked before its lines are read, so that no line is missed
-                for number, result in _fresh(held):
+            for current in list(running):
+                over = (
+                    current.job.done()
+                )  # asked before its lines are read, so that no line is missed
+                for number, result in _fresh(current):
                     done += 1
                     yield number, result
                 if not over:
                     continue
-                running.remove(held)
-                if held.left:
-                    again = _again(held, task, launcher, progress, done, total)
-                    groups_left = [[j for j in group if j[0] in held.left] for group in held.groups]
+                running.remove(current)
+                if current.left:
+                    again = _again(current, task, launcher, progress, done, total)
+                    groups_left = [
+                        [j for j in group if j[0] in current.left] for group in current.groups
+                    ]
                     groups_left = [group for group in groups_left if group]
                     running.append(
                         _submit(executor, folder, launcher, groups_left, again, submitted)
@@ -102,8 +106,8 @@ def results(
             time.sleep(SECOND / 4)
         _end(running, folder)
     finally:
-        for held in running:
-            held.job.cancel()
+        for current in running:
+            current.job.cancel()
         (folder / TASK).unlink(missing_ok=True)
         with suppress(OSError):  # the folder holds logs
             folder.rmdir()

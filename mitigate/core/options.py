@@ -41,7 +41,7 @@ def paths_and_options(
         ValueError: The number of paths is wrong, an option is unknown or set twice, or a word
             begins with a dash.
     """
-    found: list[str] = []
+    words: list[str] = []
     options: dict[str, str] = {}
     for argument in arguments:
         name, equals, value = argument.partition("=")
@@ -56,15 +56,15 @@ def paths_and_options(
         elif argument.startswith("-"):
             raise ValueError(f"There is no option {argument}. Write key=value, or --help.")
         else:
-            found.append(argument)
-    if len(found) != len(paths):
-        got = f"{len(found)}: {', '.join(found)}" if found else "none"
+            words.append(argument)
+    if len(words) != len(paths):
+        got = f"{len(words)}: {', '.join(words)}" if words else "none"
         raise ValueError(
             f"The command takes {len(paths)} {'path' if len(paths) == 1 else 'paths'}, "
             f"{' and '.join(paths)}, got {got}. See --help. (Write a path that contains '=' as "
             "./a=b.)"
         )
-    return found, options
+    return words, options
 
 
 def check_paths(paths: Sequence[object], options: str) -> None:

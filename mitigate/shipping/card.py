@@ -154,9 +154,9 @@ def _entry(section: Section) -> dict[str, Any]:
     }
 
 
-def _heading(section: Section, block: str, found: Retained) -> str:
+def _heading(section: Section, block: str, retained: Retained) -> str:
     """Return the block of a PRS, and how many of its corruptions it covers if not all."""
-    count = len(found.corruptions)
+    count = len(retained.corruptions)
     whole = section.whole(block)
     return block if count >= whole else f"{block}, {count} of {whole}"
 
@@ -236,11 +236,12 @@ def _use(card: dict[str, Any]) -> str:
     listed = "card.json" if "files" in card else "manifest.json"  # older folders, current folders
     load = f'mitigate.load_hardened("checkpoints/hardened/{card["name"]}"'
     if not card.get("program", True):
-        own = loading.is_ours(card.get("class", ""))
+        built_in = loading.is_ours(card.get("class", ""))
         built = "Build the agent with the settings in `config.yaml`; it is filled in place. "
         return (
             f"## Use\n\n```python\nimport mitigate\n\nagent = {load}"
-            f"{'' if own else ', agent=Mine(...)'})\n```\n\n{'' if own else built}Files are "
+            f"{'' if built_in else ', agent=Mine(...)'})\n```\n\n{'' if built_in else built}Files "
+            "are "
             f"compared with the sha256 in `{listed}` first. A fresh process reloaded the folder "
             f"and walked {card['checked']['walks']} episodes to the same measures."
         )

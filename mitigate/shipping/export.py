@@ -217,18 +217,20 @@ def check_outputs(folder: str, expected: str) -> None:
         folder: the hardened folder.
         expected: safetensors file of the outputs on the probe.
     """
-    wanted = _open(load_file(expected))
+    expected_outputs = _open(load_file(expected))
     agent = loading.load_hardened(folder)
     size = json.loads((Path(folder) / loading.INPUTS).read_text(encoding="utf-8"))["size"]
     program = programs.load_programs(Path(folder) / loading.PROGRAM)
-    for what, networks, most in (
+    for what, networks, limit in (
         ("agent", programs.networks(agent), RELOADED),
         ("program", program, EXPORTED),
     ):
-        gap = programs.difference(wanted, programs.outputs(networks, programs.probe(agent, size)))
-        if not gap <= most:
+        gap = programs.difference(
+            expected_outputs, programs.outputs(networks, programs.probe(agent, size))
+        )
+        if not gap <= limit:
             raise ValueError(
-                f"The reloaded {what} differs by {gap:g}; at most {most:g} is allowed."
+                f"The reloaded {what} differs by {gap:g}; at most {limit:g} is allowed."
             )
 
 
@@ -258,22 +260,22 @@ def _write(
         shipped = copy.deepcopy(agent)
         checkpoint.load_weights(shipped, draft)
     weights = {checkpoint.weights_sha(a) for a in (agent, shipped)}
-    found = _rows(run, rows, weights)
-    made: dict[str, Any] = {"program": False, "latency_ms": {}}
-    made["checked"] = {"walks": WALKS}
-    wanted: dict[str, Tensor] = {}
+    result_rows_of_agent = _rows(run, rows, weights)
+    checks: dict[str, Any] = {"program": False, "latency_ms": {}}
+    checks["checked"] = {"walks": WALKS}
+    expected: dict[str, Tensor] = {}
     if walks is None:
-        made, wanted = _programs(draft, agent, shipped, onnx)
+        checks, expected = _programs(draft, agent, shipped, onnx)
     card = {
         "format": loading.FORMAT,
         "name": name,
         **known,
         "agent": checkpoint.weights_sha(shipped),  # hash of the weights, as run_agent
         "run_agent": checkpoint.weights_sha(agent),
-        "rows_agent": rows_agent(found, weights),
+        "rows_agent": rows_agent(result_rows_of_agent, weights),
         "adapters_only": adapters_only,
-        "metrics": metrics(found, weights),
-        **made,
+        "metrics": metrics(result_rows_of_agent, weights),
+        **checks,
     }
     write_text(draft / loading.README, readme(card))
     _write_json(draft / loading.CARD, card)
@@ -282,7 +284,7 @@ def _write(
     folders.seal(draft, "hardened")
     print("reloading in a new process", flush=True)
     if walks is None:
-        _reload(draft, wanted)
+        _reload(draft, expected)
     else:
         _reload_walks(draft, agent, walks)
 
@@ -296,15 +298,15 @@ def _programs(
         Entries of the card about them, and the outputs of ``shipped`` on the probe.
     """
     size = agent.rgb_encoder.size
-    given = programs.probe(agent, size)
+    inputs = programs.probe(agent, size)
     print("exporting the programs", flush=True)
     exported = programs.export_programs(shipped, size)
     programs.save_programs(exported, draft / loading.PROGRAM)
     _write_json(draft / loading.INPUTS, programs.description(shipped, size))
     eager = programs.networks(shipped)
     modules = {kind: program.module() for kind, program in exported.items()}
-    before, wanted = (programs.outputs(programs.networks(a), given) for a in (agent, shipped))
-    rounded = programs.difference(before, wanted)
+    before, after = (programs.outputs(programs.networks(a), inputs) for a in (agent, shipped))
+    rounded = programs.difference(before, after)
     if not rounded <= ROUNDED:
         raise ValueError(
             f"Rounding the weights to float16 moves an output on the probe by {rounded:g}; at most "
@@ -319,7 +321,7 @@ def _programs(
         "program_tolerance": EXPORTED,
     }
     latency = programs.latency({"eager": eager, "exported": modules}, shipped, size)
-    return {"checked": checked, "latency_ms": latency}, wanted
+    return {"checked": checked, "latency_ms": latency}, after
 
 
 def _only_adapters_trained(cfg: dict[str, Any], agent: Any) -> bool:
@@ -353,17 +355,17 @@ def _rows(run: Path, rows: list[Path | str], agents: set[str]) -> list[Row]:
     return list(_of_one_agent(own, given, agents))
 
 
-def _of_one_agent(own: list[Row], given: list[Row], weights: set[str]) -> Iterator[Row]:
+def _of_one_agent(run_rows: list[Row], other_rows: list[Row], weights: set[str]) -> Iterator[Row]:
     """Yield the rows of ``weights`` that belong to a single agent.
 
     The same weights with a blanked sensor or a guard are another agent. If there are several, the
     rows of the run decide. Raises ValueError if they do not.
     """
-    rows = [row for row in result_rows.upsert(own, given) if weights_of(row) in weights]
+    rows = [row for row in result_rows.upsert(run_rows, other_rows) if weights_of(row) in weights]
     for sha in weights:
         mine = [row for row in rows if weights_of(row) == sha]
         agents = {row["agent"] for row in mine}
-        known = {row["agent"] for row in own if weights_of(row) == sha} or agents
+        known = {row["agent"] for row in run_rows if weights_of(row) == sha} or agents
         if len(known) > 1:
             names = sorted({f"{row['name']} ({row['agent']})" for row in mine})
             raise ValueError(
@@ -373,22 +375,22 @@ def _of_one_agent(own: list[Row], given: list[Row], weights: set[str]) -> Iterat
         yield from (row for row in mine if row["agent"] in known)
 
 
-def _reload(draft: Path, wanted: dict[str, Tensor]) -> None:
+def _reload(draft: Path, outputs: dict[str, Tensor]) -> None:
     """Run :func:`check_outputs` in a new process; raise ValueError if it fails."""
     with tempfile.TemporaryDirectory() as folder:
         expected = Path(folder) / "expected.safetensors"
-        save_file(_open(wanted), expected)
+        save_file(_open(outputs), expected)
         _run_apart("check_outputs", "outputs", draft, expected)
 
 
 def _reload_walks(draft: Path, agent: nn.Module, walks: Walks) -> None:
     """Run :func:`check_walks` in a new process; raise ValueError if it fails."""
     with tempfile.TemporaryDirectory() as folder:
-        given, expected = Path(folder, "walks"), Path(folder, "expected.json")
+        check_file, expected = Path(folder, "walks"), Path(folder, "expected.json")
         # Written here for the process that is started here.
-        given.write_bytes(pickle.dumps((sys.path, walks)))
+        check_file.write_bytes(pickle.dumps((sys.path, walks)))
         expected.write_text(json.dumps(walks.measures(agent)), encoding="utf-8")
-        _run_apart("check_walks", "agent", draft, given, expected)
+        _run_apart("check_walks", "agent", draft, check_file, expected)
 
 
 def _run_apart(check: str, what: str, *paths: Path) -> None:
@@ -411,18 +413,18 @@ def _run_apart(check: str, what: str, *paths: Path) -> None:
         )
 
 
-def check_walks(draft: str, given: str, expected: str) -> None:
+def check_walks(draft: str, check_file: str, expected: str) -> None:
     """Raise ValueError if episodes of the agent in ``draft`` differ from those in ``expected``.
 
     :func:`_reload_walks` runs this in a new process.
     """
-    path, walks = pickle.loads(Path(given).read_bytes())
+    path, walks = pickle.loads(Path(check_file).read_bytes())
     sys.path[:] = path
     agent = loading.load_hardened(draft, agent=walks.make_agent())
-    found = json.loads(json.dumps(walks.measures(agent)))
-    wanted = json.loads(Path(expected).read_text(encoding="utf-8"))
-    if found != wanted:
-        raise ValueError(f"its episodes gave {found}, expected {wanted}")
+    measures = json.loads(json.dumps(walks.measures(agent)))
+    target = json.loads(Path(expected).read_text(encoding="utf-8"))
+    if measures != target:
+        raise ValueError(f"its episodes gave {measures}, expected {target}")
 
 
 def _open(tensors: dict[str, Tensor]) -> dict[str, Tensor]:

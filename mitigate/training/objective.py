@@ -283,7 +283,7 @@ class ObjectiveSpec:
 
 
 def split_arguments(
-    kind: Any, parameter: str, given: Mapping[str, Any], target: str
+    kind: Any, parameter: str, arguments: Mapping[str, Any], target: str
 ) -> tuple[dict[str, Any], dict[str, Any]]:
     """Return the arguments of the objective ``kind`` and those of its source.
 
@@ -293,14 +293,14 @@ def split_arguments(
     names, is_open = _parameters(kind)
     source_names, source_open = _parameters(kind.sources[parameter]) if parameter else ((), False)
     allowed = [n for n in (*names, *source_names) if n != parameter]
-    for name in given:
+    for name in arguments:
         if not (name.startswith("_") or name in allowed or is_open or source_open):
             raise ValueError(f"{target}: {unknown('argument', name, [*dict.fromkeys(allowed)])}")
     source_arguments = {
-        n: v for n, v in given.items() if n in source_names or (source_open and n not in names)
+        n: v for n, v in arguments.items() if n in source_names or (source_open and n not in names)
     }
     objective_arguments = {
-        n: v for n, v in given.items() if n in names or n not in source_arguments
+        n: v for n, v in arguments.items() if n in names or n not in source_arguments
     }
     return objective_arguments, source_arguments
 
@@ -315,12 +315,12 @@ def _parameters(kind: Any) -> tuple[tuple[str, ...], bool]:
     return tuple(p.name for p in parameters if p.kind is not Parameter.VAR_KEYWORD), is_open
 
 
-def _source_of(kind: Any, given: Container[str]) -> str:
+def _source_of(kind: Any, arguments: Container[str]) -> str:
     """Return the parameter of ``kind`` that takes its source; "" if none or already set."""
     if not is_objective(kind):
         return ""
     names, _ = _parameters(kind)
-    return next((name for name in kind.sources if name in names and name not in given), "")
+    return next((name for name in kind.sources if name in names and name not in arguments), "")
 
 
 def is_objective(kind: Any) -> bool:

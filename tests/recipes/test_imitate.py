@@ -77,7 +77,7 @@ def test_an_unknown_part_is_refused():
         ({"losses": {"waypoints": -1.0}}, r"recipe.losses.waypoints must be a number from 0"),
         ({"losses": {"waypoints": float("nan")}}, "recipe.losses.waypoints must be .* got nan"),
         ({"follow_oracle": 1.5}, "recipe.follow_oracle must be a share from 0 to 1"),
-        ({"follow_oracle": -0.1}, "recipe.follow_oracle=-0.1"),
+        ({"follow_oracle": -0.1}, "recipe.follow_oracle must be .* got -0.1"),
     ],
 )
 def test_weights_and_shares_that_make_no_sense_are_refused(options, words):

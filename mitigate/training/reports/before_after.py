@@ -1,4 +1,4 @@
-"""What a training of an agent ends with: it and the one that it was, side by side."""
+"""Evaluate an agent before and after its training, and write one table."""
 
 from __future__ import annotations
 
@@ -22,10 +22,13 @@ from mitigate.training.config import TrainConfig
 def report_before_after(
     config: TrainConfig, base_agent: nn.Module | None, trained_agent: nn.Module, folder: Path
 ) -> None:
-    """Evaluate both agents on the same quick subset; print one table, write it and pictures.
+    """Evaluate both agents on the same subset; print and write one table, and write pictures.
 
-    ``config`` holds a training's options; ``base_agent`` is None for a training from nothing. The
-    pictures in ``folder/pictures`` show episodes that the training won back.
+    Args:
+        config: options of the training.
+        base_agent: the agent before the training; None if it started from scratch.
+        trained_agent: the agent after the training.
+        folder: folder of the run; ``pictures`` shows episodes that only the trained agent solves.
     """
     quick = config.evaluation
     chosen = episodes(config.env, quick.split, quick.episodes)
@@ -52,5 +55,5 @@ def report_before_after(
             workers=quick.workers,
         )
     write_table([folder / ROWS], folder)
-    written = write_pictures(agents, first, chosen, rows, folder / "pictures", seed=config.seed)
-    print("\n".join(f"wrote {path}" for path in written), flush=True)
+    pictures = write_pictures(agents, first, chosen, rows, folder / "pictures", seed=config.seed)
+    print("\n".join(f"wrote {path}" for path in pictures), flush=True)

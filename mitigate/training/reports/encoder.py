@@ -1,4 +1,4 @@
-"""What a training of an encoder changed: a table, rows and a picture, before and after."""
+"""Compare an encoder before and after its training: a table, rows and a picture."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ from mitigate.training.plan import IDENTITY
 BEFORE, AFTER = "before", "after"
 MEAN = "mean over corruptions"
 EACH = 12  # frames for each of evaluation.episodes: as many as an episode's panorama has views
-MOST_TRAIN = 2400  # frames that the probe is fitted to (ours)
+MOST_TRAIN = 2400  # frames to fit the probe (heuristic)
 MEASURES = {
     "cosine": "centred cosine to the clean features",
     "probe": "linear probe, mean average precision",
@@ -44,16 +44,19 @@ Scores = dict[tuple[str, str, str], Score]
 def before_after(config: TrainConfig, base: Any, trained: nn.Module, folder: Path) -> None:
     """Print and write how well features survive each corruption, before and after a training.
 
-    ``config`` holds a training's options: 12 frames for each of ``evaluation.episodes``, at most
-    as many as were trained with, from the scenes of ``evaluation.split``, under the conditions of
-    the suite that the encoder's sensor meets.
-    The encoder before is the one as it came, or, with ``tune=all``, as the training began: ``base``
-    where that was with ``init``.
+    The frames are 12 for each of ``evaluation.episodes``, at most as many as in the training, from
+    the scenes of ``evaluation.split``. The conditions are those of the suite for this sensor.
+
+    Args:
+        config: options of the training.
+        base: the encoder that the training started from, if ``init`` was set.
+        trained: the trained encoder. With adapters, its original weights are "before".
+        folder: folder of the run.
     """
     assert isinstance(trained, Encoder)
     train, unseen = _frames(config, trained.sensor)
     whole = trained.tune == "all"
-    before: Any = _begun(config, base, folder) if whole else as_agent(trained).as_teacher()
+    before: Any = _encoder_before(config, base, folder) if whole else as_agent(trained).as_teacher()
     encoders: dict[str, Encoder] = {BEFORE: before.eval(), AFTER: trained.eval()}
     met = _conditions(config, trained.sensor)
     scores = with_mean(measure(encoders, met, train, unseen, config.seed))
@@ -67,23 +70,24 @@ def before_after(config: TrainConfig, base: Any, trained: nn.Module, folder: Pat
     print(f"To load it in plain PyTorch:\n\n{lines(trained, folder / 'agent')}", flush=True)
 
 
-def _begun(config: TrainConfig, base: Any, folder: Path) -> nn.Module:
-    """The encoder as the training found it. Raises ValueError if it cannot be made again."""
-    made = build_agent(config.agent, weights=None, seed=config.seed) if base is None else base
+def _encoder_before(config: TrainConfig, base: Any, folder: Path) -> nn.Module:
+    """Return the encoder before the training; raise ValueError if it cannot be rebuilt."""
+    encoder = build_agent(config.agent, weights=None, seed=config.seed) if base is None else base
     stage = next(iter(config.active_stages))
-    noted = read_object(folder / stage / IDENTITY, "Train again in another folder.")
-    if checkpoint.weights_sha(made) != noted.get("encoder_sha256"):
+    identity = read_object(folder / stage / IDENTITY, "Train again in another folder.")
+    if checkpoint.weights_sha(encoder) != identity.get("encoder_sha256"):
         raise ValueError(
-            f"agent.model={config.agent['model']} has other weights than when the training began, "
-            "so there is no before to compare with: its file was changed, or it draws them anew "
-            "each time. Name its weights (agent.weights=FILE) and train again in another folder. "
-            f"What was trained is in {folder / 'agent'}."
+            f"agent.model={config.agent['model']} has other weights than at the start of the "
+            "training, so they cannot be compared: its file was changed, or its weights are "
+            "random. "
+            "Set agent.weights=FILE and train again in another folder. The trained encoder is in "
+            f"{folder / 'agent'}."
         )
-    return made
+    return encoder
 
 
 def _frames(config: TrainConfig, sensor: str) -> tuple[Frames, Frames]:
-    """Training frames for the probe and its centre, and unseen ones."""
+    """Return training frames, which fit the probe and its centre, and unseen frames."""
     recipe = next(iter(config.active_stages.values())).recipe
     frames = recipe["frames"]
     quick = config.evaluation
@@ -96,7 +100,7 @@ def _frames(config: TrainConfig, sensor: str) -> tuple[Frames, Frames]:
 
 
 def _conditions(config: TrainConfig, sensor: str) -> list[Corruption]:
-    """Clean, and the suite's corruptions of ``sensor`` (all there are, if it has none)."""
+    """Return clean and the suite's corruptions of ``sensor``, or all of them if it has none."""
     met = conditions(config.suite.conditions, config.severity, None)
     chosen = [corruption.name for corruption in met if corruption.modality == sensor]
     return [
@@ -106,7 +110,7 @@ def _conditions(config: TrainConfig, sensor: str) -> list[Corruption]:
 
 
 def with_mean(scores: Scores) -> Scores:
-    """With the mean over the corruptions as one more condition, behind them."""
+    """Return ``scores`` with the mean over the corruptions as the last condition."""
     states = dict.fromkeys((state, what) for state, _, what in scores)
     means = {
         (state, MEAN, what): average(
@@ -132,31 +136,33 @@ def write(scores: Scores, folder: Path, about: str) -> list[Path]:
 
 
 def rows(scores: Scores, about: str) -> list[dict[str, Any]]:
-    """One a measure and condition: before, after and the difference, each [value, low, high]; null
-    for an interval that there is not."""
-    made = []
+    """Return one row per measure and condition: before, after and the difference.
+
+    Each is [value, low, high]; null means that there is no interval.
+    """
+    records = []
     for condition, what in _cells(scores):
         first, second = (scores[state, condition, what] for state in (BEFORE, AFTER))
-        found = {BEFORE: first.estimate, AFTER: second.estimate, "gain": second.minus(first)}
+        estimates = {BEFORE: first.estimate, AFTER: second.estimate, "gain": second.minus(first)}
         values = {
             name: [None if math.isnan(v) else round(v, 4) for v in (e.value, e.low, e.high)]
-            for name, e in found.items()
+            for name, e in estimates.items()
         }
-        made.append({"measure": what, "condition": condition, **values, "of": about})
-    return made
+        records.append({"measure": what, "condition": condition, **values, "of": about})
+    return records
 
 
 def table(scores: Scores, about: str) -> str:
-    """Markdown: a block for each measure."""
+    """Return the Markdown table, with one block per measure."""
     parts = [
         f"# Features before and after\n\n{about}. In brackets 95 % intervals over scenes "
         f"({NO_INTERVAL}: of one scene alone there is none).\n"
     ]
     for what, named in MEASURES.items():
-        own = [condition for condition, other in _cells(scores) if other == what]
-        if own:
+        measured = [condition for condition, other in _cells(scores) if other == what]
+        if measured:
             head = (named, "before", "after", "after - before")
-            parts.append(markdown_table(head, (_row(scores, c, what) for c in own)) + "\n")
+            parts.append(markdown_table(head, (_row(scores, c, what) for c in measured)) + "\n")
     return "\n".join(parts)
 
 
@@ -175,23 +181,23 @@ def _cells(scores: Scores) -> list[tuple[str, str]]:
 
 
 def picture(scores: Scores, about: str) -> Figure:
-    """Bars: one panel a measure, before and after by condition."""
+    """Draw bars: one panel per measure, before and after by condition."""
     measures = [what for what in MEASURES if any(other == what for _, other in _cells(scores))]
     figure = Figure(figsize=(9, 3.1 * len(measures)), layout="constrained")
     for axis, what in zip(
         figure.subplots(len(measures), squeeze=False)[:, 0], measures, strict=True
     ):
-        own = [condition for condition, other in _cells(scores) if other == what]
+        measured = [condition for condition, other in _cells(scores) if other == what]
         for place, (state, colour) in enumerate(((BEFORE, "#b9b9b9"), (AFTER, "#2a7f62"))):
-            found = [scores[state, condition, what].estimate for condition in own]
-            x = np.arange(len(own)) + 0.4 * (place - 0.5)
-            ends = [[e.value - e.low for e in found], [e.high - e.value for e in found]]
+            estimates = [scores[state, condition, what].estimate for condition in measured]
+            x = np.arange(len(measured)) + 0.4 * (place - 0.5)
+            ends = [[e.value - e.low for e in estimates], [e.high - e.value for e in estimates]]
             axis.bar(
-                x, [e.value for e in found], 0.38, yerr=np.maximum(ends, 0), color=colour,
+                x, [e.value for e in estimates], 0.38, yerr=np.maximum(ends, 0), color=colour,
                 label=state, error_kw={"lw": 0.8},
             )  # fmt: skip
-        shown = [name if name == MEAN else title(name) for name in own]
-        axis.set_xticks(range(len(own)), shown, rotation=20, ha="right", fontsize=8)
+        names_shown = [name if name == MEAN else title(name) for name in measured]
+        axis.set_xticks(range(len(measured)), names_shown, rotation=20, ha="right", fontsize=8)
         axis.set_ylabel(MEASURES[what], fontsize=8)
         axis.grid(axis="y", alpha=0.3)
         axis.legend(fontsize=8, loc="lower left")

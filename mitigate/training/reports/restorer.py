@@ -1,10 +1,10 @@
-"""What a restorer does to frames of unseen scenes: errors before and after, what the gate lets by.
+"""Measure a restorer on frames of unseen scenes: errors before and after, and the gate.
 
     python -m mitigate.training.reports.restorer checkpoints/restorer --suite unseen_val
 
 Errors are means over pixels: RGB in levels of 255, depth in centimetres. A pixel is right if it is
-off by less than ``TOLERANCE`` of the range. How much of an agent's success comes back is for
-`python -m mitigate.evaluate restore=FOLDER` to say.
+off by less than ``TOLERANCE`` of the range. `python -m mitigate.evaluate restore=FOLDER` measures
+the success of an agent with the restorer.
 """
 
 from __future__ import annotations
@@ -60,13 +60,13 @@ class Score(NamedTuple):
 
 
 class Instants(NamedTuple):
-    """Clean observations, and what depth is where they were seen."""
+    """Clean observations, and the properties of their depth sensor."""
 
     clean: list[dict[str, np.ndarray]]
     depth: DepthSensor = SENSOR
 
     def corrupted(self, number: int, corruption: Corruption, seed: int) -> dict[str, np.ndarray]:
-        """The frames of an observation under a corruption."""
+        """Return the frames of an observation under a corruption."""
         seen = self.clean[number]
         frames = {name: seen[name] for name in seen if name in (RGB, DEPTH, POSE)}
         key = Key(seed, f"instant {number}", 0)
@@ -74,10 +74,10 @@ class Instants(NamedTuple):
 
 
 def before_after(config: TrainConfig, base: Any, trained: nn.Module, folder: Path) -> None:
-    """Print and write ``restoration.md`` and ``restoration.jpg``: what a training's restorer does
-    to ``evaluation.episodes`` random instants of unseen scenes, under the conditions of the suite.
+    """Measure a trained restorer; print and write ``restoration.md`` and ``restoration.jpg``.
 
-    ``config`` holds a training's options. ``base`` is not used: before is without a restorer.
+    It is measured on ``evaluation.episodes`` random instants of unseen scenes, under the conditions
+    of the suite. ``base`` is not used: "before" means without a restorer.
     """
     assert isinstance(trained, Restorer)
     quick = config.evaluation
@@ -87,13 +87,15 @@ def before_after(config: TrainConfig, base: Any, trained: nn.Module, folder: Pat
 
 
 def instants(env: Any, split: str, count: int, seed: int, restorer: Restorer) -> Instants:
-    """Clean observations of ``count`` random poses in the scenes of a list of ``env``, or frames of
-    the unseen part of a folder. Raises ValueError for an unknown split."""
-    made = maker(env.world)()
-    if isinstance(made, Source):
+    """Return ``count`` clean observations: random poses in scenes of ``env``, or unseen frames.
+
+    Raises ValueError for an unknown split.
+    """
+    world = maker(env.world)()
+    if isinstance(world, Source):
         sensor, part = next(iter(restorer.parts().items()))
-        found = collect(made, UNSEEN, count, seed).frames
-        clean = [{sensor: frame[None]} for frame in found]
+        frames = collect(world, UNSEEN, count, seed).frames
+        clean = [{sensor: frame[None]} for frame in frames]
         return Instants(clean, replace(SENSOR, z_max=part.far))
     if split not in env.episodes:
         raise ValueError(unknown("split", split, env.episodes))
@@ -101,60 +103,62 @@ def instants(env: Any, split: str, count: int, seed: int, restorer: Restorer) ->
     observations = []
     for number in range(count):
         rng = generator(seed, "restoration report", number)
-        made.enter(scenes[number * len(scenes) // count])
-        looked, _ = made.put(
-            made.point(rng), float(rng.uniform(-np.pi, np.pi)), views=None, rgb=True
+        world.enter(scenes[number * len(scenes) // count])
+        observation, _ = world.put(
+            world.point(rng), float(rng.uniform(-np.pi, np.pi)), views=None, rgb=True
         )
-        observations.append({name: np.copy(value) for name, value in looked.items()})
-    return Instants(observations, depth_sensor(made.sensors))
+        observations.append({name: np.copy(value) for name, value in observation.items()})
+    return Instants(observations, depth_sensor(world.sensors))
 
 
 def measure(
-    restorer: Restorer, seen: Instants, met: Sequence[Corruption], seed: int
+    restorer: Restorer, data: Instants, corruptions: Sequence[Corruption], seed: int
 ) -> dict[tuple[str, str], Score]:
-    """Scores by sensor and condition; a corruption counts for the sensor that it changes."""
+    """Return scores by sensor and condition; a corruption counts for the sensor that it changes."""
     scores: dict[tuple[str, str], Score] = {}
-    wanted = [(s, c) for c in met for s in restorer.nets if c is CLEAN or s in c.modalities]
-    wanted = [(s, c) for s, c in wanted if s in seen.clean[0]]
-    with Progress("restoration", len(wanted), unit="condition") as progress:
-        for sensor, corruption in wanted:
+    pairs = [(s, c) for c in corruptions for s in restorer.nets if c is CLEAN or s in c.modalities]
+    pairs = [(s, c) for s, c in pairs if s in data.clean[0]]
+    with Progress("restoration", len(pairs), unit="condition") as progress:
+        for sensor, corruption in pairs:
             rows = []
-            for number, clean in enumerate(seen.clean):
-                frames = seen.corrupted(number, corruption, seed)[sensor]
-                made = restorer.restore(sensor, frames)
+            for number, clean in enumerate(data.clean):
+                frames = data.corrupted(number, corruption, seed)[sensor]
+                restored = restorer.restore(sensor, frames)
                 far = restorer.parts()[sensor].range
-                off = [_off(part, clean[sensor], far) for part in (frames, made)]
+                off = [_off(part, clean[sensor], far) for part in (frames, restored)]
                 errors = [float(part.mean()) * far * UNITS[sensor] for part in off]
                 right = [float((part < TOLERANCE).mean()) for part in off]
-                rows.append((*errors, *right, made is not frames))
-            before, after, right, kept, hit = np.array(rows, float).T
+                rows.append((*errors, *right, restored is not frames))
+            before, after, right, right_after, was_restored = np.array(rows, float).T
             scores[sensor, corruption.name] = Score(
-                mean(before), mean(after), mean(right), mean(kept), share(hit)
+                mean(before), mean(after), mean(right), mean(right_after), share(was_restored)
             )
             progress.advance(note=corruption.name)
     return scores
 
 
 def _off(frames: np.ndarray, clean: np.ndarray, far: float) -> np.ndarray:
-    """How far each pixel is off, as a share of the range ``far``, mean over its colours, where the
-    clean frame reads something; [0] where it reads nothing at all."""
+    """Return the error of each valid pixel as a share of the range ``far``, mean over colours.
+
+    Returns [0] if the clean frame has no valid pixel.
+    """
     valid = np.isfinite(clean) & (clean > 0) if clean.dtype != np.uint8 else True
-    made = np.nan_to_num(frames.astype(np.float64), posinf=0.0)
-    off = np.abs(made - np.where(valid, clean, 0)).mean(-1) / far
-    found = off[np.broadcast_to(valid, clean.shape)[..., 0]]
-    return found if found.size else np.zeros(1)
+    values = np.nan_to_num(frames.astype(np.float64), posinf=0.0)
+    off = np.abs(values - np.where(valid, clean, 0)).mean(-1) / far
+    errors = off[np.broadcast_to(valid, clean.shape)[..., 0]]
+    return errors if errors.size else np.zeros(1)
 
 
 def table(scores: dict[tuple[str, str], Score], about: str) -> str:
-    """Markdown: a row a condition, a block a sensor."""
+    """Return the Markdown table: one row per condition, one block per sensor."""
     parts = [f"# Frames before and after restoration\n\n{about}. In brackets 95 % intervals.\n"]
     for sensor in dict.fromkeys(sensor for sensor, _ in scores):
         unit = "levels of 255" if sensor == RGB else "cm"
         head = [f"{sensor}: mean error, {unit}; right pixels, %", "before", "after"]
         head += ["right before", "right after", "instants restored, %"]
         rows = []
-        for (own, name), score in scores.items():
-            if own == sensor:
+        for (row_sensor, name), score in scores.items():
+            if row_sensor == sensor:
                 shares = (score.right_before, score.right_after, score.restored)
                 cells = [_text(score.before), _text(score.after), *(_text(s, 100) for s in shares)]
                 rows.append([title(name), *cells])
@@ -171,8 +175,11 @@ def _text(e: Estimate, scale: float = 1.0) -> str:
 def sheet(
     restorer: Restorer, seen: Instants, met: Sequence[Corruption], seed: int
 ) -> np.ndarray | None:
-    """uint8 RGB: a row a corruption; three views of the instant that sees farthest corrupted,
-    restored, clean, under these headings. None if no corruption is of a sensor that there is."""
+    """Draw three views of the instant with the greatest depth: corrupted, restored, clean.
+
+    Returns:
+        uint8 RGB with one row per corruption; None if no corruption fits the sensors.
+    """
     number = max(range(len(seen.clean)), key=lambda n: _far(seen.clean[n]))
     clean = seen.clean[number]
     rows: list[np.ndarray] = []
@@ -181,29 +188,29 @@ def sheet(
         if sensor is None:
             continue
         frames = seen.corrupted(number, corruption, seed)[sensor]
-        shown = (frames, restorer.restore(sensor, frames), clean[sensor])
-        views = [_views(sensor, part) for part in shown]
-        rows.append(_beside(_said(title(corruption.name)[:18], LABEL, SIDE), views))
+        versions = (frames, restorer.restore(sensor, frames), clean[sensor])
+        views = [_views(sensor, part) for part in versions]
+        rows.append(_row_of(_label(title(corruption.name)[:18], LABEL, SIDE), views))
     if not rows:
         return None
     width = (rows[0].shape[1] - LABEL) // 3 - GAP
-    heads = [_said(head, width, HEAD) for head in ("corrupted", "restored", "clean")]
-    return np.vstack([_beside(_said("", LABEL, HEAD), heads), *rows])
+    heads = [_label(head, width, HEAD) for head in ("corrupted", "restored", "clean")]
+    return np.vstack([_row_of(_label("", LABEL, HEAD), heads), *rows])
 
 
 def _far(frames: dict[str, np.ndarray]) -> float:
-    """How far the views of a picture see: walls from near by show little."""
+    """Return the least mean depth of the views in a picture: near walls show little."""
     depth = frames.get(DEPTH)
     return 0.0 if depth is None or depth.ndim < 4 else float(depth[[*SHOWN]].mean((1, 2, 3)).min())
 
 
-def _beside(name: np.ndarray, parts: Sequence[np.ndarray]) -> np.ndarray:
+def _row_of(name: np.ndarray, parts: Sequence[np.ndarray]) -> np.ndarray:
     gap = np.full((len(name), GAP, 3), 255, np.uint8)
     return np.hstack([name, *(piece for part in parts for piece in (gap, part))])
 
 
-def _said(text: str, width: int, height: int) -> np.ndarray:
-    """A white field with a text in it."""
+def _label(text: str, width: int, height: int) -> np.ndarray:
+    """Return a white field with a text."""
     field = np.full((height, width, 3), 255, np.uint8)
     place, font = (4, height // 2 + 4), cv2.FONT_HERSHEY_SIMPLEX
     return cv2.putText(field, text, place, font, 0.42, (0, 0, 0), 1, cv2.LINE_AA)
@@ -211,10 +218,10 @@ def _said(text: str, width: int, height: int) -> np.ndarray:
 
 def _views(sensor: str, frames: np.ndarray) -> np.ndarray:
     views = frames if frames.ndim == 4 else frames[None]
-    shown = [views[k] for k in SHOWN if k < len(views)]
-    drawn = shown if sensor == RGB else [depth_picture(view[..., 0]) for view in shown]
+    chosen = [views[k] for k in SHOWN if k < len(views)]
+    pictures = chosen if sensor == RGB else [depth_picture(view[..., 0]) for view in chosen]
     nearest = cv2.INTER_NEAREST
-    return np.hstack([cv2.resize(view, (SIDE, SIDE), interpolation=nearest) for view in drawn])
+    return np.hstack([cv2.resize(view, (SIDE, SIDE), interpolation=nearest) for view in pictures])
 
 
 def write(
@@ -225,17 +232,19 @@ def write(
     folder: Path,
     about: str,
 ) -> None:
-    """Measure, print, and write the table and the picture into ``folder``; no picture where
-    nothing is corrupted."""
+    """Measure, print, and write table and picture into ``folder``.
+
+    There is no picture if no frame is corrupted.
+    """
     scores = measure(restorer.eval(), seen, met, seed)
     about = f"{len(seen.clean)} instants of {about}, seed {seed}, restorer {restorer.hash}"
     text = table(scores, about)
     with atomic_text(folder / "restoration.md") as file:
         file.write(text)
     print(f"{text}\nwrote {folder / 'restoration.md'}")
-    drawn = sheet(restorer, seen, [c for c in met if c is not CLEAN], seed)
-    if drawn is not None:
-        encoded = cv2.imencode(".jpg", drawn[..., ::-1], [cv2.IMWRITE_JPEG_QUALITY, 88])[1]
+    picture = sheet(restorer, seen, [c for c in met if c is not CLEAN], seed)
+    if picture is not None:
+        encoded = cv2.imencode(".jpg", picture[..., ::-1], [cv2.IMWRITE_JPEG_QUALITY, 88])[1]
         write_bytes(folder / "restoration.jpg", encoded.tobytes())
         print(f"wrote {folder / 'restoration.jpg'}")
 
@@ -243,7 +252,7 @@ def write(
 def main(arguments: Sequence[str] | None = None) -> None:
     """Run from the command line."""
     parser = argparse.ArgumentParser(prog="mitigate.training.reports.restorer", description=__doc__)
-    parser.add_argument("folder", help="of the restorer")
+    parser.add_argument("folder", help="folder of the restorer")
     parser.add_argument("--split", default="val_seen")
     parser.add_argument("--suite", default="full")
     parser.add_argument("--count", type=positive, default=40, help="random instants (default 40)")
@@ -256,8 +265,8 @@ def main(arguments: Sequence[str] | None = None) -> None:
     restorer = load_restorer(options.folder)
     if not any({*corruption.modalities} & {*restorer.nets} for corruption in met):
         raise ValueError(
-            f"suite={options.suite} corrupts no frames of {', '.join(restorer.nets)}: choose "
-            "another, such as full or unseen_val."
+            f"suite={options.suite} corrupts no frames of {', '.join(restorer.nets)}. Choose "
+            "another suite, such as full or unseen_val."
         )
     seen = instants(cfg.env, options.split, options.count, options.seed, restorer)
     about = f"{options.split}, suite {options.suite}, severity {options.severity:g}"

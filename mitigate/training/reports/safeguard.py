@@ -1,9 +1,9 @@
-"""How well safeguards repair text.
+"""Measure how well safeguards repair text.
 
     python -m mitigate.training.reports.safeguard classifier lora --texts FILE --out report
 
-Every instruction is corrupted by every family, repaired, and compared with what was meant. A name
-with ``-alone`` behind it is the language model without classifier and gate.
+Every instruction is corrupted by every family, repaired, and compared with the original. A name
+that ends in ``-alone`` means the language model without classifier and gate.
 """
 
 from __future__ import annotations
@@ -43,8 +43,8 @@ Repairer = Callable[[list[str]], list[str]]
 def corrupted(
     texts: Sequence[str], families: Iterable[str], severity: float, split: str, seed: int = 0
 ) -> list[Repair]:
-    """Return every text under every family, not yet repaired (``repaired`` is what is heard)."""
-    made = []
+    """Return every text under every family, not repaired yet (``repaired`` equals ``heard``)."""
+    repairs = []
     for family in families:
         for index, clean in enumerate(texts):
             heard = clean
@@ -52,12 +52,12 @@ def corrupted(
                 key = Key(seed, f"text {index}")
                 heard = corrupt_instruction(clean, family, severity, key, split=split)
             attack = heard[: -len(clean)] if family == "black_box" else ""
-            made.append(Repair(family, clean, heard, heard, tuple(sentences(attack))))
-    return made
+            repairs.append(Repair(family, clean, heard, heard, tuple(sentences(attack))))
+    return repairs
 
 
 def repaired(repairs: Sequence[Repair], repairer: Repairer) -> list[Repair]:
-    """Return ``repairs`` with what ``repairer`` makes of each."""
+    """Return ``repairs`` with the texts that ``repairer`` returns."""
     heard = list(dict.fromkeys(r.heard for r in repairs))
     answers = dict(zip(heard, repairer(heard), strict=True))
     return [Repair(r.family, r.clean, r.heard, answers[r.heard], r.injected) for r in repairs]
@@ -68,9 +68,11 @@ def alone(rewriter: Rewriter) -> Repairer:
 
     def repair(texts: list[str]) -> list[str]:
         parts = [passages(text) for text in texts]
-        wanted = list(dict.fromkeys(part for found in parts for part in found))
-        said = dict(zip(wanted, rewriter.rewrite(wanted), strict=True))
-        return [" ".join(said[part] or "" for part in found).strip() for found in parts]
+        pieces = list(dict.fromkeys(part for text_parts in parts for part in text_parts))
+        rewritten = dict(zip(pieces, rewriter.rewrite(pieces), strict=True))
+        return [
+            " ".join(rewritten[part] or "" for part in text_parts).strip() for text_parts in parts
+        ]
 
     return repair
 
@@ -87,7 +89,7 @@ def choose(name: str) -> Repairer:
     check_choice(name)
     safeguard = open_safeguard(name.removesuffix(ALONE))
     if safeguard is None or (name.endswith(ALONE) and safeguard.rewriter is None):
-        raise ValueError(f"{name} has no language model that could work alone: write lora{ALONE}.")
+        raise ValueError(f"{name} has no language model to use alone. Write lora{ALONE}.")
     if name.endswith(ALONE) and safeguard.rewriter is not None:
         return alone(safeguard.rewriter)
     return guarded(safeguard)
@@ -122,14 +124,14 @@ def before_after(cfg: Any, before: Any, trained: nn.Module, folder: Path) -> Non
 def write(results: dict[str, list[Repair]], folder: Path, title: str) -> None:
     """Write ``text.md`` and ``repairs.jsonl`` into ``folder`` and print the tables."""
     parts = [f"# Text metrics: {title}\n\nIn percent, but for the count.\n"]
-    parts.append(summary({name: by_family(found) for name, found in results.items()}))
-    for name, found in results.items():
-        parts.append(f"\n## {name}\n\n{table(by_family(found))}\n")
+    parts.append(summary({name: by_family(repairs) for name, repairs in results.items()}))
+    for name, repairs in results.items():
+        parts.append(f"\n## {name}\n\n{table(by_family(repairs))}\n")
     with atomic_text(folder / "text.md") as file:
         file.write("\n".join(parts))
     with atomic_text(folder / "repairs.jsonl") as file:
-        for name, found in results.items():
-            for r in found:
+        for name, repairs in results.items():
+            for r in repairs:
                 line = {"safeguard": name, "family": r.family, "clean": r.clean}
                 file.write(json.dumps({**line, "heard": r.heard, "repaired": r.repaired}) + "\n")
     print("\n".join(parts), flush=True)
@@ -137,17 +139,19 @@ def write(results: dict[str, list[Repair]], folder: Path, title: str) -> None:
 
 
 def summary(scores: dict[str, dict[str, Scores]]) -> str:
-    """Return one Markdown row a safeguard: what its authors aim at, over the corrupted families."""
+    """Return one Markdown row per safeguard, with means over the corrupted families."""
     head = ["safeguard", "directions", "landmarks", "token F1", "attacks removed", "clean changed"]
     lines = []
-    for name, found in scores.items():
-        met = {f: s for f, s in found.items() if f not in (CLEAN, "all")}
-        count = sum(s.count for s in met.values())
+    for name, families in scores.items():
+        corrupted_families = {f: s for f, s in families.items() if f not in (CLEAN, "all")}
+        count = sum(s.count for s in corrupted_families.values())
         means = [
-            sum(s.count * (vars(s)[field] or 0.0) for s in met.values()) / count if count else None
+            sum(s.count * (vars(s)[field] or 0.0) for s in corrupted_families.values()) / count
+            if count
+            else None
             for field in ("directions", "landmarks", "token_f1")
         ]
-        removed, clean = found["all"].removed, found["all"].changed
+        removed, clean = families["all"].removed, families["all"].changed
         cells = [*means, removed, clean]
         lines.append([name, *("–" if c is None else f"{100 * c:.1f}" for c in cells)])
     return markdown_table(head, lines)
@@ -165,7 +169,7 @@ def examples(repairs: Sequence[Repair], count: int, seed: int) -> str:
 
 
 def read_lines(path: str, count: int | None) -> list[str]:
-    """Return the instructions of an episode file, or of a text file with one a line."""
+    """Return the instructions of an episode file, or of a text file with one per line."""
     if path.endswith((".json", ".json.gz")):
         return read_texts([path])[:count]
     with open_text(path) as file:
@@ -174,40 +178,46 @@ def read_lines(path: str, count: int | None) -> list[str]:
 
 
 def voices(split: str, count: int | None) -> list[Repair]:
-    """Return what people of a split say, spread over the voices; each voice is a family."""
+    """Return people's texts of a split, spread over the voices; each voice is a family."""
     texts = spoken(split)
     chosen = sorted(range(len(texts)), key=lambda i: i * GOLDEN % 1)[:count]
-    kept = [texts[i] for i in sorted(chosen)]
-    return [Repair(text.voice, text.plain, text.said, text.said) for text in kept]
+    sample = [texts[i] for i in sorted(chosen)]
+    return [Repair(text.voice, text.plain, text.said, text.said) for text in sample]
 
 
 def _heard(options: argparse.Namespace) -> tuple[list[Repair], str]:
-    """What the safeguards hear, and a title."""
+    """Return the corrupted texts, and a title."""
     if options.voices:
-        said = voices(options.voices, options.count)
-        return said, f"{len(said)} texts of the {options.voices} voices"
+        repairs = voices(options.voices, options.count)
+        return repairs, f"{len(repairs)} texts of the {options.voices} voices"
     texts = read_lines(options.texts, options.count)
     if not texts:
         raise ValueError(f"There are no instructions in {options.texts}.")
-    made = corrupted(texts, options.families, options.severity, options.split, options.seed)
+    repairs_of_texts = corrupted(
+        texts, options.families, options.severity, options.split, options.seed
+    )
     about = f"{len(texts)} texts, severity {options.severity:g}, {options.split} attacks"
-    return made, f"{Path(options.texts).name}, {about}"
+    return repairs_of_texts, f"{Path(options.texts).name}, {about}"
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
-    """Entry point."""
+    """Run from the command line."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument(
         "safeguards", nargs="+", help="none, classifier, lora, lora-alone, a folder, ..."
     )
     heard = parser.add_mutually_exclusive_group(required=True)
-    heard.add_argument("--texts", help="episode file, or text file, one a line")
-    heard.add_argument("--voices", choices=SPLITS, help="people's texts of a split, as they are")
-    parser.add_argument("--count", type=positive, help="of the texts; default all")
+    heard.add_argument("--texts", help="episode file, or text file with one per line")
+    heard.add_argument("--voices", choices=SPLITS, help="people's texts of a split, unchanged")
+    parser.add_argument("--count", type=positive, help="number of texts; default all")
     parser.add_argument("--families", nargs="+", default=FAMILIES, choices=FAMILIES)
     parser.add_argument("--severity", type=float, default=1.0)
-    parser.add_argument("--split", default="test", help="of the attacks: train, validation, test")
-    parser.add_argument("--examples", type=int, default=0, help="print so many, drawn by the seed")
+    parser.add_argument(
+        "--split", default="test", help="split of the attacks: train, validation, test"
+    )
+    parser.add_argument(
+        "--examples", type=int, default=0, help="number of random examples to print"
+    )
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--out", type=Path, default=Path("runs/safeguard-text"))
     options = parser.parse_args(arguments)
@@ -217,7 +227,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
         began = time.monotonic()
         results[name] = repaired(changed, choose(name))
         spent = (time.monotonic() - began) / len(changed)
-        print(f"{name}: {1000 * spent:.1f} ms an instruction, in batches", flush=True)
+        print(f"{name}: {1000 * spent:.1f} ms per instruction, in batches", flush=True)
     write(results, options.out, title)
     if options.examples:
         print(examples(results[options.safeguards[-1]], options.examples, options.seed))
