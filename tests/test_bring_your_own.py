@@ -78,7 +78,7 @@ def test_a_world_and_an_agent_fit_on_a_page():
 
 
 @pytest.mark.slow
-def test_it_learns_by_imitation_distillation_and_adapters_and_meets_the_suite(folder):
+def test_own_agent_trains_with_every_kind_of_recipe(folder):
     reached = success(folder / "runs/corridor-s0.6-seed0/rows.jsonl")
     assert set(reached) > {"clean", "spatter", "black_out"} and reached["clean"] > 0.9
     assert sum(reached.values()) / len(reached) > 0.6

@@ -33,9 +33,7 @@ for name in "ab":
 """
 
 
-def test_a_condition_that_lost_its_worker_is_run_anew_and_a_finished_one_is_kept(
-    ray_launcher, tmp_path, capsys
-):
+def test_launcher_reruns_a_condition_that_lost_its_worker(ray_launcher, tmp_path, capsys):
     program, out = tmp_path / "agent.py", tmp_path / "o"
     program.write_text(AGENT)
     command = [sys.executable, str(program), str(tmp_path / "died"), "{condition}"]

@@ -127,9 +127,7 @@ def test_a_wrong_job_is_told_at_once_and_not_tried_on_other_nodes(slurm_launcher
     assert slurm_jobs.TASK not in left and "logs" in left  # to see what went wrong
 
 
-def test_the_rest_of_a_share_keeps_its_groups_and_a_failed_submission_leaves_no_job(
-    tmp_path, monkeypatch
-):
+def test_slurm_resubmits_the_rest_of_a_share(tmp_path, monkeypatch):
     """A group is what a process takes: as one group the rest would be one process's."""
     given, cancelled = [], []
 
@@ -181,7 +179,7 @@ def test_the_rest_of_a_share_keeps_its_groups_and_a_failed_submission_leaves_no_
     [{"processes": 0}, {"attempts": 0}, {"memory": -1.0}, {"memory": math.inf}, {"cpus": math.inf}],
     ids=str,
 )
-def test_a_launcher_of_nothing_is_refused(number):
+def test_launcher_rejects_invalid_numbers(number):
     kind = RayConfig if "cpus" in number else SlurmConfig
     with pytest.raises(ValueError, match=f"launcher.{next(iter(number))} must be > 0"):
         chosen(kind(**number))
@@ -231,6 +229,6 @@ def test_local_is_what_it_was(tmp_path):
 
 
 @pytest.mark.parametrize("workers", [0, -1])
-def test_fewer_than_one_worker_is_refused(workers, tmp_path):
+def test_count_rejects_less_than_one_worker(workers, tmp_path):
     with pytest.raises(ValueError, match="workers must be"):
         count(SlurmConfig(), workers, 100, 40)

@@ -66,7 +66,7 @@ def run(chains, launcher, jobs=2) -> dict[int, programs.Outcome]:
     return found
 
 
-def test_each_chain_is_run_to_its_end_and_its_cpu_seconds_are_told(tmp_path):
+def test_run_reports_cpu_seconds_of_each_chain(tmp_path):
     made = [chain(tmp_path, name) for name in ("one", "two", "three")]
     found = run(made, LauncherConfig())
     assert sorted(found) == [0, 1, 2]
@@ -77,9 +77,7 @@ def test_each_chain_is_run_to_its_end_and_its_cpu_seconds_are_told(tmp_path):
 
 
 @pytest.mark.parametrize("kind", [pytest.param("ray", marks=pytest.mark.slow), "slurm"])
-def test_a_chain_whose_worker_is_killed_goes_on_elsewhere_and_doubles_no_row(
-    kind, request, tmp_path
-):
+def test_chain_resumes_after_its_worker_is_killed(kind, request, tmp_path):
     launcher = request.getfixturevalue(f"{kind}_launcher")
     made = [chain(tmp_path, "one", deadly=True), chain(tmp_path, "two")]
     found = run(made, launcher() if kind == "slurm" else launcher)
@@ -89,7 +87,7 @@ def test_a_chain_whose_worker_is_killed_goes_on_elsewhere_and_doubles_no_row(
     assert (tmp_path / "one").read_text().split() == [*"abcd"]  # the first program is gone, too
 
 
-def test_a_program_that_fails_ends_its_chain_alone_and_its_last_line_is_told(tmp_path):
+def test_failed_program_ends_only_its_chain(tmp_path):
     wrong = chain(tmp_path, "wrong", code="import sys; print('well'); sys.exit('no such recipe')")
     found = run([wrong, chain(tmp_path, "right")], LauncherConfig())
     assert found[0].problem == "train ended with 1 (no such recipe)"

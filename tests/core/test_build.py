@@ -56,7 +56,7 @@ def test_an_entry_that_is_marked_not_partial_is_made():
 
 
 @pytest.mark.parametrize("target", [f"{__name__}.Cart", "no_such_module.Car"])
-def test_what_cannot_be_imported_is_named_with_where_it_is_looked_for(target):
+def test_build_names_unimportable_targets(target):
     for make in (lambda: build.build(OmegaConf.create({"_target_": target})), build.located):
         with pytest.raises(ValueError, match=f"{target}.* in the current folder, or on PYTH"):
             make(target) if make is build.located else make()

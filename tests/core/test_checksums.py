@@ -68,7 +68,7 @@ def test_every_flipped_bit_of_a_checkpoint_is_found(tmp_path):
         assert newest.name == "step-00000001.pt" and found["step"] == 1
 
 
-def test_without_a_sidecar_no_flipped_bit_changes_what_a_checkpoint_says(tmp_path):
+def test_load_detects_flipped_bits_without_a_sidecar(tmp_path):
     """Its zip file holds sums of the contents: a flip outside of them is harmless."""
     path = states.save(tmp_path, state(1))
     note_of(path).unlink()
@@ -146,7 +146,7 @@ def test_rotation_deletes_sidecars_too_and_those_that_a_kill_left(tmp_path):
     assert sorted(path.name for path in tmp_path.iterdir()) == left
 
 
-def test_what_is_written_is_kept_though_a_damaged_later_step_lies_there(tmp_path):
+def test_save_keeps_new_checkpoints_before_a_damaged_later_step(tmp_path):
     late = states.save(tmp_path, state(9))
     late.write_bytes(b"")
     for step in (4, 5):

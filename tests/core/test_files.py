@@ -149,7 +149,7 @@ def test_a_file_has_the_mode_that_the_umask_gives(tmp_path, write, umask):
 
 
 @pytest.mark.parametrize("write", WRITERS.values(), ids=WRITERS)
-def test_what_cannot_be_written_is_named_and_not_its_temporary_neighbour(tmp_path, write):
+def test_write_error_names_the_target_not_the_draft(tmp_path, write):
     (tmp_path / "file").write_text("x")
     for place in (tmp_path / "file/under", Path("/proc/under")):
         with pytest.raises(OSError, match=f"Cannot write {place}.* choose another folder") as error:

@@ -49,7 +49,7 @@ def test_an_added_file_of_a_group_is_no_such_option(tmp_path):
         (["--severity", "seed=1"], "severity=VALUE"),
     ],
 )
-def test_dashes_are_answered_with_how_the_option_is_written(line, shown):
+def test_check_dashes_shows_the_valid_form(line, shown):
     with pytest.raises(ValueError, match=f"Write {shown}, without dashes"):
         options.check_dashes(line)
 
@@ -91,7 +91,7 @@ def test_what_an_option_is_set_to_is_read_as_hydra_reads_it(given, wanted):
 
 
 @pytest.mark.parametrize("name", ["mine (2)", "a,b", 'say "hi"', "it's", "ü = x"])
-def test_a_folder_of_configs_may_have_any_name(tmp_path, name):
+def test_config_folder_may_have_any_name(tmp_path, name):
     folder = tmp_path / name
     (folder / "suite").mkdir(parents=True)
     (folder / "suite" / "own.yaml").write_text("conditions: [clean, flare]\n")

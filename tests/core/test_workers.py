@@ -96,14 +96,14 @@ def test_every_job_has_its_result_under_its_number(count, tmp_path):
 
 
 @pytest.mark.parametrize("how", ["die once", "die in a message"])
-def test_one_dead_worker_is_noticed_at_once_and_its_jobs_run_again(how, tmp_path):
+def test_results_replace_the_first_dead_worker(how, tmp_path):
     began = time.monotonic()
     found, said = run(Squares(tmp_path), groups("", how, ""))
     assert found == {n: n**2 for n in range(9)} and time.monotonic() - began < 10
     assert len(said) == 1 and "SIGKILL" in said[0] and "jobs (2) start again in a new" in said[0]
 
 
-def test_a_second_death_ends_with_what_is_finished_and_what_to_do(tmp_path):
+def test_results_raise_workers_died_after_a_second_death(tmp_path):
     began, found = time.monotonic(), {}
     with pytest.raises(WorkersDied, match=r"of 6 jobs are finished.*workers=1.*memory"):
         for item in results(Squares(tmp_path), groups("", "die"), 2, Lines()):
@@ -212,7 +212,7 @@ def test_a_signal_ends_many_jobs_at_once_within_a_training(tmp_path):
     assert ended.value.status == 143 and time.monotonic() - began < 10
 
 
-def test_alone_a_job_that_was_begun_is_finished_before_a_signal_ends_it(tmp_path):
+def test_results_finish_a_started_job_before_a_signal(tmp_path):
     class Ending(Squares):
         def work(self, jobs):
             for job in jobs:
@@ -242,7 +242,7 @@ class Guarded(Squares):
         return resolve_name, ("os:Guarded",)
 
 
-def test_a_task_that_workers_do_not_find_is_told_with_a_way_out(tmp_path):
+def test_results_reject_tasks_below_main(tmp_path):
     with pytest.raises(ValueError, match="cannot read its task.*Guarded.*top level of a module"):
         list(results(Guarded(tmp_path), groups(1, 2), 2, Lines()))
 
@@ -256,7 +256,7 @@ def test_a_task_that_workers_do_not_find_is_told_with_a_way_out(tmp_path):
     ],
     ids=["job", "result", "unread job"],
 )
-def test_jobs_and_results_that_cannot_be_sent_are_told_as_that(tmp_path, action, kind, words):
+def test_results_reject_jobs_that_cannot_be_pickled(tmp_path, action, kind, words):
     with pytest.raises(kind, match=words) as raised:
         run(Squares(tmp_path), groups(action, ""))
     assert not isinstance(raised.value, WorkersDied)
@@ -285,7 +285,7 @@ except KeyboardInterrupt:
 """
 
 
-def test_ctrl_c_while_workers_import_says_nothing_but_what_the_command_says(tmp_path):
+def test_ctrl_c_during_worker_imports_prints_one_message(tmp_path):
     (tmp_path / "slow_task.py").write_text(SLOW)
     paths = os.pathsep.join([str(tmp_path), str(Path(__file__).parents[2])])
     process = subprocess.Popen(

@@ -37,7 +37,7 @@ def test_what_may_not_be_chosen_takes_no_part_in_the_loss():
     assert policy_kl(masked(other, mask), masked(torch.zeros(1, 4), mask), 1.0) == 0
 
 
-def test_logits_of_another_shape_than_the_targets_name_the_contract():
+def test_imitation_rejects_logits_of_another_shape():
     with pytest.raises(ValueError, match=r"got \[2, 4\], \[3, 4\] and"):
         imitation(Output(torch.zeros(2, 4)), decisions(torch.zeros(3, 4)), {})
 

@@ -149,7 +149,7 @@ def test_the_teacher_keeps_every_bit_and_the_student_moves(teacher, tmp_path):
     assert weights_sha(agent) != start
 
 
-def test_kl_is_zero_only_for_equal_policies_and_ignores_what_is_no_candidate():
+def test_policy_kl_is_zero_for_equal_policies_and_ignores_masked_entries():
     student = torch.tensor([[1.0, 2.0, float("-inf")]], requires_grad=True)
     assert policy_kl(student, student.detach(), 2.0) == 0
     teacher = torch.tensor([[2.0, 1.0, float("-inf")]])
@@ -185,7 +185,7 @@ def test_adapters_train_alone(tmp_path):
     assert made.evaluate(2) == {"backbone_unchanged": 1.0} and weights_sha(agent) != start
 
 
-def test_at_the_end_the_adapters_of_its_sensor_make_the_share_that_is_asked_for(tmp_path):
+def test_adapt_views_scales_adapters_at_the_end(tmp_path):
     agents = [small(adapters=ADAPTERS) for _ in range(2)]
     for agent, strength in zip(agents, (1.0, 0.25), strict=True):
         made = assemble(AdaptViews, agent, modality="rgb", **VIEWS, strength=strength)
@@ -407,7 +407,7 @@ def test_weights_that_make_no_sense_are_refused_as_what_they_are(options, words)
         ({"panoramas": 0}, "recipe.panoramas must be >= 1 per step, got 0"),
     ],
 )
-def test_views_without_panoramas_or_with_negative_weights_are_refused(options, words):
+def test_distil_views_rejects_invalid_numbers(options, words):
     with pytest.raises(ValueError, match=words):
         assemble(DistilViews, small(), modality="depth", teacher="start", **{**VIEWS, **options})
 

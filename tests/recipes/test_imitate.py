@@ -91,7 +91,7 @@ def test_weights_and_shares_that_make_no_sense_are_refused(options, words):
         )
 
 
-def test_the_weight_of_a_loss_that_the_agent_does_not_return_is_refused():
+def test_imitate_rejects_weights_of_unknown_losses():
     agent = TopologicalAgent(16, SMALL)
     out = Output(losses={"waypoints": torch.ones(())})
     check_losses(agent, {**agent.loss_weights, "waypoints": 0.5}, out)
@@ -107,7 +107,7 @@ def test_a_step_needs_an_episode():
         assemble(Imitate, TopologicalAgent(16, SMALL), **SOURCES, schedule=schedule, episodes=0)
 
 
-def test_a_schedule_by_success_is_given_rates_once_where_nothing_else_asks_for_them():
+def test_rollouts_measure_missing_success_rates_once():
     schedule = Schedule("success_distributed", 0.6, names=("flare",))
     made = assemble(
         Imitate,
@@ -154,7 +154,7 @@ def test_logits_that_are_no_numbers_give_a_loss_that_is_none():
     assert float(policy_kl(torch.zeros(1, 3), torch.full((1, 3), nan), 2.0)) != 0
 
 
-def test_imitation_is_a_weighted_mean_and_adds_the_losses_by_their_weights():
+def test_imitation_adds_weighted_auxiliary_losses():
     """Two decisions of two choices: the first is right with 0.8, the second with 0.4."""
     logits = torch.tensor([[0.8, 0.2], [0.6, 0.4]]).log()
     decisions = SimpleNamespace(

@@ -44,7 +44,7 @@ def test_training_takes_a_corruption_away(tmp_path, sensor, left):
     assert not any(p.requires_grad for p in others)
 
 
-def test_a_batch_is_a_function_of_the_step_and_some_show_single_views():
+def test_restore_batch_is_a_function_of_the_step():
     recipe, again = recipe_of(single=0.5), recipe_of(single=0.5)
     recipe.start(), again.start()
     views = []
@@ -55,7 +55,7 @@ def test_a_batch_is_a_function_of_the_step_and_some_show_single_views():
     assert set(views) == {1, 12}
 
 
-def test_a_gate_learns_to_tell_and_its_threshold_follows_clean_frames(tmp_path):
+def test_gate_trains_and_sets_its_threshold(tmp_path):
     given = recipe_of(names=("low_light", "foreign_object"), panoramas=2, single=0.0)
     Trainer(given, steps=40, lr=2e-3, folder=tmp_path / "first", precision="fp32").fit()
     schedule = Schedule("per_episode", (0.4, 0.8), names=("low_light", "foreign_object"))
@@ -80,7 +80,7 @@ def test_a_gate_learns_to_tell_and_its_threshold_follows_clean_frames(tmp_path):
     assert changed and all(name.startswith("nets.rgb.gate.") for name in changed)
 
 
-def test_what_is_better_on_the_mean_but_blurs_right_pixels_is_not_wanted():
+def test_gate_target_rejects_blurred_right_pixels():
     nothing = torch.zeros(5, 1, 1)
     before, after = (
         torch.tensor([0.2, 0.2, 0.2, 0.0, 0.2]),
@@ -92,7 +92,7 @@ def test_what_is_better_on_the_mean_but_blurs_right_pixels_is_not_wanted():
     assert counted.tolist() == [True, True, False, True, True]
 
 
-def test_of_equal_mean_errors_the_one_with_fewer_wrong_pixels_costs_less():
+def test_restore_loss_prefers_fewer_wrong_pixels():
     recipe = recipe_of(w_grad=0.0)
     wanted = torch.full((1, 3, 8, 8), 0.5)
     valid = torch.ones(1, 1, 8, 8)
@@ -145,7 +145,7 @@ def _of_folder(path) -> Restore:
     )
 
 
-def test_depth_of_a_folder_is_corrupted_as_far_as_the_restorer_sees(tmp_path):
+def test_folder_depth_uses_the_range_of_the_restorer(tmp_path):
     """Else all beyond ten metres would read ten, and be what is learned from."""
     for scene in range(3):
         (tmp_path / f"s{scene}").mkdir()
@@ -185,7 +185,7 @@ def test_a_folder_with_other_frames_is_another_run(tmp_path):
     assert recipe_of().identity() == {}
 
 
-def test_a_schedule_by_success_is_refused_where_nothing_measures_it(tmp_path):
+def test_restore_rejects_success_schedules(tmp_path):
     source = {"world": partial(FolderFrames, str(tmp_path)), "training": None, "modality": RGB}
     schedule = Schedule("success_distributed", 0.6)
     for kind in (Restore, RestoreGate):

@@ -106,7 +106,7 @@ def test_more_workers_than_pieces_work_at_several_steps_at_once(ahead, busy, tmp
     assert [given[n] for n in range(7)] == [18 // busy] * busy + [0] * (7 - busy)
 
 
-def test_weights_that_lag_give_other_batches_but_the_same_for_any_number_of_workers(two, tmp_path):
+def test_batches_with_lag_do_not_depend_on_workers(two, tmp_path):
     alone = trained(tmp_path / "alone", None, lag=2, save_every=3)
     assert alone != trained(tmp_path / "prompt", None, save_every=3)
     assert trained(tmp_path / "two", two, lag=2, save_every=3) == alone
@@ -116,7 +116,7 @@ def test_weights_that_lag_give_other_batches_but_the_same_for_any_number_of_work
         assert trained(tmp_path / "seven", workers, lag=2, save_every=3) == alone
 
 
-def test_weights_and_pieces_that_fill_the_pipes_are_sent_while_workers_make_others(tmp_path):
+def test_workers_do_not_deadlock_on_full_pipes(tmp_path):
     seeding.seed_everything(0, "init")
     recipe = Bulky()
     with Workers(1) as workers:
@@ -157,7 +157,7 @@ def test_a_worker_that_is_killed_is_replaced_and_nothing_is_lost(how, where, tmp
     assert "ended with code -9; a new one repeats its work" in capsys.readouterr().out
 
 
-def test_a_worker_that_is_killed_again_ends_the_training_with_advice(tmp_path):
+def test_second_worker_death_ends_the_training(tmp_path):
     with Workers(1) as workers, pytest.raises(WorkersDied, match=r"memory ran out.* workers=1"):
         trained(tmp_path, workers, fatal="always")
     assert states.checkpoints(tmp_path)
@@ -207,7 +207,7 @@ def test_what_cannot_be_sent_is_told_as_what_it_is(fatal, kind, said, tmp_path):
 
 
 @pytest.mark.filterwarnings("ignore::DeprecationWarning")
-def test_a_recipe_with_torchscript_in_it_is_refused_with_a_way_out(two, tmp_path):
+def test_workers_reject_torchscript_objectives(two, tmp_path):
     recipe = Shared()
     recipe.script = torch.jit.script(torch.nn.Linear(2, 2))
     with pytest.raises(ValueError, match=r"cannot be sent .*serialize.* workers=0"):

@@ -62,7 +62,7 @@ def test_what_is_done_takes_no_time(reference, tmp_path):
 
 
 @pytest.mark.parametrize("unknown", ["episodes", "evaluation"])
-def test_a_kind_of_agent_that_does_not_say_what_it_costs_has_no_estimate(tmp_path, unknown):
+def test_estimate_is_nan_for_agents_without_costs(tmp_path, unknown):
     cfg = training("da_per_episode", "recurrent", f"cost.{unknown}=null")
     assert math.isnan(estimate.estimate(cfg, tmp_path))
     assert ": no estimate on this machine" in estimate.describe(cfg, tmp_path)
@@ -70,7 +70,7 @@ def test_a_kind_of_agent_that_does_not_say_what_it_costs_has_no_estimate(tmp_pat
     assert estimate.estimate(known, tmp_path) > 60
 
 
-def test_an_agent_that_says_nothing_has_no_estimate_of_its_evaluation(tmp_path):
+def test_estimate_is_nan_for_unknown_evaluation_cost(tmp_path):
     cfg = training("conv_adapter", "recurrent")
     cfg.cost = CostConfig()
     assert math.isnan(estimate.estimate(cfg, tmp_path))

@@ -81,7 +81,7 @@ def test_a_recipe_names_what_the_agent_lacks_and_what_to_do(recipe):
 
 
 @pytest.mark.parametrize("recipe", ["dagger", "base", "safeguard_lora"])
-def test_a_schedule_that_no_stage_draws_from_is_told(recipe, capsys):
+def test_plan_warns_about_an_unused_schedule(recipe, capsys):
     plan.warn_unused_schedule(load(f"recipe={recipe}"))
     assert not capsys.readouterr().out
     plan.warn_unused_schedule(load(f"recipe={recipe}", "schedule=per_episode"))
@@ -90,7 +90,7 @@ def test_a_schedule_that_no_stage_draws_from_is_told(recipe, capsys):
     assert "(mode clean) has no effect" in capsys.readouterr().out
 
 
-def test_a_recipe_of_ones_own_may_hold_the_schedule_where_it_likes(capsys):
+def test_own_recipe_may_nest_the_schedule(capsys):
     draws = {"_target_": "a.Schedule", "mode": "per_frame"}
     stages = {"one": StageConfig({"parts": [draws]})}
     plan.warn_unused_schedule(TrainConfig("own", schedule=draws, stages=stages))
@@ -98,9 +98,7 @@ def test_a_recipe_of_ones_own_may_hold_the_schedule_where_it_likes(capsys):
 
 
 @pytest.mark.parametrize("recipe", ["harden", "replan", "stacked"])
-def test_severities_of_the_options_act_on_the_evaluation_alone_where_a_range_is_drawn(
-    recipe, capsys
-):
+def test_plan_warns_about_unused_severity(recipe, capsys):
     options = [f"recipe={recipe}", "severity=0.9", "severity_depth=0.8"]
     cfg = conf.load_config("train", options)
     assert build(cfg.schedule) == build(conf.load_config("train", options[:1]).schedule)
@@ -126,7 +124,7 @@ def test_the_oracles_share_falls_over_the_steps_that_are_taken(recipe):
         assert own.recipe.steps == (steps or own.trainer.steps)
 
 
-def test_a_stage_that_ends_in_its_warmup_is_told(capsys):
+def test_plan_warns_about_stages_shorter_than_the_warmup(capsys):
     plan.warn_warmup(load("trainer.steps=40"))
     assert capsys.readouterr().out == (
         "perception_rgb: it ends after 40 steps, before the warmup of 50 steps is over: "
@@ -144,7 +142,7 @@ def test_a_stage_that_ends_in_its_warmup_is_told(capsys):
         ["recipe=ablation", "agent=frontier", "agent.blind=[rgb]", OFF],
     ],
 )
-def test_a_run_in_which_nothing_trains_is_refused(tmp_path, options):
+def test_plan_rejects_runs_without_stages(tmp_path, options):
     assert "all of its stages were left out" in refusal(tmp_path, *options)
 
 
@@ -171,7 +169,7 @@ def test_an_agent_that_shows_no_encoders_learns_on_episodes_alone(recipe, stage,
     assert "left out, Walker has no encoders, labels, see" in capsys.readouterr().out
 
 
-def test_in_a_world_without_random_poses_an_agent_learns_on_episodes_alone(monkeypatch, capsys):
+def test_plan_drops_view_stages_without_random_poses(monkeypatch, capsys):
     cfg = load("recipe=imitation")
     plan.leave_out_stages(cfg, TopologicalAgent(16))
     assert len(left(cfg)) == 3  # the apartments have them
@@ -181,14 +179,14 @@ def test_in_a_world_without_random_poses_an_agent_learns_on_episodes_alone(monke
 
 
 @pytest.mark.parametrize("recipe", ["conv_adapter", "harden"])
-def test_what_an_agent_lacks_for_a_recipe_of_views_and_which_do_without_is_told(recipe, tmp_path):
+def test_plan_names_missing_members_for_recipes_on_views(recipe, tmp_path):
     cfg = load(f"recipe={recipe}")
     plan.leave_out_stages(cfg, Walker())
     with pytest.raises(ValueError, match=r"Walker .*no encoders, labels, see\..*da_per_episode"):
         plan.plan_stages(cfg, Walker(), tmp_path)
 
 
-def test_a_blinded_agent_that_learns_nothing_is_evaluated_as_it_is(tmp_path, monkeypatch, capsys):
+def test_blinded_agent_without_stages_is_evaluated(tmp_path, monkeypatch, capsys):
     met = []
     monkeypatch.setattr(stages, "get_method", lambda _: lambda cfg, *agents: met.append(agents))
     options = ["recipe=ablation", "agent=frontier", "agent.blind=[rgb]", f"folder={tmp_path}"]
@@ -225,7 +223,7 @@ def test_a_folder_with_a_run_of_another_recipe_is_left_as_it_is(tmp_path):
     assert before == {p: p.read_bytes() for p in tmp_path.rglob("*") if p.is_file()}
 
 
-def test_a_later_stage_with_other_settings_is_refused_before_the_first_trains(tmp_path):
+def test_plan_rejects_changed_settings_of_a_later_stage(tmp_path):
     train.run(tiny(tmp_path, "one", "second"))
     with pytest.raises(ValueError, match=r"second holds a run with other settings \(agent.width"):
         train.run(tiny(tmp_path, "two", "first", "second", width=16))
@@ -243,16 +241,14 @@ def test_a_later_stage_with_other_settings_is_refused_before_the_first_trains(tm
         (["stages.imitation.trainer.schedule=cosin"], "cosine, constant, linear"),
     ],
 )
-def test_a_mistake_in_the_last_stage_shows_before_the_first_trains(
-    tmp_path, options, words, monkeypatch
-):
+def test_plan_checks_all_stages_first(tmp_path, options, words, monkeypatch):
     monkeypatch.setattr(stages, "train_stage", lambda *_: pytest.fail("a stage was trained"))
     options = ["debug=smoke", "workers=0", f"folder={tmp_path}", OFF, *options]
     with pytest.raises((ValueError, FileNotFoundError), match=words):
         train.run(conf.load_config("train", options))
 
 
-def test_looking_at_all_stages_leaves_the_agent_as_it_is_and_says_nothing(tmp_path, capsys):
+def test_check_stages_does_not_change_the_agent(tmp_path, capsys):
     cfg = load("recipe=stacked", "debug=smoke", f"folder={tmp_path}")
     agent = build(cfg.agent)
     before = checkpoint.weights_sha(agent), [p.requires_grad for p in agent.parameters()]
@@ -272,9 +268,7 @@ def test_looking_at_all_stages_leaves_the_agent_as_it_is_and_says_nothing(tmp_pa
         ("restore", "restorer", 2, "stage .*gate.* has 1 piece"),
     ],
 )
-def test_ranks_that_a_later_stage_has_no_pieces_for_are_refused_at_once(
-    tmp_path, recipe, agent, count, words
-):
+def test_plan_rejects_more_ranks_than_pieces(tmp_path, recipe, agent, count, words):
     cfg = load(f"recipe={recipe}", f"agent={agent}", "init=null", f"folder={tmp_path}")
     built = build(cfg.agent)
     planned = plan.plan_stages(cfg, built, tmp_path)
@@ -291,7 +285,7 @@ def test_ranks_that_a_later_stage_has_no_pieces_for_are_refused_at_once(
         ("tests.tiny.Nope", "tests.tiny.Nope.* A _target_ must be module.Name"),
     ],
 )
-def test_a_target_that_is_no_recipe_for_an_agent_is_told_as_that(tmp_path, target, words):
+def test_plan_rejects_targets_that_are_not_objectives(tmp_path, target, words):
     cfg = tiny(tmp_path, "own", "first")
     cfg.stages.first.recipe._target_ = target
     with pytest.raises(ValueError, match=words):
@@ -301,9 +295,7 @@ def test_a_target_that_is_no_recipe_for_an_agent_is_told_as_that(tmp_path, targe
 @pytest.mark.parametrize(
     "options", [["recipe=stacked"], ["recipe=da_success", "experiment=frozen"]]
 )
-def test_a_trial_measures_success_on_one_episode_and_starts_no_process(
-    tmp_path, monkeypatch, options
-):
+def test_smoke_run_measures_success_without_workers(tmp_path, monkeypatch, options):
     met = []
 
     def measured(*_, episodes, workers, **others):
@@ -317,7 +309,7 @@ def test_a_trial_measures_success_on_one_episode_and_starts_no_process(
     assert met == [(1, 0)]
 
 
-def test_what_a_setting_of_an_agent_may_be_is_said_for_that_setting(tmp_path):
+def test_invalid_agent_setting_names_allowed_values(tmp_path):
     said = refusal(tmp_path, "agent=recurrent", "agent.blind=[sonar]", OFF)
     assert "agent.blind" in said and "a list of rgb, depth, instruction" in said
     assert "agent.size" not in said
@@ -405,7 +397,7 @@ def test_a_run_trains_on_what_was_drawn_and_says_so(tmp_path, monkeypatch):
     assert written.stages.imitation.recipe.schedule.names == list(RGB)
 
 
-def test_a_teacher_of_which_no_stage_learns_is_refused(tmp_path):
+def test_plan_rejects_an_unused_teacher(tmp_path):
     assert "recipe=da_per_frame does not use a teacher" in refusal(
         tmp_path, "recipe=da_per_frame", "teacher=nowhere", OFF
     )
@@ -436,5 +428,5 @@ def test_check_stages_stops_at_the_first_stage_of_a_user(monkeypatch):
         ("+stages.imitation.recipe.losses=[1]", "must be weights by name"),
     ],
 )
-def test_an_argument_that_cannot_be_is_named_before_the_first_step(tmp_path, option, words):
+def test_plan_rejects_invalid_recipe_arguments(tmp_path, option, words):
     assert words in refusal(tmp_path, "recipe=da_per_episode", option, OFF)

@@ -9,7 +9,7 @@ from mitigate.agents.adapters import backbone_sha, insert_adapters
 from mitigate.training.parts import hold_statistics
 
 
-def test_a_normalisation_without_weights_in_a_module_without_any_trains_with_the_rest():
+def test_hold_statistics_keeps_weightless_normalisation_in_training():
     model = nn.Sequential(
         nn.Sequential(nn.BatchNorm1d(4, affine=False), nn.ReLU()), nn.Linear(4, 2)
     )
@@ -20,7 +20,7 @@ def test_a_normalisation_without_weights_in_a_module_without_any_trains_with_the
     assert not model[0][0].training
 
 
-def test_adapters_beside_a_frozen_normalisation_do_not_make_it_train():
+def test_hold_statistics_ignores_adapters():
     block = nn.Sequential(nn.Conv2d(3, 8, 3), nn.BatchNorm2d(8, affine=False), nn.ReLU())
     model = nn.Sequential(block)
     insert_adapters(model, ["0"])

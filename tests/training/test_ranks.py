@@ -83,7 +83,7 @@ def torchrun(folder: Path, count: int) -> subprocess.CompletedProcess:
 
 
 @pytest.mark.slow
-def test_two_ranks_end_with_the_weights_of_one_and_one_of_them_speaks(tmp_path, monkeypatch):
+def test_two_ranks_train_the_weights_of_one(tmp_path, monkeypatch):
     monkeypatch.setattr("mitigate.training.trainer.choose", lambda *_: "fp32")
     done = torchrun(tmp_path, 2)
     assert done.returncode == 0, done.stderr

@@ -67,7 +67,7 @@ def test_every_recipe_trains_two_steps(tmp_path, name, monkeypatch):
 
 
 @pytest.mark.slow
-def test_a_language_model_in_eight_bits_is_trained_without_a_line_a_product(tmp_path, capfd):
+def test_int8_language_model_trains_without_log_spam(tmp_path, capfd):
     pytest.importorskip("bitsandbytes")
     base = write_tiny_model(tmp_path / "tiny-llama")
     options = ["recipe=safeguard_lora", "debug=smoke", "evaluation.enabled=false", "workers=0"]
@@ -97,9 +97,7 @@ def test_a_language_model_goes_on_from_an_adapter(tmp_path):
 
 @pytest.mark.slow
 @pytest.mark.parametrize("agent,recipe,weights", OTHERS)
-def test_a_training_goes_on_with_the_words_and_adapters_of_its_weights(
-    tmp_path, agent, recipe, weights
-):
+def test_training_inherits_vocabulary_and_adapters(tmp_path, agent, recipe, weights):
     options = [f"agent={agent}", f"recipe={recipe}", "debug=smoke", "workers=0", "env.size=32"]
     options.append(f"init=checkpoints/{weights}")
     cfg = conf.load_config("train", [*options, "evaluation.enabled=false", f"runs={tmp_path}"])

@@ -100,9 +100,7 @@ def run(folder: Path, number: int) -> subprocess.CompletedProcess:
 
 
 @pytest.mark.parametrize(("number", "status"), [(signal.SIGTERM, 143), (signal.SIGINT, 130)])
-def test_it_saves_after_the_step_says_how_to_go_on_and_ends_as_an_unbroken_run(
-    tmp_path, number, status
-):
+def test_interrupted_training_saves_and_resumes_to_the_same_result(tmp_path, number, status):
     ended = run(tmp_path, int(number))
     assert ended.returncode == status, ended.stderr
     assert "saved at step 4" in ended.stdout
@@ -128,7 +126,7 @@ def test_a_signal_while_it_is_evaluated_loses_no_step(tmp_path):
 
 
 @pytest.mark.parametrize("when", ["batch", "finish"])
-def test_a_signal_at_the_end_does_not_leave_out_what_follows_from_the_weights(tmp_path, when):
+def test_signal_at_the_end_does_not_skip_finish(tmp_path, when):
     def before():
         if when == "finish":
             end_within_another_block()
@@ -211,7 +209,7 @@ def test_a_second_signal_ends_it_at_once(tmp_path):
     assert Ranks().first
 
 
-def test_a_signal_while_a_batch_is_measured_for_keeps_the_steps_before(tmp_path):
+def test_signal_during_success_measurement_keeps_earlier_steps(tmp_path):
     """Success rates are measured by workers that end at once, in the middle of a step."""
 
     class Measured(Slow):

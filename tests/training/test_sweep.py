@@ -94,7 +94,7 @@ def test_configs_of_ones_own_are_those_of_every_run(monkeypatch, fake, tmp_path,
     assert sweep.main() == 2  # nothing to combine
 
 
-def test_runs_have_a_log_each_share_the_cores_and_evaluations_a_folder_each(tmp_path, monkeypatch):
+def test_sweep_gives_each_run_a_log_a_folder_and_cores(tmp_path, monkeypatch):
     monkeypatch.setenv("PYTHON_CPU_COUNT", "8")
     cfg = config(tmp_path, "command=evaluate", "jobs=4")
     chains = [sweep.chain(cfg, made) for made in sweep.combinations(["seed=0,1"])]
@@ -114,7 +114,7 @@ def test_combinations_whose_names_would_be_one_have_a_digest_each(tmp_path):
     assert len({sweep.chain(cfg, one, made).log for one in made}) == 2
 
 
-def test_a_failed_run_stops_no_other_and_the_table_is_written(tmp_path, fake):
+def test_sweep_continues_after_a_failed_run(tmp_path, fake):
     options = ["severity=0.3,0.6", "seed=0,1"]
     with pytest.raises(ValueError, match="2 of 4 runs failed.*Run the same command again"):
         sweep.run_all(config(tmp_path, "jobs=2", "launcher=ray"), options)
@@ -138,7 +138,7 @@ def test_what_no_run_could_have_is_said_before_any_starts(tmp_path, fake, own, o
     assert not fake
 
 
-def test_a_sweep_of_evaluations_knows_the_kind_of_agent_by_its_weights(tmp_path, fake):
+def test_sweep_infers_the_agent_from_weights(tmp_path, fake):
     """``rgb_width`` is a setting of the recurrent agent, and not of the usual one."""
     cfg = config(tmp_path, "command=evaluate")
     options = ["checkpoint=checkpoints/recurrent/base", "agent.rgb_width=1,2"]

@@ -76,7 +76,7 @@ def test_a_cell_trains_and_evaluates_in_its_own_folder(tmp_path):
     assert "seed=1" in train and "seed=1" in evaluate and "episodes=5" in evaluate
 
 
-def test_table_1_evaluates_every_kind_of_agent_and_may_train_others(tmp_path):
+def test_table1_evaluates_and_trains_agents(tmp_path):
     more = '+columns.recurrent_mine=["agent=recurrent","recipe=ts_distill"]'
     cfg = load("table1", f"out={tmp_path}", "split=val_unseen_ogn", more)
     made = {cell.column: [args for _, args in cell.commands(cfg)] for cell in tables.cells(cfg)}
@@ -188,7 +188,7 @@ def test_a_score_that_is_undefined_or_of_few_corruptions_says_so(tmp_path, quick
         ("objects_ablations", "val_unseen_ogn", "clean"),
     ],
 )
-def test_every_column_of_a_table_of_kinds_is_an_agent_or_a_training_of_one(table, split, suite):
+def test_table1_columns_are_agents_or_trainings(table, split, suite):
     cfg = load("table1", f"table={table}")
     assert (cfg.split, cells.measured(cfg)[0]) == (split, "clean")
     for cell in tables.cells(cfg):
@@ -290,7 +290,7 @@ def test_further_evaluations_are_measured_and_reported_apart(tmp_path, quick, mo
     ("table", "asked", "walked"),
     [(3, "150", 3), (200, "150", 150), (3, "null", 3), (None, "150", 150), (None, "null", None)],
 )
-def test_a_further_evaluation_walks_no_more_episodes_than_the_table(tmp_path, table, asked, walked):
+def test_additional_evaluation_limits_episodes(tmp_path, table, asked, walked):
     cfg = config(tmp_path, episodes=table)
     measured = tables.cells(cfg)[0].measurement(cfg, "mine", [f"episodes={asked}"])
     assert conf.load_config("evaluate", measured).episodes == walked

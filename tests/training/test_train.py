@@ -63,7 +63,7 @@ def test_the_second_stage_goes_on_from_the_first(tmp_path):
     assert not same(weights(tmp_path / "one"), weights(tmp_path / "two"))
 
 
-def test_the_same_command_again_changes_nothing_and_a_broken_run_is_completed(tmp_path, capsys):
+def test_train_resumes_an_interrupted_run(tmp_path, capsys):
     train.run(config(tmp_path / "whole"))
     train.run(config(tmp_path / "broken"))
     states.checkpoints(tmp_path / "broken" / "second")[-1].unlink()
@@ -121,7 +121,7 @@ def test_a_refused_resume_leaves_the_folder_as_it_is(tmp_path):
     assert {p for p in before if after[p] != before[p]} == set()
 
 
-def test_a_damaged_checkpoint_is_passed_over_and_the_run_ends_the_same(tmp_path, capsys):
+def test_train_skips_a_damaged_checkpoint(tmp_path, capsys):
     train.run(config(tmp_path))
     wanted = weights(tmp_path)
     newest = states.checkpoints(tmp_path / "second")[-1]
@@ -131,7 +131,7 @@ def test_a_damaged_checkpoint_is_passed_over_and_the_run_ends_the_same(tmp_path,
     assert same(wanted, weights(tmp_path)) and states.load(newest)["step"] == 6
 
 
-def test_the_same_command_writes_a_finished_runs_damaged_weights_again(tmp_path):
+def test_train_rewrites_damaged_final_weights(tmp_path):
     train.run(config(tmp_path))
     file = tmp_path / "agent" / "model.safetensors"
     whole = file.read_bytes()
@@ -165,9 +165,7 @@ def test_a_negative_number_of_workers_is_refused(tmp_path):
         ("+trainer.warmpu=3", "no setting of a trainer 'trainer.warmpu'.*mean trainer.warmup"),
     ],
 )
-def test_a_setting_that_makes_no_sense_is_refused_before_anything_is_built(
-    tmp_path, option, words, monkeypatch
-):
+def test_train_rejects_invalid_options_before_building(tmp_path, option, words, monkeypatch):
     monkeypatch.setattr(plan, "build_agent", lambda *_, **__: pytest.fail("was built"))
     with pytest.raises(ValueError, match=words):
         train.run(config(tmp_path, option))
@@ -198,7 +196,7 @@ def test_training_starts_from_the_weights_of_init(tmp_path):
     assert all(torch.allclose(one[name], two[name], atol=1e-6) for name in one)
 
 
-def test_the_folder_says_recipe_severity_seed_and_further_options():
+def test_default_folder_contains_changed_options():
     cfg = conf.load_config("train", ["recipe=da_success", "severity=0.9", "seed=3"])
     assert options.default_folder(cfg) == "runs/da_success-s0.9-seed3"
     cfg.severity_depth = 0.8
@@ -208,7 +206,7 @@ def test_the_folder_says_recipe_severity_seed_and_further_options():
     assert swept == single  # Hydra writes a sweep's values in Python's words
 
 
-def test_a_trainings_column_says_with_which_options_it_was_trained():
+def test_column_name_contains_training_options():
     """Seeds are pooled by name, so another learning rate must not look like another seed."""
     cfg = conf.load_config("train", ["recipe=da_success", "seed=3"])
     plain, other = (
@@ -219,7 +217,7 @@ def test_a_trainings_column_says_with_which_options_it_was_trained():
 
 
 @pytest.mark.parametrize("option", ["evaluation.episodes=null", "trainer.figure_every=7"])
-def test_what_does_not_change_the_training_does_not_change_the_folder(option, monkeypatch):
+def test_default_folder_ignores_options_without_effect(option, monkeypatch):
     """More episodes to report on must not train again."""
     met = []
     monkeypatch.setattr(train, "run", lambda cfg: met.append(cfg.folder))

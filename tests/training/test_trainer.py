@@ -149,7 +149,7 @@ def test_after_any_flipped_bit_the_older_checkpoint_is_used(tmp_path, capsys):
     assert same(whole, trained(tmp_path)) and states.load(newest)["step"] == 20
 
 
-def test_a_run_with_other_saves_keeps_what_it_writes_beside_a_damaged_later_step(tmp_path):
+def test_trainer_keeps_checkpoints_before_a_damaged_later_step(tmp_path):
     trained(tmp_path, keep=2)
     newest = states.checkpoints(tmp_path)[-1]
     newest.write_bytes(b"")
@@ -233,7 +233,7 @@ def test_an_infinite_gradient_stops_before_it_is_applied(tmp_path):
     assert same(before, made.agent.state_dict())
 
 
-def test_a_folder_with_another_run_is_refused_by_naming_the_difference(tmp_path):
+def test_trainer_rejects_the_folder_of_another_run(tmp_path):
     trained(tmp_path)
     with pytest.raises(ValueError, match=r"trainer\.lr: 0\.001 -> 0\.01"):
         trained(tmp_path, lr=1e-2)
