@@ -10,7 +10,7 @@ import pytest
 from mitigate.bridge import results
 from mitigate.bridge.cell import read_done
 from mitigate.bridge.condition import Subset
-from mitigate.bridge.events import note
+from mitigate.bridge.events import write_event
 from mitigate.core.files import sha256
 from mitigate.core.output import FolderLostError
 from mitigate.evaluation import rows
@@ -98,7 +98,7 @@ def test_run_rejects_events_in_which_a_result_changed(finished):
     assert ran.returncode == 1 and "its sha256 is not the one" in ran.stderr
 
 
-def test_run_rejects_damage_in_a_condition_that_was_not_asked_for(finished):
+def test_run_rejects_damage_in_another_condition(finished):
     out, again = finished
     events = out / CONDITION / "events.jsonl"
     events.write_bytes(with_damaged_line(events.read_bytes(), 2))
@@ -108,7 +108,7 @@ def test_run_rejects_damage_in_a_condition_that_was_not_asked_for(finished):
 
 
 @pytest.mark.parametrize("text", ["[]", "null", '"x"', "3", "true", "{", "", "\udcff"])
-def test_run_rejects_a_finished_marker_that_is_no_object(finished, text):
+def test_run_rejects_a_marker_that_is_not_an_object(finished, text):
     out, again = finished
     marker = out / CONDITION / "done.json"
     marker.write_text(text, errors="surrogateescape")
@@ -129,7 +129,7 @@ def test_run_rejects_a_finished_marker_that_is_no_object(finished, text):
         ("repeat", -1),
     ],
 )
-def test_run_rejects_a_finished_marker_with_a_wrong_entry(finished, name, value):
+def test_run_rejects_a_marker_with_an_invalid_entry(finished, name, value):
     out, again = finished
     marker = out / CONDITION / "done.json"
     marker.write_text(json.dumps(json.loads(marker.read_text()) | {name: value}))
@@ -158,7 +158,7 @@ def test_run_rejects_the_folder_of_another_condition(finished, options, copied):
         ({"episodes_told": 2}, "3 episodes ended, and done.json records 2"),
     ],
 )
-def test_run_rejects_a_changed_entry_of_a_finished_marker(finished, entry, reason):
+def test_run_rejects_a_changed_entry_of_a_marker(finished, entry, reason):
     out, again = finished
     marker = out / CONDITION / "done.json"
     marker.write_text(json.dumps(json.loads(marker.read_text()) | entry))
@@ -190,7 +190,7 @@ def test_run_compares_counts_of_a_marker_without_a_checksum(finished):
     assert "lacks episodes_told" in again().stderr
 
 
-def test_run_measures_a_condition_again_whose_damaged_folder_was_moved(finished, tmp_path):
+def test_run_measures_a_moved_condition_again(finished, tmp_path):
     out, again = finished
     held = rows.read(out / "rows.jsonl")
     (out / CONDITION).rename(tmp_path / "aside")
@@ -199,22 +199,22 @@ def test_run_measures_a_condition_again_whose_damaged_folder_was_moved(finished,
     assert rows.read(out / "rows.jsonl") == held
 
 
-def test_run_keeps_rows_that_no_finished_condition_gives_any_more(finished, tmp_path):
+def test_run_keeps_rows_without_a_finished_condition(finished, tmp_path):
     out, again = finished
     (out / CONDITION).rename(tmp_path / "aside")
     before = (out / "rows.jsonl").read_bytes()
     ran = again("conditions=[clean]")
-    assert ran.returncode == 1 and "6 of them are of episodes that no finished" in ran.stderr
+    assert ran.returncode == 1 and "6 of them belong to episodes that are in no" in ran.stderr
     assert (out / "rows.jsonl").read_bytes() == before
 
 
-def test_run_copies_rows_that_stay_out_of_the_table(finished):
+def test_run_copies_rows_that_leave_the_table(finished):
     out, again = finished
     before = (out / "rows.jsonl").read_bytes()
     marker = out / CONDITION / "done.json"
     marker.write_text(json.dumps(json.loads(marker.read_text()) | {"seed": 7}))
     ran = again("conditions=[flare]")
-    assert not ran.stderr and "are now in" in ran.stdout
+    assert not ran.stderr and "are now only in" in ran.stdout
     assert (out / "rows.jsonl.before").read_bytes() == before
 
 
@@ -230,37 +230,37 @@ def test_run_copies_rows_of_another_agent_seed_or_split(finished, other):
     assert rows.read(out / "rows.jsonl") == held
 
 
-def test_run_may_judge_the_same_episodes_by_another_rule(finished):
+def test_run_judges_the_same_episodes_by_another_rule(finished):
     out, again = finished
     ran = again("conditions=[low_light] rule=etpnav")
     assert not ran.stderr, ran.stderr
     assert len(rows.read(out / "rows.jsonl")) == 6 and not list(out.glob("*.before*"))
 
 
-def test_read_leaves_out_a_last_line_that_is_being_written(tmp_path):
-    note(tmp_path, event="hello")
+def test_read_ignores_an_incomplete_last_line(tmp_path):
+    write_event(tmp_path, event="hello")
     with open(tmp_path / "events.jsonl", "a") as file:
         file.write('{"event": "bye"')
     assert results.read(tmp_path).connected == 1
-    note(tmp_path, event="bye")
+    write_event(tmp_path, event="bye")
     with pytest.raises(ValueError, match="line 2 is damaged"):
         results.read(tmp_path)
 
 
 @pytest.mark.parametrize("line", ["null", "[]", '"x"', "{}", '{"event": 3}', '{"event": "spec"}'])
-def test_read_rejects_a_line_that_is_no_event(tmp_path, line):
+def test_read_rejects_a_line_that_is_not_an_event(tmp_path, line):
     (tmp_path / "events.jsonl").write_text(line + "\n")
     with pytest.raises(ValueError, match=r"events\.jsonl: line 1 is"):
         results.read(tmp_path)
 
 
 def test_read_done_returns_none_for_an_unfinished_condition(tmp_path):
-    note(tmp_path, event="hello")
+    write_event(tmp_path, event="hello")
     assert read_done(tmp_path) is None
 
 
 @pytest.mark.parametrize("text", ["null", "[]", '{"episodes": 2}', '{"bound": "x", "of": 3}'])
-def test_subset_rejects_a_damaged_list_of_chosen_episodes(tmp_path, text):
+def test_subset_rejects_a_damaged_choice(tmp_path, text):
     (tmp_path / "episodes.json").write_text(text)
     with pytest.raises(ValueError, match=r"episodes\.json"):
         Subset(2, tmp_path, settled=0).keep(["a", "b"])
@@ -294,7 +294,7 @@ def test_run_keeps_a_finished_condition_that_cannot_be_put_aside(finished, tmp_p
         aside.symlink_to(tmp_path)
     else:
         aside.write_text("mine")
-    note(out / "conditions/clean", event="end", scene="", episode="d", steps=1, calls=1)
+    write_event(out / "conditions/clean", event="end", scene="", episode="d", steps=1, calls=1)
     clean = out / "conditions/clean/done.json"
     events = clean.parent / "events.jsonl"
     seal = {"bytes": len(events.read_bytes()), "sha256": sha256(events)}

@@ -38,7 +38,7 @@ def wait_for(folder, word, seconds=20.0):
         time.sleep(0.02)
 
 
-def test_a_killed_server_stops_the_agent(tmp_path):
+def test_hook_stops_if_the_server_is_killed(tmp_path):
     with Listener(condition("spatter"), tmp_path, patience=5.0) as listener:
         agent = start(listener, tmp_path, "--pause", 0.2, "--steps", 100)
         wait_for(tmp_path, '"spec"')
@@ -47,7 +47,7 @@ def test_a_killed_server_stops_the_agent(tmp_path):
     assert agent.returncode == 97 and "server" in output
 
 
-def test_a_server_that_does_not_answer_stops_the_agent(tmp_path):
+def test_hook_stops_if_the_server_does_not_answer(tmp_path):
     with Listener(condition("spatter"), tmp_path, patience=1.0) as listener:
         agent = start(listener, tmp_path, "--pause", 0.2, "--steps", 100)
         wait_for(tmp_path, '"spec"')
@@ -56,18 +56,18 @@ def test_a_server_that_does_not_answer_stops_the_agent(tmp_path):
     assert agent.returncode == 97 and "did not answer within 1 s" in output
 
 
-def test_no_server_stops_the_agent(command, tmp_path):
+def test_hook_stops_without_a_server(command, tmp_path):
     ran = command(condition("spatter"), MITIGATE_BRIDGE=str(tmp_path / "nobody"))
     assert ran.status == 97 and "cannot be reached" in ran.output
 
 
-def test_a_wrong_token_is_not_served(command):
+def test_server_rejects_a_wrong_token(command):
     ran = command(condition("spatter"), MITIGATE_TOKEN="guessed")
     assert ran.status == 97 and "gone" in ran.output
     assert not ran.told.hellos
 
 
-def test_no_room_for_frames_is_named(command, monkeypatch):
+def test_server_reports_missing_space_for_frames(command, monkeypatch):
     def full(*_):
         raise OSError(28, "No space left on device")
 
@@ -75,10 +75,10 @@ def test_no_room_for_frames_is_named(command, monkeypatch):
     ran = command(condition("spatter"))
     assert ran.status == 97
     assert "no room for" in ran.output and "--shm-size" in ran.output
-    assert "no room for" in ran.told.refused[0]
+    assert "no room for" in ran.told.problems[0]
 
 
-def test_an_exception_handler_of_the_agent_cannot_go_on(tmp_path):
+def test_hook_cannot_be_caught_by_the_agent(tmp_path):
     """WMNav's loop catches every exception and takes the next step."""
     code = (
         "import mitigate_hook, numpy\n"
@@ -99,13 +99,13 @@ def test_an_exception_handler_of_the_agent_cannot_go_on(tmp_path):
     assert ran.returncode == 97 and "must be uint8" in ran.stderr and "went on" not in ran.stdout
 
 
-def test_what_the_server_made_for_a_run_is_removed(command):
+def test_server_removes_its_folders(command):
     command(condition("spatter"), "--episodes", 1)
     with Listener(condition("spatter"), command.__closure__[0].cell_contents / "x") as listener:
-        held = (listener.place, listener.memory)
+        held = (listener.socket_folder, listener.memory)
         assert all(place.is_dir() for place in held)
         assert oct(os.stat(listener.address).st_mode & 0o777) == "0o600"
-        assert oct(os.stat(listener.place).st_mode & 0o777) == "0o700"
+        assert oct(os.stat(listener.socket_folder).st_mode & 0o777) == "0o700"
     assert not any(place.exists() for place in held)
 
 
@@ -120,7 +120,7 @@ def pair():
         end.close()
 
 
-def test_messages_come_as_they_were_sent(pair):
+def test_receive_returns_the_sent_message(pair):
     threading.Thread(target=send, args=(pair[0], {"kind": "frame", "call": 3})).start()
     assert receive(pair[1]) == {"kind": "frame", "call": 3}
 
@@ -134,13 +134,13 @@ def test_messages_come_as_they_were_sent(pair):
         HEADER.pack(MAGIC, 3) + b"nan",
     ],
 )
-def test_what_is_no_message_is_refused_before_it_is_read(pair, raw):
+def test_receive_rejects_invalid_messages(pair, raw):
     pair[0].sendall(raw)
     with pytest.raises(ValueError):
         receive(pair[1])
 
 
-def test_a_connection_that_ends_in_the_middle_is_an_end(pair):
+def test_receive_returns_none_for_a_cut_message(pair):
     pair[0].sendall(HEADER.pack(MAGIC, 100) + b"{")
     pair[0].close()
     assert receive(pair[1]) is None

@@ -9,8 +9,8 @@ import sys
 import pytest
 
 from mitigate.bridge import run as bridge_run
-from mitigate.bridge.cell import files_of, write_done
-from mitigate.bridge.plan import Plan, cells, default_folder
+from mitigate.bridge.cell import hash_files, write_done
+from mitigate.bridge.plan import Plan, default_folder, make_cells
 from mitigate.bridge.results import read
 from mitigate.core.files import sha256
 from mitigate.core.output import FolderLostError
@@ -54,16 +54,16 @@ def measured(out):
     return {(row["corruption"], row["severity"]) for row in rows.read(out / "rows.jsonl")}
 
 
-def test_episodes_that_clean_has_and_a_condition_lacks_are_missed(run, program, tmp_path):
+def test_run_reports_unfinished_episodes(run, program, tmp_path):
     out = tmp_path / "o"
     ran = run(out, "conditions=[low_light]", f"{program} a c")
-    assert ran.returncode == 1 and "2 episodes were left in the middle, such as a" in ran.stderr
+    assert ran.returncode == 1 and "2 episodes were left unfinished, such as a" in ran.stderr
     assert "episode.finish(success=False)" in ran.stderr
     folder = out / "conditions" / "low_light-s0.6"
     assert not (folder / "done.json").exists() and measured(out) == {("clean", 0.0)}
 
 
-def test_a_finished_condition_that_lacks_episodes_of_clean_is_measured_anew(run, program, tmp_path):
+def test_run_repeats_a_condition_that_lacks_episodes_of_clean(run, program, tmp_path):
     out = tmp_path / "o"
     assert run(out, "conditions=[low_light]", program).returncode == 0
     events = out / "conditions" / "low_light-s0.6" / "events.jsonl"
@@ -75,7 +75,7 @@ def test_a_finished_condition_that_lacks_episodes_of_clean_is_measured_anew(run,
     assert "clean: done before" in again.stdout and "low_light-s0.6: started" in again.stdout
 
 
-def test_an_episode_that_never_began_is_missed_too(run, program, tmp_path):
+def test_run_reports_an_episode_that_never_began(run, program, tmp_path):
     folder = tmp_path / "o" / "conditions"
     assert run(tmp_path / "o", "conditions=[clean]", program).returncode == 0
     with open(folder / "clean" / "events.jsonl", "a") as file:
@@ -89,7 +89,7 @@ BACKGROUND = """
 import os, sys, time, numpy, mitigate_hook
 frame = numpy.full((8, 8, 3), 90, 'uint8')
 if os.fork() and not mitigate_hook.connect('own').corrupt({'rgb': frame}).get('x'):
-    mitigate_hook._thread.walk.end({'success': 1})
+    mitigate_hook._thread.session.end({'success': 1})
     time.sleep(0.5)
     os._exit(0)
 %s
@@ -100,32 +100,32 @@ time.sleep(30)
 
 
 @pytest.mark.parametrize("session", ["", "os.setsid()"])
-def test_an_episode_that_a_background_process_is_in_at_the_end_is_lost(
-    run, tmp_path, monkeypatch, session
-):
+def test_run_reports_the_episode_of_a_background_process(run, tmp_path, monkeypatch, session):
     from mitigate.bridge import attempt
 
-    monkeypatch.setattr(attempt, "NOTED", 0.5)  # who has a session of its own is waited for
+    monkeypatch.setattr(
+        attempt, "DISCONNECT_TIME", 0.5
+    )  # who has a session of its own is waited for
     file = tmp_path / "nav.py"
     file.write_text(BACKGROUND % session)
     ran = run(tmp_path / "o", "conditions=[clean]", f"{sys.executable} {file}")
-    assert ran.returncode == 1 and "1 episode was left in the middle, such as late" in ran.stderr
+    assert ran.returncode == 1 and "1 episode was left unfinished, such as late" in ran.stderr
     assert not (tmp_path / "o/conditions/clean/done.json").exists()
 
 
-def test_episodes_that_clean_lacks_have_it_measured_anew(run, tmp_path):
+def test_run_repeats_clean_if_it_lacks_episodes(run, tmp_path):
     out, file = tmp_path / "o", tmp_path / "nav.py"
     lost = "for name in 'abcd':\n    if name == 'd' and sys.argv[1] == 'clean': break\n"
     file.write_text(PROGRAM.replace("for name in 'abcd':\n", lost))
     ran = run(out, "conditions=[low_light,spatter]", f"{sys.executable} {file} {{condition}}")
-    assert ran.returncode == 1 and "1 episode ended under it that clean's run lacks" in ran.stderr
+    assert ran.returncode == 1 and "1 episode ended under it that the clean run lacks" in ran.stderr
     assert not list(out.glob("conditions/*/done.json")) and not (out / "rows.jsonl").exists()
     file.write_text(PROGRAM)
     ran = run(out, "conditions=[low_light]", f"{sys.executable} {file} {{condition}}")
     assert ran.returncode == 0 and "clean: started" in ran.stdout
 
 
-def test_the_table_is_of_all_that_is_finished_in_the_folder(run, program, tmp_path):
+def test_table_holds_all_finished_conditions(run, program, tmp_path):
     out = tmp_path / "o"
     run(out, "conditions=[low_light,spatter]", program)
     ran = run(out, "conditions=[flare] severity=0.3", program)
@@ -135,7 +135,7 @@ def test_the_table_is_of_all_that_is_finished_in_the_folder(run, program, tmp_pa
     assert measured(out) == wanted and (out / "severity.png").exists()
 
 
-def test_what_other_settings_measured_stays_out_of_the_table(run, program, tmp_path):
+def test_table_leaves_out_other_settings(run, program, tmp_path):
     out = tmp_path / "o"
     run(out, "conditions=[low_light]", program)
     file = out / "conditions" / "low_light-s0.6" / "done.json"
@@ -145,7 +145,7 @@ def test_what_other_settings_measured_stays_out_of_the_table(run, program, tmp_p
     assert measured(out) == {("clean", 0.0), ("flare", 0.6)}
 
 
-def test_one_severity_needs_no_curve_and_the_agents_own_rule_comes_first(run, tmp_path):
+def test_table_starts_with_the_requested_rule(run, tmp_path):
     out = tmp_path / "o"
     ran = run(out, "conditions=[spatter] rule=objectnav")
     assert ran.returncode == 0 and not list(out.glob("severity*.png"))
@@ -154,7 +154,7 @@ def test_one_severity_needs_no_curve_and_the_agents_own_rule_comes_first(run, tm
     assert first == str(RULES["objectnav"]) > second and "![severity" not in text
 
 
-def test_a_changed_program_is_named_and_nothing_to_do_is_said(run, program, tmp_path):
+def test_run_names_a_changed_program(run, program, tmp_path):
     out = tmp_path / "o"
     first = run(out, "conditions=[spatter]", program)
     assert "nothing was left" not in first.stdout
@@ -164,40 +164,40 @@ def test_a_changed_program_is_named_and_nothing_to_do_is_said(run, program, tmp_
     assert "nav.py changed since clean, spatter-s0.6 were run" in again.stdout
 
 
-def test_a_program_that_changes_during_a_run_is_named_at_its_end(run, tmp_path):
+def test_run_names_a_program_that_changes_during_it(run, tmp_path):
     file = tmp_path / "nav.py"
     file.write_text(PROGRAM + "open(__file__, 'a').write('#')\n")
     ran = run(tmp_path / "o", "conditions=[clean]", f"{sys.executable} {file} x")
     assert ran.returncode == 0 and "nav.py changed since clean was run" in ran.stdout
 
 
-def test_the_files_of_a_command_are_those_that_its_words_name(tmp_path):
+def test_hash_files_finds_files_in_a_command(tmp_path):
     file = tmp_path / "nav.py"
     file.write_text("pass")
     words = ["python", "-c", "print(5)" * 99, str(file), f"--config={file}", str(tmp_path), "\0"]
-    assert files_of(words) == {str(file): {"size": 4, "sha256": sha256(file)}}
+    assert hash_files(words) == {str(file): {"size": 4, "sha256": sha256(file)}}
 
 
-def test_a_recording_that_is_asked_for_later_is_made(run, program, tmp_path):
+def test_run_repeats_a_condition_to_record_it(run, program, tmp_path):
     out, record = tmp_path / "o", tmp_path / "recorded"
     run(out, "conditions=[clean]", program)
     ran = run(out, f"conditions=[clean] record={record}", program)
-    assert "clean: started, measured anew: it was not recorded in" in ran.stdout
+    assert "clean: started, measured again: it was not recorded in" in ran.stdout
     assert (record / "clean" / "unnamed" / "d" / "end.json").exists()
     for options in (f"conditions=[clean] record={record}", "conditions=[clean]"):
         assert "clean: done before" in run(out, options, program).stdout
 
 
-def test_a_run_whose_episodes_say_nothing_ends_behind_clean(run, tmp_path, monkeypatch):
+def test_run_stops_after_clean_without_results(run, tmp_path, monkeypatch):
     from mitigate.bridge import results
 
     monkeypatch.setattr(results, "rows", lambda *_: [])
     ran = run(tmp_path / "o", "conditions=[spatter]")
-    assert ran.returncode == 1 and "of 4 episodes that ended none said how it went" in ran.stderr
-    assert "spatter" not in ran.stdout and ran.stdout.count("none said") == 0
+    assert ran.returncode == 1 and "none of 4 episodes that ended reported a result" in ran.stderr
+    assert "spatter" not in ran.stdout and ran.stdout.count("reported a result") == 0
 
 
-def test_a_worker_that_stops_itself_fails_the_condition(run, tmp_path):
+def test_run_fails_if_a_worker_stops_itself(run, tmp_path):
     program = tmp_path / "agent.py"
     program.write_text(
         "import mitigate_hook, numpy, os\n"
@@ -209,7 +209,7 @@ def test_a_worker_that_stops_itself_fails_the_condition(run, tmp_path):
     assert ran.returncode == 1 and "the entry image of an observation may be a frame" in ran.stderr
 
 
-def test_what_an_older_version_measured_is_said_to_be_left_out(run, program, tmp_path):
+def test_run_names_conditions_of_an_older_version(run, program, tmp_path):
     out = tmp_path / "o"
     (out / "conditions" / "flare-s0.6").mkdir(parents=True)
     (out / "conditions" / "flare-s0.6" / "done.json").write_text('{"seed": 0}')
@@ -220,10 +220,10 @@ def test_what_an_older_version_measured_is_said_to_be_left_out(run, program, tmp
 def made(options, folder):
     """The first condition of a run with options."""
     typed = config(*options)
-    return cells(Plan(typed, ("nav",), "nav", folder))[0], default_folder(typed, "nav")
+    return make_cells(Plan(typed, ("nav",), "nav", folder))[0], default_folder(typed, "nav")
 
 
-def test_a_safeguard_makes_another_agent_of_its_own_folder(tmp_path):
+def test_safeguard_changes_agent_and_folder(tmp_path):
     plain, folder = made(["conditions=[clean]"], tmp_path)
     guarded, other = made(["conditions=[clean]", "safeguard=rules"], tmp_path)
     assert (

@@ -52,7 +52,7 @@ def walked(lab, episodes, met, folder):
     return json.loads((folder / "seen.json").read_text()), read(folder)
 
 
-def test_the_labs_own_task_is_corrupted_and_measured(lab, episodes, tmp_path):
+def test_hook_corrupts_and_measures_a_lab_task(lab, episodes, tmp_path):
     clean, _ = walked(lab, episodes, condition(), tmp_path / "clean")
     seen, told = walked(lab, episodes, condition("low_light"), tmp_path / "met")
     assert len(seen) == len(clean) > 20
@@ -68,11 +68,11 @@ def test_the_labs_own_task_is_corrupted_and_measured(lab, episodes, tmp_path):
         assert end["distance"] == pytest.approx(metrics["distance_to_goal"], abs=1e-5)
 
 
-def test_the_labs_own_instruction_sensor_gives_the_corrupted_words(lab, episodes, tmp_path):
+def test_hook_corrupts_the_lab_instruction_sensor(lab, episodes, tmp_path):
     clean, _ = walked(lab, episodes, condition(), tmp_path / "clean")
-    from mitigate.bridge.condition import Words, tokenizer_of
+    from mitigate.bridge.condition import Words, load_tokenizer
 
-    words = Words(tokenizer_of(str(episodes)))
+    words = Words(load_tokenizer(str(episodes)))
     seen, _ = walked(lab, episodes, condition("capitalize", 1.0, words=words), tmp_path / "met")
     assert all(a["text"] != b["text"] for a, b in zip(seen, clean, strict=True))
     assert all(a["text"].lower() == b["text"].lower() for a, b in zip(seen, clean, strict=True))

@@ -77,7 +77,7 @@ def running(folder):
 @pytest.mark.parametrize("how", DETACHED)
 def test_run_does_not_finish_a_condition_whose_command_detaches(run, sleeper, tmp_path, how):
     ran = run(tmp_path / "o", "conditions=[clean]", sleeper(how))
-    assert ran.returncode == 1 and "1 process that it started ran on" in ran.stderr, ran.stderr
+    assert ran.returncode == 1 and "1 process that it started still ran" in ran.stderr, ran.stderr
     assert "nav.py" in ran.stderr and not running(tmp_path)
     assert not (tmp_path / "o/conditions/clean/done.json").exists()
 

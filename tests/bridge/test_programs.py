@@ -47,7 +47,7 @@ def test_wmnav_hears_the_corrupted_category(tmp_path):
     assert all(word.endswith(" chair") and len(word) > 12 for word in words)
 
 
-def test_habitat_sim_alone_must_be_told_its_episodes(tmp_path):
+def test_habitat_sim_without_the_lab_requires_connect(tmp_path):
     code = "import habitat_sim; habitat_sim.Simulator().get_sensor_observations()"
     with Listener(condition("spatter"), tmp_path) as listener:
         ran = python(listener, code)
@@ -65,7 +65,7 @@ episode.finish(success=True, spl=0.5)
 """
 
 
-def test_a_loop_of_ones_own_takes_three_calls(tmp_path):
+def test_loop_needs_three_calls(tmp_path):
     with Listener(condition("low_light_noise"), tmp_path) as listener:
         ran = python(listener, LOOP)
     assert ran.returncode == 0, ran.stdout
@@ -86,7 +86,7 @@ BEGIN = "import numpy, mitigate_hook\nrgb = numpy.full((16, 16, 3), 90, 'uint8')
     ("loop", "words"),
     [
         ("a = mitigate_hook.connect('a'); b = mitigate_hook.connect('b'); a.corrupt({'rgb': rgb})",
-         "episode a was left for another one"),
+         "episode a ended when the next one began"),
         ("mitigate_hook.connect('a').corrupt({'rgb': rgb, 'left': rgb})",
          "the entry left of an observation may be a frame"),
         ("mitigate_hook.connect('a').corrupt({'rgb': rgb}, heading='north')",
@@ -94,14 +94,14 @@ BEGIN = "import numpy, mitigate_hook\nrgb = numpy.full((16, 16, 3), 90, 'uint8')
         ("mitigate_hook.connect('a').corrupt({'rgb': rgb}, cameras={'rgb': 5})", ""),
     ],
 )  # fmt: skip
-def test_no_mistake_in_a_loop_lets_a_clean_frame_through(tmp_path, loop, words):
+def test_loop_errors_let_no_clean_frame_through(tmp_path, loop, words):
     code = f"{BEGIN}try:\n    {loop}\nexcept AttributeError:\n    raise\nprint('went on')"
     with Listener(condition("spatter"), tmp_path) as listener:
         ran = python(listener, code)
     assert ran.returncode != 0 and words in ran.stdout and "went on" not in ran.stdout
 
 
-def test_a_numpy_heading_and_an_entry_to_leave_alone_are_taken(tmp_path):
+def test_corrupt_accepts_a_numpy_heading_and_other_entries(tmp_path):
     code = BEGIN + (
         "seen = mitigate_hook.connect('a').corrupt({'rgb': rgb, 'left': rgb}, "
         "heading=numpy.float32(0.3), cameras={'left': {'type': 'other'}})\n"
@@ -111,7 +111,7 @@ def test_a_numpy_heading_and_an_entry_to_leave_alone_are_taken(tmp_path):
         assert python(listener, code).stdout.strip() == "True True"
 
 
-def test_an_episode_that_is_never_finished_is_counted(tmp_path):
+def test_reports_count_an_unfinished_episode(tmp_path):
     code = BEGIN + (
         "for name in 'ab':\n    episode = mitigate_hook.connect(name)\n"
         "    for _ in range(3): episode.corrupt({'rgb': rgb})\n"
@@ -122,7 +122,7 @@ def test_an_episode_that_is_never_finished_is_counted(tmp_path):
     assert read(tmp_path).lost == ["a"] and list(read(tmp_path).ends) == ["b"]
 
 
-def test_outside_of_a_run_connect_says_so():
+def test_connect_raises_outside_a_run():
     from mitigate.bridge.hook import mitigate_hook
 
     with pytest.raises(RuntimeError, match="mitigate run"):
@@ -152,7 +152,7 @@ episode.finish(success=1, spl=1.0)
 """
 
 
-def test_adapters_go_into_an_agents_own_encoder(tmp_path, monkeypatch):
+def test_adapters_are_attached_to_an_encoder(tmp_path, monkeypatch):
     (tmp_path / "their_encoder.py").write_text(ENCODER)
     (tmp_path / "program.py").write_text(PROGRAM)
     torch.manual_seed(0)
@@ -216,7 +216,7 @@ def run_adapted(folder, place):
     run_command(config(*options), command)
 
 
-def test_adapters_go_around_torchscript_in_an_agents_own_encoder(tmp_path, monkeypatch):
+def test_adapters_wrap_a_torchscript_encoder(tmp_path, monkeypatch):
     script, wrapped = scripted(tmp_path, PROGRAM.replace(LOADING, ""))
     script.save(str(tmp_path / "w.pt"))
     monkeypatch.chdir(tmp_path)
@@ -226,7 +226,7 @@ def test_adapters_go_around_torchscript_in_an_agents_own_encoder(tmp_path, monke
         assert torch.equal(found, wrapped(FRAMES)) and not torch.equal(found, script(FRAMES))
 
 
-def test_adapters_that_cannot_go_into_torchscript_stop_the_agent(tmp_path, monkeypatch):
+def test_adapters_stop_the_agent_inside_torchscript(tmp_path, monkeypatch):
     """One that catches the error would go on without them."""
     call = "    features = encoder(torch.from_numpy(rgb).permute(2, 0, 1)[None] / 255)\n"
     assert call in PROGRAM

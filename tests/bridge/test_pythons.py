@@ -32,13 +32,13 @@ def python(request):
     return str(found)
 
 
-def test_every_file_of_the_hook_compiles(python, tmp_path):
+def test_hook_compiles(python, tmp_path):
     for file in sorted(HOOK.glob("*.py")):
         code = f"compile(open({str(file)!r}).read(), {file.name!r}, 'exec')"
         subprocess.run([python, "-c", code], check=True)
 
 
-def test_workers_see_what_ours_see(python, command):
+def test_hook_gives_equal_pixels_in_every_python(python, command):
     ours = command(condition("low_light_noise"), "--cameras", 12).seen()
     options = ("--cameras", 12, "--workers", 2, "--start", "forkserver")
     ran = command(condition("low_light_noise"), *options, python=python)
@@ -62,7 +62,7 @@ mitigate_hook.connect("3").corrupt({"left": [rgb, {"rgb": rgb}]})
 """
 
 
-def test_a_loop_of_ones_own_runs_and_says_why_it_stops(python, tmp_path):
+def test_loop_runs_and_reports_why_it_stops(python, tmp_path):
     with Listener(condition("low_light"), tmp_path) as listener:
         ran = subprocess.run(
             [python, "-c", LOOP],
@@ -74,10 +74,10 @@ def test_a_loop_of_ones_own_runs_and_says_why_it_stops(python, tmp_path):
         )
     told = read(tmp_path)
     assert ran.returncode == 97 and sorted(told.ends) == ["x/1", "x/2"], ran.stderr
-    assert "the entry left of an observation may be a frame" in told.refused[0]
+    assert "the entry left of an observation may be a frame" in told.problems[0]
 
 
-def test_a_python_without_numpy_is_left_alone(python, tmp_path):
+def test_hook_loads_without_numpy(python, tmp_path):
     """Every Python of a command loads the hook; most never meet a camera."""
     ran = subprocess.run(
         [python, "-S", "-c", "import sys; sys.path.insert(0, sys.argv[1]); import sitecustomize",
@@ -90,12 +90,12 @@ def test_a_python_without_numpy_is_left_alone(python, tmp_path):
     assert ran.stderr == ""
 
 
-def test_python_2_passes_by():
+def test_hook_is_not_loaded_in_python_2():
     guard = (HOOK / "sitecustomize.py").read_text().splitlines()
     assert "if sys.version_info >= (3, 6):" in guard and "import mitigate_hook" not in guard
 
 
-def test_a_server_that_does_not_answer_is_named_by_every_python(python, tmp_path):
+def test_hook_stops_if_the_server_does_not_answer(python, tmp_path):
     code = "import mitigate_hook; mitigate_hook.connect('1')"
     with Listener(condition(), tmp_path, patience=1.0) as listener:
         os.killpg(listener.pid, signal.SIGSTOP)

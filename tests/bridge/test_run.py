@@ -15,7 +15,7 @@ import pytest
 
 from mitigate.bridge import run as run_module
 from mitigate.bridge.condition import Condition, Subset, Words
-from mitigate.bridge.config import name_of
+from mitigate.bridge.config import command_name
 from mitigate.bridge.events import EVENTS
 from mitigate.bridge.results import read
 from mitigate.bridge.run import split_command
@@ -26,7 +26,7 @@ from mitigate.evaluation import rows
 from .conftest import AGENT, LAB
 
 
-def test_it_is_a_command(tmp_path):
+def test_run_is_a_command(tmp_path):
     ran = subprocess.run(
         [sys.executable, "-m", "mitigate", "run", f"out={tmp_path}", "rule=etpnavv", "--", "true"],
         capture_output=True,
@@ -36,7 +36,7 @@ def test_it_is_a_command(tmp_path):
     assert ran.returncode == 1 and "Did you mean etpnav" in ran.stderr
 
 
-def test_it_measures_a_program_and_goes_on_where_it_stopped(run, tmp_path):
+def test_run_measures_a_program_and_resumes(run, tmp_path):
     first = run(tmp_path / "o", "corruption=spatter name=stand split=toy")
     assert first.returncode == 0, first.stdout + first.stderr
     found = rows.read(tmp_path / "o" / "rows.jsonl")
@@ -54,7 +54,7 @@ def test_it_measures_a_program_and_goes_on_where_it_stopped(run, tmp_path):
     assert other.returncode == 1 and "was run with another seed" in other.stderr
 
 
-def test_some_episodes_are_the_same_ones_in_every_condition(run, tmp_path):
+def test_run_chooses_equal_episodes_in_every_condition(run, tmp_path):
     ran = run(tmp_path / "o", "corruption=spatter episodes=5", f"{AGENT} --episodes 24 --workers 2")
     assert ran.returncode == 0, ran.stdout + ran.stderr
     found = rows.read(tmp_path / "o" / "rows.jsonl")
@@ -65,14 +65,14 @@ def test_some_episodes_are_the_same_ones_in_every_condition(run, tmp_path):
     assert json.loads((tmp_path / "o" / "episodes.json").read_text())["of"] == 24
 
 
-def test_repeated_clean_runs_say_how_random_the_agent_is(run, tmp_path):
+def test_run_reports_the_randomness_of_repeated_clean_runs(run, tmp_path):
     ran = run(tmp_path / "o", "conditions=[clean] repeats=2")
     assert ran.returncode == 0, ran.stdout + ran.stderr
     assert "2 clean runs of the same 4 episodes: SR 50.0, 50.0" in ran.stdout
     assert len(rows.read(tmp_path / "o" / "rows.jsonl")) == 8  # of the first
 
 
-def test_conditions_that_cannot_reach_the_agent_are_not_run(run, tmp_path):
+def test_run_skips_conditions_that_do_not_apply(run, tmp_path):
     program = tmp_path / "rgb_only.py"
     program.write_text(
         "import mitigate_hook, numpy\n"
@@ -89,7 +89,7 @@ def test_conditions_that_cannot_reach_the_agent_are_not_run(run, tmp_path):
     )
     assert ran.returncode == 0, ran.stdout + ran.stderr
     assert "multipath-s0.6: not applicable, the agent has no depth camera" in ran.stdout
-    assert "mask-s0.6: not applicable, no instruction was told" in ran.stdout
+    assert "mask-s0.6: not applicable, the program passes no instruction" in ran.stdout
     assert "white_box-s0.6: not applicable" in ran.stdout
     found = rows.read(tmp_path / "o" / "rows.jsonl")
     assert {row["corruption"] for row in found} == {"clean", "spatter"} and len(found) == 4
@@ -103,16 +103,16 @@ def test_conditions_that_cannot_reach_the_agent_are_not_run(run, tmp_path):
         (f"{sys.executable} -c 'print(5)'", "imported neither habitat-lab nor habitat-sim"),
         (f"{sys.executable} -I {LAB / 'agent.py'} x", "status 1"),
         ("no-such-program", "cannot be started: No such file"),
-        ("", "No command is given"),
+        ("", "A command is missing"),
         (f"{AGENT} --episodes 1 --steps 0", "without an episode"),
     ],
 )
-def test_a_command_that_does_not_work_is_explained(run, tmp_path, command, words):
+def test_run_explains_failed_commands(run, tmp_path, command, words):
     ran = run(tmp_path / "o", "conditions=[clean]", command)
     assert ran.returncode == 1 and words in ran.stderr, ran.stderr
 
 
-def test_a_worker_that_dies_does_not_hang_the_run(run, tmp_path):
+def test_run_does_not_hang_after_a_dead_worker(run, tmp_path):
     ran = run(
         tmp_path / "o",
         "conditions=[clean] patience=2",
@@ -122,12 +122,10 @@ def test_a_worker_that_dies_does_not_hang_the_run(run, tmp_path):
     assert "ended in the middle of episode s" in ran.stderr
 
 
-def test_a_silent_command_that_lost_an_episode_is_ended_though_others_are_there(
-    run, tmp_path, monkeypatch
-):
+def test_run_ends_a_silent_command_that_lost_an_episode(run, tmp_path, monkeypatch):
     from mitigate.bridge import attempt
 
-    monkeypatch.setattr(attempt, "SILENT", 2)  # times patience
+    monkeypatch.setattr(attempt, "MAX_SILENCE", 2)  # times patience
     program = tmp_path / "agent.py"
     program.write_text(
         "import mitigate_hook, numpy, os, time\n"
@@ -138,7 +136,7 @@ def test_a_silent_command_that_lost_an_episode_is_ended_though_others_are_there(
     assert ran.returncode == 1 and "ended in the middle of episode a" in ran.stderr
 
 
-def test_an_interrupt_while_a_command_is_started_leaves_none_behind(run, tmp_path, monkeypatch):
+def test_run_ends_a_command_when_interrupted_at_its_start(run, tmp_path, monkeypatch):
     from mitigate.bridge import program
 
     started = []
@@ -155,7 +153,7 @@ def test_an_interrupt_while_a_command_is_started_leaves_none_behind(run, tmp_pat
     assert started[0].poll() is not None
 
 
-def test_rgb_and_depth_may_come_in_calls_of_their_own(run, tmp_path):
+def test_run_accepts_separate_calls_for_rgb_and_depth(run, tmp_path):
     program = tmp_path / "nav.py"
     program.write_text(
         "import mitigate_hook, numpy\n"
@@ -175,7 +173,7 @@ def test_rgb_and_depth_may_come_in_calls_of_their_own(run, tmp_path):
     assert (out / "conditions/clean/events.jsonl").read_text().count('"spec"') == 2
 
 
-def test_episodes_of_a_run_that_came_to_nothing_are_chosen_anew(run, tmp_path, monkeypatch):
+def test_run_chooses_episodes_again_after_a_failed_run(run, tmp_path, monkeypatch):
     from mitigate.bridge import plan
 
     monkeypatch.setattr(plan, "Subset", partial(Subset, settled=0.0))
@@ -194,15 +192,15 @@ def test_episodes_of_a_run_that_came_to_nothing_are_chosen_anew(run, tmp_path, m
     assert json.loads((out / "episodes.json").read_text())["of"] == 90
 
 
-def test_a_condition_that_lost_an_episode_is_not_done(run, tmp_path):
+def test_run_does_not_finish_a_condition_that_lost_an_episode(run, tmp_path):
     """The command ends well, but one of its workers was killed."""
     out = tmp_path / "o"
     ran = run(out, "conditions=[clean]", f"{AGENT} --workers 4 --die-at 1 --die-worker 2")
-    assert ran.returncode == 1 and "1 episode was left in the middle, such as s0/2" in ran.stderr
+    assert ran.returncode == 1 and "1 episode was left unfinished, such as s0/2" in ran.stderr
     assert not (out / "conditions" / "clean" / "done.json").exists()
 
 
-def test_two_runs_do_not_share_a_folder(run, tmp_path):
+def test_run_rejects_the_folder_of_a_running_run(run, tmp_path):
     folder = tmp_path / "o" / "conditions" / "clean"
     folder.mkdir(parents=True)
     with open(folder / "lock", "w") as held:
@@ -214,17 +212,17 @@ def test_two_runs_do_not_share_a_folder(run, tmp_path):
 @pytest.mark.parametrize(
     ("options", "words"),
     [
-        ("patience=0", "patience=0 must be"),
+        ("patience=0", "patience must be 1 to 3600 seconds, got 0"),
         ("severity=0", "severity=0 changes nothing"),
         ("~suite.conditions", "suite has no conditions"),
-        ("episodes=3 patience=3", "patience=3 is too little with episodes=3"),
+        ("episodes=3 patience=3", "patience must be >= 5 seconds with episodes=3"),
     ],
 )
-def test_options_that_make_no_sense_are_refused(run, tmp_path, options, words):
+def test_run_rejects_invalid_options(run, tmp_path, options, words):
     assert words in run(tmp_path / "o", options).stderr
 
 
-def test_a_terminated_run_leaves_nothing_behind(tmp_path):
+def test_run_leaves_nothing_behind_when_terminated(tmp_path):
     command = [
         sys.executable,
         "-m",
@@ -254,9 +252,9 @@ def test_a_terminated_run_leaves_nothing_behind(tmp_path):
         os.kill(int(pid), 0)
 
 
-def test_words_that_would_not_be_heard_are_refused_before_their_conditions_run(run, tmp_path):
+def test_run_skips_instruction_conditions_without_a_tokenizer(run, tmp_path):
     ran = run(tmp_path / "o", "conditions=[capitalize,low_light,mask]", f"{AGENT} --tokens")
-    assert ran.returncode == 1 and "no tokenizer was named" in ran.stderr
+    assert ran.returncode == 1 and "Without a tokenizer" in ran.stderr
     refused, begun = (
         ran.stdout.index(text) for text in ("capitalize-s0.6, mask", "low_light-s0.6: s")
     )
@@ -265,24 +263,26 @@ def test_words_that_would_not_be_heard_are_refused_before_their_conditions_run(r
     assert measured == {"clean", "low_light"}
 
 
-def test_words_in_other_languages_are_counted_where_words_are_to_be_corrupted(tmp_path, capsys):
+def test_select_applicable_counts_instructions_in_other_languages(tmp_path, capsys):
     events = [
         {"event": "episode", "scene": "s", "episode": str(i), "text": "x", "language": spoken}
         for i, spoken in enumerate(["hi-IN", "en-GB", None, "hi-IN"])
     ]
     (tmp_path / EVENTS).write_text("".join(json.dumps(event) + "\n" for event in events))
-    told = read(tmp_path)
+    reports = read(tmp_path)
     cells = [
-        SimpleNamespace(told=lambda: told, corruption=met, condition=Condition(met, 0, Words()))
+        SimpleNamespace(
+            reports=lambda: reports, corruption=met, condition=Condition(met, 0, Words())
+        )
         for met in (CLEAN, Corruption("mask", 0.6))
     ]
-    assert run_module._fitting(cells) == (cells[1:], [])
+    assert run_module._select_applicable(cells) == (cells[1:], [])
     said = "run: instructions in other languages passed through unchanged: 2 in hi-IN\n"
     assert capsys.readouterr().out == said
-    assert run_module._fitting(cells[:1]) == ([], []) and not capsys.readouterr().out
+    assert run_module._select_applicable(cells[:1]) == ([], []) and not capsys.readouterr().out
 
 
-def test_an_existing_sitecustomize_is_still_run(run, tmp_path):
+def test_hook_runs_the_sitecustomize_that_it_hides(run, tmp_path):
     (tmp_path / "own").mkdir()
     (tmp_path / "own" / "sitecustomize.py").write_text("print('the own one ran')\n")
     ran = run(tmp_path / "o", "conditions=[clean]", PYTHONPATH=str(tmp_path / "own"))
@@ -290,12 +290,12 @@ def test_an_existing_sitecustomize_is_still_run(run, tmp_path):
     assert "the own one ran" in (tmp_path / "o/conditions/clean/output.txt").read_text()
 
 
-def test_help_says_what_every_option_means():
+def test_help_explains_every_option():
     shown = options_text("run")
     assert shown.count("\n") > 20 and "tokenizer: null  # for agents" in shown
 
 
-def test_options_and_command_are_told_apart():
+def test_split_command_separates_options_and_command():
     assert split_command(["suite=full", "--", "bash", "run.sh", "--", "x"]) == (
         ["suite=full"],
         ["bash", "run.sh", "--", "x"],
@@ -313,11 +313,11 @@ def test_options_and_command_are_told_apart():
         ("python main_llm_vis.py --split val", "main_llm_vis"),
     ],
 )
-def test_a_command_has_a_name(command, name):
-    assert name_of(command.split()) == name
+def test_command_name_names_script_or_module(command, name):
+    assert command_name(command.split()) == name
 
 
-def test_how_to_go_on_names_the_command_and_the_signal(tmp_path):
+def test_run_says_how_to_resume_after_a_signal(tmp_path):
     agent = [sys.executable, str(LAB / "agent.py"), str(tmp_path / "seen"), "--pause", "5"]
     process = subprocess.Popen(
         [
@@ -352,7 +352,7 @@ def test_how_to_go_on_names_the_command_and_the_signal(tmp_path):
     assert f"suite=clean -- {shlex.join(agent)}" in said
 
 
-def test_a_launcher_that_is_none_is_told_the_three_there_are():
+def test_run_lists_the_launchers():
     ran = subprocess.run(
         [sys.executable, "-m", "mitigate", "run", "launcher=foo", "--", "true"],
         capture_output=True,

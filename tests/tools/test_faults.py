@@ -22,7 +22,7 @@ def told(tmp_path, monkeypatch):
     return run
 
 
-def test_nothing_tried_is_no_success(told):
+def test_main_fails_if_nothing_was_tried(told):
     assert told({"SIGTERM": "survived"}, "--recipes", "ts_distill") == 0
     assert told({"SIGTERM": "survived", "SIGINT": "other bits"}, "--recipes", "ts_distill") == 1
     assert told({}, "--recipes", "ts_distill", "--faults") == 1
@@ -30,7 +30,7 @@ def test_nothing_tried_is_no_success(told):
     assert told({}, "--recipes") == 0  # to write the table of what was found before
 
 
-def test_what_fails_unbroken_leaves_no_older_success_and_is_forgotten_once_it_holds(told, tmp_path):
+def test_main_replaces_stored_outcomes(told, tmp_path):
     notes = tmp_path / "faults-seed0.json"
 
     def held():
@@ -46,7 +46,7 @@ def test_what_fails_unbroken_leaves_no_older_success_and_is_forgotten_once_it_ho
     assert held() == {"SIGINT": "survived", "SIGTERM": "survived"}
 
 
-def test_an_evaluation_without_rows_has_survived_nothing(tmp_path, monkeypatch):
+def test_break_evaluation_fails_without_rows(tmp_path, monkeypatch):
     class Command:
         def problem(self, *_):
             return ""
