@@ -1,4 +1,4 @@
-"""What an attempt at a condition begins with, and what of it is refused before or as it starts."""
+"""Attempts at a condition: how they start, and errors before and at their start."""
 
 import fcntl
 import json
@@ -34,7 +34,7 @@ for _, name in mitigate_hook.wanted([("", name) for name in "abc"]):
 
 @pytest.fixture
 def skips(tmp_path):
-    """A program that skips what it finds in its own results, and dies behind its first episode."""
+    """A program that skips episodes in its own results file, and dies after its first episode."""
     file = tmp_path / "nav.py"
     file.write_text(SKIPS)
     return f"{sys.executable} {file}"
@@ -69,9 +69,9 @@ def test_attempt_keeps_a_finished_result_until_the_next_one_finishes(run, skips,
 
 def test_run_explains_results_of_an_earlier_run(run, skips, tmp_path):
     (tmp_path / "all.json").write_text('["a", "b", "c"]')
-    ran = run(tmp_path / "o", "conditions=[clean]", f"{skips} {tmp_path}/all.json")
-    assert "without an episode" in ran.stderr and "Delete them" in ran.stderr
-    assert f"replaced by {tmp_path / 'o/conditions/clean'}" in ran.stderr
+    result = run(tmp_path / "o", "conditions=[clean]", f"{skips} {tmp_path}/all.json")
+    assert "without an episode" in result.stderr and "Delete them" in result.stderr
+    assert f"replaced by {tmp_path / 'o/conditions/clean'}" in result.stderr
 
 
 def test_run_measures_other_conditions_if_one_is_locked(run, skips, tmp_path):
@@ -79,8 +79,10 @@ def test_run_measures_other_conditions_if_one_is_locked(run, skips, tmp_path):
     folder.mkdir(parents=True)
     with open(folder / "lock", "w") as held:
         fcntl.flock(held, fcntl.LOCK_EX)
-        ran = run(tmp_path / "o", "conditions=[spatter,flare]", f"{skips} {{out}}/results.json")
-    assert "spatter-s0.6: Another run is at work in" in ran.stderr and "flare" not in ran.stderr
+        result = run(tmp_path / "o", "conditions=[spatter,flare]", f"{skips} {{out}}/results.json")
+    assert (
+        "spatter-s0.6: Another run is at work in" in result.stderr and "flare" not in result.stderr
+    )
     assert (tmp_path / "o/conditions/flare-s0.6/done.json").exists()
 
 
@@ -88,8 +90,8 @@ def test_run_names_a_damaged_marker(run, skips, tmp_path):
     file = tmp_path / "o/conditions/clean/done.json"
     file.parent.mkdir(parents=True)
     file.write_text('{"seed": ')
-    ran = run(tmp_path / "o", "conditions=[clean]", f"{skips} {{out}}/results.json")
-    assert f"{file} is cut short or damaged" in ran.stderr
+    result = run(tmp_path / "o", "conditions=[clean]", f"{skips} {{out}}/results.json")
+    assert f"{file} is cut short or damaged" in result.stderr
 
 
 @pytest.mark.parametrize(
@@ -125,7 +127,7 @@ def test_connection_names_a_write_error_of_the_run(tmp_path):
 
 
 def made(folder, *options):
-    """The first condition of a run with options, and its folder by default."""
+    """Return the first condition of a run with options, and its default folder."""
     typed = config("conditions=[clean]", *options)
     return make_cells(Plan(typed, ("nav",), "nav", folder))[0], default_folder(typed, "nav")
 
@@ -161,8 +163,8 @@ def test_watch_changes_agent_and_folder(tmp_path, monkeypatch):
 def test_watch_rejects_missing_names(run, tmp_path, monkeypatch, name, words):
     (tmp_path / "policy.yaml").write_text("good")
     monkeypatch.setenv("WATCHED_CKPT", "good")
-    ran = run(tmp_path / "o", f"watch=[{name.format(tmp_path)}]")
-    assert words.format(tmp_path) in ran.stderr and not (tmp_path / "o").exists()
+    result = run(tmp_path / "o", f"watch=[{name.format(tmp_path)}]")
+    assert words.format(tmp_path) in result.stderr and not (tmp_path / "o").exists()
 
 
 def test_watch_reads_a_file_once(tmp_path, monkeypatch):
@@ -175,7 +177,7 @@ def test_watch_reads_a_file_once(tmp_path, monkeypatch):
 
 
 def test_wanted_sends_names_in_parts(tmp_path):
-    """A train split's are more than a message holds."""
+    """The names of a train split do not fit into one message."""
     code = (
         "import mitigate_hook\nmitigate_hook.KEYS_PER_MESSAGE = 7\n"
         "print([n for _, n in mitigate_hook.wanted([('x.glb', n) for n in range(20)])])"
@@ -216,8 +218,8 @@ def test_run_explains_surplus_episodes(run, tmp_path, monkeypatch):
         "        episode.corrupt({'rgb': numpy.zeros((8, 8, 3), 'u1')})\n"
         "        episode.finish(success=1)\n"
     )
-    ran = run(tmp_path / "o", "conditions=[clean] episodes=3", f"{sys.executable} {file}")
+    result = run(tmp_path / "o", "conditions=[clean] episodes=3", f"{sys.executable} {file}")
     assert (
         "episodes (3 asked for: some processes connected more than 4 s after the others"
-        in ran.stdout
+        in result.stdout
     )

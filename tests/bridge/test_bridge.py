@@ -1,4 +1,4 @@
-"""An unchanged program under the bridge: same pixels everywhere, nothing clean let through."""
+"""An unchanged program under the bridge: equal pixels in every process, no clean frames."""
 
 import hashlib
 import os
@@ -16,7 +16,7 @@ from .conftest import LAB, condition
 
 
 def clean_frames(tmp_path):
-    """The cameras of the first two instants of the stand-in, in a process without the bridge."""
+    """Return the frames of the first two steps of the stand-in, without the bridge."""
     code = (
         "import sys, numpy\n"
         "from habitat.core.env import Env\n"
@@ -33,13 +33,13 @@ def clean_frames(tmp_path):
 def test_hook_gives_the_pixels_of_corrupt_habitat(command, tmp_path):
     clean = clean_frames(tmp_path)
     for name in ("spatter", "flare", "missing_data", "spatter+gaussian_noise", "haze+flare"):
-        ran = command(condition(name), "--cameras", 12, "--episodes", 1, "--steps", 2)
-        assert ran.status == 0, ran.output
+        result = command(condition(name), "--cameras", 12, "--episodes", 1, "--steps", 2)
+        assert result.status == 0, result.output
         for number, instant in enumerate(clean):
             wanted = corrupt_habitat(
                 instant, Corruption(name, 0.6), Key(0, "s0.glb/0", number), heading=0.0
             )
-            seen = ran.seen()["0", number]["frames"]
+            seen = result.seen()["0", number]["frames"]
             for camera, frame in wanted.items():
                 assert seen[camera] == hashlib.sha256(frame.tobytes()).hexdigest(), camera
 
@@ -47,17 +47,17 @@ def test_hook_gives_the_pixels_of_corrupt_habitat(command, tmp_path):
 @pytest.mark.parametrize("start", ["fork", "forkserver", "spawn"])
 def test_hook_gives_workers_the_pixels_of_one_process(command, start):
     alone = command(condition("low_light_noise")).seen()
-    ran = command(condition("low_light_noise"), "--workers", 2, "--start", start)
-    assert ran.status == 0, ran.output
-    assert ran.seen() == alone
-    assert len(ran.told.ends) == 4
+    result = command(condition("low_light_noise"), "--workers", 2, "--start", start)
+    assert result.status == 0, result.output
+    assert result.seen() == alone
+    assert len(result.reports.ends) == 4
 
 
 def test_hook_leaves_goal_pictures_clean(command):
     clean = command(condition(), "--teleport").seen()
-    ran = command(condition("low_light"), "--teleport")
-    assert ran.seen().keys() == clean.keys()
-    for place, seen in ran.seen().items():
+    result = command(condition("low_light"), "--teleport")
+    assert result.seen().keys() == clean.keys()
+    for place, seen in result.seen().items():
         before = clean[place]
         assert list(seen["frames"]) == list(before["frames"])
         assert seen["frames"]["rgb"] != before["frames"]["rgb"]
@@ -68,9 +68,9 @@ def test_hook_leaves_goal_pictures_clean(command):
 
 
 def test_hook_counts_one_call_per_step(command):
-    """Goal pictures and renders between them count as none."""
-    told = command(condition("spatter"), "--steps", 3).told
-    assert [end["calls"] for end in told.ends.values()] == [4, 4, 4, 4]
+    """Goal pictures and renders are not calls."""
+    reports = command(condition("spatter"), "--steps", 3).reports
+    assert [end["calls"] for end in reports.ends.values()] == [4, 4, 4, 4]
 
 
 def test_condition_draws_other_pixels_for_repeats(command):
@@ -80,8 +80,8 @@ def test_condition_draws_other_pixels_for_repeats(command):
 
 
 def test_hook_corrupts_instructions(command):
-    ran = command(condition("capitalize", 1.0))
-    assert ran.seen()["2", 1]["words"]["text"] == "WALK TO the DOOR 2."
+    result = command(condition("capitalize", 1.0))
+    assert result.seen()["2", 1]["words"]["text"] == "WALK TO the DOOR 2."
 
 
 def test_hook_corrupts_frames_and_instruction_of_a_pair(command):
@@ -93,21 +93,21 @@ def test_hook_corrupts_frames_and_instruction_of_a_pair(command):
 
 
 def test_hook_stops_for_tokens_without_a_tokenizer(command):
-    ran = command(condition("capitalize", 1.0), "--tokens")
-    assert ran.status == 97
-    assert "tokenizer=" in ran.output and "would read the original instruction" in ran.output
-    assert not ran.told.ends
+    result = command(condition("capitalize", 1.0), "--tokens")
+    assert result.status == 97
+    assert "tokenizer=" in result.output and "would read the original instruction" in result.output
+    assert not result.reports.ends
 
 
 def test_hook_needs_no_tokenizer_for_unchanged_words(command):
-    ran = command(condition("spatter"), "--tokens")
-    assert ran.status == 0 and ran.seen()["0", 0]["words"]["tokens"] == [4, 5, 6]
+    result = command(condition("spatter"), "--tokens")
+    assert result.status == 0 and result.seen()["0", 0]["words"]["tokens"] == [4, 5, 6]
 
 
 def test_hook_reports_results(command):
-    told = command(condition(), "--steps", 3).told
-    assert sorted(told.ends) == ["s0/0", "s0/2", "s1/1", "s1/3"]
-    end = told.ends["s1/1"]
+    reports = command(condition(), "--steps", 3).reports
+    assert sorted(reports.ends) == ["s0/0", "s0/2", "s1/1", "s1/3"]
+    end = reports.ends["s1/1"]
     assert end["stopped"] is True and end["metrics"]["success"] == 0.0  # 3.25 m away
     assert end["start_distance"] == 4.0 and end["distance"] == pytest.approx(3.5)
     assert len(end["path"]) == 3 and end["steps"] == 3
@@ -115,9 +115,9 @@ def test_hook_reports_results(command):
 
 
 def test_hook_reports_an_unended_episode_at_the_next_reset(command):
-    told = command(condition(), "--no-stop").told
-    assert len(told.ends) == 4  # the last one as the Env is closed
-    end = told.ends["s0/0"]
+    reports = command(condition(), "--no-stop").reports
+    assert len(reports.ends) == 4  # the last one as the Env is closed
+    end = reports.ends["s0/0"]
     assert end["distance"] == pytest.approx(0.5)  # of the end, not of the next start
     assert end["stopped"] is False
 
@@ -165,11 +165,11 @@ def test_rig_rejects_unsupported_cameras(change, words):
 
 def test_hook_does_nothing_outside_a_run(tmp_path):
     code = "import sys, mitigate_hook; mitigate_hook.install(); print(sys.meta_path[0])"
-    ran = subprocess.run(
+    result = subprocess.run(
         [sys.executable, "-c", code],
         env={"PYTHONPATH": str(Path("mitigate/bridge/hook").resolve())},
         capture_output=True,
         text=True,
         check=True,
     )
-    assert "mitigate" not in ran.stdout
+    assert "mitigate" not in result.stdout

@@ -1,4 +1,4 @@
-"""``mitigate run --check``: what a program sees and hears, said and drawn."""
+"""``mitigate run --check``: prints and draws the frames and instruction of a program."""
 
 import shlex
 import sys

@@ -27,7 +27,7 @@ CONDITION = "conditions/low_light-s0.6"
 
 @pytest.fixture(scope="module")
 def place(tmp_path_factory):
-    """A folder for the program and its run, which all tests of this file share."""
+    """A folder for the program and its run, shared by all tests of this file."""
     return tmp_path_factory.mktemp("finished")
 
 
@@ -53,13 +53,13 @@ def finished(run, place):
 
 
 def contents(folder):
-    """Every file of a folder with its bytes, without locks."""
+    """Return every file of a folder with its bytes, without locks."""
     files = (path for path in folder.rglob("*") if path.is_file() and path.name != "lock")
     return {path.relative_to(folder): path.read_bytes() for path in files}
 
 
 def with_damaged_line(data, number):
-    """The bytes of a file whose line ``number`` has one bracket less."""
+    """Return the bytes of a file with a damaged line ``number``."""
     lines = data.splitlines(keepends=True)
     lines[number - 1] = b"[" + lines[number - 1][1:]
     return b"".join(lines)
@@ -73,9 +73,9 @@ def test_run_rejects_a_damaged_line_of_events_and_changes_nothing(finished, numb
     number = number if number > 0 else count
     events.write_bytes(with_damaged_line(events.read_bytes(), number))
     before = contents(out)
-    ran = again()
-    assert ran.returncode == 1 and f"{events}: line {number} is damaged" in ran.stderr
-    assert f"move {out / CONDITION} out of" in ran.stderr and contents(out) == before
+    result = again()
+    assert result.returncode == 1 and f"{events}: line {number} is damaged" in result.stderr
+    assert f"move {out / CONDITION} out of" in result.stderr and contents(out) == before
 
 
 @pytest.mark.parametrize("cut", [1, 40])
@@ -84,8 +84,10 @@ def test_run_rejects_events_that_were_cut_after_the_condition_finished(finished,
     events = out / CONDITION / "events.jsonl"
     events.write_bytes(events.read_bytes()[:-cut])
     before = contents(out)
-    ran = again()
-    assert ran.returncode == 1 and f"{events}: it has" in ran.stderr and contents(out) == before
+    result = again()
+    assert (
+        result.returncode == 1 and f"{events}: it has" in result.stderr and contents(out) == before
+    )
 
 
 def test_run_rejects_events_in_which_a_result_changed(finished):
@@ -94,8 +96,8 @@ def test_run_rejects_events_in_which_a_result_changed(finished):
     text = events.read_text()
     assert text.count('"success": 0') > 0
     events.write_text(text.replace('"success": 0', '"success": 1', 1))
-    ran = again()
-    assert ran.returncode == 1 and "its sha256 is not the one" in ran.stderr
+    result = again()
+    assert result.returncode == 1 and "its sha256 is not the one" in result.stderr
 
 
 def test_run_rejects_damage_in_another_condition(finished):
@@ -103,8 +105,10 @@ def test_run_rejects_damage_in_another_condition(finished):
     events = out / CONDITION / "events.jsonl"
     events.write_bytes(with_damaged_line(events.read_bytes(), 2))
     before = contents(out)
-    ran = again("conditions=[clean]")
-    assert ran.returncode == 1 and "line 2 is damaged" in ran.stderr and contents(out) == before
+    result = again("conditions=[clean]")
+    assert (
+        result.returncode == 1 and "line 2 is damaged" in result.stderr and contents(out) == before
+    )
 
 
 @pytest.mark.parametrize("text", ["[]", "null", '"x"', "3", "true", "{", "", "\udcff"])
@@ -114,8 +118,8 @@ def test_run_rejects_a_marker_that_is_not_an_object(finished, text):
     marker.write_text(text, errors="surrogateescape")
     before = contents(out)
     for options in ("conditions=[low_light]", "conditions=[clean]"):
-        ran = again(options)
-        assert ran.returncode == 1 and f"{marker} " in ran.stderr and contents(out) == before
+        result = again(options)
+        assert result.returncode == 1 and f"{marker} " in result.stderr and contents(out) == before
 
 
 @pytest.mark.parametrize(
@@ -133,8 +137,8 @@ def test_run_rejects_a_marker_with_an_invalid_entry(finished, name, value):
     out, again = finished
     marker = out / CONDITION / "done.json"
     marker.write_text(json.dumps(json.loads(marker.read_text()) | {name: value}))
-    ran = again()
-    assert ran.returncode == 1 and f"{marker}: {name} must be" in ran.stderr
+    result = again()
+    assert result.returncode == 1 and f"{marker}: {name} must be" in result.stderr
 
 
 @pytest.mark.parametrize("options", ["conditions=[low_light,flare]", "conditions=[clean]"])
@@ -144,9 +148,9 @@ def test_run_rejects_the_folder_of_another_condition(finished, options, copied):
     other = out / "conditions" / "flare-s0.6"
     (shutil.copytree if copied else os.rename)(out / CONDITION, other)
     before = contents(out)
-    ran = again(options)
-    assert ran.returncode == 1 and f"{other} holds the condition low_light-s0.6" in ran.stderr
-    assert f"move {other} out of" in ran.stderr and contents(out) == before
+    result = again(options)
+    assert result.returncode == 1 and f"{other} holds the condition low_light-s0.6" in result.stderr
+    assert f"move {other} out of" in result.stderr and contents(out) == before
 
 
 @pytest.mark.parametrize(
@@ -163,16 +167,16 @@ def test_run_rejects_a_changed_entry_of_a_marker(finished, entry, reason):
     marker = out / CONDITION / "done.json"
     marker.write_text(json.dumps(json.loads(marker.read_text()) | entry))
     before = contents(out)
-    ran = again()
-    assert ran.returncode == 1 and reason in ran.stderr and contents(out) == before
+    result = again()
+    assert result.returncode == 1 and reason in result.stderr and contents(out) == before
 
 
 def test_run_rejects_another_condition_in_the_folder_of_clean(finished):
     out, again = finished
     marker = out / "conditions" / "clean" / "done.json"
     marker.write_text(json.dumps(json.loads(marker.read_text()) | {"condition": "flare"}))
-    ran = again()
-    assert ran.returncode == 1 and "clean holds the condition flare-s0" in ran.stderr
+    result = again()
+    assert result.returncode == 1 and "clean holds the condition flare-s0" in result.stderr
 
 
 def test_run_compares_counts_of_a_marker_without_a_checksum(finished):
@@ -194,8 +198,8 @@ def test_run_measures_a_moved_condition_again(finished, tmp_path):
     out, again = finished
     held = rows.read(out / "rows.jsonl")
     (out / CONDITION).rename(tmp_path / "aside")
-    ran = again()
-    assert not ran.stderr and "low_light-s0.6: started" in ran.stdout
+    result = again()
+    assert not result.stderr and "low_light-s0.6: started" in result.stdout
     assert rows.read(out / "rows.jsonl") == held
 
 
@@ -203,8 +207,8 @@ def test_run_keeps_rows_without_a_finished_condition(finished, tmp_path):
     out, again = finished
     (out / CONDITION).rename(tmp_path / "aside")
     before = (out / "rows.jsonl").read_bytes()
-    ran = again("conditions=[clean]")
-    assert ran.returncode == 1 and "6 of them belong to episodes that are in no" in ran.stderr
+    result = again("conditions=[clean]")
+    assert result.returncode == 1 and "6 of them belong to episodes that are in no" in result.stderr
     assert (out / "rows.jsonl").read_bytes() == before
 
 
@@ -213,8 +217,8 @@ def test_run_copies_rows_that_leave_the_table(finished):
     before = (out / "rows.jsonl").read_bytes()
     marker = out / CONDITION / "done.json"
     marker.write_text(json.dumps(json.loads(marker.read_text()) | {"seed": 7}))
-    ran = again("conditions=[flare]")
-    assert not ran.stderr and "are now only in" in ran.stdout
+    result = again("conditions=[flare]")
+    assert not result.stderr and "are now only in" in result.stdout
     assert (out / "rows.jsonl.before").read_bytes() == before
 
 
@@ -224,16 +228,16 @@ def test_run_copies_rows_of_another_agent_seed_or_split(finished, other):
     held = rows.read(out / "rows.jsonl")
     rows.write(out / "rows.jsonl", [*held, held[-1] | other])
     before = (out / "rows.jsonl").read_bytes()
-    ran = again()
-    assert not ran.stderr and f"another {next(iter(other))}" in ran.stdout
+    result = again()
+    assert not result.stderr and f"another {next(iter(other))}" in result.stdout
     assert (out / "rows.jsonl.before").read_bytes() == before
     assert rows.read(out / "rows.jsonl") == held
 
 
 def test_run_judges_the_same_episodes_by_another_rule(finished):
     out, again = finished
-    ran = again("conditions=[low_light] rule=etpnav")
-    assert not ran.stderr, ran.stderr
+    result = again("conditions=[low_light] rule=etpnav")
+    assert not result.stderr, result.stderr
     assert len(rows.read(out / "rows.jsonl")) == 6 and not list(out.glob("*.before*"))
 
 
@@ -281,9 +285,9 @@ def test_run_names_a_folder_in_place_of_its_files(finished, name):
     path.mkdir()
     if name == "lock":
         (out / CONDITION / "done.json").unlink()
-    ran = again()
-    assert ran.returncode == 1 and path.is_dir()
-    assert f"{path} must be a " in ran.stderr and "got a folder" in ran.stderr
+    result = again()
+    assert result.returncode == 1 and path.is_dir()
+    assert f"{path} must be a " in result.stderr and "got a folder" in result.stderr
 
 
 @pytest.mark.parametrize("kind", ["link", "file"])
@@ -301,8 +305,8 @@ def test_run_keeps_a_finished_condition_that_cannot_be_put_aside(finished, tmp_p
     entries = json.loads(clean.read_text()) | {"episodes_told": 4, "events": seal}
     clean.write_text(json.dumps(entries))
     before = contents(out / CONDITION)
-    ran = again()  # it lacks an episode of clean now, and is measured again
-    assert ran.returncode == 1 and str(aside) in ran.stderr
+    result = again()  # it lacks an episode of clean now, and is measured again
+    assert result.returncode == 1 and str(aside) in result.stderr
     assert contents(out / CONDITION) == before
 
 

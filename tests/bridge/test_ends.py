@@ -1,4 +1,4 @@
-"""Which end of an episode counts, and what its words are meanwhile."""
+"""Ends of episodes: which one counts, and when the instruction is restored."""
 
 import sys
 
@@ -25,12 +25,12 @@ def over(*some):
 """
 
 
-def told(tmp_path, code, met=None):
-    """What was told of a program on the stand-in lab, and what it printed."""
-    with Listener(met or condition(), tmp_path) as listener:
-        ended = python(listener, BEGIN + code)
-    assert ended.returncode == 0, ended.stdout
-    return read(tmp_path), ended.stdout
+def run_env(tmp_path, code, settings=None):
+    """Run a program on the stand-in lab; return its reports and its output."""
+    with Listener(settings or condition(), tmp_path) as listener:
+        process = python(listener, BEGIN + code)
+    assert process.returncode == 0, process.stdout
+    return read(tmp_path), process.stdout
 
 
 STOPS = """
@@ -45,20 +45,20 @@ b.close()
 
 
 def test_close_drops_unfinished_episodes_of_parallel_envs(tmp_path):
-    """As an evaluator does that stops after so many episodes of Envs side by side."""
-    found, _ = told(tmp_path, STOPS)
-    assert list(found.ends) == ["s0/0"] and found.lost == ["s0/2"]
+    """An evaluator with parallel Envs stops after a number of episodes."""
+    reports, _ = run_env(tmp_path, STOPS)
+    assert list(reports.ends) == ["s0/0"] and reports.lost == ["s0/2"]
 
 
 def test_count_closed_keeps_unfinished_episodes_of_parallel_envs(tmp_path):
-    told(tmp_path, STOPS)
-    found = read(tmp_path, count_closed=True)
-    assert sorted(found.ends) == ["s0/0", "s0/2"] and not found.lost
+    run_env(tmp_path, STOPS)
+    reports = read(tmp_path, count_closed=True)
+    assert sorted(reports.ends) == ["s0/0", "s0/2"] and not reports.lost
 
 
 def test_close_drops_unfinished_episodes_after_a_reset(tmp_path):
-    found, _ = told(tmp_path, STOPS.replace("walk(a, [1, 0])", "walk(a, [1]); a.reset()"))
-    assert list(found.ends) == ["s0/0"] and found.lost == ["s0/2"]
+    reports, _ = run_env(tmp_path, STOPS.replace("walk(a, [1, 0])", "walk(a, [1]); a.reset()"))
+    assert list(reports.ends) == ["s0/0"] and reports.lost == ["s0/2"]
 
 
 LIMITS = ["[1, 0], [1, 1, 1], [1, 0]", "[1, 0], [1, 0], [1, 1]", "[1, 1], [1, 0], [1, 1]"]
@@ -67,15 +67,15 @@ LIMITS = ["[1, 0], [1, 1, 1], [1, 0]", "[1, 0], [1, 0], [1, 1]", "[1, 1], [1, 0]
 @pytest.mark.parametrize("acts", LIMITS)
 @pytest.mark.parametrize("each", [True, False])
 def test_close_ends_the_episode_of_a_single_env(tmp_path, acts, each):
-    """A program has a limit of steps of its own; whether others were over changes nothing."""
+    """The program limits the steps itself; other episodes do not matter."""
     new = "env = over(one); env.reset()" if each else "env.reset()"
     code = (
         "env = over(*episodes[:3])\n"
         f"for one, some in zip(episodes, ({acts})):\n    {new}; walk(env, some)\n"
         f"    if {each}: env.close()\nenv.close()"
     )
-    found, _ = told(tmp_path, code)
-    assert len(found.ends) == 3 and not found.lost
+    reports, _ = run_env(tmp_path, code)
+    assert len(reports.ends) == 3 and not reports.lost
 
 
 ORDERLY = {
@@ -110,37 +110,37 @@ finally: env.close()
 
 @pytest.mark.parametrize("how", ORDERLY)
 def test_end_ignores_exceptions_that_end_a_loop(tmp_path, how):
-    found, _ = told(tmp_path, f"env = over(*episodes[:2]); env.reset()\n{ORDERLY[how]}")
-    assert sorted(found.ends) == ["s0/0", "s1/1"] and not found.lost
+    reports, _ = run_env(tmp_path, f"env = over(*episodes[:2]); env.reset()\n{ORDERLY[how]}")
+    assert sorted(reports.ends) == ["s0/0", "s1/1"] and not reports.lost
 
 
 def test_run_names_the_exception_that_ended_an_episode(run, tmp_path):
     file = tmp_path / "nav.py"
     code = "class Done(Exception): pass\nenv = over(episodes[0]); env.reset()\nwalk(env, [1, 1])\n"
     file.write_text(f"{BEGIN}{code}try: raise Done('far')\nexcept Done: env.close()\n")
-    ran = run(tmp_path / "o", "conditions=[clean]", f"{sys.executable} {file}")
+    result = run(tmp_path / "o", "conditions=[clean]", f"{sys.executable} {file}")
     line = file.read_text().count("\n") - 1
     assert f"s0/0: it was reset or closed during an exception, Done: far ({file}:{line})" in (
-        ran.stderr
+        result.stderr
     )
 
 
 def test_run_explains_closed_episodes(run, tmp_path):
     file, out = tmp_path / "nav.py", tmp_path / "o"
     file.write_text(BEGIN + STOPS)
-    lost = run(out, "conditions=[clean]", f"{sys.executable} {file}")
-    assert "such as s0/2: its Env was closed before" in lost.stderr
-    assert "count_closed=true" in lost.stderr
-    counts = run(out, "conditions=[clean] count_closed=true", f"{sys.executable} {file}")
-    assert "1 closed before the end (judged where they stopped)" in counts.stdout, counts.stderr
+    result = run(out, "conditions=[clean]", f"{sys.executable} {file}")
+    assert "such as s0/2: its Env was closed before" in result.stderr
+    assert "count_closed=true" in result.stderr
+    counted = run(out, "conditions=[clean] count_closed=true", f"{sys.executable} {file}")
+    assert "1 closed before the end (judged where they stopped)" in counted.stdout, counted.stderr
     again = run(out, "conditions=[clean]", f"{sys.executable} {file}")
     assert "measured again: 1 episode was left unfinished" in again.stdout and again.stderr
 
 
 def test_close_ends_the_last_episode_of_unending_envs(tmp_path):
     code = "env = over(*episodes[:2])\nfor _ in range(2): env.reset(); walk(env, [1, 3])\n"
-    found, _ = told(tmp_path, f"{code}env.close()")
-    assert sorted(found.ends) == ["s0/0", "s1/1"] and not found.lost
+    reports, _ = run_env(tmp_path, f"{code}env.close()")
+    assert sorted(reports.ends) == ["s0/0", "s1/1"] and not reports.lost
 
 
 TRY = """
@@ -156,14 +156,18 @@ def attempt(one, broken):
 
 def test_end_drops_the_episode_of_a_failed_worker(tmp_path):
     code = "try: attempt(episodes[0], True)\nexcept RuntimeError: pass\n"
-    found, _ = told(tmp_path, TRY + code)
-    assert not found.ends and found.lost == ["s0/0"]
+    reports, _ = run_env(tmp_path, TRY + code)
+    assert not reports.ends and reports.lost == ["s0/0"]
 
 
 def test_end_counts_a_retry_inside_an_exception_handler(tmp_path):
     code = "try: attempt(episodes[0], True)\nexcept RuntimeError: attempt(episodes[0], False)\n"
-    found, _ = told(tmp_path, TRY + code)
-    assert found.ends["s0/0"]["metrics"]["success"] == 1.0 and not found.lost and not found.repeated
+    reports, _ = run_env(tmp_path, TRY + code)
+    assert (
+        reports.ends["s0/0"]["metrics"]["success"] == 1.0
+        and not reports.lost
+        and not reports.repeated
+    )
 
 
 def test_reset_inside_an_exception_handler_drops_the_episode(tmp_path):
@@ -172,8 +176,8 @@ def test_reset_inside_an_exception_handler_drops_the_episode(tmp_path):
         "try: walk(env, [1], True)\nexcept RuntimeError: env.reset()\n"
         "walk(env, [1, 0])"
     )
-    found, _ = told(tmp_path, code)
-    assert list(found.ends) == ["s1/1"] and found.lost == ["s0/0"]
+    reports, _ = run_env(tmp_path, code)
+    assert list(reports.ends) == ["s1/1"] and reports.lost == ["s0/0"]
 
 
 def test_reports_prefer_an_end_that_was_over(tmp_path):
@@ -181,8 +185,8 @@ def test_reports_prefer_an_end_that_was_over(tmp_path):
         "env = over(episodes[0], *episodes[:2])\nenv.reset(); walk(env, [1])\n"
         "for _ in range(2): env.reset(); walk(env, [1, 0])\n"
     )
-    found, _ = told(tmp_path, code)
-    assert found.ends["s0/0"]["metrics"]["success"] == 1.0 and found.repeated == 0
+    reports, _ = run_env(tmp_path, code)
+    assert reports.ends["s0/0"]["metrics"]["success"] == 1.0 and reports.repeated == 0
 
 
 HEARD = """
@@ -198,7 +202,7 @@ print(*(one.instruction.instruction_text for one in episodes[:2]), sep="|")
 
 
 def test_hook_corrupts_a_shared_instruction_once(tmp_path):
-    _, printed = told(tmp_path, HEARD, condition("friendly", 1.0))
+    _, printed = run_env(tmp_path, HEARD, condition("friendly", 1.0))
     first, again, second, same, still, *own = printed.strip().split("|")
     assert first == again != own[0] == "Walk to the door 0."
     assert second == same == still != own[1] == "Walk to the door 1."
@@ -217,7 +221,7 @@ other.close()
 env.close()
 print(*(one.instruction.instruction_text for one in episodes[:2]), sep="|")
 """
-    _, printed = told(tmp_path, code, condition("friendly", 1.0))
+    _, printed = run_env(tmp_path, code, condition("friendly", 1.0))
     first, second, again, beside, *own = printed.strip().split("|")
     assert own == ["Walk to the door 0.", "Walk to the door 1."]
     assert first == again == beside != own[0] and second != own[1]
@@ -236,7 +240,7 @@ print(b.reset()["instruction"]["text"], end="|")
 b.close()
 print(one.instruction.instruction_text, vars(one.instruction))
 """
-    _, printed = told(tmp_path, code, condition("friendly", 1.0))
+    _, printed = run_env(tmp_path, code, condition("friendly", 1.0))
     first, same, own = printed.strip().split("|")
     assert first == same and own.startswith("Walk to the door 0. {") and "_mitigate" not in own
 
@@ -252,7 +256,7 @@ def test_read_end_rejects_an_unknown_kind(how):
 def test_maybe_normalised_ignores_declared_depth(tmp_path):
     assert (
         maybe_normalised(
-            told(tmp_path, "env = over(episodes[0]); env.reset(); walk(env, [1, 0])")[0]
+            run_env(tmp_path, "env = over(episodes[0]); env.reset(); walk(env, [1, 0])")[0]
         )
         == []
     )

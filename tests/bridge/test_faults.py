@@ -1,4 +1,4 @@
-"""What breaks ends in a named error, soon, and with no clean frame let through."""
+"""Faults of the server and the connection: an error soon, and no clean frame."""
 
 import os
 import signal
@@ -30,7 +30,7 @@ def start(listener, folder, *options):
 
 
 def wait_for(folder, word, seconds=20.0):
-    """Wait until the events tell of ``word``."""
+    """Wait until the events contain ``word``."""
     until = time.monotonic() + seconds
     events = folder / "events.jsonl"
     while not (events.is_file() and word in events.read_text()):
@@ -57,14 +57,14 @@ def test_hook_stops_if_the_server_does_not_answer(tmp_path):
 
 
 def test_hook_stops_without_a_server(command, tmp_path):
-    ran = command(condition("spatter"), MITIGATE_BRIDGE=str(tmp_path / "nobody"))
-    assert ran.status == 97 and "cannot be reached" in ran.output
+    result = command(condition("spatter"), MITIGATE_BRIDGE=str(tmp_path / "nobody"))
+    assert result.status == 97 and "cannot be reached" in result.output
 
 
 def test_server_rejects_a_wrong_token(command):
-    ran = command(condition("spatter"), MITIGATE_TOKEN="guessed")
-    assert ran.status == 97 and "gone" in ran.output
-    assert not ran.told.hellos
+    result = command(condition("spatter"), MITIGATE_TOKEN="guessed")
+    assert result.status == 97 and "gone" in result.output
+    assert not result.reports.hellos
 
 
 def test_server_reports_missing_space_for_frames(command, monkeypatch):
@@ -72,14 +72,14 @@ def test_server_reports_missing_space_for_frames(command, monkeypatch):
         raise OSError(28, "No space left on device")
 
     monkeypatch.setattr(os, "posix_fallocate", full)  # the server is a fork of this process
-    ran = command(condition("spatter"))
-    assert ran.status == 97
-    assert "no room for" in ran.output and "--shm-size" in ran.output
-    assert "no room for" in ran.told.problems[0]
+    result = command(condition("spatter"))
+    assert result.status == 97
+    assert "no room for" in result.output and "--shm-size" in result.output
+    assert "no room for" in result.reports.problems[0]
 
 
 def test_hook_cannot_be_caught_by_the_agent(tmp_path):
-    """WMNav's loop catches every exception and takes the next step."""
+    """WMNav's loop catches every exception and continues with the next step."""
     code = (
         "import mitigate_hook, numpy\n"
         "episode = mitigate_hook.connect('7')\n"
@@ -88,7 +88,7 @@ def test_hook_cannot_be_caught_by_the_agent(tmp_path):
         "print('went on')"
     )
     with Listener(condition("spatter"), tmp_path) as listener:
-        ran = subprocess.run(
+        result = subprocess.run(
             [sys.executable, "-c", code],
             env={**os.environ, **listener.environment()},
             capture_output=True,
@@ -96,7 +96,11 @@ def test_hook_cannot_be_caught_by_the_agent(tmp_path):
             timeout=20,
             check=False,
         )
-    assert ran.returncode == 97 and "must be uint8" in ran.stderr and "went on" not in ran.stdout
+    assert (
+        result.returncode == 97
+        and "must be uint8" in result.stderr
+        and "went on" not in result.stdout
+    )
 
 
 def test_server_removes_its_folders(command):
@@ -111,7 +115,7 @@ def test_server_removes_its_folders(command):
 
 @pytest.fixture
 def pair():
-    """Both ends of a connection."""
+    """Return both ends of a connection."""
     ends = socket.socketpair()
     for end in ends:
         end.settimeout(5.0)

@@ -1,4 +1,4 @@
-"""What another program may send: each message is answered, refused by name, or the end."""
+"""Messages of another program: each is answered, rejected with an error, or ends the connection."""
 
 from __future__ import annotations
 
@@ -47,21 +47,21 @@ class Peer:
         self.folder = folder
         self.channel, served = socket.socketpair()
         self.channel.settimeout(5.0)
-        made = Connection(served, condition("spatter"), folder, TOKEN, folder)
+        connection = Connection(served, condition("spatter"), folder, TOKEN, folder)
         self.failure = None
-        self.thread = threading.Thread(target=self._serve, args=(made, served), daemon=True)
+        self.thread = threading.Thread(target=self._serve, args=(connection, served), daemon=True)
         self.thread.start()
 
-    def _serve(self, made, served):
+    def _serve(self, connection, served):
         try:
-            made.serve()
+            connection.serve()
         except Exception as error:
             self.failure = error
         finally:
             served.close()
 
     def ask(self, message):
-        """The answer; None where the other side has closed."""
+        """Return the answer; None if the other side closed."""
         try:
             if isinstance(message, bytes):
                 self.channel.sendall(message)
@@ -81,13 +81,13 @@ class Peer:
 
 @pytest.fixture
 def peer(tmp_path):
-    made = Peer(tmp_path)
-    yield made
-    made.close()
+    peer = Peer(tmp_path)
+    yield peer
+    peer.close()
 
 
-def cameras(*told):
-    return {"kind": "spec", "cameras": list(told)}
+def cameras(*descriptions):
+    return {"kind": "spec", "cameras": list(descriptions)}
 
 
 def camera(**changes):
@@ -136,12 +136,12 @@ MESSAGES = {
 @pytest.mark.parametrize("message", MESSAGES.values(), ids=MESSAGES)
 def test_connection_rejects_invalid_messages(peer, message):
     assert peer.ask(HELLO) == {}
-    said = peer.ask(message)["error"]
-    assert said and "\n" not in said and len(said) < 1500
+    error = peer.ask(message)["error"]
+    assert error and "\n" not in error and len(error) < 1500
     peer.close()
     events = [json.loads(line) for line in (peer.folder / EVENTS).read_text().splitlines()]
     assert [event["event"] for event in events[-2:]] == ["refused", "bye"]
-    assert events[-2]["problem"] == said
+    assert events[-2]["problem"] == error
 
 
 FRAMES = {
@@ -180,14 +180,14 @@ ENDS = {
 def test_connection_rejects_invalid_ends(peer, fields):
     for good in (HELLO, SPEC, EPISODE, {"kind": "frame", "call": 0}):
         assert "error" not in peer.ask(good)
-    said = peer.ask({"kind": "end", "metrics": {"success": 1.0}} | fields)["error"]
-    assert "episode '1' ended with " in said
+    error = peer.ask({"kind": "end", "metrics": {"success": 1.0}} | fields)["error"]
+    assert "episode '1' ended with " in error
     peer.close()
     assert not read(peer.folder).ends
 
 
 def test_rows_accept_infinite_distances(peer):
-    """Infinite metres are known to be so; the agent's own SPL needs no start."""
+    """Infinite distances are valid; the agent's own SPL needs no start."""
     for good in (HELLO, SPEC, EPISODE, {"kind": "frame", "call": 0}):
         assert "error" not in peer.ask(good)
     far = {"start_distance": float("inf"), "distance": float("inf"), "path": [[0, 0, 0], [1, 0, 0]]}
@@ -195,10 +195,10 @@ def test_rows_accept_infinite_distances(peer):
     assert "error" not in peer.ask({"kind": "end", "metrics": metrics} | far)
     peer.close()
     label = {"agent": "abc", "name": "nav", "split": "val", "seed": 0}
-    made = {
+    by_rule = {
         row["rule"]: row for row in rows(read(peer.folder), Corruption("spatter", 0.6), label, None)
     }
-    assert made[OWN]["spl"] == 0.5 and [row["success"] for row in made.values()] == [1.0, 0.0]
+    assert by_rule[OWN]["spl"] == 0.5 and [row["success"] for row in by_rule.values()] == [1.0, 0.0]
 
 
 @pytest.mark.parametrize(
@@ -209,20 +209,20 @@ def test_rows_accept_infinite_distances(peer):
 def test_rows_leave_out_unknown_values(peer, unknown):
     for good in (HELLO, SPEC, EPISODE, {"kind": "frame", "call": 0}):
         assert "error" not in peer.ask(good)
-    told = {"start_distance": 4.0, "distance": 2.0, "path": [[0, 0], [0, 8]]} | unknown
-    assert "error" not in peer.ask({"kind": "end", "metrics": {"success": 1.0}} | told)
+    end = {"start_distance": 4.0, "distance": 2.0, "path": [[0, 0], [0, 8]]} | unknown
+    assert "error" not in peer.ask({"kind": "end", "metrics": {"success": 1.0}} | end)
     peer.close()
     label = {"agent": "abc", "name": "nav", "split": "val", "seed": 0}
-    made = rows(read(peer.folder), Corruption("spatter", 0.6), label, None)
-    assert len(made) == (1 if "distance" in unknown else 2)
-    assert {row["spl"] for row in made} == ({0.5} if "distance" in unknown else {1.0})
+    result_rows = rows(read(peer.folder), Corruption("spatter", 0.6), label, None)
+    assert len(result_rows) == (1 if "distance" in unknown else 2)
+    assert {row["spl"] for row in result_rows} == ({0.5} if "distance" in unknown else {1.0})
 
 
 @pytest.mark.parametrize("name", ["\ud800", "", "a\nb", "9" * 201])
 def test_connection_rejects_names_that_rows_cannot_hold(peer, name):
     assert "error" not in peer.ask(HELLO)
-    said = peer.ask({"kind": "episode", "scene": "", "id": name, "text": "go left"})["error"]
-    assert "must make a name that rows can hold" in said
+    error = peer.ask({"kind": "episode", "scene": "", "id": name, "text": "go left"})["error"]
+    assert "must make a name that rows can hold" in error
     peer.close()
 
 
@@ -309,11 +309,11 @@ VALUES = st.recursive(
     VALUES,
 )
 def test_connection_answers_any_value(tmp_path, message, key, value):
-    made = Peer(tmp_path)
-    assert made.ask(HELLO) == {}
-    answer = made.ask(message | {key: value})
+    peer = Peer(tmp_path)
+    assert peer.ask(HELLO) == {}
+    answer = peer.ask(message | {key: value})
     assert answer is not None and "\n" not in answer.get("error", "")
-    made.close()
+    peer.close()
 
 
 CONNECT = (
@@ -343,8 +343,8 @@ def test_server_answers_despite_silent_connections(tmp_path):
             began = time.monotonic()
             send(channel, HELLO | {"token": listener.token})
             assert receive(channel) == {} and time.monotonic() - began < 9
-        for each in silent:
-            each.close()
+        for channel in silent:
+            channel.close()
 
 
 def test_send_rejects_a_message_that_is_too_large(peer):

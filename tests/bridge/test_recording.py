@@ -1,4 +1,4 @@
-"""What a recording of a program holds, and who reads it."""
+"""Recordings of a program: their files, and errors."""
 
 import json
 import os
@@ -101,7 +101,7 @@ def test_run_deletes_drafts_of_ended_processes(run, tmp_path):
 
 
 def test_recorder_keeps_a_recording_until_the_next_end(tmp_path):
-    """Loops of Habitat reset once more after their last episode, to the first."""
+    """Habitat loops reset once more after the last episode, to the first episode."""
     recorder, told = Recorder(tmp_path), {"scene": "k.glb", "id": "1"}
     recorder.episode(told)
     recorder.end({"kind": "end", "steps": 3})

@@ -1,4 +1,4 @@
-"""A restorer behind the bridge: frames of programs are restored, by panorama or camera."""
+"""A restorer with the bridge: frames of programs are restored, by panorama or camera."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ FILTERS = "tests.guards.filters"
 
 @pytest.fixture
 def restorer():
-    """It takes every frame for corrupted, and makes it twice as bright or as far."""
+    """A restorer that changes every frame: twice the brightness or depth."""
     made = Restorer(width=4, depth_width=4).eval()
     with torch.no_grad():
         for sensor, net in made.parts().items():
@@ -74,9 +74,9 @@ def test_guard_leaves_clean_frames_unchanged(restorer):
 
 def test_hook_restores_frames_of_the_clean_condition(command, restorer):
     chains = (Guards(), Guards([restorer]))
-    seen = [command(condition("clean", guards=chain), "--episodes", 1) for chain in chains]
-    assert [ran.status for ran in seen] == [0, 0], seen[1].output
-    plain, restored = (ran.seen() for ran in seen)
+    results = [command(condition("clean", guards=chain), "--episodes", 1) for chain in chains]
+    assert [result.status for result in results] == [0, 0], results[1].output
+    plain, restored = (result.seen() for result in results)
     assert plain.keys() == restored.keys()
     for look, entry in plain.items():
         shown = entry["frames"]
@@ -131,9 +131,9 @@ def test_guard_gets_rgb_and_depth_of_one_view_together():
 
 def test_hook_gives_the_frames_of_a_callable(command):
     chains = (Guards(), open_guards(None, f"{FILTERS}:Brighter"))
-    seen = [command(condition("clean", guards=chain), "--episodes", 1) for chain in chains]
-    assert [ran.status for ran in seen] == [0, 0], seen[1].output
-    plain, brighter = (ran.seen() for ran in seen)
+    results = [command(condition("clean", guards=chain), "--episodes", 1) for chain in chains]
+    assert [result.status for result in results] == [0, 0], results[1].output
+    plain, brighter = (result.seen() for result in results)
     assert plain.keys() == brighter.keys()
     for look, entry in plain.items():
         for name, digest in entry["frames"].items():

@@ -1,4 +1,4 @@
-"""``mitigate run`` from the command line, over the stand-in's program."""
+"""``mitigate run`` from the command line, with the program of the stand-in lab."""
 
 import fcntl
 import json
@@ -27,13 +27,13 @@ from .conftest import AGENT, LAB
 
 
 def test_run_is_a_command(tmp_path):
-    ran = subprocess.run(
+    result = subprocess.run(
         [sys.executable, "-m", "mitigate", "run", f"out={tmp_path}", "rule=etpnavv", "--", "true"],
         capture_output=True,
         text=True,
         check=False,
     )
-    assert ran.returncode == 1 and "Did you mean etpnav" in ran.stderr
+    assert result.returncode == 1 and "Did you mean etpnav" in result.stderr
 
 
 def test_run_measures_a_program_and_resumes(run, tmp_path):
@@ -55,8 +55,10 @@ def test_run_measures_a_program_and_resumes(run, tmp_path):
 
 
 def test_run_chooses_equal_episodes_in_every_condition(run, tmp_path):
-    ran = run(tmp_path / "o", "corruption=spatter episodes=5", f"{AGENT} --episodes 24 --workers 2")
-    assert ran.returncode == 0, ran.stdout + ran.stderr
+    result = run(
+        tmp_path / "o", "corruption=spatter episodes=5", f"{AGENT} --episodes 24 --workers 2"
+    )
+    assert result.returncode == 0, result.stdout + result.stderr
     found = rows.read(tmp_path / "o" / "rows.jsonl")
     by = {}
     for row in found:
@@ -66,9 +68,9 @@ def test_run_chooses_equal_episodes_in_every_condition(run, tmp_path):
 
 
 def test_run_reports_the_randomness_of_repeated_clean_runs(run, tmp_path):
-    ran = run(tmp_path / "o", "conditions=[clean] repeats=2")
-    assert ran.returncode == 0, ran.stdout + ran.stderr
-    assert "2 clean runs of the same 4 episodes: SR 50.0, 50.0" in ran.stdout
+    result = run(tmp_path / "o", "conditions=[clean] repeats=2")
+    assert result.returncode == 0, result.stdout + result.stderr
+    assert "2 clean runs of the same 4 episodes: SR 50.0, 50.0" in result.stdout
     assert len(rows.read(tmp_path / "o" / "rows.jsonl")) == 8  # of the first
 
 
@@ -82,15 +84,15 @@ def test_run_skips_conditions_that_do_not_apply(run, tmp_path):
         "        episode.corrupt({'rgb': numpy.full((8, 8, 3), 90, 'uint8')})\n"
         "    episode.finish(success=name == 'a', spl=0.5 * (name == 'a'))\n"
     )
-    ran = run(
+    result = run(
         tmp_path / "o",
         "conditions=[spatter,multipath,mask,white_box]",
         f"{sys.executable} {program}",
     )
-    assert ran.returncode == 0, ran.stdout + ran.stderr
-    assert "multipath-s0.6: not applicable, the agent has no depth camera" in ran.stdout
-    assert "mask-s0.6: not applicable, the program passes no instruction" in ran.stdout
-    assert "white_box-s0.6: not applicable" in ran.stdout
+    assert result.returncode == 0, result.stdout + result.stderr
+    assert "multipath-s0.6: not applicable, the agent has no depth camera" in result.stdout
+    assert "mask-s0.6: not applicable, the program passes no instruction" in result.stdout
+    assert "white_box-s0.6: not applicable" in result.stdout
     found = rows.read(tmp_path / "o" / "rows.jsonl")
     assert {row["corruption"] for row in found} == {"clean", "spatter"} and len(found) == 4
 
@@ -108,18 +110,18 @@ def test_run_skips_conditions_that_do_not_apply(run, tmp_path):
     ],
 )
 def test_run_explains_failed_commands(run, tmp_path, command, words):
-    ran = run(tmp_path / "o", "conditions=[clean]", command)
-    assert ran.returncode == 1 and words in ran.stderr, ran.stderr
+    result = run(tmp_path / "o", "conditions=[clean]", command)
+    assert result.returncode == 1 and words in result.stderr, result.stderr
 
 
 def test_run_does_not_hang_after_a_dead_worker(run, tmp_path):
-    ran = run(
+    result = run(
         tmp_path / "o",
         "conditions=[clean] patience=2",
         f"{AGENT} --workers 2 --die-at 1 --wait 60",
     )
-    assert ran.returncode == 1
-    assert "ended in the middle of episode s" in ran.stderr
+    assert result.returncode == 1
+    assert "ended in the middle of episode s" in result.stderr
 
 
 def test_run_ends_a_silent_command_that_lost_an_episode(run, tmp_path, monkeypatch):
@@ -132,8 +134,8 @@ def test_run_ends_a_silent_command_that_lost_an_episode(run, tmp_path, monkeypat
         "first = mitigate_hook.connect('a')\nfirst.corrupt({'rgb': numpy.zeros((8, 8, 3), 'u1')})\n"
         "mitigate_hook.connect('b')\ntime.sleep(60)\n"
     )
-    ran = run(tmp_path / "o", "conditions=[clean] patience=1", f"{sys.executable} {program}")
-    assert ran.returncode == 1 and "ended in the middle of episode a" in ran.stderr
+    result = run(tmp_path / "o", "conditions=[clean] patience=1", f"{sys.executable} {program}")
+    assert result.returncode == 1 and "ended in the middle of episode a" in result.stderr
 
 
 def test_run_ends_a_command_when_interrupted_at_its_start(run, tmp_path, monkeypatch):
@@ -165,8 +167,8 @@ def test_run_accepts_separate_calls_for_rgb_and_depth(run, tmp_path):
         "    episode.finish(success=1)\n"
     )
     out = tmp_path / "o"
-    ran = run(out, "conditions=[low_light,missing_data]", f"{sys.executable} {program}")
-    assert ran.returncode == 0 and "not applicable" not in ran.stdout, ran.stderr
+    result = run(out, "conditions=[low_light,missing_data]", f"{sys.executable} {program}")
+    assert result.returncode == 0 and "not applicable" not in result.stdout, result.stderr
     shown = [(out / f"conditions/{n}-s0.6/output.txt").read_text()
              for n in ("low_light", "missing_data")]  # fmt: skip
     assert shown == ["True False\n" * 2, "False True\n" * 2]
@@ -187,16 +189,16 @@ def test_run_chooses_episodes_again_after_a_failed_run(run, tmp_path, monkeypatc
         "    episode.corrupt({'rgb': rgb})\n    episode.finish(success=1)\n"
     )
     for _ in range(2):
-        ran = run(out, "conditions=[clean] episodes=2", f"{sys.executable} {program}")
-        assert "2 episodes" in ran.stdout and ran.returncode == 0
+        result = run(out, "conditions=[clean] episodes=2", f"{sys.executable} {program}")
+        assert "2 episodes" in result.stdout and result.returncode == 0
     assert json.loads((out / "episodes.json").read_text())["of"] == 90
 
 
 def test_run_does_not_finish_a_condition_that_lost_an_episode(run, tmp_path):
-    """The command ends well, but one of its workers was killed."""
+    """The command ends with status 0, but one of its workers was killed."""
     out = tmp_path / "o"
-    ran = run(out, "conditions=[clean]", f"{AGENT} --workers 4 --die-at 1 --die-worker 2")
-    assert ran.returncode == 1 and "1 episode was left unfinished, such as s0/2" in ran.stderr
+    result = run(out, "conditions=[clean]", f"{AGENT} --workers 4 --die-at 1 --die-worker 2")
+    assert result.returncode == 1 and "1 episode was left unfinished, such as s0/2" in result.stderr
     assert not (out / "conditions" / "clean" / "done.json").exists()
 
 
@@ -205,8 +207,8 @@ def test_run_rejects_the_folder_of_a_running_run(run, tmp_path):
     folder.mkdir(parents=True)
     with open(folder / "lock", "w") as held:
         fcntl.flock(held, fcntl.LOCK_EX)
-        ran = run(tmp_path / "o", "conditions=[clean]")
-    assert ran.returncode == 1 and "Another run is at work in" in ran.stderr
+        result = run(tmp_path / "o", "conditions=[clean]")
+    assert result.returncode == 1 and "Another run is at work in" in result.stderr
 
 
 @pytest.mark.parametrize(
@@ -253,10 +255,10 @@ def test_run_leaves_nothing_behind_when_terminated(tmp_path):
 
 
 def test_run_skips_instruction_conditions_without_a_tokenizer(run, tmp_path):
-    ran = run(tmp_path / "o", "conditions=[capitalize,low_light,mask]", f"{AGENT} --tokens")
-    assert ran.returncode == 1 and "Without a tokenizer" in ran.stderr
+    result = run(tmp_path / "o", "conditions=[capitalize,low_light,mask]", f"{AGENT} --tokens")
+    assert result.returncode == 1 and "Without a tokenizer" in result.stderr
     refused, begun = (
-        ran.stdout.index(text) for text in ("capitalize-s0.6, mask", "low_light-s0.6: s")
+        result.stdout.index(text) for text in ("capitalize-s0.6, mask", "low_light-s0.6: s")
     )
     assert refused < begun and not (tmp_path / "o/conditions/mask-s0.6").exists()
     measured = {row["corruption"] for row in rows.read(tmp_path / "o" / "rows.jsonl")}
@@ -285,8 +287,8 @@ def test_select_applicable_counts_instructions_in_other_languages(tmp_path, caps
 def test_hook_runs_the_sitecustomize_that_it_hides(run, tmp_path):
     (tmp_path / "own").mkdir()
     (tmp_path / "own" / "sitecustomize.py").write_text("print('the own one ran')\n")
-    ran = run(tmp_path / "o", "conditions=[clean]", PYTHONPATH=str(tmp_path / "own"))
-    assert ran.returncode == 0, ran.stderr
+    result = run(tmp_path / "o", "conditions=[clean]", PYTHONPATH=str(tmp_path / "own"))
+    assert result.returncode == 0, result.stderr
     assert "the own one ran" in (tmp_path / "o/conditions/clean/output.txt").read_text()
 
 
@@ -353,10 +355,10 @@ def test_run_says_how_to_resume_after_a_signal(tmp_path):
 
 
 def test_run_lists_the_launchers():
-    ran = subprocess.run(
+    result = subprocess.run(
         [sys.executable, "-m", "mitigate", "run", "launcher=foo", "--", "true"],
         capture_output=True,
         text=True,
         check=False,
     )
-    assert "Choose one of: local, ray, slurm." in ran.stderr
+    assert "Choose one of: local, ray, slurm." in result.stderr

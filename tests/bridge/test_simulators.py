@@ -1,9 +1,9 @@
-"""Every way to a simulator's frames: corrupted once, or the process ends and says why."""
+"""Ways to get frames of a simulator: corrupted once, or the process ends with an error."""
 
 import pytest
 
 from .conftest import condition
-from .test_loops import ran
+from .test_loops import run_loop
 
 ENV = """
 import habitat, habitat_sim.simulator
@@ -32,8 +32,10 @@ assert (sim.raw[..., :3] == 130).all()  # what the lab's sensors are given
 
 
 def test_lab_simulator_gives_clean_frames_to_its_sensors(tmp_path):
-    ended, told = ran(tmp_path, LAB + "env.step(0)\nprint('done')", condition("low_light"))
-    assert ended.stdout == "done\n" and told.ends["s0/0"]["calls"] == 3
+    process, reports = run_loop(
+        tmp_path, LAB + "env.step(0)\nprint('done')", condition("low_light")
+    )
+    assert process.stdout == "done\n" and reports.ends["s0/0"]["calls"] == 3
 
 
 @pytest.mark.parametrize(
@@ -46,9 +48,9 @@ def test_lab_simulator_gives_clean_frames_to_its_sensors(tmp_path):
     ],
 )
 def test_lab_simulator_stops_for_frames_that_bypass_its_sensors(tmp_path, look):
-    ended, told = ran(tmp_path, f"{LAB}{look}\nprint('went on')", condition("low_light"))
-    assert ended.returncode == 97 and "went on" not in ended.stdout
-    assert "calls get_sensor_observations of habitat-lab's simulator" in told.problems[0]
+    process, reports = run_loop(tmp_path, f"{LAB}{look}\nprint('went on')", condition("low_light"))
+    assert process.returncode == 97 and "went on" not in process.stdout
+    assert "calls get_sensor_observations of habitat-lab's simulator" in reports.problems[0]
 
 
 def test_get_observations_accepts_frames_by_keyword(tmp_path):
@@ -59,8 +61,8 @@ def test_get_observations_accepts_frames_by_keyword(tmp_path):
         "for seen in (suite.get_observations(place), suite.get_observations(sim_obs=place)):\n"
         "    print((seen['rgb'] != clean['rgb']).any(), (seen['depth'] == clean['depth']).all())"
     )
-    ended, _ = ran(tmp_path, code, condition("low_light"))
-    assert ended.stdout == "True True\n" * 2
+    process, _ = run_loop(tmp_path, code, condition("low_light"))
+    assert process.stdout == "True True\n" * 2
 
 
 SIM = """
@@ -85,8 +87,10 @@ episode = mitigate_hook.connect("a")
 def test_habitat_sim_corrupts_the_acting_agent_once(tmp_path, call, acting, goal):
     shown = f"seen{acting}[..., :3].mean()" if acting else "0"
     other = f"seen{goal}[0, 0, 0]" if goal else "130"
-    ended, _ = ran(tmp_path, f"{SIM}seen = {call}\nprint({shown}, {other})", condition("low_light"))
-    mean, clean = map(float, ended.stdout.split())
+    process, _ = run_loop(
+        tmp_path, f"{SIM}seen = {call}\nprint({shown}, {other})", condition("low_light")
+    )
+    mean, clean = map(float, process.stdout.split())
     assert clean == 130 and (mean == 0 if acting is None else 40 < mean < 110)
 
 
@@ -96,10 +100,12 @@ def test_corrupt_stops_for_frames_of_habitat_sim(tmp_path, name):
         "frames = sim.get_sensor_observations()\n"
         "episode.corrupt({'rgb': frames['color_sensor'].copy()})\nprint('went on')"
     )
-    ended, told = ran(tmp_path, SIM + code, condition(name))
-    assert ended.returncode == 97 and "connect() and finish() only" in told.problems[0]
-    ended, told = ran(tmp_path / "b", SIM + "sim.get_sensor_observations()\nepisode.finish(1)")
-    assert ended.returncode == 0 and told.ends["a"]["calls"] == 1
+    process, reports = run_loop(tmp_path, SIM + code, condition(name))
+    assert process.returncode == 97 and "connect() and finish() only" in reports.problems[0]
+    process, reports = run_loop(
+        tmp_path / "b", SIM + "sim.get_sensor_observations()\nepisode.finish(1)"
+    )
+    assert process.returncode == 0 and reports.ends["a"]["calls"] == 1
 
 
 @pytest.mark.parametrize(
@@ -115,8 +121,8 @@ def test_corrupt_stops_for_a_corrupted_frame(tmp_path, again):
         "episode = mitigate_hook.connect('a')\nseen = episode.corrupt({'rgb': rgb})\n"
         f"seen = episode.corrupt({{'rgb': rgb}})\n{again}\nprint('went on')"
     ).replace("{}}", "{'type': 'rgb'}}")
-    ended, told = ran(tmp_path, code)
-    assert ended.returncode == 97 and "is corrupted already" in told.problems[0]
+    process, reports = run_loop(tmp_path, code)
+    assert process.returncode == 97 and "is corrupted already" in reports.problems[0]
 
 
 def test_close_leaves_nothing_behind(tmp_path):
@@ -130,5 +136,5 @@ def test_close_leaves_nothing_behind(tmp_path):
         " any(isinstance(o, Simulator) for o in gc.get_objects()),"
         " len(mitigate_hook._sessions), len(mitigate_hook._descriptions))"
     )
-    ended, told = ran(tmp_path, code)
-    assert ended.stdout == "True False 0 0\n" and told.repeated == 5
+    process, reports = run_loop(tmp_path, code)
+    assert process.stdout == "True False 0 0\n" and reports.repeated == 5

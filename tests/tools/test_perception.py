@@ -1,4 +1,4 @@
-"""What the encoders see falls with a corruption of their own modality, and with no other."""
+"""Perception scores fall with a corruption of the same modality, and with no other."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The bench: its clocks, its peers and its page."""
+"""The benchmark: its clocks, other libraries, and its page."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ from tools.bench.renderers import OURS
 
 def test_clocks_measure_a_call():
     assert 1.9 < timing.steady(lambda i: time.sleep(0.002), 0.01) < 20
-    seen = []
-    assert timing.fresh(seen.append, 0.001) < 1
-    assert seen == list(range(len(seen))) and len(seen) > timing.LEAST
+    calls = []
+    assert timing.fresh(calls.append, 0.001) < 1
+    assert calls == list(range(len(calls))) and len(calls) > timing.LEAST
 
 
 def test_every_corruption_has_a_bar():
@@ -36,9 +36,9 @@ def test_every_corruption_has_a_bar():
 def test_cost_is_measured_on_the_frame(name):
     frame = np.full((1, 32, 32, 3), 90, np.uint8)
     frame = frame if name not in DEPTH else frame[..., 0].astype(np.float32) / 30
-    found = suite.cost(name, frame, 1e-3, {"slow": 9.0, "fast": 7.0}, bar=1e-9)
-    assert found.over and found.best_peer == ("fast", 7.0)
-    assert 0 < found.steady < 5 and 0 < found.copy < found.per_frame
+    cost = suite.cost(name, frame, 1e-3, {"slow": 9.0, "fast": 7.0}, bar=1e-9)
+    assert cost.over and cost.best_peer == ("fast", 7.0)
+    assert 0 < cost.steady < 5 and 0 < cost.copy < cost.per_frame
 
 
 def test_clock_counts_only_its_function():

@@ -1,4 +1,4 @@
-"""CI fails when a processor with fewer instructions trains far slower than it must."""
+"""CI fails if training with fewer instructions is much slower."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ USUAL = {"perception": (9.0, 0.2, 0.25), "imitation": (20.0, 1.0, 1.5)}
 
 
 def make(folder: Path, costs: dict[str, tuple[float, ...]]) -> Path:
-    """A run folder whose stages took so many CPU seconds a step, as a Journal logs them."""
+    """Create a run folder whose stages took these CPU seconds per step, as a Journal logs them."""
     for stage, seconds in costs.items():
         clock = accumulate((5.0, *seconds))
         with (

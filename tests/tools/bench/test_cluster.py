@@ -1,4 +1,4 @@
-"""The simulated cluster does all the work, and loses only what was at hand."""
+"""The simulated cluster finishes all episodes, and loses only running ones."""
 
 from __future__ import annotations
 
@@ -9,9 +9,11 @@ from tools.bench.cluster import Cluster, draw, simulate
 
 
 def test_simulate_without_failures_matches_arithmetic():
-    found = simulate(np.full(96, 36.0), 1, Cluster(nodes=3, workers=4, days=1e9))
-    assert found.hours == pytest.approx(8 * 36 / 3600)
-    assert (found.lost, found.failures) == (0.0, 0) and found.idle == pytest.approx(0.0, abs=1e-9)
+    outcome = simulate(np.full(96, 36.0), 1, Cluster(nodes=3, workers=4, days=1e9))
+    assert outcome.hours == pytest.approx(8 * 36 / 3600)
+    assert (outcome.lost, outcome.failures) == (0.0, 0) and outcome.idle == pytest.approx(
+        0.0, abs=1e-9
+    )
 
 
 def test_simulate_idles_with_large_shares():

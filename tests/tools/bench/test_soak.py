@@ -1,4 +1,4 @@
-"""A soak sees memory and files that grow, sees none where none do, and says when it cannot tell."""
+"""The soak test finds growth of memory and files, and reports series that are too short."""
 
 from __future__ import annotations
 
@@ -16,16 +16,17 @@ HOURS = np.linspace(0, 1, 600)
 
 def wander(seed: int, share: float = 0.9) -> np.ndarray:
     """Noise of standard deviation 3 in which each value is near the one before."""
-    rng, found = np.random.default_rng(seed), np.zeros(len(HOURS))
-    for n in range(1, len(found)):
-        found[n] = share * found[n - 1] + rng.normal(0, 3 * (1 - share**2) ** 0.5)
-    return found
+    rng = np.random.default_rng(seed)
+    values = np.zeros(len(HOURS))
+    for n in range(1, len(values)):
+        values[n] = share * values[n - 1] + rng.normal(0, 3 * (1 - share**2) ** 0.5)
+    return values
 
 
 def test_growth_finds_a_leak():
-    found = growth(HOURS, 900 + 40 * HOURS + wander(0))
-    assert found.low < 40 < found.high and found.low > 20
-    assert found.verdict == "grows"
+    result = growth(HOURS, 900 + 40 * HOURS + wander(0))
+    assert result.low < 40 < result.high and result.low > 20
+    assert result.verdict == "grows"
 
 
 def test_growth_ignores_the_first_quarter():
@@ -34,8 +35,8 @@ def test_growth_ignores_the_first_quarter():
 
 
 def test_growth_interval_covers_the_true_slope():
-    held = [g.low <= 0 <= g.high for g in (growth(HOURS, wander(seed)) for seed in range(30))]
-    assert 0.75 <= np.mean(held) <= 1.0
+    covered = [g.low <= 0 <= g.high for g in (growth(HOURS, wander(seed)) for seed in range(30))]
+    assert 0.75 <= np.mean(covered) <= 1.0
 
 
 def test_growth_is_undecided_for_a_short_series():
@@ -77,7 +78,7 @@ def test_measured_counts_all_processes(tmp_path):
 def test_main_reports_a_load_that_ends(tmp_path, monkeypatch, capsys):
     monkeypatch.setattr(soak, "LOADS", {"nothing": None})
     assert soak.main(["--minutes", "0.2", "--every", "0.1", "--out", str(tmp_path)]) == 1
-    said = capsys.readouterr().out
-    assert "nothing ended early" in said and "KeyError" in said
+    output = capsys.readouterr().out
+    assert "nothing ended early" in output and "KeyError" in output
     assert (tmp_path / "soak.csv").is_file() and (tmp_path / "soak.png").is_file()
     assert sorted(p.name for p in tmp_path.iterdir() if p.is_dir()) == []
