@@ -1,7 +1,7 @@
 """The cameras of an agent, the layout of their frames in shared memory, and their corruption.
 
 Cameras of one call with equal size, field of view and position that are level and multiples of 30
-degrees apart form a panorama. Every other camera is a group of its own, with separate draws.
+degrees apart form a panorama. Every other camera is a separate group, with separate draws.
 """
 
 from __future__ import annotations

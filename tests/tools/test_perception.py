@@ -38,7 +38,7 @@ def test_measure_equals_clean_at_severity_zero():
     "arguments, message",
     [
         (["checkpoints/base", "--severity", "1.2", "--poses", "1"], "from 0"),
-        (["checkpoints/base", "--poses", "0"], "at least one"),
+        (["checkpoints/base", "--poses", "0"], "must be >= 1"),
         (["checkpoints/nothing", "--poses", "1"], "no weights at"),
     ],
 )
