@@ -1,13 +1,13 @@
-"""habitat-baselines' PPO agent for `mitigate run`, over our scenes and episodes.
+"""Runs habitat-baselines' PPO agent under `mitigate run`, on this project's scenes and episodes.
 
     mitigate export_scene habitat/
     python tools/baselines_by_hand.py habitat/ train
     mitigate run conditions=[low_light] -- python tools/baselines_by_hand.py habitat/ evaluate
 
-Runs their own trainer and evaluator (ObjectNav, two workers, ResNet-18), and prints means of what
-the policy is given. Needs habitat-sim (docs/habitat.md), habitat-lab and habitat-baselines 0.3; of
-the latter the wheel lacks its YAML files, which are in its repository. Two updates teach nothing:
-what is shown is that the frames on the way to a policy of theirs are corrupted.
+Uses their trainer and evaluator (ObjectNav, two workers, ResNet-18), and prints means of the
+policy's input. Needs habitat-sim (docs/habitat.md), habitat-lab and habitat-baselines 0.3; the
+wheel of habitat-baselines lacks its YAML files, which are in its repository. Two updates do not
+train a useful policy: the program only shows that the policy's input is corrupted.
 """
 
 from __future__ import annotations
@@ -31,12 +31,12 @@ habitat.dataset.split=val_unseen habitat_baselines.eval.split=val_unseen
 
 
 def options(folder: Path, evaluate: bool, episodes: int) -> list[str]:
-    """Hydra's of ``habitat_baselines.run``."""
-    listed = folder / "datasets/objectnav/val_unseen/val_unseen.json.gz"
+    """Return the Hydra options of ``habitat_baselines.run``."""
+    dataset = folder / "datasets/objectnav/val_unseen/val_unseen.json.gz"
     return [
         "--config-name=objectnav/ddppo_objectnav_hm3d",
         *TRAINING.split(),
-        f"habitat.dataset.data_path={listed}",
+        f"habitat.dataset.data_path={dataset}",
         f"habitat.dataset.scenes_dir={folder / 'scenes'}",
         f"habitat_baselines.checkpoint_folder={CHECKPOINTS}",
         f"habitat_baselines.eval_ckpt_path_dir={CHECKPOINTS}/ckpt.0.pth",
@@ -46,20 +46,21 @@ def options(folder: Path, evaluate: bool, episodes: int) -> list[str]:
     ]
 
 
-def show() -> None:
-    """Print the means of every fifth batch on its way to the policy."""
+def print_batches() -> None:
+    """Print the means of every fifth batch that the policy gets."""
     from habitat_baselines.rl.ppo import habitat_evaluator
 
-    real, calls = habitat_evaluator.apply_obs_transforms_batch, []
+    original = habitat_evaluator.apply_obs_transforms_batch
+    calls: list[int] = []
 
-    def shown(batch: Any, transforms: Any) -> Any:
+    def print_means(batch: Any, transforms: Any) -> Any:
         calls.append(1)
         if len(calls) % 5 == 1:
             means = {n: round(float(batch[n].float().mean()), 3) for n in ("rgb", "depth")}
             print("batch", len(calls), means, flush=True)
-        return real(batch, transforms)
+        return original(batch, transforms)
 
-    habitat_evaluator.apply_obs_transforms_batch = shown
+    habitat_evaluator.apply_obs_transforms_batch = print_means
 
 
 def main() -> None:
@@ -70,17 +71,17 @@ def main() -> None:
     parser.add_argument("habitat", type=Path, help="folder of mitigate export_scene")
     parser.add_argument("what", choices=("train", "evaluate"))
     parser.add_argument("--episodes", type=int, default=6)
-    told = parser.parse_args()
-    evaluate = told.what == "evaluate"
-    # their checkpoints hold a pickled config, which torch has refused since 2.6: this one is ours
+    arguments = parser.parse_args()
+    evaluate = arguments.what == "evaluate"
+    # the checkpoint holds a pickled config, which torch >= 2.6 rejects; this program wrote it
     os.environ["TORCH_FORCE_NO_WEIGHTS_ONLY_LOAD"] = "1"
     from habitat.config.default_structured_configs import register_hydra_plugin
     from habitat_baselines import run
     from habitat_baselines.config.default_structured_configs import HabitatBaselinesConfigPlugin
 
-    show()
+    print_batches()
     register_hydra_plugin(HabitatBaselinesConfigPlugin)
-    sys.argv[1:] = options(told.habitat.resolve(), evaluate, told.episodes)
+    sys.argv[1:] = options(arguments.habitat.resolve(), evaluate, arguments.episodes)
     run.main()
 
 

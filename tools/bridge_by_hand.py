@@ -1,4 +1,4 @@
-"""Programs for `mitigate run` on the real Habitat, with files of other projects as they are.
+"""Programs for `mitigate run` on the real Habitat, with unchanged files of other projects.
 
     mitigate export_scene habitat/
     mitigate run conditions=[low_light] -- python tools/bridge_by_hand.py lab habitat/ --task vln
@@ -8,8 +8,8 @@
     mitigate run conditions=[low_light] -- python tools/bridge_by_hand.py wmnav habitat/ WMNav/
 
 Needs habitat-sim and habitat-lab 0.3 (docs/habitat.md) and, for the last three, a checkout of the
-agent. Prints means of what is seen; what came out is in docs/bridge.md. The agents' files are for
-older labs, so names that they import and 0.3 has not are made here.
+agent. Prints means of the frames; results are in docs/lab/bridge-trials.md. The agents' files need
+older versions of habitat-lab, so this program defines the names that they import and 0.3 lacks.
 """
 
 from __future__ import annotations
@@ -25,76 +25,78 @@ from typing import Any
 
 import numpy as np
 
-if "l3mvn" in sys.argv:  # in its workers, too: they import this file first
+if "l3mvn" in sys.argv:  # also in its workers, which import this file first
     import habitat.config
 
     habitat.config.Config = dict
 
 CPU = "habitat.simulator.habitat_sim_v0.gpu_device_id=-1"
-SHOWN = ("rgb", "rgb_30", "rgb_330", "depth", "depth_90")
+CAMERAS = ("rgb", "rgb_30", "rgb_330", "depth", "depth_90")
 
 
 def config(folder: Path, task: str, *more: str) -> Any:
-    """habitat-lab's own config of a task, over our scenes and episodes."""
+    """Return habitat-lab's config of a task, with this project's scenes and episodes."""
     from habitat.config.default import get_config
 
     name = {"vln": "vln_r2r", "objectnav": "objectnav/objectnav_hm3d"}[task]
     lists = {"vln": "vln/val_unseen", "objectnav": "objectnav/val_unseen/val_unseen"}[task]
-    own = [
+    options = [
         f"habitat.dataset.data_path={folder}/datasets/{lists}.json.gz",
         f"habitat.dataset.scenes_dir={folder}/scenes",
         "habitat.dataset.split=val_unseen",
         "habitat.environment.iterator_options.shuffle=False",
     ]
-    return get_config(f"benchmark/nav/{name}.yaml", overrides=[CPU, *own, *more])
+    return get_config(f"benchmark/nav/{name}.yaml", overrides=[CPU, *options, *more])
 
 
-def means(seen: Any, names: Any = SHOWN) -> list[float]:
-    return [round(float(np.mean(seen[name])), 3) for name in names if name in seen]
+def means(observations: Any, names: Any = CAMERAS) -> list[float]:
+    """Return the mean of each frame."""
+    return [round(float(np.mean(observations[n])), 3) for n in names if n in observations]
 
 
 def module(name: str, **names: Any) -> None:
-    """Make a module that a file imports."""
-    made = types.ModuleType(name)
-    vars(made).update(names)
-    sys.modules[name] = made
+    """Create a module that a file imports."""
+    created = types.ModuleType(name)
+    vars(created).update(names)
+    sys.modules[name] = created
 
 
 def lab(options: argparse.Namespace) -> None:
-    """habitat-lab's Env and shortest-path follower."""
+    """Run habitat-lab's Env with its shortest-path follower."""
     import habitat
     from habitat.tasks.nav.shortest_path_follower import ShortestPathFollower
 
     success = {"vln": 3.0, "objectnav": 0.5}[options.task]
-    own = f"habitat.task.measurements.success.success_distance={success}"
-    env = habitat.Env(config(options.habitat, options.task, own))
+    distance = f"habitat.task.measurements.success.success_distance={success}"
+    env = habitat.Env(config(options.habitat, options.task, distance))
     for _ in range(options.episodes):
-        seen = env.reset()
+        observations = env.reset()
         follower = ShortestPathFollower(env.sim, 0.3, False)
         goals = env.current_episode.goals
         views = [v.agent_state for g in goals for v in getattr(g, "view_points", None) or []]
-        here = env.sim.get_agent_state().position
-        ends = [place.position for place in views or goals]
-        goal = min(ends, key=lambda end: env.sim.geodesic_distance(here, end))
+        start = env.sim.get_agent_state().position
+        ends = [target.position for target in views or goals]
+        goal = min(ends, key=lambda end: env.sim.geodesic_distance(start, end))
         while not env.episode_over:
-            seen = env.step(follower.get_next_action(goal) or 0)
-        print("end", means(seen), env.get_metrics().get("success"), flush=True)
+            observations = env.step(follower.get_next_action(goal) or 0)
+        print("end", means(observations), env.get_metrics().get("success"), flush=True)
     env.close()
 
 
 def worker(folder: Path, scene: int) -> Any:
+    """Return a gym environment with the episodes of one scene."""
     from habitat.gym import make_gym_from_config
 
-    measured = (
+    measures = (
         "habitat.task.reward_measure=distance_to_goal",
         "habitat.task.success_measure=success",
     )
-    only = f"habitat.dataset.content_scenes=[{scene}]"
-    return make_gym_from_config(config(folder, "vln", *measured, only))
+    scenes = f"habitat.dataset.content_scenes=[{scene}]"
+    return make_gym_from_config(config(folder, "vln", *measures, scenes))
 
 
 def vector(options: argparse.Namespace) -> None:
-    """habitat-lab's VectorEnv with a worker for each of two scenes."""
+    """Run habitat-lab's VectorEnv with one worker per scene, for two scenes."""
     from habitat.core.vector_env import VectorEnv
 
     envs = VectorEnv(
@@ -112,7 +114,7 @@ def vector(options: argparse.Namespace) -> None:
 
 
 def etpnav(options: argparse.Namespace) -> None:
-    """ETPNav's VLNCEDaggerEnv: panoramas by get_observations_at, teleports, STOP."""
+    """Run ETPNav's VLNCEDaggerEnv: panoramas by get_observations_at, teleports, STOP."""
     import habitat
     from habitat.config import read_write
     from habitat.core.registry import registry
@@ -147,32 +149,34 @@ def etpnav(options: argparse.Namespace) -> None:
         STOP=0, MOVE_FORWARD=1, TURN_LEFT=2, TURN_RIGHT=3
     )
     registry.register_simulator(to_register=Simulator, name="Sim-v1")
-    made = config(options.habitat, "vln", "habitat.simulator.type=Sim-v1")
-    with read_write(made):
-        made.habitat.simulator.agents.main_agent.sim_sensors = panorama(64, 64)
+    task_config = config(options.habitat, "vln", "habitat.simulator.type=Sim-v1")
+    with read_write(task_config):
+        task_config.habitat.simulator.agents.main_agent.sim_sensors = panorama(64, 64)
     env = environments.VLNCEDaggerEnv(
-        types.SimpleNamespace(TASK_CONFIG=made, VIDEO_OPTION=[], VIDEO_DIR="")
+        types.SimpleNamespace(TASK_CONFIG=task_config, VIDEO_OPTION=[], VIDEO_DIR="")
     )
-    still = {"back_path": None, "tryout": False}
+    defaults = {"back_path": None, "tryout": False}
     for _ in range(options.episodes):
-        seen = env.reset()
-        print("reset", means(seen), seen["instruction"]["text"][:60], flush=True)
+        observations = env.reset()
+        text = observations["instruction"]["text"]
+        print("reset", means(observations), text[:60], flush=True)
         for step in range(2):
-            here = env._env.sim.get_agent_state().position
-            there = here + np.array([0.5, 0.0, 0.3 * step], np.float32)
-            act = {"act": 4, "front_pos": here, "ghost_pos": there, **still}
-            print("waypoint", means(env.step(act, None)[0]), flush=True)
-        here = env._env.sim.get_agent_state().position
-        _, _, done, _ = env.step({"act": 0, "stop_pos": here, **still}, None)
+            position = env._env.sim.get_agent_state().position
+            target = position + np.array([0.5, 0.0, 0.3 * step], np.float32)
+            action = {"act": 4, "front_pos": position, "ghost_pos": target, **defaults}
+            print("waypoint", means(env.step(action, None)[0]), flush=True)
+        position = env._env.sim.get_agent_state().position
+        _, _, done, _ = env.step({"act": 0, "stop_pos": position, **defaults}, None)
         print("stop", done, flush=True)
     env.close()
 
 
 def l3mvn_worker(folder: Path, scene: int) -> Any:
+    """Return an environment like L3MVN's with the episodes of one scene."""
     import habitat
 
     class Nav(habitat.RLEnv):
-        """As L3MVN's: STOP is action 3, and its Env never ends."""
+        """Like L3MVN's environment: STOP is action 3, and its Env never ends."""
 
         def reset(self) -> Any:
             self.steps = 0
@@ -180,29 +184,29 @@ def l3mvn_worker(folder: Path, scene: int) -> Any:
 
         def step(self, action: int) -> Any:
             self.steps += 1
-            seen, *rest = super().step(action or 3)
-            return (self.state(seen), *rest)
+            observations, *rest = super().step(action or 3)
+            return (self.state(observations), *rest)
 
-        def state(self, seen: Any) -> np.ndarray:
-            return np.concatenate((seen["rgb"], seen["depth"]), 2)
+        def state(self, observations: Any) -> np.ndarray:
+            return np.concatenate((observations["rgb"], observations["depth"]), 2)
 
         def get_reward_range(self) -> tuple[float, float]:
             return 0.0, 1.0
 
-        def get_reward(self, seen: Any) -> float:
+        def get_reward(self, observations: Any) -> float:
             return 0.0
 
-        def get_done(self, seen: Any) -> bool:
+        def get_done(self, observations: Any) -> bool:
             return self.steps >= 4
 
-        def get_info(self, seen: Any) -> dict:
+        def get_info(self, observations: Any) -> dict:
             return {}
 
     return Nav(config(folder, "objectnav", f"habitat.dataset.content_scenes=[{scene}]"))
 
 
 def l3mvn(options: argparse.Namespace) -> None:
-    """L3MVN's own copy of VectorEnv."""
+    """Run L3MVN's copy of VectorEnv."""
     sys.path.insert(0, str(options.agent / "envs" / "habitat" / "utils"))
     import vector_env
 
@@ -212,40 +216,40 @@ def l3mvn(options: argparse.Namespace) -> None:
     )
     envs.reset()
     for step in range(4 * options.episodes):
-        seen, *_ = envs.step([int(step % 4 < 3)] * 2)
-        print("step", [round(float(s[..., :3].mean()), 2) for s in seen], flush=True)
+        states, *_ = envs.step([int(step % 4 < 3)] * 2)
+        print("step", [round(float(s[..., :3].mean()), 2) for s in states], flush=True)
     envs.close()
 
 
 def wmnav(options: argparse.Namespace) -> None:
-    """WMNav's Env and SimWrapper: habitat-sim without the lab, a second camera for goals."""
+    """Run WMNav's Env and SimWrapper: habitat-sim without the lab, a second camera for goals."""
     import habitat_sim
 
-    create = habitat_sim.Simulator.__init__
+    original_init = habitat_sim.Simulator.__init__
 
-    def on_cpu(self: Any, settings: Any) -> None:
-        settings.sim_cfg.enable_physics, settings.sim_cfg.gpu_device_id = False, -1
-        create(self, settings)
+    def init_on_cpu(self: Any, settings: Any) -> None:
+        settings.sim_cfg.enable_physics = False
+        settings.sim_cfg.gpu_device_id = -1
+        original_init(self, settings)
 
-    habitat_sim.Simulator.__init__ = on_cpu
+    habitat_sim.Simulator.__init__ = init_on_cpu
     for name in ("WMNav_agent", "custom_agent", "pandas", "requests"):
         module(name)
     sys.path.insert(0, str(options.agent / "src"))
     import WMNav_env
     from simWrapper import PolarAction, SimWrapper
 
-    listed = (
-        options.habitat / "datasets" / "objectnav" / "val_unseen" / "content" / "200000.json.gz"
-    )
-    stored = json.loads(gzip.decompress(listed.read_bytes()))
+    file = options.habitat / "datasets" / "objectnav" / "val_unseen" / "content" / "200000.json.gz"
+    dataset = json.loads(gzip.decompress(file.read_bytes()))
     camera = {"pitch": -0.25, "fov": 79, "height": 0.88, "img_height": 120, "img_width": 160}
     shape = {"agent_radius": 0.17, "agent_height": 0.88, "allow_slide": True, "scene_id": "x"}
     goal = {"use_goal_image_agent": True, "goal_image_agent_fov": 79, "scene_config": "default"}
 
-    class Walk(WMNav_env.Env):
+    class ScriptedEnv(WMNav_env.Env):
         def __init__(self) -> None:
-            self.all_episodes, self.cfg = stored["episodes"], {"max_steps": 3}
-            self.curr_run_name = "walk"
+            self.all_episodes = dataset["episodes"]
+            self.cfg = {"max_steps": 3}
+            self.curr_run_name = "scripted"
             scene = str(options.habitat / "scenes" / self.all_episodes[0]["scene_id"])
             self.simWrapper = SimWrapper(
                 {"scene_path": scene, "sensor_cfg": camera, **shape, **goal}
@@ -255,27 +259,28 @@ def wmnav(options: argparse.Namespace) -> None:
             self.simWrapper.sim.recompute_navmesh(self.simWrapper.sim.pathfinder, settings)
 
         def _initialize_episode(self, number: int) -> Any:
-            told = self.all_episodes[number]
+            episode = self.all_episodes[number]
+            category = episode["object_category"]
             self.step, self.agent_distance_traveled = 0, 0.0
-            self.current_episode = {"object": told["object_category"]}
-            goals = stored["goals_by_category"][f"200000.glb_{told['object_category']}"]
+            self.current_episode = {"object": category}
+            goals = dataset["goals_by_category"][f"200000.glb_{category}"]
             self.path_calculator = habitat_sim.MultiGoalShortestPath()
             self.path_calculator.requested_ends = np.array(
                 [g["position"] for g in goals], np.float32
             )
-            start = np.array(told["start_position"])
-            self.simWrapper.set_state(pos=start, quat=told["start_rotation"])
+            start = np.array(episode["start_position"])
+            self.simWrapper.set_state(pos=start, quat=episode["start_rotation"])
             return self.simWrapper.step(PolarAction.null)
 
-        def _step_env(self, seen: Any) -> Any:
-            state = seen["agent_state"]
-            picture = self.simWrapper.get_goal_image(state.position, state.rotation)
-            shown = [seen["color_sensor"][..., :3], seen["color_sensor"][..., 3]]
-            shown += [seen["depth_sensor"], picture[..., :3]]
-            figures = [round(float(frame.mean()), 2) for frame in shown]
-            print(
-                "colour, alpha, depth, goal:", figures, self.current_episode["object"], flush=True
-            )
+        def _step_env(self, observations: Any) -> Any:
+            state = observations["agent_state"]
+            color = observations["color_sensor"]
+            goal_image = self.simWrapper.get_goal_image(state.position, state.rotation)
+            frames = [color[..., :3], color[..., 3]]
+            frames += [observations["depth_sensor"], goal_image[..., :3]]
+            values = [round(float(frame.mean()), 2) for frame in frames]
+            category = self.current_episode["object"]
+            print("color, alpha, depth, goal:", values, category, flush=True)
             self.path_calculator.requested_start = state.position
             metres = self.simWrapper.get_path(self.path_calculator)
             self.wandb_log_data = {"spl": 0.5 * (metres < 1), "goal_reached": metres < 1}
@@ -284,12 +289,12 @@ def wmnav(options: argparse.Namespace) -> None:
         def _post_episode(self) -> None:
             pass
 
-    walk = Walk()
+    env = ScriptedEnv()
     for number in range(options.episodes):
-        walk._run_episode(number)
+        env._run_episode(number)
 
 
-PROGRAMS = {made.__name__: made for made in (lab, vector, etpnav, l3mvn, wmnav)}
+PROGRAMS = {program.__name__: program for program in (lab, vector, etpnav, l3mvn, wmnav)}
 
 
 def main() -> None:

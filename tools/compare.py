@@ -1,12 +1,12 @@
 """Compare two commits on this machine: ``python tools/compare.py COMMIT [COMMIT]``.
 
-For code that is moved or rewritten and must do what it did. Every recipe trains two steps and every
-shipped agent walks 20 episodes under the whole suite, by the commands that a user types, in a
-checkout of each commit; weights and rows must be the same, bit for bit. Trainings are in fp32, as
-older commits choose the precision by a timing. Bits differ between processors, so figures stay in
-``runs/compare`` only, for the next comparison on this machine.
+For code that is moved or rewritten and must not change its results. Every recipe trains two steps
+and every shipped agent runs 20 episodes under the whole suite, with the commands of a user, in a
+checkout of each commit. Weights and rows must be equal bit for bit. Trainings use fp32, because
+older commits choose the precision by a timing. Bits differ between processors, so the digests are
+stored in ``runs/compare`` only, for the next comparison on this machine.
 
-The second commit is by default the working tree as it is. Exits with status 1 if anything differs.
+The second commit defaults to the working tree. Exits with status 1 if anything differs.
 """
 
 from __future__ import annotations
@@ -29,15 +29,15 @@ from safetensors.numpy import load_file
 from mitigate.core.files import write_text
 
 ROOT = Path(__file__).resolve().parent.parent
-KEPT = ROOT / "runs" / "compare"
-AGENTS = {  # folders of weights: what their kind is called
+STORED = ROOT / "runs" / "compare"
+AGENTS = {  # pattern of folders with weights: kind of agent
     "checkpoints/base": "topological",
     "checkpoints/teacher": "topological",
     "checkpoints/hardened/*": "topological",
     **{f"checkpoints/{kind}/*": kind for kind in ("recurrent", "recurrent_rgb", "frontier")},
     "checkpoints/topological_imagenet/*": "topological_imagenet",
 }
-UNSTABLE = ("agent", "weights", "name", "rule")  # what a row says of itself, not what was measured
+UNSTABLE = ("agent", "weights", "name", "rule")  # labels of a row, not measured values
 EXTRA = {"safeguard_lora": ("stages.lora.recipe.pairs=2", "stages.lora.recipe.micro_batch=2")}
 
 
@@ -46,56 +46,59 @@ def main() -> None:
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     parser.add_argument("commits", nargs="+", metavar="COMMIT", help="one or two commits")
-    parser.add_argument("--only", nargs="*", help="names of recipes and agents (by default all)")
+    parser.add_argument("--only", nargs="*", help="names of recipes and agents (default all)")
     parser.add_argument("--episodes", type=int, default=20)
     args = parser.parse_args()
     if len(args.commits) > 2:
-        parser.error("name one commit, to compare with the working tree, or two")
-    found = [figures(commit, args.only, args.episodes) for commit in (*args.commits, None)[:2]]
-    names = list(dict.fromkeys(name for part in found for name in part))
+        parser.error(
+            f"COMMIT must be one commit, to compare with the working tree, or two, got "
+            f"{len(args.commits)}"
+        )
+    both = [measure(commit, args.only, args.episodes) for commit in (*args.commits, None)[:2]]
+    names = list(dict.fromkeys(name for digests in both for name in digests))
     unknown = sorted({*(args.only or ())} - {name.rpartition("/")[2] for name in names})
     if unknown or not names:
         parser.error(f"there is nothing to compare: no recipe or agent {', '.join(unknown)}")
-    differing = [name for name in names if len({part.get(name) for part in found}) > 1]
+    differing = [name for name in names if len({digests.get(name) for digests in both}) > 1]
     for name in names:
-        first, second = (part.get(name, "not there") for part in found)
+        first, second = (digests.get(name, "missing") for digests in both)
         equal = "equal" if name not in differing else f"DIFFERS ({first} | {second})"
         print(f"{name:45s} {equal}")
     print(f"{len(names) - len(differing)} of {len(names)} equal")
     sys.exit(1 if differing else 0)
 
 
-def figures(commit: str | None, only: list[str] | None, episodes: int) -> dict[str, str]:
-    """Digests by name at a commit (None: the working tree); those of a commit are kept."""
-    kept: dict[str, str] = {}
+def measure(commit: str | None, only: list[str] | None, episodes: int) -> dict[str, str]:
+    """Return digests by name at a commit, or of the working tree; those of a commit are stored."""
+    digests: dict[str, str] = {}
     sha = commit and run(["git", "rev-parse", "--short=12", f"{commit}^{{commit}}"], ROOT).strip()
-    note = KEPT / f"{sha}-{episodes}.json"
-    if sha and note.is_file():
-        kept = json.loads(note.read_text(encoding="utf-8"))
+    file = STORED / f"{sha}-{episodes}.json"
+    if sha and file.is_file():
+        digests = json.loads(file.read_text(encoding="utf-8"))
     with checkout(sha) as folder:
-        for name, measure in parts(folder, episodes):
-            if name in kept or (only and name.rpartition("/")[2] not in only):
+        for name, function in subjects(folder, episodes):
+            if name in digests or (only and name.rpartition("/")[2] not in only):
                 continue
             print(f"{sha or 'working tree'}: {name}", flush=True)
-            kept[name] = measure()
+            digests[name] = function()
             if sha:
-                write_text(note, json.dumps(kept, indent=2))
-    return {n: v for n, v in kept.items() if not only or n.rpartition("/")[2] in only}
+                write_text(file, json.dumps(digests, indent=2))
+    return {n: v for n, v in digests.items() if not only or n.rpartition("/")[2] in only}
 
 
-def parts(folder: Path, episodes: int) -> Iterator[tuple]:
-    """What is compared in a checkout: its name, and a function that measures it."""
+def subjects(folder: Path, episodes: int) -> Iterator[tuple]:
+    """Yield each recipe and agent of a checkout: its name, and a function that returns a digest."""
     for path in sorted(folder.glob("conf/recipe/*.yaml")):
-        yield f"recipe/{path.stem}", lambda name=path.stem: trained(folder, name)
-    found = [(p, kind) for pattern, kind in AGENTS.items() for p in folder.glob(pattern)]
-    for path, kind in sorted(found):
+        yield f"recipe/{path.stem}", lambda name=path.stem: train(folder, name)
+    agents = [(p, kind) for pattern, kind in AGENTS.items() for p in folder.glob(pattern)]
+    for path, kind in sorted(agents):
         name = str(path.relative_to(folder))
-        measure = partial(walked, folder, name, kind, episodes)
-        yield f"agent/{name.removeprefix('checkpoints/')}", measure
+        function = partial(evaluate, folder, name, kind, episodes)
+        yield f"agent/{name.removeprefix('checkpoints/')}", function
 
 
-def trained(folder: Path, recipe: str) -> str:
-    """Digest of the weights that two steps of every stage of a recipe give."""
+def train(folder: Path, recipe: str) -> str:
+    """Return a digest of the weights after two steps of every stage of a recipe."""
     with tempfile.TemporaryDirectory() as out:
         extra = EXTRA.get(recipe, ())
         options = [f"recipe={recipe}", "debug=smoke", "workers=0", "evaluation.enabled=false"]
@@ -105,20 +108,20 @@ def trained(folder: Path, recipe: str) -> str:
         return tensors_digest(file)
 
 
-def walked(folder: Path, checkpoint: str, kind: str, episodes: int) -> str:
-    """Digest of what an agent's rows measured."""
+def evaluate(folder: Path, checkpoint: str, kind: str, episodes: int) -> str:
+    """Return a digest of the measured values in an agent's rows."""
     with tempfile.TemporaryDirectory() as out:
-        given = [f"agent={kind}", f"checkpoint={checkpoint}", f"episodes={episodes}"]
-        python(folder, "evaluate", *given, f"out={out}")
+        options = [f"agent={kind}", f"checkpoint={checkpoint}", f"episodes={episodes}"]
+        python(folder, "evaluate", *options, f"out={out}")
         lines = Path(out, "rows.jsonl").read_text(encoding="utf-8").splitlines()
         rows = [{k: v for k, v in json.loads(x).items() if k not in UNSTABLE} for x in lines]
         return digest(json.dumps(rows, sort_keys=True).encode())
 
 
 def tensors_digest(file: Path) -> str:
-    """Digest of the tensors of a safetensors file, by name; what else it says does not count."""
-    held = sorted(load_file(file).items())
-    return digest(b"".join(name.encode() + value.tobytes() for name, value in held))
+    """Return a digest of the tensors of a safetensors file, by name, without its metadata."""
+    tensors = sorted(load_file(file).items())
+    return digest(b"".join(name.encode() + value.tobytes() for name, value in tensors))
 
 
 def digest(data: bytes) -> str:
@@ -126,7 +129,7 @@ def digest(data: bytes) -> str:
 
 
 def python(folder: Path, program: str, *options: str) -> None:
-    """Run ``python -m mitigate.<program>`` of a checkout; its output only if it fails."""
+    """Run ``python -m mitigate.<program>`` of a checkout; print its output only if it fails."""
     run([sys.executable, "-m", f"mitigate.{program}", *options], folder)
 
 
@@ -136,14 +139,14 @@ def run(command: list[str], folder: Path) -> str:
         command, cwd=folder, env={**os.environ, **threads}, capture_output=True, text=True
     )
     if done.returncode:
-        said = f"{done.stdout[-2000:]}{done.stderr[-4000:]}"
-        sys.exit(f"{' '.join(command)} failed in {folder}:\n{said}")
+        output = f"{done.stdout[-2000:]}{done.stderr[-4000:]}"
+        sys.exit(f"{' '.join(command)} failed in {folder}:\n{output}")
     return done.stdout
 
 
 @contextmanager
 def checkout(sha: str | None) -> Iterator[Path]:
-    """A folder with the files of a commit; of None the working tree."""
+    """Yield a folder with the files of a commit; for None the working tree."""
     if sha is None:
         yield ROOT
         return

@@ -1,6 +1,6 @@
-"""Print a hash of what each corruption makes of a few frames or a text, to compare environments:
+"""Print a hash of each corruption's output for a few frames or a text, to compare environments.
 
-    python tools/hashes.py > here.txt    # the same elsewhere, say with another numpy; then diff
+    python tools/hashes.py > here.txt    # then in another environment, and compare with diff
 
 Random compositions are left out: their bits depend on the versions of numpy and OpenCV.
 """
@@ -19,7 +19,7 @@ TEXT = "Walk past the red sofa, turn left and stop by the table."
 
 
 def frames() -> dict[str, np.ndarray]:
-    """Three random views of 48 x 64 pixels: uint8 RGB, and float32 metres with 5 % of holes."""
+    """Return three random views of 48 x 64 pixels: uint8 RGB, and float32 metres with 5 % holes."""
     rng = np.random.Generator(np.random.PCG64(0))
     rgb = rng.integers(0, 256, (3, 48, 64, 3), dtype=np.uint8)
     depth = rng.uniform(0.3, 9, (3, 48, 64, 1)).astype(np.float32)
@@ -28,16 +28,17 @@ def frames() -> dict[str, np.ndarray]:
 
 
 def main() -> None:
-    """Print a line for each corruption and severity."""
-    seen, sensors = frames(), ("rgb", "depth")
+    """Print a line per corruption and severity."""
+    clean = frames()
+    sensors = ("rgb", "depth")
     for name in names(*sensors) + unseen_names(*sensors):
         for severity in (0.3, 0.6, 1.0):
-            made = corrupt(seen[modality(name)], name, severity, key=KEY)
-            print(name, severity, hashlib.sha256(made.tobytes()).hexdigest()[:12])
+            frame = corrupt(clean[modality(name)], name, severity, key=KEY)
+            print(name, severity, hashlib.sha256(frame.tobytes()).hexdigest()[:12])
     for name in INSTRUCTION:
         for severity in (0.5, 1.0) if name != "white_box" else ():
-            said = corrupt_instruction(TEXT, name, severity, KEY)
-            print(name, severity, hashlib.sha256(said.encode()).hexdigest()[:12])
+            text = corrupt_instruction(TEXT, name, severity, KEY)
+            print(name, severity, hashlib.sha256(text.encode()).hexdigest()[:12])
 
 
 if __name__ == "__main__":

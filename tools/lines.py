@@ -62,15 +62,15 @@ def files(path: Path) -> list[Path]:
 
 def totals(paths: list[Path]) -> dict[str, tuple[int, int, int]]:
     """Return files, lines of code and lines with getattr or hasattr, by subpackage."""
-    found: dict[str, list[int]] = defaultdict(lambda: [0, 0, 0])
+    sums: dict[str, list[int]] = defaultdict(lambda: [0, 0, 0])
     for path in paths:
         for file in files(path):
             inside = file.relative_to(path).parts if path.is_dir() else ()
             name = "/".join([path.name, *inside[:1]]) if len(inside) > 1 else path.name
             code, optional = count(file.read_text(encoding="utf-8"))
             for index, value in enumerate((1, code, optional)):
-                found[name][index] += value
-    return {name: (values[0], values[1], values[2]) for name, values in sorted(found.items())}
+                sums[name][index] += value
+    return {name: (values[0], values[1], values[2]) for name, values in sorted(sums.items())}
 
 
 def main(arguments: list[str] | None = None) -> None:
@@ -87,7 +87,7 @@ def main(arguments: list[str] | None = None) -> None:
     for name, values in [*table.items(), ("total", total)]:
         print(f"{name:32} {values[0]:6} {values[1]:7} {values[2]:8}")
     if options.most is not None and total[1] > options.most:
-        sys.exit(f"error: {total[1]} lines of code, more than --most {options.most}.")
+        sys.exit(f"error: lines of code must be <= {options.most} (--most), got {total[1]}.")
 
 
 if __name__ == "__main__":

@@ -1,7 +1,7 @@
 """Break central functions on purpose, one line at a time, and require that a test fails.
 
     python -m tools.mutation            every mutation (minutes)
-    python -m tools.mutation kl spl     these alone
+    python -m tools.mutation kl spl     these mutations only
 
 Each mutation is applied to a temporary copy of the checkout, in which its test file runs. If no
 test catches it, or if its line is no longer in the source, the command ends with status 1.
@@ -26,7 +26,7 @@ TESTS_FAILED = 1  # exit status of pytest; others mean that no test ran
 
 
 class Mutation(NamedTuple):
-    """A wrong line, and the test file that must notice it."""
+    """A wrong line, and the test file that must fail with it."""
 
     source: str
     test: str
@@ -34,7 +34,7 @@ class Mutation(NamedTuple):
     new: str
 
 
-# name, source, test file; then the part of a line that is replaced, and by what
+# name, source, test file; then the part of a line to replace, and its replacement
 TABLE = """
 seeding mitigate/core/seeding.py tests/core/test_seeding.py
 - f"{type(part).__name__}:{part}" for part in key
@@ -78,7 +78,7 @@ MUTATIONS = {name: Mutation(*fields) for name, *fields in ENTRY.findall(TABLE)}
 
 
 def outcome(mutation: Mutation) -> str:
-    """Return "caught", or what is wrong instead."""
+    """Return "caught by ..." with the failing test, or the problem."""
     with tempfile.TemporaryDirectory(prefix="mutation-") as folder:
         copy = Path(folder)
         for name in COPIED:
@@ -109,9 +109,9 @@ def main() -> None:
     """Run the mutations that the command line names, or all."""
     results = {}
     for name in sys.argv[1:] or MUTATIONS:
-        begun = time.monotonic()
+        start = time.monotonic()
         results[name] = outcome(MUTATIONS[name])
-        print(f"{name}: {results[name]} ({time.monotonic() - begun:.0f} s)", flush=True)
+        print(f"{name}: {results[name]} ({time.monotonic() - start:.0f} s)", flush=True)
     missed = [name for name, text in results.items() if not text.startswith("caught")]
     print(f"{len(results) - len(missed)} of {len(results)} mutations caught.")
     sys.exit(bool(missed))

@@ -1,10 +1,10 @@
-"""What an agent still sees under each corruption: a look at its encoders in half a minute.
+"""Measure what an agent's encoders recognise under each corruption, in half a minute.
 
     python tools/perception.py checkpoints/base runs/mine/agent
 
-Random poses of a validation split, each under every corruption; RGB is scored by the F1 of the
-things that each view shows (labels of the id pass), depth by the overlap of the predicted and the
-true free space. Closed-loop success is what counts; this says where it is lost.
+Uses random poses of a validation split under every corruption. The score of RGB is the F1 of the
+objects in each view (labels of the id pass). The score of depth is the overlap of predicted and
+true free space. Closed-loop success is the final measure; these scores show where it is lost.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ from mitigate.worlds.apartments.renderer import Renderer
 from mitigate.worlds.apartments.simulator import apartment_of
 from mitigate.worlds.apartments.tasks import load_episodes
 
-SIZE = 64  # pixels, as the reference agent sees
+SIZE = 64  # pixels: the input of the reference agent
 SUITES = {"full": NAMES, **{half: unseen_names("rgb", "depth", half=half) for half in HALVES}}
 
 
@@ -47,7 +47,10 @@ class Poses:
 
     def __init__(self, split: str, count: int, seed: int) -> None:
         scenes = sorted({episode.scene_id for episode in load_episodes(split)})
-        self.seed, self.observations, self.things, self.free = seed, [], [], []
+        self.seed = seed
+        self.observations: list[dict[str, np.ndarray]] = []
+        self.things: list[np.ndarray] = []
+        self.free: list[np.ndarray] = []
         renderer = Renderer(SIZE)
         for index in range(count):
             rng = generator(seed, "poses", index)
@@ -65,18 +68,25 @@ class Poses:
     def counts(
         self, agent: Any, corruption: Corruption, restorer: Guard | None = None
     ) -> tuple[np.ndarray, np.ndarray]:
-        """For things and for free space: float64 [2, poses], (right ones, what they are a share
-        of), so that the ratio of sums is the micro F1, or the intersection over union."""
+        """Return numerators and denominators per pose, for objects and for free space.
+
+        Returns:
+            Two arrays, float64 [2, poses]. The ratio of their sums is the micro F1 of objects, and
+            the intersection over union of free space.
+        """
         things, free = [], []
         for index, clean in enumerate(self.observations):
-            seen = corrupt_observation(clean, corruption, Key(self.seed, f"pose {index}", 0))
-            seen = seen if restorer is None else restorer.observe(seen)
-            frames = (torch.from_numpy(seen[name])[None] for name in (RGB, DEPTH))
+            observation = corrupt_observation(clean, corruption, Key(self.seed, f"pose {index}", 0))
+            if restorer is not None:
+                observation = restorer.observe(observation)
+            frames = (torch.from_numpy(observation[name])[None] for name in (RGB, DEPTH))
             _, concepts, waypoints = agent.perceive(*frames)
-            said, true = concepts[0, :, THINGS].cpu().numpy() > 0, self.things[index]
-            things.append((2 * (said & true).sum(), said.sum() + true.sum()))
-            open_, real = waypoints[0].cpu().numpy() > 0, self.free[index]
-            free.append(((open_ & real).sum(), (open_ | real).sum()))
+            predicted = concepts[0, :, THINGS].cpu().numpy() > 0
+            true = self.things[index]
+            things.append((2 * (predicted & true).sum(), predicted.sum() + true.sum()))
+            predicted_free = waypoints[0].cpu().numpy() > 0
+            true_free = self.free[index]
+            free.append(((predicted_free & true_free).sum(), (predicted_free | true_free).sum()))
         return np.array(things, float).T, np.array(free, float).T
 
 
@@ -87,42 +97,46 @@ def measure(
     severity: float,
     restorer: Guard | None = None,
 ) -> dict[str, tuple[float, float, float]]:
-    """Score with its 95 % interval over poses, by condition: "clean" and every RGB corruption of
-    ``names`` (F1), "clean depth" and every depth corruption (overlap)."""
+    """Return by condition the score with its 95 % interval over poses.
+
+    "clean" and RGB corruptions have the F1 of objects, "clean depth" and depth corruptions the
+    overlap of free space.
+    """
     things, free = poses.counts(agent, CLEAN, restorer)
-    found = {"clean": _ratio(things), "clean depth": _ratio(free)}
+    scores = {"clean": _ratio(things), "clean depth": _ratio(free)}
     for name in names:
         things, free = poses.counts(agent, Corruption(name, severity), restorer)
-        found[name] = _ratio(things if modality(name) == "rgb" else free)
-    return found
+        scores[name] = _ratio(things if modality(name) == "rgb" else free)
+    return scores
 
 
 def _ratio(counts: np.ndarray) -> tuple[float, float, float]:
+    """Return the ratio of the sums with its 95 % interval."""
     samples = resampled_means(counts, resamples=2000)
     low, high = np.quantile(samples[:, 0] / samples[:, 1], (0.025, 0.975))
     return float(counts[0].sum() / counts[1].sum()), float(low), float(high)
 
 
 def table(scores: dict[str, dict[str, tuple[float, float, float]]]) -> str:
-    """Markdown: a row a condition, a column an agent, in percent."""
+    """Return a Markdown table in percent, with a row per condition and a column per agent."""
     conditions = tuple(next(iter(scores.values())))
-    seen = [n for n in conditions if not n.startswith("clean")]
-    rgb, depth = ([n for n in seen if modality(n) == sensor] for sensor in (RGB, DEPTH))
+    corruptions = [n for n in conditions if not n.startswith("clean")]
+    rgb, depth = ([n for n in corruptions if modality(n) == sensor] for sensor in (RGB, DEPTH))
     lines = []
     for name in ("clean", *rgb, "clean depth", *depth):
-        cells = [found[name] for found in scores.values()]
+        cells = [by_condition[name] for by_condition in scores.values()]
         title = {"clean": "Clean RGB", "clean depth": "Clean depth"}.get(name) or label(name)
         lines.append(
             [title, *(f"{100 * v:.1f} [{100 * a:.1f}, {100 * b:.1f}]" for v, a, b in cells)]
         )
-    for place, sensor, names in ((1 + len(rgb), "RGB", rgb), (len(lines) + 1, "depth", depth)):
-        means = [np.mean([found[n][0] for n in names]) for found in scores.values()]
-        lines.insert(place, [f"**Mean of {sensor}**", *(f"{100 * m:.1f}" for m in means)])
+    for row, sensor, names in ((1 + len(rgb), "RGB", rgb), (len(lines) + 1, "depth", depth)):
+        means = [np.mean([by_condition[n][0] for n in names]) for by_condition in scores.values()]
+        lines.insert(row, [f"**Mean of {sensor}**", *(f"{100 * m:.1f}" for m in means)])
     return markdown_table(["", *scores], lines)
 
 
 def _column(weights: str, taken: Collection[str]) -> str:
-    """The name of ``weights``, or their path where another has that name."""
+    """Return the name of ``weights``, or their path if that name is taken."""
     name = name_of(weights)
     return weights if name in taken else name
 
@@ -134,28 +148,35 @@ def _agent_node() -> Any:
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
-    """Entry point."""
+    """Run from the command line."""
     parser = argparse.ArgumentParser(
-        description="What agents still see under each corruption, in percent: F1 of the things in "
-        "each view (RGB), overlap of the free space (depth), with 95 % intervals over poses."
+        description="Print what agents recognise under each corruption, in percent: F1 of the "
+        "objects in each view (RGB), overlap of the free space (depth), with 95 % intervals over "
+        "poses."
     )
     parser.add_argument("agents", nargs="+", help="weights: folders or .safetensors files")
     parser.add_argument("--split", default="val_seen", choices=("val_seen", "val_unseen"))
     parser.add_argument(
-        "--suite", default="full", choices=list(SUITES), help="the twelve, or a half of the unseen"
+        "--suite",
+        default="full",
+        choices=list(SUITES),
+        help="the standard suite, or a half of the unseen corruptions",
     )
-    parser.add_argument("--poses", type=int, default=60, help="random ones (default 60)")
+    parser.add_argument("--poses", type=int, default=60, help="number of poses (default 60)")
     parser.add_argument("--severity", type=float, default=0.6)
     parser.add_argument("--seed", type=int, default=0)
-    parser.add_argument("--restore", help="a restorer's folder: each agent behind it as well")
+    parser.add_argument(
+        "--restore", help="folder of a restorer: also measure each agent with restored frames"
+    )
     options = parser.parse_args(arguments)
     if options.poses < 1:
-        raise ValueError(f"--poses {options.poses}: at least one is needed.")
+        raise ValueError(f"--poses must be >= 1, got {options.poses}.")
     agents: dict[str, Any] = {}
-    for weights in options.agents:  # all first: a wrong path must not cost the others' minutes
+    for weights in options.agents:  # all before the first measurement, to find wrong paths early
         agents[_column(weights, agents)] = load(_agent_node(), weights)
     poses = Poses(options.split, options.poses, options.seed)
-    scores, names = {}, SUITES[options.suite]
+    scores = {}
+    names = SUITES[options.suite]
     restorer = open_restorer(options.restore)
     for name, agent in tqdm(agents.items(), desc="agents", disable=None):
         scores[name] = measure(agent, poses, names, options.severity)

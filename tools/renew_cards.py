@@ -1,8 +1,8 @@
-"""Write the README of hardened folders anew from their cards: python tools/renew_cards.py DIR...
+"""Rewrite the README of hardened folders from their cards: python tools/renew_cards.py DIR...
 
-For folders that an older version exported. Each is checked first; the new one is made aside and
-renamed into place, with a manifest. Nothing else in it changes, but that
-``--rows FILE...`` adds to a card which agent those rows are of, where they are of its weights.
+For folders that an older version exported. Each folder is checked first. A copy with the new README
+and a manifest replaces it. Other files do not change, except that ``--rows FILE...`` adds to a card
+the agent of these rows, if they belong to its weights.
 """
 
 from __future__ import annotations
@@ -24,14 +24,18 @@ from mitigate.shipping.card import readme, rows_agent
 
 
 def renew(folder: Path, rows: Sequence[Row] = ()) -> None:
-    """Rewrite ``folder``. Raises FileNotFoundError or ValueError if it is not whole; it is then as
-    it was."""
+    """Rewrite ``folder``.
+
+    Raises:
+        FileNotFoundError: A file is missing; the folder is not changed.
+        ValueError: A file is damaged; the folder is not changed.
+    """
     card = loading.check_hardened(folder)
-    named = rows_agent(rows, {card["agent"], card["run_agent"]})
-    if named:
-        card["rows_agent"] = named
-    with tempfile.TemporaryDirectory(prefix=f".{folder.name}.", dir=folder.parent) as aside:
-        draft = Path(shutil.copytree(folder, Path(aside) / folder.name))
+    agent = rows_agent(rows, {card["agent"], card["run_agent"]})
+    if agent:
+        card["rows_agent"] = agent
+    with tempfile.TemporaryDirectory(prefix=f".{folder.name}.", dir=folder.parent) as temporary:
+        draft = Path(shutil.copytree(folder, Path(temporary) / folder.name))
         page = draft / loading.README
         card = {**older_folders.without_sums(card), "format": loading.FORMAT}
         page.write_text(readme(card), encoding="utf-8")
@@ -39,20 +43,20 @@ def renew(folder: Path, rows: Sequence[Row] = ()) -> None:
         (draft / loading.CARD).write_text(text, encoding="utf-8")
         folders.seal(draft, "hardened")
         loading.check_hardened(draft)
-        put_folder(draft, folder, Path(aside) / "old")
+        put_folder(draft, folder, Path(temporary) / "old")
 
 
 def main() -> None:
-    """Read the command line."""
+    """Run from the command line."""
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     parser.add_argument("folders", nargs="+", type=Path, help="hardened folders")
     parser.add_argument("--rows", nargs="+", default=[], help="row files of their evaluations")
-    given = parser.parse_intermixed_args()
+    arguments = parser.parse_intermixed_args()
     try:
-        rows = gather(given.rows) if given.rows else []
-        for folder in given.folders:
+        rows = gather(arguments.rows) if arguments.rows else []
+        for folder in arguments.folders:
             renew(folder.resolve(), rows)
             print(f"wrote {folder / loading.README}")
     except (OSError, ValueError) as error:

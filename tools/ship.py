@@ -3,8 +3,9 @@
     python tools/ship.py runs/da_per_episode-s0.6-seed0-agent-recurrent/agent \
         checkpoints/recurrent/teacher recurrent
 
-FOLDER gets ``model.safetensors`` with its sha256 and ``config.yaml``. Prints the agent's sha before
-it was rounded, which rows of the run carry, and after, which rows of the shipped weights carry.
+FOLDER gets ``model.safetensors`` with its sha256 and ``config.yaml``. Prints the agent's
+fingerprints: before rounding, as in the rows of the run, and after it, as in rows of the shipped
+weights.
 """
 
 from __future__ import annotations
@@ -25,9 +26,12 @@ def main() -> None:
     """Run from the command line."""
     if len(sys.argv) != 4:
         sys.exit(__doc__)
-    source, folder, kind = sys.argv[1], Path(sys.argv[2]), sys.argv[3]
+    source = sys.argv[1]
+    folder = Path(sys.argv[2])
+    kind = sys.argv[3]
     cfg = conf.load_config("train", [f"agent={kind}"])
-    node, sensors = cfg.agent, build.maker(cfg.env.world)().sensors
+    node = cfg.agent
+    sensors = build.maker(cfg.env.world)().sensors
     agent = load(node, source)
     file = checkpoint.save_weights(agent, folder, half=True)
     with atomic_text(folder / "config.yaml") as text:
@@ -37,8 +41,8 @@ def main() -> None:
             path.chmod(0o644)
     shipped = load(node, str(folder))
     print(f"wrote {file}, {file.stat().st_size / 1e6:.1f} MB")
-    before, after = (fingerprint(one, sensors) for one in (agent, shipped))
-    print(f"sha {before} before rounding, {after} after")
+    before, after = (fingerprint(model, sensors) for model in (agent, shipped))
+    print(f"fingerprint {before} before rounding, {after} after")
 
 
 if __name__ == "__main__":

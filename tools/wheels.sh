@@ -1,14 +1,14 @@
 #!/usr/bin/env bash
 # Build the wheels of mitigate and mitigate-weights, install them with their dependencies in an empty
-# environment, and use them away from the checkout:
+# environment, and use them outside the checkout:
 #   tools/wheels.sh [FOLDER]
-# PYTHON names the interpreter (default .venv/bin/python); none of its packages is used. The
-# dependencies come from the package index or pip's cache. FOLDER gets the wheels, the environment
-# and the runs (default: a temporary folder).
+# PYTHON is the interpreter (default .venv/bin/python); its packages are not used. The dependencies
+# come from the package index or pip's cache. FOLDER gets the wheels, the environment and the runs
+# (default: a temporary folder).
 set -euo pipefail
 root=$(cd "$(dirname "$0")/.." && pwd)
 python=${PYTHON:-$root/.venv/bin/python}
-most=3000000 # bytes of the code's wheel
+max_bytes=3000000 # of the code's wheel
 work=${1:-$(mktemp -d)}
 mkdir -p "$work/wheels" "$work/empty"
 
@@ -20,7 +20,7 @@ for source in "$root" "$root/checkpoints"; do
 done
 ls -l "$work/wheels"
 code=("$work"/wheels/mitigate-[0-9]*.whl)
-[ "$(stat -c %s "${code[0]}")" -le "$most" ] || { echo "${code[0]} has over $most bytes." >&2; exit 1; }
+[ "$(stat -c %s "${code[0]}")" -le "$max_bytes" ] || { echo "${code[0]} must have <= $max_bytes bytes." >&2; exit 1; }
 
 "$python" -m venv "$work/venv" # without the packages of $python
 pip=("$work/venv/bin/python" -m pip install --quiet --disable-pip-version-check)

@@ -1,7 +1,7 @@
-"""What the cameras of an agent are, where their frames lie in shared memory, and their corruption.
+"""The cameras of an agent, the layout of their frames in shared memory, and their corruption.
 
-Cameras of one call that are alike (size, field of view, place, level) and 30 degrees apart are one
-panorama; every other camera stands alone and has draws of its own.
+Cameras of one call with equal size, field of view and position that are level and multiples of 30
+degrees apart form a panorama. Every other camera is a separate group, with separate draws.
 """
 
 from __future__ import annotations
@@ -19,12 +19,12 @@ from mitigate.corruptions import Corruption, DepthSensor, Key, corrupt_observati
 from mitigate.corruptions.normalised import corrupt_normalised
 from mitigate.guards.guard import Guards
 
-LARGEST = 1 << 30  # bytes of all frames of a call (ours): 24 cameras of 1080 x 1920 have 5e8
-MOST = 256  # cameras of a call (ours)
-FARTHEST = 100.0  # metres: a median depth beyond it is not metres, unless the range says so (ours)
+MAX_BYTES = 1 << 30  # of all frames of a call (heuristic): 24 cameras of 1080 x 1920 have 5e8
+MAX_CAMERAS = 256  # of a call (heuristic)
+MAX_MEDIAN = 100.0  # metres: a larger median depth needs a declared range (heuristic)
 CHANNELS = {RGB: (3,), DEPTH: (1,)}
-_TURNED = re.compile(r"(?:rgb|depth)_(\d+(?:\.\d+)?)")  # name of a camera that says its yaw
-_LEVEL = 1e-3  # radians: a pitch or roll below it is none
+_NAME_WITH_YAW = re.compile(r"(?:rgb|depth)_(\d+(?:\.\d+)?)")
+_LEVEL = 1e-3  # radians: a camera with smaller pitch and roll is level
 _DTYPES = {RGB: ("uint8",), DEPTH: ("float32", "float64", "float16")}
 
 
@@ -32,8 +32,17 @@ _DTYPES = {RGB: ("uint8",), DEPTH: ("float32", "float64", "float16")}
 class Camera:
     """One camera as the agent's process describes it.
 
-    kind: "rgb" or "depth". yaw: in degrees to the left of the agent; pitch and roll count as
-    ``level`` False. sensor: range of depth; normalised: depth is in [0, 1] over it.
+    Attributes:
+        name: Its name in the observations.
+        kind: "rgb" or "depth".
+        shape: Of a frame, [H, W, C] or [H, W].
+        dtype: Of a frame.
+        hfov: Horizontal field of view in degrees; None if unknown.
+        place: Position relative to the agent in metres; None if unknown.
+        yaw: Degrees to the left of the agent.
+        level: Whether pitch and roll are 0.
+        sensor: Range of depth in metres.
+        normalised: Whether depth is in [0, 1] over that range.
     """
 
     name: str
@@ -52,128 +61,149 @@ class Camera:
         return math.prod(self.shape) * np.dtype(self.dtype).itemsize
 
     def read(self, memory: Any, offsets: Mapping[str, int]) -> np.ndarray:
-        """A copy of its frame in ``memory``."""
+        """Return a copy of its frame in ``memory``."""
         frame = np.frombuffer(memory, self.dtype, math.prod(self.shape), offsets[self.name])
         return frame.reshape(self.shape).copy()
 
     def metres(self, depth: np.ndarray) -> np.ndarray:
-        """Its depth in metres."""
+        """Return its depth in metres."""
         return self.sensor.to_metres(depth) if self.normalised else depth
 
-    def check_depth(self, middle: float) -> None:
-        """Raise ValueError if depth of this median cannot be what the camera is said to give."""
-        at = f"{middle:.4g} (the median of its first frame)"
-        if self.normalised and middle > 1.01:
+    def check_depth(self, median: float) -> None:
+        """Raise ValueError if the median of a depth frame contradicts the description."""
+        if self.normalised and median > 1.01:
             raise ValueError(
-                f"The camera {self.name!r} reads {at}, but it is said to be normalised, 0 to 1: "
-                "leave normalize_depth out where it gives metres."
+                f"Depth of the camera {self.name!r} must be from 0 to 1, because it is described "
+                f"as normalised, got {median:.4g} (median of the first frame). Leave "
+                "normalize_depth out if it returns metres."
             )
-        if not self.normalised and middle > max(FARTHEST, self.sensor.z_max):
+        if not self.normalised and median > max(MAX_MEDIAN, self.sensor.z_max):
             raise ValueError(
-                f"The camera {self.name!r} reads {at}, which are no metres of a range up to "
-                f"{self.sensor.z_max:g}. Divide millimetres by 1000, or describe the range: "
+                f"Depth of the camera {self.name!r} must be metres in a range up to "
+                f"{self.sensor.z_max:g}, got {median:.4g} (median of the first frame). Divide "
+                "millimetres by 1000, or describe the range: "
                 f"cameras={{{self.name!r}: {{'type': 'depth', 'min_depth': 0, 'max_depth': 500}}}}."
             )
 
-    def alike(self) -> tuple:
-        """What cameras of one panorama have in common."""
+    def panorama_key(self) -> tuple:
+        """Return the properties that cameras of one panorama share."""
         depth = (self.sensor, self.normalised)
         return (self.kind, self.shape, self.dtype, self.hfov, self.place, *depth)
 
 
-def read_camera(told: Mapping[str, Any], sensor: DepthSensor) -> Camera:
-    """Return the camera that a message describes; ``sensor``: of depth whose range is not told.
+def read_camera(description: Mapping[str, Any], sensor: DepthSensor) -> Camera:
+    """Return the camera that a message describes.
 
-    Raises ValueError for what cannot be corrupted.
+    Args:
+        description: From the agent's process.
+        sensor: Range of depth, if the description has none.
+
+    Raises:
+        ValueError: Frames of the camera cannot be corrupted.
     """
-    name, kind = told.get("name"), told.get("type")
+    name, kind = description.get("name"), description.get("type")
     if not isinstance(name, str):
-        raise ValueError(f"A camera is called {name!r}: its name must be text.")
+        raise ValueError(f"The name of a camera must be text, got {name!r}.")
     if kind not in CHANNELS:
-        raise ValueError(f"The camera {name!r} is of the kind {kind!r}, not rgb or depth.")
-    shape = tuple(told.get("shape") or ())
+        raise ValueError(f"The kind of the camera {name!r} must be rgb or depth, got {kind!r}.")
+    shape = tuple(description.get("shape") or ())
     fits = len(shape) == 3 and shape[2] in CHANNELS[kind] or len(shape) == 2 and kind == DEPTH
     if not fits or not all(isinstance(n, int) and 0 < n < 1 << 16 for n in shape):
         raise ValueError(
-            f"The camera {name!r} gives {kind} of the shape {list(shape)}; it must be "
-            f"{'[H, W, 3]' if kind == RGB else '[H, W, 1] or [H, W]'}."
+            f"The shape of {kind} of the camera {name!r} must be "
+            f"{'[H, W, 3]' if kind == RGB else '[H, W, 1] or [H, W]'}, got {list(shape)}."
         )
-    if told.get("dtype") not in _DTYPES[kind]:
+    if description.get("dtype") not in _DTYPES[kind]:
         raise ValueError(
-            f"The camera {name!r} gives {kind} as {told.get('dtype')}; it must be "
-            f"{' or '.join(_DTYPES[kind])}"
-            f"{', in metres: divide millimetres by 1000' if kind == DEPTH else ''}."
+            f"The dtype of {kind} of the camera {name!r} must be {' or '.join(_DTYPES[kind])}, got "
+            f"{description.get('dtype')}."
+            f"{' Divide millimetres by 1000.' if kind == DEPTH else ''}"
         )
-    pitch, yaw, roll = _turned(told.get("orientation"), name)
-    low, high = (_number(told.get(end)) for end in ("min_depth", "max_depth"))
+    pitch, yaw, roll = _read_orientation(description.get("orientation"), name)
+    low, high = (_optional_float(description.get(end)) for end in ("min_depth", "max_depth"))
     if low is not None or high is not None:
-        low, high = sensor.z_min if low is None else low, sensor.z_max if high is None else high
+        low = sensor.z_min if low is None else low
+        high = sensor.z_max if high is None else high
         sensor = DepthSensor(low, high, sensor.missing)
+    position = description.get("position")
     return Camera(
         name,
         kind,
         shape,
-        told["dtype"],
-        _number(told.get("hfov")),
-        None if told.get("position") is None else tuple(map(float, told["position"])),
+        description["dtype"],
+        _optional_float(description.get("hfov")),
+        None if position is None else tuple(map(float, position)),
         yaw,
         abs(pitch) < _LEVEL and abs(roll) < _LEVEL,
         sensor,
-        kind == DEPTH and bool(told.get("normalize_depth")),
+        kind == DEPTH and bool(description.get("normalize_depth")),
     )
 
 
-def _number(value: Any) -> float | None:
+def _optional_float(value: Any) -> float | None:
     return None if value is None else float(value)
 
 
-def _turned(orientation: Sequence[float] | None, name: str) -> tuple[float, float, float]:
-    """Pitch and roll in radians, yaw in degrees to the left; by the name where it is not told."""
+def _read_orientation(orientation: Sequence[float] | None, name: str) -> tuple[float, float, float]:
+    """Return pitch and roll in radians and yaw in degrees to the left.
+
+    Without an orientation the yaw is read from the camera's name.
+    """
     if orientation is not None and len(orientation) == 3:
         pitch, yaw, roll = map(float, orientation)
         return pitch, round(math.degrees(yaw), 3) % 360, roll
-    by_name = _TURNED.fullmatch(name)
-    return 0.0, float(by_name[1]) % 360 if by_name else 0.0, 0.0
+    match = _NAME_WITH_YAW.fullmatch(name)
+    return 0.0, float(match[1]) % 360 if match else 0.0, 0.0
 
 
 @dataclass(frozen=True)
 class Group:
-    """Cameras that are corrupted as one: ``views`` is the view of each, see
-    ``core/observation.py``; own: part of the keys, empty for the panorama that sees most."""
+    """Cameras that are corrupted together.
+
+    Attributes:
+        cameras: The cameras.
+        views: The view of each camera (``core/observation.py``).
+        suffix: Part of the keys; empty for the largest panorama.
+    """
 
     cameras: tuple[Camera, ...]
     views: tuple[int, ...]
-    own: str
+    suffix: str
 
     @property
     def shape(self) -> tuple[int, ...]:
-        """Of the array of all views; those without a camera are zero."""
+        """Shape of the array of all views; views without a camera are zero."""
         return (1 + max(self.views), *self.cameras[0].shape)
 
 
 class Rig:
     """All cameras of a call.
 
-    Args: told: as the agent's process describes them. missing: metres that a hole of missing data
-    reads. turn: where a growing yaw turns, "left" (Habitat) or "right". Raises ValueError for
-    cameras that cannot be corrupted, and for too many.
+    Args:
+        descriptions: From the agent's process.
+        missing: Value in metres of missing depth.
+        turn: Direction of a growing yaw, "left" (Habitat) or "right".
+
+    Raises:
+        ValueError: A camera cannot be corrupted, or there are too many.
     """
 
     def __init__(
-        self, told: Sequence[Mapping[str, Any]], missing: float = 0.0, turn: str = "left"
+        self, descriptions: Sequence[Mapping[str, Any]], missing: float = 0.0, turn: str = "left"
     ) -> None:
-        if len(told) > MOST:
-            raise ValueError(f"{len(told)} cameras are more than {MOST}.")
+        if len(descriptions) > MAX_CAMERAS:
+            raise ValueError(
+                f"A call must have at most {MAX_CAMERAS} cameras, got {len(descriptions)}."
+            )
         self.turn = turn
-        self.cameras = [read_camera(t, DepthSensor(missing=missing)) for t in told]
+        self.cameras = [read_camera(d, DepthSensor(missing=missing)) for d in descriptions]
         names = [camera.name for camera in self.cameras]
         if len(set(names)) < len(names):
-            raise ValueError(f"Two cameras have one name: {', '.join(names)}.")
-        self.groups = [g for kind in CHANNELS for g in _groups(self.cameras, kind, turn)]
+            raise ValueError(f"Names of cameras must be different, got {', '.join(names)}.")
+        self.groups = [g for kind in CHANNELS for g in _make_groups(self.cameras, kind, turn)]
 
-    def told(self) -> dict[str, dict[str, Any]]:
-        """Kind, field of view, yaw (degrees to the right) of each camera, by name, and whether it
-        looks level."""
+    def describe(self) -> dict[str, dict[str, Any]]:
+        """Return by camera its kind, field of view, yaw (degrees to the right) and level."""
         sign = 1 if self.turn == "right" else -1
         return {
             camera.name: {
@@ -186,21 +216,24 @@ class Rig:
         }
 
     def lay_out(self, kinds: Sequence[str]) -> tuple[dict[str, int], int]:
-        """Return where the frame of each camera of these kinds begins in memory, and the size of
-        all. Raises ValueError for more than ``LARGEST``."""
+        """Return the offset in memory of each camera of these kinds, and the size of all.
+
+        Raises:
+            ValueError: The size is above ``MAX_BYTES``.
+        """
         offsets: dict[str, int] = {}
-        at = 0
+        size = 0
         for group in self.groups:
             if group.cameras[0].kind in kinds:
                 step = group.cameras[0].bytes
                 offsets |= {
-                    camera.name: at + view * step
+                    camera.name: size + view * step
                     for camera, view in zip(group.cameras, group.views, strict=True)
                 }
-                at += -(-step * group.shape[0] // 64) * 64
-        if at > LARGEST:
-            raise ValueError(f"The frames of a call have {at} bytes, more than {LARGEST}.")
-        return offsets, at
+                size += -(-step * group.shape[0] // 64) * 64
+        if size > MAX_BYTES:
+            raise ValueError(f"The frames of a call must have <= {MAX_BYTES} bytes, got {size}.")
+        return offsets, size
 
     def corrupt(
         self,
@@ -210,43 +243,48 @@ class Rig:
         key: Key,
         heading: float | None,
     ) -> list[str]:
-        """Corrupt the frames in ``memory``, in place; return the names of the cameras concerned:
-        none if no camera is of a modality that it corrupts. Raises ValueError as ``corrupt`` does.
+        """Corrupt the frames in ``memory`` in place; return the names of the changed cameras.
+
+        Args:
+            memory: Shared memory.
+            offsets: Of the cameras in ``memory``.
+            corruption: Parts of other modalities are ignored.
+            key: Determines the draws.
+            heading: The agent's heading in radians; None if unknown.
         """
         changed: dict[str, None] = {}
         for part in (part for part in corruption.parts if part.modality in CHANNELS):
             for group in (g for g in self.groups if g.cameras[0].kind == part.modality):
                 views = _views(memory, offsets, group)
-                views[...] = corrupted(group, views, part, key, heading)
+                views[...] = corrupt_group(group, views, part, key, heading)
                 changed |= dict.fromkeys(camera.name for camera in group.cameras)
         return list(changed)
 
     def guard(self, memory: Any, offsets: Mapping[str, int], guards: Guards) -> list[str]:
-        """Let ``guards`` change the frames in ``memory``, in place; return the names of the cameras
-        concerned.
+        """Let ``guards`` change the frames in ``memory``; return the names of the changed cameras.
 
-        A panorama of 12 cameras is one frame; every other camera stands alone. One RGB and one
-        depth frame of the same place, direction and size are one observation.
+        A panorama of 12 cameras is one frame; every other camera is a separate frame. One RGB and
+        one depth frame of the same position, direction and size form one observation.
         """
-        shown = [
+        frames = [
             frame
             for group in self.groups
             if group.cameras[0].kind in guards.frames
-            for frame in _frames(group, _views(memory, offsets, group))
+            for frame in _make_frames(group, _views(memory, offsets, group))
         ]
         changed: list[str] = []
-        for frames in _paired(shown):
-            given = {frame.kind: frame.read() for frame in frames}
-            made = guards.observe(given)
-            for frame in (f for f in frames if made[f.kind] is not given[f.kind]):
-                frame.write(made[frame.kind])
+        for pair in _pair(frames):
+            before = {frame.kind: frame.read() for frame in pair}
+            after = guards.observe(before)
+            for frame in (f for f in pair if after[f.kind] is not before[f.kind]):
+                frame.write(after[frame.kind])
                 changed += [camera.name for camera in frame.cameras]
         return changed
 
 
 @dataclass(frozen=True)
 class Frame:
-    """What a guard gets as one frame: the views of a panorama or of one camera, in memory."""
+    """One frame for a guard: the views of a panorama, or of one camera, in memory."""
 
     cameras: tuple[Camera, ...]
     views: np.ndarray
@@ -256,7 +294,7 @@ class Frame:
         return self.cameras[0].kind
 
     def read(self) -> np.ndarray:
-        """Return it as an observation holds it: uint8 [..., 3], or float32 metres [..., 1]."""
+        """Return it as in an observation: uint8 [..., 3], or float32 metres [..., 1]."""
         first = self.cameras[0]
         if first.kind != DEPTH:
             return self.views
@@ -264,22 +302,22 @@ class Frame:
         frames = frames.astype(np.float32, copy=False)
         return first.sensor.to_metres(frames) if first.normalised else frames
 
-    def write(self, made: np.ndarray) -> None:
-        """Put what a guard made of :meth:`read` into memory."""
+    def write(self, frame: np.ndarray) -> None:
+        """Write a frame in the format of :meth:`read` to memory."""
         first = self.cameras[0]
         if first.kind == DEPTH and first.normalised:
-            made = first.sensor.from_metres(made)
-        self.views[...] = made.reshape(self.views.shape).astype(self.views.dtype, copy=False)
+            frame = first.sensor.from_metres(frame)
+        self.views[...] = frame.reshape(self.views.shape).astype(self.views.dtype, copy=False)
 
     def geometry(self) -> tuple:
-        """What an RGB and a depth frame of the same view have in common."""
+        """Return the properties that an RGB and a depth frame of one view share."""
         first = self.cameras[0]
-        where = sorted((camera.yaw, camera.place or ()) for camera in self.cameras)
-        return (*where, first.hfov, first.shape[:2])
+        poses = sorted((camera.yaw, camera.place or ()) for camera in self.cameras)
+        return (*poses, first.hfov, first.shape[:2])
 
 
-def _frames(group: Group, views: np.ndarray) -> list[Frame]:
-    """The panorama as one frame if it is whole, else each camera of a group."""
+def _make_frames(group: Group, views: np.ndarray) -> list[Frame]:
+    """Return a complete panorama as one frame, else each camera of the group."""
     cameras = group.cameras
     if len(cameras) == len(views) == VIEWS and cameras[0].hfov == HFOV_DEGREES:
         return [Frame(cameras, views)]
@@ -287,61 +325,66 @@ def _frames(group: Group, views: np.ndarray) -> list[Frame]:
     return [Frame((camera,), views[view]) for camera, view in pairs]
 
 
-def _paired(frames: Sequence[Frame]) -> list[list[Frame]]:
-    """Observations: an RGB and a depth frame together where both are level and there is one of each
-    with their geometry; every other frame alone."""
-    alike: dict[tuple, list[Frame]] = {}
+def _pair(frames: Sequence[Frame]) -> list[list[Frame]]:
+    """Group frames into observations.
+
+    An RGB and a depth frame form one observation if both are level and no other frame has their
+    geometry. Every other frame is a separate observation.
+    """
+    by_geometry: dict[tuple, list[Frame]] = {}
     for frame in frames:
-        alike.setdefault(frame.geometry(), []).append(frame)
-    found = []
-    for held in alike.values():
-        level = all(frame.cameras[0].level for frame in held)
-        one_of_each = len({frame.kind for frame in held}) == len(held)
-        found += [held] if level and one_of_each else [[frame] for frame in held]
-    return found
+        by_geometry.setdefault(frame.geometry(), []).append(frame)
+    observations = []
+    for same in by_geometry.values():
+        level = all(frame.cameras[0].level for frame in same)
+        one_of_each = len({frame.kind for frame in same}) == len(same)
+        observations += [same] if level and one_of_each else [[frame] for frame in same]
+    return observations
 
 
-def corrupted(
+def corrupt_group(
     group: Group, views: np.ndarray, corruption: Corruption, key: Key, heading: float | None
 ) -> np.ndarray:
-    """Return the views of a group as one corruption of theirs leaves them."""
+    """Return the corrupted views of a group; ``corruption`` must be of its modality."""
     first = group.cameras[0]
     frames: dict[str, Any] = {first.kind: views}
     if first.kind == DEPTH:
         frames = {DEPTH: views.astype(np.float32, copy=False)}
     if heading is not None:
         frames[POSE] = np.array([0.0, 0.0, heading])
-    if group.own:
-        key = Key(key.seed, f"{key.episode}|{group.own}", key.frame)
-    by = corrupt_normalised if first.normalised else corrupt_observation
-    return by(frames, corruption, key, first.sensor)[first.kind]
+    if group.suffix:
+        key = Key(key.seed, f"{key.episode}|{group.suffix}", key.frame)
+    function = corrupt_normalised if first.normalised else corrupt_observation
+    return function(frames, corruption, key, first.sensor)[first.kind]
 
 
 def _views(memory: Any, offsets: Mapping[str, int], group: Group) -> np.ndarray:
-    """[views, ...] in ``memory``: the frames of a group."""
+    """Return the frames of a group in ``memory``, [views, ...]."""
     first = group.cameras[0]
-    at = offsets[first.name] - group.views[0] * first.bytes
+    offset = offsets[first.name] - group.views[0] * first.bytes
     count = math.prod(group.shape)
-    return np.frombuffer(memory, first.dtype, count, at).reshape(group.shape)
+    return np.frombuffer(memory, first.dtype, count, offset).reshape(group.shape)
 
 
-def _groups(cameras: Sequence[Camera], kind: str, turn: str) -> list[Group]:
-    """The groups of a kind of camera, the one that sees most first, then by name: the order in
-    which cameras are told changes no draw."""
+def _make_groups(cameras: Sequence[Camera], kind: str, turn: str) -> list[Group]:
+    """Return the groups of a kind of camera, the largest first, then by name.
+
+    So draws do not depend on the order in which cameras are described.
+    """
     rings: dict[tuple, dict[int, Camera]] = {}
-    alone = []
+    single = []
     for camera in sorted((c for c in cameras if c.kind == kind), key=lambda camera: camera.name):
         steps = camera.yaw / VIEW_STEP_DEGREES
         view = round(steps if turn == "right" else -steps) % VIEWS
-        ring = rings.setdefault(camera.alike(), {})
+        ring = rings.setdefault(camera.panorama_key(), {})
         if camera.level and abs(steps - round(steps)) < _LEVEL and view not in ring:
             ring[view] = camera
         else:
-            alone.append(camera)
-    found = [(tuple(ring.values()), tuple(ring)) for ring in rings.values() if ring]
-    found += [((camera,), (0,)) for camera in alone]
-    found.sort(key=lambda group: (-len(group[0]), group[0][0].name))
+            single.append(camera)
+    groups = [(tuple(ring.values()), tuple(ring)) for ring in rings.values() if ring]
+    groups += [((camera,), (0,)) for camera in single]
+    groups.sort(key=lambda group: (-len(group[0]), group[0][0].name))
     return [
         Group(cameras, views, "" if number == 0 else cameras[0].name)
-        for number, (cameras, views) in enumerate(found)
+        for number, (cameras, views) in enumerate(groups)
     ]

@@ -1,8 +1,8 @@
-"""One condition of a run: its settings, and what its folder says of it.
+"""One condition of a run: its settings and the content of its folder.
 
 ``done.json`` marks a condition as finished. It records how many episodes ended, and the size and
-sha256 of the events at that moment. Whatever reads a finished condition compares them first, so
-that a damaged file is never taken for a result.
+sha256 of the events at that moment. Every reader of a finished condition compares them first, so
+that a damaged file is never used as a result.
 """
 
 from __future__ import annotations
@@ -17,11 +17,17 @@ from pathlib import Path
 from typing import Any
 
 from mitigate.bridge import results
-from mitigate.bridge.condition import SETTLED, Condition, Subset
+from mitigate.bridge.condition import SETTLE_TIME, Condition, Subset
 from mitigate.bridge.events import DONE, EVENTS, damaged
 from mitigate.bridge.hook.mitigate_hook import CLOSE, RESET
 from mitigate.bridge.recording import is_whole
-from mitigate.bridge.results import CUT_OFF, NORMALISED, Told, near, without_path
+from mitigate.bridge.results import (
+    CUT_OFF,
+    NORMALISED_HINT,
+    Reports,
+    count_without_path,
+    maybe_normalised,
+)
 from mitigate.core import output
 from mitigate.core.files import atomic_text, sha256
 from mitigate.core.json_files import read_object
@@ -32,13 +38,13 @@ from mitigate.worlds.measures import RULES
 
 LOG = "output.txt"
 TAIL = 12  # lines of the command's output that an error repeats
-LARGEST = 1 << 30  # bytes of a file of the command that is hashed; of a larger one its size counts
+MAX_HASHED = 1 << 30  # bytes; larger files of the command are compared by size only
 _SHA256 = re.compile(r"[0-9a-f]{64}")
 
 
 def _is_number(value: Any) -> bool:
-    plain = isinstance(value, (int, float)) and not isinstance(value, bool)
-    return plain and math.isfinite(value)
+    number = isinstance(value, (int, float)) and not isinstance(value, bool)
+    return number and math.isfinite(value)
 
 
 def _is_count(value: Any) -> bool:
@@ -63,13 +69,13 @@ OLDER = ("events",)  # entries that older versions did not write
 
 
 def folder_name(condition: str, severity: float, repeat: int = 0) -> str:
-    """Return the name of a condition, which is also that of its folder."""
+    """Return the name of a condition, which is also the name of its folder."""
     name = f"{condition}-s{severity:g}" if severity or condition != "clean" else condition
     return f"{name}-again{repeat}" if repeat else name
 
 
 def write_done(folder: Path, entries: Mapping[str, Any]) -> None:
-    """Mark the condition in ``folder`` as finished with ``entries``, which lack ``events``."""
+    """Write ``done.json``: ``entries`` and a seal of the events. The condition is finished then."""
     seal = {"bytes": (folder / EVENTS).stat().st_size, "sha256": sha256(folder / EVENTS)}
     with atomic_text(folder / DONE) as file:
         json.dump({**entries, "events": seal}, file)
@@ -81,8 +87,8 @@ def read_done(folder: Path) -> dict[str, Any] | None:
     Entries may be missing: older versions wrote fewer (:func:`missing_entries`).
 
     Raises:
-        ValueError: ``done.json`` is damaged or of another condition than the folder, or the events
-            are not those that it was written with. The message names the file and what to do.
+        ValueError: ``done.json`` is damaged or belongs to another condition, or the events changed
+            since it was written. The message names the file and what to do.
     """
     file = folder / DONE
     again = (
@@ -104,28 +110,29 @@ def read_done(folder: Path) -> dict[str, Any] | None:
 
 
 def missing_entries(entries: Mapping[str, Any]) -> list[str]:
-    """Return the entries that every version of this file has and that are missing."""
+    """Return the missing ones of the entries that every version of this file has."""
     return [name for name in SCHEMA if name not in entries and name not in OLDER]
 
 
 def _compare_name(folder: Path, entries: Mapping[str, Any]) -> None:
-    """Raise ValueError if the entries are of another condition than ``folder`` is named after."""
+    """Raise ValueError if ``folder`` is named after another condition than the entries."""
     name = folder_name(entries["condition"], entries["severity"], entries["repeat"])
     if name != folder.name:
         raise ValueError(
-            f"{folder} holds the condition {name}, as its {DONE} says: the folder was renamed or "
-            "copied, or the file was edited. No file was changed. If it was renamed, give it its "
-            f"old name, {name}. Otherwise move {folder} out of {folder.parent} and run the same "
+            f"{folder} holds the condition {name} according to its {DONE}. The folder was renamed "
+            "or copied, or the file was edited. No file was changed. If it was renamed, restore "
+            f"the name {name}. Otherwise move {folder} out of {folder.parent} and run the same "
             "command again: it measures this condition again."
         )
 
 
 def _compare_events(folder: Path, entries: Mapping[str, Any]) -> None:
-    """Raise ValueError if the events in ``folder`` are not those of the finished condition."""
-    events, count = folder / EVENTS, entries["episodes_told"]
+    """Raise ValueError if the events in ``folder`` changed since the condition finished."""
+    events = folder / EVENTS
+    count = entries["episodes_told"]
     if not output.is_regular(events):
         raise damaged(folder, f"the file is missing, and {DONE} records {count} episodes")
-    told = results.read(folder, count_closed=True)  # a damaged line is named by its number
+    reports = results.read(folder, count_closed=True)  # its error names the damaged line
     seal = entries.get("events")
     if seal is not None:
         size = events.stat().st_size
@@ -133,8 +140,8 @@ def _compare_events(folder: Path, entries: Mapping[str, Any]) -> None:
             raise damaged(folder, f"it has {size} bytes, and {DONE} records {seal['bytes']}")
         if sha256(events) != seal["sha256"]:
             raise damaged(folder, f"its sha256 is not the one that {DONE} records")
-    if count not in {len(told.ends), len(results.read(folder).ends)}:
-        raise damaged(folder, f"{len(told.ends)} episodes ended, and {DONE} records {count}")
+    if count not in {len(reports.ends), len(results.read(folder).ends)}:
+        raise damaged(folder, f"{len(reports.ends)} episodes ended, and {DONE} records {count}")
 
 
 def check_finished(folder: Path) -> None:
@@ -148,11 +155,22 @@ class Cell:
     """The command under one condition.
 
     Attributes:
-        name: The condition's name, which is that of its folder.
-        settings: What its result depends on, by which a finished one is known again.
-        clean: Folder of the clean condition, whose episodes it must have; None for that itself.
-        recording: The folder that ``record=`` asks for.
-        chosen: Says which episodes were asked for.
+        name: Name of the condition and of its folder.
+        corruption: The corruption.
+        repeat: Number of the repeated clean run, else 0.
+        command: The words of the user's command.
+        folder: Gets the events and the output of the command.
+        condition: How frames and instructions are corrupted.
+        label: Entries of all rows.
+        rule: Success rule in place of the agent's own; None keeps it.
+        settings: The settings that the result depends on. A finished condition is reused only if
+            they are equal.
+        patience: Seconds after which a process stops without an answer.
+        environment: Additional environment variables of the command.
+        clean: Folder of the clean condition, whose episodes must end under this one too; None for
+            the clean condition itself.
+        recording: The folder for ``record=``.
+        chosen: Chooses the episodes; None runs all.
         count_closed: See ``results.read``.
     """
 
@@ -184,12 +202,12 @@ class Cell:
         return read_done(self.folder)
 
     def changed_settings(self) -> list[str]:
-        """Return the settings whose value is not the one that it was finished with."""
+        """Return the settings that changed since the condition finished."""
         entries = self.entries() or self.settings
         return [name for name, value in self.settings.items() if entries.get(name) != value]
 
     def is_done(self) -> bool:
-        """Return whether it is finished and complete. Raises ValueError for other settings."""
+        """Return whether it is finished and complete. Raises ValueError if settings changed."""
         entries = self.entries()
         if entries is None:
             return False
@@ -197,40 +215,40 @@ class Cell:
             raise ValueError(
                 f"{self.folder} was run with another "
                 f"{', '.join(other)} ({entries.get(other[0])!r}, now {self.settings[other[0]]!r}). "
-                "Name another folder (out=...), or delete it."
+                "Choose another folder (out=...), or delete this one."
             )
         if missing := missing_entries(entries):
             raise ValueError(
-                f"{self.folder / DONE} lacks {', '.join(missing)}: it is damaged, or of an older "
-                f"version. Move {self.folder} out of {self.folder.parent} and run the same command "
-                "again."
+                f"{self.folder / DONE} lacks {', '.join(missing)}: it is damaged, or an older "
+                f"version wrote it. Move {self.folder} out of {self.folder.parent} and run the "
+                "same command again."
             )
         return not self.reason_to_repeat()
 
     def reason_to_repeat(self) -> str:
-        """Return why a finished condition is measured again; empty if it need not be."""
+        """Return why a finished condition must be measured again; empty if it need not be."""
         if self.entries() is None:
             return ""
         if missing := self.missing_episodes():
             return self.describe_missing(missing)
-        told = self.told()
-        if told.lost:  # measured with another count_closed, or by an older version
-            return left_out(told)
-        if self.recording is not None and not is_whole(self.recording, told.ends.values()):
-            return f"it was not recorded in {self.recording}, or not all of it"
+        reports = self.reports()
+        if reports.lost:  # measured with another count_closed, or by an older version
+            return describe_lost(reports)
+        if self.recording is not None and not is_whole(self.recording, reports.ends.values()):
+            return f"it was not recorded in {self.recording}, or only in part"
         return ""
 
     def changed_files(self, files: dict[str, Any]) -> list[str]:
-        """Return the files of a finished condition's command that differ from ``files``."""
+        """Return the files of the command that changed since the condition finished."""
         before = (self.entries() or {}).get("files", {})
-        return [name for name, told in before.items() if files.get(name) != told]
+        return [name for name, recorded in before.items() if files.get(name) != recorded]
 
     def missing_episodes(self) -> list[str]:
         """Return the episodes of the clean condition that did not end under this one."""
-        return sorted(self.clean_episodes() - self.told().ends.keys())
+        return sorted(self.clean_episodes() - self.reports().ends.keys())
 
     def clean_episodes(self) -> set[str]:
-        """Return the episodes that ended under the clean condition; empty for that itself."""
+        """Return the episodes that ended under the clean condition; empty for clean itself."""
         if self.clean is None:
             return set()
         return set(results.read(self.clean, self.count_closed).ends)
@@ -238,10 +256,10 @@ class Cell:
     def extra_episodes(self) -> list[str]:
         """Return the episodes that ended under this condition but not under the clean one."""
         clean = self.clean_episodes()
-        return sorted(self.told().ends.keys() - clean) if clean else []
+        return sorted(self.reports().ends.keys() - clean) if clean else []
 
     def output_excerpt(self) -> str:
-        """Return what an error repeats of the command's output."""
+        """Return the end of the command's output for an error message."""
         tail = self.tail()
         return f"\nThe end of {self.log}:\n{tail}" if tail else " It printed nothing."
 
@@ -250,33 +268,36 @@ class Cell:
         lines = self.log.read_text("utf-8", "replace").splitlines() if self.log.is_file() else []
         return "\n".join(f"  | {line}" for line in lines[-TAIL:])
 
-    def told(self) -> Told:
-        """Return what its processes reported so far."""
+    def reports(self) -> Reports:
+        """Return what the processes of the command reported so far."""
         return results.read(self.folder, self.count_closed)
 
     def rows(self) -> list[Row]:
         """Return the result rows."""
         clean = None if self.clean is None else results.read(self.clean, self.count_closed)
-        return results.rows(self.told(), self.corruption, self.label, self.rule, clean)
+        return results.rows(self.reports(), self.corruption, self.label, self.rule, clean)
 
-    def unjudged(self) -> str:
+    def rule_problem(self) -> str:
         """Return why ``rule=`` cannot judge every episode; empty if it can.
 
-        The success rate of some episodes alone would be another one.
+        A success rate over only some of the episodes would be misleading.
         """
-        told = self.told()
-        missing = {} if self.rule is None else results.unjudged(told, self.rule)
+        reports = self.reports()
+        missing = {} if self.rule is None else results.count_missing(reports, self.rule)
         if not missing:
             return ""
-        unknown, count = next(iter(missing.items()))
-        who = "no episode told"
-        if count < len(told.ends):
-            who = f"{count} of {counted(len(told.ends), 'episode')} did not tell"
-        what = "whether the agent said STOP" if unknown == "stopped" else "how far the goal is"
-        own = ""
-        if any("success" in end.get("metrics", {}) for end in told.ends.values()):
-            own = ", or leave rule= out to count the told success"
-        return f"rule={self.rule} needs to know {what}, which {who}: finish({unknown}=...){own}."
+        argument, count = next(iter(missing.items()))
+        who = "no episode reported"
+        if count < len(reports.ends):
+            who = f"{count} of {counted(len(reports.ends), 'episode')} did not report"
+        what = "whether the agent called STOP"
+        if argument == "distance_to_goal":
+            what = "the distance to the goal"
+        alternative = ""
+        if any("success" in end.get("metrics", {}) for end in reports.ends.values()):
+            alternative = ", or leave rule= out to count the reported success"
+        advice = f"Pass finish({argument}=...){alternative}."
+        return f"rule={self.rule} needs to know {what}, which {who}. {advice}"
 
     def describe_missing(self, missing: list[str]) -> str:
         """Return "3 of clean's 6 episodes are missing"."""
@@ -287,75 +308,83 @@ class Cell:
         )
 
     def depth_warning(self) -> str:
-        """Return a warning of depth that may be normalised; empty if none may be."""
-        names = near(self.told())
+        """Return a warning about depth that may be normalised; empty if there is none."""
+        names = maybe_normalised(self.reports())
         if not names:
             return ""
         return (
-            f"run: the depth of {', '.join(names)} counts as metres, and read no more than 1 in "
-            f"any episode: {NORMALISED}"
+            f"run: the depth of {', '.join(names)} counts as metres, and never exceeded 1 in any "
+            f"episode: {NORMALISED_HINT}"
         )
 
     def summary(self) -> str:
         """Return its progress: "41 episodes, success 58.5 (own: ...), 2 without a path ..."."""
-        told, found = self.told(), self.rows()
-        asks = "" if self.rule is None else str(RULES[self.rule])
-        first = asks or (found[0]["rule"] if found else "")
-        own = [row["success"] for row in found if row["rule"] == first]
-        said = [counted(len(told.ends), "episode") + self._asked(told)]
-        said += [f"success {100 * sum(own) / len(own):.1f} ({first})"] if own else []
-        said += [f"{len(told.lost)} left in the middle"] if told.lost else []
-        unknown = without_path(told, self.rule)
-        rules = {row["rule"] for row in found}
-        alike = len(set(unknown.values())) == 1 and len(unknown) == len(rules)
-        for rule, count in list(unknown.items())[: 1 if alike else None]:
-            by = "" if alike else f" by {rule}"
-            said.append(f"{count} without a path{by}: SPL is success")
+        reports, rows = self.reports(), self.rows()
+        rule_text = "" if self.rule is None else str(RULES[self.rule])
+        first_rule = rule_text or (rows[0]["rule"] if rows else "")
+        successes = [row["success"] for row in rows if row["rule"] == first_rule]
+        parts = [counted(len(reports.ends), "episode") + self._describe_surplus(reports)]
+        if successes:
+            parts.append(f"success {100 * sum(successes) / len(successes):.1f} ({first_rule})")
+        if reports.lost:
+            parts.append(f"{len(reports.lost)} left unfinished")
+        without_path = count_without_path(reports, self.rule)
+        rules = {row["rule"] for row in rows}
+        same = len(set(without_path.values())) == 1 and len(without_path) == len(rules)
+        for rule, count in list(without_path.items())[: 1 if same else None]:
+            by_rule = "" if same else f" by {rule}"
+            parts.append(f"{count} without a path{by_rule}: SPL is success")
         for how, name in ((RESET, "reset"), (CLOSE, "closed")):
-            left = sum(end.get("how") == how for end in told.ends.values())
-            if 0 < left < len(told.ends):
-                said.append(f"{left} {name} before the end (counted as it stood)")
-        said += [f"{told.again} ended twice (the first counts)"] if told.again else []
-        silent = len(told.ends) - len(own)
-        said += [f"{silent} without a result"] if silent and found else []
-        return ", ".join(said)
+            count = sum(end.get("how") == how for end in reports.ends.values())
+            if 0 < count < len(reports.ends):
+                parts.append(f"{count} {name} before the end (judged where they stopped)")
+        if reports.repeated:
+            parts.append(f"{reports.repeated} ended twice (the first end counts)")
+        without_result = len(reports.ends) - len(successes)
+        if without_result and rows:
+            parts.append(f"{without_result} without a result")
+        return ", ".join(parts)
 
-    def _asked(self, told: Told) -> str:
+    def _describe_surplus(self, reports: Reports) -> str:
         """Return why many more episodes ran than were asked for; empty if they did not."""
-        count = len(told.ends) if self.chosen is None else self.chosen.count
-        if len(told.ends) <= 1.5 * count:
+        count = len(reports.ends) if self.chosen is None else self.chosen.count
+        if len(reports.ends) <= 1.5 * count:
             return ""
         return (
-            f" ({count} asked for: processes came more than {SETTLED:g} s after the others, or "
-            "each of many had to keep one)"
+            f" ({count} asked for: some processes connected more than {SETTLE_TIME:g} s after the "
+            "others, or there are more processes than episodes, and each keeps at least one)"
         )
 
 
-def left_out(told: Told) -> str:
-    """Return "2 episodes were left in the middle, such as s0/2: a process of it died ..."; one
-    whose reason is known comes first."""
-    name = next((name for name in told.lost if told.dropped[name]), told.lost[0])
-    why = told.dropped[name] or "a process of it died, or its loop gave up"
-    if told.dropped[name] not in ("", CUT_OFF):
-        why = (
-            f"it was reset or closed as an exception went by, {why}; if the program ends its "
-            "episodes by that, let it reset or close behind the except block"
+def describe_lost(reports: Reports) -> str:
+    """Return "2 episodes were left unfinished, such as s0/2: a process of the command died ...".
+
+    The example is an episode whose reason is known, if there is one.
+    """
+    name = next((name for name in reports.lost if reports.dropped[name]), reports.lost[0])
+    reason = reports.dropped[name] or "a process of the command died, or its loop gave up"
+    if reports.dropped[name] not in ("", CUT_OFF):
+        reason = (
+            f"it was reset or closed during an exception, {reason}. If the program ends its "
+            "episodes by exceptions, let it reset or close after the except block"
         )
-    verb = "was" if len(told.lost) == 1 else "were"
-    return f"{counted(len(told.lost), 'episode')} {verb} left in the middle, such as {name}: {why}"
+    verb = "was" if len(reports.lost) == 1 else "were"
+    return (
+        f"{counted(len(reports.lost), 'episode')} {verb} left unfinished, such as {name}: {reason}"
+    )
 
 
-def files_of(command: Sequence[str]) -> dict[str, dict[str, Any]]:
-    """Size and sha256 of the files that the words of a command name, alone or behind a ``=``."""
-    found = {}
-    for path in dict.fromkeys(_named(command)):
+def hash_files(command: Sequence[str]) -> dict[str, dict[str, Any]]:
+    """Return size and sha256 of the files in a command: whole words, or the part after ``=``."""
+    hashes = {}
+    for path in dict.fromkeys(_files_in(command)):
         size = path.stat().st_size
-        found[str(path)] = {"size": size, "sha256": sha256(path) if size <= LARGEST else None}
-    return found
+        hashes[str(path)] = {"size": size, "sha256": sha256(path) if size <= MAX_HASHED else None}
+    return hashes
 
 
-def _named(command: Sequence[str]) -> Iterator[Path]:
+def _files_in(command: Sequence[str]) -> Iterator[Path]:
     for word in command:
         for text in (word, word.partition("=")[2]):
-            if os.path.isfile(text) and os.access(text, os.R_OK):  # of any text, code too
+            if os.path.isfile(text) and os.access(text, os.R_OK):  # a word may also be code
                 yield Path(text)

@@ -1,6 +1,6 @@
-"""``mitigate run --check -- COMMAND``: look at the first frames of a program, and stop it.
+"""``mitigate run --check -- COMMAND``: run a program up to its first frames, and stop it.
 
-Says what it sees and hears, which conditions of the suite apply, and draws what it would see.
+Prints its cameras and instruction and the conditions that apply, and draws corrupted frames.
 """
 
 from __future__ import annotations
@@ -18,11 +18,11 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from mitigate.bridge.attempt import Attempt
-from mitigate.bridge.cameras import Group, Rig, corrupted
-from mitigate.bridge.condition import Observer, applicable, untold
-from mitigate.bridge.config import RunConfig, check_options, name_of
-from mitigate.bridge.plan import Plan, cells
-from mitigate.bridge.results import NEAR, NORMALISED, Told
+from mitigate.bridge.cameras import Group, Rig, corrupt_group
+from mitigate.bridge.condition import Observer, needs_tokenizer, why_not_applicable
+from mitigate.bridge.config import RunConfig, check_options, command_name
+from mitigate.bridge.plan import Plan, make_cells
+from mitigate.bridge.results import NORMALISED_HINT, NORMALISED_LIMIT, Reports
 from mitigate.core.files import write_bytes, write_figure
 from mitigate.core.observation import DEPTH, RGB
 from mitigate.core.output import output_folder
@@ -31,47 +31,54 @@ from mitigate.corruptions import Corruption, Key
 from mitigate.evaluation.plots import plain
 from mitigate.guards.guard import NO_GUARDS, Guards
 
-LATE = 900.0  # seconds that a program may take to its first frame (ours): models are loaded first
-SHOWN = 4  # cameras of a panorama in a row of the sheet
-SIDE, WIDE = 1.64, 22  # inches: side of a cell of the sheet; characters of a line of the names
-HEADING = "heading"  # beside the cameras in the file of the first frames
-TRIED = 40  # calls, until one is taken in which a corruption acts: some come and go (ours)
+FIRST_FRAME_LIMIT = 900.0  # seconds until the first frame (heuristic): models load before it
+MAX_DRAWN = 4  # cameras of a panorama in a row of the sheet
+SIDE = 1.64  # inches: side of a cell of the sheet
+LINE_WIDTH = 22  # characters of a line of the names
+HEADING = "heading"  # an entry in the file of the first frames
+TRIED_CALLS = 40  # calls until a corruption acts: some come and go (heuristic)
 
 
 @dataclass
-class FirstLook(Observer):
-    """Keeps the frames of the first call in a file."""
+class FirstFrames(Observer):
+    """Writes the frames of the first call to a file."""
 
     file: Path
     kinds: ClassVar[tuple[str, ...]] = (RGB, DEPTH)
 
     def frame(
-        self, told: Mapping[str, Any], rig: Rig, memory: Any, offsets: Mapping[str, int]
+        self, message: Mapping[str, Any], rig: Rig, memory: Any, offsets: Mapping[str, int]
     ) -> None:
         """Write the frames, once."""
         if not self.file.is_file():
-            frames = {of(c.name): c.read(memory, offsets) for c in rig.cameras}
-            heading = told.get("heading")
+            frames = {entry_name(c.name): c.read(memory, offsets) for c in rig.cameras}
+            heading = message.get("heading")
             frames[HEADING] = np.array([] if heading is None else [heading])
-            packed = io.BytesIO()
-            np.savez(packed, **frames)  # type: ignore[arg-type]
-            write_bytes(self.file, packed.getvalue())
+            buffer = io.BytesIO()
+            np.savez(buffer, **frames)  # type: ignore[arg-type]
+            write_bytes(self.file, buffer.getvalue())
 
 
 def check(config: RunConfig, command: Sequence[str]) -> Path | None:
     """Run ``command`` up to its first frames; return the path of the sheet, None without cameras.
 
-    Raises ValueError as a run does for its options, and if the command ends before, or shows
-    nothing within ``LATE`` seconds.
+    Args:
+        config: The options of a run.
+        command: The words of the user's command.
+
+    Raises:
+        ValueError: An option is invalid, or the command sends no frame within
+            ``FIRST_FRAME_LIMIT`` seconds or before it ends.
     """
     check_options(config, command)
-    name = config.name or name_of(command)
+    name = config.name or command_name(command)
     out = Path(config.out or f"{config.runs}/run/{name}-check")
-    made = cells(Plan(config, tuple(command), "check", out))
-    cell, file = made[0], out / "first.npz"
+    cells = make_cells(Plan(config, tuple(command), "check", out))
+    cell = cells[0]
+    file = out / "first.npz"
     cell.folder = out / "check"
     file.unlink(missing_ok=True)
-    cell.condition.observers[:] = [FirstLook(file)]  # nothing is recorded: it ends in mid-episode
+    cell.condition.observers[:] = [FirstFrames(file)]  # an unfinished episode is not recorded
     print(f"check: started, its output is in {cell.log}", flush=True)
     attempt = Attempt(cell)
     try:
@@ -80,107 +87,125 @@ def check(config: RunConfig, command: Sequence[str]) -> Path | None:
             _wait(attempt, file)
     finally:
         attempt.kill()
-    told = cell.told()
-    with np.load(file, allow_pickle=False) as held:
-        frames = dict(held)
-    seen = [camera for camera in told.cameras if of(camera["name"]) in frames]
-    rig = Rig(seen, config.missing, config.turn)
-    print("\n".join(described(told, rig, frames, cell.condition.guards)))
-    fitting = []
-    for other in made[1:]:
-        reason = applicable(other.corruption, told)
-        lacks = untold(other.corruption, told, other.condition.words)
-        applies = "needs tokenizer=, the agent reads tokens" if lacks else "applies"
+    reports = cell.reports()
+    with np.load(file, allow_pickle=False) as entries:
+        frames = dict(entries)
+    cameras = [camera for camera in reports.cameras if entry_name(camera["name"]) in frames]
+    rig = Rig(cameras, config.missing, config.turn)
+    print("\n".join(describe(reports, rig, frames, cell.condition.guards)))
+    applicable = []
+    for other in cells[1:]:
+        reason = why_not_applicable(other.corruption, reports)
+        no_tokenizer = needs_tokenizer(other.corruption, reports, other.condition.words)
+        applies = "needs tokenizer=, the agent reads tokens" if no_tokenizer else "applies"
         print(f"  {other.name}: {f'not applicable, {reason}' if reason else applies}")
         if not reason:
-            fitting += [p for p in other.corruption.parts if p.modality in (RGB, DEPTH)]
+            applicable += [p for p in other.corruption.parts if p.modality in (RGB, DEPTH)]
     if not rig.groups:
-        print("no frame was named as rgb or depth: there is nothing to draw", flush=True)
+        print("no frame is named or described as rgb or depth: nothing to draw", flush=True)
         return None
-    shown = {group.cameras[0].kind for group in rig.groups}
-    for kind in sorted({part.modality for part in fitting} - shown):
-        print(f"the first call has no frame of {kind}: no corruption of it is drawn")
-    drawn = [part for part in dict.fromkeys(fitting) if part.modality in shown]
-    path = write_figure(out / "sheet.png", sheet(rig, frames, drawn, told.first, config.seed))
-    print(f"wrote {path}: what the agent would see at its first frame", flush=True)
+    kinds = {group.cameras[0].kind for group in rig.groups}
+    for kind in sorted({part.modality for part in applicable} - kinds):
+        print(f"the first call has no {kind} frame: no {kind} corruption is drawn")
+    drawn = [part for part in dict.fromkeys(applicable) if part.modality in kinds]
+    figure = draw_sheet(rig, frames, drawn, reports.first, config.seed)
+    path = write_figure(out / "sheet.png", figure)
+    print(f"wrote {path}: the first frame of the agent under each condition", flush=True)
     return path
 
 
 def _wait(attempt: Attempt, file: Path) -> None:
-    began = spoke = time.monotonic()
+    """Wait until the first frames are in ``file``."""
+    start = time.monotonic()
+    last_print = start
     while not file.is_file():
         time.sleep(0.1)
         problem = attempt.poll()
-        if problem is not None and not file.is_file():  # a short program may be over by now
+        if problem is not None and not file.is_file():  # a short program may have ended by now
             raise ValueError(problem or "the command ended before its first frame.")
-        if time.monotonic() - began > LATE:
-            raise ValueError(f"no frame came within {LATE:g} s. Its output:\n{attempt.cell.tail()}")
-        if time.monotonic() - spoke > 10:
-            spoke = time.monotonic()
-            print(f"check: no frame after {spoke - began:.0f} s", flush=True)
+        if time.monotonic() - start > FIRST_FRAME_LIMIT:
+            raise ValueError(
+                f"the command sent no frame within {FIRST_FRAME_LIMIT:g} s. Its output:\n"
+                f"{attempt.cell.tail()}"
+            )
+        if time.monotonic() - last_print > 10:
+            last_print = time.monotonic()
+            print(f"check: no frame after {last_print - start:.0f} s", flush=True)
 
 
-def described(
-    told: Told, rig: Rig, frames: Mapping[str, np.ndarray], guards: Guards = NO_GUARDS
+def describe(
+    reports: Reports, rig: Rig, frames: Mapping[str, np.ndarray], guards: Guards = NO_GUARDS
 ) -> list[str]:
-    """Return lines that say what the program is, sees and hears, and what of it is restored."""
-    hello = told.hellos[0] if told.hellos else {}
+    """Return lines about the program: its versions, cameras, instruction and restored frames."""
+    hello = reports.hellos[0] if reports.hellos else {}
     versions = {"Python": hello.get("python"), "numpy": hello.get("numpy")}
     versions |= {n: hello.get(n.replace("-", "_")) for n in ("habitat", "habitat-sim", "torch")}
     lines = ["program: " + ", ".join(f"{n} {v}" for n, v in versions.items() if v)]
     for group in rig.groups:
         first = group.cameras[0]
         size = " x ".join(map(str, first.shape))
-        what = f"  {first.kind}: " + ", ".join(camera.name for camera in group.cameras)
-        many = f", {len(group.cameras)} as one panorama" if len(group.cameras) > 1 else ""
+        names = f"  {first.kind}: " + ", ".join(camera.name for camera in group.cameras)
+        panorama = f", {len(group.cameras)} as one panorama" if len(group.cameras) > 1 else ""
         hfov = "" if first.hfov is None else f", hfov {first.hfov:g}"
-        lines.append(f"{what}; {size} {first.dtype}{hfov}{many}{_range(group, frames)}")
-    episode, said = told.first, []
+        lines.append(
+            f"{names}; {size} {first.dtype}{hfov}{panorama}{_describe_depth(group, frames)}"
+        )
+    episode, parts = reports.first, []
     if episode:
-        said.append(f"episode {episode['episode']} of {episode['scene']}")
+        parts.append(f"episode {episode['episode']} of {episode['scene']}")
         if episode.get("category"):
-            said.append(f"goal category {episode['category']!r}")
-        said.append(f"instruction {episode['text']!r}" if episode.get("text") else "no instruction")
+            parts.append(f"goal category {episode['category']!r}")
+        text = episode.get("text")
+        parts.append(f"instruction {text!r}" if text else "no instruction")
     if guards.frames:
-        shown = dict.fromkeys(group.cameras[0].kind for group in rig.groups)
-        own = [kind for kind in shown if kind in guards.frames]
-        nothing = f"nothing of these, the restorer is for {', '.join(guards.frames)}"
-        lines.append(f"restored: {', '.join(own) or nothing}")
-    return [lines[0], "cameras:", *lines[1:], "hears: " + ", ".join(said), "conditions:"]
+        kinds = dict.fromkeys(group.cameras[0].kind for group in rig.groups)
+        restored = [kind for kind in kinds if kind in guards.frames]
+        nothing = f"none of these, the restorer is for {', '.join(guards.frames)}"
+        lines.append(f"restored: {', '.join(restored) or nothing}")
+    return [lines[0], "cameras:", *lines[1:], "hears: " + ", ".join(parts), "conditions:"]
 
 
-def _range(group: Group, frames: Mapping[str, np.ndarray]) -> str:
-    """What depth is said to be, what of it was seen, and whether that is strange."""
+def _describe_depth(group: Group, frames: Mapping[str, np.ndarray]) -> str:
+    """Return the declared range of depth, the range of the frames, and a warning if they differ."""
     first = group.cameras[0]
     if first.kind != DEPTH:
         return ""
     unit = "0 to 1 for" if first.normalised else "metres,"
-    said = f", {unit} {first.sensor.z_min:g} to {first.sensor.z_max:g} m"
-    seen = np.concatenate([c.metres(frames[of(c.name)]).ravel() for c in group.cameras])
-    seen = seen[np.isfinite(seen) & (seen > 0)]
-    if not seen.size:
-        return f"{said}; nothing but holes was seen"
-    low, middle, high = (f"{x:.2f}" for x in (seen.min(), np.median(seen), seen.max()))
-    strange = ""
-    if not first.normalised and seen.max() < NEAR:
-        strange = f" - {NORMALISED}"
-    return f"{said}; seen {low} to {high} (median {middle}) m{strange}"
+    declared = f", {unit} {first.sensor.z_min:g} to {first.sensor.z_max:g} m"
+    depth = np.concatenate([c.metres(frames[entry_name(c.name)]).ravel() for c in group.cameras])
+    depth = depth[np.isfinite(depth) & (depth > 0)]
+    if not depth.size:
+        return f"{declared}; the frames hold only holes"
+    low, median, high = (f"{x:.2f}" for x in (depth.min(), np.median(depth), depth.max()))
+    warning = ""
+    if not first.normalised and depth.max() < NORMALISED_LIMIT:
+        warning = f" - {NORMALISED_HINT}"
+    return f"{declared}; seen {low} to {high} (median {median}) m{warning}"
 
 
-def of(camera: str) -> str:
-    """Return the name of a camera's frame in the file: none that `numpy.savez` takes itself."""
+def entry_name(camera: str) -> str:
+    """Return the name of a camera's frame in the file, which is no argument of `numpy.savez`."""
     return f"camera {camera}"
 
 
-def sheet(
+def draw_sheet(
     rig: Rig,
     frames: Mapping[str, np.ndarray],
     corruptions: Sequence[Corruption],
     first: Mapping[str, Any],
     seed: int,
 ) -> Figure:
-    """Draw a row for clean and each corruption, with the cameras of its modality that are most; a
-    corruption that comes and goes is drawn at a call in which it acts."""
+    """Draw a row for clean and each corruption, with the largest group of its modality.
+
+    A corruption that comes and goes is drawn at the first call in which it acts.
+
+    Args:
+        rig: The cameras.
+        frames: The frames of the first call, by :func:`entry_name`, and the heading.
+        corruptions: Of modalities that ``rig`` has.
+        first: The event of the first episode, part of the keys.
+        seed: The corruption seed.
+    """
     scene = str(first.get("scene", "")).rpartition("/")[2]
     episode = f"{scene}/{first.get('episode', '')}"
     heading = float(frames[HEADING][0]) if frames[HEADING].size else None
@@ -189,38 +214,39 @@ def sheet(
     rows = [([f"clean {kind}"], by_kind[kind], views) for kind, views in clean.items()]
     for corruption in corruptions:
         group, before = by_kind[corruption.modality], clean[corruption.modality]
-        for call in range(TRIED):
+        for call in range(TRIED_CALLS):
             key = Key(seed, episode, call)
-            views = corrupted(group, before.copy(), corruption, key, heading)
+            views = corrupt_group(group, before.copy(), corruption, key, heading)
             if not np.array_equal(views, before, equal_nan=True):
                 break
-        acts = f"at call {call}" if call else ""
+        note = f"at call {call}" if call else ""
         if np.array_equal(views, before, equal_nan=True):
-            acts = f"no change in {TRIED} calls"
-        rows.append(([corruption.name, acts], group, views))
-    across = 1 + min(SHOWN, max(len(group.cameras) for _, group, _ in rows))
-    figure = Figure(figsize=(SIDE * across, SIDE * len(rows)), dpi=100, layout="constrained")
-    for axes, row in zip(figure.subplots(len(rows), across, squeeze=False), rows, strict=True):
+            note = f"no change in {TRIED_CALLS} calls"
+        rows.append(([corruption.name, note], group, views))
+    columns = 1 + min(MAX_DRAWN, max(len(group.cameras) for _, group, _ in rows))
+    figure = Figure(figsize=(SIDE * columns, SIDE * len(rows)), dpi=100, layout="constrained")
+    for axes, row in zip(figure.subplots(len(rows), columns, squeeze=False), rows, strict=True):
         _draw_row(axes, *row)
     return figure
 
 
 def _views(group: Group, frames: Mapping[str, np.ndarray]) -> np.ndarray:
+    """Return the frames of a group, [views, ...]; views without a camera are zero."""
     views = np.zeros(group.shape, group.cameras[0].dtype)
     for camera, view in zip(group.cameras, group.views, strict=True):
-        views[view] = frames[of(camera.name)]
+        views[view] = frames[entry_name(camera.name)]
     return views
 
 
 def _draw_row(axes: Sequence[Axes], names: Sequence[str], group: Group, views: np.ndarray) -> None:
-    """Draw the names, below them the entries that are drawn, and beside them their pictures."""
+    """Draw the names with the cameras below them, and the frames to their right."""
     for axis in axes:
         axis.axis("off")
-    shown = list(zip(group.cameras, group.views, strict=True))[:SHOWN]
-    entries = textwrap.fill(", ".join(camera.name for camera, _ in shown), WIDE)
-    text = "\n".join([*filter(None, names), entries])
+    drawn = list(zip(group.cameras, group.views, strict=True))[:MAX_DRAWN]
+    cameras = textwrap.fill(", ".join(camera.name for camera, _ in drawn), LINE_WIDTH)
+    text = "\n".join([*filter(None, names), cameras])
     axes[0].text(0, 0.5, plain(text), va="center", fontsize=8)
-    for axis, (camera, view) in zip(axes[1:], shown, strict=False):
+    for axis, (camera, view) in zip(axes[1:], drawn, strict=False):
         frame = views[view]
         if camera.kind == DEPTH:
             metres = camera.metres(frame.reshape(frame.shape[:2]).astype(np.float32))

@@ -1,8 +1,9 @@
-"""What the user's command meets in one condition: frames, words and a choice of episodes.
+"""One condition as applied to the user's command: corruption, instructions, choice of episodes.
 
-An episode is chosen by a hash of its name, whatever the order and the number of processes. The
-first environments of a run name all that they hold; from these the bound is set that lets as many
-pass as were asked for, and it is kept for all that follows.
+An episode is chosen by a hash of its name, so the choice does not depend on the order and the
+number of processes. The first environments of a run report the names of their episodes. From these
+a bound on the hash is set such that the requested number passes. All later environments use the
+same bound.
 """
 
 from __future__ import annotations
@@ -15,7 +16,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from mitigate.bridge.results import Told
+from mitigate.bridge.results import Reports
 from mitigate.core import output
 from mitigate.core.files import atomic_text
 from mitigate.core.json_files import read_object
@@ -30,43 +31,49 @@ from mitigate.worlds.episodes import read_extras
 if TYPE_CHECKING:
     from mitigate.bridge.cameras import Rig
 
-SETTLED = 4.0  # seconds without another environment, after which all are taken to be known (ours)
+SETTLE_TIME = 4.0  # seconds without a new environment after which all are known (heuristic)
 NO_TOKENIZER = (
-    "the agent's episodes hold instruction tokens beside the text, and no tokenizer was named, so "
-    "that it would read the old words: tokenizer=bert_config/bert-base-uncased (a folder with the "
-    "tokenizer's files; ETPNav's repository has it), or tokenizer=EPISODES.json.gz for R2R-CE's "
-    "own vocabulary in that file."
+    "the agent's episodes hold instruction tokens in addition to the text. Without a tokenizer the "
+    "agent would read the original instruction. Set tokenizer=bert_config/bert-base-uncased (a "
+    "folder with the tokenizer's files; ETPNav's repository has it), or tokenizer=EPISODES.json.gz "
+    "for R2R-CE's own vocabulary in that file."
 )
 
 
 class Observer:
-    """Sees what passes before it is corrupted; the methods of this class do nothing."""
+    """Receives messages and frames before they are corrupted; this class ignores them."""
 
-    kinds: ClassVar[tuple[str, ...]] = ()  # of the cameras that it needs to see
+    kinds: ClassVar[tuple[str, ...]] = ()  # of the cameras whose frames it needs
 
-    def episode(self, told: Mapping[str, Any]) -> None:
-        """Take what is told of an episode that begins."""
+    def episode(self, message: Mapping[str, Any]) -> None:
+        """Receive the message that begins an episode."""
 
     def frame(
-        self, told: Mapping[str, Any], rig: Rig, memory: Any, offsets: Mapping[str, int]
+        self, message: Mapping[str, Any], rig: Rig, memory: Any, offsets: Mapping[str, int]
     ) -> None:
-        """Take the frames of a call, which lie in ``memory``."""
+        """Receive the frames of a call, which are in ``memory``."""
 
-    def end(self, told: Mapping[str, Any]) -> None:
-        """Take how the episode went."""
+    def end(self, message: Mapping[str, Any]) -> None:
+        """Receive the result of the episode."""
 
     def leave(self) -> None:
-        """Take that the episode did not end."""
+        """Receive that the episode was left unfinished."""
 
 
 @dataclass
 class Condition:
-    """What a command meets: the corruption, its seed, and how it is applied.
+    """A corruption, its seed, and how it is applied.
 
-    repeat: number of this run of the same condition; part of the keys where it is not 0. missing:
-    metres that a hole reads. turn: where a growing yaw turns. guards: change words and
-    frames behind the corruption. observers: see every episode and frame, before its
-    corruption (``recording.py``).
+    Attributes:
+        corruption: The corruption.
+        seed: The corruption seed.
+        words: Corrupts instructions.
+        repeat: Number of this run of the same condition; part of the keys if it is not 0.
+        missing: Value in metres of missing depth.
+        turn: Direction of a growing yaw, "left" or "right".
+        keep: Chooses episodes (:meth:`Subset.keep`); None keeps all.
+        guards: Change instructions and frames after the corruption.
+        observers: Receive every episode and frame before the corruption (``recording.py``).
     """
 
     corruption: Corruption
@@ -80,157 +87,194 @@ class Condition:
     observers: list[Observer] = field(default_factory=list)
 
     def key(self, scene: str, episode: str, frame: int) -> Key:
-        """Names the draw: seed, scene file and episode id, number of the call."""
+        """Return the key of a draw: seed, scene file and episode id, number of the call."""
         name = f"{scene.rpartition('/')[2]}/{episode}" + (f"#{self.repeat}" if self.repeat else "")
         return Key(self.seed, name, frame)
 
 
-def applicable(corruption: Corruption, clean: Told) -> str:
+def why_not_applicable(corruption: Corruption, clean: Reports) -> str:
     """Return why a corruption cannot reach the agent of a clean run; empty if it can."""
     kinds = {camera["type"] for camera in clean.cameras}
     for part in corruption.parts:
         if part.modality in ("rgb", "depth") and part.modality not in kinds:
             return f"the agent has no {part.modality} camera"
         if part.name == "white_box":
-            return "an agent's system prompt does not pass the bridge"
+            return "the bridge does not see the agent's system prompt"
         if part.modality == "instruction" and not clean.first.get("text"):
             if clean.first.get("category"):
                 return "its goals are categories, not instructions"
-            return "no instruction was told: connect(..., instruction=...)"
+            return "the program passes no instruction: connect(..., instruction=...)"
     return ""
 
 
-def untold(corruption: Corruption, clean: Told, words: Words) -> bool:
-    """Whether the agent reads tokens, and no tokenizer was named to tell it corrupted words by."""
-    spoken = any(part.modality == "instruction" for part in corruption.parts)
-    reads = bool(clean.first.get("tokens")) and is_english(clean.first.get("language"))
-    return spoken and reads and words.tokenizer is None
+def needs_tokenizer(corruption: Corruption, clean: Reports, words: Words) -> bool:
+    """Return whether the agent needs tokens of corrupted words and ``tokenizer=`` is not set."""
+    changes_words = any(part.modality == "instruction" for part in corruption.parts)
+    reads_tokens = bool(clean.first.get("tokens")) and is_english(clean.first.get("language"))
+    return changes_words and reads_tokens and words.tokenizer is None
 
 
 @dataclass
 class Words:
-    """Changes the words of episodes.
+    """Corrupts instructions.
 
-    tokenizer: for agents that read tokens; None: an agent with tokens is refused where its words
-    change, since it would read the old ones. length: of padded tokens; None: as the episode's own.
+    Attributes:
+        tokenizer: For agents that read tokens. With None, a change to the instruction of such an
+            agent is an error, because the agent would read the original tokens.
+        length: Length of padded tokens; None keeps the episode's own length.
     """
 
     tokenizer: Tokenizer | None = None
     length: int | None = None
 
-    def heard(
+    def corrupt(
         self,
-        told: Mapping[str, Any],
+        message: Mapping[str, Any],
         corruption: Corruption,
         key: Key,
         guards: Guards = NO_GUARDS,
     ) -> dict[str, Any]:
-        """Return ``text`` and ``tokens`` of an episode as the agent is to have them; empty where
-        they stay as they are. Raises ValueError where an agent would not hear the change.
+        """Return ``text`` and ``tokens`` for the agent; empty if the instruction does not change.
+
+        Args:
+            message: Begins the episode; holds ``text``, ``tokens``, ``language``, ``category``.
+            corruption: The corruption of the condition.
+            key: Determines the draws.
+            guards: Change the instruction after the corruption.
+
+        Raises:
+            ValueError: The change cannot reach the agent.
         """
-        text, tokens = told.get("text"), told.get("tokens")
-        spoken = [part for part in corruption.parts if part.modality == "instruction"]
-        if any(part.name == "white_box" for part in spoken):
+        text, tokens = message.get("text"), message.get("tokens")
+        parts = [part for part in corruption.parts if part.modality == "instruction"]
+        if any(part.name == "white_box" for part in parts):
             raise ValueError(
-                "white_box is not applicable: it corrupts an agent's system prompt, which does not "
-                "pass the bridge. black_box puts the same sentences in front of the instruction."
+                "white_box is not applicable: it corrupts an agent's system prompt, which the "
+                "bridge does not see. black_box puts the same sentences before the instruction."
             )
         if not isinstance(text, str):
-            if spoken:
-                category = told.get("category")
-                has = f"{category!r}, a category that agents read by number" if category else "none"
+            if parts:
+                category = message.get("category")
+                has = "none"
+                if category:
+                    has = f"{category!r}, a category that agents read by number"
                 raise ValueError(
                     f"{corruption.name} corrupts the words of an instruction, but the episode has "
-                    f"{has}. Tell it, connect(..., instruction=...), or leave the corruption out."
+                    f"{has}. Pass connect(..., instruction=...), or leave the corruption out."
                 )
             return {}
-        made = text
-        for part in spoken if is_english(told.get("language")) else ():
-            made = corrupt_instruction(made, part.name, part.severity, key, mask_token=self._mask())
-        made = guards.begin(EpisodeStart(key, made))
-        if made == text:
+        changed = text
+        for part in parts if is_english(message.get("language")) else ():
+            changed = corrupt_instruction(
+                changed, part.name, part.severity, key, mask_token=self._mask()
+            )
+        changed = guards.begin(EpisodeStart(key, changed))
+        if changed == text:
             return {}
-        return {"text": made, "tokens": self._tokens(made, tokens)}
+        return {"text": changed, "tokens": self._tokenize(changed, tokens)}
 
     def _mask(self) -> str:
         return (self.tokenizer and self.tokenizer.mask_token) or "[MASK]"
 
-    def _tokens(self, text: str, before: list[Any] | None) -> list[int] | None:
+    def _tokenize(self, text: str, before: list[Any] | None) -> list[int] | None:
+        """Return the tokens of ``text``; None if the episode had none before."""
         if before is None:
             return None
         if self.tokenizer is None:
             raise ValueError(NO_TOKENIZER)
-        return list(self.tokenizer.encode(text, self.length or fixed_length(before))[0])
+        return list(self.tokenizer.encode(text, self.length or padded_length(before))[0])
 
 
-def tokenizer_of(name: str) -> Tokenizer:
-    """Return the tokenizer in a folder or of a hub name, or the vocabulary of an R2R-CE file
-    (``.json``, ``.json.gz``). Raises ValueError or FileNotFoundError if there is none."""
+def load_tokenizer(name: str) -> Tokenizer:
+    """Return the tokenizer in a folder, of a hub name, or of an R2R-CE file.
+
+    Args:
+        name: A folder, a hub name, or a ``.json`` or ``.json.gz`` file with a vocabulary.
+
+    Raises:
+        ValueError: The file or folder holds no tokenizer.
+        FileNotFoundError: It does not exist.
+    """
     if name.endswith((".json", ".json.gz")):
         return tokenizer_for(VOCABULARY, read_extras(name))
     return tokenizer_for(name, {})
 
 
-def fixed_length(tokens: list[Any]) -> int | None:
-    """Return the length that a dataset pads its tokens to, None if it does not pad: padding is a
-    token that comes twice and more at the end."""
+def padded_length(tokens: list[Any]) -> int | None:
+    """Return the length that a dataset pads its tokens to, None if it does not pad.
+
+    Padding is a token 0 or 1 that is repeated at the end.
+    """
     repeated = len(tokens) > 2 and tokens[-1] == tokens[-2] and tokens[-1] in (0, 1)
     return len(tokens) if repeated else None
 
 
-def place(name: str) -> float:
-    """Where an episode stands in [0, 1): a hash of its name."""
+def hash_episode(name: str) -> float:
+    """Return a hash of an episode's name in [0, 1)."""
     return uniform(digest(Key(0, name), "episodes"))
 
 
 @dataclass
 class Subset:
-    """Keeps about ``count`` episodes, named like "scene.glb/17"; its notes are in ``folder``."""
+    """Chooses about ``count`` episodes by a hash of their names.
+
+    Attributes:
+        count: How many episodes.
+        folder: The run's folder; the choice is stored there.
+        settled: Seconds without a new environment after which all are known.
+    """
 
     count: int
     folder: Path
-    settled: float = SETTLED
+    settled: float = SETTLE_TIME
 
     def keep(self, names: list[str], least: int = 1) -> list[int]:
-        """Return the numbers of ``names`` to keep: ``least`` (0 or 1) of them, as Habitat refuses
-        none."""
+        """Return the indices of the episodes to keep.
+
+        Args:
+            names: Episodes of one environment, like "scene.glb/17".
+            least: The smallest number to keep, 0 or 1: Habitat rejects an empty dataset.
+        """
         bound = self._bound()
         if bound is None:
-            bound = self._agree(names)
-        places = [place(name) for name in names]
-        kept = [i for i, at in enumerate(places) if at <= bound]
-        return kept if kept or not least else [places.index(min(places))]
+            bound = self._set_bound(names)
+        hashes = [hash_episode(name) for name in names]
+        indices = [i for i, value in enumerate(hashes) if value <= bound]
+        return indices if indices or not least else [hashes.index(min(hashes))]
 
-    def forget(self) -> None:
-        """Forget which episodes were chosen."""
+    def delete(self) -> None:
+        """Delete the stored choice."""
         for name in ("episodes.json", "episodes.txt"):
             (self.folder / name).unlink(missing_ok=True)
 
     def _bound(self) -> float | None:
+        """Return the stored bound; None if there is none yet."""
         file = self.folder / "episodes.json"
         if not output.is_regular(file):
             return None
         again = f"Move {self.folder} aside, and run the same command again."
-        held = read_object(file, again)
-        bound = held.get("bound")
-        if not isinstance(bound, float) or not 0 <= bound <= 1 or not _is_count(held.get("of")):
-            raise ValueError(f"{file} is damaged: bound must be 0 to 1, and of a number. {again}")
-        if held.get("episodes") != self.count:
+        choice = read_object(file, again)
+        bound = choice.get("bound")
+        if not isinstance(bound, float) or not 0 <= bound <= 1 or not _is_count(choice.get("of")):
             raise ValueError(
-                f"{self.folder} is of a run with episodes={held.get('episodes')}, and this one "
-                f"asks for {self.count}. Name another folder (out=...), or delete this one."
+                f"{file} is damaged: bound must be from 0 to 1, and of a whole number >= 0. {again}"
+            )
+        if choice.get("episodes") != self.count:
+            raise ValueError(
+                f"{self.folder} belongs to a run with episodes={choice.get('episodes')}, got "
+                f"episodes={self.count}. Name another folder (out=...), or delete this one."
             )
         return bound
 
     def least(self) -> int:
-        """Return how many episodes the program was asked for; 0 if none were chosen yet."""
+        """Return how many episodes the program must run; 0 if none were chosen yet."""
         if self._bound() is None:
             return 0
-        of = int(read_object(self.folder / "episodes.json", "")["of"])
-        return min(self.count, of)
+        total = int(read_object(self.folder / "episodes.json", "")["of"])
+        return min(self.count, total)
 
-    def _agree(self, names: list[str]) -> float:
-        """Add ``names`` to those that are known, wait for others, and set the bound."""
+    def _set_bound(self, names: list[str]) -> float:
+        """Add ``names`` to the known names, wait for other environments, and set the bound."""
         known = self.folder / "episodes.txt"
         with open_output(known, "a", encoding="utf-8") as file:
             fcntl.flock(file, fcntl.LOCK_EX)
@@ -241,10 +285,10 @@ class Subset:
             fcntl.flock(file, fcntl.LOCK_EX)
             bound = self._bound()
             if bound is None:
-                places = sorted(place(_name(line, known)) for line in {*file})
-                bound = places[min(self.count, len(places)) - 1]
+                hashes = sorted(hash_episode(_read_name(line, known)) for line in {*file})
+                bound = hashes[min(self.count, len(hashes)) - 1]
                 with atomic_text(self.folder / "episodes.json") as out:
-                    json.dump({"bound": bound, "episodes": self.count, "of": len(places)}, out)
+                    json.dump({"bound": bound, "episodes": self.count, "of": len(hashes)}, out)
         return bound
 
 
@@ -252,8 +296,8 @@ def _is_count(value: object) -> bool:
     return isinstance(value, int) and not isinstance(value, bool) and value >= 0
 
 
-def _name(line: str, file: Path) -> str:
-    """Return the episode that a line of ``file`` names. Raises ValueError if it is damaged."""
+def _read_name(line: str, file: Path) -> str:
+    """Return the episode name in a line of ``file``. Raises ValueError if it is damaged."""
     try:
         name: object = json.loads(line)
     except ValueError:

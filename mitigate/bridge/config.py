@@ -1,4 +1,4 @@
-"""The options of ``mitigate run``: their types, and the checks before anything is run."""
+"""The options of ``mitigate run``: their types, and checks before anything runs."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from typing import Any
 
 from omegaconf import MISSING
 
-from mitigate.bridge.condition import SETTLED
+from mitigate.bridge.condition import SETTLE_TIME
 from mitigate.cluster import launcher  # noqa: F401 - registers the kinds of conf/launcher
 from mitigate.core import conf
 from mitigate.core.files import make_folder
@@ -26,7 +26,7 @@ from mitigate.worlds.measures import RULES
 
 @dataclass
 class RunConfig:
-    """Types of ``conf/run.yaml``; the meaning of each entry is written there."""
+    """Typed options of ``conf/run.yaml``, which documents each of them."""
 
     name: str | None = None
     out: str | None = None
@@ -58,7 +58,7 @@ class RunConfig:
 
     @property
     def names(self) -> list[str]:
-        """The conditions that are asked for, by name: clean first, each once."""
+        """The names of the requested conditions: clean first, each once."""
         names = suite_conditions(self.suite) if self.conditions is None else self.conditions
         if self.corruption is not None:
             names = [self.corruption]
@@ -69,12 +69,16 @@ conf.register("run", RunConfig)
 
 
 def check_options(config: RunConfig, command: Sequence[str]) -> None:
-    """Raise ValueError for options that make no sense, and without a command; OSError for a
-    recording that cannot be written."""
+    """Check the options and the command.
+
+    Raises:
+        ValueError: An option is invalid, or there is no command.
+        OSError: The folder of ``record=`` cannot be written.
+    """
     check_choice(config.safeguard)
     if not command:
         raise ValueError(
-            "No command is given. Write it behind --, as you would type it: mitigate run "
+            "A command is missing. Write it after --, as you would type it: mitigate run "
             "corruption=spatter -- bash run_r2r/main.bash eval 2333"
         )
     if config.rule is not None and config.rule not in RULES:
@@ -83,56 +87,64 @@ def check_options(config: RunConfig, command: Sequence[str]) -> None:
         raise ValueError(unknown("turn", config.turn, ("left", "right")))
     if config.corruption is not None and config.conditions is not None:
         raise ValueError(
-            f"corruption={config.corruption} and conditions=... both say what is measured: put it "
-            "into conditions=[...], or leave that out."
+            f"corruption={config.corruption} and conditions=... both name conditions. Put "
+            f"{config.corruption} into conditions=[...], or leave conditions out."
         )
     for option, value in (("jobs", config.jobs), ("repeats", config.repeats)):
         if value < 1:
-            raise ValueError(f"{option}={value} is none: give 1 or more.")
+            raise ValueError(f"{option} must be >= 1, got {value}.")
     if not 0 <= config.missing < math.inf:
-        raise ValueError(f"missing={config.missing:g} must be metres, 0 or more: missing=10.")
+        raise ValueError(
+            f"missing must be metres >= 0, got {config.missing:g}. Example: missing=10."
+        )
     if config.token_length is not None and config.token_length < 1:
-        raise ValueError(f"token_length={config.token_length} is none: give 1 or more.")
-    for option, text in (("split", config.split), ("name", config.name or name_of(command))):
-        if wanted := allowed(option, text):  # before hours of what no row can say
-            raise ValueError(f"{option}={short(text)} can stand in no row: {wanted}.")
+        raise ValueError(f"token_length must be >= 1 or null, got {config.token_length}.")
+    for option, text in (("split", config.split), ("name", config.name or command_name(command))):
+        if constraint := allowed(option, text):  # now, not after hours of measuring
+            raise ValueError(f"{option}={short(text)} cannot be written to rows: {constraint}.")
     for watched in config.watch or ():
         _check_watched(str(watched))
     if not 1 <= config.patience <= 3600:
-        raise ValueError(f"patience={config.patience:g} must be 1 to 3600 seconds.")
+        raise ValueError(f"patience must be 1 to 3600 seconds, got {config.patience:g}.")
     if config.severity == 0 or config.severity_depth == 0:
-        raise ValueError("severity=0 changes nothing: for clean runs alone, conditions=[clean].")
-    if config.episodes is not None and config.patience < SETTLED + 1:
+        raise ValueError("severity=0 changes nothing. For clean runs only: conditions=[clean].")
+    if config.episodes is not None and config.patience < SETTLE_TIME + 1:
         raise ValueError(
-            f"patience={config.patience:g} is too little with episodes={config.episodes}: which "
-            f"are chosen is known {SETTLED:g} s after the last environment came. Give "
-            f"{SETTLED + 1:g} or more (the default is 25)."
+            f"patience must be >= {SETTLE_TIME + 1:g} seconds with episodes={config.episodes}, got "
+            f"{config.patience:g}: episodes are chosen {SETTLE_TIME:g} s after the last "
+            "environment connected. The default is 25."
         )
     if config.episodes is not None and config.episodes < 1:
-        raise ValueError(f"episodes={config.episodes} is none: give 1 or more, or null for all.")
+        raise ValueError(f"episodes must be >= 1, or null for all, got {config.episodes}.")
     if config.record is not None:
         make_folder(config.record)
 
 
 def _check_watched(name: str) -> None:
-    """Raise ValueError for what is neither a file nor a variable that is set, and for a folder:
-    nothing of it would be seen to change."""
+    """Raise ValueError if ``name`` is neither a file nor an environment variable that is set.
+
+    A folder is rejected, because changes in it would not be noticed.
+    """
     if os.path.isdir(name):
-        raise ValueError(f"watch={name} is a folder: name the files in it that count.")
+        raise ValueError(
+            f"watch must name files or environment variables, got the folder {name}. Name the "
+            "files in it that the results depend on."
+        )
     if os.path.isfile(name) or name in os.environ:
         return
     folder = Path(name).parent
-    there = [str(path) for path in folder.iterdir()] if folder.is_dir() else []
-    near = difflib.get_close_matches(name, [*os.environ, *there], n=3)
-    hint = f" Did you mean {' or '.join(near)}?" if near else ""
+    files = [str(path) for path in folder.iterdir()] if folder.is_dir() else []
+    similar = difflib.get_close_matches(name, [*os.environ, *files], n=3)
+    hint = f" Did you mean {' or '.join(similar)}?" if similar else ""
     raise ValueError(
-        f"watch={name}: there is neither such a file nor a variable of the environment.{hint} One "
-        f"that is meant to be unset can be empty: {Path(name).name}= mitigate run ..."
+        f"watch={name} must be a file or an environment variable, and neither exists.{hint} If "
+        f"the variable is meant to be unset, set it to empty text: {Path(name).name}= mitigate "
+        "run ..."
     )
 
 
-def name_of(command: Sequence[str]) -> str:
-    """Return a name for a command: of its first script or module (``-m``), or of the program."""
+def command_name(command: Sequence[str]) -> str:
+    """Return the name of a command's first script or module (``-m``), or of the program."""
     scripts = [Path(word).stem for word in command if word.endswith((".py", ".sh", ".bash"))]
     modules = [name for word, name in pairwise(command) if word == "-m"]
     return [*scripts, *modules, Path(command[0]).stem][0]

@@ -1,6 +1,6 @@
-"""What happens in a condition, as lines of a file in its folder; the command line reads them.
+"""The events of a condition: JSON lines in its folder, which the command line reads.
 
-What an agent's process reports of an episode is checked before it is written.
+Reports of an agent's process about an episode are checked before they are written.
 """
 
 from __future__ import annotations
@@ -24,15 +24,15 @@ from mitigate.worlds.measures import path_length
 
 EVENTS, LOCK, DONE = "events.jsonl", "lock", "done.json"
 COUNTS = ("steps", "calls")
-METRES = ("start_distance", "distance")  # infinite where a goal is out of reach
+METRES = ("start_distance", "distance")  # infinite if a goal is out of reach
 FIELDS = ("metrics", *COUNTS, "path", *METRES, "stopped", "how", "farthest")
-HOW = (OVER, RESET, CLOSE)  # an episode may end and count
-# of the metrics, what rows say beside success and SPL
+HOW = (OVER, RESET, CLOSE)  # ends of an episode that count
+# metrics that rows hold in addition to success and SPL
 MEASURES = ("path_length", "geodesic_distance", "distance_to_goal", "ndtw", "collisions")
 
 
-def note(folder: Path, **event: Any) -> None:
-    """Add a line to the events in ``folder``; processes may do so side by side."""
+def write_event(folder: Path, **event: Any) -> None:
+    """Append a line to the events in ``folder``; several processes may do so in parallel."""
     line = json.dumps({"time": round(time.time(), 3), "pid": os.getpid(), **event}) + "\n"
     with open_output(folder / EVENTS, "a", encoding="utf-8") as file:
         fcntl.flock(file, fcntl.LOCK_EX)
@@ -69,12 +69,13 @@ def read_events(folder: Path) -> Iterator[tuple[int, dict[str, Any]]]:
 
 
 def put_aside(folder: Path, kind: str) -> None:
-    """Empty the folder of a condition but for its lock: what an earlier attempt left there, the
-    program's own results too, is put into ``<folder>.<kind>``, in place of what is there.
-    ``done.json`` is deleted first, so that the condition counts as unfinished from then on.
+    """Move the files of an earlier attempt to ``<folder>.<kind>``, which is replaced.
 
-    Raises UnsafePathError, before anything is changed, if ``<folder>.<kind>`` is a link, a FIFO or
-    a file.
+    The lock stays. The program's own results in ``folder`` are moved too. ``done.json`` is deleted
+    first, so that the condition counts as unfinished from then on.
+
+    Raises:
+        UnsafePathError: ``<folder>.<kind>`` is a link, a FIFO or a file; nothing was changed.
     """
     if any(path.name != LOCK for path in folder.iterdir()):
         aside = folder.with_name(f"{folder.name}.{kind}")
@@ -85,90 +86,97 @@ def put_aside(folder: Path, kind: str) -> None:
             os.replace(path, aside / path.name)
 
 
-def name_of(scene: str, episode: str) -> str:
-    """The name of an episode in rows: ids repeat from scene to scene in ObjectNav's files."""
+def episode_name(scene: str, episode: str) -> str:
+    """Return the name of an episode in rows, with its scene: ObjectNav repeats ids per scene."""
     stem = stem_of(scene)
     return f"{stem}/{episode}" if stem else str(episode)
 
 
-def begun(message: Mapping[str, Any]) -> tuple[str, str]:
-    """Scene and id of an episode that begins. Raises ValueError where no row can name it."""
+def read_start(message: Mapping[str, Any]) -> tuple[str, str]:
+    """Return scene and id of an episode that begins.
+
+    Raises:
+        ValueError: The name is not allowed in rows.
+    """
     scene, episode = str(message["scene"]), str(message["id"])
-    wanted = allowed("episode_id", name_of(scene, episode))
-    if wanted:
+    constraint = allowed("episode_id", episode_name(scene, episode))
+    if constraint:
         raise ValueError(
-            f"an episode is called {short(name_of(scene, episode))}, and no row can be: scene file "
-            f"and id must make {wanted}. Number the episodes."
+            "scene file and id of an episode must make a name that rows can hold "
+            f"({constraint}), got {short(episode_name(scene, episode))}. Number the episodes."
         )
     return scene, episode
 
 
-def ended(message: Mapping[str, Any], episode: str) -> dict[str, Any]:
-    """Those of ``FIELDS`` that a message says of how ``episode`` ended. What is NaN, or a path that
-    holds it, is not known, and left out.
+def read_end(message: Mapping[str, Any], episode: str) -> dict[str, Any]:
+    """Return the ``FIELDS`` in the report of how ``episode`` ended.
 
-    Raises ValueError for metrics that are no finite numbers by name (``distance_to_goal`` may be
-    infinite) or that rows refuse, an SPL outside [0, 1], counts and distances that are negative or
-    no numbers, and a path that is no list of points [2] or [3].
+    A distance that is NaN, or a path that contains NaN, is unknown and left out.
+
+    Raises:
+        ValueError: Metrics that are not finite numbers by name (``distance_to_goal`` may be
+            infinite) or that rows reject, an SPL outside [0, 1], counts or distances that are
+            negative or not numbers, or a path that is not a list of points [2] or [3].
     """
     try:
-        return _checked({name: message[name] for name in FIELDS if message.get(name) is not None})
+        return _check_end({name: message[name] for name in FIELDS if message.get(name) is not None})
     except ValueError as error:
         raise ValueError(f"episode {short(episode)} ended with {error}.") from error
 
 
-def _checked(said: dict[str, Any]) -> dict[str, Any]:
-    metrics = said.get("metrics", {})
+def _check_end(end: dict[str, Any]) -> dict[str, Any]:
+    """Return the fields of an end without unknown values. Raises ValueError as `read_end`."""
+    metrics = end.get("metrics", {})
     if not isinstance(metrics, dict):
-        raise ValueError("metrics that are no names and numbers")
+        raise ValueError("metrics that are not numbers by name")
     for name, value in metrics.items():
-        far = name == "distance_to_goal" and value == math.inf
-        if not _number(value) or not (far or math.isfinite(value)):
-            raise _wrong(name, value, "a finite number")
-        if name in MEASURES and not far and (wanted := allowed(name, value)):
-            raise _wrong(name, value, wanted)
+        unreachable = name == "distance_to_goal" and value == math.inf
+        if not _is_number(value) or not (unreachable or math.isfinite(value)):
+            raise _invalid(name, value, "a finite number")
+        if name in MEASURES and not unreachable and (constraint := allowed(name, value)):
+            raise _invalid(name, value, constraint)
     if not 0 <= metrics.get("spl", 0) <= 1:
-        raise _wrong("spl", metrics["spl"], "a number from 0 to 1")
-    said = {n: value for n, value in said.items() if n not in METRES or value == value}
+        raise _invalid("spl", metrics["spl"], "a number from 0 to 1")
+    end = {n: value for n, value in end.items() if n not in METRES or value == value}
     for name in (*COUNTS, *METRES):
-        value = said.get(name, 0)
-        far = name in METRES and value == math.inf
-        if not _number(value) or not (far or 0 <= value <= GREATEST):
-            raise _wrong(name, value, f"a number from 0 to {GREATEST:g}")
-    farthest = said.get("farthest", {})
+        value = end.get(name, 0)
+        unreachable = name in METRES and value == math.inf
+        if not _is_number(value) or not (unreachable or 0 <= value <= GREATEST):
+            raise _invalid(name, value, f"a number from 0 to {GREATEST:g}")
+    farthest = end.get("farthest", {})
     if not isinstance(farthest, dict) or not all(
-        v is None or _number(v) for v in farthest.values()
+        v is None or _is_number(v) for v in farthest.values()
     ):
-        raise _wrong("farthest", farthest, "metres by camera")
-    if said.get("how", OVER) not in HOW:
-        raise _wrong("how", said["how"], " or ".join(HOW))
-    path = _known(said.pop("path", []))
-    return {**said, "path": path} if path else said
+        raise _invalid("farthest", farthest, "metres by camera")
+    if end.get("how", OVER) not in HOW:
+        raise _invalid("how", end["how"], " or ".join(HOW))
+    path = _check_path(end.pop("path", []))
+    return {**end, "path": path} if path else end
 
 
-def _known(path: Any) -> list[list[float]]:
-    """A path that was told; none where a point of it is not known."""
-    if not isinstance(path, list) or not all(map(_point, path)) or len({*map(len, path)}) > 1:
-        raise _wrong("path", path, "a list of points [x, y] or [x, y, z] in metres")
+def _check_path(path: Any) -> list[list[float]]:
+    """Return a reported path; empty if a point of it is unknown."""
+    if not isinstance(path, list) or not all(map(_is_point, path)) or len({*map(len, path)}) > 1:
+        raise _invalid("path", path, "a list of points [x, y] or [x, y, z] in metres")
     if any(x != x for point in path for x in point):
         return []
     if path and not path_length(np.array(path)) <= GREATEST:
-        raise _wrong("path", path, f"one of at most {GREATEST:g} metres")
+        raise _invalid("path", path, f"at most {GREATEST:g} metres long")
     return path
 
 
-def _number(value: Any) -> bool:
+def _is_number(value: Any) -> bool:
     return isinstance(value, float) or (isinstance(value, int) and abs(value) < 1 << 63)
 
 
-def _point(value: Any) -> bool:
+def _is_point(value: Any) -> bool:
     return (
         isinstance(value, list)
         and len(value) in (2, 3)
-        and all(_number(x) and not abs(x) > GREATEST for x in value)
+        and all(_is_number(x) and not abs(x) > GREATEST for x in value)
     )
 
 
-def _wrong(name: str, value: Any, wanted: str) -> ValueError:
-    shown = name if name.isidentifier() and len(name) <= 60 else short(name)
-    return ValueError(f"{shown} = {value!r:.80}: it must be {wanted}")
+def _invalid(name: str, value: Any, constraint: str) -> ValueError:
+    label = name if name.isidentifier() and len(name) <= 60 else short(name)
+    return ValueError(f"{label} = {value!r:.80}: it must be {constraint}")

@@ -1,7 +1,7 @@
-"""What a run consists of: its conditions, and what their results depend on.
+"""The plan of a run: its conditions, and the settings that their results depend on.
 
-By the settings of a condition a finished one is known again. By the labels of a run its rows are
-told from those of another agent.
+The settings decide whether a finished condition is reused. The labels of a run distinguish its rows
+from the rows of another agent.
 """
 
 from __future__ import annotations
@@ -16,10 +16,10 @@ from pathlib import Path
 from typing import Any
 
 from mitigate.bridge.cell import Cell, folder_name
-from mitigate.bridge.condition import Condition, Observer, Subset, Words, tokenizer_of
-from mitigate.bridge.config import RunConfig, check_options, name_of
+from mitigate.bridge.condition import Condition, Observer, Subset, Words, load_tokenizer
+from mitigate.bridge.config import RunConfig, check_options, command_name
 from mitigate.bridge.hook import mitigate_hook
-from mitigate.bridge.recording import Recorder, plain
+from mitigate.bridge.recording import Recorder, path_part
 from mitigate.core.files import sha256
 from mitigate.corruptions import SUITE_VERSION, Corruption
 from mitigate.corruptions.registry import version
@@ -27,7 +27,7 @@ from mitigate.evaluation.conditions import conditions
 from mitigate.guards.guard import Guards
 from mitigate.guards.opening import labels, open_guards
 
-SETTINGS = ("seed", "episodes", "turn", "tokenizer", "missing", "token_length")  # as they are
+SETTINGS = ("seed", "episodes", "turn", "tokenizer", "missing", "token_length")  # options
 
 
 @dataclass(frozen=True)
@@ -37,7 +37,7 @@ class Plan:
     Attributes:
         config: The options.
         command: The words of the user's command.
-        name: Column of the table, before the names of guards.
+        name: Column of the table, without the names of guards.
         out: Output folder.
     """
 
@@ -50,24 +50,24 @@ class Plan:
 def make_plan(config: RunConfig, command: Sequence[str]) -> Plan:
     """Return the plan of a run. Raises as :func:`check_options`."""
     check_options(config, command)
-    name = config.name or name_of(command)
+    name = config.name or command_name(command)
     out = Path(config.out or default_folder(config, name))
     return Plan(config, tuple(command), name, out)
 
 
-def cells(plan: Plan) -> list[Cell]:
-    """All conditions of a run, clean first, then repeated clean runs."""
+def make_cells(plan: Plan) -> list[Cell]:
+    """Return all conditions of a run: clean, repeated clean runs, then the others."""
     config, out = plan.config, plan.out
     clean, *others = conditions(config.names, config.severity, config.severity_depth)
-    words = _words(config)
-    environment = _environment(config)
+    words = _open_words(config)
+    environment = _adapter_environment(config)
     guards = open_guards(config.safeguard, config.restore, log=out / "safeguard.jsonl")
     _check_guards(guards)
     chosen = None if config.episodes is None else Subset(config.episodes, out)
     keep = None if chosen is None else chosen.keep
-    fixed, added = _settings(plan, guards)
-    label = _label(plan, added)
-    made: list[Cell] = []
+    options, agent = _settings(plan, guards)
+    label = _make_label(plan, agent)
+    cells: list[Cell] = []
     for corruption, repeat in [
         *((clean, number) for number in range(config.repeats)),
         *((corruption, 0) for corruption in others),
@@ -82,7 +82,7 @@ def cells(plan: Plan) -> list[Cell]:
             guards=guards,
             observers=observers,
         )
-        made.append(
+        cells.append(
             Cell(
                 name,
                 corruption,
@@ -92,131 +92,142 @@ def cells(plan: Plan) -> list[Cell]:
                 condition,
                 label,
                 config.rule,
-                fixed | met(corruption) | added,
+                options | corruption_settings(corruption) | agent,
                 config.patience,
                 environment,
-                clean=made[0].folder if made else None,
+                clean=cells[0].folder if cells else None,
                 recording=recording,
                 chosen=chosen,
                 count_closed=config.count_closed,
             )
         )
-    return made
+    return cells
 
 
 def _check_guards(guards: Guards) -> None:
     """Raise ValueError for a guard that changes the agent, which runs in another process."""
     if guards.adapts:
         raise ValueError(
-            f"The guard {guards.label} adapts the agent itself, and the agent of another program "
-            "cannot be reached through the bridge: leave restore= out, or name a guard that "
-            "changes frames or instructions only."
+            f"The guard {guards.label} adapts the agent itself, but the bridge cannot change the "
+            "agent of another program. Leave restore= out, or choose a guard that changes frames "
+            "or instructions only."
         )
 
 
-def _words(config: RunConfig) -> Words:
-    tokenizer = None if config.tokenizer is None else tokenizer_of(config.tokenizer)
+def _open_words(config: RunConfig) -> Words:
+    tokenizer = None if config.tokenizer is None else load_tokenizer(config.tokenizer)
     return Words(tokenizer, config.token_length)
 
 
-def _environment(config: RunConfig) -> dict[str, str]:
-    """What the hook must know of adapters. Raises ValueError for what names none."""
+def _adapter_environment(config: RunConfig) -> dict[str, str]:
+    """Return the environment variable that describes the adapters to the hook, if there are any.
+
+    Raises ValueError for an invalid ``adapters=``.
+    """
     if config.adapters is None:
         return {}
     from mitigate.encoders import plain_adapters
 
-    folder, module, place = place_of(config.adapters)
-    kind, _, path = place.partition(".")
+    folder, module, target = split_adapters(config.adapters)
+    kind, _, path = target.partition(".")
     plain_adapters.read(folder)
-    told = {"folder": str(Path(folder).resolve()), "file": str(plain_adapters.__file__)}
-    told |= {"module": module, "class": kind, "path": path}
-    return {mitigate_hook.ADAPTERS: json.dumps(told)}
+    adapters = {"folder": str(Path(folder).resolve()), "file": str(plain_adapters.__file__)}
+    adapters |= {"module": module, "class": kind, "path": path}
+    return {mitigate_hook.ADAPTERS: json.dumps(adapters)}
 
 
 def _settings(plan: Plan, guards: Guards) -> tuple[dict[str, Any], dict[str, Any]]:
-    """Return what every result of a run depends on, beside the corruption: the command and options,
-    and what changes the agent. By these a finished condition is known again."""
+    """Return the settings that every result of a run depends on, without the corruption.
+
+    Returns:
+        The command and options, and the hashes of everything that changes the agent.
+    """
     config = plan.config
-    fixed = {"command": shlex.join(plan.command)}
-    fixed |= {name: vars(config)[name] for name in SETTINGS}
-    guard = "none"  # without a wait for torch
+    options = {"command": shlex.join(plan.command)}
+    options |= {name: vars(config)[name] for name in SETTINGS}
+    safeguard = "none"  # does not load torch
     if config.safeguard != "none":
         from mitigate.guards.text.choices import identity
 
-        guard = identity(config.safeguard)
-    added = {"restore": guards.frames_hash(), "adapters": adapters_of(config)}
-    return fixed, {**added, "safeguard": guard, "watch": watched(config)}
+        safeguard = identity(config.safeguard)
+    agent = {"restore": guards.frames_hash(), "adapters": adapters_label(config)}
+    return options, {**agent, "safeguard": safeguard, "watch": watched_values(config)}
 
 
-def watched(config: RunConfig) -> dict[str, str | None] | None:
-    """What ``watch=`` names: of a file its hash, else an environment variable; None without."""
+def watched_values(config: RunConfig) -> dict[str, str | None] | None:
+    """Return the hashes of files and values of variables in ``watch=``; None without ``watch=``."""
     names = [str(name) for name in config.watch or ()]
     if not names:
         return None
     return {n: sha256(n)[:12] if os.path.isfile(n) else os.environ.get(n) for n in names}
 
 
-def met(corruption: Corruption) -> dict[str, Any]:
-    """What of a condition's result is by its corruption."""
-    own = version(corruption.name)
-    return {"suite": SUITE_VERSION, "severity": corruption.severity, **own}
+def corruption_settings(corruption: Corruption) -> dict[str, Any]:
+    """Return the settings of a condition that come from its corruption."""
+    versions = version(corruption.name)
+    return {"suite": SUITE_VERSION, "severity": corruption.severity, **versions}
 
 
-def _text(watch: dict[str, str | None] | None) -> str | None:
-    return None if watch is None else json.dumps(watch, sort_keys=True)
+def _as_text(values: dict[str, str | None] | None) -> str | None:
+    return None if values is None else json.dumps(values, sort_keys=True)
 
 
-def _label(plan: Plan, added: dict[str, Any]) -> dict[str, Any]:
-    """What the rows say of the agent: with a restorer, a safeguard, adapters or what is watched it
-    is another one, by their hashes."""
+def _make_label(plan: Plan, agent: dict[str, Any]) -> dict[str, Any]:
+    """Return the entries of all rows of a run.
+
+    The hash of the agent includes the restorer, safeguard, adapters and watched values.
+    """
     config = plan.config
     sha = _digest(shlex.join(plan.command))
-    guard = None if added["safeguard"] == "none" else added["safeguard"]
-    for part in (added["restore"], guard, added["adapters"], _text(added["watch"])):
+    safeguard = None if agent["safeguard"] == "none" else agent["safeguard"]
+    for part in (agent["restore"], safeguard, agent["adapters"], _as_text(agent["watch"])):
         sha = sha if part is None else _digest(f"{sha} {part}")
     column = _column(config, plan.name)
     return {"agent": sha, "name": column, "split": config.split, "seed": config.seed}
 
 
 def default_folder(config: RunConfig, name: str) -> Path:
-    """The folder of a run that names none: other for another agent, severity, episodes."""
-    parts = [part for part in (adapters_of(config), _text(watched(config))) if part]
-    own = "-".join([_column(config, name), *(_digest(part)[:6] for part in parts)])
-    own += f"-s{config.severity:g}" + (f"-e{config.episodes}" if config.episodes else "")
-    return Path(config.runs) / "run" / plain(own)
+    """Return the folder of a run without ``out=``; it depends on agent, severity and episodes."""
+    parts = [part for part in (adapters_label(config), _as_text(watched_values(config))) if part]
+    folder = "-".join([_column(config, name), *(_digest(part)[:6] for part in parts)])
+    folder += f"-s{config.severity:g}" + (f"-e{config.episodes}" if config.episodes else "")
+    return Path(config.runs) / "run" / path_part(folder)
 
 
-def adapters_of(config: RunConfig) -> str | None:
-    """The hash of the adapters and where they go; None without."""
+def adapters_label(config: RunConfig) -> str | None:
+    """Return the hash of the adapters and the module that gets them; None without adapters."""
     if config.adapters is None:
         return None
     from mitigate.encoders.plain_adapters import WEIGHTS
 
-    folder, module, place = place_of(config.adapters)
+    folder, module, target = split_adapters(config.adapters)
     file = Path(folder) / WEIGHTS
     if not file.is_file():
         raise FileNotFoundError(
-            f"adapters={config.adapters}: there is no {file}. Name the agent/ folder of a training "
-            "by the recipe encoder."
+            f"adapters={config.adapters} must name a folder with {WEIGHTS}, but {file} does not "
+            "exist. Name the agent/ folder of a training with the recipe encoder."
         )
-    return f"{sha256(file)[:12]}:{module}:{place}"
+    return f"{sha256(file)[:12]}:{module}:{target}"
 
 
-def place_of(adapters: str) -> tuple[str, str, str]:
-    """Folder, module and place (Class.attribute) of ``adapters=``. Raises ValueError for what names
-    none."""
-    folder, module, place = (*str(adapters).rsplit(":", 2), "", "")[:3]
-    if not place.partition(".")[0] or not module:
+def split_adapters(adapters: str) -> tuple[str, str, str]:
+    """Return folder, module and target (Class.attribute) of ``adapters=``.
+
+    Raises:
+        ValueError: The module or the class is missing.
+    """
+    folder, module, target = (*str(adapters).rsplit(":", 2), "", "")[:3]
+    if not target.partition(".")[0] or not module:
         raise ValueError(
             f"adapters={adapters} must be FOLDER:package.module:Class.attribute, where the "
             "attribute of the class's instances is the encoder that the adapters were trained for: "
             "runs/clip/agent:vlnce_baselines.models.encoders.resnet_encoders:CLIPEncoder.model"
         )
-    return folder, module, place
+    return folder, module, target
 
 
 def _column(config: RunConfig, name: str) -> str:
-    """The column of the table: the command's name, and the labels of guards."""
+    """Return the column of the table: the command's name, and the labels of guards."""
     parts = [name, *labels(config.safeguard, config.restore)]
     parts += ["adapters"] if config.adapters is not None else []
     return "+".join(parts)

@@ -9,8 +9,8 @@ when its parent ends, its place among the children. The supervisor is a child su
 Linux): such orphans become its children, so that it knows every descendant. It stays until the last
 one is gone. When PARENT, which started it, is gone or it receives SIGTERM, it ends all of them.
 
-Between the supervisor and the program stands a fork of the supervisor that starts the program and
-waits for it. A program that kills its parent kills this fork, and the supervisor lives on.
+A fork of the supervisor starts the program and waits for it. A program that kills its parent kills
+this fork, and the supervisor stays alive.
 
 It writes JSON lines to the file descriptor PIPE: first ``{"pid": N}`` or ``{"error": TEXT}``, and
 ``{"status": N}`` when the program ends. A bare Python runs it, so this file imports the standard
@@ -35,14 +35,14 @@ PR_SET_CHILD_SUBREAPER = 36  # linux/prctl.h
 GRACE = 3.0  # seconds between SIGTERM and SIGKILL (heuristic)
 KILL_LIMIT = 10.0  # seconds in which killed processes must be gone (heuristic)
 PAUSE = 0.05  # seconds between two checks
-LONGEST = 200  # characters of a process's command line in a message
+MAX_LINE = 200  # characters of a process's command line in a message
 
 
 class Command:
     """Starts a command under a supervisor, and ends all of its processes.
 
     A process belongs to the command if it descends from it, or if its environment holds
-    ``marker``: in a container of its own, or after its supervisor was killed.
+    ``marker``: it may run in a container, or outlive its supervisor.
 
     Args:
         words: The command and its arguments.
@@ -58,13 +58,13 @@ class Command:
         self, words: Sequence[str], log: IO[str], environment: Mapping[str, str], marker: str
     ) -> None:
         self.marker = marker.encode()
-        self._ended: int | None = None
+        self._status: int | None = None
         self._text = b""
-        self._news, writer = os.pipe()
-        own = [sys.executable, "-I", "-S", __file__, str(os.getpid()), str(writer)]
+        self._pipe, writer = os.pipe()
+        supervisor = [sys.executable, "-I", "-S", __file__, str(os.getpid()), str(writer)]
         try:
             self.process = subprocess.Popen(
-                [*own, *words],
+                [*supervisor, *words],
                 stdin=subprocess.DEVNULL,
                 stdout=log,
                 stderr=subprocess.STDOUT,
@@ -78,40 +78,40 @@ class Command:
         if "pid" not in started:
             self.end(lambda: False)
             raise OSError(0, started.get("error") or "its supervisor was killed")
-        os.set_blocking(self._news, False)
+        os.set_blocking(self._pipe, False)
 
     def status(self) -> int | None:
-        """Return the exit status of the command, None while it runs; that of a signal is below 0.
+        """Return the exit status of the command, None while it runs; below 0 for a signal.
 
         Processes that it started may still run.
         """
-        if self._ended is None:
-            gone = self.process.poll()  # before: what it told is then in the pipe
-            news = self._next()
-            if "status" in news:
-                self._ended = int(news["status"])
-            elif gone is not None:  # somebody killed the supervisor
-                self._ended = gone or 1
-        return self._ended
+        if self._status is None:
+            supervisor_status = self.process.poll()  # first, so that its last line is in the pipe
+            line = self._next()
+            if "status" in line:
+                self._status = int(line["status"])
+            elif supervisor_status is not None:  # the supervisor was killed
+                self._status = supervisor_status or 1
+        return self._status
 
     def running(self) -> list[int]:
-        """Return the pids of all processes of the command that run."""
-        below = descendants(self.process.pid)
-        return sorted({*below, *_marked(self.marker)} - {self.process.pid, os.getpid()})
+        """Return the pids of all running processes of the command."""
+        known = descendants(self.process.pid)
+        return sorted({*known, *_marked(self.marker)} - {self.process.pid, os.getpid()})
 
     def left(self) -> list[str]:
-        """Wait up to ``GRACE`` for the processes of a command that ended; describe those left."""
+        """Wait up to ``GRACE`` for the processes of an ended command; describe the remaining."""
         until = time.monotonic() + GRACE
         while (pids := self.running()) and time.monotonic() < until:
             time.sleep(PAUSE)
-        return [_described(pid) for pid in pids]
+        return [_describe(pid) for pid in pids]
 
     def end(self, connected: Callable[[], bool]) -> None:
-        """End all processes: by SIGTERM, and by SIGKILL what is left after ``GRACE``.
+        """End all processes with SIGTERM, and after ``GRACE`` with SIGKILL.
 
         Args:
-            connected: Whether any of them is connected to the bridge. If none is and the command
-                ended, SIGKILL follows at once.
+            connected: Returns whether any of them is connected to the bridge. If none is and the
+                command ended, SIGKILL follows at once.
         """
         until = time.monotonic() + GRACE
         signal_all(self.running(), signal.SIGTERM)
@@ -129,26 +129,26 @@ class Command:
             self.process.kill()
             self.process.wait()
         self.status()
-        if self._news >= 0:
-            os.close(self._news)
-            self._news = -1
+        if self._pipe >= 0:
+            os.close(self._pipe)
+            self._pipe = -1
 
     def _next(self) -> dict[str, Any]:
         """Return the next line of the supervisor, empty if there is none (yet)."""
-        while self._news >= 0 and b"\n" not in self._text:
+        while self._pipe >= 0 and b"\n" not in self._text:
             try:
-                read = os.read(self._news, 4096)
+                data = os.read(self._pipe, 4096)
             except BlockingIOError:
                 break
-            if not read:
+            if not data:
                 break
-            self._text += read
-        line, ended, rest = self._text.partition(b"\n")
-        if not ended:
+            self._text += data
+        line, line_break, rest = self._text.partition(b"\n")
+        if not line_break:
             return {}
         self._text = rest
-        news: dict[str, Any] = json.loads(line)
-        return news
+        message: dict[str, Any] = json.loads(line)
+        return message
 
 
 def _marked(marker: bytes) -> list[int]:
@@ -162,21 +162,21 @@ def _marked(marker: bytes) -> list[int]:
     return [pid for pid in pids if pid in known and known[pid][1]]
 
 
-def _described(pid: int) -> str:
+def _describe(pid: int) -> str:
     """Return a process's command line, printable and short, with its pid."""
     words = b""
     with suppress(OSError):
         words = Path(f"/proc/{pid}/cmdline").read_bytes().strip(b"\0").replace(b"\0", b" ")
     text = "".join(c if c.isprintable() else " " for c in words.decode(errors="replace"))
-    short = text if len(text) <= LONGEST else f"{text[:LONGEST]}..."
+    short = text if len(text) <= MAX_LINE else f"{text[:MAX_LINE]}..."
     return f"{short or 'a process'} (pid {pid})"
 
 
 def processes() -> dict[int, tuple[int, bool]]:
     """Return {pid: (parent, whether it runs)} of all processes; a zombie does not run."""
     if not os.path.isdir("/proc/self"):
-        return _processes_of_ps()
-    found = {}
+        return _list_with_ps()
+    states = {}
     for name in os.listdir("/proc"):
         if name.isdigit():
             with (
@@ -185,37 +185,40 @@ def processes() -> dict[int, tuple[int, bool]]:
             ):
                 text = file.read()
                 fields = text[text.rindex(b")") + 2 :].split()  # proc_pid_stat(5), from field 3
-                zombie = fields[0] in (b"Z", b"X") and int(fields[17]) <= 1  # of one thread
-                found[int(name)] = (int(fields[1]), not zombie)
-    return found
+                # with more threads the process runs, though its main thread ended
+                zombie = fields[0] in (b"Z", b"X") and int(fields[17]) <= 1
+                states[int(name)] = (int(fields[1]), not zombie)
+    return states
 
 
-def _processes_of_ps() -> dict[int, tuple[int, bool]]:
-    found = {}
-    listed = subprocess.run(["ps", "-A", "-o", "pid=,ppid=,stat="], stdout=subprocess.PIPE)
-    for line in listed.stdout.split(b"\n"):
+def _list_with_ps() -> dict[int, tuple[int, bool]]:
+    """Return the same as :func:`processes` on systems without /proc."""
+    states = {}
+    process = subprocess.run(["ps", "-A", "-o", "pid=,ppid=,stat="], stdout=subprocess.PIPE)
+    for line in process.stdout.split(b"\n"):
         fields = line.split()
         if len(fields) == 3:
-            found[int(fields[0])] = (int(fields[1]), not fields[2].startswith(b"Z"))
-    return found
+            states[int(fields[0])] = (int(fields[1]), not fields[2].startswith(b"Z"))
+    return states
 
 
 def descendants(root: int) -> list[int]:
-    """Return the pids of the running descendants of the process ``root``, without itself."""
+    """Return the pids of the running descendants of the process ``root``, without ``root``."""
     known = processes()
     children: dict[int, list[int]] = {}
     for pid, (parent, _) in known.items():
         children.setdefault(parent, []).append(pid)
-    found, left = [], [root]
-    while left:
-        below = children.get(left.pop(), [])
-        left += below
-        found += [pid for pid in below if known[pid][1]]
-    return found
+    running: list[int] = []
+    parents = [root]
+    while parents:
+        next_pids = children.get(parents.pop(), [])
+        parents += next_pids
+        running += [pid for pid in next_pids if known[pid][1]]
+    return running
 
 
 def signal_all(pids: Iterable[int], number: int) -> None:
-    """Send a signal to processes; those that are gone or of another user are passed over."""
+    """Send a signal to processes; ignore those that are gone or belong to another user."""
     for pid in pids:
         with suppress(ProcessLookupError, PermissionError):
             os.kill(pid, number)
@@ -223,10 +226,13 @@ def signal_all(pids: Iterable[int], number: int) -> None:
 
 def main() -> None:
     """Run the program that the command line names."""
-    parent, pipe, program = int(sys.argv[1]), int(sys.argv[2]), sys.argv[3:]
+    parent = int(sys.argv[1])
+    pipe = int(sys.argv[2])
+    program = sys.argv[3:]
     ending: list[bool] = []
     for number in (signal.SIGINT, signal.SIGHUP):
-        signal.signal(number, lambda *_: None)  # the parent decides; the program gets the default
+        # ignored here, because the parent decides; a handler is not inherited by the program
+        signal.signal(number, lambda *_: None)
     signal.signal(signal.SIGTERM, lambda *_: ending.append(True))
     child = os.fork()
     if child == 0:
@@ -234,7 +240,7 @@ def main() -> None:
     if sys.platform == "linux":
         ctypes.CDLL(None).prctl(PR_SET_CHILD_SUBREAPER, 1)
     while _reap(child, pipe):
-        if os.getppid() != parent:  # it was killed, and another may start the program again
+        if os.getppid() != parent:  # killed: end at once, because the run may be repeated
             return _end(child, pipe, 0.0)
         if ending:
             return _end(child, pipe, GRACE)
@@ -242,23 +248,25 @@ def main() -> None:
 
 
 def _start(program: Sequence[str], pipe: int) -> None:
-    """Start the program, wait for its end and report its status; SIGTERM ends the program only."""
+    """Start the program, wait for its end and report its status, also after SIGTERM."""
     try:
         child = subprocess.Popen(program, start_new_session=True)
     except OSError as error:
-        return _tell(pipe, error=error.strerror)
-    _tell(pipe, pid=child.pid)
-    _tell(pipe, status=child.wait())
+        return _report(pipe, error=error.strerror)
+    _report(pipe, pid=child.pid)
+    _report(pipe, status=child.wait())
 
 
-def _tell(pipe: int, **news: object) -> None:
+def _report(pipe: int, **message: object) -> None:
     with suppress(OSError):  # the parent is gone
-        os.write(pipe, (json.dumps(news) + "\n").encode())
+        os.write(pipe, (json.dumps(message) + "\n").encode())
 
 
 def _reap(child: int, pipe: int) -> bool:
-    """Reap what ended; return whether any process is left. Report the status of ``child``, which
-    waits for the program, if somebody killed it."""
+    """Reap ended processes; return whether any process is left.
+
+    Report the status of ``child``, which waits for the program, if it was killed.
+    """
     while True:
         try:
             pid, status = os.waitpid(-1, os.WNOHANG)
@@ -267,11 +275,11 @@ def _reap(child: int, pipe: int) -> bool:
         if pid == 0:
             return True
         if pid == child and status:
-            _tell(pipe, status=os.waitstatus_to_exitcode(status))
+            _report(pipe, status=os.waitstatus_to_exitcode(status))
 
 
 def _end(child: int, pipe: int, grace: float) -> None:
-    """End all descendants: by SIGTERM, and what is left after ``grace`` seconds by SIGKILL."""
+    """End all descendants with SIGTERM, and after ``grace`` seconds with SIGKILL."""
     began = time.monotonic()
     signal_all(descendants(os.getpid()), signal.SIGTERM)
     while _reap(child, pipe) and time.monotonic() < began + grace + KILL_LIMIT:

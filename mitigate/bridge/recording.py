@@ -1,9 +1,9 @@
-"""Writes what an agent saw, heard and did: clean frames, poses, actions and measures as files.
+"""Writes recordings of an agent: clean frames, instructions, poses, actions and measures as files.
 
-A recording is a folder ``<scene>/<episode>/`` for each episode, with ``<camera>/000000.png`` for
-each call (RGB, or depth as 16-bit millimetres), ``cameras.json``, ``episode.json``,
-``steps.jsonl`` (a line a call) and ``end.json``. ``mitigate corrupt``, ``mitigate replay`` and
-``recipe=encoder`` (env=frames) read it.
+A recording has a folder ``<scene>/<episode>/`` per episode, with ``<camera>/000000.png`` per call
+(RGB, or depth as 16-bit millimetres), ``cameras.json``, ``episode.json``, ``steps.jsonl`` (a line
+per call) and ``end.json``. ``mitigate corrupt``, ``mitigate replay`` and ``recipe=encoder``
+(env=frames) read it.
 """
 
 from __future__ import annotations
@@ -32,105 +32,117 @@ from mitigate.corruptions.frame_files import counts
 from mitigate.evaluation.rows import stem_of
 
 CAMERAS = "cameras.json"
-LONGEST = 150  # characters of a name that are kept in a path (ours; a file name has 255 bytes)
-UNIT = 0.001  # metres of a count of 16-bit depth
-_PLAIN = re.compile(r"[^A-Za-z0-9._-]+")
+MAX_NAME = 150  # characters of a name in a path (heuristic; a file name has <= 255 bytes)
+UNIT = 0.001  # metres per count of 16-bit depth
+_NOT_ALLOWED = re.compile(r"[^A-Za-z0-9._-]+")
 
 
-def plain(name: str) -> str:
-    """Return ``name`` as a part of a path: what comes from outside names no other folder."""
-    return _PLAIN.sub("-", name).lstrip(".") or "unnamed"
+def path_part(name: str) -> str:
+    """Return ``name`` as a part of a path that stays inside its folder."""
+    return _NOT_ALLOWED.sub("-", name).lstrip(".") or "unnamed"
 
 
-def part(name: str) -> str:
-    """Return ``name`` as a part of a path that no other name has: plain, and if it is changed by
-    that, with a hash behind it."""
-    made = plain(name)[:LONGEST]
-    if made == name or not name:
-        return made
-    return f"{made}-{hashlib.sha256(name.encode('utf-8', 'replace')).hexdigest()[:8]}"
+def unique_part(name: str) -> str:
+    """Return a part of a path that no other name has: with a hash if ``name`` had to be changed."""
+    part = path_part(name)[:MAX_NAME]
+    if part == name or not name:
+        return part
+    return f"{part}-{hashlib.sha256(name.encode('utf-8', 'replace')).hexdigest()[:8]}"
 
 
 @dataclass
 class Recorder(Observer):
-    """Writes what passes into ``folder``; of an episode that comes again the one that ended last
-    stays: until its end it lies in a folder beside."""
+    """Writes frames, poses and results to ``folder``.
+
+    An episode is written to a temporary folder until it ends, then it replaces an earlier recording
+    of that episode.
+
+    Attributes:
+        folder: The folder of the condition.
+        root: The folder that the user named, if it is above ``folder``.
+        output_root: Checks that the folder is not replaced; only during an episode.
+        draft: The temporary folder of the current episode.
+        target: The final folder of the current episode.
+        cameras: The cameras of the current episode.
+    """
 
     folder: Path
-    root: Path | None = None  # the folder that the user named, if it is one above
-    watched: output.Root | None = None  # during an episode, in the process that writes it
-    here: Path | None = None
-    place: Path | None = None  # where it is put at its end
-    cameras: dict[str, Any] = field(default_factory=dict)  # of the episode
+    root: Path | None = None
+    output_root: output.Root | None = None
+    draft: Path | None = None
+    target: Path | None = None
+    cameras: dict[str, Any] = field(default_factory=dict)
     kinds: ClassVar[tuple[str, ...]] = (RGB, DEPTH)
 
-    def episode(self, told: Mapping[str, Any]) -> None:
-        """Begin the folder of an episode."""
-        place = self.folder / part(stem_of(str(told["scene"]))) / part(str(told["id"]))
+    def episode(self, message: Mapping[str, Any]) -> None:
+        """Create the temporary folder of an episode."""
+        scene = unique_part(stem_of(str(message["scene"])))
+        target = self.folder / scene / unique_part(str(message["id"]))
         self.leave()
-        self.watched = output.register(make_folder(self.root or self.folder))
-        here = place.with_name(f".{place.name}.{os.getpid()}.tmp")
-        output.delete_folder(here)
-        output.make_checked(here)
-        self.here, self.place, self.cameras = here, place, {}
-        note = {"unit": UNIT, "depth": "16-bit PNG", "frames": "clean"}
+        self.output_root = output.register(make_folder(self.root or self.folder))
+        draft = target.with_name(f".{target.name}.{os.getpid()}.tmp")
+        output.delete_folder(draft)
+        output.make_checked(draft)
+        self.draft, self.target, self.cameras = draft, target, {}
+        header = {"unit": UNIT, "depth": "16-bit PNG", "frames": "clean"}
         with atomic_text(self.folder / RECORDING) as file:
-            json.dump(note, file)
-        said = ("scene", "id", "text", "tokens", "language", "category")
-        with atomic_text(self.here / "episode.json") as file:
-            json.dump({name: told.get(name) for name in said}, file)
-        write_bytes(self.here / "steps.jsonl", b"")
+            json.dump(header, file)
+        fields = ("scene", "id", "text", "tokens", "language", "category")
+        with atomic_text(self.draft / "episode.json") as file:
+            json.dump({name: message.get(name) for name in fields}, file)
+        write_bytes(self.draft / "steps.jsonl", b"")
 
     def frame(
-        self, told: Mapping[str, Any], rig: Rig, memory: Any, offsets: Mapping[str, int]
+        self, message: Mapping[str, Any], rig: Rig, memory: Any, offsets: Mapping[str, int]
     ) -> None:
-        """Write the clean frames of a call, and where the agent was."""
-        if self.here is None:
+        """Write the clean frames of a call and the agent's pose."""
+        if self.draft is None:
             return
-        seen = {part(name): camera for name, camera in rig.told().items()}
-        if not seen.keys() <= self.cameras.keys():
-            self.cameras = seen | self.cameras
-            with atomic_text(self.here / CAMERAS) as file:
+        cameras = {unique_part(name): camera for name, camera in rig.describe().items()}
+        if not cameras.keys() <= self.cameras.keys():
+            self.cameras = cameras | self.cameras
+            with atomic_text(self.draft / CAMERAS) as file:
                 json.dump(self.cameras, file)
         for camera in rig.cameras:
             frame = camera.read(memory, offsets)
-            write_bytes(
-                self.here / part(camera.name) / f"{int(told['call']):06d}.png", png(camera, frame)
-            )
-        line = {name: told.get(name) for name in ("call", "position", "heading")}
-        with open_output(self.here / "steps.jsonl", "a", encoding="utf-8") as file:
+            file_name = f"{int(message['call']):06d}.png"
+            write_bytes(self.draft / unique_part(camera.name) / file_name, png(camera, frame))
+        line = {name: message.get(name) for name in ("call", "position", "heading")}
+        with open_output(self.draft / "steps.jsonl", "a", encoding="utf-8") as file:
             file.write(json.dumps(line) + "\n")
 
-    def end(self, told: Mapping[str, Any]) -> None:
-        """Write how the episode went, and put it in its place."""
-        if self.here is not None and self.place is not None:
-            said = {name: value for name, value in told.items() if name != "kind"}
-            with atomic_text(self.here / "end.json") as file:
-                json.dump(said, file)
-            output.delete_folder(self.place)  # of an earlier run, or a loop's second
-            output.forget(self.here)
-            os.replace(self.here, self.place)
+    def end(self, message: Mapping[str, Any]) -> None:
+        """Write the result of the episode and move its folder to the final place."""
+        if self.draft is not None and self.target is not None:
+            result = {name: value for name, value in message.items() if name != "kind"}
+            with atomic_text(self.draft / "end.json") as file:
+                json.dump(result, file)
+            output.delete_folder(self.target)  # of an earlier run, or an earlier end in this one
+            output.forget(self.draft)
+            os.replace(self.draft, self.target)
         self._close()
 
     def leave(self) -> None:
-        """Delete what there is of an episode that did not end."""
-        if self.here is not None:
-            with suppress(output.UnsafePathError, output.FolderLostError):  # not ours any more
-                output.delete_folder(self.here)
+        """Delete the files of an episode that did not end."""
+        if self.draft is not None:
+            # the folder was replaced and is not this run's any more
+            with suppress(output.UnsafePathError, output.FolderLostError):
+                output.delete_folder(self.draft)
         self._close()
 
     def _close(self) -> None:
-        self.here = self.place = None
-        if self.watched is not None:
-            output.unregister(self.watched)
-            self.watched = None
+        self.draft = self.target = None
+        if self.output_root is not None:
+            output.unregister(self.output_root)
+            self.output_root = None
 
 
 def delete_drafts(folder: Path) -> None:
-    """Delete what processes that are no more left in the recording ``folder`` of a condition.
+    """Delete the drafts that ended processes left in the recording ``folder`` of a condition.
 
-    Raises UnsafePathError, before anything is deleted, if ``folder``, a scene or an episode in it
-    is a link to a folder, a FIFO or a device.
+    Raises:
+        UnsafePathError: ``folder``, a scene or an episode in it is a link to a folder, a FIFO or a
+            device; nothing was deleted.
     """
     with output.output_folder(folder.parent):
         output.check(folder / RECORDING)
@@ -141,13 +153,15 @@ def delete_drafts(folder: Path) -> None:
 
 
 def is_whole(folder: Path, ends: Iterable[Mapping[str, Any]]) -> bool:
-    """Whether ``folder`` is a recording that holds all episodes that ended as ``ends`` tell."""
-    places = [folder / part(stem_of(e["scene"])) / part(e["episode"]) for e in ends]
-    return all((place / "end.json").is_file() for place in places)
+    """Return whether the recording ``folder`` holds all episodes in ``ends``."""
+    folders = [
+        folder / unique_part(stem_of(end["scene"])) / unique_part(end["episode"]) for end in ends
+    ]
+    return all((episode / "end.json").is_file() for episode in folders)
 
 
 def png(camera: Camera, frame: np.ndarray) -> bytes:
-    """Return a frame as a PNG file: RGB, or depth in millimetres, 0 where there is none."""
+    """Return a frame as a PNG file: RGB, or depth in millimetres with holes as 0."""
     if camera.kind == RGB:
         picture = frame[..., ::-1]
     else:

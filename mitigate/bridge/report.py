@@ -1,5 +1,7 @@
-"""Rows, table and pictures of a run's folder: of all that is finished there, whatever suite or
-severity was asked for last."""
+"""Rows, table and figures of a run's folder.
+
+They contain all finished conditions of the folder, not only those of the last call.
+"""
 
 from __future__ import annotations
 
@@ -13,7 +15,7 @@ import numpy as np
 
 from mitigate.bridge.cell import Cell, folder_name, missing_entries, read_done
 from mitigate.bridge.events import DONE
-from mitigate.bridge.plan import met
+from mitigate.bridge.plan import corruption_settings
 from mitigate.bridge.results import OWN
 from mitigate.core.files import write_bytes, write_text
 from mitigate.core.names import counted
@@ -22,123 +24,149 @@ from mitigate.evaluation import bootstrap, report, rows
 from mitigate.evaluation.rows import ROWS, Row
 from mitigate.worlds.measures import RULES
 
-LABELS = ("agent", "seed", "split")  # of rows.IDENTITY; all rows of a run have the same
+LABELS = ("agent", "seed", "split")  # of rows.IDENTITY; equal in all rows of a run
 
 
-def write_report(made: Sequence[Cell], out: Path) -> None:
-    """Write ``rows.jsonl``, the table and its pictures, and print the table."""
-    done = [cell for cell in made if cell.is_done()]
-    others, left_out = earlier(made, out)
+def write_report(cells: Sequence[Cell], out: Path) -> None:
+    """Write ``rows.jsonl``, the table and its figures, and print the table.
+
+    Args:
+        cells: The conditions of this call, clean first.
+        out: The run's folder.
+
+    Raises:
+        ValueError: No episode has a result, or rows would be lost.
+    """
+    done = [cell for cell in cells if cell.is_done()]
+    others, left_out = find_earlier(cells, out)
     if others:
         print(f"also in the table, measured before: {', '.join(c.name for c in others)}")
-    cells = [*done, *others]
-    found = [row for cell in cells if cell.repeat == 0 for row in cell.rows()]
-    if not found:
+    finished = [*done, *others]
+    new_rows = [row for cell in finished if cell.repeat == 0 for row in cell.rows()]
+    if not new_rows:
         raise ValueError(
-            f"No episode told how it went, so there is no table. {out} holds what was seen."
+            f"No episode reported a result, so there is no table. The reports are in {out}."
         )
-    _write_rows(out / ROWS, found, left_out)
-    rule = made[0].rule
-    written = report.write(found, out, first=OWN if rule is None else str(RULES[rule]), least=2)
-    print((out / "table.md").read_text("utf-8"), *(f"wrote {w}" for w in written), sep="\n")
-    again = [cell.rows() for cell in cells if cell.corruption.name == "clean"]
-    if len(again) > 1:
-        told = randomness(again)
-        print(told, flush=True)
-        write_text(out / "randomness.md", told)
+    _write_rows(out / ROWS, new_rows, left_out)
+    rule = cells[0].rule
+    first = OWN if rule is None else str(RULES[rule])
+    paths = report.write(new_rows, out, first=first, least=2)
+    print((out / "table.md").read_text("utf-8"), *(f"wrote {path}" for path in paths), sep="\n")
+    clean_runs = [cell.rows() for cell in finished if cell.corruption.name == "clean"]
+    if len(clean_runs) > 1:
+        text = describe_randomness(clean_runs)
+        print(text, flush=True)
+        write_text(out / "randomness.md", text)
 
 
-def _write_rows(file: Path, found: Sequence[Row], left_out: Sequence[str]) -> None:
-    """Write the rows of a run; none of the file's may be lost without a word.
+def _write_rows(file: Path, new_rows: Sequence[Row], left_out: Sequence[str]) -> None:
+    """Write the rows of a run; rows of the existing file are never lost silently.
 
     Rows of conditions that are ``left_out`` of the table, and rows of another agent, seed or split,
     are kept in a copy of the file.
 
     Raises:
-        ValueError: The file holds rows of another condition or episode that ``found`` lacks. It
-            stays as it is.
+        ValueError: The file holds rows of another condition or episode that are not in
+            ``new_rows``. The file is not changed.
     """
     before = rows.read(file) if file.exists() else []
-    now, labels = {_measured(row) for row in found}, {_label(row) for row in found}
-    lost = [row for row in before if _measured(row) not in now]
-    foreign = [row for row in before if _label(row) not in labels and _measured(row) in now]
-    names = Counter(_folder_of(row) for row in lost)
+    now = {_condition_and_episode(row) for row in new_rows}
+    labels = {_label(row) for row in new_rows}
+    lost = [row for row in before if _condition_and_episode(row) not in now]
+    foreign = [
+        row for row in before if _label(row) not in labels and _condition_and_episode(row) in now
+    ]
+    names = Counter(_folder_name(row) for row in lost)
     unexplained = [name for name in names if name not in left_out]
     if unexplained:
         raise ValueError(
-            f"{file} holds {counted(len(before), 'row')}, and {len(lost)} of them are of episodes "
-            f"that no finished condition gives any more ({', '.join(unexplained)}). The file was "
-            "left as it is. Run these conditions again, or move the file to another folder and run "
-            "the same command again."
+            f"{file} holds {counted(len(before), 'row')}, and {len(lost)} of them belong to "
+            f"episodes that are in no finished condition any more ({', '.join(unexplained)}). The "
+            "file was not changed. Run these conditions again, or move the file to another folder "
+            "and run the same command again."
         )
-    told = list(names)
+    removed = list(names)
     if foreign:
-        own = zip(*labels, strict=True)
-        theirs = zip(*(_label(row) for row in foreign), strict=True)
-        other = [n for n, a, b in zip(LABELS, own, theirs, strict=True) if not {*b} <= {*a}]
-        told += [f"another {name}" for name in other]
-    if told:
-        copy = _free(file.with_name(f"{file.name}.before"))
+        new_values = zip(*labels, strict=True)
+        old_values = zip(*(_label(row) for row in foreign), strict=True)
+        changed = [
+            name
+            for name, new, old in zip(LABELS, new_values, old_values, strict=True)
+            if not {*old} <= {*new}
+        ]
+        removed += [f"another {name}" for name in changed]
+    if removed:
+        copy = _unused(file.with_name(f"{file.name}.before"))
         write_bytes(copy, file.read_bytes())
-        print(f"The rows of {', '.join(told)} are now in {copy} alone.", flush=True)
-    rows.write(file, found, fewer=True)  # another rule= gives other rows of the same episodes
+        print(f"The rows of {', '.join(removed)} are now only in {copy}.", flush=True)
+    rows.write(file, new_rows, fewer=True)  # another rule= gives other rows of the same episodes
 
 
-def _measured(row: Row) -> tuple[str, float, str]:
-    """What a row is of, by whatever rule: its condition and its episode."""
+def _condition_and_episode(row: Row) -> tuple[str, float, str]:
+    """Return condition and episode of a row, which do not depend on the success rule."""
     return str(row["corruption"]), float(row["severity"]), str(row["episode_id"])
 
 
 def _label(row: Row) -> tuple[object, ...]:
-    """The agent, seed and split of a row, by which it is told from those of another run."""
+    """Return agent, seed and split of a row, which distinguish runs."""
     return tuple(row[name] for name in LABELS)
 
 
-def _folder_of(row: Row) -> str:
-    """The name of the condition's folder that a row comes from."""
+def _folder_name(row: Row) -> str:
+    """Return the name of the condition's folder that a row comes from."""
     return folder_name(str(row["corruption"]), float(row["severity"]))
 
 
-def _free(path: Path) -> Path:
-    """Return ``path``, or the first of ``path``2, ``path``3, ... that does not exist."""
-    number, free = 1, path
-    while free.exists():
+def _unused(path: Path) -> Path:
+    """Return the first of ``path``, ``path``2, ``path``3, ... that does not exist."""
+    number, unused = 1, path
+    while unused.exists():
         number += 1
-        free = path.with_name(f"{path.name}{number}")
-    return free
+        unused = path.with_name(f"{path.name}{number}")
+    return unused
 
 
-def earlier(made: Sequence[Cell], out: Path) -> tuple[list[Cell], list[str]]:
-    """Return the finished conditions in ``out`` that are none of ``made``, but of the same agent
-    and settings, and the names of the others, which are left out; print why they are."""
-    known, found, left_out = {cell.name for cell in made}, [], []
+def find_earlier(cells: Sequence[Cell], out: Path) -> tuple[list[Cell], list[str]]:
+    """Return finished conditions in ``out`` that are not in ``cells``.
+
+    Returns:
+        The conditions with the same agent and settings, and the names of the others. The reason why
+        these are left out of the table is printed.
+    """
+    known = {cell.name for cell in cells}
+    earlier: list[Cell] = []
+    left_out: list[str] = []
     for file in sorted((out / "conditions").glob(f"*/{DONE}")):
         if file.parent.name in known:
             continue
-        cell, reason = _cell(made[0], file), "by an older version, or of a corruption that is gone"
+        cell = _read_cell(cells[0], file)
+        reason = "by an older version, or with a corruption that no longer exists"
         if cell is not None:
             reason = ", ".join(f"another {name}" for name in cell.changed_settings())
-            reason = reason or cell.reason_to_repeat() or cell.unjudged()
+            reason = reason or cell.reason_to_repeat() or cell.rule_problem()
         if cell is None or reason:
             name = file.parent.name
             print(f"{name}: measured before, but not in the table: {reason}", flush=True)
             left_out.append(name)
         else:
-            found.append(cell)
-    return found, left_out
+            earlier.append(cell)
+    return earlier, left_out
 
 
-def _cell(clean: Cell, file: Path) -> Cell | None:
-    """The condition that a ``done.json`` tells of, like the ``clean`` one; None if it does not.
-    Raises ValueError if it, or its events, are damaged."""
-    held = read_done(file.parent) or {}
-    if missing_entries(held):
+def _read_cell(clean: Cell, file: Path) -> Cell | None:
+    """Return the condition of a ``done.json``, with the options of ``clean``.
+
+    None if an older version wrote it or its corruption does not exist. Raises ValueError if the
+    file or its events are damaged.
+    """
+    entries = read_done(file.parent) or {}
+    if missing_entries(entries):
         return None
     try:
-        severity = float(held["severity"])
-        corruption = Corruption(str(held["condition"]), severity) if severity else CLEAN
-        repeat = int(held["repeat"])
-    except (ValueError, KeyError, TypeError):  # of an older version, or of a corruption now gone
+        severity = float(entries["severity"])
+        corruption = Corruption(str(entries["condition"]), severity) if severity else CLEAN
+        repeat = int(entries["repeat"])
+    except (ValueError, KeyError, TypeError):  # an older version, or a corruption that was removed
         return None
     folder = file.parent
     return replace(
@@ -147,30 +175,31 @@ def _cell(clean: Cell, file: Path) -> Cell | None:
         corruption=corruption,
         repeat=repeat,
         folder=folder,
-        settings=clean.settings | met(corruption),
+        settings=clean.settings | corruption_settings(corruption),
         clean=clean.folder,
     )
 
 
-def randomness(runs: Sequence[Sequence[Row]]) -> str:
-    """Return a Markdown paragraph on repeated clean runs: their SR, the share of episodes that end
-    otherwise in another run, and the SR difference of the first two with its interval.
+def describe_randomness(runs: Sequence[Sequence[Row]]) -> str:
+    """Return a Markdown paragraph on repeated clean runs.
 
-    Only episodes that all runs hold count, by the rule of the first row.
+    It holds their SR, the share of episodes that end differently in another run, and the SR
+    difference of the first two runs with its interval. Only episodes of all runs count, by the rule
+    of the first row.
     """
     rule = runs[0][0]["rule"]
-    held = [{r["episode_id"]: r["success"] for r in run if r["rule"] == rule} for run in runs]
-    names = sorted(set.intersection(*(set(run) for run in held)))
+    successes = [{r["episode_id"]: r["success"] for r in run if r["rule"] == rule} for run in runs]
+    names = sorted(set.intersection(*(set(run) for run in successes)))
     if not names:
         return "The repeated clean runs have no episode in common.\n"
-    won = np.array([[run[name] for name in names] for run in held])
-    flips = np.mean([np.mean(a != b) for a, b in combinations(won, 2)])
-    moved = bootstrap.mean(won[1] - won[0])
-    rates = ", ".join(f"{100 * rate:.1f}" for rate in won.mean(axis=1))
+    outcomes = np.array([[run[name] for name in names] for run in successes])
+    flips = np.mean([np.mean(a != b) for a, b in combinations(outcomes, 2)])
+    difference = bootstrap.mean(outcomes[1] - outcomes[0])
+    rates = ", ".join(f"{100 * rate:.1f}" for rate in outcomes.mean(axis=1))
     return (
-        f"## The agent's own randomness\n\n{len(runs)} clean runs of the same {len(names)} "
-        f"episodes: SR {rates}. From one run to another {100 * flips:.1f} % of the episodes end "
-        f"otherwise; second minus first {100 * moved.value:+.1f} "
-        f"{moved.interval('+.1f', 100)}. A difference between two conditions "
-        "that is not larger says nothing.\n"
+        f"## Randomness of the agent\n\n{len(runs)} clean runs of the same {len(names)} "
+        f"episodes: SR {rates}. Between two runs {100 * flips:.1f} % of the episodes end "
+        f"differently; second minus first {100 * difference.value:+.1f} "
+        f"{difference.interval('+.1f', 100)}. A difference between two conditions "
+        "that is not larger may be random.\n"
     )

@@ -1,4 +1,4 @@
-"""What a command's processes told of their episodes, as result rows."""
+"""Result rows from what the processes of a command reported of their episodes."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from mitigate.bridge.events import MEASURES, damaged, name_of, read_events
+from mitigate.bridge.events import MEASURES, damaged, episode_name, read_events
 from mitigate.bridge.hook.mitigate_hook import CLOSE, OVER
 from mitigate.corruptions import SUITE_VERSION, Corruption
 from mitigate.corruptions.registry import version
@@ -19,35 +19,43 @@ from mitigate.evaluation.rows import Row
 from mitigate.worlds.measures import RULES, Rule, path_length, spl
 
 OWN = "own: the agent's Success measure"
-NEAR = 1.01  # metres: depth that reads no more may be normalised (ours)
-NORMALISED = "is it normalised? Say so: normalize_depth, min_depth, max_depth"
+NORMALISED_LIMIT = 1.01  # metres: depth that never exceeds it may be normalised (heuristic)
+NORMALISED_HINT = "is it normalised? If so, set normalize_depth, min_depth and max_depth"
 CUT_OFF = (
-    "its Env was closed before the episode was over, and other Envs walked beside it, as where an "
-    "evaluator cuts them off: choose by episodes= and let it walk all, or, if the program ends "
-    "its episodes so, count_closed=true"
+    "its Env was closed before the episode was over while other Envs ran in parallel, as when an "
+    "evaluator stops after a number of episodes. Choose episodes by episodes= and let the program "
+    "run all of them. If the program ends its episodes this way, set count_closed=true"
 )
-COMMON = {"words": RULES["etpnav"], "objects": RULES["wmnav"]}  # need no STOP: some never say it
+COMMON = {"words": RULES["etpnav"], "objects": RULES["wmnav"]}  # need no STOP: some never report it
 
 
 @dataclass
-class Told:
-    """What was told under one condition, so far.
+class Reports:
+    """What the processes of a command reported under one condition so far.
 
-    ends: of each episode, by its name, the first that was over, or else the first; again: episodes
-    that ended once more; dropped: left in the middle, and why, where that is known. beside: whether
-    an episode ended while another was on. cameras: of all calls, as first described;
-    first: what the first episode says; languages: of the episodes' words, by name. refused: what
-    the server could not do, and why processes stopped themselves, in words. adapted: encoders that
-    got adapters. connected: environments that are there now.
+    Attributes:
+        hellos: The first message of each connection, with versions of Python and libraries.
+        cameras: The cameras of all calls, as first described.
+        ends: By episode name, its first end that was over, or else its first end.
+        repeated: How many episodes ended once more.
+        dropped: Episodes that were left unfinished, with the reason if it is known.
+        parallel: Whether an episode ended while another one was running.
+        problems: What the server could not do, and why processes stopped themselves.
+        first: The event of the first episode.
+        languages: Language of the instruction, by episode name.
+        adapted: Encoders that got adapters.
+        connected: How many environments are connected now.
+        announced: How many episodes the program is to run.
+        ended: How many episodes ended.
     """
 
     hellos: list[dict[str, Any]] = field(default_factory=list)
     cameras: list[dict[str, Any]] = field(default_factory=list)
     ends: dict[str, dict[str, Any]] = field(default_factory=dict)
-    again: int = 0
+    repeated: int = 0
     dropped: dict[str, str] = field(default_factory=dict)
-    beside: bool = False
-    refused: list[str] = field(default_factory=list)
+    parallel: bool = False
+    problems: list[str] = field(default_factory=list)
     first: dict[str, Any] = field(default_factory=dict)
     languages: dict[str, str | None] = field(default_factory=dict)
     adapted: list[str] = field(default_factory=list)
@@ -57,88 +65,94 @@ class Told:
 
     @property
     def lost(self) -> list[str]:
-        """Episodes that were left in the middle, and did not end later."""
+        """Episodes that were left unfinished and did not end later."""
         return sorted(self.dropped.keys() - self.ends.keys())
 
     def announce(self, event: dict[str, Any]) -> None:
-        """Take how many episodes a program is to run: of its own list, by ``wanted``."""
+        """Record how many episodes ``wanted`` returned to the program."""
         if event.get("wanted") is not None:
             self.announced = max(self.announced, int(event["wanted"]))
 
     def end(self, name: str, event: dict[str, Any]) -> None:
-        """Take how an episode ended: what was over is in place of a try that was given up."""
-        held = self.ends.get(name)
-        if held is None or (_how(event) == OVER != _how(held)):
+        """Record the end of an episode; an end that was over replaces an attempt that was not."""
+        before = self.ends.get(name)
+        if before is None or (_how(event) == OVER != _how(before)):
             self.ends[name] = event
         elif _how(event) != CLOSE:
-            self.again += 1
-        if held is not None and held["scene"] != event["scene"]:
-            self.refused.append(
-                f"two scenes have one file name, {held['scene']} and {event['scene']}: "
-                "episodes are told apart by it. Rename the scenes' files."
+            self.repeated += 1
+        if before is not None and before["scene"] != event["scene"]:
+            self.problems.append(
+                f"scene files must have different names, got {before['scene']} and "
+                f"{event['scene']}: episodes are named after them. Rename the files."
             )
 
-    def without_closed(self) -> Told:
-        """Drop episodes whose Env was closed before they were over, if Envs walked side by side: an
-        evaluator cuts them off so. An Env that walks alone ends its episode by a close."""
-        if self.beside:
+    def without_closed(self) -> Reports:
+        """Drop episodes whose Env was closed before they were over, if Envs ran in parallel.
+
+        An evaluator cuts them off in this way. A single Env ends its episode by a close.
+        """
+        if self.parallel:
             closed = [name for name, end in self.ends.items() if _how(end) == CLOSE]
             self.dropped.update(dict.fromkeys(closed, CUT_OFF))
             self.ends = {n: end for n, end in self.ends.items() if n not in closed}
         return self
 
 
-def read(folder: Path, count_closed: bool = False) -> Told:
-    """Return what the events in ``folder`` tell; a last line without its end is left out.
+def read(folder: Path, count_closed: bool = False) -> Reports:
+    """Return the reports in the events of ``folder``; an incomplete last line is left out.
 
-    count_closed: episodes whose Env was closed before they were over count as they stood, though
-    Envs walked side by side.
+    Args:
+        folder: The folder of a condition.
+        count_closed: Whether episodes count whose Env was closed before they were over while other
+            Envs ran in parallel.
 
     Raises:
         ValueError: Another line is damaged. The message names the file, the line and what to do.
     """
-    told, began = Told(), dict[int, int]()
+    reports, began = Reports(), dict[int, int]()
     for number, event in read_events(folder):
         try:
-            _take(told, event, began)
+            _add(reports, event, began)
         except (KeyError, TypeError, AttributeError, ValueError) as error:
-            raise damaged(folder, f"line {number} is no event of this version") from error
-    return told if count_closed else told.without_closed()
+            raise damaged(folder, f"line {number} is not an event of this version") from error
+    return reports if count_closed else reports.without_closed()
 
 
-def _take(told: Told, event: dict[str, Any], began: dict[int, int]) -> None:
-    """Add one event to what was told.
+def _add(reports: Reports, event: dict[str, Any], began: dict[int, int]) -> None:
+    """Add one event to the reports.
 
     Args:
-        told: What the events before it told.
+        reports: The reports of the events before it.
         event: One line of the events.
         began: Per connection, how many episodes had ended when its episode began.
     """
-    kind, name = event["event"], name_of(event.get("scene", ""), event.get("episode", ""))
+    kind = event["event"]
+    name = episode_name(event.get("scene", ""), event.get("episode", ""))
     if kind == "hello":
-        told.hellos.append(event)
-        told.connected += 1
+        reports.hellos.append(event)
+        reports.connected += 1
     elif kind == "bye":
-        told.connected -= 1
+        reports.connected -= 1
     elif kind == "spec":
-        known = {camera.get("name") for camera in told.cameras}
-        told.cameras += [c for c in event["cameras"] if c.get("name") not in known]
+        known = {camera.get("name") for camera in reports.cameras}
+        reports.cameras += [c for c in event["cameras"] if c.get("name") not in known]
     elif kind == "dataset":
-        told.announce(event)
+        reports.announce(event)
     elif kind == "episode":
-        told.first = told.first or event
-        told.languages[name] = event.get("language")
-        began[event.get("pid", 0)] = told.ended
+        reports.first = reports.first or event
+        reports.languages[name] = event.get("language")
+        began[event.get("pid", 0)] = reports.ended
     elif kind == "end":
-        told.end(name, event)
-        told.beside = told.beside or began.get(event.get("pid", 0), told.ended) < told.ended
-        told.ended += 1
+        reports.end(name, event)
+        ended_before = began.get(event.get("pid", 0), reports.ended)
+        reports.parallel = reports.parallel or ended_before < reports.ended
+        reports.ended += 1
     elif kind == "dropped":
-        told.dropped[name] = str(event.get("fault") or "")
+        reports.dropped[name] = str(event.get("fault") or "")
     elif kind == "adapted":
-        told.adapted.append(event["module"])
+        reports.adapted.append(event["module"])
     elif kind in ("refused", "stopped"):
-        told.refused.append(event["problem"])
+        reports.problems.append(event["problem"])
 
 
 def _how(end: dict[str, Any]) -> str:
@@ -146,20 +160,25 @@ def _how(end: dict[str, Any]) -> str:
 
 
 def rows(
-    told: Told,
+    reports: Reports,
     corruption: Corruption,
     label: dict[str, Any],
     rule: str | None,
-    clean: Told | None = None,
+    clean: Reports | None = None,
 ) -> list[Row]:
-    """Return the rows of one condition, by the agent's own rule of success and by a common one.
+    """Return the rows of one condition: by the agent's own success rule and by a common one.
 
-    label: what all rows say ("agent", "name", "split", "seed"). rule: of ``RULES``, in place of the
-    agent's Success measure. An agent without either has the common one alone. clean: what was told
-    of the clean condition, if that is another.
+    Args:
+        reports: The reports of the condition.
+        corruption: Its corruption.
+        label: Entries of all rows ("agent", "name", "split", "seed").
+        rule: A name in ``RULES`` that replaces the agent's Success measure. An agent without
+            either gets rows by the common rule only.
+        clean: The reports of the clean condition, if ``reports`` are of another.
     """
-    found, rules = [], _rules(told, rule, clean)
-    for name, end in told.ends.items():
+    result = []
+    rules = _choose_rules(reports, rule, clean)
+    for name, end in reports.ends.items():
         row = {
             "agent": label["agent"],
             "name": label["name"],
@@ -171,111 +190,119 @@ def rows(
             "suite": SUITE_VERSION,
             **version(corruption.name),
         }
-        for own in _by_rules(end, rule, rules):
-            found.append(row | own | _measures(end))
-    return found
+        for judged in _judge(end, rule, rules):
+            result.append(row | judged | _measures(end))
+    return result
 
 
-def _common(told: Told) -> Rule:
-    routes = told.first.get("text") and not told.first.get("category")
-    return COMMON["words" if routes else "objects"]
+def _common_rule(reports: Reports) -> Rule:
+    follows_text = reports.first.get("text") and not reports.first.get("category")
+    return COMMON["words" if follows_text else "objects"]
 
 
-def _rules(told: Told, rule: str | None, clean: Told | None = None) -> list[Rule]:
-    """The rule that is asked for, and the common one. This is left out where it cannot judge an
-    episode that the agent's own rule judges, and where nobody tells a distance, here or in clean:
-    it would be of some episodes alone."""
-    common, ends = _common(told), [*told.ends.values()]
-    left = any(_unknown(end, common) for end in ends if "success" in end.get("metrics", {}))
-    tell = [*ends, *(clean.ends.values() if clean is not None else ())]
-    far = all(_metres(end) is None for end in tell)
-    return ([RULES[rule]] if rule else []) + ([] if left or far else [common])
+def _choose_rules(reports: Reports, rule: str | None, clean: Reports | None = None) -> list[Rule]:
+    """Return the requested rule and the common rule.
+
+    The common rule is left out if it would judge only some episodes: if it cannot judge an episode
+    that the agent's own rule judges, or if neither this condition nor clean reports a distance.
+    """
+    common = _common_rule(reports)
+    ends = [*reports.ends.values()]
+    partial = any(_missing(end, common) for end in ends if "success" in end.get("metrics", {}))
+    all_ends = [*ends, *(clean.ends.values() if clean is not None else ())]
+    no_distance = all(_goal_distance(end) is None for end in all_ends)
+    requested = [RULES[rule]] if rule else []
+    return requested + ([] if partial or no_distance else [common])
 
 
-def _by_rules(end: dict[str, Any], rule: str | None, rules: Iterable[Rule]) -> Iterable[Row]:
-    """Success and SPL of one episode by each rule that can be applied, each once."""
+def _judge(end: dict[str, Any], rule: str | None, rules: Iterable[Rule]) -> Iterable[Row]:
+    """Return success and SPL of one episode by each rule that can judge it, each rule once."""
     metrics, judged = end.get("metrics", {}), {}
     if rule is None and "success" in metrics:
-        won = float(metrics["success"]) > 0
+        success = float(metrics["success"]) > 0
         judged[OWN] = {
-            "success": float(won),
-            "spl": metrics["spl"] if "spl" in metrics else _spl(end, won),
+            "success": float(success),
+            "spl": metrics["spl"] if "spl" in metrics else _spl(end, success),
         }
     for known in rules:
-        if not _unknown(end, known):
-            metres = _metres(end)
-            won = metres is not None and known.met(metres, bool(end.get("stopped")))
-            judged[str(known)] = {"success": float(won), "spl": _spl(end, won)}
+        if not _missing(end, known):
+            metres = _goal_distance(end)
+            success = metres is not None and known.met(metres, bool(end.get("stopped")))
+            judged[str(known)] = {"success": float(success), "spl": _spl(end, success)}
     return [{"rule": name, **values} for name, values in judged.items()]
 
 
-def _metres(end: dict[str, Any]) -> Any:
-    """Metres to the goal; None where nobody knows."""
+def _goal_distance(end: dict[str, Any]) -> Any:
+    """Return metres to the goal; None if unknown."""
     return end.get("distance", end.get("metrics", {}).get("distance_to_goal"))
 
 
-def _unknown(end: dict[str, Any], rule: Rule) -> str:
-    """What an episode does not tell and a rule needs to judge it: an argument of ``finish``. A
-    failure that was told without a distance is one by every rule, and so is one too far away,
-    with STOP or without."""
-    metres = _metres(end)
+def _missing(end: dict[str, Any], rule: Rule) -> str:
+    """Return the argument of ``finish`` that a rule needs and the episode lacks, or "".
+
+    A reported failure without a distance is a failure by every rule, and so is an episode that
+    ends too far away, with STOP or without.
+    """
+    metres = _goal_distance(end)
     if metres is None:
         return "" if end.get("metrics", {}).get("success", 1) <= 0 else "distance_to_goal"
     return "stopped" if end.get("stopped") is None and rule.stop and rule.met(metres, True) else ""
 
 
-def unjudged(told: Told, rule: str) -> dict[str, int]:
-    """What a rule needs to judge episodes and they do not tell, and how many; empty if it can judge
-    all."""
-    found = Counter(_unknown(end, RULES[rule]) for end in told.ends.values())
-    return {what: count for what, count in found.most_common() if what}
+def count_missing(reports: Reports, rule: str) -> dict[str, int]:
+    """Return how many episodes lack each argument that ``rule`` needs; empty if none does."""
+    counts = Counter(_missing(end, RULES[rule]) for end in reports.ends.values())
+    return {name: count for name, count in counts.most_common() if name}
 
 
-def _spl(end: dict[str, Any], won: bool) -> float:
-    """SPL by the path that was told, or the agent's own; where it tells neither of a success, 1, as
-    if the way had been the shortest (:func:`without_path` counts these)."""
-    start, length = _start(end), _length(end)
-    if not won:
+def _spl(end: dict[str, Any], success: bool) -> float:
+    """Return SPL from the reported path, or the agent's own SPL.
+
+    A success without either has SPL 1, as if it had taken the shortest path
+    (:func:`count_without_path` counts these).
+    """
+    start, length = _shortest_path(end), _path_length(end)
+    if not success:
         return 0.0
     if start is None or length is None:
-        return float(end["metrics"]["spl"]) if _tells_spl(end) else 1.0
-    return spl(won, float(start), length)
+        return float(end["metrics"]["spl"]) if _has_spl(end) else 1.0
+    return spl(success, float(start), length)
 
 
-def _tells_spl(end: dict[str, Any]) -> bool:
-    """Whether the agent's own SPL is that of a success."""
+def _has_spl(end: dict[str, Any]) -> bool:
+    """Return whether the agent reported an SPL of a success."""
     metrics = end.get("metrics", {})
     return "spl" in metrics and metrics.get("success", 0) > 0
 
 
-def without_path(told: Told, rule: str | None) -> dict[str, int]:
-    """By rule: how many successes tell neither SPL nor the start and path to compute it by."""
-    found: Counter[str] = Counter()
-    rules = _rules(told, rule)
-    for end in told.ends.values():
-        if not _tells_spl(end) and (_start(end) is None or _length(end) is None):
-            judged = _by_rules(end, rule, rules)
-            found.update(str(row["rule"]) for row in judged if row["success"])
-    return dict(found)
+def count_without_path(reports: Reports, rule: str | None) -> dict[str, int]:
+    """Return by rule how many successes have neither an SPL nor a start and path to compute it."""
+    counts: Counter[str] = Counter()
+    rules = _choose_rules(reports, rule)
+    for end in reports.ends.values():
+        if not _has_spl(end) and (_shortest_path(end) is None or _path_length(end) is None):
+            judged = _judge(end, rule, rules)
+            counts.update(str(row["rule"]) for row in judged if row["success"])
+    return dict(counts)
 
 
-def near(told: Told) -> list[str]:
-    """Cameras whose depth is told as metres and read no more than ``NEAR`` in any episode."""
-    most: dict[str, float] = {}
-    for end in told.ends.values():
+def maybe_normalised(reports: Reports) -> list[str]:
+    """Return the cameras whose depth counts as metres and never exceeds ``NORMALISED_LIMIT``."""
+    maximum: dict[str, float] = {}
+    for end in reports.ends.values():
         for name, metres in end.get("farthest", {}).items():
-            most[name] = max(most.get(name, 0.0), metres or 0.0)
-    metric = [c["name"] for c in told.cameras if not c.get("normalize_depth")]
-    return [name for name in metric if 0 < most.get(name, 0.0) <= NEAR]
+            maximum[name] = max(maximum.get(name, 0.0), metres or 0.0)
+    metric = [c["name"] for c in reports.cameras if not c.get("normalize_depth")]
+    return [name for name in metric if 0 < maximum.get(name, 0.0) <= NORMALISED_LIMIT]
 
 
-def _start(end: dict[str, Any]) -> float | None:
-    """Metres of the shortest way; None where it is not known or there is none."""
+def _shortest_path(end: dict[str, Any]) -> float | None:
+    """Return metres of the shortest path; None if it is unknown or the goal is out of reach."""
     metres = end.get("start_distance", end.get("metrics", {}).get("geodesic_distance"))
     return metres if metres is not None and math.isfinite(metres) else None
 
 
-def _length(end: dict[str, Any]) -> float | None:
+def _path_length(end: dict[str, Any]) -> float | None:
     path = end.get("path") or []
     if len(path) > 0:
         return path_length(np.array(path))
@@ -283,13 +310,14 @@ def _length(end: dict[str, Any]) -> float | None:
 
 
 def _measures(end: dict[str, Any]) -> dict[str, Any]:
+    """Return the entries of a row that do not depend on a rule."""
     metrics = end.get("metrics", {})
-    found: dict[str, Any] = {name: metrics[name] for name in MEASURES if name in metrics}
-    known = {
-        "path_length": _length(end),
+    measures: dict[str, Any] = {name: metrics[name] for name in MEASURES if name in metrics}
+    recorded = {
+        "path_length": _path_length(end),
         "geodesic_distance": end.get("start_distance"),
         "distance_to_goal": end.get("distance"),
     }
-    found = {name: value for name, value in known.items() if value is not None} | found
-    found = {name: value for name, value in found.items() if math.isfinite(value)}
-    return found | {"decisions": end.get("calls", 0), "steps": end.get("steps", 0)}
+    measures = {name: value for name, value in recorded.items() if value is not None} | measures
+    measures = {name: value for name, value in measures.items() if math.isfinite(value)}
+    return measures | {"decisions": end.get("calls", 0), "steps": end.get("steps", 0)}

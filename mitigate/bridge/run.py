@@ -1,8 +1,8 @@
 """Run a program of another project under the suite: ``mitigate run suite=full -- COMMAND``.
 
-The command is run once for each condition, unchanged, clean first; what its processes see and hear
-is corrupted on the way (``hook/mitigate_hook.py``). The rows, and the table with PRS, go to the
-output folder; the same command again goes on where it stopped.
+The command runs unchanged, once per condition, clean first. The frames and instructions of its
+processes are corrupted (``hook/mitigate_hook.py``). The rows and the table with PRS go to the
+output folder. The same command again skips finished conditions.
 """
 
 from __future__ import annotations
@@ -23,10 +23,10 @@ import hydra
 from omegaconf import DictConfig
 
 from mitigate.bridge.attempt import Attempt
-from mitigate.bridge.cell import Cell, check_finished, files_of
-from mitigate.bridge.condition import NO_TOKENIZER, applicable, untold
+from mitigate.bridge.cell import Cell, check_finished, hash_files
+from mitigate.bridge.condition import NO_TOKENIZER, needs_tokenizer, why_not_applicable
 from mitigate.bridge.config import RunConfig
-from mitigate.bridge.plan import Plan, cells, make_plan
+from mitigate.bridge.plan import Plan, make_cells, make_plan
 from mitigate.cluster.launcher import chosen, results
 from mitigate.core import conf
 from mitigate.core.output import output_folder
@@ -35,124 +35,142 @@ from mitigate.core.signals import raise_ended
 from mitigate.corruptions.language.text import is_english, passed_through
 from mitigate.guards.text.addresses import check_arguments
 
-EVERY = 15.0  # seconds between two lines of progress (ours)
-PAUSE = 0.2  # seconds between two looks at a command that runs
-REASON = 100  # characters of why a condition failed, before it is told in full (ours)
+PROGRESS_INTERVAL = 15.0  # seconds between two lines of progress (heuristic)
+PAUSE = 0.2  # seconds between two polls of a running command
+MAX_REASON = 100  # characters of a problem in a line of progress; the end prints all (heuristic)
 
 
 def split_command(arguments: Sequence[str]) -> tuple[list[str], list[str]]:
-    """Return the options before ``--`` and the command behind it."""
+    """Return the options before ``--`` and the command after it."""
     if "--" not in arguments:
         return list(arguments), []
-    at = list(arguments).index("--")
-    return list(arguments[:at]), list(arguments[at + 1 :])
+    index = list(arguments).index("--")
+    return list(arguments[:index]), list(arguments[index + 1 :])
 
 
 def run(config: RunConfig, command: Sequence[str]) -> Path:
     """Run ``command`` under all conditions; return the output folder.
 
-    Raises ValueError for options that make no sense and, behind all others, for conditions whose
-    command failed.
+    Args:
+        config: The options.
+        command: The words of the user's command.
+
+    Raises:
+        ValueError: An option is invalid; or the command failed under some conditions, after all
+            others were measured.
     """
     plan = make_plan(config, command)
-    made = cells(plan)
+    cells = make_cells(plan)
     check_finished(plan.out)
     with output_folder(plan.out):
-        return _measure(plan, made)
+        return _measure(plan, cells)
 
 
-def _measure(plan: Plan, made: Sequence[Cell]) -> Path:
-    """Run the cells ``made`` and write the report; raise as :func:`run` does."""
+def _measure(plan: Plan, cells: Sequence[Cell]) -> Path:
+    """Run the cells and write the report. Raises as :func:`run`."""
     from mitigate.bridge.report import write_report
 
     out = plan.out
-    clean = made[0]
-    many = "1 condition" if len(made) == 1 else f"{len(made)} conditions"
+    clean = cells[0]
+    count = "1 condition" if len(cells) == 1 else f"{len(cells)} conditions"
     print(
-        f"run: {shlex.join(plan.command)}\nrun: {many} at severity {plan.config.severity:g}, "
+        f"run: {shlex.join(plan.command)}\nrun: {count} at severity {plan.config.severity:g}, "
         f"rows in {out}",
         flush=True,
     )
-    known = _warn_of_changes(made, out)
-    before = clean.is_done()
+    known = _warn_changed_files(cells, out)
+    was_done = clean.is_done()
     problems = _run_all(plan, [clean])
     if problems:
         raise ValueError("\n".join(problems))
     _check_rule([clean])
-    strange = clean.depth_warning()
-    if strange:
-        print(strange, flush=True)  # before hours of the others, and at the end
-    fitting, unheard = _fitting(made)
-    if unheard:
-        problems = [f"{', '.join(unheard)}: {NO_TOKENIZER}"]
-        print(*problems, flush=True)  # before hours of the others
-    _check_rule(fitting)
-    nothing = before and all(cell.is_done() for cell in fitting)
-    if nothing:
+    depth_warning = clean.depth_warning()
+    if depth_warning:
+        print(depth_warning, flush=True)  # now, before hours of measuring, and at the end
+    applicable, untokenized = _select_applicable(cells)
+    if untokenized:
+        problems = [f"{', '.join(untokenized)}: {NO_TOKENIZER}"]
+        print(*problems, flush=True)  # now, before hours of measuring
+    _check_rule(applicable)
+    all_done = was_done and all(cell.is_done() for cell in applicable)
+    if all_done:
         print(
-            f"run: nothing was left to run, all is in {out}; to measure anew, name another folder "
-            "(out=...), or remove this one.",
+            f"run: nothing was left to run, all results are in {out}. To measure again, choose "
+            "another folder (out=...), or remove this one.",
             flush=True,
         )
-    problems += _run_all(plan, fitting)
-    _warn_of_changes([clean, *fitting], out, known if nothing else ())
-    problems += _vanished(fitting, problems)
-    if not clean.is_done():  # a condition showed that it is not whole
+    problems += _run_all(plan, applicable)
+    _warn_changed_files([clean, *applicable], out, known if all_done else ())
+    problems += _describe_removed(applicable, problems)
+    if not clean.is_done():  # another condition had episodes that clean lacks
         raise ValueError("\n".join(problems) or f"{clean.name}: {clean.reason_to_repeat()}")
     try:
-        write_report([clean, *fitting], out)
-    except ValueError as error:  # conditions that failed are told first
+        write_report([clean, *applicable], out)
+    except ValueError as error:  # failed conditions come first
         raise ValueError("\n".join([*problems, str(error)])) from error
-    if strange:
-        print(strange, flush=True)
+    if depth_warning:
+        print(depth_warning, flush=True)
     if problems:
-        raise ValueError("Some conditions failed; run again to go on.\n" + "\n".join(problems))
+        raise ValueError(
+            "Some conditions failed. Run the same command again to continue.\n"
+            + "\n".join(problems)
+        )
     return out
 
 
-def _vanished(made: Sequence[Cell], problems: Sequence[str]) -> list[str]:
-    """Name the conditions that did not fail and whose result is missing all the same."""
+def _describe_removed(cells: Sequence[Cell], problems: Sequence[str]) -> list[str]:
+    """Return a problem for each condition that did not fail and whose result is missing."""
     failed = {problem.partition(":")[0] for problem in problems}
     return [
         f"{cell.name}: its result in {cell.folder} was removed or replaced by another program."
-        for cell in made
+        for cell in cells
         if cell.name not in failed and cell.entries() is None
     ]
 
 
-def _check_rule(made: Sequence[Cell]) -> None:
-    """Raise ValueError for a condition that was measured before and that ``rule=`` cannot judge."""
-    for cell in made:
-        if cell.is_done() and (lacking := cell.unjudged()):
+def _check_rule(cells: Sequence[Cell]) -> None:
+    """Raise ValueError if ``rule=`` cannot judge a condition that was measured before."""
+    for cell in cells:
+        if cell.is_done() and (problem := cell.rule_problem()):
             raise ValueError(
-                f"{cell.name}: {lacking} It was measured before; out=... names another folder."
+                f"{cell.name}: {problem} It was measured before. To measure it again, choose "
+                "another folder (out=...)."
             )
 
 
-def _fitting(made: Sequence[Cell]) -> tuple[list[Cell], list[str]]:
-    """The conditions beside clean that reach the agent, and the names of those whose words it would
-    not hear; say which do not, and which words are in other languages."""
-    fitting, unheard, told = [], [], made[0].told()
-    for cell in made[1:]:
-        reason = applicable(cell.corruption, told)
+def _select_applicable(cells: Sequence[Cell]) -> tuple[list[Cell], list[str]]:
+    """Return the conditions, without clean, that can reach the agent.
+
+    Prints the others, and how many instructions are in other languages.
+
+    Returns:
+        The conditions, and the names of conditions that need a tokenizer and have none.
+    """
+    applicable: list[Cell] = []
+    untokenized: list[str] = []
+    reports = cells[0].reports()
+    for cell in cells[1:]:
+        reason = why_not_applicable(cell.corruption, reports)
         if reason:
             print(f"{cell.name}: not applicable, {reason}", flush=True)
-        elif untold(cell.corruption, told, cell.condition.words):
-            unheard.append(cell.name)
+        elif needs_tokenizer(cell.corruption, reports, cell.condition.words):
+            untokenized.append(cell.name)
         else:
-            fitting.append(cell)
-    others = Counter(str(spoken) for spoken in told.languages.values() if not is_english(spoken))
-    if others and any("instruction" in cell.corruption.modalities for cell in fitting):
+            applicable.append(cell)
+    others = Counter(str(name) for name in reports.languages.values() if not is_english(name))
+    if others and any("instruction" in cell.corruption.modalities for cell in applicable):
         print(f"run: {passed_through(others)}", flush=True)
-    return fitting, unheard
+    return applicable, untokenized
 
 
-def _warn_of_changes(made: Sequence[Cell], out: Path, known: Sequence[str] = ()) -> list[str]:
-    """Say which files of the command, but those that are ``known``, are others than conditions were
-    finished with; return these."""
+def _warn_changed_files(cells: Sequence[Cell], out: Path, known: Sequence[str] = ()) -> list[str]:
+    """Print and return the files of the command that changed since conditions finished.
+
+    Files in ``known`` are returned but not printed.
+    """
     changed: dict[str, list[str]] = {}
-    now = files_of(made[0].command)
-    for cell in made:
+    now = hash_files(cells[0].command)
+    for cell in cells:
         for file in cell.changed_files(now):
             changed.setdefault(file, []).append(cell.name)
     for file, names in changed.items():
@@ -161,39 +179,40 @@ def _warn_of_changes(made: Sequence[Cell], out: Path, known: Sequence[str] = ())
         more = f" and {len(names) - 3} more" if len(names) > 3 else ""
         was = "was" if len(names) == 1 else "were"
         print(
-            f"run: {file} changed since {', '.join(names[:3])}{more} {was} run, whose old results "
-            "are kept, and stand in one table with new ones: out=... measures the new one, or "
-            f"remove {out / 'conditions'}. watch=[{file}] makes it another agent.",
+            f"run: {file} changed since {', '.join(names[:3])}{more} {was} run. The old results "
+            "are kept, and one table holds old and new results. To measure again, choose another "
+            f"folder (out=...) or remove {out / 'conditions'}. With watch=[{file}] a changed file "
+            "counts as another agent.",
             flush=True,
         )
     return list(changed)
 
 
-def _run_all(plan: Plan, waiting: Sequence[Cell]) -> list[str]:
-    """Run cells, ``plan.config.jobs`` at a time, where the launcher says; return what went "
-    "wrong."""
+def _run_all(plan: Plan, cells: Sequence[Cell]) -> list[str]:
+    """Run cells, ``plan.config.jobs`` at a time, by the launcher; return the problems."""
     if plan.config.launcher.name == "local":
-        return _run_here(waiting, plan.config.jobs)
-    return run_there(plan, waiting)
+        return _run_here(cells, plan.config.jobs)
+    return run_on_launcher(plan, cells)
 
 
-def _run_here(waiting: Sequence[Cell], jobs: int) -> list[str]:
-    left = list(waiting)
+def _run_here(cells: Sequence[Cell], jobs: int) -> list[str]:
+    """Run cells on this machine, ``jobs`` at a time; return the problems."""
+    waiting = list(cells)
     problems: list[str] = []
     running: list[Attempt] = []
-    spoke = time.monotonic()
+    last_print = time.monotonic()
     try:
-        while left or running:
-            while left and len(running) < jobs:
-                cell = left.pop(0)
+        while waiting or running:
+            while waiting and len(running) < jobs:
+                cell = waiting.pop(0)
                 if cell.is_done():
                     print(f"{cell.name}: done before, {cell.summary()}", flush=True)
                     continue
                 attempt = Attempt(cell)
-                running.append(attempt)  # before: whatever interrupts its start, it is ended
-                if refused := _begin(attempt):  # the others go on
+                running.append(attempt)  # first, so that an interrupted start is cleaned up
+                if start_problem := _start(attempt):  # the others continue
                     running.remove(attempt)
-                    problems.append(f"{cell.name}: {refused}")
+                    problems.append(f"{cell.name}: {start_problem}")
             time.sleep(PAUSE)
             for attempt in list(running):
                 problem = attempt.poll()
@@ -201,10 +220,11 @@ def _run_here(waiting: Sequence[Cell], jobs: int) -> list[str]:
                     continue
                 running.remove(attempt)
                 cell = attempt.cell
-                print(f"{cell.name}: {_outcome(cell, problem, len(waiting) == 1)}", flush=True)
+                outcome = _describe_outcome(cell, problem, len(cells) == 1)
+                print(f"{cell.name}: {outcome}", flush=True)
                 problems += [f"{cell.name}: {problem}"] if problem else []
-            if running and time.monotonic() - spoke > EVERY:
-                spoke = time.monotonic()
+            if running and time.monotonic() - last_print > PROGRESS_INTERVAL:
+                last_print = time.monotonic()
                 for attempt in running:
                     print(f"{attempt.cell.name}: {attempt.cell.summary()}", flush=True)
     finally:
@@ -213,10 +233,10 @@ def _run_here(waiting: Sequence[Cell], jobs: int) -> list[str]:
     return problems
 
 
-def _begin(attempt: Attempt) -> str:
-    """Start an attempt; return why it cannot be, empty if it was."""
+def _start(attempt: Attempt) -> str:
+    """Start an attempt; return why it cannot be started, empty if it was."""
     cell = attempt.cell
-    again = f", measured anew: {why}" if (why := cell.reason_to_repeat()) else ""
+    again = f", measured again: {reason}" if (reason := cell.reason_to_repeat()) else ""
     try:
         attempt.start()
     except ValueError as error:
@@ -227,53 +247,55 @@ def _begin(attempt: Attempt) -> str:
     return ""
 
 
-def _outcome(cell: Cell, problem: str, alone: bool) -> str:
-    """One line on a condition that ended: its summary, or that it failed. Why is told in full at
-    the end, which is now where it ran ``alone``."""
+def _describe_outcome(cell: Cell, problem: str, single: bool) -> str:
+    """Return one line on a condition that ended: its summary, or that it failed.
+
+    The full problem is printed at the end, which follows at once for a ``single`` condition.
+    """
     if not problem:
         return cell.summary()
-    first = problem.splitlines()[0]
-    return "failed" if alone else f"failed: {first[:REASON]}{'...' * (len(first) > REASON)}"
+    line = problem.splitlines()[0]
+    return "failed" if single else f"failed: {line[:MAX_REASON]}{'...' * (len(line) > MAX_REASON)}"
 
 
 class ConditionTask:
     """Runs conditions by name (``core/workers.py``) as jobs on other machines.
 
-    The result of a job is what went wrong, empty if nothing did. The folder of the run is on a file
-    system that all machines see. A condition that ended is kept; one whose machine died is measured
-    again on another, since a program that no one may change cannot be resumed.
+    The result of a job is its problem, empty if there is none. The folder of the run is on a file
+    system that all machines share. Finished conditions are kept. If a machine dies, its condition
+    is measured again on another one, because an unchanged program cannot be resumed.
 
     Args:
         plan: The run; its output folder is absolute.
-        here: The folder in which the command is to run.
+        folder: The folder in which the command runs.
     """
 
     preload: ClassVar[str] = "mitigate.bridge.run"
 
-    def __init__(self, plan: Plan, here: Path) -> None:
+    def __init__(self, plan: Plan, folder: Path) -> None:
         self.plan = plan
-        self.here = here
+        self.folder = folder
         self.cells: dict[str, Cell] = {}
 
     @contextmanager
     def ready(self) -> Iterator[None]:
         before = os.getcwd()
-        os.chdir(self.here)
+        os.chdir(self.folder)
         try:
-            self.cells = {cell.name: cell for cell in cells(self.plan)}
+            self.cells = {cell.name: cell for cell in make_cells(self.plan)}
             yield
         finally:
             os.chdir(before)
 
     def work(self, jobs: Sequence[str]) -> Iterator[str]:
-        """Run the command under each condition to its end."""
+        """Run the command to its end under each condition."""
         for name in jobs:
             attempt = Attempt(self.cells[name])
             try:
                 attempt.start()
                 while (problem := attempt.poll()) is None:
                     time.sleep(PAUSE)
-            except ValueError as error:  # it cannot be started: the others can
+            except ValueError as error:  # it cannot be started; the others continue
                 problem = str(error)
             finally:
                 attempt.kill()
@@ -283,24 +305,28 @@ class ConditionTask:
         return job
 
 
-def run_there(plan: Plan, waiting: Sequence[Cell]) -> list[str]:
-    """Run ``waiting`` on the machines of the launcher, ``jobs`` at a time; return what went wrong.
-    Raises WorkersDied for a condition that no worker survives."""
-    left = [cell for cell in waiting if not cell.is_done()]
-    for cell in waiting:
-        if cell not in left:
+def run_on_launcher(plan: Plan, cells: Sequence[Cell]) -> list[str]:
+    """Run cells on the machines of the launcher, ``jobs`` at a time; return the problems.
+
+    Raises:
+        WorkersDied: A condition ended several workers.
+    """
+    waiting = [cell for cell in cells if not cell.is_done()]
+    for cell in cells:
+        if cell not in waiting:
             print(f"{cell.name}: done before, {cell.summary()}", flush=True)
-    if not left:
+    if not waiting:
         return []
     task = ConditionTask(replace(plan, out=plan.out.resolve()), Path.cwd())
-    groups, launcher = [[cell.name] for cell in left], chosen(plan.config.launcher)
+    groups = [[cell.name] for cell in waiting]
+    launcher = chosen(plan.config.launcher)
     problems = []
-    with Progress("conditions", len(left), unit="condition") as progress:
-        for found in results(launcher, task, groups, plan.config.jobs, progress):
-            if found is None:
+    with Progress("conditions", len(waiting), unit="condition") as progress:
+        for result in results(launcher, task, groups, plan.config.jobs, progress):
+            if result is None:
                 continue
-            cell, problem = left[found[0]], str(found[1])
-            progress.say(f"{cell.name}: {_outcome(cell, problem, len(waiting) == 1)}")
+            cell, problem = waiting[result[0]], str(result[1])
+            progress.say(f"{cell.name}: {_describe_outcome(cell, problem, len(cells) == 1)}")
             problems += [f"{cell.name}: {problem}"] if problem else []
             progress.advance()
     return problems
@@ -308,7 +334,7 @@ def run_there(plan: Plan, waiting: Sequence[Cell]) -> list[str]:
 
 @hydra.main(version_base="1.3", config_path=str(conf.CONF), config_name="run")
 def hydra_main(cfg: DictConfig) -> None:
-    """Hydra's entry."""
+    """Run with the composed config."""
     config = conf.typed(cfg, "run")
     assert isinstance(config, RunConfig)
     if config.check:
@@ -319,25 +345,25 @@ def hydra_main(cfg: DictConfig) -> None:
         run(config, _command)
 
 
-_command: list[str] = []  # behind --
+_command: list[str] = []  # the words after --
 
 
 def main() -> None:
     """Run from the command line."""
     options, command = split_command(sys.argv[1:])
     _command[:] = command
-    signal.signal(signal.SIGHUP, raise_ended)  # of a terminal: as Ctrl-C; SIGTERM is conf's
+    signal.signal(signal.SIGHUP, raise_ended)  # a closed terminal; core/conf.py handles SIGTERM
     options = ["check=true" if option == "--check" else option for option in options]
     sys.argv[1:] = options
     conf.main(hydra_main, "run", lambda: _check_line(options), ["--", *command] if command else ())
 
 
 def _check_line(options: Sequence[str]) -> None:
-    """Raise ValueError for a safeguard's address that is none, and for a command without ``--``."""
+    """Raise ValueError for an invalid address of a safeguard, and for a command without ``--``."""
     check_arguments(options)
     words = [option for option in options if "=" not in option and option[:1] not in ("-", "~")]
     if words:
         raise ValueError(
-            f"{words[0]} is no option, which is written key=value. If it begins the command to "
-            "run, put -- before it: mitigate run corruption=spatter -- python agent.py"
+            f"Options must be key=value, got {words[0]}. If it begins the command to run, write -- "
+            "before it: mitigate run corruption=spatter -- python agent.py"
         )

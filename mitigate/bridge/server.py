@@ -1,8 +1,8 @@
-"""The server's side of the bridge: a process for each connection, so that one cannot harm another.
+"""The server of the bridge: one process per connection, so that connections are independent.
 
-``Listener`` runs beside one command of the user's. What connects must know its token. Every
-connection is served by a fork: corruptions run side by side on all cores, and a fault ends one
-environment with a message.
+``Listener`` runs in parallel to one command of the user. A process that connects must know its
+token. A fork serves each connection: corruptions use all cores, and an error ends only one
+environment, with a message.
 """
 
 from __future__ import annotations
@@ -28,22 +28,27 @@ from mitigate.corruptions import Corruption
 from mitigate.corruptions.suite import corrupt
 
 HOOK = Path(mitigate_hook.__file__).parent
-MEMORY = Path("/dev/shm")  # Linux; elsewhere the folder for temporary files
+MEMORY = Path("/dev/shm")  # Linux; other systems use the folder for temporary files
 
 
 class Listener:
-    """Serves what connects, in a process of its own, until it is closed.
+    """Serves the processes of a command, in a separate process, until it is closed.
 
-    Args: condition: what the command meets. folder: gets the events, a JSON line for each thing
-    that happened. ``environment`` is what the command's processes need.
+    Args:
+        condition: How frames and instructions are corrupted.
+        folder: Gets the events, one JSON line each.
+        patience: Seconds after which a process of the command stops without an answer.
     """
 
     def __init__(self, condition: Condition, folder: Path, patience: float = 25.0) -> None:
-        self.condition, self.folder, self.patience = condition, folder, patience
+        self.condition = condition
+        self.folder = folder
+        self.patience = patience
         self.token = secrets.token_hex(16)
-        self.place = Path(tempfile.mkdtemp(prefix="mitigate-", dir=_short(tempfile.gettempdir())))
-        self.memory = _memory_folder()
-        self.address = str(self.place / "bridge")
+        temporary = _socket_folder(tempfile.gettempdir())
+        self.socket_folder = Path(tempfile.mkdtemp(prefix="mitigate-", dir=temporary))
+        self.memory = _make_memory_folder()
+        self.address = str(self.socket_folder / "bridge")
         self.pid = 0
 
     def __enter__(self) -> Listener:
@@ -58,15 +63,15 @@ class Listener:
                 os.setpgid(0, 0)
                 signal.signal(signal.SIGINT, signal.SIG_DFL)
                 signal.signal(signal.SIGTERM, signal.SIG_DFL)
-                signal.signal(signal.SIGCHLD, signal.SIG_IGN)  # nobody waits for connections
+                signal.signal(signal.SIGCHLD, signal.SIG_IGN)  # forks are not waited for
                 self._accept(listening)
             except BaseException:
                 traceback.print_exc()
             finally:
                 os._exit(1)
         listening.close()
-        with suppress(PermissionError, ProcessLookupError):  # the child did, or is gone
-            os.setpgid(self.pid, self.pid)  # whoever comes first: its forks end with it
+        with suppress(PermissionError, ProcessLookupError):  # the child was first, or is gone
+            os.setpgid(self.pid, self.pid)  # a process group, so that its forks end with it
         return self
 
     def __exit__(self, *_: object) -> None:
@@ -76,30 +81,29 @@ class Listener:
             with suppress(ChildProcessError):
                 os.waitpid(self.pid, 0)
             self.pid = 0
-        self._forget()
+        self._delete_folders()
 
-    def _forget(self) -> None:
-        """Delete what it made."""
-        shutil.rmtree(self.place, ignore_errors=True)
+    def _delete_folders(self) -> None:
+        shutil.rmtree(self.socket_folder, ignore_errors=True)
         shutil.rmtree(self.memory, ignore_errors=True)
 
     def close_connections(self) -> None:
-        """Have connections note what is left in the middle, and end."""
+        """End all connections; they record episodes that were left unfinished."""
         with suppress(ProcessLookupError):
             os.killpg(self.pid, signal.SIGTERM)
 
     def is_alive(self) -> bool:
-        """Whether it still serves."""
+        """Return whether it still serves."""
         with suppress(ChildProcessError):
             return os.waitpid(self.pid, os.WNOHANG) == (0, 0)
         return False
 
     def was_loaded(self) -> bool:
-        """Whether a Python process of the command loaded the hook."""
-        return (self.place / mitigate_hook.LOADED).exists()
+        """Return whether a Python process of the command loaded the hook."""
+        return (self.socket_folder / mitigate_hook.LOADED).exists()
 
     def environment(self) -> dict[str, str]:
-        """What the command's environment must hold."""
+        """Return the environment variables that the command's processes need."""
         path = os.environ.get("PYTHONPATH", "")
         return {
             mitigate_hook.ADDRESS: self.address,
@@ -110,20 +114,20 @@ class Listener:
 
     def _accept(self, listening: socket.socket) -> None:
         parent = os.getppid()
-        warm(self.condition.corruption)
+        warm_up(self.condition.corruption)
         listening.settimeout(1.0)
         while True:
             try:
                 channel, _ = listening.accept()
             except TimeoutError:
-                if os.getppid() != parent:  # killed without a chance to end us
-                    self._forget()
+                if os.getppid() != parent:  # it was killed and could not end this process
+                    self._delete_folders()
                     os.killpg(0, signal.SIGKILL)
                 continue
             channel.setblocking(True)
             if os.fork() == 0:
                 listening.close()
-                signal.signal(signal.SIGTERM, raise_ended)  # it notes what is left in the middle
+                signal.signal(signal.SIGTERM, raise_ended)  # records an unfinished episode
                 try:
                     Connection(
                         channel, self.condition, self.folder, self.token, self.memory
@@ -133,18 +137,18 @@ class Listener:
             channel.close()
 
 
-def _memory_folder() -> Path:
+def _make_memory_folder() -> Path:
     parent = str(MEMORY) if MEMORY.is_dir() and os.access(MEMORY, os.W_OK) else None
     return Path(tempfile.mkdtemp(prefix="mitigate-", dir=parent))
 
 
-def _short(folder: str) -> str:
-    """The address of a socket has at most 107 bytes (unix(7))."""
+def _socket_folder(folder: str) -> str:
+    """Return ``folder``, or /tmp if it is too long: a socket's path has <= 107 bytes (unix(7))."""
     return folder if len(folder) < 60 else "/tmp"
 
 
-def warm(corruption: Corruption) -> None:
-    """Compile what the corruption needs, before anyone waits for it."""
+def warm_up(corruption: Corruption) -> None:
+    """Compile the code of a corruption before the first frame waits for it."""
     rgb, depth = np.zeros((32, 32, 3), np.uint8), np.ones((32, 32, 1), np.float32)
     frames: dict[str, np.ndarray] = {"rgb": rgb, "depth": depth}
     for part in corruption.parts:

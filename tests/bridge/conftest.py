@@ -1,4 +1,4 @@
-"""The stand-in lab's program, run as a user's command."""
+"""Fixtures: the program of the stand-in lab, run as a user's command."""
 
 import json
 import os
@@ -23,18 +23,18 @@ AGENT = f"{sys.executable} {LAB / 'agent.py'} {{out}}/seen"
 
 
 def condition(name="clean", severity=0.6, **more):
-    """A condition by name; clean has severity 0."""
+    """Return a condition by name; clean has severity 0."""
     corruption = Corruption(name, 0.0 if name == "clean" else severity)
     return Condition(corruption, seed=0, words=more.pop("words", Words()), **more)
 
 
 def config(*options):
-    """The typed options of a run."""
+    """Return the typed options of a run."""
     return OmegaConf.to_object(load_config("run", [*options]))
 
 
 def python(listener, code, *arguments):
-    """Run code as a program of the user's."""
+    """Run code as a program of the user."""
     environment = {**os.environ, **listener.environment()}
     environment["PYTHONPATH"] += os.pathsep + str(LAB)
     return subprocess.run(
@@ -48,50 +48,52 @@ def python(listener, code, *arguments):
     )
 
 
-class Ran:
-    """How a command went: its status, output, what it told, and what its workers saw."""
+class CommandResult:
+    """The result of a command: status, output, reports, and the frames of its workers."""
 
     def __init__(self, process, folder, seen):
-        self.status, self.output = process.returncode, process.stdout
-        self.told, self._seen = read(folder), seen
+        self.status = process.returncode
+        self.output = process.stdout
+        self.reports = read(folder)
+        self._seen = seen
 
     def seen(self):
-        """{(episode, number of the look): what was seen}, of all workers."""
-        found = {}
+        """Return {(episode, number of the step): entry} of all workers."""
+        entries = {}
         for file in sorted(self._seen.parent.glob(f"{self._seen.name}.*")):
-            looks = {}
+            steps = {}
             for entry in json.loads(file.read_text()):
-                number = looks[entry["episode"]] = looks.get(entry["episode"], -1) + 1
-                found[entry["episode"], number] = entry
-        return found
+                number = steps[entry["episode"]] = steps.get(entry["episode"], -1) + 1
+                entries[entry["episode"], number] = entry
+        return entries
 
 
 @pytest.fixture
 def command(tmp_path):
     """Run the stand-in's program with options under a condition, as ``mitigate run`` does."""
 
-    def run(what, *options, python=sys.executable, patience=10.0, **environment):
-        folder = tmp_path / f"{what.corruption.name}-{len(list(tmp_path.iterdir()))}"
-        with Listener(what, folder, patience) as listener:
-            given = {**os.environ, **listener.environment(), "MITIGATE_TEST": "1"}
-            given["PYTHONPATH"] = os.pathsep.join([given["PYTHONPATH"], str(LAB)])
+    def run(settings, *options, python=sys.executable, patience=10.0, **environment):
+        folder = tmp_path / f"{settings.corruption.name}-{len(list(tmp_path.iterdir()))}"
+        with Listener(settings, folder, patience) as listener:
+            variables = {**os.environ, **listener.environment(), "MITIGATE_TEST": "1"}
+            variables["PYTHONPATH"] = os.pathsep.join([variables["PYTHONPATH"], str(LAB)])
             process = subprocess.run(
                 [python, str(LAB / "agent.py"), str(folder / "seen"), *map(str, options)],
-                env={**given, **environment},
+                env={**variables, **environment},
                 stdout=subprocess.PIPE,
                 stderr=subprocess.STDOUT,
                 text=True,
                 timeout=60,
                 check=False,
             )
-        return Ran(process, folder, folder / "seen")
+        return CommandResult(process, folder, folder / "seen")
 
     return run
 
 
 @dataclass
-class Ended:
-    """What a run printed, and the error that it ended with, if it did."""
+class RunResult:
+    """The output of a run, and its error, if any."""
 
     stdout: str
     stderr: str = ""
@@ -113,6 +115,6 @@ def run(capsys, monkeypatch):
             run_command(config(f"out={out}", *options.split()), shlex.split(command))
         except ValueError as error:
             problem = str(error)
-        return Ended(capsys.readouterr().out, problem)
+        return RunResult(capsys.readouterr().out, problem)
 
     return call

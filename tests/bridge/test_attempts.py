@@ -1,4 +1,4 @@
-"""What an attempt at a condition begins with, and what of it is refused before or as it starts."""
+"""Attempts at a condition: how they start, and errors before and at their start."""
 
 import fcntl
 import json
@@ -10,7 +10,7 @@ import pytest
 from mitigate.bridge import plan
 from mitigate.bridge.condition import Subset
 from mitigate.bridge.hook import mitigate_hook
-from mitigate.bridge.plan import Plan, cells, default_folder
+from mitigate.bridge.plan import Plan, default_folder, make_cells
 from mitigate.bridge.results import read
 from mitigate.bridge.server import Listener
 
@@ -34,13 +34,13 @@ for _, name in mitigate_hook.wanted([("", name) for name in "abc"]):
 
 @pytest.fixture
 def skips(tmp_path):
-    """A program that skips what it finds in its own results, and dies behind its first episode."""
+    """A program that skips episodes in its own results file, and dies after its first episode."""
     file = tmp_path / "nav.py"
     file.write_text(SKIPS)
     return f"{sys.executable} {file}"
 
 
-def test_each_attempt_begins_in_an_empty_folder(run, skips, tmp_path):
+def test_attempt_begins_in_an_empty_folder(run, skips, tmp_path):
     out = tmp_path / "o"
     broken = run(out, "conditions=[clean]", f"{skips} {{out}}/results.json die")
     assert broken.returncode == 1 and (out / "conditions/clean/results.json").exists()
@@ -51,7 +51,7 @@ def test_each_attempt_begins_in_an_empty_folder(run, skips, tmp_path):
     assert (aside / "events.jsonl").exists()
 
 
-def test_what_a_finished_attempt_left_stays_until_another_is_finished(run, skips, tmp_path):
+def test_attempt_keeps_a_finished_result_until_the_next_one_finishes(run, skips, tmp_path):
     out, recorded = tmp_path / "o", tmp_path / "recorded"
     options, fails = f"conditions=[clean] record={recorded}", tmp_path / "fails"
     guard = f"import os, sys\nif os.path.exists({str(fails)!r}): sys.exit(3)\n"
@@ -67,70 +67,72 @@ def test_what_a_finished_attempt_left_stays_until_another_is_finished(run, skips
     assert (out / "conditions/clean/results.json").exists()
 
 
-def test_a_program_that_finds_its_own_results_is_told_what_to_do(run, skips, tmp_path):
+def test_run_explains_results_of_an_earlier_run(run, skips, tmp_path):
     (tmp_path / "all.json").write_text('["a", "b", "c"]')
-    ran = run(tmp_path / "o", "conditions=[clean]", f"{skips} {tmp_path}/all.json")
-    assert "without an episode" in ran.stderr and "Delete them" in ran.stderr
-    assert f"stands for {tmp_path / 'o/conditions/clean'}" in ran.stderr
+    result = run(tmp_path / "o", "conditions=[clean]", f"{skips} {tmp_path}/all.json")
+    assert "without an episode" in result.stderr and "Delete them" in result.stderr
+    assert f"replaced by {tmp_path / 'o/conditions/clean'}" in result.stderr
 
 
-def test_a_condition_that_is_locked_leaves_the_others_to_run(run, skips, tmp_path):
+def test_run_measures_other_conditions_if_one_is_locked(run, skips, tmp_path):
     folder = tmp_path / "o/conditions/spatter-s0.6"
     folder.mkdir(parents=True)
     with open(folder / "lock", "w") as held:
         fcntl.flock(held, fcntl.LOCK_EX)
-        ran = run(tmp_path / "o", "conditions=[spatter,flare]", f"{skips} {{out}}/results.json")
-    assert "spatter-s0.6: Another run is at work in" in ran.stderr and "flare" not in ran.stderr
+        result = run(tmp_path / "o", "conditions=[spatter,flare]", f"{skips} {{out}}/results.json")
+    assert (
+        "spatter-s0.6: Another run is at work in" in result.stderr and "flare" not in result.stderr
+    )
     assert (tmp_path / "o/conditions/flare-s0.6/done.json").exists()
 
 
-def test_a_damaged_note_of_a_condition_is_named(run, skips, tmp_path):
+def test_run_names_a_damaged_marker(run, skips, tmp_path):
     file = tmp_path / "o/conditions/clean/done.json"
     file.parent.mkdir(parents=True)
     file.write_text('{"seed": ')
-    ran = run(tmp_path / "o", "conditions=[clean]", f"{skips} {{out}}/results.json")
-    assert f"{file} is cut short or damaged" in ran.stderr
+    result = run(tmp_path / "o", "conditions=[clean]", f"{skips} {{out}}/results.json")
+    assert f"{file} is cut short or damaged" in result.stderr
 
 
 @pytest.mark.parametrize(
     ("options", "words"),
     [
-        ("missing=-5", "missing=-5 must be metres, 0 or more"),
-        ("token_length=-5", "token_length=-5 is none"),
-        ("split=", "split='' can stand in no row"),
-        (f"name={'x' * 201}", "can stand in no row: a line of at most 200"),
+        ("missing=-5", "missing must be metres >= 0, got -5"),
+        ("token_length=-5", "token_length must be >= 1 or null, got -5"),
+        ("split=", "split='' cannot be written to rows"),
+        (f"name={'x' * 201}", "cannot be written to rows: a line of at most 200"),
     ],
 )
-def test_options_that_would_fail_later_are_refused_at_once(run, tmp_path, options, words):
+def test_run_rejects_invalid_options_before_it_starts(run, tmp_path, options, words):
     assert words in run(tmp_path / "o", options).stderr
     assert not (tmp_path / "o").exists()
 
 
-def test_a_recording_that_is_a_file_is_refused_by_its_path(run, tmp_path):
+def test_run_rejects_a_file_as_recording(run, tmp_path):
     file = tmp_path / "recorded"
     file.write_text("")
     with pytest.raises(OSError, match=f"Cannot write {file}"):
         run(tmp_path / "o", f"conditions=[clean] record={file}")
 
 
-def test_a_disk_that_takes_nothing_is_not_the_hooks_fault(tmp_path):
+def test_connection_names_a_write_error_of_the_run(tmp_path):
     from mitigate.bridge.recording import Recorder
 
     (tmp_path / "recorded").write_text("")
     met = condition(observers=[Recorder(tmp_path / "recorded")])
     with Listener(met, tmp_path / "told") as listener:
         python(listener, "import mitigate_hook; mitigate_hook.connect('a')")
-    problem = read(tmp_path / "told").refused[0]
+    problem = read(tmp_path / "told").problems[0]
     assert f"Cannot write {tmp_path}/recorded" in problem and "mitigate_hook.py" not in problem
 
 
 def made(folder, *options):
-    """The first condition of a run with options, and its folder by default."""
+    """Return the first condition of a run with options, and its default folder."""
     typed = config("conditions=[clean]", *options)
-    return cells(Plan(typed, ("nav",), "nav", folder))[0], default_folder(typed, "nav")
+    return make_cells(Plan(typed, ("nav",), "nav", folder))[0], default_folder(typed, "nav")
 
 
-def test_what_is_watched_makes_another_agent(tmp_path, monkeypatch):
+def test_watch_changes_agent_and_folder(tmp_path, monkeypatch):
     file = tmp_path / "policy.yaml"
     file.write_text("good")
     plain, folder = made(tmp_path)
@@ -152,32 +154,32 @@ def test_what_is_watched_makes_another_agent(tmp_path, monkeypatch):
     [
         (
             "{}/polcy.yaml",
-            "neither such a file nor a variable of the environment. Did you mean {}/",
+            "must be a file or an environment variable, and neither exists. Did you mean {}/",
         ),
         ("WATCHED_CKTP", "Did you mean WATCHED_CKPT?"),
-        ("{}", "is a folder: name the files in it"),
+        ("{}", "got the folder {}. Name the files in it"),
     ],
 )
-def test_what_is_watched_must_be_there(run, tmp_path, monkeypatch, name, words):
+def test_watch_rejects_missing_names(run, tmp_path, monkeypatch, name, words):
     (tmp_path / "policy.yaml").write_text("good")
     monkeypatch.setenv("WATCHED_CKPT", "good")
-    ran = run(tmp_path / "o", f"watch=[{name.format(tmp_path)}]")
-    assert words.format(tmp_path) in ran.stderr and not (tmp_path / "o").exists()
+    result = run(tmp_path / "o", f"watch=[{name.format(tmp_path)}]")
+    assert words.format(tmp_path) in result.stderr and not (tmp_path / "o").exists()
 
 
-def test_a_watched_file_is_read_once_for_all_conditions(tmp_path, monkeypatch):
+def test_watch_reads_a_file_once(tmp_path, monkeypatch):
     file, read_files = tmp_path / "policy.yaml", []
     file.write_text("good")
     sha256 = plan.sha256
     monkeypatch.setattr(plan, "sha256", lambda path: read_files.append(path) or sha256(path))
-    cells(Plan(config("suite=rgb", f"watch=[{file}]"), ("nav",), "nav", tmp_path))
+    make_cells(Plan(config("suite=rgb", f"watch=[{file}]"), ("nav",), "nav", tmp_path))
     assert read_files == [str(file)]
 
 
-def test_names_of_episodes_come_in_pieces(tmp_path):
-    """A train split's are more than a message holds."""
+def test_wanted_sends_names_in_parts(tmp_path):
+    """The names of a train split do not fit into one message."""
     code = (
-        "import mitigate_hook\nmitigate_hook.PIECE = 7\n"
+        "import mitigate_hook\nmitigate_hook.KEYS_PER_MESSAGE = 7\n"
         "print([n for _, n in mitigate_hook.wanted([('x.glb', n) for n in range(20)])])"
     )
     keep = Subset(4, tmp_path, settled=0.0).keep
@@ -188,9 +190,9 @@ def test_names_of_episodes_come_in_pieces(tmp_path):
     assert json.loads((tmp_path / "episodes.json").read_text())["of"] == 20
 
 
-def test_no_names_are_told_where_none_are_chosen(tmp_path):
+def test_wanted_sends_no_names_without_a_choice(tmp_path):
     code = (
-        "import mitigate_hook\nmitigate_hook._key = None\n"
+        "import mitigate_hook\nmitigate_hook._episode_key = None\n"
         "print(len(mitigate_hook.wanted([('x.glb', n) for n in range(20)])))"
     )
     with Listener(condition(), tmp_path) as listener:
@@ -198,13 +200,13 @@ def test_no_names_are_told_where_none_are_chosen(tmp_path):
 
 
 @pytest.mark.parametrize("episodes", [["17", "18"], ["7"], [("a", "b", "c")], [5]])
-def test_what_is_wanted_must_be_pairs(monkeypatch, episodes):
+def test_wanted_rejects_episodes_that_are_not_pairs(monkeypatch, episodes):
     monkeypatch.setenv(mitigate_hook.ADDRESS, "nowhere")
-    with pytest.raises(ValueError, match="each episode must be a pair"):
+    with pytest.raises(ValueError, match="each episode of wanted\\(\\) must be a pair"):
         mitigate_hook.wanted(episodes)
 
 
-def test_that_more_episodes_were_walked_than_asked_for_is_said(run, tmp_path, monkeypatch):
+def test_run_explains_surplus_episodes(run, tmp_path, monkeypatch):
     from mitigate.bridge import plan
 
     monkeypatch.setattr(plan, "Subset", partial(Subset, settled=0.0))
@@ -216,5 +218,8 @@ def test_that_more_episodes_were_walked_than_asked_for_is_said(run, tmp_path, mo
         "        episode.corrupt({'rgb': numpy.zeros((8, 8, 3), 'u1')})\n"
         "        episode.finish(success=1)\n"
     )
-    ran = run(tmp_path / "o", "conditions=[clean] episodes=3", f"{sys.executable} {file}")
-    assert "episodes (3 asked for: processes came more than 4 s after the others" in ran.stdout
+    result = run(tmp_path / "o", "conditions=[clean] episodes=3", f"{sys.executable} {file}")
+    assert (
+        "episodes (3 asked for: some processes connected more than 4 s after the others"
+        in result.stdout
+    )

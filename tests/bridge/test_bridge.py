@@ -1,4 +1,4 @@
-"""An unchanged program under the bridge: same pixels everywhere, nothing clean let through."""
+"""An unchanged program under the bridge: equal pixels in every process, no clean frames."""
 
 import hashlib
 import os
@@ -16,7 +16,7 @@ from .conftest import LAB, condition
 
 
 def clean_frames(tmp_path):
-    """The cameras of the first two instants of the stand-in, in a process without the bridge."""
+    """Return the frames of the first two steps of the stand-in, without the bridge."""
     code = (
         "import sys, numpy\n"
         "from habitat.core.env import Env\n"
@@ -30,34 +30,34 @@ def clean_frames(tmp_path):
     return [dict(np.load(tmp_path / f"{number}.npz")) for number in range(2)]
 
 
-def test_it_gives_the_pixels_of_corrupt_habitat(command, tmp_path):
+def test_hook_gives_the_pixels_of_corrupt_habitat(command, tmp_path):
     clean = clean_frames(tmp_path)
     for name in ("spatter", "flare", "missing_data", "spatter+gaussian_noise", "haze+flare"):
-        ran = command(condition(name), "--cameras", 12, "--episodes", 1, "--steps", 2)
-        assert ran.status == 0, ran.output
+        result = command(condition(name), "--cameras", 12, "--episodes", 1, "--steps", 2)
+        assert result.status == 0, result.output
         for number, instant in enumerate(clean):
             wanted = corrupt_habitat(
                 instant, Corruption(name, 0.6), Key(0, "s0.glb/0", number), heading=0.0
             )
-            seen = ran.seen()["0", number]["frames"]
+            seen = result.seen()["0", number]["frames"]
             for camera, frame in wanted.items():
                 assert seen[camera] == hashlib.sha256(frame.tobytes()).hexdigest(), camera
 
 
 @pytest.mark.parametrize("start", ["fork", "forkserver", "spawn"])
-def test_workers_see_the_pixels_of_one_process(command, start):
+def test_hook_gives_workers_the_pixels_of_one_process(command, start):
     alone = command(condition("low_light_noise")).seen()
-    ran = command(condition("low_light_noise"), "--workers", 2, "--start", start)
-    assert ran.status == 0, ran.output
-    assert ran.seen() == alone
-    assert len(ran.told.ends) == 4
+    result = command(condition("low_light_noise"), "--workers", 2, "--start", start)
+    assert result.status == 0, result.output
+    assert result.seen() == alone
+    assert len(result.reports.ends) == 4
 
 
-def test_acting_frames_are_corrupted_and_goal_pictures_are_not(command):
+def test_hook_leaves_goal_pictures_clean(command):
     clean = command(condition(), "--teleport").seen()
-    ran = command(condition("low_light"), "--teleport")
-    assert ran.seen().keys() == clean.keys()
-    for place, seen in ran.seen().items():
+    result = command(condition("low_light"), "--teleport")
+    assert result.seen().keys() == clean.keys()
+    for place, seen in result.seen().items():
         before = clean[place]
         assert list(seen["frames"]) == list(before["frames"])
         assert seen["frames"]["rgb"] != before["frames"]["rgb"]
@@ -67,24 +67,24 @@ def test_acting_frames_are_corrupted_and_goal_pictures_are_not(command):
         assert seen["owned"]["rgb"]
 
 
-def test_every_instant_is_one_call(command):
-    """Goal pictures and renders between them count as none."""
-    told = command(condition("spatter"), "--steps", 3).told
-    assert [end["calls"] for end in told.ends.values()] == [4, 4, 4, 4]
+def test_hook_counts_one_call_per_step(command):
+    """Goal pictures and renders are not calls."""
+    reports = command(condition("spatter"), "--steps", 3).reports
+    assert [end["calls"] for end in reports.ends.values()] == [4, 4, 4, 4]
 
 
-def test_repeats_draw_other_pixels(command):
+def test_condition_draws_other_pixels_for_repeats(command):
     first = command(condition("gaussian_noise"), "--episodes", 1).seen()
     again = command(condition("gaussian_noise", repeat=1), "--episodes", 1).seen()
     assert first["0", 0]["frames"]["depth"] != again["0", 0]["frames"]["depth"]
 
 
-def test_instructions_are_corrupted_and_put_back(command):
-    ran = command(condition("capitalize", 1.0))
-    assert ran.seen()["2", 1]["words"]["text"] == "WALK TO the DOOR 2."
+def test_hook_corrupts_instructions(command):
+    result = command(condition("capitalize", 1.0))
+    assert result.seen()["2", 1]["words"]["text"] == "WALK TO the DOOR 2."
 
 
-def test_a_pair_changes_frames_and_words(command):
+def test_hook_corrupts_frames_and_instruction_of_a_pair(command):
     clean = command(condition()).seen()["2", 1]
     seen = command(condition("spatter+capitalize", 1.0)).seen()["2", 1]
     assert seen["words"]["text"] == "WALK TO the DOOR 2."
@@ -92,37 +92,37 @@ def test_a_pair_changes_frames_and_words(command):
     assert seen["frames"]["depth"] == clean["frames"]["depth"]
 
 
-def test_tokens_never_stay_stale(command):
-    ran = command(condition("capitalize", 1.0), "--tokens")
-    assert ran.status == 97
-    assert "tokenizer=" in ran.output and "would read the old words" in ran.output
-    assert not ran.told.ends
+def test_hook_stops_for_tokens_without_a_tokenizer(command):
+    result = command(condition("capitalize", 1.0), "--tokens")
+    assert result.status == 97
+    assert "tokenizer=" in result.output and "would read the original instruction" in result.output
+    assert not result.reports.ends
 
 
-def test_words_that_stay_need_no_tokenizer(command):
-    ran = command(condition("spatter"), "--tokens")
-    assert ran.status == 0 and ran.seen()["0", 0]["words"]["tokens"] == [4, 5, 6]
+def test_hook_needs_no_tokenizer_for_unchanged_words(command):
+    result = command(condition("spatter"), "--tokens")
+    assert result.status == 0 and result.seen()["0", 0]["words"]["tokens"] == [4, 5, 6]
 
 
-def test_it_tells_how_episodes_went(command):
-    told = command(condition(), "--steps", 3).told
-    assert sorted(told.ends) == ["s0/0", "s0/2", "s1/1", "s1/3"]
-    end = told.ends["s1/1"]
+def test_hook_reports_results(command):
+    reports = command(condition(), "--steps", 3).reports
+    assert sorted(reports.ends) == ["s0/0", "s0/2", "s1/1", "s1/3"]
+    end = reports.ends["s1/1"]
     assert end["stopped"] is True and end["metrics"]["success"] == 0.0  # 3.25 m away
     assert end["start_distance"] == 4.0 and end["distance"] == pytest.approx(3.5)
     assert len(end["path"]) == 3 and end["steps"] == 3
     assert "top_down_map.a" not in end["metrics"]
 
 
-def test_an_env_that_never_ends_is_read_at_its_next_reset(command):
-    told = command(condition(), "--no-stop").told
-    assert len(told.ends) == 4  # the last one as the Env is closed
-    end = told.ends["s0/0"]
+def test_hook_reports_an_unended_episode_at_the_next_reset(command):
+    reports = command(condition(), "--no-stop").reports
+    assert len(reports.ends) == 4  # the last one as the Env is closed
+    end = reports.ends["s0/0"]
     assert end["distance"] == pytest.approx(0.5)  # of the end, not of the next start
     assert end["stopped"] is False
 
 
-def test_alike_cameras_are_a_panorama_and_others_stand_alone():
+def test_rig_groups_cameras_of_a_panorama():
     from mitigate.bridge.cameras import Rig
 
     def camera(name, yaw, size=8, pitch=0.0):
@@ -131,13 +131,13 @@ def test_alike_cameras_are_a_panorama_and_others_stand_alone():
 
     rig = Rig([camera("rgb", 0), camera("rgb_30", 30), camera("rgbdown", 0, pitch=-0.5),
                camera("rgbback", 180, size=16)])  # fmt: skip
-    found = {group.own: (len(group.cameras), group.views) for group in rig.groups}
+    found = {group.suffix: (len(group.cameras), group.views) for group in rig.groups}
     assert found == {"": (2, (0, 11)), "rgbdown": (1, (0,)), "rgbback": (1, (6,))}
     offsets, size = rig.lay_out(["rgb"])
     assert len(set(offsets.values())) == 4 and size >= 12 * 192 + 192 + 7 * 768
 
 
-def test_normalised_and_metric_depth_are_no_panorama():
+def test_rig_separates_normalised_and_metric_depth():
     from mitigate.bridge.cameras import Rig
 
     told = {"type": "depth", "shape": [8, 8, 1], "dtype": "float32", "min_depth": 0}
@@ -155,7 +155,7 @@ def test_normalised_and_metric_depth_are_no_panorama():
         ({"type": "semantic"}, "kind"),
     ],
 )
-def test_cameras_that_cannot_be_corrupted_are_refused(change, words):
+def test_rig_rejects_unsupported_cameras(change, words):
     from mitigate.bridge.cameras import Rig
 
     told = {"name": "rgb", "type": "rgb", "shape": [4, 4, 3], "dtype": "uint8", **change}
@@ -163,13 +163,13 @@ def test_cameras_that_cannot_be_corrupted_are_refused(change, words):
         Rig([told])
 
 
-def test_the_hook_does_nothing_outside(tmp_path):
+def test_hook_does_nothing_outside_a_run(tmp_path):
     code = "import sys, mitigate_hook; mitigate_hook.install(); print(sys.meta_path[0])"
-    ran = subprocess.run(
+    result = subprocess.run(
         [sys.executable, "-c", code],
         env={"PYTHONPATH": str(Path("mitigate/bridge/hook").resolve())},
         capture_output=True,
         text=True,
         check=True,
     )
-    assert "mitigate" not in ran.stdout
+    assert "mitigate" not in result.stdout

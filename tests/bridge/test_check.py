@@ -1,4 +1,4 @@
-"""``mitigate run --check``: what a program sees and hears, said and drawn."""
+"""``mitigate run --check``: prints and draws the frames and instruction of a program."""
 
 import shlex
 import sys
@@ -15,7 +15,7 @@ from mitigate.corruptions import Corruption
 from .conftest import AGENT, LAB, config
 
 
-def test_a_check_says_what_the_program_sees_and_draws_it(tmp_path, monkeypatch, capsys):
+def test_check_describes_and_draws_a_program(tmp_path, monkeypatch, capsys):
     monkeypatch.setenv("PYTHONPATH", str(LAB))
     typed = config(f"out={tmp_path}", "conditions=[spatter,multipath,white_box]")
     sheet = check(typed, shlex.split(f"{AGENT} --cameras 2"))
@@ -28,7 +28,7 @@ def test_a_check_says_what_the_program_sees_and_draws_it(tmp_path, monkeypatch, 
 
 
 @pytest.mark.parametrize("name", ["file", "allow_pickle", "heading", "a/b", "é"])
-def test_a_check_draws_cameras_of_any_name(name, tmp_path):
+def test_check_draws_cameras_of_any_name(name, tmp_path):
     cameras, program = {name: {"type": "rgb"}}, tmp_path / "agent.py"
     program.write_text(
         "import mitigate_hook, numpy\n"
@@ -39,7 +39,7 @@ def test_a_check_draws_cameras_of_any_name(name, tmp_path):
     assert cv2.imread(str(check(typed, [sys.executable, str(program)]))) is not None
 
 
-def test_a_check_draws_the_frames_of_the_first_call_alone(tmp_path, capsys):
+def test_check_draws_only_the_first_call(tmp_path, capsys):
     program = tmp_path / "agent.py"
     program.write_text(
         "import mitigate_hook, numpy\n"
@@ -51,10 +51,10 @@ def test_a_check_draws_the_frames_of_the_first_call_alone(tmp_path, capsys):
     typed = config(f"out={tmp_path}/o", "conditions=[spatter,gaussian_noise]")
     sheet = check(typed, [sys.executable, str(program)])
     assert cv2.imread(str(sheet)).shape[0] == 2 * 164  # clean and spatter
-    assert "no frame of depth: no corruption of it is drawn" in capsys.readouterr().out
+    assert "no depth frame: no depth corruption is drawn" in capsys.readouterr().out
 
 
-def test_a_check_of_a_program_without_cameras_says_so(tmp_path, capsys):
+def test_check_reports_a_program_without_cameras(tmp_path, capsys):
     program = tmp_path / "agent.py"
     program.write_text(
         "import mitigate_hook\nmitigate_hook.connect('a').corrupt({'pose': [0, 0]})\n"
@@ -67,14 +67,14 @@ def test_a_check_of_a_program_without_cameras_says_so(tmp_path, capsys):
 @pytest.mark.parametrize(
     ("options", "command", "words"),
     [
-        ("conditions=[spatter]", "", "No command is given"),
+        ("conditions=[spatter]", "", "A command is missing"),
         ("severity=0", "nav", "severity=0 changes nothing"),
         ("rule=nope", "nav", "There is no rule 'nope'"),
         ("turn=up", "nav", "There is no turn 'up'"),
-        ("corruption=flare conditions=[spatter]", "nav", "both say what is measured"),
+        ("corruption=flare conditions=[spatter]", "nav", "both name conditions"),
     ],
 )
-def test_a_check_refuses_what_a_run_refuses(run, tmp_path, options, command, words):
+def test_check_rejects_invalid_options_as_run_does(run, tmp_path, options, command, words):
     typed = config(f"out={tmp_path}", *options.split())
     with pytest.raises(ValueError, match=words):
         check(typed, command.split())
@@ -86,10 +86,10 @@ def test_a_check_refuses_what_a_run_refuses(run, tmp_path, options, command, wor
     [
         ("numpy.linspace(0.05, 0.35, 81)", "seen 0.05 to 0.35 (median 0.20) m - is it normalised"),
         ("numpy.linspace(0.5, 4.5, 81)", "seen 0.50 to 4.50 (median 2.50) m\n"),
-        ("numpy.zeros(81)", "nothing but holes was seen"),
+        ("numpy.zeros(81)", "the frames hold only holes"),
     ],
 )
-def test_a_check_says_what_depth_was_seen(tmp_path, capsys, depth, words):
+def test_check_reports_the_range_of_depth(tmp_path, capsys, depth, words):
     program = tmp_path / "agent.py"
     program.write_text(
         "import mitigate_hook, numpy\n"
@@ -101,7 +101,7 @@ def test_a_check_says_what_depth_was_seen(tmp_path, capsys, depth, words):
     assert words in capsys.readouterr().out
 
 
-def test_a_sheet_names_its_entries_and_draws_a_call_in_which_a_corruption_acts(monkeypatch):
+def test_draw_sheet_draws_a_call_in_which_a_corruption_acts(monkeypatch):
     named = []
     rig = Rig([{"name": "left", "type": "rgb", "shape": [8, 8, 3], "dtype": "uint8"}])
 
@@ -111,10 +111,10 @@ def test_a_sheet_names_its_entries_and_draws_a_call_in_which_a_corruption_acts(m
     def note(axes, names, group, views):
         named.append((*names, group.cameras[0].name))
 
-    monkeypatch.setattr(drawing, "corrupted", late)
+    monkeypatch.setattr(drawing, "corrupt_group", late)
     monkeypatch.setattr(drawing, "_draw_row", note)
     frames = {"camera left": np.full((8, 8, 3), 90, np.uint8), "heading": np.array([])}
-    drawing.sheet(rig, frames, [Corruption("spatter", 0.6), Corruption("flare", 0.6)], {}, 0)
+    drawing.draw_sheet(rig, frames, [Corruption("spatter", 0.6), Corruption("flare", 0.6)], {}, 0)
     assert named == [
         ("clean rgb", "left"),
         ("spatter", "at call 3", "left"),

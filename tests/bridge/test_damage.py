@@ -10,7 +10,7 @@ import pytest
 from mitigate.bridge import results
 from mitigate.bridge.cell import read_done
 from mitigate.bridge.condition import Subset
-from mitigate.bridge.events import note
+from mitigate.bridge.events import write_event
 from mitigate.core.files import sha256
 from mitigate.core.output import FolderLostError
 from mitigate.evaluation import rows
@@ -27,7 +27,7 @@ CONDITION = "conditions/low_light-s0.6"
 
 @pytest.fixture(scope="module")
 def place(tmp_path_factory):
-    """A folder for the program and its run, which all tests of this file share."""
+    """A folder for the program and its run, shared by all tests of this file."""
     return tmp_path_factory.mktemp("finished")
 
 
@@ -53,13 +53,13 @@ def finished(run, place):
 
 
 def contents(folder):
-    """Every file of a folder with its bytes, without locks."""
+    """Return every file of a folder with its bytes, without locks."""
     files = (path for path in folder.rglob("*") if path.is_file() and path.name != "lock")
     return {path.relative_to(folder): path.read_bytes() for path in files}
 
 
 def with_damaged_line(data, number):
-    """The bytes of a file whose line ``number`` has one bracket less."""
+    """Return the bytes of a file with a damaged line ``number``."""
     lines = data.splitlines(keepends=True)
     lines[number - 1] = b"[" + lines[number - 1][1:]
     return b"".join(lines)
@@ -73,9 +73,9 @@ def test_run_rejects_a_damaged_line_of_events_and_changes_nothing(finished, numb
     number = number if number > 0 else count
     events.write_bytes(with_damaged_line(events.read_bytes(), number))
     before = contents(out)
-    ran = again()
-    assert ran.returncode == 1 and f"{events}: line {number} is damaged" in ran.stderr
-    assert f"move {out / CONDITION} out of" in ran.stderr and contents(out) == before
+    result = again()
+    assert result.returncode == 1 and f"{events}: line {number} is damaged" in result.stderr
+    assert f"move {out / CONDITION} out of" in result.stderr and contents(out) == before
 
 
 @pytest.mark.parametrize("cut", [1, 40])
@@ -84,8 +84,10 @@ def test_run_rejects_events_that_were_cut_after_the_condition_finished(finished,
     events = out / CONDITION / "events.jsonl"
     events.write_bytes(events.read_bytes()[:-cut])
     before = contents(out)
-    ran = again()
-    assert ran.returncode == 1 and f"{events}: it has" in ran.stderr and contents(out) == before
+    result = again()
+    assert (
+        result.returncode == 1 and f"{events}: it has" in result.stderr and contents(out) == before
+    )
 
 
 def test_run_rejects_events_in_which_a_result_changed(finished):
@@ -94,28 +96,30 @@ def test_run_rejects_events_in_which_a_result_changed(finished):
     text = events.read_text()
     assert text.count('"success": 0') > 0
     events.write_text(text.replace('"success": 0', '"success": 1', 1))
-    ran = again()
-    assert ran.returncode == 1 and "its sha256 is not the one" in ran.stderr
+    result = again()
+    assert result.returncode == 1 and "its sha256 is not the one" in result.stderr
 
 
-def test_run_rejects_damage_in_a_condition_that_was_not_asked_for(finished):
+def test_run_rejects_damage_in_another_condition(finished):
     out, again = finished
     events = out / CONDITION / "events.jsonl"
     events.write_bytes(with_damaged_line(events.read_bytes(), 2))
     before = contents(out)
-    ran = again("conditions=[clean]")
-    assert ran.returncode == 1 and "line 2 is damaged" in ran.stderr and contents(out) == before
+    result = again("conditions=[clean]")
+    assert (
+        result.returncode == 1 and "line 2 is damaged" in result.stderr and contents(out) == before
+    )
 
 
 @pytest.mark.parametrize("text", ["[]", "null", '"x"', "3", "true", "{", "", "\udcff"])
-def test_run_rejects_a_finished_marker_that_is_no_object(finished, text):
+def test_run_rejects_a_marker_that_is_not_an_object(finished, text):
     out, again = finished
     marker = out / CONDITION / "done.json"
     marker.write_text(text, errors="surrogateescape")
     before = contents(out)
     for options in ("conditions=[low_light]", "conditions=[clean]"):
-        ran = again(options)
-        assert ran.returncode == 1 and f"{marker} " in ran.stderr and contents(out) == before
+        result = again(options)
+        assert result.returncode == 1 and f"{marker} " in result.stderr and contents(out) == before
 
 
 @pytest.mark.parametrize(
@@ -129,12 +133,12 @@ def test_run_rejects_a_finished_marker_that_is_no_object(finished, text):
         ("repeat", -1),
     ],
 )
-def test_run_rejects_a_finished_marker_with_a_wrong_entry(finished, name, value):
+def test_run_rejects_a_marker_with_an_invalid_entry(finished, name, value):
     out, again = finished
     marker = out / CONDITION / "done.json"
     marker.write_text(json.dumps(json.loads(marker.read_text()) | {name: value}))
-    ran = again()
-    assert ran.returncode == 1 and f"{marker}: {name} must be" in ran.stderr
+    result = again()
+    assert result.returncode == 1 and f"{marker}: {name} must be" in result.stderr
 
 
 @pytest.mark.parametrize("options", ["conditions=[low_light,flare]", "conditions=[clean]"])
@@ -144,9 +148,9 @@ def test_run_rejects_the_folder_of_another_condition(finished, options, copied):
     other = out / "conditions" / "flare-s0.6"
     (shutil.copytree if copied else os.rename)(out / CONDITION, other)
     before = contents(out)
-    ran = again(options)
-    assert ran.returncode == 1 and f"{other} holds the condition low_light-s0.6" in ran.stderr
-    assert f"move {other} out of" in ran.stderr and contents(out) == before
+    result = again(options)
+    assert result.returncode == 1 and f"{other} holds the condition low_light-s0.6" in result.stderr
+    assert f"move {other} out of" in result.stderr and contents(out) == before
 
 
 @pytest.mark.parametrize(
@@ -158,21 +162,21 @@ def test_run_rejects_the_folder_of_another_condition(finished, options, copied):
         ({"episodes_told": 2}, "3 episodes ended, and done.json records 2"),
     ],
 )
-def test_run_rejects_a_changed_entry_of_a_finished_marker(finished, entry, reason):
+def test_run_rejects_a_changed_entry_of_a_marker(finished, entry, reason):
     out, again = finished
     marker = out / CONDITION / "done.json"
     marker.write_text(json.dumps(json.loads(marker.read_text()) | entry))
     before = contents(out)
-    ran = again()
-    assert ran.returncode == 1 and reason in ran.stderr and contents(out) == before
+    result = again()
+    assert result.returncode == 1 and reason in result.stderr and contents(out) == before
 
 
 def test_run_rejects_another_condition_in_the_folder_of_clean(finished):
     out, again = finished
     marker = out / "conditions" / "clean" / "done.json"
     marker.write_text(json.dumps(json.loads(marker.read_text()) | {"condition": "flare"}))
-    ran = again()
-    assert ran.returncode == 1 and "clean holds the condition flare-s0" in ran.stderr
+    result = again()
+    assert result.returncode == 1 and "clean holds the condition flare-s0" in result.stderr
 
 
 def test_run_compares_counts_of_a_marker_without_a_checksum(finished):
@@ -190,31 +194,31 @@ def test_run_compares_counts_of_a_marker_without_a_checksum(finished):
     assert "lacks episodes_told" in again().stderr
 
 
-def test_run_measures_a_condition_again_whose_damaged_folder_was_moved(finished, tmp_path):
+def test_run_measures_a_moved_condition_again(finished, tmp_path):
     out, again = finished
     held = rows.read(out / "rows.jsonl")
     (out / CONDITION).rename(tmp_path / "aside")
-    ran = again()
-    assert not ran.stderr and "low_light-s0.6: started" in ran.stdout
+    result = again()
+    assert not result.stderr and "low_light-s0.6: started" in result.stdout
     assert rows.read(out / "rows.jsonl") == held
 
 
-def test_run_keeps_rows_that_no_finished_condition_gives_any_more(finished, tmp_path):
+def test_run_keeps_rows_without_a_finished_condition(finished, tmp_path):
     out, again = finished
     (out / CONDITION).rename(tmp_path / "aside")
     before = (out / "rows.jsonl").read_bytes()
-    ran = again("conditions=[clean]")
-    assert ran.returncode == 1 and "6 of them are of episodes that no finished" in ran.stderr
+    result = again("conditions=[clean]")
+    assert result.returncode == 1 and "6 of them belong to episodes that are in no" in result.stderr
     assert (out / "rows.jsonl").read_bytes() == before
 
 
-def test_run_copies_rows_that_stay_out_of_the_table(finished):
+def test_run_copies_rows_that_leave_the_table(finished):
     out, again = finished
     before = (out / "rows.jsonl").read_bytes()
     marker = out / CONDITION / "done.json"
     marker.write_text(json.dumps(json.loads(marker.read_text()) | {"seed": 7}))
-    ran = again("conditions=[flare]")
-    assert not ran.stderr and "are now in" in ran.stdout
+    result = again("conditions=[flare]")
+    assert not result.stderr and "are now only in" in result.stdout
     assert (out / "rows.jsonl.before").read_bytes() == before
 
 
@@ -224,43 +228,43 @@ def test_run_copies_rows_of_another_agent_seed_or_split(finished, other):
     held = rows.read(out / "rows.jsonl")
     rows.write(out / "rows.jsonl", [*held, held[-1] | other])
     before = (out / "rows.jsonl").read_bytes()
-    ran = again()
-    assert not ran.stderr and f"another {next(iter(other))}" in ran.stdout
+    result = again()
+    assert not result.stderr and f"another {next(iter(other))}" in result.stdout
     assert (out / "rows.jsonl.before").read_bytes() == before
     assert rows.read(out / "rows.jsonl") == held
 
 
-def test_run_may_judge_the_same_episodes_by_another_rule(finished):
+def test_run_judges_the_same_episodes_by_another_rule(finished):
     out, again = finished
-    ran = again("conditions=[low_light] rule=etpnav")
-    assert not ran.stderr, ran.stderr
+    result = again("conditions=[low_light] rule=etpnav")
+    assert not result.stderr, result.stderr
     assert len(rows.read(out / "rows.jsonl")) == 6 and not list(out.glob("*.before*"))
 
 
-def test_read_leaves_out_a_last_line_that_is_being_written(tmp_path):
-    note(tmp_path, event="hello")
+def test_read_ignores_an_incomplete_last_line(tmp_path):
+    write_event(tmp_path, event="hello")
     with open(tmp_path / "events.jsonl", "a") as file:
         file.write('{"event": "bye"')
     assert results.read(tmp_path).connected == 1
-    note(tmp_path, event="bye")
+    write_event(tmp_path, event="bye")
     with pytest.raises(ValueError, match="line 2 is damaged"):
         results.read(tmp_path)
 
 
 @pytest.mark.parametrize("line", ["null", "[]", '"x"', "{}", '{"event": 3}', '{"event": "spec"}'])
-def test_read_rejects_a_line_that_is_no_event(tmp_path, line):
+def test_read_rejects_a_line_that_is_not_an_event(tmp_path, line):
     (tmp_path / "events.jsonl").write_text(line + "\n")
     with pytest.raises(ValueError, match=r"events\.jsonl: line 1 is"):
         results.read(tmp_path)
 
 
 def test_read_done_returns_none_for_an_unfinished_condition(tmp_path):
-    note(tmp_path, event="hello")
+    write_event(tmp_path, event="hello")
     assert read_done(tmp_path) is None
 
 
 @pytest.mark.parametrize("text", ["null", "[]", '{"episodes": 2}', '{"bound": "x", "of": 3}'])
-def test_subset_rejects_a_damaged_list_of_chosen_episodes(tmp_path, text):
+def test_subset_rejects_a_damaged_choice(tmp_path, text):
     (tmp_path / "episodes.json").write_text(text)
     with pytest.raises(ValueError, match=r"episodes\.json"):
         Subset(2, tmp_path, settled=0).keep(["a", "b"])
@@ -281,9 +285,9 @@ def test_run_names_a_folder_in_place_of_its_files(finished, name):
     path.mkdir()
     if name == "lock":
         (out / CONDITION / "done.json").unlink()
-    ran = again()
-    assert ran.returncode == 1 and path.is_dir()
-    assert f"{path} must be a " in ran.stderr and "got a folder" in ran.stderr
+    result = again()
+    assert result.returncode == 1 and path.is_dir()
+    assert f"{path} must be a " in result.stderr and "got a folder" in result.stderr
 
 
 @pytest.mark.parametrize("kind", ["link", "file"])
@@ -294,15 +298,15 @@ def test_run_keeps_a_finished_condition_that_cannot_be_put_aside(finished, tmp_p
         aside.symlink_to(tmp_path)
     else:
         aside.write_text("mine")
-    note(out / "conditions/clean", event="end", scene="", episode="d", steps=1, calls=1)
+    write_event(out / "conditions/clean", event="end", scene="", episode="d", steps=1, calls=1)
     clean = out / "conditions/clean/done.json"
     events = clean.parent / "events.jsonl"
     seal = {"bytes": len(events.read_bytes()), "sha256": sha256(events)}
     entries = json.loads(clean.read_text()) | {"episodes_told": 4, "events": seal}
     clean.write_text(json.dumps(entries))
     before = contents(out / CONDITION)
-    ran = again()  # it lacks an episode of clean now, and is measured again
-    assert ran.returncode == 1 and str(aside) in ran.stderr
+    result = again()  # it lacks an episode of clean now, and is measured again
+    assert result.returncode == 1 and str(aside) in result.stderr
     assert contents(out / CONDITION) == before
 
 

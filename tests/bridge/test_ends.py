@@ -1,10 +1,10 @@
-"""Which end of an episode counts, and what its words are meanwhile."""
+"""Ends of episodes: which one counts, and when the instruction is restored."""
 
 import sys
 
 import pytest
 
-from mitigate.bridge.results import near, read
+from mitigate.bridge.results import maybe_normalised, read
 from mitigate.bridge.server import Listener
 
 from .conftest import condition, python
@@ -25,12 +25,12 @@ def over(*some):
 """
 
 
-def told(tmp_path, code, met=None):
-    """What was told of a program on the stand-in lab, and what it printed."""
-    with Listener(met or condition(), tmp_path) as listener:
-        ended = python(listener, BEGIN + code)
-    assert ended.returncode == 0, ended.stdout
-    return read(tmp_path), ended.stdout
+def run_env(tmp_path, code, settings=None):
+    """Run a program on the stand-in lab; return its reports and its output."""
+    with Listener(settings or condition(), tmp_path) as listener:
+        process = python(listener, BEGIN + code)
+    assert process.returncode == 0, process.stdout
+    return read(tmp_path), process.stdout
 
 
 STOPS = """
@@ -44,21 +44,21 @@ b.close()
 """
 
 
-def test_an_env_that_is_closed_in_the_middle_ends_no_episode(tmp_path):
-    """As an evaluator does that stops after so many episodes of Envs side by side."""
-    found, _ = told(tmp_path, STOPS)
-    assert list(found.ends) == ["s0/0"] and found.lost == ["s0/2"]
+def test_close_drops_unfinished_episodes_of_parallel_envs(tmp_path):
+    """An evaluator with parallel Envs stops after a number of episodes."""
+    reports, _ = run_env(tmp_path, STOPS)
+    assert list(reports.ends) == ["s0/0"] and reports.lost == ["s0/2"]
 
 
-def test_a_close_in_the_middle_counts_though_envs_are_side_by_side_where_that_is_asked(tmp_path):
-    told(tmp_path, STOPS)
-    found = read(tmp_path, count_closed=True)
-    assert sorted(found.ends) == ["s0/0", "s0/2"] and not found.lost
+def test_count_closed_keeps_unfinished_episodes_of_parallel_envs(tmp_path):
+    run_env(tmp_path, STOPS)
+    reports = read(tmp_path, count_closed=True)
+    assert sorted(reports.ends) == ["s0/0", "s0/2"] and not reports.lost
 
 
-def test_a_reset_does_not_have_the_envs_count_that_an_evaluator_cuts_off(tmp_path):
-    found, _ = told(tmp_path, STOPS.replace("walk(a, [1, 0])", "walk(a, [1]); a.reset()"))
-    assert list(found.ends) == ["s0/0"] and found.lost == ["s0/2"]
+def test_close_drops_unfinished_episodes_after_a_reset(tmp_path):
+    reports, _ = run_env(tmp_path, STOPS.replace("walk(a, [1, 0])", "walk(a, [1]); a.reset()"))
+    assert list(reports.ends) == ["s0/0"] and reports.lost == ["s0/2"]
 
 
 LIMITS = ["[1, 0], [1, 1, 1], [1, 0]", "[1, 0], [1, 0], [1, 1]", "[1, 1], [1, 0], [1, 1]"]
@@ -66,16 +66,16 @@ LIMITS = ["[1, 0], [1, 1, 1], [1, 0]", "[1, 0], [1, 0], [1, 1]", "[1, 1], [1, 0]
 
 @pytest.mark.parametrize("acts", LIMITS)
 @pytest.mark.parametrize("each", [True, False])
-def test_an_env_that_walks_alone_ends_its_episode_by_a_close(tmp_path, acts, each):
-    """A program has a limit of steps of its own; whether others were over changes nothing."""
+def test_close_ends_the_episode_of_a_single_env(tmp_path, acts, each):
+    """The program limits the steps itself; other episodes do not matter."""
     new = "env = over(one); env.reset()" if each else "env.reset()"
     code = (
         "env = over(*episodes[:3])\n"
         f"for one, some in zip(episodes, ({acts})):\n    {new}; walk(env, some)\n"
         f"    if {each}: env.close()\nenv.close()"
     )
-    found, _ = told(tmp_path, code)
-    assert len(found.ends) == 3 and not found.lost
+    reports, _ = run_env(tmp_path, code)
+    assert len(reports.ends) == 3 and not reports.lost
 
 
 ORDERLY = {
@@ -109,38 +109,38 @@ finally: env.close()
 
 
 @pytest.mark.parametrize("how", ORDERLY)
-def test_an_exception_that_only_says_that_a_loop_is_at_its_end_is_no_fault(tmp_path, how):
-    found, _ = told(tmp_path, f"env = over(*episodes[:2]); env.reset()\n{ORDERLY[how]}")
-    assert sorted(found.ends) == ["s0/0", "s1/1"] and not found.lost
+def test_end_ignores_exceptions_that_end_a_loop(tmp_path, how):
+    reports, _ = run_env(tmp_path, f"env = over(*episodes[:2]); env.reset()\n{ORDERLY[how]}")
+    assert sorted(reports.ends) == ["s0/0", "s1/1"] and not reports.lost
 
 
-def test_another_exception_is_named_with_its_file_and_line(run, tmp_path):
+def test_run_names_the_exception_that_ended_an_episode(run, tmp_path):
     file = tmp_path / "nav.py"
     code = "class Done(Exception): pass\nenv = over(episodes[0]); env.reset()\nwalk(env, [1, 1])\n"
     file.write_text(f"{BEGIN}{code}try: raise Done('far')\nexcept Done: env.close()\n")
-    ran = run(tmp_path / "o", "conditions=[clean]", f"{sys.executable} {file}")
+    result = run(tmp_path / "o", "conditions=[clean]", f"{sys.executable} {file}")
     line = file.read_text().count("\n") - 1
-    assert f"s0/0: it was reset or closed as an exception went by, Done: far ({file}:{line})" in (
-        ran.stderr
+    assert f"s0/0: it was reset or closed during an exception, Done: far ({file}:{line})" in (
+        result.stderr
     )
 
 
-def test_a_run_says_what_was_closed_and_how_to_count_it(run, tmp_path):
+def test_run_explains_closed_episodes(run, tmp_path):
     file, out = tmp_path / "nav.py", tmp_path / "o"
     file.write_text(BEGIN + STOPS)
-    lost = run(out, "conditions=[clean]", f"{sys.executable} {file}")
-    assert "such as s0/2: its Env was closed before" in lost.stderr
-    assert "count_closed=true" in lost.stderr
-    counts = run(out, "conditions=[clean] count_closed=true", f"{sys.executable} {file}")
-    assert "1 closed before the end (counted as it stood)" in counts.stdout, counts.stderr
+    result = run(out, "conditions=[clean]", f"{sys.executable} {file}")
+    assert "such as s0/2: its Env was closed before" in result.stderr
+    assert "count_closed=true" in result.stderr
+    counted = run(out, "conditions=[clean] count_closed=true", f"{sys.executable} {file}")
+    assert "1 closed before the end (judged where they stopped)" in counted.stdout, counted.stderr
     again = run(out, "conditions=[clean]", f"{sys.executable} {file}")
-    assert "measured anew: 1 episode was left in the middle" in again.stdout and again.stderr
+    assert "measured again: 1 episode was left unfinished" in again.stdout and again.stderr
 
 
-def test_a_close_ends_the_last_episode_of_a_program_whose_envs_are_never_over(tmp_path):
+def test_close_ends_the_last_episode_of_unending_envs(tmp_path):
     code = "env = over(*episodes[:2])\nfor _ in range(2): env.reset(); walk(env, [1, 3])\n"
-    found, _ = told(tmp_path, f"{code}env.close()")
-    assert sorted(found.ends) == ["s0/0", "s1/1"] and not found.lost
+    reports, _ = run_env(tmp_path, f"{code}env.close()")
+    assert sorted(reports.ends) == ["s0/0", "s1/1"] and not reports.lost
 
 
 TRY = """
@@ -154,35 +154,39 @@ def attempt(one, broken):
 """
 
 
-def test_a_worker_that_raises_leaves_its_episode_in_the_middle(tmp_path):
+def test_end_drops_the_episode_of_a_failed_worker(tmp_path):
     code = "try: attempt(episodes[0], True)\nexcept RuntimeError: pass\n"
-    found, _ = told(tmp_path, TRY + code)
-    assert not found.ends and found.lost == ["s0/0"]
+    reports, _ = run_env(tmp_path, TRY + code)
+    assert not reports.ends and reports.lost == ["s0/0"]
 
 
-def test_a_retry_within_the_handler_of_its_exception_is_the_result(tmp_path):
+def test_end_counts_a_retry_inside_an_exception_handler(tmp_path):
     code = "try: attempt(episodes[0], True)\nexcept RuntimeError: attempt(episodes[0], False)\n"
-    found, _ = told(tmp_path, TRY + code)
-    assert found.ends["s0/0"]["metrics"]["success"] == 1.0 and not found.lost and not found.again
+    reports, _ = run_env(tmp_path, TRY + code)
+    assert (
+        reports.ends["s0/0"]["metrics"]["success"] == 1.0
+        and not reports.lost
+        and not reports.repeated
+    )
 
 
-def test_a_reset_within_the_handler_of_an_exception_ends_no_episode(tmp_path):
+def test_reset_inside_an_exception_handler_drops_the_episode(tmp_path):
     code = (
         "env = over(*episodes[:2])\nenv.reset()\n"
         "try: walk(env, [1], True)\nexcept RuntimeError: env.reset()\n"
         "walk(env, [1, 0])"
     )
-    found, _ = told(tmp_path, code)
-    assert list(found.ends) == ["s1/1"] and found.lost == ["s0/0"]
+    reports, _ = run_env(tmp_path, code)
+    assert list(reports.ends) == ["s1/1"] and reports.lost == ["s0/0"]
 
 
-def test_an_end_that_was_over_is_in_place_of_a_try_that_was_given_up(tmp_path):
+def test_reports_prefer_an_end_that_was_over(tmp_path):
     code = (
         "env = over(episodes[0], *episodes[:2])\nenv.reset(); walk(env, [1])\n"
         "for _ in range(2): env.reset(); walk(env, [1, 0])\n"
     )
-    found, _ = told(tmp_path, code)
-    assert found.ends["s0/0"]["metrics"]["success"] == 1.0 and found.again == 0
+    reports, _ = run_env(tmp_path, code)
+    assert reports.ends["s0/0"]["metrics"]["success"] == 1.0 and reports.repeated == 0
 
 
 HEARD = """
@@ -197,14 +201,14 @@ print(*(one.instruction.instruction_text for one in episodes[:2]), sep="|")
 """
 
 
-def test_words_that_two_envs_share_are_corrupted_once_and_put_back_by_the_last(tmp_path):
-    _, printed = told(tmp_path, HEARD, condition("friendly", 1.0))
+def test_hook_corrupts_a_shared_instruction_once(tmp_path):
+    _, printed = run_env(tmp_path, HEARD, condition("friendly", 1.0))
     first, again, second, same, still, *own = printed.strip().split("|")
     assert first == again != own[0] == "Walk to the door 0."
     assert second == same == still != own[1] == "Walk to the door 1."
 
 
-def test_words_that_the_program_changes_in_place_are_corrupted_once_and_put_back(tmp_path):
+def test_hook_restores_an_instruction_that_the_program_changed(tmp_path):
     code = """
 env, other = over(episodes[0], episodes[1], episodes[0]), over(episodes[0])
 for number in range(3):
@@ -217,14 +221,14 @@ other.close()
 env.close()
 print(*(one.instruction.instruction_text for one in episodes[:2]), sep="|")
 """
-    _, printed = told(tmp_path, code, condition("friendly", 1.0))
+    _, printed = run_env(tmp_path, code, condition("friendly", 1.0))
     first, second, again, beside, *own = printed.strip().split("|")
     assert own == ["Walk to the door 0.", "Walk to the door 1."]
     assert first == again == beside != own[0] and second != own[1]
 
 
 @pytest.mark.parametrize("copied", ["copy.deepcopy(one)", "pickle.loads(pickle.dumps(one))"])
-def test_copies_of_words_that_are_on_are_corrupted_once_and_put_back(tmp_path, copied):
+def test_hook_restores_copies_of_an_instruction(tmp_path, copied):
     code = f"""
 import copy, pickle
 a, one = over(episodes[0]), episodes[0]
@@ -236,18 +240,23 @@ print(b.reset()["instruction"]["text"], end="|")
 b.close()
 print(one.instruction.instruction_text, vars(one.instruction))
 """
-    _, printed = told(tmp_path, code, condition("friendly", 1.0))
+    _, printed = run_env(tmp_path, code, condition("friendly", 1.0))
     first, same, own = printed.strip().split("|")
     assert first == same and own.startswith("Walk to the door 0. {") and "_mitigate" not in own
 
 
 @pytest.mark.parametrize("how", ["later", ["over"]])
-def test_an_end_of_another_kind_is_refused(how):
-    from mitigate.bridge.events import ended
+def test_read_end_rejects_an_unknown_kind(how):
+    from mitigate.bridge.events import read_end
 
     with pytest.raises(ValueError, match="it must be over or reset or close"):
-        ended({"metrics": {}, "how": how}, "1")
+        read_end({"metrics": {}, "how": how}, "1")
 
 
-def test_depth_that_is_said_to_be_normalised_is_not_strange(tmp_path):
-    assert near(told(tmp_path, "env = over(episodes[0]); env.reset(); walk(env, [1, 0])")[0]) == []
+def test_maybe_normalised_ignores_declared_depth(tmp_path):
+    assert (
+        maybe_normalised(
+            run_env(tmp_path, "env = over(episodes[0]); env.reset(); walk(env, [1, 0])")[0]
+        )
+        == []
+    )

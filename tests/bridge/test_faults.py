@@ -1,4 +1,4 @@
-"""What breaks ends in a named error, soon, and with no clean frame let through."""
+"""Faults of the server and the connection: an error soon, and no clean frame."""
 
 import os
 import signal
@@ -30,7 +30,7 @@ def start(listener, folder, *options):
 
 
 def wait_for(folder, word, seconds=20.0):
-    """Wait until the events tell of ``word``."""
+    """Wait until the events contain ``word``."""
     until = time.monotonic() + seconds
     events = folder / "events.jsonl"
     while not (events.is_file() and word in events.read_text()):
@@ -38,7 +38,7 @@ def wait_for(folder, word, seconds=20.0):
         time.sleep(0.02)
 
 
-def test_a_killed_server_stops_the_agent(tmp_path):
+def test_hook_stops_if_the_server_is_killed(tmp_path):
     with Listener(condition("spatter"), tmp_path, patience=5.0) as listener:
         agent = start(listener, tmp_path, "--pause", 0.2, "--steps", 100)
         wait_for(tmp_path, '"spec"')
@@ -47,7 +47,7 @@ def test_a_killed_server_stops_the_agent(tmp_path):
     assert agent.returncode == 97 and "server" in output
 
 
-def test_a_server_that_does_not_answer_stops_the_agent(tmp_path):
+def test_hook_stops_if_the_server_does_not_answer(tmp_path):
     with Listener(condition("spatter"), tmp_path, patience=1.0) as listener:
         agent = start(listener, tmp_path, "--pause", 0.2, "--steps", 100)
         wait_for(tmp_path, '"spec"')
@@ -56,30 +56,30 @@ def test_a_server_that_does_not_answer_stops_the_agent(tmp_path):
     assert agent.returncode == 97 and "did not answer within 1 s" in output
 
 
-def test_no_server_stops_the_agent(command, tmp_path):
-    ran = command(condition("spatter"), MITIGATE_BRIDGE=str(tmp_path / "nobody"))
-    assert ran.status == 97 and "cannot be reached" in ran.output
+def test_hook_stops_without_a_server(command, tmp_path):
+    result = command(condition("spatter"), MITIGATE_BRIDGE=str(tmp_path / "nobody"))
+    assert result.status == 97 and "cannot be reached" in result.output
 
 
-def test_a_wrong_token_is_not_served(command):
-    ran = command(condition("spatter"), MITIGATE_TOKEN="guessed")
-    assert ran.status == 97 and "gone" in ran.output
-    assert not ran.told.hellos
+def test_server_rejects_a_wrong_token(command):
+    result = command(condition("spatter"), MITIGATE_TOKEN="guessed")
+    assert result.status == 97 and "gone" in result.output
+    assert not result.reports.hellos
 
 
-def test_no_room_for_frames_is_named(command, monkeypatch):
+def test_server_reports_missing_space_for_frames(command, monkeypatch):
     def full(*_):
         raise OSError(28, "No space left on device")
 
     monkeypatch.setattr(os, "posix_fallocate", full)  # the server is a fork of this process
-    ran = command(condition("spatter"))
-    assert ran.status == 97
-    assert "no room for" in ran.output and "--shm-size" in ran.output
-    assert "no room for" in ran.told.refused[0]
+    result = command(condition("spatter"))
+    assert result.status == 97
+    assert "no room for" in result.output and "--shm-size" in result.output
+    assert "no room for" in result.reports.problems[0]
 
 
-def test_an_exception_handler_of_the_agent_cannot_go_on(tmp_path):
-    """WMNav's loop catches every exception and takes the next step."""
+def test_hook_cannot_be_caught_by_the_agent(tmp_path):
+    """WMNav's loop catches every exception and continues with the next step."""
     code = (
         "import mitigate_hook, numpy\n"
         "episode = mitigate_hook.connect('7')\n"
@@ -88,7 +88,7 @@ def test_an_exception_handler_of_the_agent_cannot_go_on(tmp_path):
         "print('went on')"
     )
     with Listener(condition("spatter"), tmp_path) as listener:
-        ran = subprocess.run(
+        result = subprocess.run(
             [sys.executable, "-c", code],
             env={**os.environ, **listener.environment()},
             capture_output=True,
@@ -96,22 +96,26 @@ def test_an_exception_handler_of_the_agent_cannot_go_on(tmp_path):
             timeout=20,
             check=False,
         )
-    assert ran.returncode == 97 and "must be uint8" in ran.stderr and "went on" not in ran.stdout
+    assert (
+        result.returncode == 97
+        and "must be uint8" in result.stderr
+        and "went on" not in result.stdout
+    )
 
 
-def test_what_the_server_made_for_a_run_is_removed(command):
+def test_server_removes_its_folders(command):
     command(condition("spatter"), "--episodes", 1)
     with Listener(condition("spatter"), command.__closure__[0].cell_contents / "x") as listener:
-        held = (listener.place, listener.memory)
+        held = (listener.socket_folder, listener.memory)
         assert all(place.is_dir() for place in held)
         assert oct(os.stat(listener.address).st_mode & 0o777) == "0o600"
-        assert oct(os.stat(listener.place).st_mode & 0o777) == "0o700"
+        assert oct(os.stat(listener.socket_folder).st_mode & 0o777) == "0o700"
     assert not any(place.exists() for place in held)
 
 
 @pytest.fixture
 def pair():
-    """Both ends of a connection."""
+    """Return both ends of a connection."""
     ends = socket.socketpair()
     for end in ends:
         end.settimeout(5.0)
@@ -120,7 +124,7 @@ def pair():
         end.close()
 
 
-def test_messages_come_as_they_were_sent(pair):
+def test_receive_returns_the_sent_message(pair):
     threading.Thread(target=send, args=(pair[0], {"kind": "frame", "call": 3})).start()
     assert receive(pair[1]) == {"kind": "frame", "call": 3}
 
@@ -134,13 +138,13 @@ def test_messages_come_as_they_were_sent(pair):
         HEADER.pack(MAGIC, 3) + b"nan",
     ],
 )
-def test_what_is_no_message_is_refused_before_it_is_read(pair, raw):
+def test_receive_rejects_invalid_messages(pair, raw):
     pair[0].sendall(raw)
     with pytest.raises(ValueError):
         receive(pair[1])
 
 
-def test_a_connection_that_ends_in_the_middle_is_an_end(pair):
+def test_receive_returns_none_for_a_cut_message(pair):
     pair[0].sendall(HEADER.pack(MAGIC, 100) + b"{")
     pair[0].close()
     assert receive(pair[1]) is None

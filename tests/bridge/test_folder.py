@@ -1,5 +1,4 @@
-"""What a run's folder holds: which conditions are whole, which are measured anew, and the table of
-all of them."""
+"""The folder of a run: complete conditions, repeated conditions, and the table."""
 
 import json
 import re
@@ -9,8 +8,8 @@ import sys
 import pytest
 
 from mitigate.bridge import run as bridge_run
-from mitigate.bridge.cell import files_of, write_done
-from mitigate.bridge.plan import Plan, cells, default_folder
+from mitigate.bridge.cell import hash_files, write_done
+from mitigate.bridge.plan import Plan, default_folder, make_cells
 from mitigate.bridge.results import read
 from mitigate.core.files import sha256
 from mitigate.core.output import FolderLostError
@@ -37,33 +36,33 @@ for name in 'abcd':
 
 @pytest.fixture
 def program(tmp_path):
-    """A loop that loses the episodes it is given where a frame is corrupted."""
+    """A loop that fails in the named episodes if a frame is corrupted."""
     file = tmp_path / "nav.py"
     file.write_text(PROGRAM)
     return f"{sys.executable} {file} x"
 
 
 def finish_again(folder):
-    """Record the events of a condition as they are now, as if it had finished with them."""
+    """Mark a condition as finished with its current events."""
     entries = json.loads((folder / "done.json").read_text())
     write_done(folder, entries | {"episodes_told": len(read(folder).ends)})
 
 
 def measured(out):
-    """The conditions of the rows: {(corruption, severity)}."""
+    """Return the conditions of the rows: {(corruption, severity)}."""
     return {(row["corruption"], row["severity"]) for row in rows.read(out / "rows.jsonl")}
 
 
-def test_episodes_that_clean_has_and_a_condition_lacks_are_missed(run, program, tmp_path):
+def test_run_reports_unfinished_episodes(run, program, tmp_path):
     out = tmp_path / "o"
-    ran = run(out, "conditions=[low_light]", f"{program} a c")
-    assert ran.returncode == 1 and "2 episodes were left in the middle, such as a" in ran.stderr
-    assert "episode.finish(success=False)" in ran.stderr
+    result = run(out, "conditions=[low_light]", f"{program} a c")
+    assert result.returncode == 1 and "2 episodes were left unfinished, such as a" in result.stderr
+    assert "episode.finish(success=False)" in result.stderr
     folder = out / "conditions" / "low_light-s0.6"
     assert not (folder / "done.json").exists() and measured(out) == {("clean", 0.0)}
 
 
-def test_a_finished_condition_that_lacks_episodes_of_clean_is_measured_anew(run, program, tmp_path):
+def test_run_repeats_a_condition_that_lacks_episodes_of_clean(run, program, tmp_path):
     out = tmp_path / "o"
     assert run(out, "conditions=[low_light]", program).returncode == 0
     events = out / "conditions" / "low_light-s0.6" / "events.jsonl"
@@ -75,21 +74,23 @@ def test_a_finished_condition_that_lacks_episodes_of_clean_is_measured_anew(run,
     assert "clean: done before" in again.stdout and "low_light-s0.6: started" in again.stdout
 
 
-def test_an_episode_that_never_began_is_missed_too(run, program, tmp_path):
+def test_run_reports_an_episode_that_never_began(run, program, tmp_path):
     folder = tmp_path / "o" / "conditions"
     assert run(tmp_path / "o", "conditions=[clean]", program).returncode == 0
     with open(folder / "clean" / "events.jsonl", "a") as file:
         file.write('{"event": "end", "scene": "", "episode": "z", "metrics": {"success": 1}}\n')
     finish_again(folder / "clean")
-    ran = run(tmp_path / "o", "conditions=[low_light]", program)
-    assert ran.returncode == 1 and "1 of clean's 5 episodes is missing, such as z" in ran.stderr
+    result = run(tmp_path / "o", "conditions=[low_light]", program)
+    assert (
+        result.returncode == 1 and "1 of clean's 5 episodes is missing, such as z" in result.stderr
+    )
 
 
 BACKGROUND = """
 import os, sys, time, numpy, mitigate_hook
 frame = numpy.full((8, 8, 3), 90, 'uint8')
 if os.fork() and not mitigate_hook.connect('own').corrupt({'rgb': frame}).get('x'):
-    mitigate_hook._thread.walk.end({'success': 1})
+    mitigate_hook._thread.session.end({'success': 1})
     time.sleep(0.5)
     os._exit(0)
 %s
@@ -100,61 +101,64 @@ time.sleep(30)
 
 
 @pytest.mark.parametrize("session", ["", "os.setsid()"])
-def test_an_episode_that_a_background_process_is_in_at_the_end_is_lost(
-    run, tmp_path, monkeypatch, session
-):
+def test_run_reports_the_episode_of_a_background_process(run, tmp_path, monkeypatch, session):
     from mitigate.bridge import attempt
 
-    monkeypatch.setattr(attempt, "NOTED", 0.5)  # who has a session of its own is waited for
+    monkeypatch.setattr(
+        attempt, "DISCONNECT_TIME", 0.5
+    )  # who has a session of its own is waited for
     file = tmp_path / "nav.py"
     file.write_text(BACKGROUND % session)
-    ran = run(tmp_path / "o", "conditions=[clean]", f"{sys.executable} {file}")
-    assert ran.returncode == 1 and "1 episode was left in the middle, such as late" in ran.stderr
+    result = run(tmp_path / "o", "conditions=[clean]", f"{sys.executable} {file}")
+    assert result.returncode == 1 and "1 episode was left unfinished, such as late" in result.stderr
     assert not (tmp_path / "o/conditions/clean/done.json").exists()
 
 
-def test_episodes_that_clean_lacks_have_it_measured_anew(run, tmp_path):
+def test_run_repeats_clean_if_it_lacks_episodes(run, tmp_path):
     out, file = tmp_path / "o", tmp_path / "nav.py"
     lost = "for name in 'abcd':\n    if name == 'd' and sys.argv[1] == 'clean': break\n"
     file.write_text(PROGRAM.replace("for name in 'abcd':\n", lost))
-    ran = run(out, "conditions=[low_light,spatter]", f"{sys.executable} {file} {{condition}}")
-    assert ran.returncode == 1 and "1 episode ended under it that clean's run lacks" in ran.stderr
+    result = run(out, "conditions=[low_light,spatter]", f"{sys.executable} {file} {{condition}}")
+    assert (
+        result.returncode == 1
+        and "1 episode ended under it that the clean run lacks" in result.stderr
+    )
     assert not list(out.glob("conditions/*/done.json")) and not (out / "rows.jsonl").exists()
     file.write_text(PROGRAM)
-    ran = run(out, "conditions=[low_light]", f"{sys.executable} {file} {{condition}}")
-    assert ran.returncode == 0 and "clean: started" in ran.stdout
+    result = run(out, "conditions=[low_light]", f"{sys.executable} {file} {{condition}}")
+    assert result.returncode == 0 and "clean: started" in result.stdout
 
 
-def test_the_table_is_of_all_that_is_finished_in_the_folder(run, program, tmp_path):
+def test_table_holds_all_finished_conditions(run, program, tmp_path):
     out = tmp_path / "o"
     run(out, "conditions=[low_light,spatter]", program)
-    ran = run(out, "conditions=[flare] severity=0.3", program)
-    assert ran.returncode == 0, ran.stderr
-    assert "measured before: low_light-s0.6, spatter-s0.6" in ran.stdout
+    result = run(out, "conditions=[flare] severity=0.3", program)
+    assert result.returncode == 0, result.stderr
+    assert "measured before: low_light-s0.6, spatter-s0.6" in result.stdout
     wanted = {("clean", 0.0), ("low_light", 0.6), ("spatter", 0.6), ("flare", 0.3)}
     assert measured(out) == wanted and (out / "severity.png").exists()
 
 
-def test_what_other_settings_measured_stays_out_of_the_table(run, program, tmp_path):
+def test_table_leaves_out_other_settings(run, program, tmp_path):
     out = tmp_path / "o"
     run(out, "conditions=[low_light]", program)
     file = out / "conditions" / "low_light-s0.6" / "done.json"
     file.write_text(json.dumps(json.loads(file.read_text()) | {"seed": 7}))
-    ran = run(out, "conditions=[flare]", program)
-    assert "low_light-s0.6: measured before, but not in the table: another seed" in ran.stdout
+    result = run(out, "conditions=[flare]", program)
+    assert "low_light-s0.6: measured before, but not in the table: another seed" in result.stdout
     assert measured(out) == {("clean", 0.0), ("flare", 0.6)}
 
 
-def test_one_severity_needs_no_curve_and_the_agents_own_rule_comes_first(run, tmp_path):
+def test_table_starts_with_the_requested_rule(run, tmp_path):
     out = tmp_path / "o"
-    ran = run(out, "conditions=[spatter] rule=objectnav")
-    assert ran.returncode == 0 and not list(out.glob("severity*.png"))
+    result = run(out, "conditions=[spatter] rule=objectnav")
+    assert result.returncode == 0 and not list(out.glob("severity*.png"))
     text = (out / "table.md").read_text()
     first, second = re.findall("Success: (.+). Agents", text)
     assert first == str(RULES["objectnav"]) > second and "![severity" not in text
 
 
-def test_a_changed_program_is_named_and_nothing_to_do_is_said(run, program, tmp_path):
+def test_run_names_a_changed_program(run, program, tmp_path):
     out = tmp_path / "o"
     first = run(out, "conditions=[spatter]", program)
     assert "nothing was left" not in first.stdout
@@ -164,40 +168,43 @@ def test_a_changed_program_is_named_and_nothing_to_do_is_said(run, program, tmp_
     assert "nav.py changed since clean, spatter-s0.6 were run" in again.stdout
 
 
-def test_a_program_that_changes_during_a_run_is_named_at_its_end(run, tmp_path):
+def test_run_names_a_program_that_changes_during_it(run, tmp_path):
     file = tmp_path / "nav.py"
     file.write_text(PROGRAM + "open(__file__, 'a').write('#')\n")
-    ran = run(tmp_path / "o", "conditions=[clean]", f"{sys.executable} {file} x")
-    assert ran.returncode == 0 and "nav.py changed since clean was run" in ran.stdout
+    result = run(tmp_path / "o", "conditions=[clean]", f"{sys.executable} {file} x")
+    assert result.returncode == 0 and "nav.py changed since clean was run" in result.stdout
 
 
-def test_the_files_of_a_command_are_those_that_its_words_name(tmp_path):
+def test_hash_files_finds_files_in_a_command(tmp_path):
     file = tmp_path / "nav.py"
     file.write_text("pass")
     words = ["python", "-c", "print(5)" * 99, str(file), f"--config={file}", str(tmp_path), "\0"]
-    assert files_of(words) == {str(file): {"size": 4, "sha256": sha256(file)}}
+    assert hash_files(words) == {str(file): {"size": 4, "sha256": sha256(file)}}
 
 
-def test_a_recording_that_is_asked_for_later_is_made(run, program, tmp_path):
+def test_run_repeats_a_condition_to_record_it(run, program, tmp_path):
     out, record = tmp_path / "o", tmp_path / "recorded"
     run(out, "conditions=[clean]", program)
-    ran = run(out, f"conditions=[clean] record={record}", program)
-    assert "clean: started, measured anew: it was not recorded in" in ran.stdout
+    result = run(out, f"conditions=[clean] record={record}", program)
+    assert "clean: started, measured again: it was not recorded in" in result.stdout
     assert (record / "clean" / "unnamed" / "d" / "end.json").exists()
     for options in (f"conditions=[clean] record={record}", "conditions=[clean]"):
         assert "clean: done before" in run(out, options, program).stdout
 
 
-def test_a_run_whose_episodes_say_nothing_ends_behind_clean(run, tmp_path, monkeypatch):
+def test_run_stops_after_clean_without_results(run, tmp_path, monkeypatch):
     from mitigate.bridge import results
 
     monkeypatch.setattr(results, "rows", lambda *_: [])
-    ran = run(tmp_path / "o", "conditions=[spatter]")
-    assert ran.returncode == 1 and "of 4 episodes that ended none said how it went" in ran.stderr
-    assert "spatter" not in ran.stdout and ran.stdout.count("none said") == 0
+    result = run(tmp_path / "o", "conditions=[spatter]")
+    assert (
+        result.returncode == 1
+        and "none of 4 episodes that ended reported a result" in result.stderr
+    )
+    assert "spatter" not in result.stdout and result.stdout.count("reported a result") == 0
 
 
-def test_a_worker_that_stops_itself_fails_the_condition(run, tmp_path):
+def test_run_fails_if_a_worker_stops_itself(run, tmp_path):
     program = tmp_path / "agent.py"
     program.write_text(
         "import mitigate_hook, numpy, os\n"
@@ -205,25 +212,28 @@ def test_a_worker_that_stops_itself_fails_the_condition(run, tmp_path):
         "    mitigate_hook.connect('w').corrupt({'image': numpy.zeros((9, 9, 3))})\n"
         "os.wait()\n" + PROGRAM
     )
-    ran = run(tmp_path / "o", "conditions=[clean]", f"{sys.executable} {program}")
-    assert ran.returncode == 1 and "the entry image of an observation may be a frame" in ran.stderr
+    result = run(tmp_path / "o", "conditions=[clean]", f"{sys.executable} {program}")
+    assert (
+        result.returncode == 1
+        and "the entry image of an observation may be a frame" in result.stderr
+    )
 
 
-def test_what_an_older_version_measured_is_said_to_be_left_out(run, program, tmp_path):
+def test_run_names_conditions_of_an_older_version(run, program, tmp_path):
     out = tmp_path / "o"
     (out / "conditions" / "flare-s0.6").mkdir(parents=True)
     (out / "conditions" / "flare-s0.6" / "done.json").write_text('{"seed": 0}')
-    ran = run(out, "conditions=[clean]", program)
-    assert "flare-s0.6: measured before, but not in the table: by an older version" in ran.stdout
+    result = run(out, "conditions=[clean]", program)
+    assert "flare-s0.6: measured before, but not in the table: by an older version" in result.stdout
 
 
 def made(options, folder):
-    """The first condition of a run with options."""
+    """Return the first condition of a run with options, and the default folder."""
     typed = config(*options)
-    return cells(Plan(typed, ("nav",), "nav", folder))[0], default_folder(typed, "nav")
+    return make_cells(Plan(typed, ("nav",), "nav", folder))[0], default_folder(typed, "nav")
 
 
-def test_a_safeguard_makes_another_agent_of_its_own_folder(tmp_path):
+def test_safeguard_changes_agent_and_folder(tmp_path):
     plain, folder = made(["conditions=[clean]"], tmp_path)
     guarded, other = made(["conditions=[clean]", "safeguard=rules"], tmp_path)
     assert (
@@ -268,8 +278,8 @@ def test_run_notices_a_finished_condition_that_is_lost(run, program, tmp_path, m
         return problems
 
     monkeypatch.setattr(bridge_run, "_run_here", lose)
-    ran = run(tmp_path / "o", "conditions=[low_light]", program)
-    assert ran.returncode == 1 and "low_light-s0.6: its result in" in ran.stderr
+    result = run(tmp_path / "o", "conditions=[low_light]", program)
+    assert result.returncode == 1 and "low_light-s0.6: its result in" in result.stderr
 
 
 @pytest.mark.parametrize("name", ["lock", "output.txt", "events.jsonl"])
@@ -278,18 +288,21 @@ def test_run_does_not_write_through_a_link(run, program, tmp_path, name):
     folder.mkdir(parents=True)
     (tmp_path / "thesis.txt").write_text("mine")
     (folder / name).symlink_to(tmp_path / "thesis.txt")
-    ran = run(tmp_path / "o", "conditions=[clean]", program)
+    result = run(tmp_path / "o", "conditions=[clean]", program)
     assert (tmp_path / "thesis.txt").read_text() == "mine"
     if name == "lock":
-        assert ran.returncode == 1 and "lock must be a regular file" in ran.stderr
+        assert result.returncode == 1 and "lock must be a regular file" in result.stderr
     else:  # what an earlier attempt left is put aside
-        assert ran.returncode == 0 and (folder / name).is_file()
+        assert result.returncode == 0 and (folder / name).is_file()
 
 
 def test_run_rejects_a_linked_folder_of_a_condition(run, program, tmp_path):
     (tmp_path / "elsewhere").mkdir()
     (tmp_path / "o").mkdir()
     (tmp_path / "o" / "conditions").symlink_to("../elsewhere")
-    ran = run(tmp_path / "o", "conditions=[clean]", program)
-    assert ran.returncode == 1 and "conditions must be a folder, got a symbolic link" in ran.stderr
+    result = run(tmp_path / "o", "conditions=[clean]", program)
+    assert (
+        result.returncode == 1
+        and "conditions must be a folder, got a symbolic link" in result.stderr
+    )
     assert not [*(tmp_path / "elsewhere").iterdir()]

@@ -1,4 +1,4 @@
-"""The bridge under the real habitat-lab 0.3, where an environment with it is named.
+"""The bridge under the real habitat-lab 0.3, if an environment with it is available.
 
 ``tools/pythons.sh FOLDER`` makes ``FOLDER/lab``; ``MITIGATE_PYTHONS`` names the folder.
 """
@@ -22,7 +22,7 @@ PROGRAM = Path(__file__).parent / "real" / "lab_agent.py"
 
 @pytest.fixture(scope="module")
 def lab():
-    """A Python with habitat-lab."""
+    """Return a Python with habitat-lab."""
     found = Path(os.environ.get("MITIGATE_PYTHONS", "")) / "lab" / "bin" / "python"
     if "MITIGATE_PYTHONS" not in os.environ or not found.is_file():
         pytest.skip("no environment with habitat-lab: tools/pythons.sh makes one")
@@ -31,15 +31,15 @@ def lab():
 
 @pytest.fixture(scope="module")
 def episodes(tmp_path_factory):
-    """Our own routes, as export_scene writes them for the lab."""
+    """Episodes of this project, as export_scene writes them for the lab."""
     out = tmp_path_factory.mktemp("habitat")
     export(out, "val_unseen", 1, ["vln"])
     return out / "datasets" / "vln" / "val_unseen.json.gz"
 
 
-def walked(lab, episodes, met, folder):
+def run_lab(lab, episodes, met, folder):
     with Listener(met, folder, patience=20.0) as listener:
-        ran = subprocess.run(
+        process = subprocess.run(
             [lab, "-W", "ignore", str(PROGRAM), str(folder / "seen.json"), str(episodes)],
             env={**os.environ, **listener.environment()},
             stdout=subprocess.PIPE,
@@ -48,31 +48,31 @@ def walked(lab, episodes, met, folder):
             timeout=120,
             check=False,
         )
-    assert ran.returncode == 0, ran.stdout
+    assert process.returncode == 0, process.stdout
     return json.loads((folder / "seen.json").read_text()), read(folder)
 
 
-def test_the_labs_own_task_is_corrupted_and_measured(lab, episodes, tmp_path):
-    clean, _ = walked(lab, episodes, condition(), tmp_path / "clean")
-    seen, told = walked(lab, episodes, condition("low_light"), tmp_path / "met")
+def test_hook_corrupts_and_measures_a_lab_task(lab, episodes, tmp_path):
+    clean, _ = run_lab(lab, episodes, condition(), tmp_path / "clean")
+    seen, reports = run_lab(lab, episodes, condition("low_light"), tmp_path / "met")
     assert len(seen) == len(clean) > 20
     assert all(a["rgb"] != b["rgb"] for a, b in zip(seen, clean, strict=True))
     assert all(a["depth"] == b["depth"] for a, b in zip(seen, clean, strict=True))
-    assert len(told.ends) == 10 and not told.dropped
-    assert told.cameras[1]["max_depth"] == 10.0 and told.cameras[1]["normalize_depth"] is True
+    assert len(reports.ends) == 10 and not reports.dropped
+    assert reports.cameras[1]["max_depth"] == 10.0 and reports.cameras[1]["normalize_depth"] is True
     label = {"agent": "a", "name": "n", "split": "s", "seed": 0}
-    own = [r for r in rows(told, Corruption("low_light", 0.6), label, None) if r["rule"] == OWN]
-    for row, end in zip(own, told.ends.values(), strict=True):
+    own = [r for r in rows(reports, Corruption("low_light", 0.6), label, None) if r["rule"] == OWN]
+    for row, end in zip(own, reports.ends.values(), strict=True):
         metrics = end["metrics"]
         assert row["success"] == metrics["success"] and row["spl"] == metrics["spl"]
         assert end["distance"] == pytest.approx(metrics["distance_to_goal"], abs=1e-5)
 
 
-def test_the_labs_own_instruction_sensor_gives_the_corrupted_words(lab, episodes, tmp_path):
-    clean, _ = walked(lab, episodes, condition(), tmp_path / "clean")
-    from mitigate.bridge.condition import Words, tokenizer_of
+def test_hook_corrupts_the_lab_instruction_sensor(lab, episodes, tmp_path):
+    clean, _ = run_lab(lab, episodes, condition(), tmp_path / "clean")
+    from mitigate.bridge.condition import Words, load_tokenizer
 
-    words = Words(tokenizer_of(str(episodes)))
-    seen, _ = walked(lab, episodes, condition("capitalize", 1.0, words=words), tmp_path / "met")
+    words = Words(load_tokenizer(str(episodes)))
+    seen, _ = run_lab(lab, episodes, condition("capitalize", 1.0, words=words), tmp_path / "met")
     assert all(a["text"] != b["text"] for a, b in zip(seen, clean, strict=True))
     assert all(a["text"].lower() == b["text"].lower() for a, b in zip(seen, clean, strict=True))

@@ -1,4 +1,4 @@
-"""What is broken off, shared by threads or forked: no frame passes clean, no answer is mixed up."""
+"""Interrupts, threads and forks: no clean frame, and no answer to another message."""
 
 import signal
 import time
@@ -11,7 +11,7 @@ from mitigate.bridge.results import read
 from mitigate.bridge.server import Listener
 
 from .conftest import condition, python
-from .test_loops import BEGIN, ran
+from .test_loops import BEGIN, run_loop
 from .test_messages import EPISODE, HELLO, SPEC, Peer
 
 BROKEN_OFF = """
@@ -34,38 +34,40 @@ print('went on')
 """
 
 
-@pytest.mark.parametrize("where", ["send", "receive", "_array", "_middle", "_described_frames"])
-def test_an_interrupt_while_a_frame_is_corrupted_ends_the_process(tmp_path, where):
+@pytest.mark.parametrize(
+    "where", ["send", "receive", "_describe_array", "_median_and_maximum", "_find_cameras"]
+)
+def test_corrupt_stops_when_interrupted(tmp_path, where):
     code = BROKEN_OFF.replace("{'rgb': rgb}", "{'rgb': rgb, 'depth': depth}")
-    if where == "_middle":  # of the first frame
+    if where == "_median_and_maximum":  # of the first frame
         code = code.replace("episode.corrupt({'rgb': rgb, 'depth': depth})\ninter", "inter")
     with Listener(condition("low_light"), tmp_path) as listener:
-        ended = python(listener, BEGIN + code, where)
-    assert ended.returncode == 97 and "went on" not in ended.stdout, ended.stdout
-    assert "Timeout: the time is up" in read(tmp_path).refused[0]
+        process = python(listener, BEGIN + code, where)
+    assert process.returncode == 97 and "went on" not in process.stdout, process.stdout
+    assert "Timeout: the time is up" in read(tmp_path).problems[0]
 
 
-def test_an_interrupt_while_an_episode_begins_ends_the_process(tmp_path):
+def test_connect_stops_when_interrupted(tmp_path):
     code = BROKEN_OFF.replace("episode.corrupt({'rgb': rgb})\n", "mitigate_hook.connect('b')\n")
     with Listener(condition("low_light"), tmp_path) as listener:
-        ended = python(listener, BEGIN + code, "receive")
-    assert ended.returncode == 97 and "went on" not in ended.stdout, ended.stdout
+        process = python(listener, BEGIN + code, "receive")
+    assert process.returncode == 97 and "went on" not in process.stdout, process.stdout
 
 
-def test_the_answer_to_another_message_is_not_taken(tmp_path):
+def test_hook_stops_for_the_answer_to_another_message(tmp_path):
     code = (
         "episode = mitigate_hook.connect('a')\nepisode.corrupt({'rgb': rgb})\n"
         "frame = {'kind': 'frame', 'call': 1, 'number': 2}\n"
-        "mitigate_hook.send(episode._walk.channel.socket, frame)\n"
+        "mitigate_hook.send(episode._session.channel.socket, frame)\n"
         "episode.corrupt({'rgb': rgb})\nprint('went on')"
     )
-    ended, told = ran(tmp_path, code)
-    assert ended.returncode == 97 and "went on" not in ended.stdout
-    assert "that to another message" in told.refused[0]
+    process, reports = run_loop(tmp_path, code)
+    assert process.returncode == 97 and "went on" not in process.stdout
+    assert "answered another message" in reports.problems[0]
 
 
-def test_a_call_within_a_call_ends_the_process(tmp_path):
-    """A signal handler that looks, or a greenlet."""
+def test_hook_stops_for_a_nested_call(tmp_path):
+    """For example a signal handler that calls corrupt, or a greenlet."""
     code = (
         "episode = mitigate_hook.connect('a')\nreceive = mitigate_hook.receive\n"
         "def again(channel):\n    mitigate_hook.receive = receive\n"
@@ -73,18 +75,20 @@ def test_a_call_within_a_call_ends_the_process(tmp_path):
         "mitigate_hook.receive = again\n"
         "episode.corrupt({'rgb': rgb})\nprint('went on')"
     )
-    ended, told = ran(tmp_path, code)
-    assert ended.returncode == 97 and "within another call" in told.refused[0]
+    process, reports = run_loop(tmp_path, code)
+    assert (
+        process.returncode == 97 and "another call of the same environment" in reports.problems[0]
+    )
 
 
-def test_an_episode_is_walked_by_the_thread_that_began_it(tmp_path):
+def test_episode_stops_in_another_thread(tmp_path):
     code = (
         "import threading\nepisode = mitigate_hook.connect('a')\nepisode.corrupt({'rgb': rgb})\n"
         "def go():\n    episode.corrupt({'rgb': rgb})\n    print('went on')\n"
         "thread = threading.Thread(target=go)\nthread.start()\nthread.join()"
     )
-    ended, told = ran(tmp_path, code)
-    assert ended.returncode == 97 and "in the thread that walks" in told.refused[0]
+    process, reports = run_loop(tmp_path, code)
+    assert process.returncode == 97 and "in the thread that runs the episode" in reports.problems[0]
 
 
 THREADS = """
@@ -99,15 +103,15 @@ def look():
 threads = [threading.Thread(target=look) for _ in range(3)]
 for thread in threads: thread.start()
 for thread in threads: thread.join()
-clean = mitigate_hook._unseen(env.sim.get_observations_at, [0.0, 0.0, 0.0], 0.0)["rgb"].mean()
+clean = mitigate_hook._call_clean(env.sim.get_observations_at, [0.0, 0.0, 0.0], 0.0)["rgb"].mean()
 env.step(0)
 print(len(shades), max(shades) < 0.8 * clean)
 """
 
 
-def test_threads_that_share_an_environment_see_corrupted_frames(tmp_path):
-    ended, told = ran(tmp_path, THREADS, condition("low_light"))
-    assert ended.stdout.strip() == "120 True" and told.ends["s0/0"]["calls"] == 122
+def test_hook_corrupts_frames_of_all_threads(tmp_path):
+    process, reports = run_loop(tmp_path, THREADS, condition("low_light"))
+    assert process.stdout.strip() == "120 True" and reports.ends["s0/0"]["calls"] == 122
 
 
 FORK = """
@@ -125,47 +129,49 @@ env.close()
 """
 
 
-def test_a_fork_does_not_end_the_episode_of_its_parent(tmp_path):
-    ended, told = ran(tmp_path, FORK.replace("CHILD", "env.close()"))
-    assert ended.returncode == 0, ended.stdout
-    assert {name: end["steps"] for name, end in told.ends.items()} == {"s0/0": 3}
-    assert not told.again and not told.refused
+def test_fork_does_not_end_the_episode_of_its_parent(tmp_path):
+    process, reports = run_loop(tmp_path, FORK.replace("CHILD", "env.close()"))
+    assert process.returncode == 0, process.stdout
+    assert {name: end["steps"] for name, end in reports.ends.items()} == {"s0/0": 3}
+    assert not reports.repeated and not reports.problems
 
 
-def test_a_fork_walks_no_episode_of_its_parent(tmp_path):
-    _, told = ran(tmp_path, FORK.replace("CHILD", "env.step(1)"))
-    assert len(told.refused) == 1 and "reset the environment in the process" in told.refused[0]
+def test_fork_stops_if_it_continues_the_episode_of_its_parent(tmp_path):
+    _, reports = run_loop(tmp_path, FORK.replace("CHILD", "env.step(1)"))
+    assert (
+        len(reports.problems) == 1 and "Reset the environment in the process" in reports.problems[0]
+    )
 
 
-def test_a_fork_that_resets_walks_an_episode_of_its_own(tmp_path):
-    _, told = ran(tmp_path, FORK.replace("CHILD", "env.reset(); env.step(0); env.close()"))
-    assert not told.refused and not told.lost
-    assert {name: end["steps"] for name, end in told.ends.items()} == {"s0/0": 3, "s1/1": 1}
+def test_fork_begins_its_own_episode_by_a_reset(tmp_path):
+    _, reports = run_loop(tmp_path, FORK.replace("CHILD", "env.reset(); env.step(0); env.close()"))
+    assert not reports.problems and not reports.lost
+    assert {name: end["steps"] for name, end in reports.ends.items()} == {"s0/0": 3, "s1/1": 1}
 
 
-def test_a_fork_from_within_a_call_of_another_thread_takes_its_own_lock(tmp_path):
+def test_fork_gets_its_own_lock(tmp_path):
     code = (
-        "walk = mitigate_hook.connect('a')._walk\nwalk.lock.acquire()\n"
+        "walk = mitigate_hook.connect('a')._session\nwalk.lock.acquire()\n"
         "import threading\n"
-        "def go():\n    mitigate_hook._thread.walk = walk\n    if os.fork() == 0:\n"
+        "def go():\n    mitigate_hook._thread.session = walk\n    if os.fork() == 0:\n"
         "        mitigate_hook.connect('b').corrupt({'rgb': rgb})\n        os._exit(0)\n"
         "    print(os.wait()[1])\n"
         "thread = threading.Thread(target=go)\nthread.start()\nthread.join()"
     )
-    ended, _ = ran(tmp_path, code)
-    assert ended.stdout.strip() == "0"
+    process, _ = run_loop(tmp_path, code)
+    assert process.stdout.strip() == "0"
 
 
 @pytest.mark.parametrize("stream", ["None", "5", "open(os.devnull)"])
-def test_a_process_stops_without_a_standard_error(tmp_path, stream):
+def test_stop_works_without_standard_error(tmp_path, stream):
     code = (
         f"sys.stderr = {stream}\n"
         "try:\n    mitigate_hook.connect('a').corrupt({'rgb': rgb, 'left': rgb})\n"
         "except BaseException:\n    pass\nprint('went on')"
     )
-    ended, told = ran(tmp_path, code)
-    assert ended.returncode == 97 and "went on" not in ended.stdout
-    assert "the entry left" in ended.stdout and "the entry left" in told.refused[0]
+    process, reports = run_loop(tmp_path, code)
+    assert process.returncode == 97 and "went on" not in process.stdout
+    assert "the entry left" in process.stdout and "the entry left" in reports.problems[0]
 
 
 DIES = (
@@ -183,18 +189,18 @@ episode.corrupt({'rgb': rgb})
 )
 
 
-def test_a_worker_that_dies_while_the_server_computes_is_lost(tmp_path):
+def test_server_drops_the_episode_of_a_dead_worker(tmp_path):
     with Listener(condition("low_light"), tmp_path) as listener:
         assert python(listener, DIES).returncode == -signal.SIGKILL
         until = time.monotonic() + 5.0
         while read(tmp_path).connected and time.monotonic() < until:
             time.sleep(0.02)
-    told = read(tmp_path)
-    assert told.lost == ["a"] and told.connected == 0
+    reports = read(tmp_path)
+    assert reports.lost == ["a"] and reports.connected == 0
 
 
-def test_an_answer_that_nobody_takes_is_an_end(tmp_path, monkeypatch):
-    """The other side is gone before the answer is sent."""
+def test_server_ends_if_its_answer_is_not_received(tmp_path, monkeypatch):
+    """The other side closed before the answer was sent."""
     made = Peer(tmp_path)
     for message in (HELLO, SPEC, EPISODE, {"kind": "frame", "call": 0}):
         assert "error" not in made.ask(message)
@@ -205,12 +211,12 @@ def test_an_answer_that_nobody_takes_is_an_end(tmp_path, monkeypatch):
     monkeypatch.setattr(connection, "send", broken)
     mitigate_hook.send(made.channel, {"kind": "frame", "call": 1})
     made.thread.join(5.0)
-    told = read(tmp_path)
-    assert told.lost == ["a/1"] and told.connected == 0
+    reports = read(tmp_path)
+    assert reports.lost == ["a/1"] and reports.connected == 0
     made.close()
 
 
-def test_an_answer_repeats_the_number_of_its_message(tmp_path):
+def test_answer_repeats_the_number_of_its_message(tmp_path):
     made = Peer(tmp_path)
     assert made.ask(HELLO | {"number": 7}) == {"number": 7}
     assert made.ask({"kind": "dataset", "keys": [], "number": 8}) == {"keep": None, "number": 8}

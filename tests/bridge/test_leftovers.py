@@ -1,4 +1,4 @@
-"""Processes of a command that run on when it has ended, and runs that end too early."""
+"""Processes that still run after their command ended, and runs that end too early."""
 
 import os
 import signal
@@ -46,7 +46,7 @@ DETACHED = {
 
 @pytest.fixture
 def sleeper(tmp_path):
-    """Write a program that runs one of five episodes and leaves the others to a process."""
+    """Write a program that runs one of five episodes; a detached process runs the others."""
 
     def write(how, pause=60):
         file = tmp_path / "nav.py"
@@ -63,7 +63,7 @@ def sleeper(tmp_path):
 
 
 def running(folder):
-    """Processes whose command line names the program in ``folder``."""
+    """Return the processes whose command line names the program in ``folder``."""
     found = []
     for entry in Path("/proc").glob("[0-9]*"):
         with suppress(OSError):
@@ -76,15 +76,17 @@ def running(folder):
 
 @pytest.mark.parametrize("how", DETACHED)
 def test_run_does_not_finish_a_condition_whose_command_detaches(run, sleeper, tmp_path, how):
-    ran = run(tmp_path / "o", "conditions=[clean]", sleeper(how))
-    assert ran.returncode == 1 and "1 process that it started ran on" in ran.stderr, ran.stderr
-    assert "nav.py" in ran.stderr and not running(tmp_path)
+    result = run(tmp_path / "o", "conditions=[clean]", sleeper(how))
+    assert result.returncode == 1 and "1 process that it started still ran" in result.stderr, (
+        result.stderr
+    )
+    assert "nav.py" in result.stderr and not running(tmp_path)
     assert not (tmp_path / "o/conditions/clean/done.json").exists()
 
 
 def test_run_counts_a_detached_process_that_ends_soon(run, sleeper, tmp_path):
-    ran = run(tmp_path / "o", "conditions=[clean]", sleeper("double fork", pause=0.5))
-    assert ran.returncode == 0 and "clean: 5 episodes" in ran.stdout, ran.stderr
+    result = run(tmp_path / "o", "conditions=[clean]", sleeper("double fork", pause=0.5))
+    assert result.returncode == 0 and "clean: 5 episodes" in result.stdout, result.stderr
     assert not running(tmp_path)
 
 
@@ -94,9 +96,9 @@ def test_run_fails_if_fewer_episodes_end_than_wanted_returned(run, tmp_path):
         EPISODES + "for _, name in mitigate_hook.wanted([('', n) for n in 'abcde'])[:1]:\n"
         "    episode(name)\n"
     )
-    ran = run(tmp_path / "o", "conditions=[clean]", f"{sys.executable} {file}")
-    assert ran.returncode == 1
-    assert "ended after 1 episode, and wanted() returned 5" in ran.stderr
+    result = run(tmp_path / "o", "conditions=[clean]", f"{sys.executable} {file}")
+    assert result.returncode == 1
+    assert "ended after 1 episode, and wanted() returned 5" in result.stderr
     assert not (tmp_path / "o/conditions/clean/done.json").exists()
 
 
@@ -139,5 +141,5 @@ def test_run_ends_processes_whose_parent_was_killed(run, tmp_path, child):
         f"import os, signal, subprocess, sys, time\n{CHILDREN[child]}"
         "os.kill(os.getppid(), signal.SIGKILL)\ntime.sleep(60)\n"
     )
-    ran = run(tmp_path / "o", "conditions=[clean]", f"{sys.executable} {file}")
-    assert ran.returncode == 1 and "status -9" in ran.stderr and not running(tmp_path)
+    result = run(tmp_path / "o", "conditions=[clean]", f"{sys.executable} {file}")
+    assert result.returncode == 1 and "status -9" in result.stderr and not running(tmp_path)

@@ -1,10 +1,10 @@
-"""Loops of one's own: nothing clean passes by, no episode is lost, no bad result is taken."""
+"""Loops without Habitat: no clean frame passes, no episode is lost, no invalid result is stored."""
 
 import sys
 
 import pytest
 
-from mitigate.bridge.condition import Subset, place
+from mitigate.bridge.condition import Subset, hash_episode
 from mitigate.bridge.results import OWN, read, rows
 from mitigate.bridge.server import Listener
 from mitigate.corruptions import Corruption
@@ -18,11 +18,11 @@ depth = numpy.full((16, 16, 1), 2.0, 'float32')
 """
 
 
-def ran(tmp_path, code, met=None):
-    """What a program printed and what was told of it."""
-    with Listener(met or condition("spatter"), tmp_path / "told", patience=5.0) as listener:
-        ended = python(listener, BEGIN + code)
-    return ended, read(tmp_path / "told")
+def run_loop(tmp_path, code, settings=None):
+    """Run a loop; return its process and its reports."""
+    with Listener(settings or condition("spatter"), tmp_path / "events", patience=5.0) as listener:
+        process = python(listener, BEGIN + code)
+    return process, read(tmp_path / "events")
 
 
 @pytest.mark.parametrize(
@@ -39,55 +39,55 @@ def ran(tmp_path, code, met=None):
         ("'deep': {'a': [{'b': rgb[..., 0]}]}", "deep.a.0.b", "(16, 16)"),
     ],
 )
-def test_what_may_be_a_frame_must_be_described(tmp_path, entry, name, shape):
+def test_corrupt_stops_for_an_undescribed_frame(tmp_path, entry, name, shape):
     code = f"mitigate_hook.connect('a').corrupt({{'rgb': rgb, {entry}}})\nprint('went on')"
-    ended, told = ran(tmp_path, code)
-    assert ended.returncode == 97 and "went on" not in ended.stdout
+    process, reports = run_loop(tmp_path, code)
+    assert process.returncode == 97 and "went on" not in process.stdout
     words = f"the entry {name} of an observation may be a frame {shape}"
-    assert words in ended.stdout and words in told.refused[0]
+    assert words in process.stdout and words in reports.problems[0]
 
 
-def test_poses_words_and_what_is_left_out_pass(tmp_path):
+def test_corrupt_leaves_other_entries_unchanged(tmp_path):
     code = (
         "seen = mitigate_hook.connect('a').corrupt({'rgb': rgb, 'pose': numpy.eye(4), 'word': 'x',"
         "'path': numpy.zeros((50, 3)), 'state': numpy.zeros((1, 512)), 'all': [1, None, {}],"
         "'map': {'rgb': rgb}}, cameras={'map': {'type': 'other'}})\n"
         "print(sorted(seen), (seen['map']['rgb'] == rgb).all(), (seen['rgb'] != rgb).any())"
     )
-    ended, _ = ran(tmp_path, code)
-    assert ended.stdout.strip().endswith("True True"), ended.stdout
+    process, _ = run_loop(tmp_path, code)
+    assert process.stdout.strip().endswith("True True"), process.stdout
 
 
-def test_a_camera_that_is_described_without_its_type_is_still_corrupted(tmp_path):
+def test_corrupt_infers_the_type_from_the_name(tmp_path):
     code = (
         "met = mitigate_hook.connect('a')\n"
         "seen = met.corrupt({'depth': depth}, cameras={'depth': {'hfov': 79}})\n"
         "print((seen['depth'] != depth).any())\n"
         "met.corrupt({'left': rgb}, cameras={'left': {'type': 'color'}})"
     )
-    ended, told = ran(tmp_path, code, condition("missing_data"))
-    assert ended.stdout.startswith("True") and ended.returncode == 97
-    assert "described as 'color'" in told.refused[0]
+    process, reports = run_loop(tmp_path, code, condition("missing_data"))
+    assert process.stdout.startswith("True") and process.returncode == 97
+    assert "got 'color'" in reports.problems[0]
 
 
-def test_an_episode_that_is_lost_at_its_first_frame_is_counted(tmp_path):
+def test_reports_count_an_episode_lost_at_its_first_frame(tmp_path):
     code = (
         "for name in 'abc':\n    episode = mitigate_hook.connect(name)\n"
         "    episode.corrupt({'rgb': rgb})\n"
         "    if name != 'a': episode.finish(success=1)\n"
     )
-    _, told = ran(tmp_path, code)
-    assert told.lost == ["a"] and sorted(told.ends) == ["b", "c"]
+    _, reports = run_loop(tmp_path, code)
+    assert reports.lost == ["a"] and sorted(reports.ends) == ["b", "c"]
 
 
-def test_a_crash_before_the_first_frame_may_count_as_a_failure_but_not_as_a_success(tmp_path):
-    ended, told = ran(tmp_path, "mitigate_hook.connect('a').finish(success=False)")
-    assert ended.returncode == 0 and told.ends["a"]["metrics"]["success"] == 0
-    ended, told = ran(tmp_path, "mitigate_hook.connect('b').finish(success=True)")
-    assert ended.returncode == 97 and "none of its frames came by" in told.refused[0]
+def test_finish_without_a_frame_accepts_only_failure(tmp_path):
+    process, reports = run_loop(tmp_path, "mitigate_hook.connect('a').finish(success=False)")
+    assert process.returncode == 0 and reports.ends["a"]["metrics"]["success"] == 0
+    process, reports = run_loop(tmp_path, "mitigate_hook.connect('b').finish(success=True)")
+    assert process.returncode == 97 and "received none of its frames" in reports.problems[0]
 
 
-def test_the_server_hears_why_a_worker_stopped_itself(tmp_path):
+def test_stop_reports_its_reason_to_the_server(tmp_path):
     code = (
         "if os.fork() == 0:\n"
         "    mitigate_hook.connect('a').corrupt({'rgb': rgb, 'left': rgb})\n"
@@ -95,28 +95,30 @@ def test_the_server_hears_why_a_worker_stopped_itself(tmp_path):
         "episode = mitigate_hook.connect('b')\nepisode.corrupt({'rgb': rgb})\n"
         "episode.finish(success=True)"
     )
-    ended, told = ran(tmp_path, code)
-    assert ended.returncode == 0 and list(told.ends) == ["b"]
-    assert len(told.refused) == 1 and "the entry left of an observation" in told.refused[0]
+    process, reports = run_loop(tmp_path, code)
+    assert process.returncode == 0 and list(reports.ends) == ["b"]
+    assert len(reports.problems) == 1 and "the entry left of an observation" in reports.problems[0]
 
 
-def test_an_episode_is_walked_by_the_process_that_began_it(tmp_path):
+def test_episode_stops_in_another_process(tmp_path):
     code = (
         "episode = mitigate_hook.connect('a')\n"
         "if os.fork() == 0:\n    episode.corrupt({'rgb': rgb})\n    os._exit(0)\n"
         "sys.exit(os.wait()[1] >> 8)"
     )
-    ended, told = ran(tmp_path, code)
-    assert ended.returncode == 97 and "in the process that walks" in told.refused[0]
+    process, reports = run_loop(tmp_path, code)
+    assert (
+        process.returncode == 97 and "in the process that runs the episode" in reports.problems[0]
+    )
 
 
-def test_an_episode_that_is_finished_gets_no_further_frames(tmp_path):
+def test_corrupt_stops_after_finish(tmp_path):
     code = (
         "episode = mitigate_hook.connect('a')\nepisode.corrupt({'rgb': rgb})\n"
         "episode.finish(success=True)\nepisode.corrupt({'rgb': rgb})"
     )
-    ended, _ = ran(tmp_path, code)
-    assert ended.returncode == 97 and "episode a was finished" in ended.stdout
+    process, _ = run_loop(tmp_path, code)
+    assert process.returncode == 97 and "episode a is finished" in process.stdout
 
 
 RESULTS = BEGIN + (
@@ -133,14 +135,14 @@ RESULTS = BEGIN + (
         ("success=0.5", "it must be 1 (or True) or 0 (or False)"),
         ("success=float('nan')", "must be a number"),
         ("success='yes'", "must be a number"),
-        ("success=False, spl=0.7", "the SPL of an episode that failed is 0"),
+        ("success=False, spl=0.7", "the SPL of a failed episode must be 0"),
         ("success=True, path_length=-1", "must be a number that is not negative"),
     ],
 )
-def test_a_result_that_is_none_is_refused_at_once(tmp_path, results, words):
+def test_finish_rejects_invalid_results(tmp_path, results, words):
     with Listener(condition("spatter"), tmp_path) as listener:
-        ended = python(listener, RESULTS % results)
-    assert ended.stdout.startswith("refused:") and words in ended.stdout, ended.stdout
+        process = python(listener, RESULTS % results)
+    assert process.stdout.startswith("refused:") and words in process.stdout, process.stdout
     assert not read(tmp_path).ends
 
 
@@ -153,7 +155,7 @@ def test_a_result_that_is_none_is_refused_at_once(tmp_path, results, words):
         ("success=0, spl=None, mine=numpy.array(7)", {"success": 0.0, "mine": 7.0}),
     ],
 )
-def test_results_are_taken_as_numbers(tmp_path, results, metrics):
+def test_finish_converts_results_to_numbers(tmp_path, results, metrics):
     with Listener(condition("spatter"), tmp_path) as listener:
         assert python(listener, RESULTS % results).stdout == ""
     assert read(tmp_path).ends["a"]["metrics"] == metrics
@@ -169,17 +171,17 @@ for scene, name in mitigate_hook.wanted(pairs):
 """
 
 
-def test_some_episodes_of_a_loop_are_chosen_as_those_of_habitats_are(tmp_path):
+def test_wanted_returns_the_chosen_episodes(tmp_path):
     keep = Subset(4, tmp_path, settled=0.0).keep
-    ended, told = ran(tmp_path, WANTED, condition("spatter", keep=keep))
-    assert len(told.ends) == 4 and len(ended.stdout.split()) == 4
+    process, reports = run_loop(tmp_path, WANTED, condition("spatter", keep=keep))
+    assert len(reports.ends) == 4 and len(process.stdout.split()) == 4
     numbers = keep([f"x.glb/{n}" for n in range(12)])
-    assert sorted(told.ends) == sorted(f"x/{n}" for n in numbers)
-    assert len(ran(tmp_path / "all", WANTED)[1].ends) == 12
+    assert sorted(reports.ends) == sorted(f"x/{n}" for n in numbers)
+    assert len(run_loop(tmp_path / "all", WANTED)[1].ends) == 12
 
 
 @pytest.mark.parametrize("workers", [1, 5])
-def test_any_number_of_workers_is_given_the_same_episodes(tmp_path, workers):
+def test_wanted_does_not_depend_on_the_number_of_workers(tmp_path, workers):
     keep = Subset(2, tmp_path, settled=0.3).keep
     code = (
         f"for n in range({workers}):\n    if os.fork() == 0:\n"
@@ -189,86 +191,92 @@ def test_any_number_of_workers_is_given_the_same_episodes(tmp_path, workers):
         "            episode.corrupt({'rgb': rgb})\n            episode.finish(success=1)\n"
         f"        os._exit(0)\nfor n in range({workers}): os.wait()"
     )
-    _, told = ran(tmp_path, code, condition("spatter", keep=keep))
-    places = sorted(range(20), key=lambda n: place(f"x.glb/{n}"))
-    assert sorted(told.ends) == sorted(f"x/{n}" for n in places[:2])
+    _, reports = run_loop(tmp_path, code, condition("spatter", keep=keep))
+    places = sorted(range(20), key=lambda n: hash_episode(f"x.glb/{n}"))
+    assert sorted(reports.ends) == sorted(f"x/{n}" for n in places[:2])
 
 
-def test_the_order_of_entries_changes_no_pixel(tmp_path):
+def test_corrupt_does_not_depend_on_the_order_of_entries(tmp_path):
     code = (
         "import hashlib\nfor order in (('rgb_b', 'rgb_a'), ('rgb_a', 'rgb_b')):\n"
         "    episode, frames = mitigate_hook.connect('a'), {'rgb_a': rgb, 'rgb_b': rgb[:8]}\n"
         "    seen = episode.corrupt({name: frames[name] for name in order})\n"
         "    print(*[hashlib.md5(seen[n].tobytes()).hexdigest() for n in ('rgb_a', 'rgb_b')])"
     )
-    ended, _ = ran(tmp_path, code)
-    first, second = ended.stdout.splitlines()
+    process, _ = run_loop(tmp_path, code)
+    first, second = process.stdout.splitlines()
     assert first == second and first.split()[0] != first.split()[1]
 
 
-def test_a_goal_out_of_reach_is_a_failure_by_the_common_rule(tmp_path):
+def test_rows_count_an_unreachable_goal_as_failure(tmp_path):
     code = (
         "for name, metres in (('a', 1.0), ('b', numpy.inf)):\n"
         "    episode = mitigate_hook.connect(name, instruction='go')\n"
         "    episode.corrupt({'rgb': rgb})\n"
         "    episode.finish(success=name == 'a', distance_to_goal=metres, path_length=metres)"
     )
-    _, told = ran(tmp_path, code)
+    _, reports = run_loop(tmp_path, code)
     label = {"agent": "x", "name": "n", "split": "s", "seed": 0}
-    found = rows(told, Corruption("spatter", 0.6), label, None)
-    assert [row["success"] for row in found if row["rule"] != OWN] == [1.0, 0.0]
-    assert "distance_to_goal" not in found[-1]
+    result_rows = rows(reports, Corruption("spatter", 0.6), label, None)
+    assert [row["success"] for row in result_rows if row["rule"] != OWN] == [1.0, 0.0]
+    assert "distance_to_goal" not in result_rows[-1]
 
 
-def test_a_loop_that_lets_none_be_chosen_is_told_so_at_its_first_episode(tmp_path):
+def test_connect_stops_if_no_episodes_were_chosen(tmp_path):
     keep = Subset(2, tmp_path, settled=0.0).keep
-    ended, _ = ran(tmp_path, "mitigate_hook.connect('a')", condition(keep=keep))
-    assert ended.returncode == 97 and "mitigate_hook.wanted([(scene, id), ...])" in ended.stdout
+    process, _ = run_loop(tmp_path, "mitigate_hook.connect('a')", condition(keep=keep))
+    assert process.returncode == 97 and "mitigate_hook.wanted([(scene, id), ...])" in process.stdout
 
 
 @pytest.mark.parametrize(
     ("frame", "words"),
     [
         ("{'depth': depth * 1000}", "Divide millimetres by 1000"),
-        ("{'depth': depth}, cameras={'depth': {'normalize_depth': True}}", "to be normalised"),
+        ("{'depth': depth}, cameras={'depth': {'normalize_depth': True}}", "as normalised"),
         ("{'depth': depth * 100}, cameras={'depth': {'min_depth': 0, 'max_depth': 400}}", ""),
         ("{'depth': depth * 100}, cameras={'depth': {'max_depth': 400}}", ""),
         ("{'depth': depth}, cameras={'depth': {'normalise_depth': True}}", "min_depth"),
         ("{'depth': depth * 0}", ""),
     ],
 )
-def test_depth_that_is_not_metres_is_refused_in_the_clean_run(tmp_path, frame, words):
-    ended, told = ran(tmp_path, f"mitigate_hook.connect('a').corrupt({frame})", condition())
-    assert ended.returncode == (97 if words else 0), ended.stdout
-    assert words in "".join(told.refused)
+def test_corrupt_rejects_depth_outside_its_range(tmp_path, frame, words):
+    process, reports = run_loop(
+        tmp_path, f"mitigate_hook.connect('a').corrupt({frame})", condition()
+    )
+    assert process.returncode == (97 if words else 0), process.stdout
+    assert words in "".join(reports.problems)
 
 
 @pytest.mark.parametrize("name", [0, ("left", 1)])
-def test_a_camera_whose_name_is_no_text_stops_the_agent(tmp_path, name):
-    """Its frame would pass clean: on the wire its name is another one."""
+def test_corrupt_rejects_a_camera_name_that_is_not_text(tmp_path, name):
+    """JSON changes its name, so its frame would stay clean."""
     frame = f"{{{name!r}: rgb}}, cameras={{{name!r}: {{'type': 'rgb'}}}}"
-    ended, told = ran(tmp_path, f"mitigate_hook.connect('a').corrupt({frame})")
-    assert ended.returncode == 97 and "its name must be text" in "".join(told.refused)
+    process, reports = run_loop(tmp_path, f"mitigate_hook.connect('a').corrupt({frame})")
+    assert process.returncode == 97 and "the name of a camera must be text" in "".join(
+        reports.problems
+    )
 
 
-def test_what_is_told_of_a_camera_may_be_of_numpy(tmp_path):
+def test_corrupt_accepts_numpy_descriptions(tmp_path):
     of = "{'depth': {'max_depth': numpy.float32(5), 'orientation': numpy.zeros(3)}}"
     code = "met = mitigate_hook.connect('a')\n"
     steps = f"{code}for _ in range(3): met.corrupt({{'depth': depth}}, cameras={of})"
-    ended, told = ran(tmp_path, steps, condition())
-    assert ended.returncode == 0 and len(told.cameras) == 1, ended.stdout
+    process, reports = run_loop(tmp_path, steps, condition())
+    assert process.returncode == 0 and len(reports.cameras) == 1, process.stdout
     of = "{'depth': {'max_depth': object()}}"
-    ended, _ = ran(tmp_path, f"{code}met.corrupt({{'depth': depth}}, cameras={of})", condition())
-    assert ended.returncode == 97 and "give numbers, words and lists" in ended.stdout
+    process, _ = run_loop(
+        tmp_path, f"{code}met.corrupt({{'depth': depth}}, cameras={of})", condition()
+    )
+    assert process.returncode == 97 and "must be numbers, text and lists" in process.stdout
 
 
-def test_an_encoder_class_that_is_not_there_is_named(tmp_path, monkeypatch):
+def test_patch_names_a_missing_encoder_class(tmp_path, monkeypatch):
     (tmp_path / "their_encoder.py").write_text("class Encoder:\n    def forward(self): pass\n")
     monkeypatch.setenv(
         "MITIGATE_ADAPTERS",
         '{"module": "their_encoder", "class": "Wrong", "folder": "", "file": "", "path": ""}',
     )
     code = f"sys.path.insert(0, {str(tmp_path)!r}); mitigate_hook.install(); import their_encoder"
-    ended, _ = ran(tmp_path, code)
-    assert "names the class Wrong of their_encoder" in ended.stdout
-    assert "those there are Encoder" in ended.stdout and sys.executable not in ended.stdout
+    process, _ = run_loop(tmp_path, code)
+    assert "names the class Wrong of their_encoder" in process.stdout
+    assert "it has Encoder" in process.stdout and sys.executable not in process.stdout

@@ -1,4 +1,4 @@
-"""What another program may send: each message is answered, refused by name, or the end."""
+"""Messages of another program: each is answered, rejected with an error, or ends the connection."""
 
 from __future__ import annotations
 
@@ -20,9 +20,9 @@ from mitigate.bridge.events import EVENTS
 from mitigate.bridge.hook import mitigate_hook
 from mitigate.bridge.hook.mitigate_hook import (
     HEADER,
-    LARGEST,
-    LONGEST,
     MAGIC,
+    MAX_MESSAGE,
+    MAX_TEXT,
     PROTOCOL,
     receive,
     send,
@@ -47,21 +47,21 @@ class Peer:
         self.folder = folder
         self.channel, served = socket.socketpair()
         self.channel.settimeout(5.0)
-        made = Connection(served, condition("spatter"), folder, TOKEN, folder)
+        connection = Connection(served, condition("spatter"), folder, TOKEN, folder)
         self.failure = None
-        self.thread = threading.Thread(target=self._serve, args=(made, served), daemon=True)
+        self.thread = threading.Thread(target=self._serve, args=(connection, served), daemon=True)
         self.thread.start()
 
-    def _serve(self, made, served):
+    def _serve(self, connection, served):
         try:
-            made.serve()
+            connection.serve()
         except Exception as error:
             self.failure = error
         finally:
             served.close()
 
     def ask(self, message):
-        """The answer; None where the other side has closed."""
+        """Return the answer; None if the other side closed."""
         try:
             if isinstance(message, bytes):
                 self.channel.sendall(message)
@@ -81,13 +81,13 @@ class Peer:
 
 @pytest.fixture
 def peer(tmp_path):
-    made = Peer(tmp_path)
-    yield made
-    made.close()
+    peer = Peer(tmp_path)
+    yield peer
+    peer.close()
 
 
-def cameras(*told):
-    return {"kind": "spec", "cameras": list(told)}
+def cameras(*descriptions):
+    return {"kind": "spec", "cameras": list(descriptions)}
 
 
 def camera(**changes):
@@ -134,14 +134,14 @@ MESSAGES = {
 
 
 @pytest.mark.parametrize("message", MESSAGES.values(), ids=MESSAGES)
-def test_a_message_that_is_none_is_refused_by_name(peer, message):
+def test_connection_rejects_invalid_messages(peer, message):
     assert peer.ask(HELLO) == {}
-    said = peer.ask(message)["error"]
-    assert said and "\n" not in said and len(said) < 1500
+    error = peer.ask(message)["error"]
+    assert error and "\n" not in error and len(error) < 1500
     peer.close()
     events = [json.loads(line) for line in (peer.folder / EVENTS).read_text().splitlines()]
     assert [event["event"] for event in events[-2:]] == ["refused", "bye"]
-    assert events[-2]["problem"] == said
+    assert events[-2]["problem"] == error
 
 
 FRAMES = {
@@ -177,17 +177,17 @@ ENDS = {
 
 
 @pytest.mark.parametrize("fields", ENDS.values(), ids=ENDS)
-def test_an_end_that_is_none_is_refused_and_not_kept(peer, fields):
+def test_connection_rejects_invalid_ends(peer, fields):
     for good in (HELLO, SPEC, EPISODE, {"kind": "frame", "call": 0}):
         assert "error" not in peer.ask(good)
-    said = peer.ask({"kind": "end", "metrics": {"success": 1.0}} | fields)["error"]
-    assert "episode '1' ended with " in said
+    error = peer.ask({"kind": "end", "metrics": {"success": 1.0}} | fields)["error"]
+    assert "episode '1' ended with " in error
     peer.close()
     assert not read(peer.folder).ends
 
 
-def test_an_end_out_of_reach_of_its_goal_makes_rows(peer):
-    """Infinite metres are known to be so; the agent's own SPL needs no start."""
+def test_rows_accept_infinite_distances(peer):
+    """Infinite distances are valid; the agent's own SPL needs no start."""
     for good in (HELLO, SPEC, EPISODE, {"kind": "frame", "call": 0}):
         assert "error" not in peer.ask(good)
     far = {"start_distance": float("inf"), "distance": float("inf"), "path": [[0, 0, 0], [1, 0, 0]]}
@@ -195,10 +195,10 @@ def test_an_end_out_of_reach_of_its_goal_makes_rows(peer):
     assert "error" not in peer.ask({"kind": "end", "metrics": metrics} | far)
     peer.close()
     label = {"agent": "abc", "name": "nav", "split": "val", "seed": 0}
-    made = {
+    by_rule = {
         row["rule"]: row for row in rows(read(peer.folder), Corruption("spatter", 0.6), label, None)
     }
-    assert made[OWN]["spl"] == 0.5 and [row["success"] for row in made.values()] == [1.0, 0.0]
+    assert by_rule[OWN]["spl"] == 0.5 and [row["success"] for row in by_rule.values()] == [1.0, 0.0]
 
 
 @pytest.mark.parametrize(
@@ -206,28 +206,28 @@ def test_an_end_out_of_reach_of_its_goal_makes_rows(peer):
     [{"distance": float("nan")}, {"start_distance": float("nan")}, {"path": [[0, float("nan")]]}],
     ids=lambda fields: next(iter(fields)),
 )
-def test_what_a_simulator_does_not_know_is_left_out_and_the_rest_makes_rows(peer, unknown):
+def test_rows_leave_out_unknown_values(peer, unknown):
     for good in (HELLO, SPEC, EPISODE, {"kind": "frame", "call": 0}):
         assert "error" not in peer.ask(good)
-    told = {"start_distance": 4.0, "distance": 2.0, "path": [[0, 0], [0, 8]]} | unknown
-    assert "error" not in peer.ask({"kind": "end", "metrics": {"success": 1.0}} | told)
+    end = {"start_distance": 4.0, "distance": 2.0, "path": [[0, 0], [0, 8]]} | unknown
+    assert "error" not in peer.ask({"kind": "end", "metrics": {"success": 1.0}} | end)
     peer.close()
     label = {"agent": "abc", "name": "nav", "split": "val", "seed": 0}
-    made = rows(read(peer.folder), Corruption("spatter", 0.6), label, None)
-    assert len(made) == (1 if "distance" in unknown else 2)
-    assert {row["spl"] for row in made} == ({0.5} if "distance" in unknown else {1.0})
+    result_rows = rows(read(peer.folder), Corruption("spatter", 0.6), label, None)
+    assert len(result_rows) == (1 if "distance" in unknown else 2)
+    assert {row["spl"] for row in result_rows} == ({0.5} if "distance" in unknown else {1.0})
 
 
 @pytest.mark.parametrize("name", ["\ud800", "", "a\nb", "9" * 201])
-def test_an_episode_that_no_row_can_name_is_refused_as_it_begins(peer, name):
+def test_connection_rejects_names_that_rows_cannot_hold(peer, name):
     assert "error" not in peer.ask(HELLO)
-    said = peer.ask({"kind": "episode", "scene": "", "id": name, "text": "go left"})["error"]
-    assert "no row can be" in said
+    error = peer.ask({"kind": "episode", "scene": "", "id": name, "text": "go left"})["error"]
+    assert "must make a name that rows can hold" in error
     peer.close()
 
 
 @pytest.mark.parametrize("message", FRAMES.values(), ids=FRAMES)
-def test_a_frame_or_end_that_is_none_is_refused_by_name(peer, message):
+def test_connection_rejects_invalid_frames(peer, message):
     for good in (HELLO, SPEC, EPISODE):
         assert "error" not in peer.ask(good)
     assert peer.ask(message)["error"]
@@ -242,7 +242,7 @@ RAW = {
     "half a head": MAGIC[:2],
     "HTTP": b"GET / HTTP/1.1\r\nHost: x\r\n\r\n",
     "another magic": packed(b"{}", b"evil"),
-    "too large": packed(b"", size=LARGEST + 1),
+    "too large": packed(b"", size=MAX_MESSAGE + 1),
     "far too large": struct.pack("!4sI", MAGIC, 0xFFFFFFFF),
     "less than said": packed(b"{}", size=100),
     "a list": packed(b"[]"),
@@ -260,19 +260,19 @@ RAW = {
 
 
 @pytest.mark.parametrize("raw", RAW.values(), ids=RAW)
-def test_who_does_not_speak_the_protocol_or_know_the_token_gets_no_answer(peer, raw):
+def test_connection_does_not_answer_without_protocol_and_token(peer, raw):
     assert peer.ask(raw) is None
     assert not (peer.folder / EVENTS).exists()
 
 
-def test_why_a_process_stopped_is_kept_short_and_on_one_line(peer):
+def test_connection_shortens_the_reason_of_a_stop(peer):
     assert peer.ask(HELLO) == {}
     assert peer.ask({"kind": "stopped", "problem": "a\x1b[31m\nb" + "x" * 9000}) == {}
-    problem = read(peer.folder).refused[0]
-    assert problem.startswith("a [31m b") and len(problem) == LONGEST
+    problem = read(peer.folder).problems[0]
+    assert problem.startswith("a [31m b") and len(problem) == MAX_TEXT
 
 
-def test_an_episode_without_a_camera_that_is_corrupted_is_refused_at_its_end(peer):
+def test_connection_rejects_an_episode_without_the_corrupted_camera(peer):
     depth = CAMERA | {"name": "depth", "type": "depth", "shape": [8, 8, 1], "dtype": "float32"}
     frame, end = {"kind": "frame", "call": 0}, {"kind": "end", "metrics": {"success": 1}}
     for message in (HELLO, cameras(depth), EPISODE, frame, SPEC, frame | {"call": 1}, end):
@@ -282,12 +282,12 @@ def test_an_episode_without_a_camera_that_is_corrupted_is_refused_at_its_end(pee
     assert "corrupts rgb, but no call of episode 2 had such a camera" in peer.ask(end)["error"]
 
 
-def test_another_version_is_told_so(peer):
+def test_connection_rejects_another_version(peer):
     assert "another version" in peer.ask(HELLO | {"protocol": PROTOCOL + 1})["error"]
 
 
 @pytest.mark.parametrize("name", ["too large", "deep", "half JSON", "less than said"])
-def test_rubbish_after_the_greeting_is_an_end(peer, name):
+def test_connection_ends_after_invalid_bytes(peer, name):
     assert peer.ask(HELLO) == {} and peer.ask(RAW[name]) is None
 
 
@@ -308,12 +308,12 @@ VALUES = st.recursive(
     ),
     VALUES,
 )
-def test_any_value_in_any_place_is_answered_or_refused(tmp_path, message, key, value):
-    made = Peer(tmp_path)
-    assert made.ask(HELLO) == {}
-    answer = made.ask(message | {key: value})
+def test_connection_answers_any_value(tmp_path, message, key, value):
+    peer = Peer(tmp_path)
+    assert peer.ask(HELLO) == {}
+    answer = peer.ask(message | {key: value})
     assert answer is not None and "\n" not in answer.get("error", "")
-    made.close()
+    peer.close()
 
 
 CONNECT = (
@@ -324,14 +324,14 @@ CONNECT = (
 
 
 @pytest.mark.skipif(os.getuid() != 0, reason="only root may become another user")
-def test_another_user_cannot_connect_nor_see_the_frames(tmp_path):
+def test_server_excludes_other_users(tmp_path):
     with Listener(condition("spatter"), tmp_path) as listener:
         command = [sys.executable, "-S", "-c", CONNECT, listener.address]
         assert subprocess.run(command, cwd="/", check=False).returncode == 7
         assert os.stat(listener.memory).st_mode & 0o077 == 0
 
 
-def test_many_who_say_nothing_do_not_keep_others_out(tmp_path):
+def test_server_answers_despite_silent_connections(tmp_path):
     with Listener(condition("spatter"), tmp_path) as listener:
         silent = []
         for _ in range(40):
@@ -343,11 +343,11 @@ def test_many_who_say_nothing_do_not_keep_others_out(tmp_path):
             began = time.monotonic()
             send(channel, HELLO | {"token": listener.token})
             assert receive(channel) == {} and time.monotonic() - began < 9
-        for each in silent:
-            each.close()
+        for channel in silent:
+            channel.close()
 
 
-def test_a_message_of_our_own_that_is_too_large_is_not_sent(peer):
-    with pytest.raises(ValueError, match="is more than"):
-        send(peer.channel, {"kind": "episode", "text": "x" * LARGEST})
-    assert mitigate_hook.LARGEST == LARGEST
+def test_send_rejects_a_message_that_is_too_large(peer):
+    with pytest.raises(ValueError, match="must be <="):
+        send(peer.channel, {"kind": "episode", "text": "x" * MAX_MESSAGE})
+    assert mitigate_hook.MAX_MESSAGE == MAX_MESSAGE

@@ -1,4 +1,4 @@
-"""Programs without habitat-lab, loops of one's own, and adapters in an agent's encoder."""
+"""Programs without habitat-lab, loops without Habitat, and adapters in an agent's encoder."""
 
 import hashlib
 import json
@@ -25,19 +25,19 @@ WMNAV = "import sys, WMNav_env; WMNav_env.WMNavEnv().run_experiment(sys.argv[1])
 
 def test_wmnav_is_corrupted_and_measured_without_a_lab(tmp_path):
     with Listener(condition("low_light"), tmp_path) as listener:
-        ran = python(listener, WMNAV, tmp_path / "seen.json")
-    assert ran.returncode == 0 and "went on" not in ran.stdout, ran.stdout
+        result = python(listener, WMNAV, tmp_path / "seen.json")
+    assert result.returncode == 0 and "went on" not in result.stdout, result.stdout
     seen = json.loads((tmp_path / "seen.json").read_text())
     assert len(seen) == 6
     assert all(colour[0] < 130 and colour[3] == 255 for colour, _ in seen)
-    told = read(tmp_path)
-    assert sorted(told.ends) == ["x0/0", "x0/1", "x1/2"]
+    reports = read(tmp_path)
+    assert sorted(reports.ends) == ["x0/0", "x0/1", "x1/2"]
     label = {"agent": "a", "name": "wmnav", "split": "s", "seed": 0}
-    found = rows(told, Corruption("low_light", 0.6), label, None)
-    own = [row for row in found if row["rule"] == OWN]
+    result_rows = rows(reports, Corruption("low_light", 0.6), label, None)
+    own = [row for row in result_rows if row["rule"] == OWN]
     assert [(row["success"], row["spl"]) for row in own] == [(1.0, 0.75)] * 3
-    common = {row["rule"] for row in found} - {OWN}
-    assert common == {str(RULES["wmnav"])}  # its goals are categories, told as words
+    common = {row["rule"] for row in result_rows} - {OWN}
+    assert common == {str(RULES["wmnav"])}  # its goals are categories, passed as words
 
 
 def test_wmnav_hears_the_corrupted_category(tmp_path):
@@ -47,11 +47,11 @@ def test_wmnav_hears_the_corrupted_category(tmp_path):
     assert all(word.endswith(" chair") and len(word) > 12 for word in words)
 
 
-def test_habitat_sim_alone_must_be_told_its_episodes(tmp_path):
+def test_habitat_sim_without_the_lab_requires_connect(tmp_path):
     code = "import habitat_sim; habitat_sim.Simulator().get_sensor_observations()"
     with Listener(condition("spatter"), tmp_path) as listener:
-        ran = python(listener, code)
-    assert ran.returncode == 97 and "mitigate_hook.connect(" in ran.stdout
+        result = python(listener, code)
+    assert result.returncode == 97 and "mitigate_hook.connect(" in result.stdout
 
 
 LOOP = """
@@ -65,17 +65,17 @@ episode.finish(success=True, spl=0.5)
 """
 
 
-def test_a_loop_of_ones_own_takes_three_calls(tmp_path):
+def test_loop_needs_three_calls(tmp_path):
     with Listener(condition("low_light_noise"), tmp_path) as listener:
-        ran = python(listener, LOOP)
-    assert ran.returncode == 0, ran.stdout
+        result = python(listener, LOOP)
+    assert result.returncode == 0, result.stdout
     rgb = (np.arange(16 * 20 * 3) % 251).reshape(16, 20, 3).astype("uint8")
     frames = [
         corrupt(rgb, "low_light_noise", 0.6, key=Key(0, "x.glb/17", n), heading=0.3)
         for n in range(2)
     ]
-    wanted = " ".join(hashlib.sha256(frame.tobytes()).hexdigest() for frame in frames)
-    assert ran.stdout.strip() == f"Go to the door. {wanted}"
+    expected = " ".join(hashlib.sha256(frame.tobytes()).hexdigest() for frame in frames)
+    assert result.stdout.strip() == f"Go to the door. {expected}"
     assert read(tmp_path).ends["x/17"]["metrics"] == {"success": 1.0, "spl": 0.5}
 
 
@@ -86,7 +86,7 @@ BEGIN = "import numpy, mitigate_hook\nrgb = numpy.full((16, 16, 3), 90, 'uint8')
     ("loop", "words"),
     [
         ("a = mitigate_hook.connect('a'); b = mitigate_hook.connect('b'); a.corrupt({'rgb': rgb})",
-         "episode a was left for another one"),
+         "episode a ended when the next one began"),
         ("mitigate_hook.connect('a').corrupt({'rgb': rgb, 'left': rgb})",
          "the entry left of an observation may be a frame"),
         ("mitigate_hook.connect('a').corrupt({'rgb': rgb}, heading='north')",
@@ -94,14 +94,14 @@ BEGIN = "import numpy, mitigate_hook\nrgb = numpy.full((16, 16, 3), 90, 'uint8')
         ("mitigate_hook.connect('a').corrupt({'rgb': rgb}, cameras={'rgb': 5})", ""),
     ],
 )  # fmt: skip
-def test_no_mistake_in_a_loop_lets_a_clean_frame_through(tmp_path, loop, words):
+def test_loop_errors_let_no_clean_frame_through(tmp_path, loop, words):
     code = f"{BEGIN}try:\n    {loop}\nexcept AttributeError:\n    raise\nprint('went on')"
     with Listener(condition("spatter"), tmp_path) as listener:
-        ran = python(listener, code)
-    assert ran.returncode != 0 and words in ran.stdout and "went on" not in ran.stdout
+        result = python(listener, code)
+    assert result.returncode != 0 and words in result.stdout and "went on" not in result.stdout
 
 
-def test_a_numpy_heading_and_an_entry_to_leave_alone_are_taken(tmp_path):
+def test_corrupt_accepts_a_numpy_heading_and_other_entries(tmp_path):
     code = BEGIN + (
         "seen = mitigate_hook.connect('a').corrupt({'rgb': rgb, 'left': rgb}, "
         "heading=numpy.float32(0.3), cameras={'left': {'type': 'other'}})\n"
@@ -111,7 +111,7 @@ def test_a_numpy_heading_and_an_entry_to_leave_alone_are_taken(tmp_path):
         assert python(listener, code).stdout.strip() == "True True"
 
 
-def test_an_episode_that_is_never_finished_is_counted(tmp_path):
+def test_reports_count_an_unfinished_episode(tmp_path):
     code = BEGIN + (
         "for name in 'ab':\n    episode = mitigate_hook.connect(name)\n"
         "    for _ in range(3): episode.corrupt({'rgb': rgb})\n"
@@ -122,7 +122,7 @@ def test_an_episode_that_is_never_finished_is_counted(tmp_path):
     assert read(tmp_path).lost == ["a"] and list(read(tmp_path).ends) == ["b"]
 
 
-def test_outside_of_a_run_connect_says_so():
+def test_connect_raises_outside_a_run():
     from mitigate.bridge.hook import mitigate_hook
 
     with pytest.raises(RuntimeError, match="mitigate run"):
@@ -152,7 +152,7 @@ episode.finish(success=1, spl=1.0)
 """
 
 
-def test_adapters_go_into_an_agents_own_encoder(tmp_path, monkeypatch):
+def test_adapters_are_attached_to_an_encoder(tmp_path, monkeypatch):
     (tmp_path / "their_encoder.py").write_text(ENCODER)
     (tmp_path / "program.py").write_text(PROGRAM)
     torch.manual_seed(0)
@@ -163,7 +163,7 @@ def test_adapters_go_into_an_agents_own_encoder(tmp_path, monkeypatch):
         before = model(frames)
         insert_adapters(model, ["2"], run=lambda n: model(frames.expand(n, -1, -1, -1)))
         save_adapters(shaken(model), tmp_path / "adapters")
-        wanted = model(frames)
+        expected = model(frames)
     monkeypatch.chdir(tmp_path)
     command = [sys.executable, "program.py", "w.pt", "{out}/features.pt"]
 
@@ -174,7 +174,7 @@ def test_adapters_go_into_an_agents_own_encoder(tmp_path, monkeypatch):
         return torch.load(tmp_path / name / "conditions/clean/features.pt", weights_only=True)
 
     adapted = features("adapted", "their_encoder:Encoder.model")
-    assert torch.equal(adapted, wanted) and not torch.equal(adapted, before)
+    assert torch.equal(adapted, expected) and not torch.equal(adapted, before)
     with pytest.raises(ValueError, match="there is no visual: its modules there are model"):
         features("wrong", "their_encoder:Encoder.visual")
     with pytest.raises(ValueError, match="must be FOLDER:package.module:Class.attribute"):
@@ -216,18 +216,18 @@ def run_adapted(folder, place):
     run_command(config(*options), command)
 
 
-def test_adapters_go_around_torchscript_in_an_agents_own_encoder(tmp_path, monkeypatch):
+def test_adapters_wrap_a_torchscript_encoder(tmp_path, monkeypatch):
     script, wrapped = scripted(tmp_path, PROGRAM.replace(LOADING, ""))
     script.save(str(tmp_path / "w.pt"))
     monkeypatch.chdir(tmp_path)
     run_adapted(tmp_path, "model")
-    found = torch.load(tmp_path / "out/conditions/clean/features.pt", weights_only=True)
+    features = torch.load(tmp_path / "out/conditions/clean/features.pt", weights_only=True)
     with torch.no_grad():
-        assert torch.equal(found, wrapped(FRAMES)) and not torch.equal(found, script(FRAMES))
+        assert torch.equal(features, wrapped(FRAMES)) and not torch.equal(features, script(FRAMES))
 
 
-def test_adapters_that_cannot_go_into_torchscript_stop_the_agent(tmp_path, monkeypatch):
-    """One that catches the error would go on without them."""
+def test_adapters_stop_the_agent_inside_torchscript(tmp_path, monkeypatch):
+    """An agent that catches the error must not continue without them."""
     call = "    features = encoder(torch.from_numpy(rgb).permute(2, 0, 1)[None] / 255)\n"
     assert call in PROGRAM
     again = f"    try:\n    {call}    except RuntimeError:\n    {call}"

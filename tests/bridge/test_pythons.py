@@ -1,4 +1,4 @@
-"""The hook's file under the Python versions of the field's agents.
+"""The hook under the Python versions that agents use.
 
 ``tools/pythons.sh FOLDER`` makes an environment with numpy of each that is installed; the tests
 find them by the variable ``MITIGATE_PYTHONS`` (CI sets it). Without it they are skipped.
@@ -26,28 +26,28 @@ def python(request):
     folder = os.environ.get("MITIGATE_PYTHONS")
     if folder is None:
         pytest.skip("MITIGATE_PYTHONS is not set: tools/pythons.sh makes what it names")
-    found = Path(folder) / request.param / "bin" / "python"
-    if not found.is_file():
+    path = Path(folder) / request.param / "bin" / "python"
+    if not path.is_file():
         pytest.skip(f"Python {request.param} is not installed here")
-    return str(found)
+    return str(path)
 
 
-def test_every_file_of_the_hook_compiles(python, tmp_path):
+def test_hook_compiles(python, tmp_path):
     for file in sorted(HOOK.glob("*.py")):
         code = f"compile(open({str(file)!r}).read(), {file.name!r}, 'exec')"
         subprocess.run([python, "-c", code], check=True)
 
 
-def test_workers_see_what_ours_see(python, command):
-    ours = command(condition("low_light_noise"), "--cameras", 12).seen()
+def test_hook_gives_equal_pixels_in_every_python(python, command):
+    expected = command(condition("low_light_noise"), "--cameras", 12).seen()
     options = ("--cameras", 12, "--workers", 2, "--start", "forkserver")
-    ran = command(condition("low_light_noise"), *options, python=python)
-    assert ran.status == 0, ran.output
-    seen = ran.seen()
-    assert {place: look["frames"]["rgb"] for place, look in seen.items()} == {
-        place: look["frames"]["rgb"] for place, look in ours.items()
+    result = command(condition("low_light_noise"), *options, python=python)
+    assert result.status == 0, result.output
+    seen = result.seen()
+    assert {key: entry["frames"]["rgb"] for key, entry in seen.items()} == {
+        key: entry["frames"]["rgb"] for key, entry in expected.items()
     }
-    assert len(ran.told.ends) == 4
+    assert len(result.reports.ends) == 4
 
 
 LOOP = """
@@ -62,9 +62,9 @@ mitigate_hook.connect("3").corrupt({"left": [rgb, {"rgb": rgb}]})
 """
 
 
-def test_a_loop_of_ones_own_runs_and_says_why_it_stops(python, tmp_path):
+def test_loop_runs_and_reports_why_it_stops(python, tmp_path):
     with Listener(condition("low_light"), tmp_path) as listener:
-        ran = subprocess.run(
+        result = subprocess.run(
             [python, "-c", LOOP],
             env={**os.environ, **listener.environment()},
             stderr=subprocess.PIPE,
@@ -72,14 +72,14 @@ def test_a_loop_of_ones_own_runs_and_says_why_it_stops(python, tmp_path):
             timeout=20,
             check=False,
         )
-    told = read(tmp_path)
-    assert ran.returncode == 97 and sorted(told.ends) == ["x/1", "x/2"], ran.stderr
-    assert "the entry left of an observation may be a frame" in told.refused[0]
+    reports = read(tmp_path)
+    assert result.returncode == 97 and sorted(reports.ends) == ["x/1", "x/2"], result.stderr
+    assert "the entry left of an observation may be a frame" in reports.problems[0]
 
 
-def test_a_python_without_numpy_is_left_alone(python, tmp_path):
-    """Every Python of a command loads the hook; most never meet a camera."""
-    ran = subprocess.run(
+def test_hook_loads_without_numpy(python, tmp_path):
+    """Every Python of a command loads the hook; most have no camera."""
+    result = subprocess.run(
         [python, "-S", "-c", "import sys; sys.path.insert(0, sys.argv[1]); import sitecustomize",
          str(HOOK)],
         env={"MITIGATE_BRIDGE": "nowhere"},
@@ -87,19 +87,19 @@ def test_a_python_without_numpy_is_left_alone(python, tmp_path):
         text=True,
         check=True,
     )  # fmt: skip
-    assert ran.stderr == ""
+    assert result.stderr == ""
 
 
-def test_python_2_passes_by():
+def test_hook_is_not_loaded_in_python_2():
     guard = (HOOK / "sitecustomize.py").read_text().splitlines()
     assert "if sys.version_info >= (3, 6):" in guard and "import mitigate_hook" not in guard
 
 
-def test_a_server_that_does_not_answer_is_named_by_every_python(python, tmp_path):
+def test_hook_stops_if_the_server_does_not_answer(python, tmp_path):
     code = "import mitigate_hook; mitigate_hook.connect('1')"
     with Listener(condition(), tmp_path, patience=1.0) as listener:
         os.killpg(listener.pid, signal.SIGSTOP)
-        ran = subprocess.run(
+        result = subprocess.run(
             [python, "-c", code],
             env={**os.environ, **listener.environment()},
             stderr=subprocess.PIPE,
@@ -107,4 +107,4 @@ def test_a_server_that_does_not_answer_is_named_by_every_python(python, tmp_path
             timeout=20,
             check=False,
         )
-    assert ran.returncode == 97 and "did not answer within 1 s" in ran.stderr
+    assert result.returncode == 97 and "did not answer within 1 s" in result.stderr

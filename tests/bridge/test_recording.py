@@ -1,4 +1,4 @@
-"""What a recording of a program holds, and who reads it."""
+"""Recordings of a program: their files, and errors."""
 
 import json
 import os
@@ -12,7 +12,7 @@ import pytest
 
 from mitigate.bridge.cameras import Rig, read_camera
 from mitigate.bridge.events import put_aside
-from mitigate.bridge.recording import Recorder, is_whole, part, plain, png
+from mitigate.bridge.recording import Recorder, is_whole, path_part, png, unique_part
 from mitigate.core.output import UnsafePathError
 from mitigate.corruptions import DepthSensor
 from mitigate.encoders.sources import TRAIN, UNSEEN, FolderFrames
@@ -20,7 +20,7 @@ from mitigate.encoders.sources import TRAIN, UNSEEN, FolderFrames
 from .conftest import AGENT, condition
 
 
-def test_clean_frames_poses_actions_and_measures_are_written(command, tmp_path):
+def test_recorder_writes_clean_frames_poses_actions_and_measures(command, tmp_path):
     folder = tmp_path / "recording"
     met = condition("low_light", observers=[Recorder(folder)])
     seen = command(met, "--cameras", 2, "--steps", 3).seen()
@@ -42,21 +42,21 @@ def test_clean_frames_poses_actions_and_measures_are_written(command, tmp_path):
 
 
 @pytest.mark.parametrize("name", ["../../etc/passwd", "..", "a/b", "", "x\n.y"])
-def test_names_from_outside_stay_in_the_folder(name):
-    made = plain(name)
+def test_path_part_stays_in_the_folder(name):
+    made = path_part(name)
     assert made and "/" not in made and not made.startswith(".") and "\n" not in made
 
 
-def test_names_that_are_plain_alike_have_parts_of_their_own():
+def test_unique_part_distinguishes_similar_names():
     names = ["left-door", "left door", "left/door", "日本", "中国", "-", ".x", "x", "", "a" * 400]
     names.append("a" * 399)
-    made = [part(name) for name in names]
+    made = [unique_part(name) for name in names]
     assert len({*made}) == len(names) and max(map(len, made)) < 200
     assert made[0] == "left-door" and made[1].startswith("left-door-") and made[7] == "x"
     assert all("/" not in name and not name.startswith(".") for name in made)
 
 
-def test_cameras_of_all_calls_are_told(tmp_path):
+def test_recorder_writes_the_cameras_of_all_calls(tmp_path):
     recorder, memory = Recorder(tmp_path), bytearray(4096)
     recorder.episode({"scene": "k.glb", "id": "left door"})
     for call, told in enumerate(
@@ -72,7 +72,7 @@ def test_cameras_of_all_calls_are_told(tmp_path):
     assert {*json.loads(file.read_text())} == {"rgb", "depth"}
 
 
-def test_depth_is_written_in_millimetres_and_holes_stay_holes():
+def test_png_holds_millimetres_and_holes():
     told = {"name": "depth", "type": "depth", "shape": [2, 2, 1], "dtype": "float32"}
     told |= {"min_depth": 0.5, "max_depth": 5.0, "normalize_depth": True}
     camera = read_camera(told, DepthSensor())
@@ -81,14 +81,14 @@ def test_depth_is_written_in_millimetres_and_holes_stay_holes():
     assert counts.tolist() == [[0, 5000], [2750, 0]]
 
 
-def test_an_episode_that_does_not_end_leaves_nothing(run, tmp_path):
+def test_recorder_deletes_an_unfinished_episode(run, tmp_path):
     options = f"conditions=[clean] record={tmp_path / 'recording'}"
     assert run(tmp_path / "out", options, f"{AGENT} --die-at 2").returncode == 1
     assert (tmp_path / "recording/clean/recording.json").is_file()
     assert not list((tmp_path / "recording/clean").glob("s*/*"))
 
 
-def test_what_was_left_by_a_process_that_is_no_more_is_deleted(run, tmp_path):
+def test_run_deletes_drafts_of_ended_processes(run, tmp_path):
     dead = subprocess.Popen([sys.executable, "-c", ""])
     dead.wait()
     scene = tmp_path / "recording" / "clean" / "s0"
@@ -100,8 +100,8 @@ def test_what_was_left_by_a_process_that_is_no_more_is_deleted(run, tmp_path):
     assert "0" in names and [n for n in names if n[0] == "."] == [f".7.{os.getpid()}.tmp"]
 
 
-def test_an_episode_that_begins_again_and_does_not_end_leaves_its_recording(tmp_path):
-    """Loops of Habitat reset once more after their last episode, to the first."""
+def test_recorder_keeps_a_recording_until_the_next_end(tmp_path):
+    """Habitat loops reset once more after the last episode, to the first episode."""
     recorder, told = Recorder(tmp_path), {"scene": "k.glb", "id": "1"}
     recorder.episode(told)
     recorder.end({"kind": "end", "steps": 3})

@@ -1,4 +1,4 @@
-"""A restorer behind the bridge: frames of programs are restored, by panorama or camera."""
+"""A restorer with the bridge: frames of programs are restored, by panorama or camera."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ import pytest
 import torch
 
 from mitigate.bridge.cameras import Rig
-from mitigate.bridge.check import described, of
-from mitigate.bridge.results import Told
+from mitigate.bridge.check import describe, entry_name
+from mitigate.bridge.results import Reports
 from mitigate.core.observation import DEPTH, RGB
 from mitigate.evaluation import rows
 from mitigate.guards.frames.restorer import Restorer
@@ -24,7 +24,7 @@ FILTERS = "tests.guards.filters"
 
 @pytest.fixture
 def restorer():
-    """It takes every frame for corrupted, and makes it twice as bright or as far."""
+    """A restorer that changes every frame: twice the brightness or depth."""
     made = Restorer(width=4, depth_width=4).eval()
     with torch.no_grad():
         for sensor, net in made.parts().items():
@@ -51,7 +51,7 @@ def filled(rig, value):
     return memory, offsets
 
 
-def test_frames_are_restored_in_place_and_told(restorer):
+def test_guard_restores_frames_in_place(restorer):
     ring = [camera(f"rgb_{yaw}", yaw=yaw) for yaw in range(0, 360, 30)]
     far = {"min_depth": 0.0, "max_depth": 10.0, "normalize_depth": True}
     rig = Rig([*ring, camera("front", yaw=7.0), camera("depth", DEPTH, **far)])
@@ -63,7 +63,7 @@ def test_frames_are_restored_in_place_and_told(restorer):
         assert frame.mean() == pytest.approx(120 if shown.kind == RGB else 0.08, rel=0.03)
 
 
-def test_what_is_taken_for_clean_is_not_told(restorer):
+def test_guard_leaves_clean_frames_unchanged(restorer):
     for net in restorer.parts().values():
         net.threshold.fill_(1e9)
     rig = Rig([camera("rgb"), camera("depth", DEPTH)])
@@ -72,20 +72,18 @@ def test_what_is_taken_for_clean_is_not_told(restorer):
     assert rig.guard(memory, offsets, Guards([restorer])) == [] and bytes(memory) == before
 
 
-def test_a_program_sees_restored_frames_even_where_nothing_is_corrupted(command, restorer):
+def test_hook_restores_frames_of_the_clean_condition(command, restorer):
     chains = (Guards(), Guards([restorer]))
-    seen = [command(condition("clean", guards=chain), "--episodes", 1) for chain in chains]
-    assert [ran.status for ran in seen] == [0, 0], seen[1].output
-    plain, restored = (ran.seen() for ran in seen)
+    results = [command(condition("clean", guards=chain), "--episodes", 1) for chain in chains]
+    assert [result.status for result in results] == [0, 0], results[1].output
+    plain, restored = (result.seen() for result in results)
     assert plain.keys() == restored.keys()
     for look, entry in plain.items():
         shown = entry["frames"]
         assert any(restored[look]["frames"][name] != digest for name, digest in shown.items())
 
 
-def test_a_restorer_of_what_no_camera_shows_is_refused_at_the_end_of_the_first_episode(
-    run, tmp_path
-):
+def test_run_rejects_a_restorer_without_a_camera(run, tmp_path):
     program = tmp_path / "agent.py"
     program.write_text(
         "import mitigate_hook, numpy\n"
@@ -100,7 +98,7 @@ def test_a_restorer_of_what_no_camera_shows_is_refused_at_the_end_of_the_first_e
     assert "spatter-s0.6: started" not in ended.stdout
 
 
-def test_rgb_and_depth_of_one_view_are_one_observation():
+def test_guard_gets_rgb_and_depth_of_one_view_together():
     far = {"min_depth": 0.0, "max_depth": 10.0, "normalize_depth": True}
     pair = [camera("rgb"), camera("depth", DEPTH, **far)]
     apart = [camera("side", yaw=7.0), camera("other", DEPTH, yaw=9.0)]
@@ -131,18 +129,18 @@ def test_rgb_and_depth_of_one_view_are_one_observation():
     assert [len(shown) for shown in seen] == [1, 1]
 
 
-def test_a_program_sees_the_frames_of_a_callable(command):
+def test_hook_gives_the_frames_of_a_callable(command):
     chains = (Guards(), open_guards(None, f"{FILTERS}:Brighter"))
-    seen = [command(condition("clean", guards=chain), "--episodes", 1) for chain in chains]
-    assert [ran.status for ran in seen] == [0, 0], seen[1].output
-    plain, brighter = (ran.seen() for ran in seen)
+    results = [command(condition("clean", guards=chain), "--episodes", 1) for chain in chains]
+    assert [result.status for result in results] == [0, 0], results[1].output
+    plain, brighter = (result.seen() for result in results)
     assert plain.keys() == brighter.keys()
     for look, entry in plain.items():
         for name, digest in entry["frames"].items():
             assert (brighter[look]["frames"][name] != digest) == name.startswith("rgb")
 
 
-def test_rows_of_a_run_behind_a_callable_are_of_another_agent(run, tmp_path):
+def test_callable_changes_the_agent_in_rows(run, tmp_path):
     options = "conditions=[clean] name=stand split=toy"
     agents = {}
     for number, choice in enumerate(("null", f"{FILTERS}:median", f"{FILTERS}:median@2")):
@@ -158,22 +156,22 @@ def test_rows_of_a_run_behind_a_callable_are_of_another_agent(run, tmp_path):
     assert "was run with another restore" in other.stderr
 
 
-def test_a_broken_callable_ends_the_run_and_is_named(run, tmp_path):
+def test_run_names_a_failing_callable(run, tmp_path):
     ended = run(tmp_path / "out", f"conditions=[clean] restore={FILTERS}:broken")
     assert f"restore={FILTERS}:broken failed with RuntimeError: out of memory" in ended.stderr
 
 
-def test_a_guard_that_adapts_the_agent_is_rejected(run, tmp_path):
+def test_run_rejects_a_guard_that_adapts_the_agent(run, tmp_path):
     ended = run(tmp_path / "out", f"conditions=[clean] restore={FILTERS}:Politely")
     assert "filters.Politely adapts the agent itself" in ended.stderr
 
 
-def test_a_check_says_what_is_restored(restorer):
+def test_describe_names_restored_frames(restorer):
     rig = Rig([camera("rgb")])
-    frames = {of("rgb"): np.zeros((16, 16, 3), np.uint8)}
-    assert "restored: rgb" in described(Told(), rig, frames, Guards([restorer]))
+    frames = {entry_name("rgb"): np.zeros((16, 16, 3), np.uint8)}
+    assert "restored: rgb" in describe(Reports(), rig, frames, Guards([restorer]))
     only = Restorer(sensors=[DEPTH], depth_width=4)
-    assert "restored: nothing of these, the restorer is for depth" in described(
-        Told(), rig, frames, Guards([only])
+    assert "restored: none of these, the restorer is for depth" in describe(
+        Reports(), rig, frames, Guards([only])
     )
-    assert not any("restored" in line for line in described(Told(), rig, frames))
+    assert not any("restored" in line for line in describe(Reports(), rig, frames))

@@ -1,11 +1,19 @@
-"""By which rule an episode is judged, and what is asked for where one cannot be."""
+"""Success rules: which rule judges an episode, and messages if one cannot."""
 
 import json
 import sys
 
 import pytest
 
-from mitigate.bridge.results import COMMON, OWN, near, read, rows, unjudged, without_path
+from mitigate.bridge.results import (
+    COMMON,
+    OWN,
+    count_missing,
+    count_without_path,
+    maybe_normalised,
+    read,
+    rows,
+)
 from mitigate.bridge.server import Listener
 from mitigate.corruptions import CLEAN
 from mitigate.worlds.measures import RULES
@@ -23,86 +31,94 @@ for name in "ab":
 """
 
 
-def judged(tmp_path, finish, rule):
-    """(success, SPL) of a loop's first episode by each rule, and what else was told."""
+def judge(tmp_path, finish, rule):
+    """Run a loop; return (success, SPL) of its first episode by rule, its reports and output."""
     with Listener(condition(), tmp_path) as listener:
-        ended = python(listener, LOOP % finish)
-    found = read(tmp_path)
-    made = [row for row in rows(found, CLEAN, LABEL, rule) if row["episode_id"] == "a"]
-    return {row["rule"]: (row["success"], row["spl"]) for row in made}, found, ended.stdout
+        process = python(listener, LOOP % finish)
+    reports = read(tmp_path)
+    first = [row for row in rows(reports, CLEAN, LABEL, rule) if row["episode_id"] == "a"]
+    return {row["rule"]: (row["success"], row["spl"]) for row in first}, reports, process.stdout
 
 
 @pytest.mark.parametrize(
-    ("said", "wanted"), [("", None), (", stopped=True", 1.0), (", stopped=0", 0.0)]
+    ("stopped", "expected"), [("", None), (", stopped=True", 1.0), (", stopped=0", 0.0)]
 )
-def test_a_rule_by_stop_judges_whom_it_is_told_of(tmp_path, said, wanted):
-    finish = f"episode.finish(success=True, spl=1, distance_to_goal=0.05{said})"
-    found, told, printed = judged(tmp_path, finish, "objectnav")
-    assert not printed and "stopped" not in told.ends["a"]["metrics"]
-    assert found.get(str(RULES["objectnav"]), (None,))[0] == wanted
-    assert unjudged(told, "objectnav") == ({} if said else {"stopped": 2})
-    assert unjudged(told, "etpnav") == {}
+def test_rows_need_stop_for_a_rule_with_stop(tmp_path, stopped, expected):
+    finish = f"episode.finish(success=True, spl=1, distance_to_goal=0.05{stopped})"
+    judged, reports, printed = judge(tmp_path, finish, "objectnav")
+    assert not printed and "stopped" not in reports.ends["a"]["metrics"]
+    assert judged.get(str(RULES["objectnav"]), (None,))[0] == expected
+    assert count_missing(reports, "objectnav") == ({} if stopped else {"stopped": 2})
+    assert count_missing(reports, "etpnav") == {}
 
 
 @pytest.mark.parametrize("far", [", distance_to_goal=9.0", ""])
-def test_a_failure_is_one_by_every_rule_though_it_tells_no_stop(run, tmp_path, far):
+def test_rows_count_a_failure_without_stop(run, tmp_path, far):
     file, out = tmp_path / "nav.py", tmp_path / "o"
-    won = "episode.finish(success=True, stopped=True, distance_to_goal=0.05, spl=0.9)"
-    lost = f"episode.finish(success=False{far})"
-    file.write_text(LOOP % f"{won} if name == 'a' or 'clean' in __import__('sys').argv else {lost}")
-    ran = run(out, "conditions=[spatter] rule=objectnav", f"{sys.executable} {file} {{condition}}")
-    assert f"success 50.0 ({RULES['objectnav']})" in ran.stdout, ran.stderr
-    made = [json.loads(line) for line in (out / "rows.jsonl").read_text().splitlines()]
+    success = "episode.finish(success=True, stopped=True, distance_to_goal=0.05, spl=0.9)"
+    failure = f"episode.finish(success=False{far})"
+    file.write_text(
+        LOOP % f"{success} if name == 'a' or 'clean' in __import__('sys').argv else {failure}"
+    )
+    result = run(
+        out, "conditions=[spatter] rule=objectnav", f"{sys.executable} {file} {{condition}}"
+    )
+    assert f"success 50.0 ({RULES['objectnav']})" in result.stdout, result.stderr
+    result_rows = [json.loads(line) for line in (out / "rows.jsonl").read_text().splitlines()]
     for rule in (RULES["objectnav"], COMMON["words"]):
-        found = [
-            r["success"] for r in made if (r["rule"], r["corruption"]) == (str(rule), "spatter")
+        successes = [
+            r["success"]
+            for r in result_rows
+            if (r["rule"], r["corruption"]) == (str(rule), "spatter")
         ]
-        assert sorted(found) == [0.0, 1.0]
+        assert sorted(successes) == [0.0, 1.0]
 
 
 @pytest.mark.parametrize("first", ["rule=objectnav", ""])
-def test_a_rule_that_judges_some_episodes_of_a_condition_alone_is_refused(run, tmp_path, first):
+def test_run_rejects_a_rule_that_judges_only_some_episodes(run, tmp_path, first):
     file = tmp_path / "nav.py"
     known = "stopped=True if name == 'a' or 'clean' in __import__('sys').argv else None"
     file.write_text(LOOP % f"episode.finish(success=True, distance_to_goal=0.05, {known})")
     for options in (first, "rule=objectnav"):  # not measured, and measured without the rule
         options = f"conditions=[spatter] {options}"
-        ran = run(tmp_path / "o", options, f"{sys.executable} {file} {{condition}}")
-    assert "spatter-s0.6: rule=objectnav needs to know whether the agent said STOP" in ran.stderr
-    assert "1 of 2 episodes did not tell: finish(stopped=...)" in ran.stderr
+        result = run(tmp_path / "o", options, f"{sys.executable} {file} {{condition}}")
+    assert (
+        "spatter-s0.6: rule=objectnav needs to know whether the agent called STOP" in result.stderr
+    )
+    assert "1 of 2 episodes did not report. Pass finish(stopped=...)" in result.stderr
 
 
-def test_the_common_rule_is_left_out_where_it_would_judge_some_episodes_alone(tmp_path):
+def test_rows_leave_out_a_common_rule_that_judges_only_some_episodes(tmp_path):
     known = "distance_to_goal=0.05 if name == 'a' else None"
-    found, _, _ = judged(tmp_path, f"episode.finish(success=True, {known})", None)
-    assert list(found) == [OWN]
+    judged, _, _ = judge(tmp_path, f"episode.finish(success=True, {known})", None)
+    assert list(judged) == [OWN]
 
 
-def test_failures_without_a_distance_are_of_the_common_rule_where_clean_tells_one(tmp_path):
-    _, clean, _ = judged(tmp_path / "c", "episode.finish(success=True, distance_to_goal=1)", None)
-    _, told, _ = judged(tmp_path / "t", "episode.finish(success=False)", None)
+def test_rows_judge_failures_without_a_distance_if_clean_reports_one(tmp_path):
+    _, clean, _ = judge(tmp_path / "c", "episode.finish(success=True, distance_to_goal=1)", None)
+    _, reports, _ = judge(tmp_path / "t", "episode.finish(success=False)", None)
     common = str(COMMON["words"])
-    assert common not in {row["rule"] for row in rows(told, CLEAN, LABEL, None)}
-    found = rows(told, CLEAN, LABEL, None, clean)
-    assert [row["success"] for row in found if row["rule"] == common] == [0.0, 0.0]
+    assert common not in {row["rule"] for row in rows(reports, CLEAN, LABEL, None)}
+    result_rows = rows(reports, CLEAN, LABEL, None, clean)
+    assert [row["success"] for row in result_rows if row["rule"] == common] == [0.0, 0.0]
 
 
-def test_stop_is_yes_or_no(tmp_path):
-    _, _, printed = judged(tmp_path, "episode.finish(success=True, stopped='maybe')", None)
+def test_finish_rejects_an_invalid_stop(tmp_path):
+    _, _, printed = judge(tmp_path, "episode.finish(success=True, stopped='maybe')", None)
     assert "finish(stopped='maybe')" in printed
 
 
-def test_an_spl_that_was_told_is_that_of_the_common_rule_where_both_call_it_a_success(tmp_path):
+def test_rows_use_the_reported_spl_for_the_common_rule(tmp_path):
     finish = "episode.finish(success=True, spl=0.5, distance_to_goal=2.0)"
-    found, told, _ = judged(tmp_path, finish, None)
-    assert set(found.values()) == {(1.0, 0.5)} and not without_path(told, None)
+    judged, reports, _ = judge(tmp_path, finish, None)
+    assert set(judged.values()) == {(1.0, 0.5)} and not count_without_path(reports, None)
 
 
-def test_an_spl_that_nobody_told_is_counted_by_rule(tmp_path):
+def test_count_without_path_counts_by_rule(tmp_path):
     finish = "episode.finish(success=False, distance_to_goal=2.0)"
-    found, told, _ = judged(tmp_path, finish, None)
-    assert found == {OWN: (0.0, 0.0), str(RULES["etpnav"]): (1.0, 1.0)}
-    assert without_path(told, None) == {str(RULES["etpnav"]): 2}
+    judged, reports, _ = judge(tmp_path, finish, None)
+    assert judged == {OWN: (0.0, 0.0), str(RULES["etpnav"]): (1.0, 1.0)}
+    assert count_without_path(reports, None) == {str(RULES["etpnav"]): 2}
 
 
 @pytest.mark.parametrize(
@@ -113,30 +129,28 @@ def test_an_spl_that_nobody_told_is_counted_by_rule(tmp_path):
         ("depth[:] = 2; episode.finish(success=True)", []),
     ],
 )
-def test_depth_that_reads_no_more_than_one_in_any_episode_may_be_normalised(
-    tmp_path, finish, cameras
-):
-    _, told, _ = judged(tmp_path, finish, None)
-    assert near(told) == cameras
+def test_maybe_normalised_names_depth_up_to_one(tmp_path, finish, cameras):
+    _, reports, _ = judge(tmp_path, finish, None)
+    assert maybe_normalised(reports) == cameras
 
 
-def test_a_run_says_what_depth_may_be_and_by_which_rule_spl_is_success(run, tmp_path):
+def test_run_warns_about_depth_and_missing_paths(run, tmp_path):
     file = tmp_path / "nav.py"
     file.write_text(LOOP % "episode.finish(success=name == 'a', distance_to_goal=2.0)")
-    ran = run(tmp_path / "o", "conditions=[spatter]", f"{sys.executable} {file}")
-    assert ran.returncode == 0 and ran.stdout.count("is it normalised? Say so") == 2
-    assert f"1 without a path by {OWN}: SPL is success" in ran.stdout
-    assert f"2 without a path by {RULES['etpnav']}: SPL is success" in ran.stdout
+    result = run(tmp_path / "o", "conditions=[spatter]", f"{sys.executable} {file}")
+    assert result.returncode == 0 and result.stdout.count("is it normalised? If so") == 2
+    assert f"1 without a path by {OWN}: SPL is success" in result.stdout
+    assert f"2 without a path by {RULES['etpnav']}: SPL is success" in result.stdout
 
 
 @pytest.mark.parametrize("rule", ["etpnav", "objectnav"])
-def test_a_rule_that_nothing_tells_of_is_refused(run, tmp_path, rule):
+def test_run_rejects_a_rule_without_distances(run, tmp_path, rule):
     file, out = tmp_path / "nav.py", tmp_path / "o"
     file.write_text(LOOP % "episode.finish(success=True)")
     for before in ("", "conditions=[clean]"):  # not measured, and measured without the rule
         if before:
             assert run(out, before, f"{sys.executable} {file}").returncode == 0
-        ran = run(out, f"conditions=[clean] rule={rule}", f"{sys.executable} {file}")
-        assert f"rule={rule} needs to know how far the goal is" in ran.stderr
-        assert "finish(distance_to_goal=...), or leave rule= out" in ran.stderr
+        result = run(out, f"conditions=[clean] rule={rule}", f"{sys.executable} {file}")
+        assert f"rule={rule} needs to know the distance to the goal" in result.stderr
+        assert "finish(distance_to_goal=...), or leave rule= out" in result.stderr
     assert (out / "conditions/clean/done.json").exists()

@@ -1,4 +1,4 @@
-"""``mitigate run`` from the command line, over the stand-in's program."""
+"""``mitigate run`` from the command line, with the program of the stand-in lab."""
 
 import fcntl
 import json
@@ -15,7 +15,7 @@ import pytest
 
 from mitigate.bridge import run as run_module
 from mitigate.bridge.condition import Condition, Subset, Words
-from mitigate.bridge.config import name_of
+from mitigate.bridge.config import command_name
 from mitigate.bridge.events import EVENTS
 from mitigate.bridge.results import read
 from mitigate.bridge.run import split_command
@@ -26,17 +26,17 @@ from mitigate.evaluation import rows
 from .conftest import AGENT, LAB
 
 
-def test_it_is_a_command(tmp_path):
-    ran = subprocess.run(
+def test_run_is_a_command(tmp_path):
+    result = subprocess.run(
         [sys.executable, "-m", "mitigate", "run", f"out={tmp_path}", "rule=etpnavv", "--", "true"],
         capture_output=True,
         text=True,
         check=False,
     )
-    assert ran.returncode == 1 and "Did you mean etpnav" in ran.stderr
+    assert result.returncode == 1 and "Did you mean etpnav" in result.stderr
 
 
-def test_it_measures_a_program_and_goes_on_where_it_stopped(run, tmp_path):
+def test_run_measures_a_program_and_resumes(run, tmp_path):
     first = run(tmp_path / "o", "corruption=spatter name=stand split=toy")
     assert first.returncode == 0, first.stdout + first.stderr
     found = rows.read(tmp_path / "o" / "rows.jsonl")
@@ -54,9 +54,11 @@ def test_it_measures_a_program_and_goes_on_where_it_stopped(run, tmp_path):
     assert other.returncode == 1 and "was run with another seed" in other.stderr
 
 
-def test_some_episodes_are_the_same_ones_in_every_condition(run, tmp_path):
-    ran = run(tmp_path / "o", "corruption=spatter episodes=5", f"{AGENT} --episodes 24 --workers 2")
-    assert ran.returncode == 0, ran.stdout + ran.stderr
+def test_run_chooses_equal_episodes_in_every_condition(run, tmp_path):
+    result = run(
+        tmp_path / "o", "corruption=spatter episodes=5", f"{AGENT} --episodes 24 --workers 2"
+    )
+    assert result.returncode == 0, result.stdout + result.stderr
     found = rows.read(tmp_path / "o" / "rows.jsonl")
     by = {}
     for row in found:
@@ -65,14 +67,14 @@ def test_some_episodes_are_the_same_ones_in_every_condition(run, tmp_path):
     assert json.loads((tmp_path / "o" / "episodes.json").read_text())["of"] == 24
 
 
-def test_repeated_clean_runs_say_how_random_the_agent_is(run, tmp_path):
-    ran = run(tmp_path / "o", "conditions=[clean] repeats=2")
-    assert ran.returncode == 0, ran.stdout + ran.stderr
-    assert "2 clean runs of the same 4 episodes: SR 50.0, 50.0" in ran.stdout
+def test_run_reports_the_randomness_of_repeated_clean_runs(run, tmp_path):
+    result = run(tmp_path / "o", "conditions=[clean] repeats=2")
+    assert result.returncode == 0, result.stdout + result.stderr
+    assert "2 clean runs of the same 4 episodes: SR 50.0, 50.0" in result.stdout
     assert len(rows.read(tmp_path / "o" / "rows.jsonl")) == 8  # of the first
 
 
-def test_conditions_that_cannot_reach_the_agent_are_not_run(run, tmp_path):
+def test_run_skips_conditions_that_do_not_apply(run, tmp_path):
     program = tmp_path / "rgb_only.py"
     program.write_text(
         "import mitigate_hook, numpy\n"
@@ -82,15 +84,15 @@ def test_conditions_that_cannot_reach_the_agent_are_not_run(run, tmp_path):
         "        episode.corrupt({'rgb': numpy.full((8, 8, 3), 90, 'uint8')})\n"
         "    episode.finish(success=name == 'a', spl=0.5 * (name == 'a'))\n"
     )
-    ran = run(
+    result = run(
         tmp_path / "o",
         "conditions=[spatter,multipath,mask,white_box]",
         f"{sys.executable} {program}",
     )
-    assert ran.returncode == 0, ran.stdout + ran.stderr
-    assert "multipath-s0.6: not applicable, the agent has no depth camera" in ran.stdout
-    assert "mask-s0.6: not applicable, no instruction was told" in ran.stdout
-    assert "white_box-s0.6: not applicable" in ran.stdout
+    assert result.returncode == 0, result.stdout + result.stderr
+    assert "multipath-s0.6: not applicable, the agent has no depth camera" in result.stdout
+    assert "mask-s0.6: not applicable, the program passes no instruction" in result.stdout
+    assert "white_box-s0.6: not applicable" in result.stdout
     found = rows.read(tmp_path / "o" / "rows.jsonl")
     assert {row["corruption"] for row in found} == {"clean", "spatter"} and len(found) == 4
 
@@ -103,42 +105,40 @@ def test_conditions_that_cannot_reach_the_agent_are_not_run(run, tmp_path):
         (f"{sys.executable} -c 'print(5)'", "imported neither habitat-lab nor habitat-sim"),
         (f"{sys.executable} -I {LAB / 'agent.py'} x", "status 1"),
         ("no-such-program", "cannot be started: No such file"),
-        ("", "No command is given"),
+        ("", "A command is missing"),
         (f"{AGENT} --episodes 1 --steps 0", "without an episode"),
     ],
 )
-def test_a_command_that_does_not_work_is_explained(run, tmp_path, command, words):
-    ran = run(tmp_path / "o", "conditions=[clean]", command)
-    assert ran.returncode == 1 and words in ran.stderr, ran.stderr
+def test_run_explains_failed_commands(run, tmp_path, command, words):
+    result = run(tmp_path / "o", "conditions=[clean]", command)
+    assert result.returncode == 1 and words in result.stderr, result.stderr
 
 
-def test_a_worker_that_dies_does_not_hang_the_run(run, tmp_path):
-    ran = run(
+def test_run_does_not_hang_after_a_dead_worker(run, tmp_path):
+    result = run(
         tmp_path / "o",
         "conditions=[clean] patience=2",
         f"{AGENT} --workers 2 --die-at 1 --wait 60",
     )
-    assert ran.returncode == 1
-    assert "ended in the middle of episode s" in ran.stderr
+    assert result.returncode == 1
+    assert "ended in the middle of episode s" in result.stderr
 
 
-def test_a_silent_command_that_lost_an_episode_is_ended_though_others_are_there(
-    run, tmp_path, monkeypatch
-):
+def test_run_ends_a_silent_command_that_lost_an_episode(run, tmp_path, monkeypatch):
     from mitigate.bridge import attempt
 
-    monkeypatch.setattr(attempt, "SILENT", 2)  # times patience
+    monkeypatch.setattr(attempt, "MAX_SILENCE", 2)  # times patience
     program = tmp_path / "agent.py"
     program.write_text(
         "import mitigate_hook, numpy, os, time\n"
         "first = mitigate_hook.connect('a')\nfirst.corrupt({'rgb': numpy.zeros((8, 8, 3), 'u1')})\n"
         "mitigate_hook.connect('b')\ntime.sleep(60)\n"
     )
-    ran = run(tmp_path / "o", "conditions=[clean] patience=1", f"{sys.executable} {program}")
-    assert ran.returncode == 1 and "ended in the middle of episode a" in ran.stderr
+    result = run(tmp_path / "o", "conditions=[clean] patience=1", f"{sys.executable} {program}")
+    assert result.returncode == 1 and "ended in the middle of episode a" in result.stderr
 
 
-def test_an_interrupt_while_a_command_is_started_leaves_none_behind(run, tmp_path, monkeypatch):
+def test_run_ends_a_command_when_interrupted_at_its_start(run, tmp_path, monkeypatch):
     from mitigate.bridge import program
 
     started = []
@@ -155,7 +155,7 @@ def test_an_interrupt_while_a_command_is_started_leaves_none_behind(run, tmp_pat
     assert started[0].poll() is not None
 
 
-def test_rgb_and_depth_may_come_in_calls_of_their_own(run, tmp_path):
+def test_run_accepts_separate_calls_for_rgb_and_depth(run, tmp_path):
     program = tmp_path / "nav.py"
     program.write_text(
         "import mitigate_hook, numpy\n"
@@ -167,15 +167,15 @@ def test_rgb_and_depth_may_come_in_calls_of_their_own(run, tmp_path):
         "    episode.finish(success=1)\n"
     )
     out = tmp_path / "o"
-    ran = run(out, "conditions=[low_light,missing_data]", f"{sys.executable} {program}")
-    assert ran.returncode == 0 and "not applicable" not in ran.stdout, ran.stderr
+    result = run(out, "conditions=[low_light,missing_data]", f"{sys.executable} {program}")
+    assert result.returncode == 0 and "not applicable" not in result.stdout, result.stderr
     shown = [(out / f"conditions/{n}-s0.6/output.txt").read_text()
              for n in ("low_light", "missing_data")]  # fmt: skip
     assert shown == ["True False\n" * 2, "False True\n" * 2]
     assert (out / "conditions/clean/events.jsonl").read_text().count('"spec"') == 2
 
 
-def test_episodes_of_a_run_that_came_to_nothing_are_chosen_anew(run, tmp_path, monkeypatch):
+def test_run_chooses_episodes_again_after_a_failed_run(run, tmp_path, monkeypatch):
     from mitigate.bridge import plan
 
     monkeypatch.setattr(plan, "Subset", partial(Subset, settled=0.0))
@@ -189,42 +189,42 @@ def test_episodes_of_a_run_that_came_to_nothing_are_chosen_anew(run, tmp_path, m
         "    episode.corrupt({'rgb': rgb})\n    episode.finish(success=1)\n"
     )
     for _ in range(2):
-        ran = run(out, "conditions=[clean] episodes=2", f"{sys.executable} {program}")
-        assert "2 episodes" in ran.stdout and ran.returncode == 0
+        result = run(out, "conditions=[clean] episodes=2", f"{sys.executable} {program}")
+        assert "2 episodes" in result.stdout and result.returncode == 0
     assert json.loads((out / "episodes.json").read_text())["of"] == 90
 
 
-def test_a_condition_that_lost_an_episode_is_not_done(run, tmp_path):
-    """The command ends well, but one of its workers was killed."""
+def test_run_does_not_finish_a_condition_that_lost_an_episode(run, tmp_path):
+    """The command ends with status 0, but one of its workers was killed."""
     out = tmp_path / "o"
-    ran = run(out, "conditions=[clean]", f"{AGENT} --workers 4 --die-at 1 --die-worker 2")
-    assert ran.returncode == 1 and "1 episode was left in the middle, such as s0/2" in ran.stderr
+    result = run(out, "conditions=[clean]", f"{AGENT} --workers 4 --die-at 1 --die-worker 2")
+    assert result.returncode == 1 and "1 episode was left unfinished, such as s0/2" in result.stderr
     assert not (out / "conditions" / "clean" / "done.json").exists()
 
 
-def test_two_runs_do_not_share_a_folder(run, tmp_path):
+def test_run_rejects_the_folder_of_a_running_run(run, tmp_path):
     folder = tmp_path / "o" / "conditions" / "clean"
     folder.mkdir(parents=True)
     with open(folder / "lock", "w") as held:
         fcntl.flock(held, fcntl.LOCK_EX)
-        ran = run(tmp_path / "o", "conditions=[clean]")
-    assert ran.returncode == 1 and "Another run is at work in" in ran.stderr
+        result = run(tmp_path / "o", "conditions=[clean]")
+    assert result.returncode == 1 and "Another run is at work in" in result.stderr
 
 
 @pytest.mark.parametrize(
     ("options", "words"),
     [
-        ("patience=0", "patience=0 must be"),
+        ("patience=0", "patience must be 1 to 3600 seconds, got 0"),
         ("severity=0", "severity=0 changes nothing"),
         ("~suite.conditions", "suite has no conditions"),
-        ("episodes=3 patience=3", "patience=3 is too little with episodes=3"),
+        ("episodes=3 patience=3", "patience must be >= 5 seconds with episodes=3"),
     ],
 )
-def test_options_that_make_no_sense_are_refused(run, tmp_path, options, words):
+def test_run_rejects_invalid_options(run, tmp_path, options, words):
     assert words in run(tmp_path / "o", options).stderr
 
 
-def test_a_terminated_run_leaves_nothing_behind(tmp_path):
+def test_run_leaves_nothing_behind_when_terminated(tmp_path):
     command = [
         sys.executable,
         "-m",
@@ -254,48 +254,50 @@ def test_a_terminated_run_leaves_nothing_behind(tmp_path):
         os.kill(int(pid), 0)
 
 
-def test_words_that_would_not_be_heard_are_refused_before_their_conditions_run(run, tmp_path):
-    ran = run(tmp_path / "o", "conditions=[capitalize,low_light,mask]", f"{AGENT} --tokens")
-    assert ran.returncode == 1 and "no tokenizer was named" in ran.stderr
+def test_run_skips_instruction_conditions_without_a_tokenizer(run, tmp_path):
+    result = run(tmp_path / "o", "conditions=[capitalize,low_light,mask]", f"{AGENT} --tokens")
+    assert result.returncode == 1 and "Without a tokenizer" in result.stderr
     refused, begun = (
-        ran.stdout.index(text) for text in ("capitalize-s0.6, mask", "low_light-s0.6: s")
+        result.stdout.index(text) for text in ("capitalize-s0.6, mask", "low_light-s0.6: s")
     )
     assert refused < begun and not (tmp_path / "o/conditions/mask-s0.6").exists()
     measured = {row["corruption"] for row in rows.read(tmp_path / "o" / "rows.jsonl")}
     assert measured == {"clean", "low_light"}
 
 
-def test_words_in_other_languages_are_counted_where_words_are_to_be_corrupted(tmp_path, capsys):
+def test_select_applicable_counts_instructions_in_other_languages(tmp_path, capsys):
     events = [
         {"event": "episode", "scene": "s", "episode": str(i), "text": "x", "language": spoken}
         for i, spoken in enumerate(["hi-IN", "en-GB", None, "hi-IN"])
     ]
     (tmp_path / EVENTS).write_text("".join(json.dumps(event) + "\n" for event in events))
-    told = read(tmp_path)
+    reports = read(tmp_path)
     cells = [
-        SimpleNamespace(told=lambda: told, corruption=met, condition=Condition(met, 0, Words()))
+        SimpleNamespace(
+            reports=lambda: reports, corruption=met, condition=Condition(met, 0, Words())
+        )
         for met in (CLEAN, Corruption("mask", 0.6))
     ]
-    assert run_module._fitting(cells) == (cells[1:], [])
+    assert run_module._select_applicable(cells) == (cells[1:], [])
     said = "run: instructions in other languages passed through unchanged: 2 in hi-IN\n"
     assert capsys.readouterr().out == said
-    assert run_module._fitting(cells[:1]) == ([], []) and not capsys.readouterr().out
+    assert run_module._select_applicable(cells[:1]) == ([], []) and not capsys.readouterr().out
 
 
-def test_an_existing_sitecustomize_is_still_run(run, tmp_path):
+def test_hook_runs_the_sitecustomize_that_it_hides(run, tmp_path):
     (tmp_path / "own").mkdir()
     (tmp_path / "own" / "sitecustomize.py").write_text("print('the own one ran')\n")
-    ran = run(tmp_path / "o", "conditions=[clean]", PYTHONPATH=str(tmp_path / "own"))
-    assert ran.returncode == 0, ran.stderr
+    result = run(tmp_path / "o", "conditions=[clean]", PYTHONPATH=str(tmp_path / "own"))
+    assert result.returncode == 0, result.stderr
     assert "the own one ran" in (tmp_path / "o/conditions/clean/output.txt").read_text()
 
 
-def test_help_says_what_every_option_means():
+def test_help_explains_every_option():
     shown = options_text("run")
     assert shown.count("\n") > 20 and "tokenizer: null  # for agents" in shown
 
 
-def test_options_and_command_are_told_apart():
+def test_split_command_separates_options_and_command():
     assert split_command(["suite=full", "--", "bash", "run.sh", "--", "x"]) == (
         ["suite=full"],
         ["bash", "run.sh", "--", "x"],
@@ -313,11 +315,11 @@ def test_options_and_command_are_told_apart():
         ("python main_llm_vis.py --split val", "main_llm_vis"),
     ],
 )
-def test_a_command_has_a_name(command, name):
-    assert name_of(command.split()) == name
+def test_command_name_names_script_or_module(command, name):
+    assert command_name(command.split()) == name
 
 
-def test_how_to_go_on_names_the_command_and_the_signal(tmp_path):
+def test_run_says_how_to_resume_after_a_signal(tmp_path):
     agent = [sys.executable, str(LAB / "agent.py"), str(tmp_path / "seen"), "--pause", "5"]
     process = subprocess.Popen(
         [
@@ -352,11 +354,11 @@ def test_how_to_go_on_names_the_command_and_the_signal(tmp_path):
     assert f"suite=clean -- {shlex.join(agent)}" in said
 
 
-def test_a_launcher_that_is_none_is_told_the_three_there_are():
-    ran = subprocess.run(
+def test_run_lists_the_launchers():
+    result = subprocess.run(
         [sys.executable, "-m", "mitigate", "run", "launcher=foo", "--", "true"],
         capture_output=True,
         text=True,
         check=False,
     )
-    assert "Choose one of: local, ray, slurm." in ran.stderr
+    assert "Choose one of: local, ray, slurm." in result.stderr

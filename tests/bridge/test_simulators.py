@@ -1,9 +1,9 @@
-"""Every way to a simulator's frames: corrupted once, or the process ends and says why."""
+"""Ways to get frames of a simulator: corrupted once, or the process ends with an error."""
 
 import pytest
 
 from .conftest import condition
-from .test_loops import ran
+from .test_loops import run_loop
 
 ENV = """
 import habitat, habitat_sim.simulator
@@ -31,9 +31,11 @@ assert (sim.raw[..., :3] == 130).all()  # what the lab's sensors are given
 )
 
 
-def test_the_lab_itself_and_what_overrides_it_take_frames_for_its_sensors(tmp_path):
-    ended, told = ran(tmp_path, LAB + "env.step(0)\nprint('done')", condition("low_light"))
-    assert ended.stdout == "done\n" and told.ends["s0/0"]["calls"] == 3
+def test_lab_simulator_gives_clean_frames_to_its_sensors(tmp_path):
+    process, reports = run_loop(
+        tmp_path, LAB + "env.step(0)\nprint('done')", condition("low_light")
+    )
+    assert process.stdout == "done\n" and reports.ends["s0/0"]["calls"] == 3
 
 
 @pytest.mark.parametrize(
@@ -45,22 +47,22 @@ def test_the_lab_itself_and_what_overrides_it_take_frames_for_its_sensors(tmp_pa
         "env.sim.start_async_render(); env.sim.get_sensor_observations_async_finish()",
     ],
 )
-def test_frames_beside_the_labs_sensors_end_the_process(tmp_path, look):
-    ended, told = ran(tmp_path, f"{LAB}{look}\nprint('went on')", condition("low_light"))
-    assert ended.returncode == 97 and "went on" not in ended.stdout
-    assert "takes frames from habitat-lab's simulator by get_sensor_observations" in told.refused[0]
+def test_lab_simulator_stops_for_frames_that_bypass_its_sensors(tmp_path, look):
+    process, reports = run_loop(tmp_path, f"{LAB}{look}\nprint('went on')", condition("low_light"))
+    assert process.returncode == 97 and "went on" not in process.stdout
+    assert "calls get_sensor_observations of habitat-lab's simulator" in reports.problems[0]
 
 
-def test_frames_of_a_simulator_may_be_given_to_its_sensors_by_keyword(tmp_path):
+def test_get_observations_accepts_frames_by_keyword(tmp_path):
     code = ENV + (
         "env = Env(config={}, dataset=make_dataset(1))\nenv.reset()\n"
         "suite, place = env.sim.sensor_suite, (0.0, 0.0, 0.0)\n"
-        "clean = mitigate_hook._unseen(suite.get_observations, place)\n"
+        "clean = mitigate_hook._call_clean(suite.get_observations, place)\n"
         "for seen in (suite.get_observations(place), suite.get_observations(sim_obs=place)):\n"
         "    print((seen['rgb'] != clean['rgb']).any(), (seen['depth'] == clean['depth']).all())"
     )
-    ended, _ = ran(tmp_path, code, condition("low_light"))
-    assert ended.stdout == "True True\n" * 2
+    process, _ = run_loop(tmp_path, code, condition("low_light"))
+    assert process.stdout == "True True\n" * 2
 
 
 SIM = """
@@ -82,24 +84,28 @@ episode = mitigate_hook.connect("a")
          None, "['goal_sensor']"),
     ],
 )  # fmt: skip
-def test_what_the_acting_agent_of_habitat_sim_sees_is_corrupted_once(tmp_path, call, acting, goal):
+def test_habitat_sim_corrupts_the_acting_agent_once(tmp_path, call, acting, goal):
     shown = f"seen{acting}[..., :3].mean()" if acting else "0"
     other = f"seen{goal}[0, 0, 0]" if goal else "130"
-    ended, _ = ran(tmp_path, f"{SIM}seen = {call}\nprint({shown}, {other})", condition("low_light"))
-    mean, clean = map(float, ended.stdout.split())
+    process, _ = run_loop(
+        tmp_path, f"{SIM}seen = {call}\nprint({shown}, {other})", condition("low_light")
+    )
+    mean, clean = map(float, process.stdout.split())
     assert clean == 130 and (mean == 0 if acting is None else 40 < mean < 110)
 
 
 @pytest.mark.parametrize("name", ["clean", "low_light"])
-def test_a_loop_over_habitat_sim_leaves_corrupt_out(tmp_path, name):
+def test_corrupt_stops_for_frames_of_habitat_sim(tmp_path, name):
     code = (
         "frames = sim.get_sensor_observations()\n"
         "episode.corrupt({'rgb': frames['color_sensor'].copy()})\nprint('went on')"
     )
-    ended, told = ran(tmp_path, SIM + code, condition(name))
-    assert ended.returncode == 97 and "connect() and finish() only" in told.refused[0]
-    ended, told = ran(tmp_path / "b", SIM + "sim.get_sensor_observations()\nepisode.finish(1)")
-    assert ended.returncode == 0 and told.ends["a"]["calls"] == 1
+    process, reports = run_loop(tmp_path, SIM + code, condition(name))
+    assert process.returncode == 97 and "connect() and finish() only" in reports.problems[0]
+    process, reports = run_loop(
+        tmp_path / "b", SIM + "sim.get_sensor_observations()\nepisode.finish(1)"
+    )
+    assert process.returncode == 0 and reports.ends["a"]["calls"] == 1
 
 
 @pytest.mark.parametrize(
@@ -110,16 +116,16 @@ def test_a_loop_over_habitat_sim_leaves_corrupt_out(tmp_path, name):
         "mitigate_hook.connect('b').corrupt({'left': seen['rgb']}, cameras={'left': {}})",
     ],
 )
-def test_a_frame_that_was_corrupted_is_not_corrupted_again(tmp_path, again):
+def test_corrupt_stops_for_a_corrupted_frame(tmp_path, again):
     code = (
         "episode = mitigate_hook.connect('a')\nseen = episode.corrupt({'rgb': rgb})\n"
         f"seen = episode.corrupt({{'rgb': rgb}})\n{again}\nprint('went on')"
     ).replace("{}}", "{'type': 'rgb'}}")
-    ended, told = ran(tmp_path, code)
-    assert ended.returncode == 97 and "was corrupted before" in told.refused[0]
+    process, reports = run_loop(tmp_path, code)
+    assert process.returncode == 97 and "is corrupted already" in reports.problems[0]
 
 
-def test_an_env_for_each_episode_leaves_nothing_behind(tmp_path):
+def test_close_leaves_nothing_behind(tmp_path):
     code = ENV + (
         "import gc, time\nopen_files = []\n"
         "for _ in range(6):\n"
@@ -128,7 +134,7 @@ def test_an_env_for_each_episode_leaves_nothing_behind(tmp_path):
         "    open_files.append(len(os.listdir('/proc/self/fd')))\n"
         "print(max(open_files) == open_files[0],"
         " any(isinstance(o, Simulator) for o in gc.get_objects()),"
-        " len(mitigate_hook._walks), len(mitigate_hook._described))"
+        " len(mitigate_hook._sessions), len(mitigate_hook._descriptions))"
     )
-    ended, told = ran(tmp_path, code)
-    assert ended.stdout == "True False 0 0\n" and told.again == 5
+    process, reports = run_loop(tmp_path, code)
+    assert process.stdout == "True False 0 0\n" and reports.repeated == 5

@@ -7,8 +7,8 @@ import sys
 import pytest
 from omegaconf import OmegaConf
 
-from mitigate.bridge.plan import Plan, cells
-from mitigate.bridge.run import run_there
+from mitigate.bridge.plan import Plan, make_cells
+from mitigate.bridge.run import run_on_launcher
 from mitigate.core.conf import load_config
 
 pytestmark = pytest.mark.xdist_group("launchers")  # as tests/cluster/test_launchers.py
@@ -33,17 +33,19 @@ for name in "ab":
 """
 
 
-def test_launcher_reruns_a_condition_that_lost_its_worker(ray_launcher, tmp_path, capsys):
+def test_a_condition_that_lost_its_worker_is_run_anew_and_a_finished_one_is_kept(
+    ray_launcher, tmp_path, capsys
+):
     program, out = tmp_path / "agent.py", tmp_path / "o"
     program.write_text(AGENT)
     command = [sys.executable, str(program), str(tmp_path / "died"), "{condition}"]
     options = [f"out={out}", "conditions=[spatter]", "launcher=ray"]
     config = OmegaConf.to_object(load_config("run", options))
     plan = Plan(config, tuple(command), "agent", out)
-    spatter = cells(plan)[1]
-    assert run_there(plan, [spatter]) == []
-    assert (tmp_path / "died").exists() and "again on another" in capsys.readouterr().out
+    spatter = make_cells(plan)[1]
+    assert run_on_launcher(plan, [spatter]) == []
+    assert (tmp_path / "died").exists() and "starts again on another" in capsys.readouterr().out
     found = [(row["episode_id"], row["rule"]) for row in spatter.rows()]
     assert {episode for episode, _ in found} == {"a", "b"} and len(found) == len({*found})
-    assert run_there(plan, [spatter]) == []
+    assert run_on_launcher(plan, [spatter]) == []
     assert "spatter-s0.6: done before" in capsys.readouterr().out

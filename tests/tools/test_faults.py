@@ -1,4 +1,4 @@
-"""The tool that breaks trainings: what it tells is of what was tried, and of nothing else."""
+"""The fault injection tool: its status and stored outcomes."""
 
 from __future__ import annotations
 
@@ -11,46 +11,46 @@ from tools.faults import evaluation, training
 
 
 @pytest.fixture
-def told(tmp_path, monkeypatch):
-    """Run the tool where a training, or the evaluation, comes to ``found``."""
+def run_tool(tmp_path, monkeypatch):
+    """Run the tool with given outcomes of a training or the evaluation."""
 
-    def run(found, *arguments):
-        monkeypatch.setattr(training, "break_training", lambda *_: dict(found))
-        monkeypatch.setattr(evaluation, "break_evaluation", lambda *_: dict(found))
+    def run(outcomes, *arguments):
+        monkeypatch.setattr(training, "break_training", lambda *_: dict(outcomes))
+        monkeypatch.setattr(evaluation, "break_evaluation", lambda *_: dict(outcomes))
         return faults.main(["--out", str(tmp_path), *arguments])
 
     return run
 
 
-def test_nothing_tried_is_no_success(told):
-    assert told({"SIGTERM": "survived"}, "--recipes", "ts_distill") == 0
-    assert told({"SIGTERM": "survived", "SIGINT": "other bits"}, "--recipes", "ts_distill") == 1
-    assert told({}, "--recipes", "ts_distill", "--faults") == 1
-    assert told({"full disk": "not run: no file system"}, "--recipes", "ts_distill") == 1
-    assert told({}, "--recipes") == 0  # to write the table of what was found before
+def test_main_fails_if_nothing_was_tried(run_tool):
+    assert run_tool({"SIGTERM": "survived"}, "--recipes", "ts_distill") == 0
+    assert run_tool({"SIGTERM": "survived", "SIGINT": "other bits"}, "--recipes", "ts_distill") == 1
+    assert run_tool({}, "--recipes", "ts_distill", "--faults") == 1
+    assert run_tool({"full disk": "not run: no file system"}, "--recipes", "ts_distill") == 1
+    assert run_tool({}, "--recipes") == 0  # writes the table of stored outcomes
 
 
-def test_what_fails_unbroken_leaves_no_older_success_and_is_forgotten_once_it_holds(told, tmp_path):
-    notes = tmp_path / "faults-seed0.json"
+def test_main_replaces_stored_outcomes(run_tool, tmp_path):
+    file = tmp_path / "faults-seed0.json"
 
-    def held():
-        return json.loads(notes.read_text())["evaluation"]
+    def stored():
+        return json.loads(file.read_text())["evaluation"]
 
-    told({"SIGTERM": "survived"}, "--recipes", "evaluation")
-    told({"unbroken": "status 1"}, "--recipes", "evaluation")
-    assert held() == {"unbroken": "status 1"}
-    told({"SIGINT": "survived"}, "--recipes", "evaluation")
-    told({"SIGTERM": "survived"}, "--recipes", "evaluation")
-    assert held() == {"SIGINT": "survived", "SIGTERM": "survived"}
-    told({"SIGTERM": "other bits"}, "--recipes", "evaluation", "--seed", "7")
-    assert held() == {"SIGINT": "survived", "SIGTERM": "survived"}
+    run_tool({"SIGTERM": "survived"}, "--recipes", "evaluation")
+    run_tool({"unbroken": "status 1"}, "--recipes", "evaluation")
+    assert stored() == {"unbroken": "status 1"}
+    run_tool({"SIGINT": "survived"}, "--recipes", "evaluation")
+    run_tool({"SIGTERM": "survived"}, "--recipes", "evaluation")
+    assert stored() == {"SIGINT": "survived", "SIGTERM": "survived"}
+    run_tool({"SIGTERM": "other bits"}, "--recipes", "evaluation", "--seed", "7")
+    assert stored() == {"SIGINT": "survived", "SIGTERM": "survived"}
 
 
-def test_an_evaluation_without_rows_has_survived_nothing(tmp_path, monkeypatch):
+def test_break_evaluation_fails_without_rows(tmp_path, monkeypatch):
     class Command:
         def problem(self, *_):
             return ""
 
     monkeypatch.setattr(evaluation.Evaluation, "start", lambda *_: Command())
-    found = evaluation.break_evaluation(tmp_path / "out", 0, ["clock jumps"])
-    assert list(found) == ["unbroken"] and "no rows" in found["unbroken"]
+    outcomes = evaluation.break_evaluation(tmp_path / "out", 0, ["clock jumps"])
+    assert list(outcomes) == ["unbroken"] and "no rows" in outcomes["unbroken"]

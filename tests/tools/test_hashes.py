@@ -5,7 +5,7 @@ from __future__ import annotations
 from tools import hashes
 
 
-def test_every_corruption_has_a_hash_for_each_severity_and_the_same_each_time(capsys):
+def test_main_prints_a_reproducible_hash_per_severity(capsys):
     lines = []
     for _ in range(2):
         hashes.main()

@@ -7,7 +7,7 @@ from tools.pages import instruction_samples as samples
 FILE = "tests/guards/text/handwritten.txt"
 
 
-def test_the_report_counts_lies_and_repeats_its_examples(capsys):
+def test_report_repeats_its_examples(capsys):
     assert samples.main([FILE, "--count", "12", "--show", "2"]) == 0
     out = capsys.readouterr().out
     assert out.startswith("12 instructions") and out.count("\n> ") == 2
@@ -17,13 +17,13 @@ def test_the_report_counts_lies_and_repeats_its_examples(capsys):
     assert capsys.readouterr().out.split("\n> ")[1:] == out.split("\n> ")[1:]
 
 
-def test_lines_without_a_word_are_left_out(tmp_path, capsys):
+def test_report_leaves_out_lines_without_words(tmp_path, capsys):
     (tmp_path / "some.txt").write_text("Turn left at the sofa.\n...\n\nGo to the bed and stop.\n")
     assert samples.main([str(tmp_path / "some.txt")]) == 0
     assert capsys.readouterr().out.startswith("2 instructions")
 
 
-def test_a_file_without_instructions_is_an_error(tmp_path, capsys):
+def test_report_rejects_a_file_without_instructions(tmp_path, capsys):
     (tmp_path / "empty.txt").write_text("# nothing\n\n")
     assert samples.main([str(tmp_path / "empty.txt")]) == 2
     assert samples.main([str(tmp_path / "none.json")]) == 2

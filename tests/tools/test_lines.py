@@ -34,5 +34,5 @@ def test_main_fails_above_the_limit(tmp_path, capsys):
     (tmp_path / "link").symlink_to(tmp_path / "part")
     lines.main([str(tmp_path), "--most", "6"])
     assert capsys.readouterr().out.splitlines()[-1].split() == ["total", "1", "6", "1"]
-    with pytest.raises(SystemExit, match="6 lines of code, more than --most 5"):
+    with pytest.raises(SystemExit, match="must be <= 5 .--most., got 6"):
         lines.main([str(tmp_path), "--most", "5"])

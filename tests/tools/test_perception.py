@@ -1,4 +1,4 @@
-"""What the encoders see falls with a corruption of their own modality, and with no other."""
+"""Perception scores fall with a corruption of the same modality, and with no other."""
 
 from __future__ import annotations
 
@@ -21,13 +21,13 @@ def value(printed: str, row: str) -> float:
     return float(line.split("|")[2].split()[0])
 
 
-def test_a_hidden_middle_costs_things_and_missing_data_costs_free_space(printed):
+def test_measure_loses_things_or_free_space_by_corruption(printed):
     assert value(printed, "Foreign object") < 0.5 * value(printed, "Clean RGB")
     assert value(printed, "Missing data") < 0.7 * value(printed, "Clean depth")
     assert 0 < value(printed, "**Mean of RGB**") < value(printed, "Clean RGB")
 
 
-def test_no_severity_is_clean():
+def test_measure_equals_clean_at_severity_zero():
     poses = perception.Poses("val_seen", 2, seed=1)
     agent = perception.load(perception._agent_node(), "checkpoints/base")
     found = perception.measure(agent, poses, perception.SUITES["full"], severity=0.0)
@@ -38,15 +38,15 @@ def test_no_severity_is_clean():
     "arguments, message",
     [
         (["checkpoints/base", "--severity", "1.2", "--poses", "1"], "from 0"),
-        (["checkpoints/base", "--poses", "0"], "at least one"),
+        (["checkpoints/base", "--poses", "0"], "must be >= 1"),
         (["checkpoints/nothing", "--poses", "1"], "no weights at"),
     ],
 )
-def test_mistakes_are_told(arguments, message):
+def test_main_rejects_invalid_options(arguments, message):
     with pytest.raises((ValueError, FileNotFoundError), match=message):
         perception.main(arguments)
 
 
-def test_agents_of_one_name_have_columns_of_their_own():
+def test_table_separates_agents_of_one_name():
     assert perception._column("runs/a/agent", ["base"]) == "a"
     assert perception._column("checkpoints/base", ["base"]) == "checkpoints/base"

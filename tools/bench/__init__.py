@@ -1,2 +1,1 @@
-"""What things cost and whether they grow: corruptions beside their peers, training, evaluation, the
-renderer, the bridge, one process and two, an hour under load."""
+"""Benchmarks: time of corruptions, training, evaluation, renderer and bridge; growth of memory."""

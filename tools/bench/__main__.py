@@ -1,9 +1,9 @@
-"""Measure the corruptions beside their peers, the stages of training, evaluation, the renderer.
+"""Time the corruptions and those of other libraries, training stages, evaluation and renderer.
 
     make bench ARGS="--seconds 0.2 --steps 1"
 
-Everything but the stages of training and one evaluation runs in this process, on one thread.
-``--write`` puts the tables into ``docs/benchmarks.md``: do that on a quiet machine.
+All measurements except training stages and one evaluation run in this process, on one thread.
+``--write`` puts the tables into ``docs/benchmarks.md``; use it on an idle machine.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ import sys
 from pathlib import Path
 
 for _name in ("OMP_NUM_THREADS", "NUMBA_NUM_THREADS", "NO_ALBUMENTATIONS_UPDATE"):
-    os.environ.setdefault(_name, "1")  # before the libraries read it
+    os.environ.setdefault(_name, "1")  # libraries read it when they are imported
 
 import cv2  # noqa: E402
 import torch  # noqa: E402
@@ -27,23 +27,24 @@ PAGE = Path(__file__).resolve().parents[2] / "docs" / "benchmarks.md"
 
 
 def main(arguments: list[str] | None = None) -> None:
-    """Command line: see the module's first lines."""
+    """Run from the command line."""
     parser = argparse.ArgumentParser(
         prog="tools.bench",
         description=__doc__,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    parser.add_argument("--seconds", type=float, default=1.0, help="of each clock (default 1)")
-    parser.add_argument("--steps", type=int, default=6, help="training steps a stage (default 6)")
-    parser.add_argument(
-        "--recipes", nargs="+", default=training.RECIPES, help="whose stages are timed"
-    )
-    parser.add_argument("--size", type=int, default=64, help="of a rendered view (default 64)")
-    parser.add_argument("--episodes", type=int, default=8, help="evaluated (default 8)")
+    parser.add_argument("--seconds", type=float, default=1.0, help="per measurement (default 1)")
+    parser.add_argument("--steps", type=int, default=6, help="steps per stage (default 6)")
+    parser.add_argument("--recipes", nargs="+", default=training.RECIPES, help="recipes to time")
+    parser.add_argument("--size", type=int, default=64, help="pixels of a view (default 64)")
+    parser.add_argument("--episodes", type=int, default=8, help="episodes to run (default 8)")
     parser.add_argument("--write", action="store_true", help="write docs/benchmarks.md")
     options = parser.parse_args(arguments)
     if min(options.steps, options.episodes) < 1 or options.seconds <= 0:
-        parser.error("--steps and --episodes must be at least 1 and --seconds above 0.")
+        parser.error(
+            f"--steps and --episodes must be >= 1 and --seconds > 0, got {options.steps}, "
+            f"{options.episodes} and {options.seconds:g}."
+        )
     torch.set_num_threads(1)
     cv2.setNumThreads(1)
     text = report.page(

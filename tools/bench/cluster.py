@@ -1,10 +1,12 @@
-"""How long an evaluation takes on a cluster whose nodes fail: ``python -m tools.bench.cluster``.
+"""Simulate how long an evaluation takes on a cluster with failing nodes.
 
-A simulation by discrete events, not a measurement: episodes take times drawn from a lognormal
-distribution with the mean and spread that ``--mean`` and ``--spread`` state (of one episode under
-all conditions); workers take shares of some episodes at a time; nodes fail at random and come back.
-A finished episode's rows are kept, as both launchers do; the one at hand is lost, and the rest of
-the share goes back to the front of the queue.
+    python -m tools.bench.cluster
+
+A discrete-event simulation, not a measurement. The times of episodes (under all conditions) are
+drawn from a lognormal distribution with the mean and spread of ``--mean`` and ``--spread``. Workers
+take shares of some episodes at a time. Nodes fail at random and come back. Rows of a finished
+episode are kept, as both launchers do. The running episode is lost, and the rest of its share goes
+back to the front of the queue.
 """
 
 from __future__ import annotations
@@ -24,7 +26,14 @@ HOUR = 3600.0
 
 @dataclass(frozen=True)
 class Cluster:
-    """``days``: mean time between failures of a node. ``back``: minutes until it is back."""
+    """A simulated cluster.
+
+    Attributes:
+        nodes: Number of nodes.
+        workers: Workers per node.
+        days: Mean time between failures of a node.
+        back: Minutes until a failed node is back.
+    """
 
     nodes: int = 100
     workers: int = 16
@@ -34,8 +43,14 @@ class Cluster:
 
 @dataclass(frozen=True)
 class Outcome:
-    """hours: until the last episode is done. lost: worker hours of episodes that were begun in
-    vain. idle: worker hours between a worker's last episode and the end. failures: of nodes."""
+    """The result of a simulation.
+
+    Attributes:
+        hours: Until the last episode is done.
+        lost: Worker hours of episodes that failures interrupted.
+        idle: Worker hours without an episode.
+        failures: Number of node failures.
+    """
 
     hours: float
     lost: float
@@ -44,20 +59,21 @@ class Outcome:
 
 
 def simulate(seconds: np.ndarray, share: int, cluster: Cluster, seed: int = 0) -> Outcome:
-    """Run episodes of ``seconds`` [N] on ``cluster``, ``share`` at a time."""
+    """Run episodes that take ``seconds`` [N] on ``cluster``; a worker takes ``share`` at a time."""
     return _Simulation(seconds, share, cluster, seed).run()
 
 
 class _Simulation:
-    """Events are (time, order, kind, node or worker)."""
+    """Events are (time, order, kind, node or worker); the kind names a method."""
 
     def __init__(self, seconds: np.ndarray, share: int, cluster: Cluster, seed: int) -> None:
-        self.seconds, self.cluster = seconds, cluster
+        self.seconds = seconds
+        self.cluster = cluster
         self.rng = np.random.default_rng(seed)
-        numbers = list(range(len(seconds)))
-        self.waiting = deque(numbers[at : at + share] for at in range(0, len(numbers), share))
+        episodes = list(range(len(seconds)))
+        self.waiting = deque(episodes[i : i + share] for i in range(0, len(episodes), share))
         self.events: list[tuple[float, int, str, int]] = []
-        self.held: dict[int, tuple[list[int], float, float]] = {}  # worker: share, begun, due
+        self.running: dict[int, tuple[list[int], float, float]] = {}  # worker: share, start, end
         self.idle: set[int] = set()
         self.now = self.lost = self.busy = 0.0
         self.order = self.done = self.failures = 0
@@ -66,72 +82,80 @@ class _Simulation:
         for node in range(self.cluster.nodes):
             self.comes_back(node)
         while self.done < len(self.seconds):
-            self.now, _, kind, who = heapq.heappop(self.events)
-            getattr(self, kind)(who)
-        whole = self.now * self.cluster.nodes * self.cluster.workers
-        idle = whole - self.busy - self.lost
+            self.now, _, kind, number = heapq.heappop(self.events)
+            getattr(self, kind)(number)
+        total = self.now * self.cluster.nodes * self.cluster.workers
+        idle = total - self.busy - self.lost
         return Outcome(self.now / HOUR, self.lost / HOUR, idle / HOUR, self.failures)
 
     def comes_back(self, node: int) -> None:
-        """A node begins, or begins again."""
+        """Start a node, at the beginning or after a failure."""
         mean = self.cluster.days * 24 * HOUR
-        self._at(self.now + self.rng.exponential(mean), "fails", node)
+        self._schedule(self.now + self.rng.exponential(mean), "fails", node)
         for worker in self._workers(node):
-            self._take(worker)
+            self._take_share(worker)
 
     def fails(self, node: int) -> None:
-        """A node is lost, with the episodes at hand; what its workers had left goes to others."""
+        """Lose a node and its running episodes; its remaining shares go to other workers."""
         self.failures += 1
         for worker in self._workers(node):
             self.idle.discard(worker)
-            if worker in self.held:
-                episodes, begun, _ = self.held.pop(worker)
-                self.lost += self.now - begun
+            if worker in self.running:
+                episodes, start, _ = self.running.pop(worker)
+                self.lost += self.now - start
                 self.waiting.appendleft(episodes)
-        self._at(self.now + 60 * self.cluster.back, "comes_back", node)
+        self._schedule(self.now + 60 * self.cluster.back, "comes_back", node)
         for worker in sorted(self.idle)[: len(self.waiting)]:
             self.idle.discard(worker)
-            self._take(worker)
+            self._take_share(worker)
 
     def finishes(self, worker: int) -> None:
-        """A worker is done with an episode, unless that was lost before."""
-        if worker not in self.held or self.held[worker][2] != self.now:
+        """Finish a worker's episode, unless a failure interrupted it."""
+        if worker not in self.running or self.running[worker][2] != self.now:
             return
-        episodes, begun, _ = self.held.pop(worker)
-        self.done, self.busy = self.done + 1, self.busy + self.now - begun
+        episodes, start, _ = self.running.pop(worker)
+        self.done += 1
+        self.busy = self.busy + self.now - start
         if len(episodes) > 1:
-            self._begin(worker, episodes[1:])
+            self._start(worker, episodes[1:])
         else:
-            self._take(worker)
+            self._take_share(worker)
 
     def _workers(self, node: int) -> range:
         return range(node * self.cluster.workers, (node + 1) * self.cluster.workers)
 
-    def _take(self, worker: int) -> None:
+    def _take_share(self, worker: int) -> None:
         if self.waiting:
-            self._begin(worker, self.waiting.popleft())
+            self._start(worker, self.waiting.popleft())
         else:
             self.idle.add(worker)
 
-    def _begin(self, worker: int, episodes: list[int]) -> None:
-        due = self.now + float(self.seconds[episodes[0]])
-        self.held[worker] = (episodes, self.now, due)
-        self._at(due, "finishes", worker)
+    def _start(self, worker: int, episodes: list[int]) -> None:
+        end = self.now + float(self.seconds[episodes[0]])
+        self.running[worker] = (episodes, self.now, end)
+        self._schedule(end, "finishes", worker)
 
-    def _at(self, time: float, kind: str, who: int) -> None:
+    def _schedule(self, time: float, kind: str, number: int) -> None:
         self.order += 1
-        heapq.heappush(self.events, (time, self.order, kind, who))
+        heapq.heappush(self.events, (time, self.order, kind, number))
 
 
 def draw(count: int, mean: float, spread: float, seed: int) -> np.ndarray:
-    """Seconds [count] of a lognormal distribution; ``spread``: standard deviation over mean."""
+    """Draw seconds [count] from a lognormal distribution.
+
+    Args:
+        count: How many.
+        mean: Seconds.
+        spread: Standard deviation divided by the mean.
+        seed: Of the generator.
+    """
     sigma = np.sqrt(np.log1p(spread**2))
     return np.random.default_rng(seed).lognormal(np.log(mean) - sigma**2 / 2, sigma, count)
 
 
 def table(options: argparse.Namespace) -> str:
-    """The outcomes by share and failures as Markdown, each the median of the seeds."""
-    about = (
+    """Return a Markdown table of outcomes by share and failures; medians over the seeds."""
+    caption = (
         f"{options.episodes:,} episodes of {options.mean:g} s (all conditions), {options.nodes} "
         f"nodes of {options.workers} workers, a failed node is back after {options.back:g} "
         f"minutes; medians of {options.seeds} simulations"
@@ -141,30 +165,31 @@ def table(options: argparse.Namespace) -> str:
     for days in options.days:
         for share in (*options.shares, -(-options.episodes // workers)):
             cluster = Cluster(options.nodes, options.workers, days, options.back)
-            found = []
+            outcomes = []
             for seed in range(options.seeds):
                 seconds = draw(options.episodes, options.mean, options.spread, seed)
-                found.append(simulate(seconds, share, cluster, seed))
+                outcomes.append(simulate(seconds, share, cluster, seed))
             names = ("hours", "failures", "lost", "idle")
-            h, f, lost, idle = (float(np.median([getattr(o, n) for o in found])) for n in names)
-            cells = [f"{days:g} days", f"{share:,}", f"{h:.2f}", f"{f:.0f}"]
+            medians = [float(np.median([getattr(o, n) for o in outcomes])) for n in names]
+            hours, failures, lost, idle = medians
+            cells = [f"{days:g} days", f"{share:,}", f"{hours:.2f}", f"{failures:.0f}"]
             rows.append([*cells, f"{lost:.1f}", f"{idle:.0f}"])
-    head = ("a node fails each", "episodes at a time", "hours", "failures", "worker hours lost")
-    return f"{about}\n\n{markdown_table((*head, 'idle'), rows, words=0)}"
+    head = ("a node fails every", "episodes per share", "hours", "failures", "worker hours lost")
+    return f"{caption}\n\n{markdown_table((*head, 'idle'), rows, words=0)}"
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
     """Run from the command line."""
     parser = argparse.ArgumentParser(prog="python -m tools.bench.cluster", description=__doc__)
     add = parser.add_argument
-    add("--episodes", type=int, default=7 * 5 * 1839, help="7 agents x 5 severities x R2R-CE's")
+    add("--episodes", type=int, default=7 * 5 * 1839, help="7 agents x 5 severities x R2R-CE")
     add("--mean", type=float, default=17.0, help="seconds of an episode under all conditions")
     add("--spread", type=float, default=0.5, help="standard deviation over mean")
     add("--nodes", type=int, default=100)
-    add("--workers", type=int, default=16, help="of a node")
+    add("--workers", type=int, default=16, help="per node")
     add("--days", type=float, nargs="+", default=[1.0, 30.0], help="between failures of a node")
-    add("--back", type=float, default=10.0, help="minutes until a node is back")
-    add("--shares", type=int, nargs="+", default=[1, 8], help="episodes a worker takes at a time")
+    add("--back", type=float, default=10.0, help="minutes until a failed node is back")
+    add("--shares", type=int, nargs="+", default=[1, 8], help="episodes per share")
     add("--seeds", type=int, default=5)
     print(table(parser.parse_args(arguments)))
 

@@ -1,7 +1,7 @@
-"""CPU time per decision of each mitigation: ``python -m tools.bench.decisions``.
+"""Measure the CPU time per decision of each mitigation: ``python -m tools.bench.decisions``.
 
-All agents decide in turns in one process on one thread, so that the ratios to the base agent do not
-depend on what else the machine does. The observation is a panorama of random pixels.
+All agents decide in turn in one process on one thread, so that the ratios to the base agent do not
+depend on the load of the machine. The observation is a panorama of random pixels.
 """
 
 from __future__ import annotations

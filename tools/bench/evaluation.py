@@ -1,4 +1,4 @@
-"""Episodes of an evaluation a CPU second: each by itself, and an episode's conditions together."""
+"""Episodes of an evaluation per CPU second, run separately and all conditions together."""
 
 from __future__ import annotations
 
@@ -22,8 +22,14 @@ SEVERITY = 0.6
 
 @dataclass(frozen=True)
 class Pace:
-    """``count`` episodes, each under one condition: CPU seconds of both ways of running them, and
-    whether these gave the same rows."""
+    """CPU seconds of episodes that are run in two ways.
+
+    Attributes:
+        count: Number of episodes, each under one condition.
+        alone: CPU seconds if every episode runs separately.
+        together: CPU seconds if the conditions of an episode run together, as in an evaluation.
+        same: Whether both ways give equal rows.
+    """
 
     count: int
     alone: float
@@ -32,56 +38,59 @@ class Pace:
 
 
 def paces(count: int) -> dict[str, Pace]:
-    """By checkpoint: ``count`` episodes under the suite in this process, both ways in turns."""
+    """Return by checkpoint the pace of ``count`` episodes under the suite, in this process."""
     cfg = read(conf.load_config("evaluate"))
-    found = {}
+    by_checkpoint = {}
     for weights in CHECKPOINTS:
         task = EpisodeTask(load(cfg.agent, weights), build.maker(cfg.env.world))
-        met = conditions(list(cfg.suite.conditions), SEVERITY, None)
+        suite = conditions(list(cfg.suite.conditions), SEVERITY, None)
         groups: list[list[Job]] = [
-            [(episode, c, {"seed": 0, "corruption": c.name}) for c in met]
+            [(episode, c, {"seed": 0, "corruption": c.name}) for c in suite]
             for episode in episodes(cfg.env, cfg.split, count + 1)
         ]
         with task.ready():
-            found[weights] = _pace(task, groups)
-    return found
+            by_checkpoint[weights] = _pace(task, groups)
+    return by_checkpoint
 
 
 def _pace(task: EpisodeTask, groups: list[list[Job]]) -> Pace:
-    """Time all groups but the first, which warms up."""
+    """Time all groups except the first, which warms up."""
 
     def alone(group: list[Job]) -> list[dict[str, Any]]:
         assert task.world is not None
         return [{**job, **run_episode(task.agent, task.world, e, c, 0)} for e, c, job in group]
 
     ways: dict[str, Callable] = {"alone": alone, "together": lambda group: list(task.work(group))}
-    spent, same = dict.fromkeys(ways, 0.0), True
+    seconds = dict.fromkeys(ways, 0.0)
+    same = True
     for number, group in enumerate(groups):
         rows = {}
         for way in list(ways)[:: 1 if number % 2 else -1]:
-            started = time.process_time()
+            start = time.process_time()
             rows[way] = ways[way](group)
-            spent[way] += (time.process_time() - started) * (number > 0)
+            seconds[way] += (time.process_time() - start) * (number > 0)
         same = same and rows["alone"] == rows["together"]
-    return Pace(sum(map(len, groups[1:])), spent["alone"], spent["together"], same)
+    return Pace(sum(map(len, groups[1:])), seconds["alone"], seconds["together"], same)
 
 
 def seconds_by_workers(count: int) -> dict[int, float]:
-    """Wall seconds of an evaluation of ``count`` episodes under the suite by its number of workers:
-    1, and 2 where there are two cores, started before."""
+    """Return wall seconds of an evaluation of ``count`` episodes under the suite.
+
+    By number of workers: 1, and 2 if there are two cores. The faster of two runs counts.
+    """
     with tempfile.TemporaryDirectory() as folder:
         return {
             number: min(
-                _evaluation(count, number, Path(folder) / f"{number}-{turn}") for turn in "ab"
+                _time_evaluation(count, number, Path(folder) / f"{number}-{run}") for run in "ab"
             )
             for number in range(1, 1 + min(2, workers.cores()))
         }
 
 
-def _evaluation(count: int, number: int, folder: Path) -> float:
+def _time_evaluation(count: int, number: int, folder: Path) -> float:
     cfg = read(conf.load_config("evaluate"))
     agent = load(cfg.agent, CHECKPOINTS[0])
-    started = time.perf_counter()
+    start = time.perf_counter()
     evaluate(
         agent,
         build.maker(cfg.env.world),
@@ -92,4 +101,4 @@ def _evaluation(count: int, number: int, folder: Path) -> float:
         split=cfg.split,
         workers=number,
     )
-    return time.perf_counter() - started
+    return time.perf_counter() - start

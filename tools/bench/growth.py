@@ -1,4 +1,4 @@
-"""Whether a series of measurements grows: its slope with an interval, and a verdict."""
+"""Decide whether a series of measurements grows: its slope with an interval, and a verdict."""
 
 from __future__ import annotations
 
@@ -6,18 +6,26 @@ from dataclasses import dataclass
 
 import numpy as np
 
-WARM = 0.25  # share of a series that is left out: what is built up once (ours)
+WARM_UP = 0.25  # share of a series that is left out: caches fill once (heuristic)
 RESAMPLES = 2000
 LEVEL = 0.95
 DAY = 24.0  # hours
-MUCH = 0.1  # of the mean, in a day: what counts as growth (ours)
-LEAST, SHORTEST = 20, 0.3  # measurements that a slope needs; hours that a verdict needs (ours)
+LIMIT = 0.1  # share of the mean per day that counts as growth (heuristic)
+MIN_COUNT = 20  # measurements that a slope needs (heuristic)
+MIN_HOURS = 0.3  # hours that a verdict needs (heuristic)
 
 
 @dataclass(frozen=True)
 class Growth:
-    """Mean of a series of so many ``hours``, and its slope an hour with a 95 % interval (``low``,
-    ``high``)."""
+    """The slope of a series.
+
+    Attributes:
+        hours: Duration of the series.
+        mean: Mean of the values.
+        slope: Slope per hour.
+        low: Lower end of its 95 % interval.
+        high: Upper end of its 95 % interval.
+    """
 
     hours: float
     mean: float
@@ -27,29 +35,36 @@ class Growth:
 
     @property
     def verdict(self) -> str:
-        """ "grows" and "flat" by what a day at either end of the interval would add; else the
-        series is too short to say."""
-        much = MUCH * max(self.mean, 1e-9) / DAY
-        if self.hours < SHORTEST:  # slow waves look like slopes there
+        """Return "grows", "flat" or "too short to say", from both ends of the interval."""
+        limit = LIMIT * max(self.mean, 1e-9) / DAY
+        if self.hours < MIN_HOURS:  # slow waves look like slopes in a short series
             return "too short to say"
-        if self.low > much:
+        if self.low > limit:
             return "grows"
-        return "flat" if self.high <= much else "too short to say"
+        return "flat" if self.high <= limit else "too short to say"
 
 
 def growth(hours: np.ndarray, values: np.ndarray, seed: int = 0) -> Growth:
-    """The growth of ``values`` [N] measured at ``hours`` [N], after the first ``WARM`` of them.
+    """Return the growth of a series, without its first quarter.
 
     The interval is a percentile interval of the residuals' moving-block bootstrap (Kuensch 1989),
-    with blocks of about the square root of N, since measurements follow each other closely.
-    Raises ValueError for fewer than ``LEAST``.
+    with blocks of about the square root of N, because measurements are correlated in time.
+
+    Args:
+        hours: Times [N].
+        values: Measurements [N].
+        seed: Of the bootstrap.
+
+    Raises:
+        ValueError: There are fewer than ``MIN_COUNT`` measurements.
     """
-    kept = hours >= hours[0] + WARM * (hours[-1] - hours[0]) if len(hours) else np.zeros(0, bool)
-    x, y = np.asarray(hours, float)[kept], np.asarray(values, float)[kept]
-    if len(x) < LEAST:
+    used = hours >= hours[0] + WARM_UP * (hours[-1] - hours[0]) if len(hours) else np.zeros(0, bool)
+    x = np.asarray(hours, float)[used]
+    y = np.asarray(values, float)[used]
+    if len(x) < MIN_COUNT:
         raise ValueError(
-            f"{len(x)} measurements after the first quarter are too few for a slope ({LEAST}): run "
-            "longer, or measure more often."
+            f"A slope needs >= {MIN_COUNT} measurements after the first quarter, got {len(x)}. "
+            "Run longer, or measure more often."
         )
     centred = x - x.mean()
     slope = float(centred @ y / (centred @ centred))

@@ -1,9 +1,10 @@
-"""What ``tools.bench.soak`` watches: ``python -m tools.bench.loads NAME FOLDER``, for ever.
+"""Endless loads for ``tools.bench.soak``: ``python -m tools.bench.loads NAME FOLDER``.
 
-training: rollouts and steps of the shipped agent in 64 apartments, so that what is kept of each is
-there after some minutes, a checkpoint every 20 steps. evaluation: 20 episodes under the suite by
-two workers, again and again with other seeds. bridge: episodes of 20 looks with RGB and depth, each
-condition of the suite in turn, each with a server of its own.
+- training: rollouts and steps of the shipped agent in 64 apartments, whose caches are full after
+  some minutes, with a checkpoint every 20 steps.
+- evaluation: 20 episodes under the suite with two workers, repeated with other seeds.
+- bridge: episodes of 20 steps with RGB and depth, under each condition of the suite in turn, with
+  a new server per condition.
 """
 
 from __future__ import annotations
@@ -17,12 +18,13 @@ from pathlib import Path
 import numpy as np
 
 ENDLESS = 10_000_000  # steps
-EPISODES, LOOKS = 20, 20  # of a round of evaluation or bridge traffic; of an episode (ours)
+EPISODES = 20  # per round of evaluation or bridge traffic (heuristic)
+STEPS = 20  # per episode of bridge traffic (heuristic)
 SEVERITY = 0.6
 
 
 def training(folder: Path) -> None:
-    """Train until it is ended; its checkpoints are kept two at a time."""
+    """Train until the process is ended; at most two checkpoints are kept."""
     from mitigate.core import conf
     from mitigate.training.train import run
 
@@ -41,7 +43,7 @@ def training(folder: Path) -> None:
 
 
 def evaluation(folder: Path) -> None:
-    """Evaluate with one seed after the other in this process."""
+    """Evaluate with one seed after another in this process."""
     from mitigate.core import conf
     from mitigate.evaluation.evaluate import run
 
@@ -53,7 +55,7 @@ def evaluation(folder: Path) -> None:
 
 
 def bridge(folder: Path) -> None:
-    """Serve and ask, a server for each condition."""
+    """Run episodes over the bridge, with one server per condition."""
     from mitigate.bridge.condition import Condition, Words
     from mitigate.bridge.hook import mitigate_hook
     from mitigate.bridge.server import Listener
@@ -63,16 +65,16 @@ def bridge(folder: Path) -> None:
     rgb = np.full((128, 128, 3), 90, np.uint8)
     depth = np.full((128, 128, 1), 2.0, np.float32)
     for number, corruption in enumerate(itertools.cycle(corruptions)):
-        place = folder / f"{number}"
-        with Listener(Condition(corruption, 0, Words()), place) as listener:
+        events = folder / f"{number}"
+        with Listener(Condition(corruption, 0, Words()), events) as listener:
             os.environ.update(listener.environment())
-            walk = mitigate_hook.Walk()  # an environment, with a connection of its own
+            session = mitigate_hook.Session()  # with a separate connection
             for name in map(str, range(EPISODES)):
-                episode = mitigate_hook.Episode(walk, name, "soak", None)
-                for _ in range(LOOKS):
+                episode = mitigate_hook.Episode(session, name, "soak", None)
+                for _ in range(STEPS):
                     episode.corrupt({"rgb": rgb.copy(), "depth": depth.copy()})
                 episode.finish(success=True, spl=1.0)
-        shutil.rmtree(place)
+        shutil.rmtree(events)
 
 
 LOADS = {"training": training, "evaluation": evaluation, "bridge": bridge}

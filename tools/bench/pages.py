@@ -1,4 +1,4 @@
-"""Measured tables in pages of the docs, between two lines that mark their place."""
+"""Writes measured tables into pages of the docs, between two marker lines."""
 
 from __future__ import annotations
 
@@ -8,10 +8,16 @@ from mitigate.core.files import write_bytes
 
 
 def put(text: str, page: Path, begin: str, end: str) -> None:
-    """Put ``text`` between the lines ``begin`` and ``end`` of ``page``. Raises ValueError if the
-    page has no such lines."""
-    before, found, rest = page.read_text(encoding="utf-8").partition(begin)
-    _, ended, after = rest.partition(end)
-    if not (found and ended):
-        raise ValueError(f"{page} has no lines {begin!r} and {end!r} for the table to go between.")
+    """Replace the text between the lines ``begin`` and ``end`` of ``page``.
+
+    Raises:
+        ValueError: The page does not contain these lines.
+    """
+    before, first_marker, rest = page.read_text(encoding="utf-8").partition(begin)
+    _, last_marker, after = rest.partition(end)
+    if not (first_marker and last_marker):
+        raise ValueError(
+            f"{page} must contain the lines {begin!r} and {end!r}, which enclose the table. Add "
+            "them."
+        )
     write_bytes(page, f"{before}{begin}\n{text}\n{end}{after}".encode())

@@ -1,8 +1,8 @@
-"""What other libraries offer for the same failures, as near in strength as their options allow.
+"""Corruptions of other libraries for the same failures, with strengths as similar as possible.
 
-Each is called as its documentation shows. Frames are converted to what a library takes (float
-tensors for kornia) before the clock starts. No library corrupts metric depth: there the peer is
-the plain numpy, OpenCV or torch code that one would write.
+Each is called as its documentation shows. Frames are converted to the library's format (float
+tensors for kornia) before the clock starts. No library corrupts metric depth, so depth is compared
+with plain numpy, OpenCV or torch code.
 """
 
 from __future__ import annotations
@@ -20,14 +20,19 @@ from mitigate.corruptions import rgb
 from mitigate.corruptions.depth import echo_shift
 from tools.bench.timing import version
 
-Calls = dict[str, Callable[[], object]]  # by the name of our corruption
-GRADE = 3  # severity 1-5 of imagecorruptions
+Calls = dict[str, Callable[[], object]]  # by the name of this project's corruption
+GRADE = 3  # severity of imagecorruptions, 1 to 5
 
 
 def peers(rgb_views: np.ndarray, depth_views: np.ndarray, severity: float) -> dict[str, Calls]:
-    """Every library that can be imported, with its calls on uint8 [V, H, W, 3] or float32
-    metres [V, H, W]. A line is printed for each one that cannot."""
-    found: dict[str, Calls] = {}
+    """Return the calls of every library that can be imported; print a line for each other one.
+
+    Args:
+        rgb_views: uint8 [V, H, W, 3].
+        depth_views: float32 metres [V, H, W].
+        severity: Severity of this project's corruptions.
+    """
+    by_library: dict[str, Calls] = {}
     for library, make in LIBRARIES.items():
         try:
             with warnings.catch_warnings():
@@ -37,19 +42,19 @@ def peers(rgb_views: np.ndarray, depth_views: np.ndarray, severity: float) -> di
             print(f"{library} is not measured: {error}. {INSTALL.get(library, '')}")
             continue
         number = version(library)
-        found[f"{library} {number}" if number else library] = calls
-    return found
+        by_library[f"{library} {number}" if number else library] = calls
+    return by_library
 
 
 def sizes(views: np.ndarray, severity: float) -> tuple[int, float]:
-    """Kernel width (odd pixels) of our motion blur and sigma of our defocus at this size."""
+    """Return kernel width of motion blur (odd pixels) and sigma of defocus in this project."""
     height, width = views.shape[1:3]
     kernel = max(3, int(rgb.BLUR_LENGTH * severity * width) | 1)
     return kernel, rgb.DEFOCUS_SIGMA * severity * min(height, width)
 
 
 def albumentations(views: np.ndarray, severity: float) -> Calls:
-    """One view a call, uint8."""
+    """Return calls with one uint8 view each."""
     import albumentations as a
 
     kernel, sigma = sizes(views, severity)
@@ -72,7 +77,7 @@ def albumentations(views: np.ndarray, severity: float) -> Calls:
 
 
 def kornia(views: np.ndarray, severity: float) -> Calls:
-    """All views in one float tensor [V, 3, H, W] in 0-1."""
+    """Return calls with all views in one float tensor [V, 3, H, W] in [0, 1]."""
     import kornia.augmentation as k
 
     kernel, sigma = sizes(views, severity)
@@ -92,7 +97,7 @@ def kornia(views: np.ndarray, severity: float) -> Calls:
 
 
 def imagecorruptions(views: np.ndarray, severity: float) -> Calls:
-    """One view a call, uint8, severity 3 of 5."""
+    """Return calls with one uint8 view each, at severity 3 of 5."""
     from imagecorruptions import corrupt
 
     def call(name):
@@ -108,10 +113,12 @@ def imagecorruptions(views: np.ndarray, severity: float) -> Calls:
 
 
 def plain(views: np.ndarray, severity: float) -> Calls:
-    """The depth corruptions in a few lines each, without keys or care for invalid pixels."""
+    """Return depth corruptions in a few lines each, without keys and checks of invalid pixels."""
     height, width = views.shape[1:]
-    tensor, rng = torch.from_numpy(views), np.random.default_rng(0)
-    step, share = np.float32(ours.STEP * severity), ours.HOLE_SHARE * severity
+    tensor = torch.from_numpy(views)
+    rng = np.random.default_rng(0)
+    step = np.float32(ours.STEP * severity)
+    share = ours.HOLE_SHARE * severity
     reach = 2 * max(1, round(ours.ECHO_REACH * min(height, width))) + 1
     square = np.ones((reach, reach), np.uint8)
 
@@ -147,10 +154,11 @@ LIBRARIES = {
     "plain code": plain,
 }
 INSTALL = {
-    "albumentations": "`pip install -e '.[bench]'` brings it.",
-    "kornia": "`pip install -e '.[bench]'` brings it.",
+    "albumentations": "Install it with `pip install -e '.[bench]'`.",
+    "kornia": "Install it with `pip install -e '.[bench]'`.",
     "imagecorruptions": (
-        "It asks for opencv-python, which would replace the headless one, and for pkg_resources: "
-        "`pip install --no-deps imagecorruptions` and `pip install scikit-image 'setuptools<81'`."
+        "It requires opencv-python, which would replace opencv-python-headless, and pkg_resources. "
+        "Install it with `pip install --no-deps imagecorruptions` and `pip install scikit-image "
+        "'setuptools<81'`."
     ),
 }

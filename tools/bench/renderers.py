@@ -1,8 +1,9 @@
-"""RGB-D views a second: the renderer of ``apartments`` against MiniWorld.
+"""RGB-D views per second: the renderer of ``apartments`` compared with MiniWorld.
 
-Both renderers run in this process, in turns, at the same size, and give an RGB and a depth image of
-each view; the best round of each counts, so that a busy machine disturbs less. MiniWorld draws
-through pyglet and EGL (Mesa's llvmpipe where there is no GPU, on all cores); ours on one core.
+Both renderers run in this process, in turn, at the same size, and return an RGB and a depth image
+of each view. The best round of each counts, which reduces the influence of other load. MiniWorld
+draws through pyglet and EGL (without a GPU Mesa's llvmpipe, on all cores); ``apartments`` draws on
+one core.
 """
 
 from __future__ import annotations
@@ -24,15 +25,20 @@ from mitigate.worlds.apartments.renderer import Renderer
 
 ROUNDS = 4
 OURS = "apartments"
-SCENES = ("Maze", "FourRooms")  # many rooms as ours have, and four bare ones
+SCENES = ("Maze", "FourRooms")  # many rooms, as in apartments, and four empty rooms
 _POSES = 40  # of MiniWorld's agent
 
 
 def ours(size: int) -> Callable[[], int]:
-    """A function that renders a panorama at a random free pose and returns its number of views."""
-    apartment, renderer = Apartment(7), Renderer(size)
+    """Return a function that renders a panorama at a random free pose.
+
+    That function returns the number of views.
+    """
+    apartment = Apartment(7)
+    renderer = Renderer(size)
     renderer.load(apartment)
-    space, rng = apartment.space, generator("bench", "apartments")
+    space = apartment.space
+    rng = generator("bench", "apartments")
 
     def panorama() -> int:
         x, y = space.centre(int(rng.integers(len(space.cells))))
@@ -43,12 +49,14 @@ def ours(size: int) -> Callable[[], int]:
 
 
 def miniworld(scene: str, size: int) -> dict[str, Callable[[], int]]:
-    """The same for one view of a MiniWorld scene, in two ways.
+    """Return functions that render one view of a MiniWorld scene, in two ways.
 
-    Its public calls, ``render_obs`` and ``render_depth``, draw a view twice; no public call draws
-    it once and reads both images, as the second way does. Only the scene opened last can be drawn:
-    MiniWorld keeps each in OpenGL's display list 1. Raises ImportError if the package is missing,
-    and what pyglet raises if the libraries that it draws with are.
+    The public calls ``render_obs`` and ``render_depth`` draw a view twice. The second way draws it
+    once and reads both images, for which there is no public call. Only the scene that was opened
+    last can be drawn, because MiniWorld stores each in OpenGL's display list 1.
+
+    Raises:
+        ImportError: MiniWorld is not installed. pyglet raises other errors for missing libraries.
     """
     import pyglet
 
@@ -79,34 +87,37 @@ def _placed(world: Any) -> tuple[np.ndarray, float]:
 
 
 def views_per_second(draw: Callable[[], int], seconds: float) -> tuple[float, float]:
-    """Views a second of wall time, and of CPU time of all threads, over about ``seconds``."""
-    wall, cpu, views = time.perf_counter(), time.process_time(), 0
+    """Return views per second of wall time, and of CPU time of all threads."""
+    wall = time.perf_counter()
+    cpu = time.process_time()
+    views = 0
     while time.perf_counter() - wall < seconds:
         views += draw()
     return views / (time.perf_counter() - wall), views / (time.process_time() - cpu)
 
 
 def compare(size: int, seconds: float) -> dict[str, tuple[float, float]]:
-    """Best round of each renderer, taken in turns; MiniWorld only if it is there."""
-    mine = {OURS: ours(size)}
+    """Return the best round of each renderer; MiniWorld only if it is installed."""
+    own = {OURS: ours(size)}
     best: dict[str, tuple[float, float]] = {}
     for scene in SCENES:
-        drawers = mine | _miniworld_or_reason(scene, size)
+        drawers = own | _try_miniworld(scene, size)
         for draw in drawers.values():
             views_per_second(draw, 0.2)
         for _, (name, draw) in itertools.product(range(ROUNDS), drawers.items()):
-            found = views_per_second(draw, seconds)
-            best[name] = max(best.get(name, found), found)
+            rate = views_per_second(draw, seconds)
+            best[name] = max(best.get(name, rate), rate)
     return best
 
 
-def _miniworld_or_reason(scene: str, size: int) -> dict[str, Callable[[], int]]:
+def _try_miniworld(scene: str, size: int) -> dict[str, Callable[[], int]]:
+    """Return the functions of :func:`miniworld`; print the reason if they are not available."""
     try:
         return miniworld(scene, size)
-    except Exception as error:  # whatever pyglet, EGL or the driver raise
+    except Exception as error:  # of pyglet, EGL or the driver
         print(
             f"MiniWorld's {scene} is not measured: {type(error).__name__}: {error}. Install it "
-            "with `pip install -e '.[bench]'`; it draws with libEGL, libGL and libGLU of the "
-            "system (Debian: libegl1 libgl1 libglu1-mesa libgl1-mesa-dri)."
+            "with `pip install -e '.[bench]'`. It needs libEGL, libGL and libGLU of the system "
+            "(Debian: libegl1 libgl1 libglu1-mesa libgl1-mesa-dri)."
         )
         return {}

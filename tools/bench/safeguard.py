@@ -1,9 +1,11 @@
-"""Memory and speed of the safeguard's language model: ``python -m tools.bench.safeguard``.
+"""Measure memory and speed of the safeguard's language model.
 
-Each precision runs in a process of its own: resident memory once loaded, tokens a second of
-training (the recipe's own steps; prompts and completions counted, padding not), seconds to write 60
-tokens greedily. The public baseline is transformers with PEFT as their guides have it: the whole
-batch at once, logits of all positions, weights in float32, no autocast.
+    python -m tools.bench.safeguard
+
+Each precision runs in a separate process. Measured are the resident memory after loading, tokens
+per second of training (steps of the recipe; prompts and completions count, padding does not), and
+seconds to generate 60 tokens greedily. The baseline is transformers with PEFT as in their guides:
+the whole batch at once, logits of all positions, weights in float32, no autocast.
 """
 
 from __future__ import annotations
@@ -23,7 +25,7 @@ from mitigate.core import conf
 from mitigate.training import train  # noqa: F401 - registers its options
 
 BASELINE = "transformers + PEFT, fp32"
-KINDS = {  # name -> precision of the weights, autocast, as the recipe does
+KINDS = {  # name -> precision of the weights, autocast, whether it runs as in the recipe
     BASELINE: ("fp32", False, False),
     "fp32": ("fp32", False, True),
     "fp32, bf16 autocast (default)": ("fp32", True, True),
@@ -35,54 +37,59 @@ COLUMNS = {
     "loaded_mb": "RSS loaded, MB",
     "peak_mb": "peak RSS, MB",
     "train_tokens_s": "training tokens/s",
-    "train_tokens_cpu_s": "the same a CPU second",
+    "train_tokens_cpu_s": "training tokens/CPU s",
     "greedy_s": f"{TOKENS} tokens greedily, s",
-    "greedy_cpu_s": "the same, CPU s",
+    "greedy_cpu_s": f"{TOKENS} tokens greedily, CPU s",
 }
 
 
 def measure(kind: str, base: str) -> dict[str, float]:
-    """Return the figures of one kind, measured in this process."""
+    """Return the measurements of one kind, taken in this process."""
     from mitigate.guards.text.language_models.model import LanguageModel
     from mitigate.recipes.safeguard_lora import SafeguardLora
     from mitigate.training.objective import accumulate
 
-    precision, autocast, ours = KINDS[kind]
+    precision, autocast, as_recipe = KINDS[kind]
     cfg = conf.load_config("train", ["recipe=safeguard_lora"])
     model = LanguageModel(base, precision, dict(cfg.agent.lora))
-    found = {"loaded_mb": _resident()}
-    recipe = SafeguardLora(model, pairs=16, micro_batch=4 if ours else 16)
-    cpu_device, computed = torch.device("cpu"), "bf16" if autocast else "fp32"
-    accumulate(recipe, recipe.batch(0), "fp32", cpu_device)  # warm
+    values = {"loaded_mb": _resident_megabytes()}
+    recipe = SafeguardLora(model, pairs=16, micro_batch=4 if as_recipe else 16)
+    device = torch.device("cpu")
+    compute_precision = "bf16" if autocast else "fp32"
+    accumulate(recipe, recipe.batch(0), "fp32", device)  # warm up
     batches = [recipe.batch(step) for step in range(1, STEPS + 1)]
     tokens = sum(int(g["attention_mask"].sum()) for b in batches for g in b["groups"])
-    began, cpu = time.perf_counter(), time.process_time()
+    wall = time.perf_counter()
+    cpu = time.process_time()
     for batch in batches:
-        if ours:
-            accumulate(recipe, batch, computed, cpu_device)
+        if as_recipe:
+            accumulate(recipe, batch, compute_precision, device)
         else:
-            _plain_step(model, batch["groups"][0])
-    found["train_tokens_s"] = tokens / (time.perf_counter() - began)
-    found["train_tokens_cpu_s"] = tokens / (time.process_time() - cpu)
-    found["greedy_s"], found["greedy_cpu_s"] = _greedy(model)
-    found["peak_mb"] = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1000
-    return found
+            _baseline_step(model, batch["groups"][0])
+    values["train_tokens_s"] = tokens / (time.perf_counter() - wall)
+    values["train_tokens_cpu_s"] = tokens / (time.process_time() - cpu)
+    values["greedy_s"], values["greedy_cpu_s"] = _time_generation(model)
+    values["peak_mb"] = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1000
+    return values
 
 
-def _plain_step(model: Any, group: dict[str, torch.Tensor]) -> None:
+def _baseline_step(model: Any, group: dict[str, torch.Tensor]) -> None:
+    """Compute the gradients of a batch as the guides of transformers do."""
     labels = torch.full_like(group["input_ids"], -100)
     width = group["completion"].shape[1]
     tail = labels[:, -width:]
     tail[group["completion"]] = group["input_ids"][:, -width:][group["completion"]]
-    given = {name: group[name] for name in ("input_ids", "attention_mask", "position_ids")}
-    model.network(**given, labels=labels).loss.backward()
+    inputs = {name: group[name] for name in ("input_ids", "attention_mask", "position_ids")}
+    model.network(**inputs, labels=labels).loss.backward()
 
 
 @torch.no_grad()
-def _greedy(model: Any) -> tuple[float, float]:
+def _time_generation(model: Any) -> tuple[float, float]:
+    """Return wall and CPU seconds to generate ``TOKENS`` tokens."""
     ids = torch.tensor([model.encode("Hey there! So, stroll past the sofa, then hang a left.")])
     model.network.eval()
-    began, cpu = time.perf_counter(), time.process_time()
+    wall = time.perf_counter()
+    cpu = time.process_time()
     model.network.generate(
         input_ids=ids,
         attention_mask=torch.ones_like(ids),
@@ -91,15 +98,15 @@ def _greedy(model: Any) -> tuple[float, float]:
         do_sample=False,
         pad_token_id=model.tokenizer.pad_token_id,
     )
-    return time.perf_counter() - began, time.process_time() - cpu
+    return time.perf_counter() - wall, time.process_time() - cpu
 
 
-def _resident() -> float:
+def _resident_megabytes() -> float:
     with open("/proc/self/statm", encoding="ascii") as file:
         return int(file.read().split()[1]) * resource.getpagesize() / 1e6
 
 
-def _shown(value: float) -> str:
+def _format(value: float) -> str:
     return f"{value:,.0f}" if value >= 100 else f"{value:.3g}"
 
 
@@ -121,8 +128,8 @@ def main(arguments: Sequence[str] | None = None) -> None:
         if done.returncode:
             print(f"| {kind} | {done.stderr.strip().splitlines()[-1][:120]} |", flush=True)
             continue
-        found = json.loads(done.stdout.strip().splitlines()[-1])
-        print(f"| {kind} | {' | '.join(_shown(found[n]) for n in COLUMNS)} |", flush=True)
+        values = json.loads(done.stdout.strip().splitlines()[-1])
+        print(f"| {kind} | {' | '.join(_format(values[n]) for n in COLUMNS)} |", flush=True)
 
 
 if __name__ == "__main__":

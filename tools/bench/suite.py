@@ -1,4 +1,4 @@
-"""Milliseconds of every corruption: steady state, per-frame mode, first frame, and the peers'."""
+"""Times every corruption (steady, per frame, first frame) and those of other libraries."""
 
 from __future__ import annotations
 
@@ -17,23 +17,27 @@ from tools.bench.peers import peers
 from tools.bench.timing import fresh, steady
 from tools.pages.gallery import rendered_frame
 
-SEVERITY = 0.6  # the paper's for R2R
-SEED = 7  # of the apartment rendered and of the keys
+SEVERITY = 0.6  # as in the paper for R2R
+SEED = 7  # of the rendered apartment and of the keys
 SIZES = {"480x640": (1, 480, 640), "224x224": (1, 224, 224), "12x64x64": (12, 64, 64)}
 NONE = (None, None)
 PANORAMA, PANORAMA_BAR = (12, 224, 224), 4.2  # the worst pair: low_light_noise, then multipath
-EPISODES = 4  # in which the steady state is measured, each by itself; their mean counts
-TINY = 4  # pixels: what a call on such a frame costs does not depend on the frame
+EPISODES = 4  # the steady state is the mean over these episodes
+TINY = 4  # pixels of a side: the time of such a call does not depend on the frame
 
 
 @dataclass(frozen=True)
 class Cost:
     """Milliseconds of one corruption at one size.
 
-    ``steady``: the frames of an episode; ``per_frame``: each frame starts an episode, as in the
-    per-frame regime; ``first``: a new severity as well, whose tables are then built; ``call``: the
-    steady state of a frame of 4 x 4 pixels; ``copy``: a plain copy of the frame; ``peers``: by
-    library; ``bar``: of its record, None where it has none.
+    Attributes:
+        steady: The frames of an episode.
+        per_frame: Each frame starts an episode, as in the per-frame regime.
+        first: Each frame also has a new severity, whose tables are then built.
+        call: The steady state of a frame of 4 x 4 pixels.
+        copy: A plain copy of the frame.
+        peers: Other libraries, by name.
+        bar: The target in its record; None if it has none.
     """
 
     steady: float
@@ -46,17 +50,17 @@ class Cost:
 
     @property
     def best_peer(self) -> tuple[str, float] | None:
-        """The fastest library and its milliseconds."""
+        """Return the fastest library and its milliseconds."""
         return min(self.peers.items(), key=lambda item: item[1]) if self.peers else None
 
     @property
     def over(self) -> bool:
-        """Whether the steady state misses the bar."""
+        """Return whether the steady state misses the bar."""
         return self.bar is not None and self.steady > self.bar
 
 
 def frames(views: int, height: int, width: int) -> tuple[np.ndarray, np.ndarray]:
-    """RGB uint8 [V, H, W, 3] and depth float32 metres [V, H, W] from a rendered panorama."""
+    """Return RGB uint8 [V, H, W, 3] and depth float32 metres [V, H, W] of a rendered panorama."""
     rgb, depth = rendered_frame(SEED, min(height, width))
     size = width, height
     rgb = np.stack([cv2.resize(view, size) for view in rgb[:views]])
@@ -65,8 +69,10 @@ def frames(views: int, height: int, width: int) -> tuple[np.ndarray, np.ndarray]
 
 
 def measure(seconds: float) -> dict[str, dict[str, Cost]]:
-    """Costs by size, then by corruption (of the unseen ones at the last size alone); about
-    ``seconds`` for each of several hundred clocks."""
+    """Return costs by size and corruption; unseen corruptions at the last size only.
+
+    Takes about ``seconds`` for each of several hundred measurements.
+    """
     costs: dict[str, dict[str, Cost]] = {}
     for column, (label, shape) in enumerate(SIZES.items()):
         rgb, depth = frames(*shape)
@@ -74,7 +80,7 @@ def measure(seconds: float) -> dict[str, dict[str, Cost]]:
         others: dict[str, dict[str, float]] = {name: {} for name in names}
         for library, calls in peers(rgb, depth, SEVERITY).items():
             for name, call in calls.items():
-                others[name][library] = steady(partial(_unnumbered, call), seconds)
+                others[name][library] = steady(partial(_ignore_number, call), seconds)
         costs[label] = {
             name: cost(
                 name,
@@ -88,20 +94,28 @@ def measure(seconds: float) -> dict[str, dict[str, Cost]]:
     return costs
 
 
-def _unnumbered(call: Callable[[], object], _: int) -> object:
+def _ignore_number(call: Callable[[], object], _: int) -> object:
     return call()
 
 
 def cost(
     name: str, frame: np.ndarray, seconds: float, others: dict[str, float], bar: float | None
 ) -> Cost:
-    """Our side of one corruption, on the clock, beside the times of ``others``."""
-    tiny = np.ascontiguousarray(frame[:, :TINY, :TINY])
-    heading = 0.3 if len(frame) > 1 else None  # a single view always has the flare in it
+    """Time one corruption.
 
-    def episode(i, seen=frame, number=0):
+    Args:
+        name: Of the corruption.
+        frame: uint8 [V, H, W, 3] or float32 metres [V, H, W].
+        seconds: Duration of each measurement.
+        others: Times of other libraries.
+        bar: The target in milliseconds, None if there is none.
+    """
+    tiny = np.ascontiguousarray(frame[:, :TINY, :TINY])
+    heading = 0.3 if len(frame) > 1 else None  # without a heading a single view has the flare
+
+    def episode(i, image=frame, number=0):
         key = Key(SEED, f"bench {number}", i)
-        return corrupt(seen, name, SEVERITY, key=key, heading=heading)
+        return corrupt(image, name, SEVERITY, key=key, heading=heading)
 
     episodes = [
         steady(partial(episode, number=number), seconds / EPISODES) for number in range(EPISODES)
@@ -126,7 +140,7 @@ def cost(
 
 
 def worst_pair(seconds: float) -> float:
-    """Milliseconds for low light with noise and multipath on one panorama, 12 x 224 x 224."""
+    """Return milliseconds of low light with noise and multipath on a panorama, 12 x 224 x 224."""
     rgb, depth = frames(*PANORAMA)
 
     def both(i):

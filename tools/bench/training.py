@@ -1,11 +1,11 @@
-"""Where the time of a training step goes, in every stage of the recipes.
+"""Measure the parts of a training step's time, in every stage of the recipes.
 
     python -m tools.bench.training da_per_episode ts_distill --steps 8
 
-Each stage runs as ``make train`` runs it, with a worker process a core: how long a step takes, how
-long of it the trainer waits for the batch, and how long forward, backward and update take. Then the
-same batches are made in this process, where clocks around the parts say what making them costs.
-``make bench`` calls this twice, once as the machine is and once capped to AVX2.
+Each stage runs as ``make train`` runs it, with a worker process per core. Measured are the time of
+a step, the time in which the trainer waits for the batch, and the time of forward, backward and
+update. Then the same batches are made in this process, and each part of making them is timed.
+``make bench`` calls this twice, with all instructions and capped to AVX2.
 """
 
 from __future__ import annotations
@@ -43,9 +43,9 @@ RECIPES = (
     "safeguard_lora",
 )
 CAPS = {"ONEDNN_MAX_CPU_ISA": "AVX2", "ATEN_CPU_CAPABILITY": "avx2"}
-LAYOUTS = 8  # apartments, so that their making, which a long training pays once, does not count
+LAYOUTS = 8  # few apartments, because a long training makes them only once
 NETWORK = "network"
-PARTS = {  # what making a batch consists of: module, class or None, function
+PARTS = {  # parts of making a batch: module, class or None, function
     "rendering": (("mitigate.worlds.apartments.renderer", "Renderer", "render"),),
     "scenes": (("mitigate.worlds.apartments.renderer", "Renderer", "load"),),
     "geodesics": (
@@ -68,10 +68,16 @@ OTHER = "other"
 
 @dataclass(frozen=True)
 class Stage:
-    """One stage of a recipe: milliseconds a step, medians but for ``parts``.
+    """One stage of a recipe: milliseconds per step, medians except for ``parts``.
 
-    whole: all of it. waiting: of that, for the batch. alone: forward, backward and update with
-    nothing beside them. parts: what making a batch costs on one core, by name, means.
+    Attributes:
+        recipe: Name of the recipe.
+        stage: Name of the stage.
+        precision: Of the networks.
+        whole: The whole step.
+        waiting: The part of it in which the trainer waits for the batch.
+        alone: Forward, backward and update without other processes.
+        parts: Parts of making a batch on one core, means.
     """
 
     recipe: str
@@ -84,10 +90,12 @@ class Stage:
 
     @property
     def elsewhere(self) -> float:
-        """Share of a step's time in which no network computes: what is waited for, less the
-        networks' part of it (in rollouts)."""
-        made = sum(self.parts.values())
-        network = self.parts.get(NETWORK, 0.0) / made if made else 0.0
+        """Return the share of a step in which no network computes.
+
+        This is the time of waiting without the share of the networks in rollouts.
+        """
+        total = sum(self.parts.values())
+        network = self.parts.get(NETWORK, 0.0) / total if total else 0.0
         return self.waiting * (1 - network) / self.whole
 
 
@@ -99,22 +107,22 @@ class Clock:
 
     def around(self, function: Callable) -> Callable:
         def timed(*args: Any, **named: Any) -> Any:
-            started = time.perf_counter()
+            start = time.perf_counter()
             try:
                 return function(*args, **named)
             finally:
-                self.seconds += time.perf_counter() - started
+                self.seconds += time.perf_counter() - start
 
         return timed
 
 
 @contextlib.contextmanager
 def clocked() -> Iterator[dict[str, Clock]]:
-    """Within it, the calls of every function of ``PARTS`` are on their part's clock."""
+    """Yield a clock per part; inside the block they time the functions of ``PARTS``."""
     clocks = {part: Clock() for part in PARTS}
     with contextlib.ExitStack() as stack:
-        for part, places in PARTS.items():
-            for module, owner, name in places:
+        for part, functions in PARTS.items():
+            for module, owner, name in functions:
                 __import__(module)
                 holder = sys.modules[module]
                 holder = getattr(holder, owner) if owner else holder
@@ -124,44 +132,45 @@ def clocked() -> Iterator[dict[str, Clock]]:
 
 
 def measure(name: str, steps: int, options: Sequence[str] = ()) -> list[Stage]:
-    """Measure the stages of the recipe ``name``, ``steps`` steps each after two that warm up."""
-    short = ["refresh_episodes=1", f"env.layouts={LAYOUTS}", "env.cached=2"]
-    config = read(conf.load_config("train", [f"recipe={name}", *short, *options]))
-    found = []
+    """Measure the stages of the recipe ``name``, ``steps`` steps each after two to warm up."""
+    small = ["refresh_episodes=1", f"env.layouts={LAYOUTS}", "env.cached=2"]
+    config = read(conf.load_config("train", [f"recipe={name}", *small, *options]))
+    stages = []
     agent = build_agent(config.agent, weights=config.init, seed=config.seed)
     with Workers(cores()) as workers:
         for stage, node in config.active_stages.items():
             objective = ObjectiveSpec.of(node.recipe).build(agent)
-            found.append(stage_of(objective, name, stage, steps, workers))
-    return found
+            stages.append(measure_stage(objective, name, stage, steps, workers))
+    return stages
 
 
-def stage_of(recipe: Objective, name: str, stage: str, steps: int, workers: Workers) -> Stage:
-    """Time one stage; see the module's docstring."""
+def measure_stage(recipe: Objective, name: str, stage: str, steps: int, workers: Workers) -> Stage:
+    """Time one stage."""
     device = torch.device("cpu")
     kind = precision.choose("auto", device)
     with precision.computing(kind, device):
         recipe.start()
     recipe.train()
-    update = _update(recipe, kind, device)
+    update = _make_update(recipe, kind, device)
     batches = Batches(recipe, workers, steps + 2, kind, device)
     waits, updates = [], []
     for step in range(steps + 2):
         seeding.seed_everything(0, "bench", step)
-        began = time.perf_counter()
+        start = time.perf_counter()
         batch = batches.batch(step)
-        arrived = time.perf_counter()
+        arrival = time.perf_counter()
         update(batch)
-        waits.append(arrived - began)
-        updates.append(time.perf_counter() - arrived)
+        waits.append(arrival - start)
+        updates.append(time.perf_counter() - arrival)
     alone = [_seconds(update, batch) for _ in range(steps)]
     whole = [a + b for a, b in zip(waits, updates, strict=True)]
-    spent = [1e3 * _median(values[-steps:]) for values in (whole, waits, alone)]
-    parts = {part: 1e3 * seconds for part, seconds in _parts(recipe, kind, steps).items()}
-    return Stage(name, stage, kind, spent[0], spent[1], spent[2], parts)
+    medians = [1e3 * _median(values[-steps:]) for values in (whole, waits, alone)]
+    parts = {part: 1e3 * seconds for part, seconds in _time_parts(recipe, kind, steps).items()}
+    return Stage(name, stage, kind, medians[0], medians[1], medians[2], parts)
 
 
-def _update(recipe: Objective, kind: str, device: torch.device) -> Callable[[dict], None]:
+def _make_update(recipe: Objective, kind: str, device: torch.device) -> Callable[[dict], None]:
+    """Return a function that does forward, backward and update for a batch."""
     trained = [p for group in recipe.parameter_groups() for p in group["params"] if p.requires_grad]
     optimizer = torch.optim.AdamW(trained, lr=1e-6)
 
@@ -173,23 +182,23 @@ def _update(recipe: Objective, kind: str, device: torch.device) -> Callable[[dic
     return update
 
 
-def _parts(recipe: Objective, kind: str, steps: int) -> dict[str, float]:
-    """Seconds a step of each part of making batches, in this process."""
+def _time_parts(recipe: Objective, kind: str, steps: int) -> dict[str, float]:
+    """Return seconds per step of each part of making batches, in this process."""
     batches = Batches(recipe, None, steps, kind, torch.device("cpu"))
     batches.batch(0)
     with clocked() as clocks:
-        began = time.perf_counter()
+        start = time.perf_counter()
         for step in range(steps):
             batches.batch(step)
-        whole = time.perf_counter() - began
+        whole = time.perf_counter() - start
     parts = {part: clock.seconds / steps for part, clock in clocks.items()}
     return {**parts, OTHER: max(0.0, whole / steps - sum(parts.values()))}
 
 
-def _seconds(call: Callable[[Any], object], given: Any) -> float:
-    began = time.perf_counter()
-    call(given)
-    return time.perf_counter() - began
+def _seconds(call: Callable[[Any], object], argument: Any) -> float:
+    start = time.perf_counter()
+    call(argument)
+    return time.perf_counter() - start
 
 
 def _median(values: Sequence[float]) -> float:
@@ -197,7 +206,7 @@ def _median(values: Sequence[float]) -> float:
 
 
 def measured(recipes: Sequence[str], steps: int, caps: bool) -> list[Stage]:
-    """Run this module in a process of its own, with all cores, capped to AVX2 or not."""
+    """Run this module in a separate process, with all cores, capped to AVX2 or not."""
     environment = {k: v for k, v in os.environ.items() if k not in ("OMP_NUM_THREADS", *CAPS)}
     command = [sys.executable, "-m", __name__, *recipes, "--steps", str(steps), "--json"]
     done = subprocess.run(
@@ -233,22 +242,22 @@ def table(stages: Sequence[Stage]) -> str:
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
-    """Command line: see the module's first lines."""
+    """Run from the command line."""
     parser = argparse.ArgumentParser(prog=__name__, description=(__doc__ or "").splitlines()[0])
     parser.add_argument("recipes", nargs="*", default=list(RECIPES), help="default: all")
-    parser.add_argument("--steps", type=int, default=8, help="timed, a stage (default 8)")
-    parser.add_argument("--json", action="store_true", help="print the figures as one JSON line")
+    parser.add_argument("--steps", type=int, default=8, help="timed per stage (default 8)")
+    parser.add_argument("--json", action="store_true", help="print the times as one JSON line")
     options = parser.parse_args(arguments)
     if options.steps < 1:
-        parser.error("--steps must be at least 1.")
-    found = []
+        parser.error(f"--steps must be >= 1, got {options.steps}.")
+    stages = []
     for name in options.recipes:
         print(f"timing {name}", file=sys.stderr, flush=True)
-        found += measure(name, options.steps)
+        stages += measure(name, options.steps)
     if options.json:
-        print(json.dumps([asdict(stage) for stage in found]))
+        print(json.dumps([asdict(stage) for stage in stages]))
     else:
-        print(table(found))
+        print(table(stages))
 
 
 if __name__ == "__main__":

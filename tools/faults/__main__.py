@@ -1,11 +1,12 @@
-"""Break trainings and evaluations on purpose, and see whether they end as if nothing had happened.
+"""Inject faults into trainings and evaluations, and compare their results with undisturbed runs.
 
 ``make test-faults``, or ``python -m tools.faults [--recipes ts_distill] [--faults SIGTERM]``. Each
-recipe is trained (``debug=smoke``, four steps a stage) once unbroken, and once through all faults,
-one after the other, each at a moment drawn from the seed; the weights must be the same bits.
-Evaluations are broken likewise; their rows must be the same bytes. Prints what was tried and what
-survived, and exits with 1 if anything did not, or nothing was tried. ``--write`` puts the table,
-with what earlier calls of that seed found of other recipes, into docs/lab/fault-injection.md.
+recipe is trained (``debug=smoke``, four steps per stage) once undisturbed, and once through all
+faults in turn, each at a moment drawn from the seed. The weights must be equal bit for bit.
+Evaluations get faults in the same way; their rows must be equal byte for byte. Prints how many
+faults were tried and survived, and exits with 1 if one did not survive or none was tried.
+``--write`` puts the table into docs/lab/fault-injection.md, with earlier results of the same seed
+for other recipes.
 """
 
 from __future__ import annotations
@@ -23,8 +24,8 @@ from mitigate.core.files import write_bytes
 from mitigate.core.workers import cores
 from tools.faults import evaluation, report, training
 
-FAMILIES = {  # recipes that between them use every file of recipes/
-    "safeguard_lora": "safeguard_lora",  # the longest is the first
+FAMILIES = {  # recipes that together use every file of recipes/
+    "safeguard_lora": "safeguard_lora",  # first, because it takes longest
     "da_per_episode": "imitate",
     "ts_distill": "distil",
     "conv_adapter": "adapt",
@@ -37,7 +38,7 @@ EVALUATION = "evaluation"
 PAGE = Path(__file__).resolve().parents[2] / "docs/lab/fault-injection.md"
 
 
-def options(arguments: Sequence[str] | None) -> argparse.Namespace:
+def parse_options(arguments: Sequence[str] | None) -> argparse.Namespace:
     parser = argparse.ArgumentParser(
         prog="python -m tools.faults",
         description=__doc__,
@@ -48,44 +49,46 @@ def options(arguments: Sequence[str] | None) -> argparse.Namespace:
     add("--recipes", nargs="*", default=[*FAMILIES, EVALUATION], help=f"or {EVALUATION}")
     add("--faults", nargs="*", default=known, choices=known, metavar="FAULT", help=str(known))
     add("--seed", type=int, default=0)
-    add("--jobs", type=int, default=cores(), help="recipes at a time, each on about one core")
+    add("--jobs", type=int, default=cores(), help="parallel recipes, each on about one core")
     add("--out", type=Path, default=Path("runs/faults"))
     add("--write", action="store_true", help="write docs/lab/fault-injection.md")
     return parser.parse_args(arguments)
 
 
-def broken(name: str, chosen: argparse.Namespace) -> dict[str, str]:
-    """Break a recipe, or the evaluation, and say what came of it."""
-    out, began = chosen.out.resolve(), time.monotonic()
+def inject_faults(name: str, options: argparse.Namespace) -> dict[str, str]:
+    """Inject faults into a recipe or the evaluation; print and return the outcome of each."""
+    out = options.out.resolve()
+    start = time.monotonic()
     if name == EVALUATION:
-        faults = [fault for fault in evaluation.FAULTS if fault in chosen.faults]
-        found = evaluation.break_evaluation(out / name, chosen.seed, faults)
+        faults = [fault for fault in evaluation.FAULTS if fault in options.faults]
+        outcomes = evaluation.break_evaluation(out / name, options.seed, faults)
     else:
-        faults = [fault for fault in training.FAULTS if fault in chosen.faults]
-        found = training.break_training(name, out, chosen.seed, faults)
-    print(report.line(name, found, time.monotonic() - began), flush=True)
-    return found
+        faults = [fault for fault in training.FAULTS if fault in options.faults]
+        outcomes = training.break_training(name, out, options.seed, faults)
+    print(report.line(name, outcomes, time.monotonic() - start), flush=True)
+    return outcomes
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run from the command line."""
-    chosen = options(arguments)
-    signal.signal(signal.SIGINT, signal.default_int_handler)  # what ignores it, has it ignored
-    notes = chosen.out / f"faults-seed{chosen.seed}.json"
-    with ThreadPoolExecutor(max(1, chosen.jobs)) as pool:
-        made = pool.map(lambda name: broken(name, chosen), chosen.recipes)
-        found = dict(zip(chosen.recipes, made, strict=True))
-    tried, survived = report.count(found)
+    options = parse_options(arguments)
+    # children inherit an ignored SIGINT, and the faults need it
+    signal.signal(signal.SIGINT, signal.default_int_handler)
+    file = options.out / f"faults-seed{options.seed}.json"
+    with ThreadPoolExecutor(max(1, options.jobs)) as pool:
+        results = pool.map(lambda name: inject_faults(name, options), options.recipes)
+        outcomes = dict(zip(options.recipes, results, strict=True))
+    tried, survived = report.count(outcomes)
     print(f"tried {tried}, survived {survived}", flush=True)
-    held = json.loads(notes.read_text(encoding="utf-8")) if notes.is_file() else {}
-    for name, came in found.items():  # of one that fails unbroken nothing else is known
-        before = {} if report.UNBROKEN in came else held.get(name, {})
-        held[name] = {f: c for f, c in before.items() if f != report.UNBROKEN} | came
-    write_bytes(notes, json.dumps(held, indent=1).encode())
-    if chosen.write:
-        report.write(PAGE, held, FAMILIES, chosen.seed)
+    stored = json.loads(file.read_text(encoding="utf-8")) if file.is_file() else {}
+    for name, new in outcomes.items():  # if the undisturbed run fails, no fault was tried
+        before = {} if report.UNBROKEN in new else stored.get(name, {})
+        stored[name] = {f: o for f, o in before.items() if f != report.UNBROKEN} | new
+    write_bytes(file, json.dumps(stored, indent=1).encode())
+    if options.write:
+        report.write(PAGE, stored, FAMILIES, options.seed)
         print(f"wrote docs/lab/{PAGE.name}")
-    return int(survived < tried or (bool(chosen.recipes) and not tried))
+    return int(survived < tried or (bool(options.recipes) and not tried))
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""Evaluations broken in many ways; their rows must be the bytes of an unbroken one's."""
+"""Faults of evaluations; the rows must be equal byte for byte to those of an undisturbed one."""
 
 from __future__ import annotations
 
@@ -12,81 +12,89 @@ from pathlib import Path
 
 from tools.faults.disk import filled, small_disk
 from tools.faults.processes import Command, workers
-from tools.faults.training import NOTICED, STATUS, TRIES, one_refused
+from tools.faults.training import NOTICE_TIME, STATUS, TRIES, check_one_rejected
 
 OPTIONS = ("checkpoint=checkpoints/base", "episodes=8", "suite=quick", "workers=2")
 ROWS = "rows.jsonl"
 DISK = 60  # MB
-LATE = "not run: the evaluation was done before"
+TOO_LATE = "not run: the evaluation ended before the fault"
 
 
 class Evaluation:
-    """An evaluation in ``folder``."""
+    """An evaluation in ``folder``; ``rng`` draws the moments of faults."""
 
     def __init__(self, folder: Path, rng: random.Random) -> None:
-        self.folder, self.rng, self.started = folder, rng, 0
+        self.folder = folder
+        self.rng = rng
+        self.started = 0
         self.arguments = ["mitigate.evaluate", *OPTIONS, f"out={folder}", f"runs={folder}"]
 
     def start(self, environment: dict[str, str] | None = None) -> Command:
-        """Start it, or let it go on."""
+        """Start or resume it."""
         self.started += 1
         name = f"{self.folder.name}-{self.started}.txt"
         return Command(self.arguments, self.folder.parent / name, environment)
 
-    def under_way(self, environment: dict[str, str] | None = None) -> Command:
-        """As :meth:`start`, and wait until some rows, drawn at random, are written."""
-        command, some = self.start(environment), self.rng.randint(1, 9)
-        command.wait_for(lambda: self.rows().count(b"\n") >= some)
+    def start_and_wait(self, environment: dict[str, str] | None = None) -> Command:
+        """Start or resume it, and wait until a random number of rows is written."""
+        command = self.start(environment)
+        count = self.rng.randint(1, 9)
+        command.wait_for(lambda: self.rows().count(b"\n") >= count)
         return command
 
     def rows(self) -> bytes:
-        """The rows that are written."""
+        """Return the file of rows."""
         path = self.folder / ROWS
         return path.read_bytes() if path.is_file() else b""
 
 
-def signalled(evaluation: Evaluation, number: int) -> str:
-    command = evaluation.under_way()
+def send_signal(evaluation: Evaluation, number: int) -> str:
+    """Send a signal to the evaluation."""
+    command = evaluation.start_and_wait()
     if not command.runs():
-        return LATE
+        return TOO_LATE
     command.process.send_signal(number)
     problem = command.problem(STATUS[signal.Signals(number)], 0)
-    return LATE if not problem and command.process.returncode == 0 else problem
+    return TOO_LATE if not problem and command.process.returncode == 0 else problem
 
 
-def worker_killed(evaluation: Evaluation) -> str:
-    command = evaluation.under_way()
-    found = workers(command)
-    if not found:
-        return LATE
-    os.kill(evaluation.rng.choice(found), signal.SIGKILL)
-    told = command.wait_for(lambda: "A worker process was" in command.said(), NOTICED)
-    return "" if told else f"not noticed within {NOTICED:g} s: {command.end()}"
+def kill_worker(evaluation: Evaluation) -> str:
+    """Kill a worker process."""
+    command = evaluation.start_and_wait()
+    pids = workers(command)
+    if not pids:
+        return TOO_LATE
+    os.kill(evaluation.rng.choice(pids), signal.SIGKILL)
+    noticed = command.wait_for(lambda: "A worker process was" in command.output(), NOTICE_TIME)
+    return "" if noticed else f"not noticed within {NOTICE_TIME:g} s: {command.last_lines()}"
 
 
-def worker_stopped(evaluation: Evaluation) -> str:
-    command = evaluation.under_way()
-    found = workers(command)
-    if not found:
-        return LATE
-    os.kill(found[0], signal.SIGSTOP)
+def pause_worker(evaluation: Evaluation) -> str:
+    """Stop a worker process for some seconds."""
+    command = evaluation.start_and_wait()
+    pids = workers(command)
+    if not pids:
+        return TOO_LATE
+    os.kill(pids[0], signal.SIGSTOP)
     time.sleep(3.0)
-    os.kill(found[0], signal.SIGCONT)
+    os.kill(pids[0], signal.SIGCONT)
     return ""
 
 
-def jumping_clock(evaluation: Evaluation) -> str:
+def jump_clock(evaluation: Evaluation) -> str:
+    """Let the clock jump by up to a day, about once per second."""
     clock = {"PYTHONPATH": str(Path(__file__).parent / "clock")}
     return evaluation.start(clock).problem(0)
 
 
-def second(evaluation: Evaluation) -> str:
-    return one_refused([evaluation.start(), evaluation.start()])
+def start_twice(evaluation: Evaluation) -> str:
+    """Start two evaluations in one folder: one must be rejected."""
+    return check_one_rejected([evaluation.start(), evaluation.start()])
 
 
-def cut(evaluation: Evaluation) -> str:
-    """The last row is cut off, as when a machine loses power while it is written."""
-    command = evaluation.under_way()
+def cut_row(evaluation: Evaluation) -> str:
+    """Cut off the last row, as when a machine loses power during a write."""
+    command = evaluation.start_and_wait()
     command.process.kill()
     command.process.wait()
     rows = evaluation.rows()
@@ -94,70 +102,76 @@ def cut(evaluation: Evaluation) -> str:
     return ""
 
 
-def full_disk(evaluation: Evaluation) -> str:
-    with small_disk(evaluation.folder, DISK) as there:
-        if not there:
+def fill_disk(evaluation: Evaluation) -> str:
+    """Fill the disk: the evaluation must report it, and finish once there is space again."""
+    with small_disk(evaluation.folder, DISK) as mounted:
+        if not mounted:
             return "not run: no file system may be mounted here"
         with filled(evaluation.folder, evaluation.rng.randrange(4096, 8192)):
             command = evaluation.start()
             problem = command.problem(1)
-            problem = problem or ("" if "No space left" in command.said() else command.end())
-        return problem or evaluation.start().problem(0) or kept(evaluation)
+            reported = "No space left" in command.output()
+            problem = problem or ("" if reported else command.last_lines())
+        return problem or evaluation.start().problem(0) or copy_folder(evaluation)
 
 
-def kept(evaluation: Evaluation) -> str:
-    """Rows of a disk that is about to go."""
+def copy_folder(evaluation: Evaluation) -> str:
+    """Copy the folder before its disk is unmounted; return the problem if it has no rows."""
     rows = evaluation.rows()
     shutil.copytree(evaluation.folder, evaluation.folder.with_name("kept"))
     return "" if rows else "no rows"
 
 
 FAULTS: dict[str, Callable[[Evaluation], str]] = {
-    "SIGKILL": lambda e: signalled(e, signal.SIGKILL),
-    "SIGTERM": lambda e: signalled(e, signal.SIGTERM),
-    "SIGINT": lambda e: signalled(e, signal.SIGINT),
-    "worker killed": worker_killed,
-    "worker stands still": worker_stopped,
-    "two in one folder": second,
-    "last row cut": cut,
-    "clock jumps": jumping_clock,
-    "full disk": full_disk,
+    "SIGKILL": lambda e: send_signal(e, signal.SIGKILL),
+    "SIGTERM": lambda e: send_signal(e, signal.SIGTERM),
+    "SIGINT": lambda e: send_signal(e, signal.SIGINT),
+    "worker killed": kill_worker,
+    "worker stands still": pause_worker,
+    "two in one folder": start_twice,
+    "last row cut": cut_row,
+    "clock jumps": jump_clock,
+    "full disk": fill_disk,
 }
 
 
 def break_evaluation(out: Path, seed: int, faults: list[str]) -> dict[str, str]:
-    """What each fault came to, each in an evaluation of its own that is ended afterwards."""
+    """Return the outcome of each fault: "survived", "not run: ..." or the problem.
+
+    Each fault hits a separate evaluation, which is then finished and compared.
+    """
     rng = random.Random(f"{seed} evaluation")
     unbroken = Evaluation(out / "unbroken", rng)
     problem = unbroken.start().problem(0)
     if problem:
         return {"unbroken": problem}
-    wanted, found = unbroken.rows(), {}
-    if not wanted:
+    expected = unbroken.rows()
+    if not expected:
         return {"unbroken": f"it wrote no {ROWS}"}
+    outcomes = {}
     for name in faults:
-        for again in range(TRIES):
-            evaluation = Evaluation(out / f"{name.replace(' ', '-')}-{again}", rng)
+        for attempt in range(TRIES):
+            evaluation = Evaluation(out / f"{name.replace(' ', '-')}-{attempt}", rng)
             problem = FAULTS[name](evaluation)
-            if problem != LATE:
+            if problem != TOO_LATE:
                 break
         if name == "full disk" and not problem:
             evaluation.folder = evaluation.folder.with_name("kept")
         elif not problem:
-            problem = ended(evaluation)
-        if not problem and evaluation.rows() != wanted:
-            problem = "other rows than unbroken"
-        found[name] = problem or "survived"
+            problem = finish(evaluation)
+        if not problem and evaluation.rows() != expected:
+            problem = "rows differ from the undisturbed evaluation"
+        outcomes[name] = problem or "survived"
     shutil.rmtree(out, ignore_errors=True)
-    return found
+    return outcomes
 
 
-def ended(evaluation: Evaluation) -> str:
-    """Let what runs come to its end, and then the command once more."""
+def finish(evaluation: Evaluation) -> str:
+    """Wait for the disturbed evaluation to end, then run the command once more."""
     for _ in range(600):
         command = evaluation.start()
         problem = command.problem(0)
-        if "is in use" not in command.said():  # else the broken one is still at work
+        if "is in use" not in command.output():  # otherwise the disturbed one still runs
             return problem
         time.sleep(1.0)
     return problem

@@ -1,4 +1,4 @@
-"""Commands of ours as processes, and what became of them."""
+"""Runs commands of this project as processes and checks how they end."""
 
 from __future__ import annotations
 
@@ -13,78 +13,83 @@ from mitigate.core.files import make_folder
 from mitigate.core.output import open_output
 
 ROOT = Path(__file__).resolve().parents[2]
-LATE = 600.0  # seconds after which a command hangs
+TIMEOUT = 600.0  # seconds after which a command counts as hanging
 
 
 class Command:
-    """``python -m arguments``, whose output goes to the file ``log``."""
+    """Runs ``python -m arguments``; its output goes to the file ``log``."""
 
     def __init__(
         self, arguments: list[str], log: Path, environment: Mapping[str, str] | None = None
     ) -> None:
         make_folder(log.parent)
-        self.log, self.began = log, time.monotonic()
-        own = {**os.environ, "OMP_NUM_THREADS": "1", "PYTHONUNBUFFERED": "1", **(environment or {})}
-        own["PYTHONPATH"] = os.pathsep.join(
-            path for path in (own.get("PYTHONPATH"), str(ROOT)) if path
+        self.log = log
+        self.began = time.monotonic()
+        variables = {**os.environ, "OMP_NUM_THREADS": "1", "PYTHONUNBUFFERED": "1"}
+        variables |= environment or {}
+        variables["PYTHONPATH"] = os.pathsep.join(
+            path for path in (variables.get("PYTHONPATH"), str(ROOT)) if path
         )
         with open_output(log, "w", encoding="utf-8") as out:
             self.process = subprocess.Popen(
                 [sys.executable, "-m", *arguments],
                 cwd=ROOT,
-                env=own,
+                env=variables,
                 stdout=out,
                 stderr=subprocess.STDOUT,
             )
 
-    def said(self) -> str:
-        """All of its output so far."""
+    def output(self) -> str:
+        """Return all of its output so far."""
         return self.log.read_text(encoding="utf-8", errors="replace")
 
-    def end(self) -> str:
-        """Its last lines, in one."""
-        return " | ".join(self.said().strip().splitlines()[-3:])[-400:]
+    def last_lines(self) -> str:
+        """Return its last three lines, joined to one."""
+        return " | ".join(self.output().strip().splitlines()[-3:])[-400:]
 
     def runs(self) -> bool:
-        """Whether it has not ended yet."""
+        """Return whether it has not ended yet."""
         return self.process.poll() is None
 
-    def wait_for(self, what: Callable[[], object], seconds: float = LATE) -> bool:
-        """Wait until ``what()`` is true, the command ends or the time is over; say if it is."""
-        over = time.monotonic() + seconds
-        while self.runs() and time.monotonic() < over:
-            if what():
+    def wait_for(self, condition: Callable[[], object], seconds: float = TIMEOUT) -> bool:
+        """Wait until ``condition()`` is true, the command ends or the time is over.
+
+        Returns whether the condition is true.
+        """
+        deadline = time.monotonic() + seconds
+        while self.runs() and time.monotonic() < deadline:
+            if condition():
                 return True
             time.sleep(0.01)
-        return bool(what())
+        return bool(condition())
 
     def status(self) -> int | None:
-        """Its exit status once it ended; None if it hung and was killed."""
+        """Wait and return its exit status; None if it hung and was killed."""
         try:
-            return self.process.wait(LATE)
+            return self.process.wait(TIMEOUT)
         except subprocess.TimeoutExpired:
             self.process.kill()
             self.process.wait()
             return None
 
     def problem(self, *allowed: int) -> str:
-        """Wait; return what is wrong with how it ended, empty for an ``allowed`` status."""
+        """Wait; return the problem with its end, empty for an ``allowed`` status."""
         status = self.status()
-        if status in allowed and "Traceback" not in self.said():
+        if status in allowed and "Traceback" not in self.output():
             return ""
-        what = "it hung" if status is None else f"status {status}, not {allowed[0]}"
-        return f"{what}: {self.end()}"
+        problem = "it hung" if status is None else f"status {status}, not {allowed[0]}"
+        return f"{problem}: {self.last_lines()}"
 
 
 def workers(command: Command) -> list[int]:
-    """Process ids of a command's workers, which a server of forks starts for it."""
+    """Return the process ids of a command's workers, which its fork server starts."""
     return [worker for child in children(command.process.pid) for worker in children(child)]
 
 
 def children(pid: int) -> list[int]:
-    """Processes that ``pid`` started."""
+    """Return the processes that ``pid`` started."""
     try:
-        listed = Path(f"/proc/{pid}/task/{pid}/children").read_text(encoding="utf-8")
+        text = Path(f"/proc/{pid}/task/{pid}/children").read_text(encoding="utf-8")
     except OSError:
         return []
-    return [int(word) for word in listed.split()]
+    return [int(word) for word in text.split()]

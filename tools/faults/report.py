@@ -1,4 +1,4 @@
-"""What became of all faults, as lines and as the table of docs/lab/fault-injection.md."""
+"""The outcomes of all faults, as lines and as the table of docs/lab/fault-injection.md."""
 
 from __future__ import annotations
 
@@ -10,44 +10,44 @@ from tools.bench.pages import put
 
 BEGIN = "<!-- table: make test-faults ARGS=--write -->"
 END = "<!-- end of the table -->"
-Found = Mapping[str, Mapping[str, str]]  # recipe: fault: what it came to
+Outcomes = Mapping[str, Mapping[str, str]]  # recipe: fault: "survived", "not run: ..." or problem
 NOT_RUN, UNBROKEN = "not run", "unbroken"
 
 
-def line(name: str, found: Mapping[str, str], seconds: float) -> str:
-    """One line for a recipe: what survived, and all that did not in its own words."""
-    tried, survived = count({name: found})
-    others = [f"{fault}: {came}" for fault, came in found.items() if came != "survived"]
-    told = "; ".join([f"{survived} of {tried} faults survived in {duration(seconds)}", *others])
-    return f"{name}: {told}"
+def line(name: str, outcomes: Mapping[str, str], seconds: float) -> str:
+    """Return one line for a recipe: how many faults it survived, and all other outcomes."""
+    tried, survived = count({name: outcomes})
+    others = [f"{fault}: {outcome}" for fault, outcome in outcomes.items() if outcome != "survived"]
+    text = "; ".join([f"{survived} of {tried} faults survived in {duration(seconds)}", *others])
+    return f"{name}: {text}"
 
 
-def count(found: Found) -> tuple[int, int]:
-    """How many faults were tried, and how many were survived."""
-    came = [came for of in found.values() for came in of.values()]
-    tried = [one for one in came if not one.startswith(NOT_RUN)]
+def count(outcomes: Outcomes) -> tuple[int, int]:
+    """Return how many faults were tried, and how many were survived."""
+    texts = [outcome for by_fault in outcomes.values() for outcome in by_fault.values()]
+    tried = [outcome for outcome in texts if not outcome.startswith(NOT_RUN)]
     return len(tried), tried.count("survived")
 
 
-def table(found: Found, families: Mapping[str, str], seed: int) -> str:
-    """Markdown: a row a fault, a column a recipe."""
-    names = list(found)
-    faults = list(dict.fromkeys(fault for of in found.values() for fault in of))
+def table(outcomes: Outcomes, families: Mapping[str, str], seed: int) -> str:
+    """Return a Markdown table with a row per fault and a column per recipe."""
+    names = list(outcomes)
+    faults = list(dict.fromkeys(fault for by_fault in outcomes.values() for fault in by_fault))
     heads = [f"`{name}` ({families[name]})" if name in families else name for name in names]
     lines = [f"| fault | {' | '.join(heads)} |", f"|---|{':---:|' * len(names)}"]
     for fault in faults:
-        cells = [_cell(found[name].get(fault)) for name in names]
+        cells = [_cell(outcomes[name].get(fault)) for name in names]
         lines.append(f"| {fault} | {' | '.join(cells)} |")
-    tried, survived = count(found)
+    tried, survived = count(outcomes)
     return "\n".join([*lines, "", f"Tried {tried}, survived {survived}; seed {seed}."])
 
 
-def _cell(came: str | None) -> str:
-    if came is None or came.startswith(NOT_RUN):
+def _cell(outcome: str | None) -> str:
+    if outcome is None or outcome.startswith(NOT_RUN):
         return "–"
-    return "survived" if came == "survived" else "**failed**"
+    return "survived" if outcome == "survived" else "**failed**"
 
 
-def write(page: Path, found: Found, families: Mapping[str, str], seed: int) -> None:
-    """Put the table between the marks of ``page``."""
-    put(table(found, families, seed), page, BEGIN, END)
+def write(page: Path, outcomes: Outcomes, families: Mapping[str, str], seed: int) -> None:
+    """Write the table between the markers of ``page``."""
+    put(table(outcomes, families, seed), page, BEGIN, END)

@@ -1,10 +1,10 @@
 """The agent's side of the bridge: corrupts what an unchanged program sees, in its own process.
 
-``mitigate run -- COMMAND`` puts this folder in front of PYTHONPATH, so that every Python process of
-the command loads this file (``sitecustomize.py``), however it was started. Where one imports
-habitat-lab (0.1.5 to 0.3), habitat-sim alone or WMNav, a few of their methods are wrapped: frames
-go to the server through memory that both map, instructions through a socket, and come back
-corrupted. A loop that is not Habitat's calls ``connect``, ``corrupt`` and ``finish`` itself:
+``mitigate run -- COMMAND`` puts this folder first on PYTHONPATH, so every Python process of the
+command loads this file (``sitecustomize.py``), however it was started. When a process imports
+habitat-lab (0.1.5 to 0.3), habitat-sim alone or WMNav, a few of their methods are wrapped. Frames
+go to the server through shared memory, instructions through a socket, and both come back
+corrupted. A loop that does not use Habitat calls ``connect``, ``corrupt`` and ``finish``:
 
     import mitigate_hook
     episode = mitigate_hook.connect("17", scene="x.glb", instruction="Go to the door.")
@@ -12,8 +12,9 @@ corrupted. A loop that is not Habitat's calls ``connect``, ``corrupt`` and ``fin
     act_on(episode.corrupt({"rgb": rgb, "depth": depth}))  # at each step
     episode.finish(success=True, spl=0.8)
 
-One file for Python 3.6 to 3.13 that needs the standard library and numpy only. If the server
-refuses, dies or is late, the process ends with one paragraph: no agent walks on with clean frames.
+One file for Python 3.6 to 3.13 that needs only the standard library and numpy. If the server
+reports an error, dies or is late, the process ends with one paragraph: no agent continues with
+clean frames.
 """
 
 import contextlib
@@ -30,106 +31,119 @@ import sys
 import threading
 import weakref
 
-np = None  # numpy, once it is needed: every Python process loads this file, and some have none
+np = None  # loaded on demand: every Python process loads this file, and some have no numpy
 PROTOCOL = 3
 ADDRESS, TOKEN, PATIENCE = "MITIGATE_BRIDGE", "MITIGATE_TOKEN", "MITIGATE_PATIENCE"
 ADAPTERS = "MITIGATE_ADAPTERS"  # JSON: folder, file of plain_adapters.py, module, class, path
 HEADER = struct.Struct("!4sI")  # magic, bytes of the JSON object that follows
 MAGIC = b"mtg1"
-LARGEST = 1 << 24  # bytes of a message: an episode with all view points of its goals has 1e6
-PIECE = 10000  # names of episodes in a message: train splits have millions
-LOADED = "loaded"  # a file beside the socket, once a process has loaded this file
-LONGEST = 4000  # characters of why a process was stopped
-STATUS = 97  # what a process that was stopped exits with
-FAREWELL = 3.0  # seconds at most in which a process that stops tells the server why (ours)
+MAX_MESSAGE = 1 << 24  # bytes: an episode with all view points of its goals has 1e6
+KEYS_PER_MESSAGE = 10000  # names of episodes: train splits have millions
+LOADED = "loaded"  # a file next to the socket, created once a process has loaded this file
+MAX_TEXT = 4000  # characters of a reported problem
+STATUS = 97  # exit status of a process that was stopped
+REPORT_TIMEOUT = 3.0  # seconds in which a stopping process reports its reason (heuristic)
 COLOR, DEPTH = "rgb", "depth"  # kinds of camera
-# how an episode ends: it was over; its Env was reset, or closed, before; behind an exception
+# how an episode ends: it was over; its Env was reset or closed before that; an exception left it
 OVER, RESET, CLOSE, BROKEN = "over", "reset", "close", "broken"
-ORDERLY = (StopIteration, StopAsyncIteration, GeneratorExit)  # how loops end, no fault of a program
+ORDERLY = (StopIteration, StopAsyncIteration, GeneratorExit)  # end a loop without a fault
 
 
 class _Thread(threading.local):
-    walk = None  # of connect
+    session = None  # the session of ``connect``
 
 
 _thread = _Thread()
-# by id, corrupted frames that the program still holds
-_given: "weakref.WeakValueDictionary[int, object]" = weakref.WeakValueDictionary()
+# by id: corrupted frames that the program still holds
+_corrupted_frames: "weakref.WeakValueDictionary[int, object]" = weakref.WeakValueDictionary()
 
 
 # messages ---------------------------------------------------------------------------------------
 
 
 def send(channel, message):
-    """Send a dict of plain data; numbers and arrays of numpy go as Python's. Raises ValueError if
-    it is too large, TypeError for what is no data."""
+    """Send a dict of plain data; numbers and arrays of numpy become Python's.
+
+    Raises:
+        ValueError: The message is too large.
+        TypeError: A value is not plain data.
+    """
     body = json.dumps(message, default=_as_python).encode("utf-8")
-    if len(body) > LARGEST:
-        raise ValueError(f"a message of {len(body)} bytes is more than {LARGEST}")
+    if len(body) > MAX_MESSAGE:
+        raise ValueError(f"a message must be <= {MAX_MESSAGE} bytes, got {len(body)}")
     channel.sendall(HEADER.pack(MAGIC, len(body)) + body)
 
 
 def _as_python(value):
+    """Return a numpy value as plain Python data."""
     if isinstance(value, (np.generic, np.ndarray)):
         return value.tolist()
-    raise TypeError(f"{type(value).__name__} is no plain data")
+    raise TypeError(f"{type(value).__name__} is not plain data")
 
 
 def receive(channel):
-    """Return the next message, None at the end. Raises ValueError for what is no message."""
-    head = _read(channel, HEADER.size)
-    if head is None:
+    """Return the next message, None at the end. Raises ValueError for an invalid message."""
+    header = _read(channel, HEADER.size)
+    if header is None:
         return None
-    magic, size = HEADER.unpack(head)
-    if magic != MAGIC or size > LARGEST:
-        raise ValueError("the other side does not speak this protocol")
+    magic, size = HEADER.unpack(header)
+    if magic != MAGIC or size > MAX_MESSAGE:
+        raise ValueError("the other side does not use this protocol")
     body = _read(channel, size)
     if body is None:
         return None
     message = json.loads(body.decode("utf-8"))
     if not isinstance(message, dict):
-        raise ValueError("a message is no JSON object")
+        raise ValueError("a message must be a JSON object")
     return message
 
 
 def _read(channel, size):
-    parts, left = [], size
-    while left:
-        part = channel.recv(min(left, 1 << 16))
+    """Return ``size`` bytes, None if the channel ends before."""
+    parts, missing = [], size
+    while missing:
+        part = channel.recv(min(missing, 1 << 16))
         if not part:
             return None
         parts.append(part)
-        left -= len(part)
+        missing -= len(part)
     return b"".join(parts)
 
 
-def stop(problem, told=False):
-    """End this process at once, with one paragraph: an exception might be caught. The server is
-    told why, if it does not know, so that the condition does not count as done. Nothing that goes
-    wrong here, nor an interrupt, lets the process go on."""
+def stop(problem, reported=False):
+    """End this process at once with one paragraph, because the program might catch an exception.
+
+    The server gets the reason, so that the condition does not count as finished. No failure in
+    here, and no interrupt, lets the process continue.
+
+    Args:
+        problem: The reason, as a sentence.
+        reported: Whether the server knows the reason.
+    """
     try:
         try:
-            if not told:
-                _tell(str(problem)[:LONGEST])
+            if not reported:
+                _report(str(problem)[:MAX_TEXT])
         finally:
             text = (
-                f"\nmitigate: {problem} This process ({os.getpid()}) ends here, as it would go on "
-                "with frames that are not corrupted. What was measured so far is kept; see "
-                "`mitigate run`'s own output.\n"
+                f"\nmitigate: {problem} This process ({os.getpid()}) ends here, because it would "
+                "continue with frames that are not corrupted. The results so far are kept; see "
+                "the output of `mitigate run`.\n"
             )
-            if sys.__stderr__ is not None:  # without one, 2 may be any file; sys.stderr may be none
+            # sys.stderr may be None; if sys.__stderr__ is None too, descriptor 2 may be any file
+            if sys.__stderr__ is not None:
                 os.write(2, text.encode("utf-8", "replace"))
     finally:
         os._exit(STATUS)
 
 
-def _tell(problem):
-    """Tell the server why this process ends, by a connection of its own, if it can be reached."""
-    with contextlib.suppress(BaseException):  # whatever it is, this process ends
+def _report(problem):
+    """Send the server the reason why this process ends, through a new connection."""
+    with contextlib.suppress(BaseException):  # the process ends in any case
         hello = {"kind": "hello", "protocol": PROTOCOL, "token": os.environ.get(TOKEN, "")}
         hello.update(pid=os.getpid(), python=sys.version.split()[0])
         channel = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
-        channel.settimeout(min(FAREWELL, float(os.environ.get(PATIENCE, "25"))))
+        channel.settimeout(min(REPORT_TIMEOUT, float(os.environ.get(PATIENCE, "25"))))
         channel.connect(os.environ[ADDRESS])
         send(channel, hello)
         if receive(channel) == {}:
@@ -138,52 +152,59 @@ def _tell(problem):
 
 
 class Channel:
-    """A connection to the server, of one environment. All of its failures end in ``stop``."""
+    """The connection of one environment to the server. Every failure ends in ``stop``."""
 
     def __init__(self):
         _load_numpy()
-        self.pid, self.memory, self.layout = os.getpid(), None, {}
+        self.pid = os.getpid()
+        self.memory = None
+        self.layout = {}
         self.number = 0  # of the last message: its answer repeats it
         self.patience = float(os.environ.get(PATIENCE, "25"))
         try:
             self.socket = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
             self.socket.settimeout(self.patience)
             self.socket.connect(os.environ[ADDRESS])
-        except BaseException as error:  # an interrupt, too: the agent might catch it
+        except BaseException as error:  # also an interrupt: the agent might catch it
             stop(
                 f"the server of `mitigate run` cannot be reached at "
-                f"{os.environ.get(ADDRESS)} ({_named(error)}); a container needs the host's "
-                "temporary folder (docker: -v /tmp:/tmp)."
+                f"{os.environ.get(ADDRESS)} ({_describe_error(error)}). A container needs the "
+                "host's temporary folder (docker: -v /tmp:/tmp)."
             )
         self.ask("hello", protocol=PROTOCOL, token=os.environ.get(TOKEN, ""), **_versions())
 
     def ask(self, kind, **fields):
-        """Send a message and return the answer. One that was interrupted is the last: its answer
-        would be taken for that of the next."""
+        """Send a message and return the answer.
+
+        An interrupted message is the last one: its answer would be read as that of the next.
+        """
         self.number += 1
         number = self.number
         fields.update(kind=kind, number=number)
         try:
             send(self.socket, fields)
             answer = receive(self.socket)
-        except socket.timeout:  # no TimeoutError before Python 3.10
+        except socket.timeout:  # not a TimeoutError before Python 3.10
             stop(f"the server did not answer within {self.patience:g} s.")
-        except TypeError as error:  # of json, before anything was sent
-            stop(f"what is told of {kind} cannot be sent ({error}): give numbers, words and lists.")
-        except BaseException as error:  # whatever it is, the agent might catch it
-            stop(f"the connection to the server broke ({_named(error)}).")
+        except TypeError as error:  # from json, before anything was sent
+            stop(
+                f"the values of {kind} must be numbers, text and lists, and cannot be sent "
+                f"({error}). Convert them."
+            )
+        except BaseException as error:  # of any kind: the agent might catch it
+            stop(f"the connection to the server broke ({_describe_error(error)}).")
         if answer is None:
             stop("the server of `mitigate run` is gone.")
         if "error" in answer:
-            stop(answer["error"], told=True)
+            stop(answer["error"], reported=True)
         if answer.pop("number", None) != number:
-            stop("the answer of the server is that to another message.")
+            stop("the server answered another message.")
         return answer
 
-    def agree(self, cameras):
-        """Tell the server what the cameras are, and map the memory that it gives."""
+    def map_memory(self, cameras):
+        """Describe the cameras to the server and map the memory that it provides."""
         answer = self.ask("spec", cameras=cameras)
-        self.layout = {name: int(at) for name, at in answer["offsets"].items()}
+        self.layout = {name: int(offset) for name, offset in answer["offsets"].items()}
         self.memory = None
         if not self.layout:
             return
@@ -195,40 +216,42 @@ class Channel:
                 os.close(descriptor)
         except BaseException as error:
             stop(
-                f"the memory for frames, {answer['file']}, cannot be mapped ({_named(error)}); a "
-                "container needs the host's /dev/shm (docker: --ipc=host -v /dev/shm:/dev/shm)."
+                f"the shared memory for frames, {answer['file']}, cannot be mapped "
+                f"({_describe_error(error)}). A container needs the host's /dev/shm (docker: "
+                "--ipc=host -v /dev/shm:/dev/shm)."
             )
 
-    def place(self, camera):
-        """Return the array in the mapped memory where the frame of a camera lies."""
-        count, at = int(np.prod(camera["shape"])), self.layout[camera["name"]]
-        return np.frombuffer(self.memory, camera["dtype"], count, at).reshape(camera["shape"])
+    def frame_array(self, camera):
+        """Return a camera's frame in the mapped memory, as an array."""
+        count, offset = int(np.prod(camera["shape"])), self.layout[camera["name"]]
+        return np.frombuffer(self.memory, camera["dtype"], count, offset).reshape(camera["shape"])
 
 
-def _named(error):
-    """Return an exception with its kind."""
+def _describe_error(error):
+    """Return an exception's class and text."""
     return f"{type(error).__name__}: {error}"
 
 
 def _is_orderly(error):
-    """Whether an exception only says that a loop, or the program without a fault, is at its end."""
+    """Return whether an exception only ends a loop, or the program without a fault."""
     ended = isinstance(error, SystemExit) and error.code in (None, 0)
     return ended or isinstance(error, ORDERLY)
 
 
-def _placed(error):
-    """Return an exception with its kind, and the file and line that raised it."""
-    at = error.__traceback__
-    while at is not None and at.tb_next is not None:
-        at = at.tb_next
-    where = "" if at is None else f" ({at.tb_frame.f_code.co_filename}:{at.tb_lineno})"
-    return f"{_named(error)[:LONGEST]}{where}"
+def _describe_fault(error):
+    """Return an exception's class and text, with the file and line that raised it."""
+    traceback = error.__traceback__
+    while traceback is not None and traceback.tb_next is not None:
+        traceback = traceback.tb_next
+    place = ""
+    if traceback is not None:
+        place = f" ({traceback.tb_frame.f_code.co_filename}:{traceback.tb_lineno})"
+    return f"{_describe_error(error)[:MAX_TEXT]}{place}"
 
 
 def _get(owner, name, default=None):
-    """Return an attribute of an object of another project, whose versions differ: ``default`` if
-    it has none."""
-    return getattr(owner, name, default)  # what it may lack is known by its name only
+    """Return an attribute that only some versions of another project have, else ``default``."""
+    return getattr(owner, name, default)  # such an attribute is known by its name only
 
 
 def _load_numpy():
@@ -237,184 +260,214 @@ def _load_numpy():
 
 
 def _versions():
+    """Return the process id and the versions of Python and of the libraries in use."""
     names = ("habitat", "habitat_sim", "torch")
-    found = {n: str(_get(sys.modules.get(n), "__version__", "")) for n in names}
-    return {"pid": os.getpid(), "python": sys.version.split()[0], "numpy": np.__version__, **found}
+    libraries = {n: str(_get(sys.modules.get(n), "__version__", "")) for n in names}
+    versions = {"pid": os.getpid(), "python": sys.version.split()[0], "numpy": np.__version__}
+    return {**versions, **libraries}
 
 
 # one environment --------------------------------------------------------------------------------
 
 
-def _whole(what):
-    """Wrap a method of ``Walk``: one thread at a time is in it, and whatever breaks it off, an
-    interrupt too, ends the process, as the agent might catch it and act on what it was given.
-    ``what``: did not take place then."""
+def _uninterrupted(failure):
+    """Wrap a method of ``Session``: one thread at a time, and any exception ends the process.
 
-    def wrap(method):
+    An interrupt ends it too: the agent might catch it and act on incomplete data.
+
+    Args:
+        failure: Says what did not take place then.
+    """
+
+    def decorate(method):
         @functools.wraps(method)
-        def whole(walk, *args, **kwargs):
-            walk.at_home()
-            with walk.lock:
-                if walk.busy:
-                    stop(f"{what}: it was begun within another call of the same environment.")
+        def wrapper(session, *args, **kwargs):
+            session.renew_lock()
+            with session.lock:
+                if session.busy:
+                    stop(f"{failure}: another call of the same environment has not returned yet.")
                 try:
-                    walk.busy = True
-                    result = method(walk, *args, **kwargs)
-                    walk.busy = False
+                    session.busy = True
+                    result = method(session, *args, **kwargs)
+                    session.busy = False
                     return result
                 except BaseException as error:
-                    stop(f"{what} ({_named(error)}).")
+                    stop(f"{failure} ({_describe_error(error)}).")
 
-        return whole
+        return wrapper
 
-    return wrap
+    return decorate
 
 
-class Walk:
-    """One environment: its connection, the episode that is on and how it goes."""
+class Session:
+    """One environment: its connection and the state of its current episode."""
 
     def __init__(self):
         self.channel = None
-        self.cameras = None  # what the server was told of them
+        self.cameras = None  # as described to the server
         self.sim = self.task = self.episode = None
-        self.begun = self.busy = False
-        self.handled = id(None)  # of the exception that was handled as the episode began
-        self.farthest = {}  # by camera of depth: the most that the first frame reads
-        self.simulated = False  # whether frames of habitat-sim alone came in this episode
-        self.pid = None  # of the process in which the episode that is on was begun
-        self.home, self.lock = os.getpid(), threading.RLock()
-        self.current = None  # of connect: the episode that is on
-        self.words = None  # of the episode that is on, where others are heard in their place
+        self.active = False  # whether an episode began and did not end
+        self.busy = False
+        self.handled = id(None)  # of the exception that was being handled as the episode began
+        self.farthest = {}  # by depth camera: the maximum of the first frame
+        self.simulated = False  # whether this episode got frames of habitat-sim without the lab
+        self.episode_pid = None  # of the process that began the episode
+        self.lock_pid = os.getpid()
+        self.lock = threading.RLock()
+        self.current = None  # the Episode of ``connect``
+        self.words = None  # the instruction of this episode, while its text is replaced
         self.clear()
 
     def clear(self):
-        """Forget how the last episode went."""
-        self.calls = self.steps = 0
-        self.path, self.actions, self.start, self.farthest = [], [], None, {}
+        """Reset what is recorded of an episode."""
+        self.calls = 0
+        self.steps = 0
+        self.path = []
+        self.actions = []
+        self.start = None
+        self.farthest = {}
 
-    def at_home(self):
-        """In a forked process, take a lock of its own: a thread that is not here may hold it."""
-        if self.home != os.getpid():
-            self.home, self.lock, self.busy = os.getpid(), threading.RLock(), False
+    def renew_lock(self):
+        """Replace the lock in a forked process: a thread of the parent may have held it."""
+        if self.lock_pid != os.getpid():
+            self.lock_pid = os.getpid()
+            self.lock = threading.RLock()
+            self.busy = False
 
-    def leave(self):
-        """Close the connection; frames that come all the same open another one."""
-        self.at_home()
+    def close(self):
+        """Close the connection; later frames would open another one."""
+        self.renew_lock()
         with self.lock:
             if self.channel is not None:
                 self.channel.socket.close()
             self.channel = self.cameras = self.sim = self.task = self.episode = None
 
     def connected(self):
-        """Return the channel; a forked process opens one of its own."""
+        """Return the channel; a forked process opens its own."""
         if self.channel is None or self.channel.pid != os.getpid():
             self.channel, self.cameras = Channel(), None
         return self.channel
 
-    @_whole("an episode could not be begun")
-    def begin(self, scene, name, **said):
-        """Begin an episode; the answer holds its words as the agent is to hear them."""
+    @_uninterrupted("the episode could not begin")
+    def begin(self, scene, name, **fields):
+        """Begin an episode; the answer holds the instruction for the agent."""
         self.clear()
-        self.pid, self.simulated, self.handled = os.getpid(), False, id(sys.exc_info()[1])
-        answer = self.connected().ask("episode", scene=str(scene), id=str(name), **said)
-        self.begun = True
+        self.episode_pid = os.getpid()
+        self.simulated = False
+        self.handled = id(sys.exc_info()[1])
+        answer = self.connected().ask("episode", scene=str(scene), id=str(name), **fields)
+        self.active = True
         return answer
 
-    @_whole("a frame could not be corrupted")
+    @_uninterrupted("a frame could not be corrupted")
     def corrupt(self, observations, cameras, heading=None):
-        """Replace the frames of ``cameras`` in a dict of observations, in its order.
+        """Replace the frames of ``cameras`` in a dict of observations, in the order of its keys.
 
-        ``cameras``: dicts with name, type ("rgb" or "depth") and what else the server is to know
-        of them (``_of_config``).
+        Args:
+            observations: Arrays by name.
+            cameras: Dicts with name, type ("rgb" or "depth") and other options that the server
+                reads (``_describe_sensor``).
+            heading: Radians, counter-clockwise.
         """
         self._check(observations, cameras)
         channel = self.connected()
         heading = None if heading is None else float(heading)
-        told = [dict(_data(c), **_array(observations[c["name"]], c["name"])) for c in cameras]
-        if told != self.cameras:
-            channel.agree(told)
-            self.cameras = told
-        for camera in told:
+        described = [
+            dict(_plain_data(c), **_describe_array(observations[c["name"]], c["name"]))
+            for c in cameras
+        ]
+        if described != self.cameras:
+            channel.map_memory(described)
+            self.cameras = described
+        for camera in described:
             if camera["name"] in channel.layout:
                 frame = observations[camera["name"]]
-                channel.place(camera)[...] = frame[..., :3] if camera["alpha"] else frame
-        seen = {}
-        for name in (camera["name"] for camera in told if camera["type"] == DEPTH):
-            if self.farthest.get(name) is None:  # whether depth is what it is said to be
-                seen[name], self.farthest[name] = _middle(observations[name])
-        where = {"heading": heading, "position": self.position()}
-        answer = channel.ask("frame", call=self.calls, depth=seen, **where)
+                channel.frame_array(camera)[...] = frame[..., :3] if camera["alpha"] else frame
+        medians = {}
+        for name in (camera["name"] for camera in described if camera["type"] == DEPTH):
+            if self.farthest.get(name) is None:  # the server checks the declared range
+                medians[name], self.farthest[name] = _median_and_maximum(observations[name])
+        pose = {"heading": heading, "position": self.position()}
+        answer = channel.ask("frame", call=self.calls, depth=medians, **pose)
         self.calls += 1
-        for camera in told:
+        for camera in described:
             if camera["name"] in answer["changed"]:
                 before = observations[camera["name"]]
                 frame = np.empty(before.shape, before.dtype)  # owned, writable, contiguous
                 if camera["alpha"]:
-                    frame[..., 3], frame[..., :3] = before[..., 3], channel.place(camera)
+                    frame[..., 3] = before[..., 3]
+                    frame[..., :3] = channel.frame_array(camera)
                 else:
-                    frame[...] = channel.place(camera)
-                observations[camera["name"]] = _given[id(frame)] = frame
+                    frame[...] = channel.frame_array(camera)
+                observations[camera["name"]] = _corrupted_frames[id(frame)] = frame
         return observations
 
     def _check(self, observations, cameras):
-        """Stop where frames would be of no episode, and where one was corrupted before."""
-        if self.pid not in (None, os.getpid()):
+        """Stop for frames that belong to no episode or that are corrupted already."""
+        if self.episode_pid not in (None, os.getpid()):
             stop(
-                f"the episode that is on was begun in process {self.pid}, and its fork "
-                f"{os.getpid()} walks on, whose frames would be of no episode: reset the "
-                "environment in the process that walks, or start workers before the first reset."
+                f"process {self.episode_pid} began the current episode, and its fork "
+                f"{os.getpid()} continues it, so that its frames would belong to no episode. "
+                "Reset the environment in the process that runs it, or start workers before the "
+                "first reset."
             )
         for camera in cameras:
-            if _is_given(observations[camera["name"]]):
+            if _is_corrupted(observations[camera["name"]]):
                 stop(
-                    f"the frame {camera['name']} was corrupted before, and would be twice: give "
-                    "each frame once, as the camera took it (of habitat-lab and habitat-sim they "
-                    "are corrupted as they are taken: a loop calls connect and finish only)."
+                    f"the frame {camera['name']} is corrupted already and would be corrupted "
+                    "twice. Pass each frame once, as the camera returned it. Frames of "
+                    "habitat-lab and habitat-sim are corrupted as they are taken: such a loop "
+                    "calls connect and finish only."
                 )
 
     def position(self):
-        """Return where the agent is, [x, y, z], None if nobody knows."""
+        """Return the position of the agent, [x, y, z], None if unknown."""
         state = None if self.sim is None else self.sim.get_agent_state()
         return None if state is None else [float(x) for x in state.position]
 
-    def moved(self, action=None):
-        """Count a low-level step, and note what it was and where it led."""
+    def record_step(self, action=None):
+        """Count a low-level step; record its action and the position after it."""
         self.steps += 1
         if sys.exc_info()[1] is None:
             self.handled = id(None)
-        self.actions.append(_action(action))
-        here = self.position()
-        if here is not None and (not self.path or here != self.path[-1]):
-            self.path.append(here)
+        self.actions.append(_plain_action(action))
+        position = self.position()
+        if position is not None and (not self.path or position != self.path[-1]):
+            self.path.append(position)
 
-    @_whole("how an episode went could not be told")
+    @_uninterrupted("the result of the episode could not be reported")
     def end(self, metrics, how=OVER, stopped=None):
-        """Tell how the episode went, once; one without a step did not take place, and a forked
-        process does not end that of its parent. One that was not over and is left as an exception
-        goes by, since it began, tells of the program's fault, not of the agent's."""
-        if not self.begun or self.pid != os.getpid():
+        """Report the result of the episode, once.
+
+        An episode without a step is not reported, and a forked process does not end the episode
+        of its parent. If an exception since the episode began makes the program leave it before it
+        was over, it is reported as the program's fault, not the agent's.
+        """
+        if not self.active or self.episode_pid != os.getpid():
             return
-        self.begun = False
+        self.active = False
         fault = None if how == OVER else self._fault()
         if fault is not None:
             how = BROKEN
         if self.steps or self.sim is None:
-            said = {"metrics": _numbers(metrics), "steps": self.steps, "calls": self.calls}
-            said.update({} if fault is None else {"fault": _placed(fault)})
-            said.update(how=how, stopped=stopped, farthest=self.farthest)
-            said.update(path=self.path, actions=self.actions, **self._distances())
-            self.channel.ask("end", **said)
+            report = {"metrics": _finite_numbers(metrics), "steps": self.steps, "calls": self.calls}
+            report.update({} if fault is None else {"fault": _describe_fault(fault)})
+            report.update(how=how, stopped=stopped, farthest=self.farthest)
+            report.update(path=self.path, actions=self.actions, **self._distances())
+            self.channel.ask("end", **report)
 
     def _fault(self):
-        """Return the exception that goes by, or is handled, since the episode began, and is no
-        orderly end of a loop or of the program; None if there is none."""
+        """Return the exception that is raised or handled since the episode began, or None.
+
+        Exceptions that only end a loop or the program do not count.
+        """
         error = sys.exc_info()[1]
         while error is not None and _is_orderly(error) and id(error) != self.handled:
             error = error.__context__
         return None if id(error) == self.handled else error
 
     def _distances(self):
-        """Geodesic metres to the goals from the start and from here, and whether it said STOP."""
+        """Return geodesic metres to the goals, from start and end, and whether STOP was called."""
         if self.sim is None or self.episode is None:
             return {}
         stopped = _get(self.task, "is_stop_called")
@@ -425,15 +478,15 @@ class Walk:
         }
 
 
-def _is_given(frame):
-    """Whether an array is, or is a part of, a corrupted one that the program was given."""
+def _is_corrupted(frame):
+    """Return whether an array is a corrupted frame, or a view of one."""
     while isinstance(frame, np.ndarray) and isinstance(frame.base, np.ndarray):
         frame = frame.base
-    return _given.get(id(frame)) is frame
+    return _corrupted_frames.get(id(frame)) is frame
 
 
-def _action(action):
-    """Return an action as Habitat gets it (a number, a name, or a dict of one) as plain data."""
+def _plain_action(action):
+    """Return an action of Habitat (a number, a name, or a dict with one) as plain data."""
     if isinstance(action, dict):
         action = action.get("action")
     if action is None:
@@ -441,58 +494,64 @@ def _action(action):
     return int(action) if isinstance(action, (int, np.integer)) else str(action)
 
 
-def _array(frame, name):
-    """Return what the server must know of a frame."""
+def _describe_array(frame, name):
+    """Return shape and dtype of a frame, for the server."""
     if not isinstance(frame, np.ndarray):
         stop(
-            f"the camera {name} gives a {type(frame).__name__}, and only numpy arrays can be "
-            "corrupted: set Habitat's GPU_GPU (gpu_gpu) to False, or pass numpy arrays (of a "
-            "tensor: .cpu().numpy()). An entry that is no frame: cameras={name: {'type': 'other'}}."
+            f"the camera {name} must return a numpy array, got {type(frame).__name__}. Set "
+            "Habitat's GPU_GPU (gpu_gpu) to False, or pass numpy arrays (of a tensor: "
+            ".cpu().numpy()). For an entry that is not a frame: cameras={name: {'type': 'other'}}."
         )
     alpha = frame.dtype == np.uint8 and frame.ndim == 3 and frame.shape[-1] == 4
     shape = [*frame.shape[:-1], 3] if alpha else list(frame.shape)
     return {"shape": shape, "dtype": frame.dtype.name, "alpha": alpha}
 
 
-def _data(told):
-    """Return what is told of a camera with lists and numbers in place of numpy's: arrays that are
-    made anew at each step cannot be compared."""
-    if isinstance(told, dict):
-        return {name: _data(value) for name, value in told.items()}
-    if isinstance(told, (list, tuple)):
-        return [_data(value) for value in told]
-    return _as_python(told) if isinstance(told, (np.generic, np.ndarray)) else told
+def _plain_data(value):
+    """Return a camera's description with lists and numbers in place of numpy's.
+
+    Descriptions are compared at each step, and arrays cannot be compared as values.
+    """
+    if isinstance(value, dict):
+        return {name: _plain_data(entry) for name, entry in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [_plain_data(entry) for entry in value]
+    return _as_python(value) if isinstance(value, (np.generic, np.ndarray)) else value
 
 
-def _middle(depth):
-    """Return the median and the most of what a depth frame reads, holes left out; None if all
-    are."""
-    some = np.asarray(depth[::4, ::4], np.float64)
-    some = some[np.isfinite(some) & (some > 0)]
-    return (float(np.median(some)), float(some.max())) if some.size else (None, None)
+def _median_and_maximum(depth):
+    """Return median and maximum of a depth frame without holes; (None, None) if all are holes."""
+    sample = np.asarray(depth[::4, ::4], np.float64)
+    sample = sample[np.isfinite(sample) & (sample > 0)]
+    return (float(np.median(sample)), float(sample.max())) if sample.size else (None, None)
 
 
-def _numbers(metrics, prefix=""):
-    """Return the finite numbers of nested dicts, by dotted name; the distance to a goal out of
-    reach, a failure by every rule, is infinite."""
-    found = {}
+def _finite_numbers(metrics, prefix=""):
+    """Return the finite numbers of nested dicts, by dotted name.
+
+    ``distance_to_goal`` may be infinite: a goal out of reach is a failure by every rule.
+    """
+    numbers = {}
     for name, value in dict(metrics or {}).items():
         if isinstance(value, dict):
-            found.update(_numbers(value, f"{prefix}{name}."))
+            numbers.update(_finite_numbers(value, f"{prefix}{name}."))
             continue
-        known = isinstance(value, (bool, int, float, np.bool_, np.integer, np.floating))
+        is_number = isinstance(value, (bool, int, float, np.bool_, np.integer, np.floating))
         if _get(value, "shape") == () and _get(value, "item"):  # an array, a tensor
             value = value.item()
-            known = isinstance(value, (bool, int, float))
-        far = prefix + str(name) == "distance_to_goal" and known and float(value) == math.inf
-        if far or (known and math.isfinite(float(value))):
-            found[prefix + str(name)] = float(value)
-    return found
+            is_number = isinstance(value, (bool, int, float))
+        is_goal = prefix + str(name) == "distance_to_goal"
+        unreachable = is_goal and is_number and float(value) == math.inf
+        if unreachable or (is_number and math.isfinite(float(value))):
+            numbers[prefix + str(name)] = float(value)
+    return numbers
 
 
 def _distance(sim, position, episode):
-    """Return the geodesic metres to the nearest goal, or place to see it from, infinite out of
-    reach; None if unknown."""
+    """Return geodesic metres to the nearest goal or its view points, None if unknown.
+
+    Infinite if no goal can be reached.
+    """
     goals = _get(episode, "goals") or []
     views = [p.agent_state.position for g in goals for p in _get(g, "view_points") or []]
     ends = [list(map(float, end)) for end in views or [g.position for g in goals]]
@@ -505,28 +564,28 @@ def _distance(sim, position, episode):
 
 
 CAMERA = ("hfov", "min_depth", "max_depth", "normalize_depth", "position", "orientation")
-_described = {}  # id of a sensor: (it, what the server must know); a config's options are slow
+_descriptions = {}  # id of a sensor: (sensor, its description); reading configs is slow
 
 
-def _of_config(sensor):
-    """Return what the server must know of a lab sensor; names are upper case before 0.2.3."""
-    if id(sensor) in _described:
-        return _described[id(sensor)][1]
-    config, known = _get(sensor, "config"), {}
+def _describe_sensor(sensor):
+    """Return the description of a lab sensor; option names are upper case before 0.2.3."""
+    if id(sensor) in _descriptions:
+        return _descriptions[id(sensor)][1]
+    config, description = _get(sensor, "config"), {}
     for option in CAMERA:
         value = _get(config, option, _get(config, option.upper()))
         if isinstance(value, (bool, int, float)) or value is None:
-            known[option] = value
+            description[option] = value
         else:
-            known[option] = [float(x) for x in value]
+            description[option] = [float(x) for x in value]
     kind = str(_get(sensor, "sensor_type", "")).rpartition(".")[2].lower()
-    known.update(name=sensor.uuid, type=COLOR if kind == "color" else kind)
-    _described[id(sensor)] = (sensor, known)
-    return known
+    description.update(name=sensor.uuid, type=COLOR if kind == "color" else kind)
+    _descriptions[id(sensor)] = (sensor, description)
+    return description
 
 
 def _heading(state):
-    """Return the agent's heading in radians, counter-clockwise, of its quaternion."""
+    """Return the agent's heading in radians, counter-clockwise, from its quaternion."""
     rotation = state.rotation
     if _get(rotation, "imag") is not None:  # numpy-quaternion
         return 2 * math.atan2(float(rotation.imag[1]), float(rotation.real))
@@ -534,165 +593,179 @@ def _heading(state):
     return 2 * math.atan2(float(y), float(w))
 
 
-_walks = {}  # id of a simulator's sensor suite, or of a simulator: (it, its walk)
+_sessions = {}  # id of a simulator or of its sensor suite: (that object, its session)
 
 
-def _walk_of(owner):
-    """Return the walk of a sensor suite or simulator."""
-    if id(owner) not in _walks:  # keeps it, so that no other gets its id
-        _walks.setdefault(id(owner), (owner, Walk()))  # threads get one
-    return _walks[id(owner)][1]
+def _session_of(owner):
+    """Return the session of a sensor suite or simulator."""
+    if id(owner) not in _sessions:  # the entry keeps the object, so that its id is not reused
+        _sessions.setdefault(id(owner), (owner, Session()))  # the same for all threads
+    return _sessions[id(owner)][1]
 
 
-def _unseen(original, *args, **kwargs):
-    """Call what takes frames that are not what the agent acts on: goal pictures, videos."""
+def _call_clean(original, *args, **kwargs):
+    """Call a method that takes frames which the agent does not act on: goal pictures, videos."""
     return original(*args, **kwargs)
 
 
-def _is_unseen():
-    """Whether this thread is within ``_unseen``: by its frames, which no interrupt leaves behind as
-    it might a flag."""
+def _is_clean_call():
+    """Return whether this thread is inside ``_call_clean``.
+
+    Reads the stack, because an interrupt could leave a flag behind.
+    """
     frame = sys._getframe(1)
-    while frame is not None and frame.f_code is not _unseen.__code__:
+    while frame is not None and frame.f_code is not _call_clean.__code__:
         frame = frame.f_back
     return frame is not None
 
 
 def _get_observations(original, suite, *args, **kwargs):
-    """``SensorSuite.get_observations``: of the simulator, or of the task (episode and task given,
-    as the lab does), whose sensors may render a goal picture."""
+    """Wrap ``SensorSuite.get_observations`` of the simulator.
+
+    The lab passes ``task`` and ``episode`` for the sensors of the task, which may render a goal
+    picture.
+    """
     if "task" in kwargs or "episode" in kwargs:
-        return _unseen(original, suite, *args, **kwargs)
+        return _call_clean(original, suite, *args, **kwargs)
     observations = original(suite, *args, **kwargs)
-    cameras = [_of_config(s) for s in suite.sensors.values() if s.uuid in observations]
+    cameras = [_describe_sensor(s) for s in suite.sensors.values() if s.uuid in observations]
     cameras = [camera for camera in cameras if camera["type"] in (COLOR, DEPTH)]
-    if _is_unseen() or not cameras:
+    if _is_clean_call() or not cameras:
         return observations
-    walk = _walk_of(suite)
-    heading = None if walk.sim is None else _heading(walk.sim.get_agent_state())
-    return walk.corrupt(observations, cameras, heading)
+    session = _session_of(suite)
+    heading = None if session.sim is None else _heading(session.sim.get_agent_state())
+    return session.corrupt(observations, cameras, heading)
 
 
 def _task_reset(original, task, episode, *args, **kwargs):
-    """``EmbodiedTask.reset``: the last episode is over, and the words of the next are corrupted."""
+    """Wrap ``EmbodiedTask.reset``: end the last episode and replace the next instruction."""
     sim = task._sim
     if _get(_get(sim, "config"), "enable_batch_renderer"):
-        stop("frames of Habitat's batch renderer pass no sensor: set enable_batch_renderer=False.")
-    walk = _walk_of(sim.sensor_suite)
-    walk.end(task.measurements.get_metrics() if walk.begun else None, RESET)
-    _put_back(walk)
-    walk.sim, walk.task, walk.episode = sim, task, episode
+        stop(
+            "frames of Habitat's batch renderer pass no sensor and would be clean. Set "
+            "enable_batch_renderer=False."
+        )
+    session = _session_of(sim.sensor_suite)
+    session.end(task.measurements.get_metrics() if session.active else None, RESET)
+    _restore_words(session)
+    session.sim, session.task, session.episode = sim, task, episode
     words = _get(episode, "instruction")
-    text, tokens = _own(words)
-    said = {
+    text, tokens = _original_words(words)
+    fields = {
         "text": text,
-        "tokens": _plain(tokens),
+        "tokens": _plain_tokens(tokens),
         "language": _get(words, "language"),
         "category": _get(episode, "object_category"),
     }
-    answer = walk.begin(episode.scene_id, episode.episode_id, **said)
+    answer = session.begin(episode.scene_id, episode.episode_id, **fields)
     if words is not None and answer.get("text") is not None:
         words._mitigate_own = (answer["text"], text, tokens)
-        walk.words = words
-        _say(words, answer["text"], answer["tokens"])
+        session.words = words
+        _set_words(words, answer["text"], answer["tokens"])
     observations = original(task, episode, *args, **kwargs)
-    walk.start = _distance(sim, walk.position(), episode)
-    walk.path = [place for place in [walk.position()] if place is not None]
+    session.start = _distance(sim, session.position(), episode)
+    session.path = [position for position in [session.position()] if position is not None]
     return observations
 
 
-def _own(words):
-    """Return text and tokens of an episode's words as the data set has them, though a walk may have
-    put others in their place, and the program changed these: they are not corrupted again. Copies
-    and pickles of words that are on know their own, too, by the text that is heard."""
+def _original_words(words):
+    """Return text and tokens of an instruction as the data set has them.
+
+    A session may have replaced them, and the program may have changed them since. They must not be
+    corrupted again. A copy or pickle of a replaced instruction is recognised by its text.
+    """
     text = _get(words, "instruction_text")
-    heard, *own = _get(words, "_mitigate_own", (None, None, None))
-    known = heard is not None and (heard == text or _is_on(words))
-    return own if known else (text, _get(words, "instruction_tokens"))
+    replacement, *originals = _get(words, "_mitigate_own", (None, None, None))
+    replaced = replacement is not None and (replacement == text or _is_in_use(words))
+    return originals if replaced else (text, _get(words, "instruction_tokens"))
 
 
-def _is_on(words):
-    """Whether a walk is in the episode with these words."""
-    return any(walk.words is words for _, walk in list(_walks.values()))
+def _is_in_use(words):
+    """Return whether an episode of any session has this instruction."""
+    return any(session.words is words for _, session in list(_sessions.values()))
 
 
-def _say(words, text, tokens):
+def _set_words(words, text, tokens):
     words.instruction_text = text
     if _get(words, "instruction_tokens") is not None:
         words.instruction_tokens = tokens
 
 
-def _put_back(walk):
-    """Let the words of a walk's episode be as they were, whatever the program made of them, unless
-    another walk is in it."""
-    words, walk.words = walk.words, None
-    if words is None or _is_on(words):
+def _restore_words(session):
+    """Put the original instruction back, unless another session uses it."""
+    words, session.words = session.words, None
+    if words is None or _is_in_use(words):
         return
-    own = vars(words).pop("_mitigate_own", None)  # once: threads may leave one episode together
-    if own is not None:
-        _say(words, *own[1:])
+    originals = vars(words).pop("_mitigate_own", None)  # once: threads may end it together
+    if originals is not None:
+        _set_words(words, *originals[1:])
 
 
-def _plain(tokens):
+def _plain_tokens(tokens):
     return None if tokens is None else [t if isinstance(t, str) else int(t) for t in tokens]
 
 
 def _update_measures(original, measurements, *args, **kwargs):
-    """``Measurements.update_measures`` is called once for each low-level step."""
+    """Wrap ``Measurements.update_measures``, which is called once per low-level step."""
     result = original(measurements, *args, **kwargs)
     sim = _get(kwargs.get("task"), "_sim")
     if sim is not None:
-        _walk_of(sim.sensor_suite).moved(kwargs.get("action"))
+        _session_of(sim.sensor_suite).record_step(kwargs.get("action"))
     return result
 
 
 def _env_init(original, env, config, dataset=None, *args, **kwargs):
-    """``Env.__init__``: of a dataset that it is given, some episodes may be left out."""
-    return original(env, config, _some(dataset), *args, **kwargs)
+    """Wrap ``Env.__init__``: keep the selected episodes of its dataset."""
+    return original(env, config, _keep_selected(dataset), *args, **kwargs)
 
 
 def _make_dataset(original, *args, **kwargs):
-    """The dataset that ``Env.__init__`` makes where it is given none."""
-    return _some(original(*args, **kwargs))
+    """Wrap ``make_dataset``, which ``Env.__init__`` calls if it gets no dataset."""
+    return _keep_selected(original(*args, **kwargs))
 
 
-def _some(dataset):
-    """Leave out episodes that the server does not ask for."""
+def _keep_selected(dataset):
+    """Remove the episodes that the run does not ask for."""
     if dataset is not None and len(dataset.episodes):
-        keep = _chosen(dataset.episodes, lambda e: _key(e.scene_id, e.episode_id), 1)
+        keep = _select(dataset.episodes, lambda e: _episode_key(e.scene_id, e.episode_id), 1)
         if keep is not None:
             dataset.episodes = [dataset.episodes[i] for i in keep]
     return dataset
 
 
-def _chosen(episodes, key, least):
-    """Return the numbers of the episodes that the server asks for, ``least`` so many; None: of
-    all. Their keys are told in pieces, if it chooses at all."""
+def _select(episodes, key, least):
+    """Return the indices of the episodes that the run asks for; None means all.
+
+    Args:
+        episodes: All episodes.
+        key: Returns the name of one. Names are sent in parts, and only if the server selects.
+        least: The smallest number of episodes to keep, 0 or 1.
+    """
     channel, count = Channel(), len(episodes)
     answer = channel.ask("dataset", count=count, keys=[], least=least)
-    for at in range(0, count, PIECE):
+    for start in range(0, count, KEYS_PER_MESSAGE):
         if "keep" not in answer:
-            keys = [key(episode) for episode in episodes[at : at + PIECE]]
+            keys = [key(episode) for episode in episodes[start : start + KEYS_PER_MESSAGE]]
             answer = channel.ask("dataset", count=count, keys=keys, least=least)
     return answer["keep"]
 
 
 def _env_reset(original, env, *args, **kwargs):
-    """``Env.reset`` loads the next scene, so the last episode is measured before."""
-    _end(env, RESET)
+    """Wrap ``Env.reset``, which loads the next scene: measure the last episode before."""
+    _end_episode(env, RESET)
     return original(env, *args, **kwargs)
 
 
 def _env_step(original, env, *args, **kwargs):
     observations = original(env, *args, **kwargs)
     if env.episode_over:
-        _end(env, OVER)
+        _end_episode(env, OVER)
     return observations
 
 
 def _env_close(original, env, *args, **kwargs):
-    """``Env.close``: an Env for each episode leaves no simulator or connection behind."""
-    _end(env, CLOSE)
+    """Wrap ``Env.close``: programs that open one Env per episode must not leak connections."""
+    _end_episode(env, CLOSE)
     suite = _get(env.sim, "sensor_suite")
     try:
         return original(env, *args, **kwargs)
@@ -701,66 +774,71 @@ def _env_close(original, env, *args, **kwargs):
 
 
 def _release(suite):
-    """Forget a sensor suite, its walk and its connection."""
+    """Drop a sensor suite, its session and its connection."""
     if suite is not None:
-        _, walk = _walks.pop(id(suite), (None, None))
+        _, session = _sessions.pop(id(suite), (None, None))
         for sensor in suite.sensors.values():
-            _described.pop(id(sensor), None)
-        if walk is not None:
-            _put_back(walk)
-            walk.leave()
+            _descriptions.pop(id(sensor), None)
+        if session is not None:
+            _restore_words(session)
+            session.close()
 
 
-def _end(env, how):
+def _end_episode(env, how):
     suite = _get(env.sim, "sensor_suite")
-    walk = None if suite is None else _walk_of(suite)
-    if walk is not None and walk.begun:
-        walk.end(env.get_metrics(), how)
+    session = None if suite is None else _session_of(suite)
+    if session is not None and session.active:
+        session.end(env.get_metrics(), how)
 
 
 def _env_render(original, env, *args, **kwargs):
-    return _unseen(original, env, *args, **kwargs)
+    return _call_clean(original, env, *args, **kwargs)
 
 
 # habitat-sim without the lab --------------------------------------------------------------------
 
 
 def _sensor_observations(original, sim, *args, **kwargs):
-    """``Simulator.get_sensor_observations``."""
-    observations = _unseen(original, sim, *args, **kwargs)  # some call themselves for each agent
-    if _is_unseen() or _is_labs(sim):
+    """Wrap ``Simulator.get_sensor_observations``."""
+    # clean: some versions call themselves once per agent
+    observations = _call_clean(original, sim, *args, **kwargs)
+    if _is_clean_call() or _is_called_by_lab(sim):
         return observations
-    return _of_agents(sim, observations, args[0] if args else kwargs.get("agent_ids"))
+    return _corrupt_acting_agent(sim, observations, args[0] if args else kwargs.get("agent_ids"))
 
 
 def _async_observations(original, sim, *args, **kwargs):
-    """``Simulator.get_sensor_observations_async_finish``, where habitat-sim has it."""
-    wanted = _get(sim, "_async_draw_agent_ids")  # the call forgets them
-    observations = _unseen(original, sim, *args, **kwargs)
-    if _is_unseen() or _is_labs(sim):
+    """Wrap ``Simulator.get_sensor_observations_async_finish``, where habitat-sim has it."""
+    agent_ids = _get(sim, "_async_draw_agent_ids")  # the call clears them
+    observations = _call_clean(original, sim, *args, **kwargs)
+    if _is_clean_call() or _is_called_by_lab(sim):
         return observations
-    return _of_agents(sim, observations, wanted)
+    return _corrupt_acting_agent(sim, observations, agent_ids)
 
 
-def _is_labs(sim):
-    """Whether habitat-lab takes the frames, whose sensors they pass: a module of its own, or a
-    method of its simulator, overridden or not. Anyone else gets none of the lab's simulators."""
-    frame, own = sys._getframe(1), (_package(__name__), "habitat_sim")
-    while frame is not None and _package(frame.f_globals.get("__name__")) in own:
+def _is_called_by_lab(sim):
+    """Return whether habitat-lab takes the frames, so that its sensors corrupt them.
+
+    The caller is a module of the lab, or a method of a lab simulator, overridden or not. Any other
+    caller that takes frames from a lab simulator is stopped.
+    """
+    frame = sys._getframe(1)
+    passed_over = (_package(__name__), "habitat_sim")
+    while frame is not None and _package(frame.f_globals.get("__name__")) in passed_over:
         frame = frame.f_back
     if frame is None or _package(frame.f_globals.get("__name__")) == "habitat":
         return frame is not None
     if _get(sim, "sensor_suite") is None:
         return False
-    labs = [kind for kind in type(sim).__mro__ if _package(kind.__module__) == "habitat"]
+    lab_classes = [kind for kind in type(sim).__mro__ if _package(kind.__module__) == "habitat"]
     name = frame.f_code.co_name
-    if frame.f_locals.get("self") is sim and any(name in vars(kind) for kind in labs):
+    if frame.f_locals.get("self") is sim and any(name in vars(kind) for kind in lab_classes):
         return True
     stop(
-        f"{frame.f_code.co_filename}:{frame.f_lineno} takes frames from habitat-lab's simulator by "
-        "get_sensor_observations itself, which pass by its sensors and would be clean: take them "
-        "by env.step, env.sim.get_observations_at(...), or env.render for what the agent does not "
-        "see."
+        f"{frame.f_code.co_filename}:{frame.f_lineno} calls get_sensor_observations of "
+        "habitat-lab's simulator. These frames do not pass the lab's sensors and would be clean. "
+        "Use env.step or env.sim.get_observations_at(...), or env.render for frames that the agent "
+        "does not see."
     )
 
 
@@ -768,29 +846,35 @@ def _package(module):
     return str(module).partition(".")[0]
 
 
-def _of_agents(sim, observations, wanted):
-    """Corrupt what the acting agent sees, in observations of several agents, by number, or of the
-    ``wanted`` one (None: the acting one). The others are no eyes of the agent."""
-    agent = _default_agent(sim)
-    if observations and all(isinstance(seen, dict) for seen in observations.values()):
-        if agent in observations:
-            observations[agent] = _of_agent(sim, observations[agent])
+def _corrupt_acting_agent(sim, observations, agent_ids):
+    """Corrupt the observations of the acting agent only.
+
+    Args:
+        sim: The simulator.
+        observations: Of one agent by sensor, or of several agents by number.
+        agent_ids: The agents that were asked for; None is the acting agent.
+    """
+    acting = _default_agent(sim)
+    if observations and all(isinstance(value, dict) for value in observations.values()):
+        if acting in observations:
+            observations[acting] = _corrupt_observations(sim, observations[acting])
         return observations
-    one = wanted[0] if isinstance(wanted, (list, tuple)) else wanted
-    return _of_agent(sim, observations) if one is None or one == agent else observations
+    agent = agent_ids[0] if isinstance(agent_ids, (list, tuple)) else agent_ids
+    if agent is None or agent == acting:
+        return _corrupt_observations(sim, observations)
+    return observations
 
 
-def _of_agent(sim, observations):
-    walk = _thread.walk
-    if walk is None or walk.pid != os.getpid():
+def _corrupt_observations(sim, observations):
+    session = _thread.session
+    if session is None or session.episode_pid != os.getpid():
         stop(
-            "habitat-sim is used here without habitat-lab, and nobody said in this thread of this "
-            "process which episode it is: call mitigate_hook.connect(episode, scene=...) before "
-            "its first frame."
+            "habitat-sim is used without habitat-lab, and this thread of this process began no "
+            "episode. Call mitigate_hook.connect(episode, scene=...) before the first frame."
         )
-    walk.simulated = True
-    cameras = [c for c in _of_specifications(sim) if c["name"] in observations]
-    return walk.corrupt(
+    session.simulated = True
+    cameras = [c for c in _describe_simulator(sim) if c["name"] in observations]
+    return session.corrupt(
         observations, cameras, _heading(sim.get_agent(_default_agent(sim)).get_state())
     )
 
@@ -799,9 +883,9 @@ def _default_agent(sim):
     return _get(sim, "_default_agent_id", 0)
 
 
-def _of_specifications(sim):
-    """Return what the server must know of the cameras of habitat-sim's default agent."""
-    found = []
+def _describe_simulator(sim):
+    """Return the descriptions of the cameras of habitat-sim's default agent."""
+    cameras = []
     for spec in sim.config.agents[_default_agent(sim)].sensor_specifications:
         kind = str(spec.sensor_type).rpartition(".")[2].lower()
         if kind in ("color", "depth"):
@@ -809,23 +893,25 @@ def _of_specifications(sim):
             camera.update(hfov=float(_get(spec, "hfov", 90)), normalize_depth=False)
             camera["position"] = [float(x) for x in spec.position]
             camera["orientation"] = [float(x) for x in spec.orientation]
-            found.append(camera)
-    return found
+            cameras.append(camera)
+    return cameras
 
 
 # WMNav ------------------------------------------------------------------------------------------
 
 
 def _wmnav_episode(original, env, number, *args, **kwargs):
-    """``Env._run_episode`` of WMNav, which has no lab: its simulators last for an episode each."""
-    _thread.walk = walk = _thread.walk or Walk()
-    told = env.all_episodes[number]
-    words = told["object_category"]
-    answer = walk.begin(told["scene_id"], told["episode_id"], text=words, category=words, loop=True)
-    begin = env._initialize_episode
+    """Wrap ``Env._run_episode`` of WMNav, which opens a simulator without the lab per episode."""
+    _thread.session = session = _thread.session or Session()
+    episode = env.all_episodes[number]
+    words = episode["object_category"]
+    answer = session.begin(
+        episode["scene_id"], episode["episode_id"], text=words, category=words, loop=True
+    )
+    original_initialize = env._initialize_episode
 
     def initialize(*numbers):
-        observations = begin(*numbers)
+        observations = original_initialize(*numbers)
         env.current_episode["object"] = answer.get("text") or env.current_episode["object"]
         return observations
 
@@ -834,39 +920,42 @@ def _wmnav_episode(original, env, number, *args, **kwargs):
         result = original(env, number, *args, **kwargs)
     finally:
         del env._initialize_episode
-    said = {"success": env.wandb_log_data["goal_reached"], "spl": env.wandb_log_data["spl"]}
-    said["distance_to_goal"] = env.path_calculator.geodesic_distance
-    said["path_length"] = env.agent_distance_traveled
-    said["geodesic_distance"] = told["info"]["geodesic_distance"]
-    walk.end(said)
+    metrics = {"success": env.wandb_log_data["goal_reached"], "spl": env.wandb_log_data["spl"]}
+    metrics["distance_to_goal"] = env.path_calculator.geodesic_distance
+    metrics["path_length"] = env.agent_distance_traveled
+    metrics["geodesic_distance"] = episode["info"]["geodesic_distance"]
+    session.end(metrics)
     return result
 
 
 # adapters in the agent's own encoder ------------------------------------------------------------
 
 
-def _adapted(folder, file, path):
-    """Return what wraps the ``forward`` of an encoder's class: at an instance's first call, by when
-    its weights are loaded, adapters go into its module ``path``."""
+def _make_adapter_wrapper(folder, file, path):
+    """Return a wrapper for ``forward`` of an encoder's class.
+
+    It attaches adapters to the module ``path`` at the first call of each instance, because the
+    weights are loaded by then.
+    """
 
     def forward(original, encoder, *args, **kwargs):
         if not vars(encoder).get("_mitigate_adapted"):
-            _adapt(encoder, folder, file, path)
+            _attach_adapters(encoder, folder, file, path)
             encoder._mitigate_adapted = True
         return original(encoder, *args, **kwargs)
 
     return forward
 
 
-def _adapt(encoder, folder, file, path):
+def _attach_adapters(encoder, folder, file, path):
     owner, module = None, encoder
     for name in filter(None, path.split(".")):
         inner = _get(module, name)
         if inner is None:
-            there = ", ".join(n for n, _ in module.named_children()) or "none"
+            children = ", ".join(n for n, _ in module.named_children()) or "none"
             stop(
                 f"adapters= names {path} in {type(encoder).__name__}, but there is no {name}: its "
-                f"modules there are {there}."
+                f"modules there are {children}."
             )
         owner, module = (module, name), inner
     spec = importlib.util.spec_from_file_location("mitigate_plain_adapters", file)
@@ -874,167 +963,190 @@ def _adapt(encoder, folder, file, path):
     spec.loader.exec_module(plain_adapters)
     half = any(str(p.dtype).endswith("16") for p in module.parameters())
     try:
-        made = plain_adapters.attach(module, folder, check=not half)
+        adapted = plain_adapters.attach(module, folder, check=not half)
     except (ValueError, OSError) as error:
         stop(f"the adapters do not fit {type(encoder).__name__}: {error}")
-    if made is not module:  # around TorchScript, which takes no hooks
+    if adapted is not module:  # a wrapper, since TorchScript takes no hooks
         if owner is None:
             stop(
                 f"{type(encoder).__name__} itself is TorchScript, which takes no adapters in "
-                "place: let adapters= name the attribute that holds it, "
+                "place. Let adapters= name the attribute that holds it, "
                 "FOLDER:module:Class.attribute."
             )
         try:
-            setattr(*owner, made)
+            setattr(*owner, adapted)
         except RuntimeError as error:
             stop(
                 f"adapters= names {path} in {type(encoder).__name__}, which is TorchScript within "
-                f"TorchScript, where nothing can be put around it ({error}). Name the module that "
-                "holds all of it, and train adapters for that one."
+                f"TorchScript and cannot be wrapped ({error}). Name the module that holds all of "
+                "it, and train adapters for that module."
             )
     Channel().ask("adapted", module=f"{type(encoder).__name__}.{path}")
 
 
-# a loop of one's own ----------------------------------------------------------------------------
+# a loop without Habitat -------------------------------------------------------------------------
 
 
 class Episode:
-    """One episode of a loop that is not Habitat's; ``instruction`` is what the agent is told."""
+    """One episode of a loop without Habitat.
 
-    def __init__(self, walk, name, scene, instruction):
-        self._walk, self._name, self._thread = walk, name, threading.get_ident()
-        walk.current = self
-        answer = walk.begin(scene, name, text=instruction, loop=True)
+    Attributes:
+        instruction: The instruction for the agent, corrupted if the condition changes words.
+    """
+
+    def __init__(self, session, name, scene, instruction):
+        self._session = session
+        self._name = name
+        self._thread = threading.get_ident()
+        session.current = self
+        answer = session.begin(scene, name, text=instruction, loop=True)
         self.instruction = answer.get("text", instruction)
 
     def corrupt(self, observations, heading=None, cameras=None):
-        """Return a new dict with the frames of ``rgb*`` (uint8) and ``depth*`` (float32 metres)
-        corrupted. cameras: {name: {"type": "depth", "min_depth": 0.5, "max_depth": 5.0,
-        "normalize_depth": True, "hfov": 79, "orientation": [0, 0.5, 0]}} for other names and for
-        depth that is not metres from 0 to 10; heading: radians, counter-clockwise."""
+        """Return a new dict of observations with corrupted frames.
+
+        Args:
+            observations: Arrays by name: ``rgb*`` (uint8) and ``depth*`` (float32, metres).
+            heading: Radians, counter-clockwise.
+            cameras: Descriptions of cameras with other names, and of depth that is not metres
+                from 0 to 10: {name: {"type": "depth", "min_depth": 0.5, "max_depth": 5.0,
+                "normalize_depth": True, "hfov": 79, "orientation": [0, 0.5, 0]}}.
+        """
         self._check()
-        if not self._walk.begun:
-            stop(f"episode {self._name} was finished: connect() begins the next one.")
-        if self._walk.simulated:
+        if not self._session.active:
+            stop(f"episode {self._name} is finished. connect() begins the next one.")
+        if self._session.simulated:
             stop(
-                "frames of habitat-sim are corrupted as its simulator gives them, and "
-                "episode.corrupt() would do so again: of such a loop leave it out, and call "
+                "frames of habitat-sim are corrupted as its simulator returns them, and "
+                "episode.corrupt() would corrupt them twice. Leave it out: such a loop calls "
                 "connect() and finish() only."
             )
         try:
-            observations, listed = _described_frames(observations, cameras)
+            observations, described = _find_cameras(observations, cameras)
         except BaseException as error:  # the agent might catch it
-            stop(f"an observation could not be read ({_named(error)}).")
-        self._walk.steps += 1
-        return self._walk.corrupt(observations, listed, heading)
+            stop(f"an observation could not be read ({_describe_error(error)}).")
+        self._session.steps += 1
+        return self._session.corrupt(observations, described, heading)
 
     def finish(self, success, spl=None, stopped=None, **metrics):
-        """Tell how it went: ``success`` (0 or 1), ``spl`` (0 to 1; None: by ``path_length`` and
-        ``geodesic_distance``, or else as the success), whether the agent ``stopped`` by itself (0
-        or 1, None: unknown; rules ask for it), ``distance_to_goal`` ... Raises ValueError for what
-        is none."""
+        """Report the result of the episode.
+
+        Args:
+            success: 0 or 1.
+            spl: 0 to 1. None computes it from ``path_length`` and ``geodesic_distance``, or takes
+                the success.
+            stopped: Whether the agent itself called STOP, 0 or 1. None: unknown; some rules of
+                success need it.
+            **metrics: Other measures, such as ``distance_to_goal``.
+
+        Raises:
+            ValueError: A value is outside its range.
+        """
         self._check()
-        told = dict(metrics, success=_truth(success, "success"))
+        report = dict(metrics, success=_check_flag(success, "success"))
         if stopped is not None:
-            stopped = bool(_truth(stopped, "stopped"))
+            stopped = bool(_check_flag(stopped, "stopped"))
         if spl is not None:
-            told["spl"] = _share(spl, "spl")
-            if told["spl"] and not told["success"]:
+            report["spl"] = _check_fraction(spl, "spl")
+            if report["spl"] and not report["success"]:
                 raise ValueError(
-                    f"finish(success={success!r}, spl={spl!r}): the SPL of an episode that failed "
-                    "is 0. Leave spl out, or correct the success."
+                    f"finish(success={success!r}, spl={spl!r}): the SPL of a failed episode must "
+                    "be 0. Leave spl out, or correct the success."
                 )
         for name in ("path_length", "geodesic_distance", "distance_to_goal"):
             if metrics.get(name) is not None:
-                told[name] = _measure(metrics[name], name)
-        self._walk.end(told, OVER, stopped)
+                report[name] = _check_non_negative(metrics[name], name)
+        self._session.end(report, OVER, stopped)
 
     def _check(self):
-        if self._walk.current is not self:
+        if self._session.current is not self:
             stop(
-                f"episode {self._name} was left for another one: of one thread, an episode is over "
-                "when the next one begins. Walk side by side in threads or processes."
+                f"episode {self._name} ended when the next one began: a thread has one episode at "
+                "a time. Run parallel episodes in threads or processes."
             )
-        if self._walk.pid != os.getpid():
+        if self._session.episode_pid != os.getpid():
             stop(
-                f"episode {self._name} was begun in process {self._walk.pid}, and process "
-                f"{os.getpid()} goes on with it, whose frames would be of no episode: call "
-                "mitigate_hook.connect() in the process that walks."
+                f"process {self._session.episode_pid} began episode {self._name}, and process "
+                f"{os.getpid()} continues it, so that its frames would belong to no episode. Call "
+                "mitigate_hook.connect() in the process that runs the episode."
             )
         if self._thread != threading.get_ident():
             stop(
-                f"episode {self._name} was begun by another thread than the one that goes on with "
-                "it, and their frames might be mixed up: call mitigate_hook.connect() in the "
-                "thread that walks."
+                f"another thread began episode {self._name}, and frames of two threads might be "
+                "mixed up. Call mitigate_hook.connect() in the thread that runs the episode."
             )
 
 
-def _truth(value, name):
-    """Return 0.0 or 1.0. Raises ValueError for what is neither."""
-    found = _share(value, name)
-    if found not in (0.0, 1.0):
+def _check_flag(value, name):
+    """Return 0.0 or 1.0. Raises ValueError for other values."""
+    number = _check_fraction(value, name)
+    if number not in (0.0, 1.0):
         raise ValueError(f"finish({name}={value!r}): it must be 1 (or True) or 0 (or False).")
-    return found
+    return number
 
 
-def _share(value, name):
-    """Return a number from 0 to 1. Raises ValueError if it is none."""
-    found = _measure(value, name)
-    if not found <= 1:
+def _check_fraction(value, name):
+    """Return a number from 0 to 1. Raises ValueError for other values."""
+    number = _check_non_negative(value, name)
+    if not number <= 1:
         raise ValueError(
             f"finish({name}={value!r}): it must be a number from 0 to 1, not percent: 0.8."
         )
-    return found
+    return number
 
 
-def _measure(value, name):
-    """Return a number from 0, infinity too. Raises ValueError if it is none."""
+def _check_non_negative(value, name):
+    """Return a number that is 0 or more, or infinite. Raises ValueError for other values."""
     try:
-        found = float(value)  # of an array or tensor with one item, too
+        number = float(value)  # also of an array or tensor with one item
     except (TypeError, ValueError):
-        found = math.nan
-    if not found >= 0:
+        number = math.nan
+    if not number >= 0:
         raise ValueError(f"finish({name}={value!r}): it must be a number that is not negative.")
-    return found
+    return number
 
 
-def _described_frames(observations, cameras):
-    """Return a new dict of observations, and what the server must know of each camera in it; stop
-    at what may be a frame and was not described."""
-    observations, cameras, listed = dict(observations), dict(cameras or {}), []
+def _find_cameras(observations, cameras):
+    """Return a copy of the observations and the description of each camera in them.
+
+    Stop if an entry may be a frame and is not described.
+    """
+    observations, cameras, described = dict(observations), dict(cameras or {}), []
     for name, value in observations.items():
         by_name = next((kind for kind in (COLOR, DEPTH) if str(name).startswith(kind)), None)
-        told = dict({"type": by_name}, **cameras.get(name, {}))
-        strange = sorted(set(map(str, told)) - {"type", *CAMERA})
-        if strange:
+        camera = dict({"type": by_name}, **cameras.get(name, {}))
+        unknown = sorted(set(map(str, camera)) - {"type", *CAMERA})
+        if unknown:
             stop(
-                f"the camera {name} is described by {', '.join(strange)}, which nobody reads: what "
-                f"can be said of a camera is type, {', '.join(CAMERA)}."
+                f"the camera {name} has unknown options: {', '.join(unknown)}. The options of a "
+                f"camera are type, {', '.join(CAMERA)}."
             )
-        if told["type"] in (COLOR, DEPTH):
+        if camera["type"] in (COLOR, DEPTH):
             if not isinstance(name, str):
-                stop(f"a camera is called {name!r}: its name must be text, as {str(name)!r} is.")
-            listed.append(dict(told, name=name))
-        elif name in cameras and told["type"] != "other":
+                stop(f"the name of a camera must be text, got {name!r}. Write {str(name)!r}.")
+            described.append(dict(camera, name=name))
+        elif name in cameras and camera["type"] != "other":
             stop(
-                f"the entry {name} of an observation is described as {told['type']!r}: its type "
-                "must be 'rgb', 'depth', or 'other' for what is to stay as it is."
+                f"the type of the entry {name} must be 'rgb', 'depth', or 'other' for what is to "
+                f"stay as it is, got {camera['type']!r}."
             )
         elif name not in cameras:
-            found = _frame_in(value, str(name))
-            if found is not None:
+            array = _find_frame(value, str(name))
+            if array is not None:
                 stop(
-                    f"the entry {found[0]} of an observation may be a frame {found[1]}, and nobody "
-                    f"said what it is. Name it in cameras=, {{{str(name)!r}: {{'type': 'rgb'}}}} "
-                    "(or 'depth'; it must be an array [H, W, channels] and an entry of its own, "
-                    "not one in a dict or list), or {'type': 'other'} to leave it as it is."
+                    f"the entry {array[0]} of an observation may be a frame {array[1]}, and it is "
+                    f"not described. Name it in cameras=, {{{str(name)!r}: {{'type': 'rgb'}}}} (or "
+                    "'depth'; it must be an array [H, W, channels] and a separate entry, not in a "
+                    "dict or list), or {'type': 'other'} to leave it as it is."
                 )
-    return observations, listed
+    return observations, described
 
 
-def _frame_in(value, name):
-    """Return name and shape of the first array in an entry that may be a frame, however deep in
-    dicts and lists: more than 8 x 8 in two of its sides. None if there is none."""
+def _find_frame(value, name):
+    """Return name and shape of the first array in an entry that may be a frame, or None.
+
+    Searches nested dicts and lists. A frame has two sides above 8.
+    """
     if value is None or isinstance(value, (str, bytes, int, float)):
         return None
     shape = _shape(value)
@@ -1046,45 +1158,54 @@ def _frame_in(value, name):
         parts = enumerate(value.ravel().tolist())
     else:
         parts = enumerate(value) if isinstance(value, (list, tuple)) else ()
-    found = (_frame_in(part, f"{name}.{key}") for key, part in parts)
-    return next((one for one in found if one is not None), None)
+    frames = (_find_frame(part, f"{name}.{key}") for key, part in parts)
+    return next((frame for frame in frames if frame is not None), None)
 
 
 def _shape(value):
-    """Return the shape of an array, a tensor, a picture of PIL, or numbers in lists of lists."""
-    shape = []
+    """Return the shape of an array, a tensor, a PIL image, or nested lists of these or numbers."""
+    outer = []
     while isinstance(value, (list, tuple)) and value:
-        shape.append(len(value))
+        outer.append(len(value))
         value = value[0]
-    own = value.size if _get(value, "getbands") else _get(value, "shape")
-    if own is None:
-        return tuple(shape) if isinstance(value, (int, float)) else ()
+    inner = value.size if _get(value, "getbands") else _get(value, "shape")
+    if inner is None:
+        return tuple(outer) if isinstance(value, (int, float)) else ()
     try:
-        return (*shape, *map(int, own))
-    except (TypeError, ValueError):  # a shape of another kind
+        return (*outer, *map(int, inner))
+    except (TypeError, ValueError):  # an attribute of another meaning
         return ()
 
 
 def wanted(episodes):
-    """Return those of a list of (scene, episode id) that this run asks for: all without
-    ``episodes=``, else about as many, chosen by a hash of their names. Raises RuntimeError outside
-    of ``mitigate run``, ValueError for what is no such list."""
+    """Return the episodes that this run asks for.
+
+    Args:
+        episodes: List of (scene, episode id).
+
+    Returns:
+        All of them without ``episodes=``, else about that many, selected by a hash of their names.
+
+    Raises:
+        RuntimeError: The program does not run under ``mitigate run``.
+        ValueError: An entry is not a pair.
+    """
     _check_run()
     episodes = list(episodes)
-    for one in episodes:
-        if not isinstance(one, (tuple, list)) or len(one) != 2:
+    for episode in episodes:
+        if not isinstance(episode, (tuple, list)) or len(episode) != 2:
             raise ValueError(
-                f"wanted() was given {one!r:.80}: each episode must be a pair, (scene, id), or "
-                "('', id) where there are no scenes."
+                "each episode of wanted() must be a pair, (scene, id), or ('', id) without "
+                f"scenes, got {episode!r:.80}."
             )
     if not episodes:
         return []
-    keep = _chosen(episodes, lambda episode: _key(*episode), 0)
+    keep = _select(episodes, lambda episode: _episode_key(*episode), 0)
     return episodes if keep is None else [episodes[i] for i in keep]
 
 
-def _key(scene, episode):
-    """The name of an episode: of its scene's file, and its id."""
+def _episode_key(scene, episode):
+    """Return the name of an episode: the file name of its scene, and its id."""
     return f"{str(scene).rpartition('/')[2]}/{episode}"
 
 
@@ -1094,17 +1215,25 @@ def _check_run():
 
 
 def connect(episode, scene="", instruction=None):
-    """Begin an episode under ``mitigate run``; no two have one scene and name. Raises RuntimeError
-    outside of it."""
+    """Begin an episode under ``mitigate run`` and return its ``Episode``.
+
+    Args:
+        episode: Its name, unique within the scene.
+        scene: File name or path of the scene.
+        instruction: Text for the agent.
+
+    Raises:
+        RuntimeError: The program does not run under ``mitigate run``.
+    """
     _check_run()
-    if _thread.walk is None:
-        _thread.walk = Walk()
-    return Episode(_thread.walk, str(episode), scene, instruction)
+    if _thread.session is None:
+        _thread.session = Session()
+    return Episode(_thread.session, str(episode), scene, instruction)
 
 
 # installing -------------------------------------------------------------------------------------
 
-PATCHES = {  # module: ((class, or none for the module's own functions; method; wrapper), ...)
+PATCHES = {  # module: ((class, empty for a function of the module; method; wrapper), ...)
     "habitat.core.simulator": (("SensorSuite", "get_observations", _get_observations),),
     "habitat.core.embodied_task": (
         ("EmbodiedTask", "reset", _task_reset),
@@ -1134,28 +1263,29 @@ def patch(module):
         kind = _get(module, owner) if owner else module
         original = None if kind is None else _get(kind, method)
         if original is not None:
-            setattr(kind, method, _wrapped(original, wrapper))
+            setattr(kind, method, _wrap(original, wrapper))
         elif method not in OPTIONAL:
-            stop(_absent(module, owner, method))
+            stop(_missing_method(module, owner, method))
 
 
-def _absent(module, owner, method):
-    """Say why a method that is to be wrapped is not there."""
+def _missing_method(module, owner, method):
+    """Return the message for a method that does not exist and cannot be wrapped."""
     adapters = json.loads(os.environ.get(ADAPTERS) or "{}")
     if adapters.get("module") == module.__name__:
         classes = [n for n, kind in vars(module).items() if isinstance(kind, type)]
-        there = ", ".join(n for n in classes if _get(vars(module)[n], "forward")) or "none"
+        encoders = ", ".join(n for n in classes if _get(vars(module)[n], "forward")) or "none"
         return (
-            f"adapters= names the class {owner} of {module.__name__}, but there is none with a "
-            f"forward method: those there are {there}. Write FOLDER:package.module:Class.attribute."
+            f"adapters= names the class {owner} of {module.__name__}, but the module has no such "
+            f"class with a forward method; it has {encoders}. Write "
+            "FOLDER:package.module:Class.attribute."
         )
     return (
-        f"{module.__name__} has no {owner} {method}: this version of it is not known to the bridge "
-        "(known: habitat-lab 0.1.5 to 0.3)."
+        f"{module.__name__} has no {owner} {method}: the bridge does not support this version "
+        "(supported: habitat-lab 0.1.5 to 0.3)."
     )
 
 
-def _wrapped(original, wrapper):
+def _wrap(original, wrapper):
     @functools.wraps(original)
     def method(*args, **kwargs):
         return wrapper(original, *args, **kwargs)
@@ -1164,7 +1294,7 @@ def _wrapped(original, wrapper):
 
 
 class Finder:
-    """Has the loaders of the modules in ``PATCHES`` call ``patch`` behind the module's own code."""
+    """Makes the loaders of the modules in ``PATCHES`` call ``patch`` after the module code."""
 
     def find_spec(self, name, path=None, target=None):
         if name not in PATCHES:
@@ -1182,23 +1312,23 @@ class Finder:
 
 
 def install():
-    """Wrap what this process imports from now on, under ``mitigate run``; else do nothing."""
+    """Wrap what this process imports from now on; outside of ``mitigate run`` do nothing."""
     if ADDRESS not in os.environ or any(isinstance(f, Finder) for f in sys.meta_path):
         return
     if os.path.exists(os.environ[ADDRESS]):
-        with contextlib.suppress(OSError):  # of another user's: it says what is wrong later
+        with contextlib.suppress(OSError):  # another user's folder: the connection reports it later
             folder = os.path.dirname(os.environ[ADDRESS])
             open(os.path.join(folder, LOADED), "a").close()
     if os.environ.get(ADAPTERS):
-        told = json.loads(os.environ[ADAPTERS])
-        wrapper = _adapted(told["folder"], told["file"], told["path"])
-        PATCHES[told["module"]] = ((told["class"], "forward", wrapper),)
+        adapters = json.loads(os.environ[ADAPTERS])
+        wrapper = _make_adapter_wrapper(adapters["folder"], adapters["file"], adapters["path"])
+        PATCHES[adapters["module"]] = ((adapters["class"], "forward", wrapper),)
     sys.meta_path.insert(0, Finder())
 
 
-def run_hidden_sitecustomize(own):
-    """Run the ``sitecustomize`` that the one in the file ``own`` hides, if there is one."""
-    folder = os.path.dirname(os.path.abspath(own))
+def run_hidden_sitecustomize(file):
+    """Run the ``sitecustomize`` that the one in ``file`` hides, if there is one."""
+    folder = os.path.dirname(os.path.abspath(file))
     path = [p for p in sys.path if os.path.abspath(p or os.curdir) != folder]
     spec = importlib.machinery.PathFinder.find_spec("sitecustomize", path)
     if spec is not None and spec.loader is not None:

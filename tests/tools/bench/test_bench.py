@@ -1,4 +1,4 @@
-"""The bench: its clocks, its peers and its page."""
+"""The benchmark: its clocks, other libraries, and its page."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ from tools.bench.peers import plain
 from tools.bench.renderers import OURS
 
 
-def test_the_clocks_count_what_a_call_takes():
+def test_clocks_measure_a_call():
     assert 1.9 < timing.steady(lambda i: time.sleep(0.002), 0.01) < 20
-    seen = []
-    assert timing.fresh(seen.append, 0.001) < 1
-    assert seen == list(range(len(seen))) and len(seen) > timing.LEAST
+    calls = []
+    assert timing.fresh(calls.append, 0.001) < 1
+    assert calls == list(range(len(calls))) and len(calls) > timing.LEAST
 
 
-def test_every_corruption_has_a_bar_and_the_depth_ones_a_plain_peer():
+def test_every_corruption_has_a_bar():
     assert all(record(name).bars for name in NAMES)
     depth = np.full((2, 40, 48), 3.0, np.float32)
     depth[:, :, 24:] = 5.0
@@ -33,22 +33,22 @@ def test_every_corruption_has_a_bar_and_the_depth_ones_a_plain_peer():
 
 
 @pytest.mark.parametrize("name", ["low_light", "quantization"])
-def test_a_cost_is_measured_on_the_frame(name):
+def test_cost_is_measured_on_the_frame(name):
     frame = np.full((1, 32, 32, 3), 90, np.uint8)
     frame = frame if name not in DEPTH else frame[..., 0].astype(np.float32) / 30
-    found = suite.cost(name, frame, 1e-3, {"slow": 9.0, "fast": 7.0}, bar=1e-9)
-    assert found.over and found.best_peer == ("fast", 7.0)
-    assert 0 < found.steady < 5 and 0 < found.copy < found.per_frame
+    cost = suite.cost(name, frame, 1e-3, {"slow": 9.0, "fast": 7.0}, bar=1e-9)
+    assert cost.over and cost.best_peer == ("fast", 7.0)
+    assert 0 < cost.steady < 5 and 0 < cost.copy < cost.per_frame
 
 
-def test_the_clock_around_a_function_counts_its_calls_only():
+def test_clock_counts_only_its_function():
     clock = training.Clock()
     assert clock.around(lambda x: time.sleep(0.01) or x)(3) == 3
     time.sleep(0.01)
     assert 0.009 < clock.seconds < 0.1
 
 
-def test_the_page_lists_what_is_over_the_bar():
+def test_page_lists_corruptions_over_the_bar():
     good = suite.Cost(0.1, 0.2, 0.3, 0.01, 0.05, {"peer 1": 0.4}, 0.2)
     missed = suite.Cost(0.5, 0.6, 0.7, 0.01, 0.05, {}, 0.2)
     rates = {OURS: (100.0, 100.0), "other": (50.0, 25.0)}
@@ -74,7 +74,7 @@ def test_the_page_lists_what_is_over_the_bar():
 
 
 @pytest.mark.slow
-def test_both_ways_of_evaluating_are_timed_on_the_same_rows(monkeypatch):
+def test_paces_compare_equal_rows(monkeypatch):
     monkeypatch.setattr(evaluation, "CHECKPOINTS", ("checkpoints/base",))
     real, names = evaluation.conditions, ["clean", "flare", "missing_data"]
     monkeypatch.setattr(evaluation, "conditions", lambda _, *severities: real(names, *severities))

@@ -1,4 +1,4 @@
-"""CI fails when a processor with fewer instructions trains far slower than it must."""
+"""CI fails if training with fewer instructions is much slower."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ USUAL = {"perception": (9.0, 0.2, 0.25), "imitation": (20.0, 1.0, 1.5)}
 
 
 def make(folder: Path, costs: dict[str, tuple[float, ...]]) -> Path:
-    """A run folder whose stages took so many CPU seconds a step, as a Journal logs them."""
+    """Create a run folder whose stages took these CPU seconds per step, as a Journal logs them."""
     for stage, seconds in costs.items():
         clock = accumulate((5.0, *seconds))
         with (
@@ -32,19 +32,19 @@ def scaled(factor: float) -> dict[str, tuple[float, ...]]:
     return {name: tuple(factor * t for t in times) for name, times in USUAL.items()}
 
 
-def test_a_stage_counts_by_its_cheapest_step_after_the_first(tmp_path):
+def test_step_costs_use_the_cheapest_step(tmp_path):
     run = make(tmp_path, {"one": (0.1, 0.5, 0.4, 3.0)})
     assert step_costs(run) == {"one": pytest.approx(0.4, rel=1e-5)}
 
 
-def test_a_run_within_the_bound_passes_and_says_by_how_much(tmp_path, capsys):
+def test_main_passes_within_the_bound(tmp_path, capsys):
     runs = [make(tmp_path / "a", USUAL), make(tmp_path / "b", scaled(2.2))]
     assert main([*map(str, runs), "--most", "3"]) == 0
     out = capsys.readouterr().out
-    assert "0.200 and 0.440 CPU s a step: 2.20 times, at most 3" in out and "imitation" in out
+    assert "0.200 and 0.440 CPU s per step: 2.20 times, at most 3" in out and "imitation" in out
 
 
-def test_one_stage_over_the_bound_fails_and_is_named(tmp_path, capsys):
+def test_main_fails_and_names_the_stage(tmp_path, capsys):
     slow = {**USUAL, "imitation": (20.0, 4.5, 4.6)}
     runs = [make(tmp_path / "a", USUAL), make(tmp_path / "b", slow)]
     assert main(list(map(str, runs))) == 1
@@ -52,7 +52,7 @@ def test_one_stage_over_the_bound_fails_and_is_named(tmp_path, capsys):
     assert "Steps of imitation cost more than 4 times" in message and "precision" in message
 
 
-def test_noise_in_some_steps_does_not_fail(tmp_path):
+def test_main_ignores_noise_in_some_steps(tmp_path):
     noisy = {**USUAL, "perception": (9.0, 2.0, 0.2, 2.0)}
     runs = [make(tmp_path / "a", USUAL), make(tmp_path / "b", noisy)]
     assert main(list(map(str, runs))) == 0
@@ -69,7 +69,7 @@ def test_noise_in_some_steps_does_not_fail(tmp_path):
         ({"perception": (1.0, 1.0, 1.0)}, "different stages"),
     ],
 )
-def test_runs_that_cannot_be_compared_are_refused(tmp_path, capsys, costs, words):
+def test_main_rejects_runs_that_cannot_be_compared(tmp_path, capsys, costs, words):
     runs = [make(tmp_path / "a", USUAL), make(tmp_path / "b", costs)]
     with pytest.raises(SystemExit) as stop:
         main(list(map(str, runs)))

@@ -1,4 +1,4 @@
-"""A soak sees memory and files that grow, sees none where none do, and says when it cannot tell."""
+"""The soak test finds growth of memory and files, and reports series that are too short."""
 
 from __future__ import annotations
 
@@ -16,36 +16,37 @@ HOURS = np.linspace(0, 1, 600)
 
 def wander(seed: int, share: float = 0.9) -> np.ndarray:
     """Noise of standard deviation 3 in which each value is near the one before."""
-    rng, found = np.random.default_rng(seed), np.zeros(len(HOURS))
-    for n in range(1, len(found)):
-        found[n] = share * found[n - 1] + rng.normal(0, 3 * (1 - share**2) ** 0.5)
-    return found
+    rng = np.random.default_rng(seed)
+    values = np.zeros(len(HOURS))
+    for n in range(1, len(values)):
+        values[n] = share * values[n - 1] + rng.normal(0, 3 * (1 - share**2) ** 0.5)
+    return values
 
 
-def test_a_leak_is_found_and_its_slope_lies_in_the_interval():
-    found = growth(HOURS, 900 + 40 * HOURS + wander(0))
-    assert found.low < 40 < found.high and found.low > 20
-    assert found.verdict == "grows"
+def test_growth_finds_a_leak():
+    result = growth(HOURS, 900 + 40 * HOURS + wander(0))
+    assert result.low < 40 < result.high and result.low > 20
+    assert result.verdict == "grows"
 
 
-def test_what_is_built_up_once_is_no_growth():
+def test_growth_ignores_the_first_quarter():
     values = 900 - 500 * np.exp(-HOURS / 0.03) + wander(1, 0.2)
     assert growth(HOURS, values).verdict == "flat"
 
 
-def test_the_interval_holds_the_true_slope_about_as_often_as_it_says():
-    held = [g.low <= 0 <= g.high for g in (growth(HOURS, wander(seed)) for seed in range(30))]
-    assert 0.75 <= np.mean(held) <= 1.0
+def test_growth_interval_covers_the_true_slope():
+    covered = [g.low <= 0 <= g.high for g in (growth(HOURS, wander(seed)) for seed in range(30))]
+    assert 0.75 <= np.mean(covered) <= 1.0
 
 
-def test_a_short_noisy_series_decides_nothing():
+def test_growth_is_undecided_for_a_short_series():
     short = np.linspace(0, 0.05, 60)
     assert growth(short, 900 + wander(2)[:60]).verdict == "too short to say"
-    with pytest.raises(ValueError, match="too few for a slope"):
+    with pytest.raises(ValueError, match="A slope needs >= 20"):
         growth(short[:10], np.ones(10))
 
 
-def test_no_growth_at_all_is_flat():
+def test_growth_of_a_constant_is_flat():
     assert Growth(1.0, 100.0, 0.0, 0.0, 0.0).verdict == "flat"
 
 
@@ -59,7 +60,7 @@ sys.stdin.read()
 """
 
 
-def test_all_processes_of_a_load_are_measured(tmp_path):
+def test_measured_counts_all_processes(tmp_path):
     script = tmp_path / "holds.py"
     script.write_text(HOLDS)
     command = [sys.executable, str(script), "parent"]
@@ -74,10 +75,10 @@ def test_all_processes_of_a_load_are_measured(tmp_path):
     assert soak.measured(process.pid) == (0, 0.0, 0)
 
 
-def test_a_load_that_ends_by_itself_is_told(tmp_path, monkeypatch, capsys):
+def test_main_reports_a_load_that_ends(tmp_path, monkeypatch, capsys):
     monkeypatch.setattr(soak, "LOADS", {"nothing": None})
     assert soak.main(["--minutes", "0.2", "--every", "0.1", "--out", str(tmp_path)]) == 1
-    said = capsys.readouterr().out
-    assert "nothing ended by itself" in said and "KeyError" in said
+    output = capsys.readouterr().out
+    assert "nothing ended early" in output and "KeyError" in output
     assert (tmp_path / "soak.csv").is_file() and (tmp_path / "soak.png").is_file()
     assert sorted(p.name for p in tmp_path.iterdir() if p.is_dir()) == []

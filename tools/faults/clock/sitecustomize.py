@@ -1,18 +1,19 @@
-"""Loaded by a Python whose PYTHONPATH names this folder: its clock jumps about once a second.
+"""Makes the clock jump about once per second in a Python whose PYTHONPATH names this folder.
 
-``time.time`` jumps by up to a day either way; ``time.monotonic`` goes on, as when an administrator
-or NTP sets a machine's clock.
+``time.time`` jumps by up to a day in either direction. ``time.monotonic`` does not, as when an
+administrator or NTP sets a machine's clock.
 """
 
 import random
 import time
 
-_true, _rng = time.time, random.Random(0)
+_real_time = time.time
+_rng = random.Random(0)
 
 
-def _jumping() -> float:
+def _jumping_time() -> float:
     _rng.seed(int(time.monotonic()))
-    return _true() + _rng.uniform(-86400.0, 86400.0)
+    return _real_time() + _rng.uniform(-86400.0, 86400.0)
 
 
-time.time = _jumping
+time.time = _jumping_time
