@@ -85,7 +85,7 @@ WRONG = {
         (f"seed={HUGE}", "seed is too great"),
         ("severity=inf", "everity"),
         ("conditions=spatter+mask", "a list, such as [spatter+mask]"),
-        ("conditions=[]", "conditions=[] names none"),
+        ("conditions=[]", "conditions must not be empty"),
         ("conditions=[../../x]", "no condition"),
         ("conditions=[clean,'a|b']", "no condition"),
         ("checkpoint=/etc", "no weights"),

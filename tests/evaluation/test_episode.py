@@ -114,9 +114,7 @@ def test_a_frame_that_an_agent_reads_and_does_not_need_is_named():
         def forward(self, frames, texts):
             return self.logits + frames["depth"].mean(), {}
 
-    with pytest.raises(
-        ValueError, match=r"reads 'depth', which its needs = \('rgb',\) do not name"
-    ):
+    with pytest.raises(ValueError, match=r"reads 'depth', but its needs = \('rgb',\) do not name"):
         run_episode(Curious(0.0, 1.0, 2.0, 3.0), Cell(), EPISODE, CLEAN, 0)
 
 

@@ -252,7 +252,7 @@ def test_benchmark_takes_any_agent_says_how_long_and_goes_on(tmp_path, monkeypat
 
 
 def test_benchmark_refuses_what_measures_nothing():
-    with pytest.raises(ValueError, match="corrupts nothing"):
+    with pytest.raises(ValueError, match="has no effect"):
         mitigate.benchmark(Straight(), suite="clean")
     with pytest.raises(ValueError, match="Did you mean flare"):
         mitigate.benchmark(Straight(), suite=["flair"])
@@ -262,7 +262,7 @@ def test_an_entry_is_compared_with_its_own_rows_where_the_file_holds_more(rows):
     entry = entry_of(rows, "base", severity=0.6)
     more = [r | {"seed": 1} for r in rows] + [r | {"corruption": "flare"} for r in rows[10:20]]
     assert command.differences(entry, [*rows, *more]) == []
-    with pytest.raises(ValueError, match="hold none of 0123456789ab with seed 0"):
+    with pytest.raises(ValueError, match="hold no results of 0123456789ab with seed 0"):
         command.differences(entry, [r | {"seed": 1} for r in rows])
 
 
@@ -385,21 +385,21 @@ class OneCamera(Straight):
     ("agent", "options", "words"),
     [
         (Straight, {}, "Straight is a class"),
-        (None, {}, "A NoneType walks no episodes"),
+        (None, {}, "A NoneType cannot run episodes"),
         (lambda observation: STOP, {}, "no reset"),
         (Straight(), {"suite": "fulll"}, "no suite 'fulll'. Did you mean full?"),
         (Straight(), {"options": ["no.option=1"]}, "no.option"),
-        (Straight(), {"severity": 0}, "at severity 0 corrupts nothing"),
+        (Straight(), {"severity": 0}, "at severity 0 has no effect"),
         (Straight(), {"name": "x" * 201}, "name must be valid, not"),
         (Straight(), {"training_data": "x" * 2001}, "training_data must be"),
-        (Straight(), {"listed": []}, "listed lists no episode"),
-        (Straight(), {"listed": ["e1"]}, "listed has 'e1' in it, which is no Episode"),
-        (Straight(), {"episodes": "2"}, "episodes='2' is none: give a whole number"),
-        (Straight(), {"episodes": 2.0}, "episodes=2.0 is none: give a whole number"),
-        (Straight(), {"options": "env.views=1"}, "options is a list of options"),
+        (Straight(), {"listed": []}, "listed must list at least one episode"),
+        (Straight(), {"listed": ["e1"]}, "listed must hold only objects of Episode, got 'e1'"),
+        (Straight(), {"episodes": "2"}, "episodes must be a whole number .* got '2'"),
+        (Straight(), {"episodes": 2.0}, "episodes must be a whole number .* got 2.0"),
+        (Straight(), {"options": "env.views=1"}, "options must be a list of strings"),
         (OneCamera(), {}, "OneCamera takes 1. Set env.views=1"),
         (Straight(), {"world": ApartmentsWorld(16)}, "world is a ApartmentsWorld: give what makes"),
-        (Straight(), {"world": Dark, "suite": ["spatter"]}, "the world Dark shows only"),
+        (Straight(), {"world": Dark, "suite": ["spatter"]}, "the world Dark has only"),
         (Straight(), {"world": lambda: ApartmentsWorld(16), "workers": 2}, "give workers=1"),
     ],
 )

@@ -352,7 +352,7 @@ def test_episodes_may_be_some_of_those_listed(walk):
 
 
 def test_a_gymnasium_environment_is_told_from_a_world(walk):
-    with pytest.raises(ValueError, match=r"Corridor is no world: .*GymWorld\(Corridor\(...\)"):
+    with pytest.raises(ValueError, match=r"Corridor is not a world: .*GymWorld\(Corridor\(...\)"):
         walk(Holder(weight(1)), Corridor)
 
 
