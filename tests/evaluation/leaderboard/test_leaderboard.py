@@ -312,7 +312,7 @@ def test_nothing_is_written_that_would_be_refused_again(rows, tmp_path, monkeypa
         assert command.main([*add, *wrong]) == 2
         assert f"{wrong[0][2:].replace('-', '_')} must be valid" in capsys.readouterr().err
     assert command.main(["show", "--out", "rows.jsonl"]) == 2
-    assert "name a file that ends in .html" in capsys.readouterr().err
+    assert "must end in .html" in capsys.readouterr().err
     assert {p.name: p.read_bytes() for p in tmp_path.iterdir()} == before
 
 
@@ -334,7 +334,7 @@ def test_benchmark_knows_an_agent_by_the_networks_it_holds_and_says_what_it_cann
     assert mitigate.benchmark(Pupil(1), **options) == first
     assert "settings()" not in capsys.readouterr().out
     second = mitigate.benchmark(Pupil(2), **options)
-    assert "Every attribute of a Pupil counts" in capsys.readouterr().out
+    assert "All attributes of a Pupil count" in capsys.readouterr().out
     assert second.agents != first.agents and second.rows["sha256"] != first.rows["sha256"]
     for entry in (first, second):
         assert command.differences(entry, command.rows_of(entry)) == []
@@ -384,7 +384,7 @@ class OneCamera(Straight):
 @pytest.mark.parametrize(
     ("agent", "options", "words"),
     [
-        (Straight, {}, "Straight is a class"),
+        (Straight, {}, "got the class Straight"),
         (None, {}, "A NoneType cannot run episodes"),
         (lambda observation: STOP, {}, "no reset"),
         (Straight(), {"suite": "fulll"}, "no suite 'fulll'. Did you mean full?"),
@@ -394,11 +394,15 @@ class OneCamera(Straight):
         (Straight(), {"training_data": "x" * 2001}, "training_data must be"),
         (Straight(), {"listed": []}, "listed must list at least one episode"),
         (Straight(), {"listed": ["e1"]}, "listed must hold only objects of Episode, got 'e1'"),
-        (Straight(), {"episodes": "2"}, "episodes must be a whole number .* got '2'"),
-        (Straight(), {"episodes": 2.0}, "episodes must be a whole number .* got 2.0"),
+        (Straight(), {"episodes": "2"}, "or null for the whole list, got '2'"),
+        (Straight(), {"episodes": 2.0}, "or null for the whole list, got 2.0"),
         (Straight(), {"options": "env.views=1"}, "options must be a list of strings"),
         (OneCamera(), {}, "OneCamera takes 1. Set env.views=1"),
-        (Straight(), {"world": ApartmentsWorld(16)}, "world is a ApartmentsWorld: give what makes"),
+        (
+            Straight(),
+            {"world": ApartmentsWorld(16)},
+            "a function that makes a world, got a ApartmentsWorld",
+        ),
         (Straight(), {"world": Dark, "suite": ["spatter"]}, "the world Dark has only"),
         (Straight(), {"world": lambda: ApartmentsWorld(16), "workers": 2}, "give workers=1"),
     ],

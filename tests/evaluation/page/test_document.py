@@ -207,7 +207,9 @@ def test_a_walk_is_compared_with_no_row_of_another_agent_of_its_name():
     (drawn,) = walk_again(agents, world, [episode], made + others, most=3, seed=0)
     assert [walk["agrees"] for walk in drawn["walks"]] == [True, True]
     assert {walk["hash"] for walk in drawn["walks"]} == {made[0]["agent"]}
-    with pytest.raises(ValueError, match=r"rows of base are of ba9876543210, and the weights"):
+    with pytest.raises(
+        ValueError, match=r"rows of base belong to the agent ba9876543210, but the named weights"
+    ):
         next(walk_again(agents, world, [episode], others, most=3, seed=0))
 
 
@@ -250,7 +252,7 @@ def test_a_page_replaces_no_rows_and_a_place_that_cannot_be_is_told(tmp_path, ca
     (tmp_path / "folder.html").mkdir()
     for out in (file, tmp_path / "folder.html", tmp_path, "", tmp_path / "report"):
         assert command.main([str(file), "--out", str(out)]) == 2
-        assert "name a file that ends in .html" in capsys.readouterr().err
+        assert "must end in .html" in capsys.readouterr().err
     for out in (file / "report.html", tmp_path / f"{'x' * 300}.html"):
         assert command.main([str(file), "--out", str(out)]) == 2
         assert capsys.readouterr().err.startswith("report: ")
