@@ -23,11 +23,11 @@ def test_the_table_printed_is_of_what_was_asked_for_and_the_file_of_all(tmp_path
     evaluate.write_table([tmp_path / "rows.jsonl"], tmp_path, all_rows[:2])
     told = capsys.readouterr().out
     assert "N = 2 episodes" in told and "N = 3" not in told
-    assert f"{tmp_path} holds 1 other row besides: {tmp_path / 'table.md'} is of all." in told
+    assert f"{tmp_path} holds 1 other row, too; {tmp_path / 'table.md'} includes them." in told
     assert "N = 3 episodes" in (tmp_path / "table.md").read_text()
     evaluate.write_table([tmp_path / "rows.jsonl"], tmp_path, all_rows)
     told = capsys.readouterr().out
-    assert "N = 3 episodes" in told and "besides" not in told
+    assert "N = 3 episodes" in told and "other row" not in told
 
 
 def test_a_safeguard_that_does_not_exist_leaves_no_folder(tmp_path):

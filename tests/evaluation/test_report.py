@@ -268,7 +268,10 @@ def test_seeds_and_the_column_to_compare_with_may_be_chosen(tmp_path, capsys):
     printed = capsys.readouterr().out
     assert "| Corruption | da_per_episode | base |" in printed
     assert "| Clean SR against da_per_episode | – | +20.0" in printed and "seed 0," in printed
-    for wrong, words in (("--seed=4", "seed 4; there are 0, 1"), ("--against=bas", "Did you mean")):
+    for wrong, words in (
+        ("--seed=4", "seeds must be among 0, 1, got 4"),
+        ("--against=bas", "Did you mean"),
+    ):
         assert table.main([*given, wrong]) == 2
         assert words in capsys.readouterr().err
 

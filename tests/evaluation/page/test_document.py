@@ -92,7 +92,7 @@ def test_rows_that_are_missing_are_missing_in_the_page(rows):
     begin = data["grids"][0]["cells"]["0|spatter|0.6|0"]
     assert packed[3 * begin + 3] == 65535
     assert data["sections"][0]["cells"][0][1][2] == 9
-    assert any("fewer episodes" in note for note in data["sections"][0]["notes"])
+    assert any("part of the episodes" in note for note in data["sections"][0]["notes"])
 
 
 def test_a_page_is_bounded_and_says_what_it_leaves_out(rows):
