@@ -1,7 +1,7 @@
-"""The layers of adapters: for maps, for tokens, for the views of a ring, and gates.
+"""Adapter layers: for feature maps, for tokens, for the views of a panorama, and gates.
 
-Every adapter is residual, ``x + up(act(down(x)))``, and ``up`` starts at zero: a fresh adapter
-changes nothing until it has learned.
+Every adapter is residual, ``x + up(act(down(x)))``, and ``up`` is initialised to zero. A new
+adapter therefore changes nothing until it is trained.
 """
 
 from __future__ import annotations
@@ -16,9 +16,9 @@ from torch.utils.hooks import RemovableHandle
 
 from mitigate.core.observation import HFOV_DEGREES, VIEWS
 
-FLAT = (1e-3, 1e-2)  # second differences that count as none, of values about 1 apart (ours)
-TEXTURES = 4 + 4 * (3 + len(FLAT))  # numbers of :func:`textures` for each channel
-HIDDEN = 32  # width of the layer that judges (ours)
+FLAT = (1e-3, 1e-2)  # second differences below these count as zero (heuristic; values span about 1)
+TEXTURES = 4 + 4 * (3 + len(FLAT))  # outputs of :func:`textures` per channel
+HIDDEN = 32  # width of a gate's hidden layer (heuristic)
 
 
 class Adapter(nn.Module):
@@ -26,9 +26,10 @@ class Adapter(nn.Module):
 
     Attributes:
         settings: constructor arguments as plain data.
-        corrects: names of the layers that the correction is proportional to (``scale_adapters``).
-        gates: the gate of the encoder, if there is one (``insert_adapters``).
-        hook: calls the adapter behind its module; None where ``nn.Sequential`` does.
+        corrects: names of the layers that scale the correction (``scale_adapters``).
+        gates: the gate of the encoder; empty if it has none (``insert_adapters``).
+        hook: handle of the hook that calls the adapter after its module; None if
+            ``nn.Sequential`` calls it.
     """
 
     settings: dict[str, Any]
@@ -38,30 +39,33 @@ class Adapter(nn.Module):
 
 
 class Judged:
-    """What a gate said of the last batch: logits ``[n]``, above 0 where it is open."""
+    """A gate's output for the last batch: logits ``[n]``, above 0 where the gate is open."""
 
     logits: Tensor
 
     def __getstate__(self) -> dict[str, Tensor]:
-        """A copy begins anew: what was said belongs to a forward pass, with its gradients."""
+        """Leave the logits out of copies: they belong to one forward pass and its gradients."""
         return {}
 
 
 class FrameGate(Adapter):
-    """Says of each frame ``[n, C, h, w]`` that goes into a module whether it is corrupted.
+    """Classify each frame ``[n, C, h, w]`` that enters a module as clean or corrupted.
 
-    The adapters behind it in the same encoder correct only the frames for which it is open
-    (:func:`through`), so what it takes for clean gets the features of the encoder without adapters,
-    bit for bit. Reads the mean, the standard deviation and the maximum of two convolutions, and
-    :func:`textures`; of a panorama also their mean over its views. While the adapters train it is
-    always open: they learn from all frames, and it learns beside them.
+    The adapters after the gate in the same encoder correct only the frames for which it is open
+    (:func:`through`). A frame classified as clean gets exactly the features of the encoder without
+    adapters. The gate reads the mean, the standard deviation and the maximum of two convolutions,
+    and :func:`textures`; for a panorama also their mean over its views. During training the gate
+    is always open, so that the adapters learn from all frames; the gate trains with them.
 
-    Args: channels: C. middle: channels of the convolutions. views: of a panorama, which follow one
-    another in the batch; 1: each frame is judged by itself. ``threshold`` is taken from the logits:
-    ``calibrate`` sets it.
+    Args:
+        channels: C.
+        middle: channels of the convolutions.
+        views: views per panorama, consecutive in the batch; 1 classifies each frame separately.
 
-    Source: ours; learned statistics and a threshold on clean frames in place of the paper's rule of
-    feature magnitudes.
+    ``threshold`` is subtracted from the logits; ``calibrate`` sets it.
+
+    Source: this project. Learned statistics and a threshold on clean frames replace the paper's
+    rule on feature magnitudes.
     """
 
     threshold: Tensor
@@ -70,7 +74,8 @@ class FrameGate(Adapter):
         super().__init__()
         if channels < 1 or middle < 1 or views < 1:
             raise ValueError(
-                f"A gate needs channels ({channels}), middle ({middle}) and views ({views}) >= 1."
+                "channels, middle and views of a gate must be >= 1, got "
+                f"{channels}, {middle} and {views}."
             )
         self.settings = {"kind": "gate", "channels": channels, "middle": middle, "views": views}
         self.views = views
@@ -83,43 +88,62 @@ class FrameGate(Adapter):
         self.judged = Judged()
 
     def forward(self, x: Tensor) -> Tensor:
-        """``x`` as it is: a gate in an ``nn.Sequential`` changes nothing."""
+        """Return ``x`` unchanged, so that a gate in an ``nn.Sequential`` has no effect."""
         return x
 
     def look(self, x: Tensor) -> None:
-        """Judge frames ``[n, C, h, w]``."""
+        """Compute and keep the logits of frames ``[n, C, h, w]``."""
         x = x.detach().float()
         y = F.gelu(self.second(F.gelu(self.first(x)))).flatten(2)
         spread = (y.var(2, correction=0) + 1e-6).sqrt()
-        own = torch.cat([y.mean(2), spread, y.amax(2), textures(x)], 1)
+        statistics = torch.cat([y.mean(2), spread, y.amax(2), textures(x)], 1)
         if self.views > 1:
-            ring = own.unflatten(0, (-1, self.views))
-            own = torch.cat([ring, ring.mean(1, keepdim=True).expand_as(ring)], 2).flatten(0, 1)
-        self.judged.logits = self.judge(F.gelu(self.hidden(own)))[:, 0] - self.threshold
+            ring = statistics.unflatten(0, (-1, self.views))
+            statistics = torch.cat([ring, ring.mean(1, keepdim=True).expand_as(ring)], 2).flatten(
+                0, 1
+            )
+        self.judged.logits = self.judge(F.gelu(self.hidden(statistics)))[:, 0] - self.threshold
 
     def calibrate(self, logits: Tensor, touched: float) -> None:
-        """Move the threshold so that it opens for a share ``touched`` of the clean frames of which
-        it said ``logits`` [n]."""
+        """Move the threshold so that the gate opens for a share of clean frames.
+
+        Args:
+            logits: the gate's logits [n] of clean frames.
+            touched: the share, in [0, 1].
+        """
         self.threshold += logits.float().quantile(1 - touched).to(self.threshold.dtype)
 
 
 def textures(x: Tensor) -> Tensor:
-    """What tells noise, blur, steps, dark and holes from a clean frame: float32 [n, C * TEXTURES]
-    of frames ``[n, C, h, w]``, each channel in values about 1 apart. Sizes as logarithms."""
-    found = [x.mean((2, 3)), x.std((2, 3)), *((x.flatten(2).amin(2)), (x.flatten(2).amax(2)))]
+    """Return statistics that separate noise, blur, quantisation, dark and holes from clean frames.
+
+    Args:
+        x: frames ``[n, C, h, w]`` whose values span about 1.
+
+    Returns:
+        float32 [n, C * TEXTURES]; magnitudes as logarithms.
+    """
+    features = [x.mean((2, 3)), x.std((2, 3)), x.flatten(2).amin(2), x.flatten(2).amax(2)]
     for level in (x, F.avg_pool2d(x, 2)):
         for axis in (2, 3):
             bend = level.diff(n=2, dim=axis).abs()
             sizes = [level.diff(dim=axis).abs().mean((2, 3)), bend.mean((2, 3))]
             sizes.append(bend.square().mean((2, 3)))
-            found += [(size + 1e-4).log() / 3 + 1 for size in sizes]
-            found += [(bend < flat).float().mean((2, 3)) for flat in FLAT]
-    return torch.cat(found, 1)
+            features += [(size + 1e-4).log() / 3 + 1 for size in sizes]
+            features += [(bend < flat).float().mean((2, 3)) for flat in FLAT]
+    return torch.cat(features, 1)
 
 
 def through(gates: list[Adapter], x: Tensor, corrected: Tensor) -> Tensor:
-    """``corrected`` for the frames for which the gate is open, ``x`` for the others; ``corrected``
-    for all while it trains. ``gates``: of the adapter, one or none; none is always open."""
+    """Return ``corrected`` for frames whose gate is open and ``x`` for the others.
+
+    Without a gate, and during training, all frames are corrected.
+
+    Args:
+        gates: the gate of the adapter; empty for none.
+        x: the input of the adapter.
+        corrected: its output, of the same shape.
+    """
     if not gates or gates[0].training:
         return corrected
     gate = gates[0]
@@ -129,11 +153,11 @@ def through(gates: list[Adapter], x: Tensor, corrected: Tensor) -> Tensor:
 
 
 class Gate(nn.Module):
-    """How much of its adapter's correction a frame gets: ``[n]`` logits from the bottleneck.
+    """Scale the correction of an adapter per frame: logits ``[n]`` from the bottleneck.
 
-    Reads the mean and the root mean square of each of its ``middle`` channels over a frame. On
-    frames that nothing has happened to it should be shut, so that clean features stay as they were;
-    a recipe may teach it that (``recipes/encoder.py``), and it learns with the rest in any case.
+    Reads the mean and the root mean square of each of the ``middle`` channels over a frame. It
+    should be closed on clean frames, so that their features do not change. A recipe may add a loss
+    for that (``recipes/encoder.py``); it trains with the adapter in any case.
     """
 
     def __init__(self, middle: int) -> None:
@@ -141,7 +165,7 @@ class Gate(nn.Module):
         self.read = nn.Linear(2 * middle, 1)
 
     def forward(self, y: Tensor, over: tuple[int, ...]) -> Tensor:
-        """``over``: the axes of ``y`` that are neither frames nor channels; none for vectors."""
+        """Return logits [n]; ``over`` are the axes of ``y`` other than frames and channels."""
         if over:
             mean, power = y.mean(over), (y * y).mean(over)
         else:
@@ -154,12 +178,14 @@ class TokenAdapter(Adapter):
     or ``[n, h, w, C]``; ``up`` starts at zero.
 
     Args:
-        channels: C. reduction: the bottleneck has ``max(4, C // reduction)`` channels.
-        batch: the axis of the frames, 0 or 1 (as in OpenAI's CLIP). gate: see :class:`Gate`.
-        middle: of the bottleneck, in place of ``reduction``.
+        channels: C.
+        reduction: the bottleneck has ``max(4, C // reduction)`` channels.
+        batch: the axis of the frames, 0 or 1 (as in OpenAI's CLIP).
+        gate: whether to add a :class:`Gate`.
+        middle: channels of the bottleneck; overrides ``reduction``.
 
-    ``norm`` is a layer norm without weights: residual streams of transformers have a few channels
-    far larger than the rest. Source: as ``ConvAdapter``.
+    ``norm`` is a layer norm without weights, because residual streams of transformers have a few
+    channels that are far larger than the rest. Source: as ``ConvAdapter``.
     """
 
     corrects = ("up",)
@@ -180,11 +206,11 @@ class TokenAdapter(Adapter):
             or (middle is not None and middle < 1)
         ):
             raise ValueError(
-                f"A token adapter needs channels ({channels}), reduction ({reduction}) and middle "
-                f"({middle}) of at least 1, and its frames on axis 0 or 1 ({batch})."
+                "channels, reduction and middle of a token adapter must be >= 1, got "
+                f"{channels}, {reduction} and {middle}; batch must be 0 or 1, got {batch}."
             )
         self.settings = {"kind": "tokens", "channels": channels, "reduction": reduction}
-        self.settings |= {"batch": batch, **further(gate, middle)}
+        self.settings |= {"batch": batch, **optional_settings(gate, middle)}
         middle = middle or max(4, channels // reduction)
         self.batch, self.channels = batch, channels
         self.down, self.up = nn.Linear(channels, middle), nn.Linear(middle, channels)
@@ -203,8 +229,8 @@ class TokenAdapter(Adapter):
         return x + z
 
 
-def further(gate: bool, middle: int | None) -> dict[str, bool | int]:
-    """The settings that an adapter names only if it has them."""
+def optional_settings(gate: bool, middle: int | None) -> dict[str, bool | int]:
+    """Return the settings that are stored only if they are set."""
     return {**({"gate": True} if gate else {}), **({"middle": middle} if middle else {})}
 
 
@@ -212,12 +238,14 @@ class ConvAdapter(Adapter):
     """``x + up(gelu(down(x)))`` on maps ``[n, C, h, w]``; ``up`` starts at zero.
 
     Args:
-        channels: C. reduction: the bottleneck has ``max(4, C // reduction)`` channels.
-        kernel: of the spatial convolution, odd. gate: see :class:`Gate`.
-        middle: channels of the bottleneck, in place of ``reduction``.
+        channels: C.
+        reduction: the bottleneck has ``max(4, C // reduction)`` channels.
+        kernel: size of the spatial convolution, odd.
+        gate: whether to add a :class:`Gate`.
+        middle: channels of the bottleneck; overrides ``reduction``.
 
-    Source: bottleneck and zero start after Houlsby et al. 2019, as the paper's section on adapters
-    asks; reduction and kernel are ours, chosen for 1-4 % of the weights.
+    Source: bottleneck and zero initialisation after Houlsby et al. 2019, as in the paper's section
+    on adapters. This project chose reduction and kernel for 1-4 % of the weights.
     """
 
     corrects = ("up",)
@@ -233,11 +261,11 @@ class ConvAdapter(Adapter):
         super().__init__()
         if channels < 1 or reduction < 1 or kernel % 2 == 0 or (middle is not None and middle < 1):
             raise ValueError(
-                f"An adapter needs channels ({channels}), reduction ({reduction}) and middle "
-                f"({middle}) of at least 1 and an odd kernel ({kernel})."
+                "channels, reduction and middle of an adapter must be >= 1, got "
+                f"{channels}, {reduction} and {middle}; kernel must be odd, got {kernel}."
             )
         self.settings = {"channels": channels, "reduction": reduction, "kernel": kernel}
-        self.settings |= further(gate, middle)
+        self.settings |= optional_settings(gate, middle)
         middle = middle or max(4, channels // reduction)
         self.down = nn.Conv2d(channels, middle, kernel, padding=kernel // 2)
         self.up = nn.Conv2d(middle, channels, 1)
@@ -257,21 +285,27 @@ class ConvAdapter(Adapter):
 class RingAdapter(Adapter):
     """Zero-initialised residual adapter over a panorama's views: maps ``[P * views, C, h, w]``.
 
-    With y = gelu(down(x)), and ``aligned`` bringing a map's two neighbours into its own frame:
+    With y = gelu(down(x)), and ``aligned`` warping the two neighbouring maps into each view:
 
         w = softmax(score(aligned(y)))            over the view and the neighbours that see a cell
         z = gelu(mix([y, sum w aligned(y)]))
         out = x + tanh(share(z)) * (sum w aligned(x) - x) + up(z)
 
-    ``up`` and ``share`` start at zero: nothing changes until they have learned. ``up`` corrects, as
-    in any adapter; ``share`` says how much of a cell's features comes from the neighbours, all
-    channels at once and without a bottleneck.
+    ``up`` and ``share`` are initialised to zero, so nothing changes before training. ``up``
+    corrects, as in any adapter. ``share`` sets how much of a cell's features comes from the
+    neighbours, for all channels at once and without a bottleneck.
 
-    Args: channels: C. reduction: the bottleneck y has ``max(4, C // reduction)`` channels. kernel:
-    of ``mix``, odd. views: of a panorama, at least 3. hfov: of a view, in degrees.
-    Raises ValueError for other numbers.
+    Args:
+        channels: C.
+        reduction: the bottleneck y has ``max(4, C // reduction)`` channels.
+        kernel: size of the convolution ``mix``, odd.
+        views: views per panorama, at least 3.
+        hfov: horizontal field of view in degrees.
 
-    Source: ours; the paper's adapters (its section on adapters) see one view at a time.
+    Raises:
+        ValueError: An argument is out of range.
+
+    Source: this project. The paper's adapters see one view at a time.
     """
 
     corrects = ("share", "up")  # the correction of a share goes through tanh
@@ -287,9 +321,9 @@ class RingAdapter(Adapter):
         super().__init__()
         if channels < 1 or reduction < 1 or kernel % 2 == 0 or views < 3 or not 0 < hfov < 180:
             raise ValueError(
-                f"A ring adapter needs channels ({channels}) and reduction ({reduction}) of at "
-                f"least 1, an odd kernel ({kernel}), at least 3 views ({views}) and a field of "
-                f"view between 0 and 180 degrees ({hfov})."
+                "channels and reduction of a ring adapter must be >= 1, got "
+                f"{channels} and {reduction}; kernel must be odd, got {kernel}; views must be "
+                f">= 3, got {views}; hfov must be between 0 and 180 degrees, got {hfov}."
             )
         middle = max(4, channels // reduction)
         self.settings = {
@@ -313,7 +347,7 @@ class RingAdapter(Adapter):
         parts = [x, y, self.score(y)]
         grid = neighbour_grid(x.shape[-2], x.shape[-1], 360 / self.views, self.hfov).to(x.device)
         maps = self.aligned(torch.cat([part.float() for part in parts], 1), grid)
-        unseen = (grid.abs() > 1).any(-1)  # [2, h, w]; a view sees all of itself
+        unseen = (grid.abs() > 1).any(-1)  # [2, h, w]; a view sees all of its own cells
         scores = torch.stack([each[:, -1] for each in maps], 1)
         scores = scores.masked_fill(F.pad(unseen, (0, 0, 0, 0, 1, 0)), -math.inf)
         weights = scores.softmax(1).unsqueeze(2).unbind(1)
@@ -325,9 +359,16 @@ class RingAdapter(Adapter):
         return through(self.gates, x, x + self.share(z).tanh() * (around - x) + self.up(z))
 
     def aligned(self, maps: Tensor, grid: Tensor) -> tuple[Tensor, Tensor, Tensor]:
-        """Each map ``[P * views, C, h, w]``, the one to its left and the one to its right, turned
-        into its own frame; zero where a neighbour does not see, and fading to it within half a cell
-        of the neighbour's border."""
+        """Return each map and its left and right neighbours, warped into the map's own view.
+
+        Args:
+            maps: ``[P * views, C, h, w]``.
+            grid: of :func:`neighbour_grid`.
+
+        Returns:
+            Three tensors of the shape of ``maps``. A neighbour is zero where it does not see a
+            cell and fades to zero within half a cell of its border.
+        """
         ring = maps.unflatten(0, (-1, self.views))
         left, right = (
             F.grid_sample(
@@ -341,12 +382,17 @@ class RingAdapter(Adapter):
 
 
 def neighbour_grid(height: int, width: int, step: float, hfov: float) -> Tensor:
-    """Where the cells of a view lie in its left and right neighbour.
+    """Return where the cells of a view lie in its left and right neighbour.
 
-    Args: height, width: of the map. step: degrees from a view to the next, which is to its right
-    (``mitigate/core/observation.py``). hfov: of a view, in degrees; views are as wide as high.
-    Returns float32 ``[2, h, w, 2]``, (x, y) in the form of ``grid_sample`` (``align_corners``
-    false): inside [-1, 1] where the neighbour sees the cell.
+    Args:
+        height: rows of the map.
+        width: columns of the map.
+        step: degrees from a view to the next one on its right (``mitigate/core/observation.py``).
+        hfov: horizontal field of view in degrees; views are square.
+
+    Returns:
+        float32 ``[2, h, w, 2]``: (x, y) as ``grid_sample`` takes them with ``align_corners=False``;
+        inside [-1, 1] where the neighbour sees the cell.
     """
     half = math.tan(math.radians(hfov) / 2)
     x = ((torch.arange(width) + 0.5) / width * 2 - 1) * half

@@ -1,12 +1,12 @@
 """Zero-initialised residual adapters for any frozen torch encoder.
 
-``insert_adapters(model, target_modules=...)`` puts ``x + up(act(down(x)))`` behind named modules,
-as PEFT does for attention: the backbone's own weights keep their names and values, its ``forward``
-is not touched, and nothing changes until ``up`` has learned. Each adapter is a child of its module,
-called by a forward hook. The layers are in ``adapter_layers.py``: convolutional behind a module
-that returns maps, linear behind one that returns tokens, a *ring* adapter that also sees the
-neighbours of each view of a panorama, and a *gate* that lets the adapters of an encoder correct
-only the frames that it judges to be corrupted.
+``insert_adapters(model, target_modules=...)`` adds ``x + up(act(down(x)))`` after named modules, as
+PEFT does for attention. The backbone's weights keep their names and values, its ``forward`` is not
+changed, and its output stays the same until ``up`` is trained. Each adapter is a child of its
+module, called by a forward hook. The layers are in ``adapter_layers.py``: convolutional after a
+module that returns maps, linear after a module that returns tokens, a *ring* adapter that also
+reads the neighbours of each view of a panorama, and a *gate*, which restricts the correction to
+frames that it classifies as corrupted.
 """
 
 from __future__ import annotations
@@ -27,7 +27,17 @@ from mitigate.agents.adapter_layers import (
     RingAdapter,
     TokenAdapter,
 )
-from mitigate.agents.sites import MAP, Run, Site, channels_of, first, inputs_of, listed, look, named
+from mitigate.agents.sites import (
+    MAP,
+    Run,
+    Site,
+    channels_of,
+    find_sites,
+    first,
+    inputs_of,
+    listed,
+    named,
+)
 from mitigate.core import checkpoint
 from mitigate.core.files import write_text
 from mitigate.core.folders import problem, write_folder
@@ -36,7 +46,7 @@ from mitigate.core.names import short
 from mitigate.core.observation import HFOV_DEGREES, VIEWS
 
 WEIGHTS, SETTINGS = "adapters.safetensors", "adapters.json"
-NAME = checkpoint.ADAPTER.strip(".")  # of the submodule that a target module gets
+NAME = checkpoint.ADAPTER.strip(".")  # name of the submodule that is added to a target module
 _STATISTICS = "_statistics_before_adapters"
 
 
@@ -55,51 +65,64 @@ def insert_adapters(
     gate: bool = False,
     middle: int | None = None,
 ) -> list[str]:
-    """Freeze ``model`` and give an adapter to every module that a target names.
+    """Freeze ``model`` and add an adapter to every module that a target names.
+
+    Train with the backbone in eval mode. In training mode batches change the running statistics of
+    a BatchNorm, even if it is frozen, and the adapters then fit no saved backbone
+    (``save_adapters`` warns).
 
     Args:
-        model: any module tree; the targets must return one tensor ``[n, C, h, w]``, or with ``run``
-            one that an adapter fits behind, alone or as the first item of a tuple or list.
-        run: calls the model on so many frames, such as ``lambda n: model(frames[:n])``; what the
-            targets return then is looked at, and tokens get a :class:`TokenAdapter`.
-        gate: adapters that say for each frame how much they correct. middle: channels of the
-            bottlenecks, in place of ``reduction``.
+        model: any module tree. Without ``run`` the targets must return one tensor
+            ``[n, C, h, w]``; with ``run`` also tokens or a vector, alone or as the first item of a
+            tuple or list.
         target_modules: regular expressions, each matched against the whole dotted name of a module
-            or its end (``"stages\\.[01]"`` finds ``rgb_encoder.stages.0``). reduction, kernel: of
-            each adapter. ring: targets of the same form that get a :class:`RingAdapter` over
-            ``views`` views of ``hfov`` degrees, which follow one another in the batch (n = P *
-            views), with ``ring_reduction`` in place of ``reduction``, ``gate`` and ``middle``; of 1
-            view, a plain one. A module found by both gets this one. gates: targets that get a
-            :class:`FrameGate`, which looks at what goes into them, in place of an adapter, such as
-            an encoder's first; it counts for adapters of maps in the nearest module that has some.
-    Train with the backbone in eval mode: batches move the running statistics of a BatchNorm that
-    trains, frozen or not, and the adapters then fit no backbone on file (``save_adapters`` warns).
-    Returns the names of the adapted modules, in the model's order.
-    Raises TypeError for targets that are one string; ValueError for none at all, for one that
-    matches nothing (with the names there are) or is no regular expression, a module whose channels
-    cannot be told or that has a child called "adapter", a gate that nothing follows, or a model
-    that has adapters; the model is then as it was.
+            or its end (``"stages\\.[01]"`` finds ``rgb_encoder.stages.0``).
+        reduction: divisor of the channels that gives the width of a bottleneck.
+        kernel: size of the convolution of an adapter for maps.
+        ring: targets that get a :class:`RingAdapter`; it takes precedence over
+            ``target_modules``. Views of a panorama are consecutive in the batch (n = P * views).
+        ring_reduction: ``reduction`` of the ring adapters.
+        gates: targets whose input a :class:`FrameGate` classifies, such as an encoder's first
+            module. It controls the adapters for maps in the nearest module that has some.
+        views: views per panorama; with 1 view ``ring`` adds plain adapters.
+        hfov: horizontal field of view in degrees.
+        run: calls the model on a number of frames, such as ``lambda n: model(frames[:n])``. The
+            outputs of the targets decide which adapter fits; tokens get a :class:`TokenAdapter`.
+        gate: whether each adapter scales its correction per frame.
+        middle: channels of the bottlenecks; overrides ``reduction``.
+
+    Returns:
+        The names of the adapted modules, in the model's order.
+
+    Raises:
+        TypeError: The targets are one string.
+        ValueError: There are no targets; a target matches no module or is not a regular
+            expression; the channels of a module are unknown; a module has a child called
+            "adapter"; a gate controls no adapter; or the model has adapters already. The model is
+            then unchanged.
     """
-    refuse_adapted(model)
+    reject_adapted(model)
     target_modules, ring = listed("target_modules", target_modules), listed("ring", ring)
     gated = named(model, listed("gates", gates))
     if not target_modules + ring:
         raise ValueError("target_modules names no module: give at least one, such as 'layer[1-4]'.")
     plain, ringed = named(model, target_modules), named(model, ring)
-    sites = None if run is None else look(model, run)
-    made: dict[str, Adapter] = {}
+    sites = None if run is None else find_sites(model, run)
+    adapters: dict[str, Adapter] = {}
     for name, module in model.named_modules():
         if name in gated:
-            made[name] = FrameGate(inputs_of(name, module), views=views if ringed else 1)
+            adapters[name] = FrameGate(inputs_of(name, module), views=views if ringed else 1)
         elif name in ringed and views == 1:  # no neighbours
-            made[name] = _plain(name, module, None, ring_reduction, kernel, gate, middle)
+            adapters[name] = _plain(name, module, None, ring_reduction, kernel, gate, middle)
         elif name in ringed:
-            made[name] = RingAdapter(channels_of(name, module), ring_reduction, kernel, views, hfov)
+            adapters[name] = RingAdapter(
+                channels_of(name, module), ring_reduction, kernel, views, hfov
+            )
         elif name in plain:
-            made[name] = _plain(name, module, sites, reduction, kernel, gate, middle)
-    check_gates(made)
-    attach_all(model, made)
-    return list(made)
+            adapters[name] = _plain(name, module, sites, reduction, kernel, gate, middle)
+    check_gates(adapters)
+    attach_all(model, adapters)
+    return list(adapters)
 
 
 def _plain(
@@ -111,41 +134,46 @@ def _plain(
     gate: bool,
     middle: int | None,
 ) -> Adapter:
-    """The adapter that fits behind a module."""
+    """Return an adapter that fits the output of a module."""
     if sites is None:
         return ConvAdapter(channels_of(name, module), reduction, kernel, gate, middle)
     site = sites.get(name, "the encoder does not call it")
     if isinstance(site, str):
-        raise ValueError(f"No adapter fits behind {name}: {site}. Choose another target module.")
+        raise ValueError(f"No adapter fits the output of {name}: {site}. Choose another module.")
     if site.kind == MAP:
         return ConvAdapter(site.channels, reduction, kernel, gate, middle)
     return TokenAdapter(site.channels, reduction, site.batch, gate, middle)
 
 
 def remove_adapters(model: nn.Module) -> None:
-    """Take all adapters out; the backbone computes what it did before they came in. It stays
-    frozen: ``model.requires_grad_(True)`` lets it train again."""
+    """Remove all adapters, which restores the backbone's output.
+
+    The backbone stays frozen; ``model.requires_grad_(True)`` makes it trainable again.
+    """
     detach_all(model)
 
 
 def adapter_parameters(model: nn.Module) -> list[nn.Parameter]:
-    """The parameters of the adapters alone."""
+    """Return the parameters of the adapters."""
     return [p for adapter in adapters_of(model) for p in adapter.parameters()]
 
 
 def scale_adapters(model: nn.Module, strength: float) -> None:
-    """Have the adapters of ``model`` make a share ``strength`` of the correction that they make
-    now: 1 all of it; 0 none, so that the model computes what it did without them, bit for bit.
-    Their weights change, so whatever is saved afterwards holds it.
+    """Multiply the correction of the adapters of ``model`` by ``strength``.
 
-    Between the two lie models that are nearer to the clean success of the backbone and keep less of
-    what the adapters win. Source: WiSE-FT (Wortsman et al., "Robust fine-tuning of zero-shot
-    models", CVPR 2022), which interpolates all weights between before and after a training; of
-    adapters the layers that start at zero are enough.
-    Raises ValueError for a strength beyond 0 to 1, and for a model without adapters.
+    1 keeps the correction. 0 removes it: the model then computes exactly what it does without
+    adapters. Values in between trade robustness for clean success. The weights of the adapters
+    change in place, so a checkpoint saved afterwards contains the scaled adapters.
+
+    Source: WiSE-FT (Wortsman et al., "Robust fine-tuning of zero-shot models", CVPR 2022), which
+    interpolates all weights between before and after a training. For adapters it is enough to
+    scale the layers that were initialised to zero.
+
+    Raises:
+        ValueError: ``strength`` is outside [0, 1], or the model has no adapters.
     """
     if not 0 <= strength <= 1:
-        raise ValueError(f"strength={strength} is a share of the adapters' correction: 0 to 1.")
+        raise ValueError(f"strength must be from 0 to 1, got {strength}.")
     if not adapted(model):
         raise ValueError("There are no adapters to scale: call insert_adapters(model, ...) first.")
     layers = [a.get_submodule(name) for a in adapters_of(model) for name in a.corrects]
@@ -155,15 +183,21 @@ def scale_adapters(model: nn.Module, strength: float) -> None:
 
 
 def trainable_share(model: nn.Module) -> float:
-    """Adapter parameters as a share of the backbone's own, in [0, 1]."""
-    own = sum(p.numel() for p in adapter_parameters(model))
-    return own / max(1, sum(p.numel() for p in model.parameters()) - own)
+    """Return the number of adapter parameters divided by that of the backbone."""
+    count = sum(p.numel() for p in adapter_parameters(model))
+    return count / max(1, sum(p.numel() for p in model.parameters()) - count)
 
 
 def save_adapters(model: nn.Module, folder: str | Path) -> Path:
-    """Write the adapters alone: ``adapters.safetensors`` and ``adapters.json`` (names, shapes of
-    the bottlenecks, sha256 of the backbone). Returns the folder. Raises ValueError if there are
-    none; warns if the backbone's running statistics are not those of when they were inserted."""
+    """Write the adapters, without the backbone, and return the folder.
+
+    ``adapters.safetensors`` holds the weights; ``adapters.json`` the names, the settings and the
+    sha256 of the backbone. Warns if the backbone's running statistics changed after the adapters
+    were inserted.
+
+    Raises:
+        ValueError: The model has no adapters.
+    """
     with write_folder(folder, "adapters") as draft:
         write_adapters(model, draft)
     return Path(folder)
@@ -177,8 +211,8 @@ def write_adapters(model: nn.Module, draft: Path) -> None:
     if moved_statistics(model):
         warnings.warn(
             "The backbone's running statistics (BatchNorm) have changed since the adapters were "
-            "inserted, so these adapters fit this backbone only: save it, too. To keep them, train "
-            "with the backbone in eval mode, model.eval().",
+            "inserted, so these adapters fit only this backbone: save it, too. To keep the "
+            "statistics unchanged, train with the backbone in eval mode, model.eval().",
             stacklevel=3,
         )
     modules = nn.ModuleDict({_key(name): adapter for name, adapter in adapters.items()})
@@ -191,15 +225,18 @@ def write_adapters(model: nn.Module, draft: Path) -> None:
 
 
 def load_adapters(model: nn.Module, folder: str | Path) -> list[str]:
-    """Insert the adapters that ``save_adapters`` wrote; returns the adapted modules' names.
+    """Insert the adapters that ``save_adapters`` wrote and return the names of their modules.
 
-    Each goes to its module's device and dtype. The files are compared with the manifest, if there
-    is one. Raises FileNotFoundError if a file is missing;
-    ValueError for a damaged file, for a model that has adapters already, for adapters trained on
-    another backbone (or this one in another dtype), or for modules that ``model`` does not have.
+    Each adapter moves to its module's device and dtype. The files are compared with the manifest,
+    if there is one.
+
+    Raises:
+        FileNotFoundError: A file is missing.
+        ValueError: A file is damaged, the model has adapters already or lacks a module, or the
+            adapters were trained on another backbone (or on this one in another dtype).
     """
     folder = Path(folder)
-    refuse_adapted(model)
+    reject_adapted(model)
     for file in (folder / WEIGHTS, folder / SETTINGS):
         if not file.is_file():
             raise FileNotFoundError(f"There are no adapters in {folder}: {file.name} is missing.")
@@ -209,22 +246,22 @@ def load_adapters(model: nn.Module, folder: str | Path) -> list[str]:
         settings = read_json(folder / SETTINGS, "Fetch the folder again.")
         tensors = checkpoint.load_tensors(folder / WEIGHTS)
         shapes = {name: dict(shape) for name, shape in settings["adapters"].items()}
-        wanted = settings["backbone_sha256"]
+        expected = settings["backbone_sha256"]
         if not shapes:
-            raise ValueError("it names none")
+            raise ValueError("it lists no adapters")
     except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
         raise ValueError(f"The adapters in {folder} are cut short or damaged ({error}).") from error
-    found = backbone_sha(model)
-    if found != wanted:
+    sha = backbone_sha(model)
+    if sha != expected:
         raise ValueError(
-            f"The adapters in {folder} were trained on a backbone with sha256 {wanted}, but this "
-            f"one has {found}. Load the weights they were trained on first; to run in another "
+            f"The adapters in {folder} were trained on a backbone with sha256 {expected}, but this "
+            f"one has {sha}. Load the weights they were trained on first; to run in another "
             "dtype, convert the model afterwards."
         )
     missing = sorted(set(shapes) - {name for name, _ in model.named_modules()})
     if missing:
         raise ValueError(f"This model has no module called {', '.join(missing)}.")
-    made: dict[str, Adapter] = {}
+    adapters: dict[str, Adapter] = {}
     try:
         owners = tuple(f"{_key(name)}." for name in shapes)
         for name in tensors:
@@ -232,91 +269,99 @@ def load_adapters(model: nn.Module, folder: str | Path) -> list[str]:
                 raise ValueError(f"no adapter has the tensor {short(name)}")
         for name, shape in shapes.items():
             prefix = f"{_key(name)}."
-            own = {k.removeprefix(prefix): v for k, v in tensors.items() if k.startswith(prefix)}
-            made[name] = _made(shape, own)
+            weights = {
+                k.removeprefix(prefix): v for k, v in tensors.items() if k.startswith(prefix)
+            }
+            adapters[name] = _build_adapter(shape, weights)
     except (RuntimeError, TypeError, ValueError, ArithmeticError) as error:
         cause = " ".join(str(error).split())[:300]
         raise ValueError(f"The adapters in {folder} are damaged ({cause}).") from error
-    checkpoint.check_finite(nn.ModuleList(made.values()), f"The adapters in {folder}")
-    attach_all(model, made)
+    checkpoint.check_finite(nn.ModuleList(adapters.values()), f"The adapters in {folder}")
+    attach_all(model, adapters)
     return list(shapes)
 
 
-def _made(settings: dict[str, Any], tensors: dict[str, Tensor]) -> Adapter:
-    """Return the adapter of ``settings`` with the weights ``tensors``. Raises TypeError or
-    RuntimeError if they do not fit, or are not as an adapter of that kind writes them; no memory is
-    taken for what does not."""
-    given = {name: value for name, value in settings.items() if name != "kind"}
+def _build_adapter(settings: dict[str, Any], tensors: dict[str, Tensor]) -> Adapter:
+    """Return the adapter of ``settings`` with the weights ``tensors``.
+
+    The settings and shapes are checked on the meta device, so that a damaged file allocates no
+    memory.
+
+    Raises:
+        TypeError, RuntimeError: The settings or tensors do not fit.
+    """
+    arguments = {name: value for name, value in settings.items() if name != "kind"}
     shape = RingAdapter if "views" in settings else ConvAdapter
     kind = {"tokens": TokenAdapter, "gate": FrameGate}.get(str(settings.get("kind")), shape)
     with torch.device("meta"):
-        empty: Any = kind(**given)
+        empty: Any = kind(**arguments)
     if json.dumps(empty.settings, sort_keys=True) != json.dumps(settings, sort_keys=True):
         raise TypeError(f"an adapter with {empty.settings} does not have the settings {settings}")
-    wanted = {name: value.shape for name, value in empty.state_dict().items()}
-    if wanted != {name: value.shape for name, value in tensors.items()}:
-        raise TypeError(f"the tensors are not of the shapes that {SETTINGS} says")
+    expected = {name: value.shape for name, value in empty.state_dict().items()}
+    if expected != {name: value.shape for name, value in tensors.items()}:
+        raise TypeError(f"the tensors do not have the shapes in {SETTINGS}")
     if not all(value.is_floating_point() for value in tensors.values()):
         raise TypeError("the tensors are not all floats")
-    adapter = kind(**given)
+    adapter = kind(**arguments)
     adapter.load_state_dict(tensors)
     return adapter
 
 
 def backbone_sha(model: nn.Module) -> str:
-    """``checkpoint.weights_sha`` of everything but the adapters."""
+    """Return the content hash (``checkpoint.weights_sha``) of the model without its adapters."""
     return checkpoint.weights_sha(model, leave_out=checkpoint.ADAPTER)
 
 
 def _key(name: str) -> str:
-    """A module's name as a ModuleDict's key, which may hold no dot."""
+    """Return a module's name as a key of a ModuleDict, which must not contain a dot."""
     return name.replace(".", "/")
 
 
 def adapted(model: nn.Module) -> list[str]:
-    """Names of the modules of ``model`` that have an adapter."""
+    """Return the names of the modules of ``model`` that have an adapter."""
     return [*_attached(model)]
 
 
 def adapters_of(model: nn.Module) -> list[Adapter]:
-    """The adapters and gates themselves, in the model's order."""
+    """Return the adapters and gates of ``model``, in its order."""
     return [*_attached(model).values()]
 
 
 def _attached(model: nn.Module) -> dict[str, Adapter]:
-    """Adapters by the name of the module that has them."""
+    """Return the adapters by the name of their module."""
     return {
         name: child
         for name, module in model.named_modules()
-        for own, child in module.named_children()
-        if own == NAME and isinstance(child, Adapter)
+        for child_name, child in module.named_children()
+        if child_name == NAME and isinstance(child, Adapter)
     }
 
 
-def refuse_adapted(model: nn.Module) -> None:
+def reject_adapted(model: nn.Module) -> None:
+    """Raise ValueError if ``model`` has adapters."""
     if adapted(model):
         raise ValueError("This model has adapters already; remove_adapters(model) takes them out.")
 
 
-def attach_all(model: nn.Module, made: dict[str, Adapter]) -> None:
-    """Freeze ``model`` and attach ``made``, all or none."""
-    # anything may have that name: a module, a parameter, a method
-    taken = [name for name in made if hasattr(model.get_submodule(name), NAME)]
-    if taken:
+def attach_all(model: nn.Module, adapters: dict[str, Adapter]) -> None:
+    """Freeze ``model`` and attach all ``adapters``, or none if a name is in use."""
+    # an attribute of that name may be a module, a parameter or a method
+    conflicts = [name for name in adapters if hasattr(model.get_submodule(name), NAME)]
+    if conflicts:
         raise ValueError(
-            f"{', '.join(taken)} has something called {NAME!r} of its own, the name that an "
-            "adapter takes. Choose other target modules."
+            f"{', '.join(conflicts)} already has an attribute {NAME!r}, the name under which an "
+            "adapter is added. Choose other target modules."
         )
     model.requires_grad_(False)
     like = next(model.parameters(), torch.zeros(()))
-    for name, adapter in made.items():
+    for name, adapter in adapters.items():
         _attach(model.get_submodule(name), adapter, like)
-    _follow(made)
+    _follow(adapters)
     setattr(model, _STATISTICS, _statistics(model))
 
 
 def detach_all(model: nn.Module) -> None:
-    """Take all adapters out, and their hooks."""
+    """Remove all adapters and their hooks."""
     for name, adapter in _attached(model).items():
         if adapter.hook is not None:
             adapter.hook.remove()
@@ -325,9 +370,9 @@ def detach_all(model: nn.Module) -> None:
 
 
 def moved_statistics(model: nn.Module) -> bool:
-    """Whether the backbone's running statistics are other ones than when adapters came in."""
-    held = vars(model).get(_STATISTICS, {})
-    return any(not v.equal(held.get(name, v)) for name, v in _statistics(model).items())
+    """Return whether the running statistics changed after the adapters were inserted."""
+    before = vars(model).get(_STATISTICS, {})
+    return any(not v.equal(before.get(name, v)) for name, v in _statistics(model).items())
 
 
 def _adapter_of(module: nn.Module) -> Adapter:
@@ -337,67 +382,71 @@ def _adapter_of(module: nn.Module) -> Adapter:
 
 
 def _attach(module: nn.Module, adapter: Adapter, usual: Tensor) -> None:
-    """``usual``: whose device and dtype it gets where ``module`` has no weights."""
+    """Add ``adapter`` to ``module``; ``usual`` gives device and dtype if it has no weights."""
     like = next(module.parameters(), usual)
     module.add_module(NAME, adapter.to(like.device, like.dtype))
     if isinstance(adapter, FrameGate):
-        adapter.hook = module.register_forward_pre_hook(_look)
-    elif type(module).forward is not nn.Sequential.forward:  # that runs its new child by itself
+        adapter.hook = module.register_forward_pre_hook(_judge_input)
+    elif type(module).forward is not nn.Sequential.forward:  # nn.Sequential calls its new child
         adapter.hook = module.register_forward_hook(_adapt)
 
 
 def _adapt(module: nn.Module, inputs: Any, output: Any) -> Any:
-    """Forward hook: the adapter of ``module`` on its output, or on the first item of it."""
+    """Apply the adapter of ``module`` to its output, or to the first item of a tuple or list."""
     adapter = _adapter_of(module)
     if isinstance(output, (tuple, list)):
         rest = (adapter(first(output)), *output[1:])
-        # a named tuple, which alone has _make, takes its parts one by one
+        # the constructor of a named tuple takes one argument per item; only they have _make
         return output._make(rest) if hasattr(output, "_make") else type(output)(rest)
     return adapter(output)
 
 
-def _look(module: nn.Module, inputs: Any) -> None:
-    """Forward pre-hook: the gate of ``module`` on what goes into it."""
+def _judge_input(module: nn.Module, inputs: Any) -> None:
+    """Apply the gate of ``module`` to its input (forward pre-hook)."""
     gate = _adapter_of(module)
     assert isinstance(gate, FrameGate)
     gate.look(inputs[0])
 
 
-def _follow(made: dict[str, Adapter]) -> None:
-    """Tell each adapter of the gate in front of it."""
-    for name, gate in _gates_of(made).items():
-        made[name].gates = [made[gate]]
+def _follow(adapters: dict[str, Adapter]) -> None:
+    """Set the gate of each adapter that has one."""
+    for name, gate in _gates_of(adapters).items():
+        adapters[name].gates = [adapters[gate]]
 
 
-def check_gates(made: dict[str, Adapter]) -> None:
-    """Raise ValueError for a gate that would open and close for nothing."""
-    used = set(_gates_of(made).values())
-    idle = [name for name, m in made.items() if isinstance(m, FrameGate) and name not in used]
+def check_gates(adapters: dict[str, Adapter]) -> None:
+    """Raise ValueError for a gate that controls no adapter."""
+    used = set(_gates_of(adapters).values())
+    idle = [name for name, m in adapters.items() if isinstance(m, FrameGate) and name not in used]
     if idle:
         raise ValueError(
-            f"The gate at {idle[0]} has no adapter of maps behind it to open for (those of tokens "
-            "take none). Leave it out of gates, or choose other target modules."
+            f"The gate at {idle[0]} controls no adapter: no adapter for maps follows it in the "
+            "same encoder, and adapters for tokens take no gate. Leave it out of gates, or choose "
+            "other target modules."
         )
 
 
-def _gates_of(made: dict[str, Adapter]) -> dict[str, str]:
-    """By adapter, the gate in front of it: the one in the same encoder."""
-    corrects = [n for n, m in made.items() if isinstance(m, (ConvAdapter, RingAdapter))]
-    held: dict[str, tuple[str, str]] = {}  # by adapter: the module around both, and the gate
-    for name, gate in made.items():
+def _gates_of(adapters: dict[str, Adapter]) -> dict[str, str]:
+    """Return the gate of each adapter by name: the nearest one in the same encoder."""
+    controllable = [n for n, m in adapters.items() if isinstance(m, (ConvAdapter, RingAdapter))]
+    gates: dict[str, tuple[str, str]] = {}  # by adapter: their common module, and the gate
+    for name, gate in adapters.items():
         if not isinstance(gate, FrameGate):
             continue
-        around, behind = name, list[str]()
-        while around and not behind:
-            around = around.rpartition(".")[0]
-            behind = [n for n in corrects if not around or n.startswith(f"{around}.")]
-        for n in behind:
-            if n not in held or len(around) > len(held[n][0]):
-                held[n] = (around, name)
-    return {name: gate for name, (_, gate) in held.items()}
+        parent = name
+        controlled: list[str] = []
+        while parent and not controlled:
+            parent = parent.rpartition(".")[0]
+            controlled = [n for n in controllable if not parent or n.startswith(f"{parent}.")]
+        for n in controlled:
+            if n not in gates or len(parent) > len(gates[n][0]):
+                gates[n] = (parent, name)
+    return {name: gate for name, (_, gate) in gates.items()}
 
 
 def _statistics(model: nn.Module) -> dict[str, Tensor]:
-    """Copies of the running means and variances of the backbone's normalisations."""
-    found = {n: b for n, b in model.named_buffers() if n.rpartition(".")[2].startswith("running_")}
-    return {name: torch.clone(buffer).float().cpu() for name, buffer in found.items()}
+    """Return copies of the running means and variances of the model's normalisation layers."""
+    buffers = {
+        n: b for n, b in model.named_buffers() if n.rpartition(".")[2].startswith("running_")
+    }
+    return {name: torch.clone(buffer).float().cpu() for name, buffer in buffers.items()}

@@ -1,11 +1,11 @@
-"""The contract of agents: what evaluation and training expect of one.
+"""The interface of agents that evaluation and training use.
 
-An agent receives an instruction and acts on observations; it is independent of worlds. A
+An agent receives an instruction and acts on observations; it does not depend on a world. A
 *trainable* agent also exposes its decisions as batches, and objectives train it from these alone.
-How to bring one: ``docs/bring-your-own.md``.
+``docs/bring-your-own.md`` shows how to add an agent.
 
-A class that builds on :class:`Agent` inherits the defaults of everything optional. An object of any
-other class works, too: :func:`as_agent` fills in what it lacks.
+A subclass of :class:`Agent` inherits defaults for all optional members. Objects of other classes
+work, too: :func:`as_agent` adds the defaults.
 """
 
 from __future__ import annotations
@@ -32,26 +32,27 @@ class Agent:
     """Base class of agents. A subclass defines ``reset`` and ``act``; the rest has defaults.
 
     Attributes:
-        views: 12 for a panorama, 1 for a camera ahead; worlds with another number are rejected.
-            None: any number.
-        sensors: the entries of observations that it reads; a training draws no corruption of frames
-            that are not among them. None: it may read all.
-        tasks: which episodes it can do, by ``info["task"]`` of episode lists ("vln": a route,
-            "ogn": an object); an evaluation warns of others. None: all.
-        system_prompt: of an agent that works with a prompt, which it reads at ``reset``.
-        aim: the point [2] of the plan that it is walking to, or None.
-        together: how many episodes it can walk at once; more than 1 needs ``begin`` and
+        views: 12 for a panorama, 1 for a forward camera; worlds with another number are rejected.
+            None accepts any number.
+        sensors: the entries of observations that the agent reads. Training does not corrupt other
+            frames. None: it may read all.
+        tasks: the tasks it can do, by ``info["task"]`` of episodes ("vln": follow a route, "ogn":
+            find an object). Evaluation warns about other tasks. None: all.
+        system_prompt: the prompt that it reads at ``reset``; None if it has none.
+        aim: the point [2] on the plan that it is walking to, or None.
+        together: how many episodes it can run at once; more than 1 needs ``begin`` and
             ``act_all``.
-        encoders: names of the parts that read a sensor, by sensor. labels: what they are taught by
-            a world's ``truth()``, by sensor. Both belong to ``see`` (:class:`Seeing`).
-        loss_weights: of its auxiliary losses by name; 1 where it names none.
-        frozen: names of modules that never train, such as a borrowed backbone; adapters in them do.
-        plain_walks: whether what ``collect`` returns is plain data (dicts, lists, texts, numbers
-            and tensors), which DAgger keeps on disk.
-        run_state: attributes that change while it runs, for a shipped kind: its fingerprint leaves
+        encoders: names of the parts that read a sensor, by sensor; for ``see`` (:class:`Seeing`).
+        labels: the entry of a world's ``truth()`` that trains these parts, by sensor.
+        loss_weights: weights of its auxiliary losses by name; 1 by default.
+        frozen: names of modules that never train, such as a pretrained backbone; adapters inside
+            them do train.
+        plain_walks: whether ``collect`` returns plain data (dicts, lists, strings, numbers and
+            tensors), which DAgger stores on disk.
+        run_state: attributes of a shipped agent that change while it runs. Its fingerprint leaves
             them out, and all attributes that a new agent lacks.
-        own_config_only: constructor arguments that name code or files, which no config that came
-            with weights may set.
+        own_config_only: constructor arguments that name code or files. A config that comes with
+            weights cannot set them.
     """
 
     views: int | None = None
@@ -77,49 +78,61 @@ class Agent:
         raise NotImplementedError(f"{type(self).__name__} defines no act(observation)")
 
     def begin(self, instruction: str) -> Any:
-        """Return what it must remember of an episode, of up to ``together`` at once."""
+        """Return the memory of a new episode; up to ``together`` episodes run at once."""
         raise NotImplementedError(f"{type(self).__name__} defines no begin(instruction)")
 
     def act_all(
         self, observations: Sequence[Mapping[str, np.ndarray]], memories: Sequence[Any]
     ) -> list[int]:
-        """Return an action for the observation of each of n episodes, and change their memories.
+        """Return one action per observation of n episodes, and update their memories.
 
-        No answer depends on the other episodes, nor on how many there are.
+        An action must not depend on the other episodes or on their number.
         """
         raise NotImplementedError(f"{type(self).__name__} defines no act_all(...)")
 
     def taken(self, action: int, metres: float, radians: float) -> None:
-        """Learn that another driver acts: since the agent's last answer the driver moved ``metres``
-        ahead and ``radians`` to the left, which is most like ``action`` (-1: like none). What the
-        agent planned is forgotten."""
+        """Account for a motion that another driver made since the agent's last action.
+
+        The agent drops its plan.
+
+        Args:
+            action: the action that is most like the motion; -1 for none.
+            metres: distance moved forward.
+            radians: angle turned to the left.
+        """
 
     def remembering(self) -> AbstractContextManager:
-        """A context within which equal frames are encoded once; no action depends on it."""
+        """Return a context in which equal frames are encoded once; actions stay the same."""
         return nullcontext()
 
     def precompute(self, piece: Any, *, clean: bool) -> Any:
-        """Return a piece of ``collect`` with what no trained weight changes computed; worker
-        processes call it. ``clean`` asks for what ``decide(clean=True)`` needs."""
+        """Return a piece of ``collect`` with the outputs of frozen weights computed.
+
+        Worker processes call it. ``clean``: also compute what ``decide(clean=True)`` needs.
+        """
         return piece
 
     def as_teacher(self) -> Any:
-        """Return a copy without what was added to make it robust: its adapters."""
+        """Return a copy without its adapters, which were added for robustness."""
         return _without_adapters(self)
 
 
 class SideBySide(Agent):
-    """Base class of agents that run ``together`` episodes at once. A subclass defines ``begin`` and
-    ``answers``."""
+    """Base class of agents that run ``together`` episodes at once.
+
+    A subclass defines ``begin`` and ``answers``.
+    """
 
     def act_all(
         self, observations: Sequence[Mapping[str, np.ndarray]], memories: Sequence[Any]
     ) -> list[int]:
-        """Return an action for each of up to ``together`` episodes. Raises what
-        ``agents/observation.py`` rejects."""
-        spare = self.together - len(memories)  # filled up, so that sums round as in a full batch
-        observations = [*observations, *[observations[-1]] * spare]
-        return self.answers(observations, [*memories, *[memories[-1]] * spare], len(memories))
+        """Return one action per episode, for up to ``together`` episodes.
+
+        Raises the errors of ``agents/observation.py``.
+        """
+        padding = self.together - len(memories)  # always a full batch, so that sums round equally
+        observations = [*observations, *[observations[-1]] * padding]
+        return self.answers(observations, [*memories, *[memories[-1]] * padding], len(memories))
 
     def answers(
         self,
@@ -127,7 +140,7 @@ class SideBySide(Agent):
         memories: Sequence[Any],
         count: int,
     ) -> list[int]:
-        """Return the actions of the first ``count`` episodes, whose memories change."""
+        """Return the actions of the first ``count`` episodes and update their memories."""
         raise NotImplementedError(f"{type(self).__name__} defines no answers(...)")
 
 
@@ -137,7 +150,7 @@ def check_started(started: bool) -> None:
         raise RuntimeError("Start the episode first: agent.reset(instruction).")
 
 
-# what :func:`as_agent` takes over from an object once; ``system_prompt`` and ``aim`` may change
+# members that :func:`as_agent` copies once; ``system_prompt`` and ``aim`` may change later
 OPTIONAL = (
     *("views", "sensors", "tasks", "together", "encoders", "labels", "loss_weights", "frozen"),
     *("plain_walks", "own_config_only", "begin", "act_all", "taken", "remembering", "precompute"),
@@ -146,8 +159,10 @@ OPTIONAL = (
 
 
 def as_agent(agent: Any) -> Agent:
-    """Return ``agent``, or a view of it with the defaults of :class:`Agent` if its class does not
-    build on that. The agent itself is not changed, and is what a fingerprint is taken of."""
+    """Return ``agent`` if it is an :class:`Agent`, else a view of it that adds the defaults.
+
+    The agent itself is not changed; fingerprints are computed from it, not from the view.
+    """
     return agent if isinstance(agent, Agent) else _AgentView(agent)
 
 
@@ -183,7 +198,7 @@ class _AgentView(Agent):
 
 
 def stated_settings(agent: Any) -> dict[str, Any] | None:
-    """Return what ``settings``, a method or a mapping, says of ``agent``; None if it has none."""
+    """Return the ``settings`` of ``agent``, a method or a mapping; None if it has none."""
     settings = read(agent, "settings")
     return None if settings is None else dict(settings() if callable(settings) else settings)
 
@@ -196,11 +211,14 @@ def _without_adapters(agent: Any) -> Any:
 
 @dataclass
 class Output:
-    """What an agent makes of B decisions.
+    """An agent's output for B decisions.
 
-    logits: [B, n] over the candidates of each, or None where nothing is decided. mask: bool [B, n],
-    what may be chosen; None: all. features: what a student's are compared with a teacher's by, by
-    name. losses: the agent's own auxiliary losses, scalars by name. figures: more scalars to log.
+    Attributes:
+        logits: [B, n] over the candidates of each decision; None if nothing is decided.
+        mask: bool [B, n], the candidates that may be chosen; None: all.
+        features: features by name, which distillation compares between student and teacher.
+        losses: the agent's auxiliary losses, scalars by name.
+        figures: more scalars to log, by name.
     """
 
     logits: Tensor | None = None
@@ -211,27 +229,31 @@ class Output:
 
 
 def check_logits(logits: Tensor, agent: Any) -> Tensor:
-    """Return ``logits`` [..., n], in which -inf is what may not be chosen.
+    """Return ``logits`` [..., n] if an action can be chosen from them; -inf marks forbidden ones.
 
-    Raises ValueError, naming the kind of ``agent``, for NaN, for infinity, and where nothing may be
-    chosen: the likeliest action would be the first, STOP.
+    Without this check argmax would return the first action, STOP.
+
+    Raises:
+        ValueError: There is NaN or infinity, or no action is allowed.
     """
-    chosen = torch.isfinite(logits.amax(-1))
-    if not chosen.all():
-        shown = logits[~chosen][0] if logits.ndim > 1 else logits
-        numbers = ", ".join(f"{value:g}" for value in shown.flatten()[:8].tolist())
+    valid = torch.isfinite(logits.amax(-1))
+    if not valid.all():
+        first_invalid = logits[~valid][0] if logits.ndim > 1 else logits
+        numbers = ", ".join(f"{value:g}" for value in first_invalid.flatten()[:8].tolist())
         raise ValueError(
-            f"{type(agent).__name__} gave logits that choose no action ({numbers}): of what may be "
-            "chosen all must be finite, and the rest -inf. Look for NaN in what it computes."
+            f"Logits of {type(agent).__name__} must be finite for allowed actions and -inf for "
+            f"the others, got {numbers}. Check its outputs for NaN."
         )
     return logits
 
 
 class Decisions(Protocol):
-    """A batch of B decisions with the expert's answers; what else it holds is the agent's affair.
+    """A batch of B decisions with the expert's answers; the agent defines its other contents.
 
-    target: [B, n], a distribution over the candidates of each decision that adds up to 1. weight:
-    [B], how much each counts. episode_ids: list of str, named when the loss is not finite.
+    Attributes:
+        target: [B, n], a distribution over the candidates of each decision, summing to 1.
+        weight: [B], the weight of each decision.
+        episode_ids: episode of each decision, for error messages if the loss is not finite.
     """
 
     target: Tensor
@@ -243,10 +265,10 @@ class Decisions(Protocol):
 
 @runtime_checkable
 class Trainable(Protocol):
-    """An ``nn.Module`` that objectives train, beside :class:`Agent`."""
+    """An ``nn.Module`` that objectives can train, in addition to :class:`Agent`."""
 
     def parts(self) -> dict[str, nn.Module]:
-        """What may be frozen, trained and adapted, by name; together all parameters."""
+        """Return the modules that can be frozen, trained and adapted; they hold all parameters."""
 
     def collect(
         self,
@@ -257,34 +279,44 @@ class Trainable(Protocol):
         rngs: Sequence[np.random.Generator],
         clean: bool = False,
     ) -> Any:
-        """Walk ``episodes[i]`` in ``worlds[i]`` and return the decisions, picklable, with the
-        expert's answer to each.
+        """Run ``episodes[i]`` in ``worlds[i]`` and return the decisions with the expert's answers.
 
-        Called in eval mode without gradients. ``expert_share``: of the steps taken as the expert
-        would, the others as the agent's own policy samples them (DAgger). ``rngs[i]`` gives all
-        that is random in episode i, so that it does not depend on the others. ``clean``: keep the
-        observations before their corruption, too (``observation.clean``).
+        Called in eval mode without gradients. The result must be picklable.
+
+        Args:
+            worlds: one world per episode.
+            episodes: the episodes.
+            expert_share: share of steps that follow the expert; the agent's policy samples the
+                others (DAgger).
+            rngs: one generator per episode, for all its random draws, so that an episode does not
+                depend on the others.
+            clean: also keep the observations before corruption (``observation.clean``).
         """
 
     def join(self, pieces: Sequence[Any]) -> Decisions:
-        """One batch of what several calls of :meth:`collect` returned."""
+        """Return one batch of the results of several calls of :meth:`collect`."""
 
     def decide(self, decisions: Any, *, clean: bool = False) -> Output:
-        """The agent's answer to decisions; ``clean``: seen without corruption, over the same
-        candidates."""
+        """Return the agent's output for ``decisions``.
+
+        ``clean``: use the observations before corruption, with the same candidates.
+        """
 
 
 @runtime_checkable
 class Seeing(Protocol):
-    """A trainable agent whose encoders can be taught on single observations, without episodes.
+    """A trainable agent whose encoders can be trained on single observations, without episodes.
 
-    encoders: names of the parts that read a sensor. labels: what they are taught by a world's
-    ``truth()``, by sensor.
+    Attributes:
+        encoders: names of the parts that read a sensor, by sensor.
+        labels: the entry of a world's ``truth()`` that trains them, by sensor.
     """
 
     encoders: Mapping[str, tuple[str, ...]]
     labels: Mapping[str, str]
 
     def see(self, sensor: str, frames: Tensor, truth: Tensor | None = None) -> Output:
-        """Features "views" [P, V, F] of frames [P, V, H, W, c], and with the truth the loss
-        "labels"."""
+        """Return the features "views" [P, V, F] of frames [P, V, H, W, c].
+
+        With ``truth`` also return the loss "labels".
+        """

@@ -1,4 +1,4 @@
-"""Attention and transformer layers of the planner and of what reads instructions."""
+"""Attention and transformer layers of the planner and of the instruction encoders."""
 
 from __future__ import annotations
 
@@ -6,8 +6,11 @@ from torch import Tensor, nn
 
 
 class Attention(nn.Module):
-    """Multi-head attention; ``mask`` is bool, True = may look. Written out: for these short rows
-    PyTorch's fused CPU kernel took four times as long (torch 2.13)."""
+    """Multi-head attention; ``mask`` is bool, True where attention is allowed.
+
+    It is not written with PyTorch's fused kernel, which took four times as long on CPU for these
+    short sequences (torch 2.13).
+    """
 
     def __init__(self, width: int, heads: int) -> None:
         super().__init__()
@@ -21,7 +24,7 @@ class Attention(nn.Module):
     def forward(
         self, x: Tensor, memory: Tensor, mask: Tensor | None, rows: Tensor | None = None
     ) -> Tensor:
-        """x [B, n, width] looks at memory [B, m, width], or at ``memory[rows]`` projected once."""
+        """Let x [B, n, width] attend to memory [B, m, width], or to ``memory[rows]``."""
 
         def split(t: Tensor) -> Tensor:
             return t.unflatten(-1, (self.heads, -1)).transpose(-2, -3)
@@ -49,7 +52,13 @@ class Layer(nn.Module):
     def forward(
         self, x: Tensor, mask: Tensor | None, text: tuple[Tensor, Tensor, Tensor] | None = None
     ) -> Tensor:
-        """``text``: features [E, L, width], mask [B, L] and the row of each x: int [B]."""
+        """Apply the layer.
+
+        Args:
+            x: [B, n, width].
+            mask: bool [B, n], True where attention is allowed; None: everywhere.
+            text: features [E, L, width], mask [B, L] and the text of each x: int [B].
+        """
         if self.cross is not None and self.cross_norm is not None and text is not None:
             x = x + self.cross(self.cross_norm(x), *text)
         y = self.self_norm(x)

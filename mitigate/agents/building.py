@@ -1,6 +1,6 @@
-"""Agents for a run: built from its config, with the settings of the weights that it begins from.
+"""Build the agent of a run from its config, with the settings of the weights it starts from.
 
-Agents from folders alone are in ``loading.py``, which needs neither Hydra nor OmegaConf.
+``loading.py`` loads agents from folders without a config; it needs neither Hydra nor OmegaConf.
 """
 
 from __future__ import annotations
@@ -28,26 +28,32 @@ LORA = "adapter_model.safetensors"  # PEFT's name
 def build_agent(
     node: Mapping[str, Any], *, weights: str | None, seed: int, parts: Sequence[str] | None = None
 ) -> nn.Module:
-    """Return the agent of ``node``, its first weights drawn from ``seed`` or read from a file;
-    ``parts``: of its ``parts()``, those that are read; None: all."""
+    """Return the agent of ``node``.
+
+    Args:
+        node: the config of the agent, with ``_target_``.
+        weights: file or folder of the initial weights; None: drawn from ``seed``.
+        seed: the seed of the initial weights.
+        parts: names of the agent's ``parts()`` to load; None: all.
+    """
     weights = None if weights is None else str(find(weights))
-    if loading.is_ours(node["_target_"]):  # numbers that would take all memory, patterns for ever
-        _check_own(plain(node))
+    if loading.is_ours(node["_target_"]):  # a huge width fills the memory, a pattern may not end
+        _check_config(plain(node))
     seeding.seed_everything(seed, "agent")
     agent = build(node)
     if weights is not None and not hasattr(agent, "state_dict"):  # any class of a config
         raise ValueError(
-            f"A {type(agent).__name__} is no torch.nn.Module, which weights could fill: leave out "
-            f"{weights}, and let it read them itself."
+            f"A {type(agent).__name__} is not a torch.nn.Module, so weights cannot be loaded into "
+            f"it. Leave out {weights}, and let the agent read its weights."
         )
-    if stated_settings(agent) is None:  # those of its config are what is known of it
-        known = {k: v for k, v in plain(node).items() if k != "_target_"}
+    if stated_settings(agent) is None:  # the fingerprint then uses the settings of the config
+        arguments = {k: v for k, v in plain(node).items() if k != "_target_"}
         try:
-            agent.settings = partial(dict, known)
-        except (AttributeError, TypeError) as error:  # of a class with slots, or one that is frozen
+            agent.settings = partial(dict, arguments)
+        except (AttributeError, TypeError) as error:  # the class has slots or is frozen
             raise ValueError(
-                f"{type(agent).__name__} takes no attribute settings ({error}): give it a method "
-                "settings() that returns its constructor's arguments."
+                f"{type(agent).__name__} accepts no attribute `settings` ({error}). Give it a "
+                "method settings() that returns its constructor's arguments."
             ) from error
     if weights is not None and parts:
         for name in parts:
@@ -64,77 +70,85 @@ def build_agent(
 def settings_of(
     node: Mapping[str, Any], weights: str, overrides: Sequence[str] = ()
 ) -> dict[str, Any]:
-    """Return ``node`` with the settings that ``weights`` carry (:func:`carried`, errors too).
+    """Return ``node`` with the settings stored with ``weights`` (:func:`stored_settings`).
 
-    What the command line sets counts more (``overrides``: ``agent.blind=[rgb]``); ``agent=mine``
-    names the class, and what the weights do not say.
+    Args:
+        node: the config of the agent.
+        weights: file or folder of the weights.
+        overrides: options of the command line (``agent.blind=[rgb]``); they take precedence.
     """
     keys = [override.lstrip("+").partition("=")[0].split(".") for override in overrides]
-    named = {key[1] for key in keys if key[0] == "agent" and len(key) > 1}
-    found = plain(OmegaConf.merge(plain(node), carried(node, weights)))
-    given = plain(node)
-    for setting in named:
-        found[setting] = given[setting]
-    return found
+    overridden = {key[1] for key in keys if key[0] == "agent" and len(key) > 1}
+    config = plain(node)
+    merged = plain(OmegaConf.merge(config, stored_settings(node, weights)))
+    for setting in overridden:
+        merged[setting] = config[setting]
+    return merged
 
 
-def begun_from(node: Mapping[str, Any], weights: str | None) -> Mapping[str, Any]:
-    """Return ``node`` with the settings that it leaves open (null, or not named: adapters, the
-    vocabulary) as in the ``weights`` that a training begins from; None: as it is. Errors as of
-    :func:`carried`."""
+def inherit_settings(node: Mapping[str, Any], weights: str | None) -> Mapping[str, Any]:
+    """Return ``node`` with its unset settings (null or missing) taken from ``weights``.
+
+    Such settings are the adapters and the vocabulary. Without weights ``node`` is returned
+    unchanged. Raises the errors of :func:`stored_settings`.
+    """
     if weights is None:
         return node
-    open_ = {k: v for k, v in carried(node, weights).items() if node.get(k) is None}
-    return plain(OmegaConf.merge(plain(node), open_))
+    inherited = {k: v for k, v in stored_settings(node, weights).items() if node.get(k) is None}
+    return plain(OmegaConf.merge(plain(node), inherited))
 
 
-def carried(node: Mapping[str, Any], weights: str) -> dict[str, Any]:
-    """Return the settings of the agent that ``weights`` belong to, none if they do not say.
+def stored_settings(node: Mapping[str, Any], weights: str) -> dict[str, Any]:
+    """Return the agent settings stored in ``config.yaml`` next to ``weights``, read as plain data.
 
-    They come, as data, from ``config.yaml`` beside the weights.
+    Without such a file the result is empty.
 
     Raises:
-        ValueError: The weights are those of another kind of agent than ``node``, or the file holds
-            anything but plain data that the agent takes.
+        ValueError: The weights belong to another kind of agent than ``node``, or the file holds
+            a value that the agent does not accept.
     """
     place = find(weights)
     if (place / LORA).is_file() and hasattr(located(node["_target_"]), "load"):
-        return {}  # only language models have load(), and say themselves whose adapter they take
+        return {}  # only language models have load(), which checks the LoRA adapter
     file = loading.config_of(place)
     if not file.is_file():
         return {}
     if loading.is_ours(node["_target_"]):
         return loading.agent_settings(file, node["_target_"])
-    made = located(node["_target_"])
-    names = {*signature(made).parameters, *map(str, node)} - {"_target_"}
-    names -= {*read(made, "own_config_only", default=())}
+    constructor = located(node["_target_"])
+    names = {*signature(constructor).parameters, *map(str, node)} - {"_target_"}
+    names -= {*read(constructor, "own_config_only", default=())}
     return settings.read_agent(file, node["_target_"], names)
 
 
 def agent_option(options: Sequence[str], weights: str) -> list[str]:
-    """The option ``agent=`` of the kind of agent that ``weights`` are of, with which what it asks
-    of the world comes. None where ``options`` choose one, and where that kind is the usual one,
-    none of ours, or not to be known."""
+    """Return ``["agent=NAME"]`` for the kind of agent that ``weights`` belong to.
+
+    That config also sets what the agent needs of the world. The result is empty if ``options``
+    already choose an agent, or if the kind is the default one, not shipped, or unknown.
+    """
     if any(option.lstrip("+~").partition("=")[0] == "agent" for option in options):
         return []
     try:
         kind = loading.kind_of(loading.config_of(find(weights)))
-    except (OSError, ValueError):  # reported where they are loaded
+    except (OSError, ValueError):  # loading the weights reports the error
         return []
     name = "" if kind == loading.TARGET else settings.named(kind)
     return [f"agent={name}"] if name else []
 
 
 def with_kind(options: Sequence[str]) -> list[str]:
-    """The ``options`` of an evaluation, with the kind of agent that its ``checkpoint=`` is of."""
+    """Return the ``options`` of an evaluation with ``agent=`` for its ``checkpoint=``."""
     weights = values(options, "checkpoint")
-    own = agent_option(options, weights[0]) if len(weights) == 1 else []
-    return [*options, *own]
+    added = agent_option(options, weights[0]) if len(weights) == 1 else []
+    return [*options, *added]
 
 
-def _check_own(held: dict[str, Any]) -> None:
-    """Raise ValueError if a user's own config ``held`` sets an agent of ours to an invalid value;
-    settings that are not in its schema are for its class to reject."""
-    target = held["_target_"]
-    given = {k: v for k, v in held.items() if k in schema.schema_of(target).settings}
-    schema.check(given, "The options", target, "Give it such a value, or leave it out.")
+def _check_config(config: dict[str, Any]) -> None:
+    """Raise ValueError if a config sets a shipped kind of agent to an invalid value.
+
+    The class rejects settings that are not in its schema.
+    """
+    target = config["_target_"]
+    known = {k: v for k, v in config.items() if k in schema.schema_of(target).settings}
+    schema.check(known, "The options", target, "Give it such a value, or leave it out.")

@@ -1,4 +1,4 @@
-"""Low-level control: turn and step along a route of plan positions, by odometry alone."""
+"""Low-level control: turn and step along a route of plan positions, using odometry only."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ class Controller:
         self._last, self._blocked, self._budget = None, 0, 40 * max(1, len(route))
 
     def action(self, pose: np.ndarray) -> int | None:
-        """The next low-level action from pose [3], or None on arrival."""
+        """Return the next low-level action from pose [3], or None on arrival."""
         xy = np.array(pose[:2], np.float64)  # a copy: a world may move its pose in place
         if self._last is not None:
             self._blocked = self._blocked + 1 if np.hypot(*(xy - self._last)) < _STUCK else 0

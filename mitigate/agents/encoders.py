@@ -1,10 +1,10 @@
-"""Encoders of views: small residual CNNs with GroupNorm, one for RGB and one for depth.
+"""Encoders of views: small residual CNNs with GroupNorm for RGB and for depth, and their losses.
 
-Their ``stages`` are the places where adapters go. All take what the sensor gives (uint8 RGB,
-float32 metres, square views of any size), and resize and normalise inside, so no caller can do
-either wrongly. ``RGBEncoder`` and ``DepthEncoder`` read the views of a panorama. ``CameraRGB`` and
-``CameraDepth`` read one camera and say what shows in each of its four columns: an agent with one
-camera steers by where in the view a thing is. The losses that teach them are at the end.
+Adapters are added after their ``stages``. All take raw sensor data (uint8 RGB or float32 metres,
+square views of any size) and resize and normalise it themselves. ``RGBEncoder`` and
+``DepthEncoder`` read the views of a panorama. ``CameraRGB`` and ``CameraDepth`` read one camera and
+return features for four columns of the view, because an agent with one camera steers by the
+position of an object in the view.
 """
 
 from __future__ import annotations
@@ -18,12 +18,12 @@ from mitigate.agents.text import CONCEPTS, THINGS
 from mitigate.core.observation import DEPTH
 
 SIZE = 64  # pixels of a view that the shipped agents are trained on
-DEPTH_RANGE = 5.0  # metres; beyond it nothing matters for steps of at most 3 m
+DEPTH_RANGE = 5.0  # metres; larger depth does not matter for legs of at most 3 m
 GRID = 4  # rows and columns of the last feature map at 64 pixels
-DIRECTIONS, DISTANCES, STEP = 30, 12, 0.25  # of the free space ahead: over 90 degrees, of metres
+DIRECTIONS, DISTANCES, STEP = 30, 12, 0.25  # bins of free space over 90 degrees; metres per bin
 CAMERA_ENCODERS = {"rgb": ("rgb_encoder",), "depth": ("depth_encoder",)}
 CAMERA_LABELS = {"rgb": "concepts", "depth": "free"}
-POSITIVE = 2.0  # weight of what is there against what is not: most concepts are not
+POSITIVE = 2.0  # weight of positive labels: most concepts are absent from a view
 
 
 class Block(nn.Module):
@@ -45,8 +45,11 @@ class Block(nn.Module):
 
 
 def halved(x: Tensor) -> Tensor:
-    """``F.avg_pool2d(x, 2)``, bit for bit. Without gradients as a sum of four slices, which takes a
-    third of the time on a CPU (torch 2.13 pools one value at a time)."""
+    """Return ``F.avg_pool2d(x, 2)``, bit for bit.
+
+    Without gradients it is a sum of four slices, which takes a third of the time on a CPU (torch
+    2.13 pools one value at a time).
+    """
     if torch.is_grad_enabled() or x.shape[-1] % 2 or x.shape[-2] % 2:
         return F.avg_pool2d(x, 2)
     top, bottom = x[..., ::2, :], x[..., 1::2, :]
@@ -54,9 +57,9 @@ def halved(x: Tensor) -> Tensor:
 
 
 class Encoder(nn.Module):
-    """Stem and residual stages; views of ``size`` pixels in, a 4x4 map out.
+    """Stem and residual stages, from views of ``size`` pixels to a 4x4 map.
 
-    Frames of another size are resized by ``resize``, a mode of ``F.interpolate``.
+    Frames of another size are resized with ``resize``, a mode of ``F.interpolate``.
     """
 
     def __init__(
@@ -64,7 +67,7 @@ class Encoder(nn.Module):
     ) -> None:
         super().__init__()
         if size < 16 or size % 16:
-            raise ValueError(f"size={size} must be a multiple of 16 pixels, such as {SIZE}.")
+            raise ValueError(f"size must be a multiple of 16 pixels, such as {SIZE}, got {size}.")
         self.size, self.resize = size, resize
         self.stem = nn.Sequential(
             nn.Conv2d(channels, stem, 3, 2, 1, bias=False), nn.GroupNorm(8, stem), nn.ReLU()
@@ -73,14 +76,14 @@ class Encoder(nn.Module):
         self.stages = nn.ModuleList(blocks)
 
     def sized(self, frames: Tensor) -> Tensor:
-        """Frames ``[n, H, W, c]`` to float ``[n, c, size, size]``."""
+        """Resize frames ``[n, H, W, c]`` to float ``[n, c, size, size]``."""
         x = frames.permute(0, 3, 1, 2).float()
         if x.shape[-2:] == (self.size, self.size):
             return x
         return F.interpolate(x, (self.size, self.size), mode=self.resize)
 
     def maps(self, x: Tensor) -> Tensor:
-        """Normalised input ``[n, c, H, W]`` to features ``[n, widths[-1], 4, 4]``."""
+        """Return features ``[n, widths[-1], 4, 4]`` of normalised input ``[n, c, H, W]``."""
         x = self.stem(x)
         for stage in self.stages:
             x = stage(x)
@@ -88,15 +91,17 @@ class Encoder(nn.Module):
 
 
 def depth_channels(z: Tensor) -> Tensor:
-    """Metres ``[n, 1, H, W]`` to the input ``[n, 2, H, W]`` of a depth encoder: invalid depth (0,
-    NaN, infinite) enters as 0 with its own mask channel."""
+    """Return the input ``[n, 2, H, W]`` of a depth encoder for metres ``[n, 1, H, W]``.
+
+    Invalid depth (0, NaN or infinite) becomes 0; the second channel marks it.
+    """
     valid = torch.isfinite(z) & (z > 0)
     z = torch.where(valid, z.clamp(max=DEPTH_RANGE) / DEPTH_RANGE, torch.zeros_like(z))
     return torch.cat([z * 2 - valid.float(), 1 - valid.float()], 1)
 
 
 class RGBEncoder(Encoder):
-    """uint8 ``[n, H, W, 3]`` to features ``[n, width]`` and concept logits ``[n, C]``."""
+    """Encode uint8 ``[n, H, W, 3]`` as features ``[n, width]`` and concept logits ``[n, C]``."""
 
     def __init__(
         self,
@@ -118,10 +123,10 @@ class RGBEncoder(Encoder):
 
 
 class DepthEncoder(Encoder):
-    """float32 metres ``[n, H, W, 1]`` to features ``[n, width]`` of each view.
+    """Encode float32 metres ``[n, H, W, 1]`` as features ``[n, width]`` of each view.
 
-    Resizing takes the nearest pixel: a mean across an edge or a hole would be a surface that is not
-    there.
+    Resizing takes the nearest pixel, because a mean across an edge or a hole would create a
+    surface that does not exist.
     """
 
     def __init__(
@@ -141,31 +146,31 @@ class DepthEncoder(Encoder):
 
 
 def presence_loss(logits: Tensor, truth: Tensor) -> Tensor:
-    """Mean binary cross-entropy of logits against labels in {0, 1} of the same shape."""
+    """Return the mean binary cross-entropy of logits and labels in {0, 1} of the same shape."""
     return F.binary_cross_entropy_with_logits(
         logits.float(), truth, pos_weight=torch.tensor(POSITIVE, device=logits.device)
     )
 
 
 def f1(logits: Tensor, targets: Tensor) -> Tensor:
-    """Micro F1 at probability 0.5."""
+    """Return the micro F1 at probability 0.5."""
     predicted, true = logits > 0, targets > 0.5
     return 2 * (predicted & true).sum() / torch.clamp(predicted.sum() + true.sum(), min=1)
 
 
 def free_loss(logits: Tensor, target: Tensor) -> Tensor:
-    """Mean binary cross-entropy of logits ``[..., directions, distances]`` of free space."""
+    """Return the mean binary cross-entropy of free space ``[..., directions, distances]``."""
     return F.binary_cross_entropy_with_logits(logits.float(), target)
 
 
 def agreement(logits: Tensor, target: Tensor) -> Tensor:
-    """Intersection over union of predicted and true free cells."""
+    """Return the intersection over union of predicted and true free cells."""
     predicted, true = logits > 0, target > 0.5
     return (predicted & true).sum() / torch.clamp((predicted | true).sum(), min=1)
 
 
-def taught(views: Tensor, logits: Tensor, sensor: str, truth: Tensor | None) -> Output:
-    """The output of ``see``: features "views"; with the truth the loss "labels" and figures."""
+def label_output(views: Tensor, logits: Tensor, sensor: str, truth: Tensor | None) -> Output:
+    """Return the output of ``see``: features "views"; with ``truth`` also losses and figures."""
     out = Output(features={"views": views})
     if truth is None:
         return out
@@ -182,8 +187,10 @@ def taught(views: Tensor, logits: Tensor, sensor: str, truth: Tensor | None) -> 
 
 
 class CameraRGB(Encoder):
-    """uint8 ``[n, H, W, 3]`` to features ``[n, 4, width]`` of the columns of each view, and logits
-    ``[n, 4, C]`` of what shows in them."""
+    """Encode uint8 ``[n, H, W, 3]`` as features and concept logits of four columns per view.
+
+    Features are ``[n, 4, width]``, logits ``[n, 4, C]``.
+    """
 
     def __init__(
         self,
@@ -205,9 +212,11 @@ class CameraRGB(Encoder):
 
 
 class CameraDepth(Encoder):
-    """float32 metres ``[n, H, W, 1]`` to features ``[n, 4, width]`` of the columns of each view,
-    and logits ``[n, 30, 12]`` of where the agent can go straight: by angle, from 45 degrees left to
-    45 right, and by distance, 0.25 to 3 m."""
+    """Encode float32 metres ``[n, H, W, 1]`` as features of four columns, and free-space logits.
+
+    Features are ``[n, 4, width]``. Logits ``[n, 30, 12]`` say where the agent can go straight: by
+    angle, from 45 degrees left to 45 right, and by distance, 0.25 to 3 m.
+    """
 
     def __init__(
         self,
@@ -230,16 +239,19 @@ class CameraDepth(Encoder):
 
 
 def free_metres(logits: Tensor) -> Tensor:
-    """Metres ``[n, 30]`` that the way is expected to be free, of logits ``[n, 30, 12]``."""
+    """Return the expected free distance in metres ``[n, 30]`` of logits ``[n, 30, 12]``."""
     return STEP * logits.sigmoid().cumprod(-1).sum(-1)
 
 
 def see_camera(
     encoder: CameraRGB | CameraDepth, sensor: str, frames: Tensor, truth: Tensor | None
 ) -> Output:
-    """As ``agents/agent.py`` says of ``see``; the features are those of all columns with what the
-    encoder predicts there (RGB: concepts; depth: free metres)."""
+    """Return the output of ``see`` (``agents/agent.py``) for an encoder of one camera.
+
+    Features are those of all columns and the encoder's predictions (RGB: probabilities of
+    concepts; depth: free metres).
+    """
     features, logits = (x.unflatten(0, frames.shape[:2]) for x in encoder(frames.flatten(0, 1)))
     predicted = free_metres(logits) if sensor == DEPTH else logits.sigmoid().flatten(-2)
     views = torch.cat([features.flatten(-2), predicted], -1)
-    return taught(views, logits, sensor, truth)
+    return label_output(views, logits, sensor, truth)

@@ -1,8 +1,9 @@
-"""Fingerprint of an agent: a content hash of whatever determines its behaviour.
+"""Fingerprint of an agent: a content hash of everything that determines its behaviour.
 
-Rows of results hold the fingerprint, not only a display name: an agent with another setting, other
-weights or other sensors is another agent for every table, and rows are reused only under an equal
-fingerprint. What cannot be read (:attr:`Contents.unreadable`) needs ``version=`` from the user.
+Result rows hold the fingerprint in addition to a display name. Agents with different settings,
+weights or sensors are different agents in tables, and rows are reused only for an equal
+fingerprint. For state that cannot be read (:attr:`Contents.unreadable`) the user gives
+``version=``.
 """
 
 from __future__ import annotations
@@ -27,7 +28,7 @@ from mitigate.core.checksums import DIGITS
 from mitigate.core.contracts import read
 from mitigate.core.observation import Sensor
 
-KIND = "fingerprint_kind"  # of a shipped agent's class: a name that stays when its module moves
+KIND = "fingerprint_kind"  # attribute of shipped classes: a name that stays when a module moves
 
 
 @dataclass(frozen=True)
@@ -44,31 +45,31 @@ class Contents:
 
     def explain(self) -> str:
         """Return the first unreadable places in words."""
-        found = [f"{place or 'the agent'} ({why})" for place, why in self.unreadable.items()]
-        more = f" and {len(found) - 3} more" if len(found) > 3 else ""
-        return "; ".join(found[:3]) + more
+        places = [f"{place or 'the agent'} ({why})" for place, why in self.unreadable.items()]
+        more = f" and {len(places) - 3} more" if len(places) > 3 else ""
+        return "; ".join(places[:3]) + more
 
 
 def fingerprint(
     agent: Any, sensors: Mapping[str, Sensor], front: str = "none", version: str | None = None
 ) -> str:
-    """Return the hash of ``agent`` behind ``sensors``.
+    """Return the hash of ``agent`` with ``sensors``.
 
     Args:
         agent: any object.
-        sensors: what the world shows.
+        sensors: the sensors of the world.
         front: hashes of the guards between the world and the agent.
-        version: the user's name for what cannot be read.
+        version: the user's name for state that cannot be read.
     """
     return hash_of(contents(agent, version).parts, sensors, front)
 
 
 def contents(agent: Any, version: str | None = None) -> Contents:
-    """Return what makes ``agent`` behave as it does.
+    """Return everything that determines the behaviour of ``agent``.
 
     For every agent: its kind, ``settings()``, weights, buffers, layers, hooks, the user's code and
-    what that names. For one of ours also whatever differs from a new agent with the same settings.
-    Without ``settings()``, or where a base class defines it, also all attributes.
+    the objects that this code names. For a shipped agent also everything that differs from a new
+    agent with the same settings. If ``settings()`` is missing or inherited, also all attributes.
     """
     shipped = KIND in vars(type(agent))
     settings = agent.settings if _definer(agent) is not None else {}
@@ -89,22 +90,28 @@ def contents(agent: Any, version: str | None = None) -> Contents:
 
 
 def says_all(agent: Any) -> bool:
-    """Return whether ``settings`` stands for all attributes: not of a subclass, which may add
-    some, of the class that defines it."""
+    """Return whether ``settings`` covers all attributes.
+
+    It does not if it is inherited, because a subclass may add attributes.
+    """
     return _definer(agent) in (agent, type(agent))
 
 
 def _definer(agent: Any) -> Any:
-    """Return what defines ``settings``: the object, or a class; None if only ``__getattr__`` may,
-    which describes another object."""
-    places = (agent, *type(agent).__mro__)
-    own = (one for one in places if "settings" in read(one, "__dict__", default=()))
-    return next(own, None)
+    """Return the object or class that defines ``settings``; None if there is none.
+
+    A ``settings`` that ``__getattr__`` provides does not count: it describes another object.
+    """
+    candidates = (agent, *type(agent).__mro__)
+    definers = (one for one in candidates if "settings" in read(one, "__dict__", default=()))
+    return next(definers, None)
 
 
 def _changes(agent: Any) -> State:
-    """Return the state of one of our agents, with what a new one with its settings lacks or has
-    otherwise, beside weights and what it remembers of an episode."""
+    """Return the parts of a shipped agent's state that differ from a new one with its settings.
+
+    Weights and the memory of an episode are left out.
+    """
     with torch.random.fork_rng(devices=[]):
         new = type(agent)(**agent.settings())
     state = read_state(agent, like=new)
@@ -117,9 +124,9 @@ def _changes(agent: Any) -> State:
 
 
 def hash_of(parts: Mapping[str, Any], sensors: Mapping[str, Sensor], front: str = "none") -> str:
-    """Return the hash of an agent with these ``parts`` behind ``sensors`` and ``front``."""
-    shown = {name: asdict(sensor) for name, sensor in sorted(sensors.items())}
-    text = json.dumps({**parts, "sensors": shown, "front": front}, sort_keys=True, default=_plain)
+    """Return the hash of an agent with these ``parts``, ``sensors`` and guards (``front``)."""
+    plain = {name: asdict(sensor) for name, sensor in sorted(sensors.items())}
+    text = json.dumps({**parts, "sensors": plain, "front": front}, sort_keys=True, default=_plain)
     return hashlib.sha256(text.encode()).hexdigest()[:DIGITS]
 
 
@@ -130,18 +137,18 @@ def code_sha(objective: nn.Module) -> str:
 
 
 def _codes(agent: Any, state: State) -> list[str]:
-    """Sources of the classes of the agent and of its modules, and of functions outside them."""
+    """Return the sources of the classes of the agent and its modules, and of other functions."""
     modules = [module for _, net in state.networks for module in net.modules()]
     kinds = dict.fromkeys(map(type, (agent, *modules)))
     classes = [*dict.fromkeys(source for kind in kinds for source in source_of(kind))]
-    functions = dict.fromkeys(_written(code, code.co_filename) for code in state.functions)
-    apart = [text for text in functions if not any(text in source for source in classes)]
-    return [*classes, *apart]
+    functions = dict.fromkeys(_code_source(code, code.co_filename) for code in state.functions)
+    outside = [text for text in functions if not any(text in source for source in classes)]
+    return [*classes, *outside]
 
 
 @cache
-def _written(code: types.CodeType, file: str) -> str:
-    """Return the source of ``code`` in ``file`` when first read; without a file, its bytecode."""
+def _code_source(code: types.CodeType, file: str) -> str:
+    """Return the source of ``code`` at its first reading; without a file, its bytecode."""
     try:
         return inspect.getsource(code)
     except (OSError, TypeError):
@@ -149,23 +156,25 @@ def _written(code: types.CodeType, file: str) -> str:
 
 
 def source_of(kind: type) -> list[str]:
-    """Return the source of a class and of its bases that are the user's code, as it was when it
-    was first read: a later edit of the file does not change a loaded class."""
+    """Return the sources of a class and its bases that are the user's code.
+
+    They are read once, because a later edit of the file does not change a loaded class.
+    """
     return list(_source_of(kind))
 
 
 @cache
 def _source_of(kind: type) -> tuple[str, ...]:
-    found = []
+    sources = []
     for each in kind.__mro__:
         with suppress(OSError, TypeError):  # defined interactively or at run time
             if is_users(each.__module__, inspect.getsourcefile(each) or ""):
-                found.append(inspect.getsource(each))
-    return tuple(found)
+                sources.append(inspect.getsource(each))
+    return tuple(sources)
 
 
 def _weights(state: State) -> str | list[tuple[str, str]]:
-    """Return the hash of the agent's own weights, else of each network, else of each array."""
+    """Return the hash of the agent's weights, else of each network, else of each array."""
     shas = [(place, weights_sha(net)) for place, net in state.networks]
     if len(shas) == 1 and not shas[0][0]:
         return shas[0][1]
@@ -173,14 +182,14 @@ def _weights(state: State) -> str | list[tuple[str, str]]:
 
 
 def _plain(value: Any) -> Any:
-    """A setting as JSON. Raises ValueError for a value that is not plain data."""
+    """Return a setting as JSON data. Raises ValueError for a value that is not plain data."""
     if isinstance(value, (set, frozenset)):
         return sorted(value)
-    if lists := read(value, "tolist"):  # of arrays and tensors
-        return lists()
+    if to_list := read(value, "tolist"):  # arrays and tensors
+        return to_list()
     if isinstance(value, (PurePath, tuple)):
         return str(value) if isinstance(value, PurePath) else list(value)
     raise ValueError(
         f"settings() of the agent must return plain data, got a {type(value).__name__}. Return "
-        "numbers, texts, lists and mappings."
+        "numbers, strings, lists and mappings."
     )

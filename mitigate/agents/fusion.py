@@ -1,5 +1,7 @@
-"""Reliability-weighted fusion of the views of a panorama (the paper's section on adapters), by its
-rule of feature magnitudes or by a score that is learned."""
+"""Reliability-weighted fusion of the views of a panorama (the paper's section on adapters).
+
+Weights come from the paper's rule on feature magnitudes or from a learned score.
+"""
 
 from __future__ import annotations
 
@@ -9,30 +11,36 @@ from functools import partial
 import torch
 from torch import Tensor, nn
 
-RATE = 4.0  # k: decay for each relative deviation of 1 (ours, chosen on val_seen)
-CAP = 3.0  # largest exponent: no view weighs less than exp(-3) = 0.05 of a typical one (ours)
-HIDDEN = 32  # width of the layer that a learned score reads with (ours)
+RATE = 4.0  # k: decay per relative deviation of 1 (chosen on val_seen)
+CAP = 3.0  # largest exponent: a view weighs at least exp(-3) = 0.05 of a typical one (heuristic)
+HIDDEN = 32  # width of the hidden layer of the learned score (heuristic)
 _TINY = 1e-6
 
 
 def reliability(
     views: Tensor, rate: float = RATE, cap: float = CAP, valid: Tensor | None = None
 ) -> Tensor:
-    """Weights of views from how far their magnitude is from the panorama's.
+    """Return weights of views by how far their magnitude is from the panorama's mean.
 
     With m_v = |f_v| (Euclidean) and M = mean of m_v over the valid views,
 
         d_v = | m_v - M | / M,     w_v = exp(-min(rate * d_v, cap)) / sum over valid views.
 
     Args:
-        views: features ``[..., V, F]``. rate, cap: k and cap, both >= 0. valid: bool ``[..., V]``;
-            views that do not count.
-    Returns weights ``[..., V]`` that add up to 1. If every view is blank (M = 0) or none is valid,
-    nothing tells them apart and the weights are equal.
-    Raises ValueError for a negative rate or cap.
+        views: features ``[..., V, F]``.
+        rate: k, >= 0.
+        cap: the largest exponent, >= 0.
+        valid: bool ``[..., V]``, False for views to ignore; None: all count.
+
+    Returns:
+        Weights ``[..., V]`` that sum to 1. They are equal if every view is blank (M = 0) or none
+        is valid.
+
+    Raises:
+        ValueError: ``rate`` or ``cap`` is negative.
     """
     if rate < 0 or cap < 0:
-        raise ValueError(f"rate ({rate}) and cap ({cap}) of the reliability must be at least 0.")
+        raise ValueError(f"rate and cap of the reliability must be >= 0, got {rate} and {cap}.")
     counts = torch.ones_like(views[..., 0]) if valid is None else valid.to(views.dtype)
     counts = torch.where(counts.sum(-1, keepdim=True) > 0, counts, torch.ones_like(counts))
     size = views.norm(dim=-1)
@@ -43,22 +51,27 @@ def reliability(
 
 
 class LearnedReliability(nn.Module):
-    """Weights of views by a learned score of their features and of how these differ from the
-    panorama's:
+    """Weigh views by a learned score of their features and of the difference to their mean.
 
         w_v = softmax over views of cap * tanh(score([f_v, f_v - mean f])).
 
-    ``score`` starts at zero: all views weigh the same until it has learned, by whatever loss trains
-    what the views are fused for. Args: width: F. cap: >= 0, so that no two weights differ by more
-    than exp(2 cap). Raises ValueError for a negative cap.
+    ``score`` is initialised to zero, so all weights are equal before training. The loss on the
+    fused features trains it.
 
-    Source: ours; the paper's rule reads one number of a view, its magnitude.
+    Args:
+        width: F.
+        cap: >= 0; two weights differ at most by a factor of exp(2 cap).
+
+    Raises:
+        ValueError: ``cap`` is negative.
+
+    Source: this project. The paper's rule reads only the magnitude of a view.
     """
 
     def __init__(self, width: int, cap: float = CAP) -> None:
         super().__init__()
         if cap < 0:
-            raise ValueError(f"cap ({cap}) of the reliability must be at least 0.")
+            raise ValueError(f"cap of the reliability must be >= 0, got {cap}.")
         self.cap = cap
         self.norm = nn.LayerNorm(2 * width)
         self.hidden, self.score = nn.Linear(2 * width, HIDDEN), nn.Linear(HIDDEN, 1)
@@ -66,7 +79,7 @@ class LearnedReliability(nn.Module):
         nn.init.zeros_(self.score.bias)
 
     def forward(self, views: Tensor) -> Tensor:
-        """Features ``[..., V, F]`` to weights ``[..., V]`` that add up to 1."""
+        """Return weights ``[..., V]``, summing to 1, of features ``[..., V, F]``."""
         x = self.norm(torch.cat([views, views - views.mean(-2, keepdim=True)], -1))
         score = self.score(nn.functional.gelu(self.hidden(x))).squeeze(-1)
         return (self.cap * score.float().tanh()).softmax(-1)
@@ -75,11 +88,17 @@ class LearnedReliability(nn.Module):
 def weigher(
     width: int, *, learned: bool = False, rate: float | None = None, cap: float = CAP
 ) -> Callable[[Tensor], Tensor]:
-    """What gives the weights of views with features of ``width`` numbers: :func:`reliability`, or,
-    ``learned``, a :class:`LearnedReliability`. Raises ValueError for a rate of a learned one."""
+    """Return the function that weighs views with ``width`` features.
+
+    It is :func:`reliability`, or with ``learned`` a :class:`LearnedReliability`.
+
+    Raises:
+        ValueError: ``learned`` is combined with ``rate``.
+    """
     if learned and rate is not None:
         raise ValueError(
-            f"rate={rate} belongs to the rule of magnitudes; a learned reliability has a cap alone."
+            f"rate must be null for a learned reliability, got {rate}. It belongs to the rule on "
+            "magnitudes; a learned reliability has only a cap."
         )
     if learned:
         return LearnedReliability(width, cap)

@@ -1,4 +1,4 @@
-"""The networks of an agent that may be any Python object, and their mode."""
+"""Find the networks of an agent, which may be any Python object, and set their mode."""
 
 from __future__ import annotations
 
@@ -12,27 +12,29 @@ from mitigate.agents.state import read_state
 
 
 def networks(agent: Any) -> list[nn.Module]:
-    """The networks that ``agent`` is or holds."""
+    """Return the networks that ``agent`` is or holds."""
     return [net for _, net in read_state(agent, attributes=False).networks]
 
 
 @contextmanager
 def in_eval_mode(agent: Any) -> Iterator[None]:
-    """Put every network of ``agent`` into eval mode by its own ``eval()``, which may do more;
-    afterwards each module has its former mode."""
-    tops = [net for net in networks(agent) if _has_mode(net)]
-    modules = [module for net in tops for module in net.modules() if _has_mode(module)]
+    """Put every network of ``agent`` into eval mode, and restore the modes of all modules.
+
+    Each network's ``eval()`` is called, because a class may override it.
+    """
+    roots = [net for net in networks(agent) if _has_mode(net)]
+    modules = [module for net in roots for module in net.modules() if _has_mode(module)]
     modes = {module: module.training for module in modules}
-    for net in tops:
+    for net in roots:
         net.eval()
     try:
         yield
     finally:
-        for net in tops:
+        for net in roots:
             net.train(modes[net])
         for module, training in modes.items():
             module.training = training
 
 
 def _has_mode(module: nn.Module) -> bool:
-    return hasattr(module, "training")  # a frozen program has none
+    return hasattr(module, "training")  # an exported program lacks it

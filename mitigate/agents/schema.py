@@ -1,9 +1,8 @@
-"""Allowed values of settings that come with weights.
+"""Allowed values of settings that are stored with weights.
 
-The class of each agent in ``KINDS`` has its own ``settings_schema`` beside its constructor.
-
-The limits are far above what any agent here has; they keep a file from asking for all memory, and
-patterns from taking for ever to match.
+Each class in ``KINDS`` defines ``settings_schema`` next to its constructor. The limits are far
+above those of any shipped agent. They prevent a file from allocating all memory, and patterns that
+take forever to match.
 """
 
 from __future__ import annotations
@@ -22,18 +21,18 @@ MOST_TARGETS = 64  # patterns of a list
 MOST_WORDS = 50_000  # of a vocabulary
 _WORD = re.compile(r"[a-z]{1,40}")
 _PATTERN = re.compile(r"[\w.\\\[\]|*+?-]{1,200}", re.ASCII)  # no groups, no counts
-_REPEATS = 2  # of a pattern; more could be tried in too many ways
+_REPEATS = 2  # quantifiers of a pattern; more can backtrack for too long
 
 
 class Kind(NamedTuple):
-    """``words`` say which values ``fits`` allows."""
+    """Allowed values: ``words`` describes what ``fits`` accepts."""
 
     words: str
     fits: Callable[[Any], bool]
 
 
 def whole(least: int, most: int) -> Kind:
-    """Whole numbers from ``least`` to ``most``, both included; no truth values."""
+    """Return the kind of whole numbers from ``least`` to ``most`` inclusive, without booleans."""
     return Kind(
         f"a whole number from {least} to {most}",
         lambda value: type(value) is int and least <= value <= most,
@@ -41,7 +40,7 @@ def whole(least: int, most: int) -> Kind:
 
 
 def number(least: float, most: float) -> Kind:
-    """Numbers from ``least`` to ``most``, both included; no truth values."""
+    """Return the kind of numbers from ``least`` to ``most`` inclusive, without booleans."""
     return Kind(
         f"a number from {least:g} to {most:g}",
         lambda value: type(value) in (int, float) and least <= value <= most,
@@ -49,12 +48,12 @@ def number(least: float, most: float) -> Kind:
 
 
 def one_of(names: tuple[str, ...]) -> Kind:
-    """One of ``names``."""
+    """Return the kind of values in ``names``."""
     return Kind(f"one of {', '.join(names)}", lambda value: value in names)
 
 
 def some_of(names: tuple[str, ...]) -> Kind:
-    """Lists of ``names``."""
+    """Return the kind of lists of ``names``."""
     return Kind(
         f"a list of {', '.join(names)}",
         lambda value: isinstance(value, list) and all(item in names for item in value),
@@ -99,7 +98,7 @@ ADAPTERS = {  # keyword arguments of ``insert_adapters``
     "views": Kind(f"{VIEWS}, as the agents' panoramas have", lambda value: value == VIEWS),
     "hfov": number(1, 179),
 }
-ENCODERS = {  # of all our agents
+ENCODERS = {  # settings that all shipped agents share
     "size": whole(16, 1024),
     "blind": some_of(SENSES),
     "adapters": ADAPTERS,
@@ -107,12 +106,12 @@ ENCODERS = {  # of all our agents
 
 
 class Schema(NamedTuple):
-    """Settings of a kind of agent: the attribute ``settings_schema`` of its class.
+    """Allowed settings of a kind of agent: the attribute ``settings_schema`` of its class.
 
     Attributes:
         settings: the allowed values by name; nested mappings for arguments of a part.
-        part: the setting that holds the arguments of the part with attention heads; "" for none.
-        usual: width and heads of that part by default.
+        part: the setting with the arguments of the part that has attention heads; "" for none.
+        usual: default width and heads of that part.
     """
 
     settings: dict[str, Any]
@@ -128,14 +127,14 @@ KINDS = (  # classes that a folder may name, and no others
 
 
 def class_of(target: str) -> Any:
-    """The class of one of ``KINDS``; each is imported only where it is needed."""
+    """Return the class of one of ``KINDS``; its module is imported only now."""
     assert target in KINDS, target
     module, _, name = target.rpartition(".")
-    return getattr(import_module(module), name)  # named by KINDS
+    return getattr(import_module(module), name)  # a name from KINDS
 
 
 def schema_of(target: str) -> Schema:
-    """The settings of one of ``KINDS``."""
+    """Return the schema of one of ``KINDS``."""
     return class_of(target).settings_schema
 
 
@@ -143,32 +142,40 @@ _AGAIN = "Fetch the folder again, or train again."
 
 
 def check(
-    found: dict[str, Any], file: Path | str, target: str, again: str = _AGAIN
+    values: dict[str, Any], file: Path | str, target: str, again: str = _AGAIN
 ) -> dict[str, Any]:
-    """Return ``found``, the settings of an agent of the kind ``target`` in ``file``. Raises
-    ValueError, naming the file and the setting, for an unknown one and a value of another kind;
-    ``again``: what to do about it."""
+    """Return ``values``, the settings of an agent, after checking them.
+
+    Args:
+        values: the settings.
+        file: where they come from, for messages.
+        target: the kind of agent, one of ``KINDS``.
+        again: what to do about an error.
+
+    Raises:
+        ValueError: A setting is unknown or has an invalid value; names the file and the setting.
+    """
     kind = schema_of(target)
-    _check(found, kind.settings, file, "agent", again)
-    own = found.get(kind.part) or {}
-    width, heads = (own.get(n, d) for n, d in zip(("width", "heads"), kind.usual, strict=True))
+    _check(values, kind.settings, file, "agent", again)
+    part = values.get(kind.part) or {}
+    width, heads = (part.get(n, d) for n, d in zip(("width", "heads"), kind.usual, strict=True))
     if width % heads:
         raise ValueError(
             f"{file}: agent.{kind.part}.width ({width}) must be a multiple of agent."
             f"{kind.part}.heads ({heads}). {again}"
         )
-    adapters = found.get("adapters") or {}
+    adapters = values.get("adapters") or {}
     if adapters and "target_modules" not in adapters:
         raise ValueError(
-            f"{file}: agent.adapters lacks target_modules ([] for none beside ring). {again}"
+            f"{file}: agent.adapters lacks target_modules (give [] if only ring is used). {again}"
         )
-    return found
+    return values
 
 
 def _check(
-    found: dict[str, Any], schema: dict[str, Any], file: Path | str, where: str, again: str
+    values: dict[str, Any], schema: dict[str, Any], file: Path | str, where: str, again: str
 ) -> None:
-    for name, value in found.items():
+    for name, value in values.items():
         key = f"{where}.{name}"
         if name not in schema:
             raise ValueError(settings.unknown(file, key, schema))

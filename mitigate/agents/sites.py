@@ -1,4 +1,4 @@
-"""Where adapters can go: what each module of an encoder really returns, seen on probe frames."""
+"""Find where adapters fit: run an encoder on probe frames and record what each module returns."""
 
 from __future__ import annotations
 
@@ -12,15 +12,22 @@ from torch import Tensor, nn
 
 from mitigate.agents.networks import in_eval_mode
 
-Run = Callable[[int], Any]  # runs the encoder on so many frames
+Run = Callable[[int], Any]  # runs the encoder on the given number of frames
 MAP, TOKENS = "map", "tokens"
 
 
 @dataclass(frozen=True)
 class Site:
-    """What a module returns. kind: "map" ``[n, C, h, w]``, or "tokens": the last axis is C, and
-    there may be none between it and the frames (a vector). batch: the axis of the frames. shape:
-    for two frames. order: of its call among all modules'. calls: in one forward pass."""
+    """The output of a module.
+
+    Attributes:
+        kind: "map" ``[n, C, h, w]``, or "tokens", whose last axis is C (including vectors).
+        channels: C.
+        batch: the axis of the frames.
+        shape: the shape for two frames.
+        order: position of its first call among all modules.
+        calls: number of calls in one forward pass.
+    """
 
     kind: str
     channels: int
@@ -31,27 +38,27 @@ class Site:
 
 
 def first(output: Any) -> Any:
-    """A module's output, or the first item of a tuple or list, as HF's blocks return."""
+    """Return ``output``, or the first item of a tuple or list, as Hugging Face blocks return."""
     return output[0] if isinstance(output, (tuple, list)) and len(output) else output
 
 
 @torch.no_grad()
-def look(model: nn.Module, run: Run) -> dict[str, Site | str]:
-    """What every module of ``model`` that ``run`` calls returns, by name: a :class:`Site`, or in
-    words why no adapter fits behind it.
+def find_sites(model: nn.Module, run: Run) -> dict[str, Site | str]:
+    """Return the output of every module that ``run`` calls, by name.
 
-    ``run(2)`` and ``run(3)`` are called: the axis that grows is that of the frames.
+    It is a :class:`Site`, or the reason why no adapter fits, in words. ``run(2)`` and ``run(3)``
+    are called; the axis that grows is the axis of the frames.
     """
     with in_eval_mode(model):
         two, three = _shapes(model, run, 2), _shapes(model, run, 3)
-    found: dict[str, Site | str] = {}
+    sites: dict[str, Site | str] = {}
     for order, (name, (shape, calls)) in enumerate(two.items()):
-        found[name] = _site(shape, three.get(name, (None, 0))[0], order, calls)
-    return found
+        sites[name] = _site(shape, three.get(name, (None, 0))[0], order, calls)
+    return sites
 
 
 def _shapes(model: nn.Module, run: Run, count: int) -> dict[str, tuple[Any, int]]:
-    """Shape of the first output (or its type's name) and number of calls, in order of return."""
+    """Return the output's shape (or type name) and the number of calls, in order of return."""
     seen: dict[str, tuple[Any, int]] = {}
 
     def watch(name: str) -> Callable:
@@ -82,10 +89,10 @@ def _site(two: Any, three: Any, order: int, calls: int) -> Site | str:
     if len(grows) != 1 or any(
         a != b for i, (a, b) in enumerate(zip(two, three, strict=True)) if i not in grows
     ):
-        return f"no axis of what it returns is that of the frames: {two} for two, {three} for three"
+        return f"no axis of its output holds the frames: {two} for two frames, {three} for three"
     batch, dims = grows[0], len(two)
     if dims == 4 and batch == 0:
-        last = two[1] == two[2] != two[3]  # square frames: the equal axes are those of the map
+        last = two[1] == two[2] != two[3]  # frames are square, so the equal axes are h and w
         kind, channels = (TOKENS, two[3]) if last else (MAP, two[1])
     elif dims in (2, 3) and batch in (0, 1) and batch < dims - 1:
         kind, channels = TOKENS, two[-1]
@@ -94,16 +101,19 @@ def _site(two: Any, three: Any, order: int, calls: int) -> Site | str:
     return Site(kind, channels, batch, two, order, calls)
 
 
-def choose(found: dict[str, Site | str], model: nn.Module, count: int) -> list[str]:
-    """The names of up to ``count`` blocks, spread evenly from the first to the last.
+def choose(sites: dict[str, Site | str], model: nn.Module, count: int) -> list[str]:
+    """Return the names of up to ``count`` blocks, spread evenly from the first to the last.
 
-    A block is a numbered item of a list (``layers.3``) that has modules of its own and returns a
-    map or tokens once a pass. Of lists within lists the outermost with at least four blocks in all
-    counts: the stages of a ResNet are few, its blocks many. Raises ValueError if there are none.
+    A block is a numbered item of a list (``layers.3``) that contains modules and returns a map or
+    tokens once per forward pass. In nested lists the outermost level with at least four blocks
+    counts, because a ResNet has few stages and many blocks.
+
+    Raises:
+        ValueError: There is no such level.
     """
     levels: dict[int, list[str]] = {}
     modules = dict(model.named_modules())
-    for name, site in found.items():
+    for name, site in sites.items():
         *above, last = name.split(".")
         block = isinstance(site, Site) and site.calls == 1 and len(site.shape) > 2
         if block and last.isdigit() and any(True for _ in modules[name].children()):
@@ -113,32 +123,40 @@ def choose(found: dict[str, Site | str], model: nn.Module, count: int) -> list[s
             steps = max(1, count - 1)
             at = {round(i * (len(names) - 1) / steps) for i in range(count)}
             return [name for i, name in enumerate(names) if i in at]
-    usable = [name for name, site in found.items() if isinstance(site, Site)]
+    usable = [name for name, site in sites.items() if isinstance(site, Site)]
     raise ValueError(
-        "No list of at least four blocks was found in the encoder, so where adapters go must be "
-        "told: agent.adapters.targets=[...], regular expressions for the names of modules that "
-        f"return maps or tokens. There are {', '.join(usable[:24]) or 'none'}."
+        "The encoder has no list of at least four blocks, so the modules to adapt must be named: "
+        "agent.adapters.targets=[...], regular expressions for names of modules that return maps "
+        f"or tokens. Such modules are {', '.join(usable[:24]) or 'missing'}."
     )
 
 
 def listed(what: str, targets: Iterable[str]) -> list[str]:
-    """``targets`` as a list. Raises TypeError for a single text."""
+    """Return ``targets`` as a list. Raises TypeError for a single string."""
     if isinstance(targets, str):
-        raise TypeError(f"{what} is a list of names or regular expressions: [{targets!r}].")
+        raise TypeError(
+            f"{what} must be a list of names or regular expressions, got a string. Write "
+            f"[{targets!r}]."
+        )
     return list(targets)
 
 
 def named(model: nn.Module, targets: Iterable[str]) -> set[str]:
-    """Names of the modules that ``targets`` (ends of names, or regular expressions) mean. Raises
-    ValueError for one that matches none."""
+    """Return the names of the modules that match ``targets``.
+
+    Targets are regular expressions for a dotted name or its end.
+
+    Raises:
+        ValueError: A target matches no module or is not a regular expression.
+    """
     names = [name for name, _ in model.named_modules() if name]
-    found: set[str] = set()
+    matches: set[str] = set()
     for target in targets:
         try:
             pattern = re.compile(rf"(?:.*\.)?(?:{target})")
         except re.error as error:
             raise ValueError(
-                f"target module {target!r} is no regular expression: {error}."
+                f"target module must be a regular expression, got {target!r} ({error})."
             ) from error
         hits = {name for name in names if pattern.fullmatch(name)}
         if not hits:
@@ -147,12 +165,12 @@ def named(model: nn.Module, targets: Iterable[str]) -> set[str]:
                 f"as {', '.join(names[:12])}. Give the end of a dotted name, or a regular "
                 "expression for it."
             )
-        found |= hits
-    return found
+        matches |= hits
+    return matches
 
 
 def channels_of(name: str, module: nn.Module) -> int:
-    """Channels of the module's output: those of its last convolution or normalisation."""
+    """Return the output channels of a module: those of its last convolution or normalisation."""
     channels = 0
     for part in module.modules():
         if isinstance(part, nn.Conv2d):
@@ -163,18 +181,18 @@ def channels_of(name: str, module: nn.Module) -> int:
             channels = part.num_features
     if not channels:
         raise ValueError(
-            f"The channels of {name} cannot be told: it holds no Conv2d, GroupNorm or BatchNorm2d. "
-            "Choose a module that ends in one."
+            f"The output channels of {name} are unknown: it has no Conv2d, GroupNorm or "
+            "BatchNorm2d. Choose a module that ends in one."
         )
     return channels
 
 
 def inputs_of(name: str, module: nn.Module) -> int:
-    """Channels of what goes into the module: into its first convolution."""
+    """Return the input channels of a module: those of its first convolution."""
     for part in module.modules():
         if isinstance(part, nn.Conv2d):
             return part.in_channels
     raise ValueError(
-        f"What goes into {name} cannot be told: it holds no Conv2d. Choose a module that begins "
+        f"The input channels of {name} are unknown: it has no Conv2d. Choose a module that begins "
         "with one, such as the stem."
     )

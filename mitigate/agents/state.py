@@ -1,8 +1,8 @@
 """Read everything that determines how an object behaves, and list what cannot be read.
 
-:func:`read_state` follows attributes, containers, functions and what functions name. A value counts
-as read only if Python shows all of it: plain data, arrays, attributes without hidden memory of C
-code, or what pickle would store of a type of Python, numpy or torch. Everything else is unreadable.
+:func:`read_state` follows attributes, containers, functions and the names that functions use. A
+value counts as read only if Python exposes all of it: plain data, arrays, attributes without hidden
+C memory, or what pickle stores of types of Python, numpy or torch. Everything else is unreadable.
 No code of the agent runs, except a hook's ``fingerprint()``.
 """
 
@@ -38,14 +38,14 @@ from mitigate.core.observation import Observation
 MOST_VALUES = 100_000  # values that are visited (heuristic: under a second)
 _SCALARS: tuple[Any, ...] = (str, bytes, int, float, complex)
 _CONTENT: tuple[Any, ...] = (dict, list, tuple, set, frozenset, *_SCALARS)  # and their subclasses
-_PATHS = (type(PurePath()), *type(PurePath()).__subclasses__())  # they cache their text
+_PATHS = (type(PurePath()), *type(PurePath()).__subclasses__())  # their attributes are caches
 _TEXTS = (*_SCALARS, bool, type(None), type(...), *_PATHS, torch.dtype, torch.device)
-_IGNORED = (  # nothing of them changes an action
+_IGNORED = (  # types that cannot change an action
     *(type(threading.Lock()), type(threading.RLock()), logging.Logger, Observation),
 )
 _ARRAYS = (np.ndarray, np.memmap, torch.Tensor, nn.Parameter)
 _NAMED = (types.FunctionType, types.ModuleType, type, types.BuiltinFunctionType)
-_MEMBERS: dict[type, tuple[str, ...]] = {  # what stands for all of an object
+_MEMBERS: dict[type, tuple[str, ...]] = {  # members that determine the whole object
     **dict.fromkeys((staticmethod, classmethod), ("__func__",)),
     property: ("fget", "fset", "fdel"),
     types.MethodType: ("__self__", "__func__"),
@@ -57,7 +57,7 @@ _PYTHONS = sys.stdlib_module_names - {"__main__"}
 _READABLE = _PYTHONS | {"numpy", "torch", "mitigate"}  # packages whose pickling is complete
 _BY_VERSION = ("mitigate", "torch")  # packages whose code is identified by their version
 _INSTALLED = frozenset(("site-packages", "dist-packages"))
-_ANSWERING = {  # methods that could answer for an object
+_ANSWERING = {  # methods with which user code could replace an object's state
     *("__reduce_ex__", "__reduce__", "__getstate__", "__getnewargs_ex__", "__getnewargs__"),
     *("__getattr__", "__getattribute__", "__iter__", "items"),
 }
@@ -65,8 +65,8 @@ _LEFT_OUT = {  # of torch (the last two are parameters of recurrent layers), and
     *(*vars(nn.Module()), "parametrizations", "_flat_weights", "_flat_weight_refs"),
     "_statistics_before_adapters",
 }
-_RUNNING = {"hook", "judged"}  # of an adapter: its handle, and its answer to the last frames
-_OWN_HOOKS = "mitigate.agents.adapters"  # its adapters are modules: in state_dict()
+_RUNNING = {"hook", "judged"}  # attributes of an adapter: its hook handle and its last output
+_OWN_HOOKS = "mitigate.agents.adapters"  # its adapters are modules, so state_dict() holds them
 
 Parts = Iterable[tuple[str, Any]]
 
@@ -79,8 +79,8 @@ class State:
         networks: every ``nn.Module`` by place, without the modules inside it.
         arrays: hashes, by place, of tensors and arrays that do not count as attributes.
         functions: code of the user's functions.
-        lines: everything else that counts, as ``place = text``; places in classes, which do not
-            depend on the object, begin with "class ".
+        lines: everything else that counts, as ``place = text``. Places in classes begin with
+            "class "; they do not depend on the object.
         unreadable: reasons by place.
     """
 
@@ -92,11 +92,11 @@ class State:
 
 
 def read_state(agent: Any, *, attributes: bool = True, like: nn.Module | None = None) -> State:
-    """Return the state of ``agent``; each object is read once, at the place found first.
+    """Return the state of ``agent``; each object is read once, at its first place.
 
     Args:
         agent: any object.
-        attributes: whether plain attributes count. Without them only code and what it names count.
+        attributes: whether plain attributes count. If not, only code and what it names counts.
         like: an agent of the same kind. Attributes of modules that it lacks do not count.
     """
     return _Reader(agent, attributes, like).read()
@@ -143,7 +143,7 @@ class _Reader:
         _, first, counted = self.seen.get(id(value), (None, "", False))
         if id(value) in self.seen and (counted or not counts or value is self.agent):
             return self.note(place, f"same object as {first}", counts and counted)
-        self.seen[id(value)] = value, place, counts  # keeps it alive, so that its id stays unique
+        self.seen[id(value)] = value, place, counts  # a reference, so that the id stays unique
         if isinstance(value, nn.Module):
             return self.visit_network(place, value, counts)
         parts = self.parts(place, value, counts)
@@ -172,16 +172,16 @@ class _Reader:
             return [*vars(value).items(), ("cache", value.cache_parameters())]
         base = next(each for each in kind.__mro__ if each in _CONTENT or each is object)
         hidden = _hides_memory(kind, base)
-        found = _pickled(value) if hidden else self.content(base, place, value, counts)
-        if found is None:
+        content = _pickled(value) if hidden else self.content(base, place, value, counts)
+        if content is None:
             return None
         self.add_class(kind)
         if kind is not base:
             self.note(f"{place}()", class_name(kind), counts)
-        return [*found, *_attributes(value)]
+        return [*content, *_attributes(value)]
 
     def content(self, base: Any, place: str, value: Any, counts: bool) -> Parts | None:
-        """Return what ``value`` holds beside attributes, by its ``base`` in ``_CONTENT``."""
+        """Return the content of ``value`` without attributes, by its ``base`` in ``_CONTENT``."""
         if base is object:
             return []
         if base is dict:
@@ -192,15 +192,15 @@ class _Reader:
             return _numbered(base.__iter__(value))
         if base in (set, frozenset):
             self.add(place, [("{}", part) for part in base.__iter__(value)], False)
-            return None if counts else []  # which text belongs to which part is not known
+            return None if counts else []  # the order of a set differs between processes
         return [("", base.__repr__(value))]
 
     def function_parts(self, place: str, value: types.FunctionType) -> Parts:
-        """Note the code of a user's function, and return what it encloses and names."""
+        """Note the code of a user's function; return its closure, defaults and named objects."""
         users = _is_users(value)
         if users:
             self.state.functions.append(value.__code__)
-        if users and value.__name__ == "<lambda>":  # a line may hold several
+        if users and value.__name__ == "<lambda>":  # the source line may hold several lambdas
             self.note(place, bytecode(value.__code__))
         cells = zip(value.__code__.co_freevars, value.__closure__ or (), strict=True)
         enclosed = [(name, cell.cell_contents) for name, cell in cells if _is_filled(cell)]
@@ -209,7 +209,7 @@ class _Reader:
         return [*enclosed, *usual, *vars(value).items(), *(_globals(value) if users else ())]
 
     def add_class(self, kind: type) -> Parts:
-        """Visit what belongs to the code of ``kind`` and of its bases."""
+        """Visit the members of ``kind`` and of its bases."""
         for each in kind.__mro__:
             if each not in self.classes and each is not object:
                 self.classes.add(each)
@@ -217,7 +217,7 @@ class _Reader:
         return []
 
     def visit_network(self, place: str, net: nn.Module, counts: bool) -> None:
-        """Note a network, and add its classes, hooks and whatever its state dict does not hold."""
+        """Note a network; add its classes, hooks and everything outside its state dict."""
         self.state.networks.append((place, net))
         if torch_module._global_forward_hooks or torch_module._global_forward_pre_hooks:
             hooks = _join(place, "global hooks")
@@ -247,11 +247,14 @@ class _Reader:
                 if k not in left_out:
                     self.add(inner, [(k, part)], whole or replaces or adapter)
         packed = [(k, one) for k, one in saved.items() if not isinstance(one, torch.Tensor)]
-        self.add(_join(place, "state_dict()"), packed)  # such as of a quantised layer
+        self.add(_join(place, "state_dict()"), packed)  # for example of a quantised layer
 
     def visit_hooks(self, place: str, module: nn.Module) -> None:
-        """Note hooks. One is readable if it is of our adapters, has a method ``fingerprint()`` that
-        returns plain data, or is an object of torch such as a weight norm."""
+        """Note the hooks of a module.
+
+        A hook is readable if it belongs to an adapter of this project, has a method
+        ``fingerprint()`` that returns plain data, or is an object of torch such as a weight norm.
+        """
         hooks = [*module._forward_pre_hooks.values(), *module._forward_hooks.values()]
         origins = [str(read(hook, "__module__", default=type(hook).__module__)) for hook in hooks]
         for number, (hook, origin) in enumerate(zip(hooks, origins, strict=True)):
@@ -271,7 +274,7 @@ class _Reader:
 
 
 def _members(kind: type) -> Parts:
-    """Everything in a user's class; of another class what was set later."""
+    """Yield the members of a user's class; of other classes only members that were replaced."""
     users = _is_users_class(kind)
     ours = kind.__module__.startswith(("mitigate.", "torch.")) and kind is not nn.Module
     for name, one in vars(kind).items():
@@ -289,8 +292,10 @@ def _members(kind: type) -> Parts:
 
 
 def _globals(function: types.FunctionType) -> Parts:
-    """What the user's ``function``, and functions written inside it, may name of its module, and of
-    the user's modules that this names."""
+    """Yield the globals that the user's ``function`` and its inner functions may use.
+
+    Attributes of the user's modules are followed.
+    """
     codes = [function.__code__]
     names = dict[str, None]()
     for code in codes:
@@ -311,8 +316,10 @@ def _globals(function: types.FunctionType) -> Parts:
 
 
 def _hides_memory(kind: type, base: type) -> bool:
-    """Return whether objects of ``kind`` hold more than ``base`` and Python attributes: memory of
-    C code. This is the check of ``object.__reduce_ex__``, without calling the user's code."""
+    """Return whether objects of ``kind`` hold C memory beyond ``base`` and Python attributes.
+
+    This is the check of ``object.__reduce_ex__``, without calling the user's code.
+    """
     slots: Any = copyreg._slotnames(kind)  # type: ignore[attr-defined]
     words = len(slots) + (kind.__weakrefoffset__ > 0)
     words += kind.__dictoffset__ > 0 or (kind.__dictoffset__ < 0 < kind.__itemsize__)
@@ -320,8 +327,10 @@ def _hides_memory(kind: type, base: type) -> bool:
 
 
 def _pickled(value: Any) -> Parts | None:
-    """Return what pickle would store of an object with memory of C code; None if it cannot, or if
-    code of the user or of an unknown package would answer."""
+    """Return what pickle would store of an object with C memory.
+
+    None if it cannot be pickled, or if code of the user or of an unknown package would run.
+    """
     if isinstance(value, Iterator):  # it changes with every use
         return None
     for each in type(value).__mro__:
@@ -331,17 +340,17 @@ def _pickled(value: Any) -> Parts | None:
             return None
     try:
         reduce = copyreg.dispatch_table.get(type(value))
-        found = reduce(value) if reduce else value.__reduce_ex__(2)
-        if not isinstance(found, str):
-            return _numbered(list(part) if isinstance(part, Iterator) else part for part in found)
-        where = pickle.whichmodule(value, found)  # type: ignore[attr-defined]
-        return [("", f"{where}.{found}")] if read(sys.modules[where], found) is value else None
-    except Exception:  # whatever a type raises that cannot be pickled
+        reduced = reduce(value) if reduce else value.__reduce_ex__(2)
+        if not isinstance(reduced, str):
+            return _numbered(list(part) if isinstance(part, Iterator) else part for part in reduced)
+        where = pickle.whichmodule(value, reduced)  # type: ignore[attr-defined]
+        return [("", f"{where}.{reduced}")] if read(sys.modules[where], reduced) is value else None
+    except Exception:  # a type that cannot be pickled may raise any error
         return None
 
 
 def _attributes(value: Any) -> Parts:
-    """The attributes and slots of an object."""
+    """Yield the attributes and slots of an object."""
     with suppress(AttributeError):
         yield from object.__getattribute__(value, "__dict__").items()
     for kind in type(value).__mro__:
@@ -356,7 +365,7 @@ def _is_dunder(name: str) -> bool:
 
 
 def _name_of(value: Any) -> str:
-    """The name of a class, function or module."""
+    """Return the name of a class, function or module."""
     if isinstance(value, type):
         return class_name(value)
     name = read(value, "__qualname__", "__name__")
@@ -386,21 +395,25 @@ def _is_users(function: types.FunctionType) -> bool:
 
 @cache
 def is_users(module: str, file: str) -> bool:
-    """Return whether code belongs to the user: not to this project, torch, Python or an installed
-    package, which are identified by their versions."""
+    """Return whether code belongs to the user.
+
+    This project, torch, Python and installed packages are identified by their versions instead.
+    """
     path = PurePath(file)
     installed = _INSTALLED & {*path.parts} or path.is_relative_to(sysconfig.get_path("stdlib"))
     return module.partition(".")[0] not in _BY_VERSION and not installed
 
 
 def class_name(kind: type) -> str:
-    """Return the name of a class; with its module only where the source does not count anyway."""
+    """Return the name of a class; with its module unless it is the user's code."""
     return kind.__qualname__ if _is_users_code(kind) else f"{kind.__module__}.{kind.__qualname__}"
 
 
 def array_sha(array: np.ndarray | torch.Tensor) -> str:
-    """Return the hash of an array's or tensor's type, shape and bytes; "" if it has no readable
-    bytes (sparse, on the meta device, of objects)."""
+    """Return the hash of an array's or tensor's type, shape and bytes.
+
+    "" if it has no readable bytes: sparse, on the meta device, or an array of objects.
+    """
     kind: Any = array.dtype
     if isinstance(array, torch.Tensor):
         if array.layout != torch.strided or array.is_meta:
@@ -429,7 +442,7 @@ def plain_text(value: Any) -> str | None:
 
 
 def bytecode(code: types.CodeType) -> str:
-    """Return what ``code`` does, as text, where its source does not tell."""
+    """Return the bytecode, names and constants of ``code`` as text."""
     return f"{code.co_name} {code.co_code.hex()} {code.co_names} {_constants(code)}"
 
 

@@ -1,7 +1,7 @@
-"""A base for agents that take every low-level action from what they see at that moment.
+"""Base class of agents that choose each low-level action from the current observation alone.
 
-A subclass says what it reads and what it makes of a batch of observations; acting, collecting
-decisions under an expert, and answering them again are done here.
+A subclass declares its inputs and defines ``forward``. Acting, collecting decisions under an expert
+and evaluating batches of decisions are implemented here.
 """
 
 from __future__ import annotations
@@ -21,19 +21,27 @@ from mitigate.worlds.world import World, expert_of
 
 
 class Frames(dict[str, Tensor]):
-    """What ``forward`` reads, by name."""
+    """Inputs of ``forward`` by name."""
 
     def __missing__(self, name: str) -> Tensor:
         raise ValueError(
-            f"The agent reads {name!r}, which its needs = {tuple(self)} do not name: add it to "
-            "them (docs/bring-your-own.md)."
+            f"The agent reads {name!r}, but its needs = {tuple(self)} do not name it. Add it to "
+            "needs (docs/bring-your-own.md)."
         )
 
 
 @dataclass
 class StepDecisions:
-    """B steps: frames by name [B, ...], the same before their corruption (if it was kept), what
-    each heard, the expert's answers."""
+    """B steps with the expert's answers.
+
+    Attributes:
+        frames: inputs by name, [B, ...].
+        clean: the inputs before corruption; empty if they were not kept.
+        texts: the instruction of each step.
+        target: [B, actions], one-hot.
+        weight: [B].
+        episode_ids: the episode of each step.
+    """
 
     frames: Frames
     clean: Frames
@@ -52,30 +60,38 @@ class StepDecisions:
 
 
 class StepwiseAgent(Agent, nn.Module):
-    """Define ``forward``; set ``needs`` (entries of observations), ``actions`` (how many there are,
-    0 is STOP) and ``limit`` (steps of a training rollout) where they are others.
+    """A trainable agent (``agents/agent.py``) without memory; a subclass defines ``forward``.
 
-    It is an agent and trainable (``agents/agent.py``); its parts are its child modules.
+    Its parts are its child modules.
+
+    Attributes:
+        needs: entries of observations that ``forward`` reads.
+        actions: number of actions; 0 is STOP.
+        limit: steps of a training rollout.
     """
 
     needs: tuple[str, ...] = (RGB,)
     actions = 4
     limit = 100
 
-    plain_walks = False  # steps hold arrays
+    plain_walks = False  # steps hold numpy arrays
 
     def forward(self, frames: Frames, texts: Sequence[str]) -> tuple[Tensor, dict[str, Tensor]]:
-        """Logits [B, actions] and features by name of B observations, which hold what ``needs``
-        names as the world's sensors give it, and the instructions."""
+        """Return logits [B, actions] and features by name.
+
+        Args:
+            frames: the entries in ``needs`` of B observations, as the world's sensors give them.
+            texts: the B instructions.
+        """
         raise NotImplementedError(f"{type(self).__name__} defines no forward(frames, texts)")
 
     @property
     def sensors(self) -> tuple[str, ...]:  # type: ignore[override]
-        """What it reads."""
+        """The entries of observations that it reads."""
         return self.needs
 
     def parts(self) -> dict[str, nn.Module]:
-        """The child modules by name."""
+        """Return the child modules by name."""
         return dict(self.named_children())
 
     @property
@@ -88,9 +104,9 @@ class StepwiseAgent(Agent, nn.Module):
 
     @torch.inference_mode()
     def act(self, observation: Mapping[str, np.ndarray]) -> int:
-        """The likeliest action. Raises ValueError for logits that choose none."""
-        seen = {name: np.asarray(observation[name])[None] for name in self.needs}
-        logits = self(self._tensors(seen), [self.instruction])[0][0]
+        """Return the likeliest action. Raises ValueError for invalid logits."""
+        frames = {name: np.asarray(observation[name])[None] for name in self.needs}
+        logits = self(self._tensors(frames), [self.instruction])[0][0]
         return int(check_logits(logits, self).argmax())
 
     @torch.no_grad()
@@ -103,29 +119,33 @@ class StepwiseAgent(Agent, nn.Module):
         rngs: Sequence[np.random.Generator],
         clean: bool = False,
     ) -> list[dict[str, Any]]:
-        """One dict a step. The agent's own STOP is not taken, so that what follows a wrong one is
-        learned, too. Raises ValueError for a world without an expert, and for logits that choose no
-        action."""
-        seen = [world.reset(episode) for world, episode in zip(worlds, episodes, strict=True)]
+        """Run episodes and return one dict per step, with the expert's answer.
+
+        The agent's STOP is never taken, so that it also learns from the steps after a wrong one.
+
+        Raises:
+            ValueError: A world has no expert, or the logits are invalid.
+        """
+        observations = [world.reset(e) for world, e in zip(worlds, episodes, strict=True)]
         experts = [expert_of(world) for world in worlds]
         steps: list[dict[str, Any]] = []
         running = list(range(len(worlds)))
         for number in range(1, self.limit + 1):
-            fresh = [self._step(seen[i], experts[i], episodes[i], clean) for i in running]
-            steps += fresh
-            for i, step in zip(running, fresh, strict=True):
+            new = [self._step(observations[i], experts[i], episodes[i], clean) for i in running]
+            steps += new
+            for i, step in zip(running, new, strict=True):
                 action = step["answer"]
                 if rngs[i].random() >= expert_share:
-                    own = self._sample(step, rngs[i], number)
-                    action = action if own == STOP else own
-                seen[i] = worlds[i].step(action)
+                    sampled = self._sample(step, rngs[i], number)
+                    action = action if sampled == STOP else sampled
+                observations[i] = worlds[i].step(action)
             running = [i for i in running if not worlds[i].done]
             if not running:
                 break
         return steps
 
     def join(self, pieces: Sequence[list[dict[str, Any]]]) -> StepDecisions:
-        """All steps of the pieces."""
+        """Return one batch of all steps of the pieces."""
         steps = [step for piece in pieces for step in piece]
         answers = torch.tensor([step["answer"] for step in steps])
         frames, clean = (_stacked([step[kind] for step in steps]) for kind in ("frames", "clean"))
@@ -139,16 +159,17 @@ class StepwiseAgent(Agent, nn.Module):
         )
 
     def decide(self, decisions: StepDecisions, *, clean: bool = False) -> Output:
-        """Logits over the actions, and what ``forward`` calls features."""
+        """Return the logits and features of ``forward``."""
         logits, features = self(decisions.clean if clean else decisions.frames, decisions.texts)
         return Output(logits.float(), features=features)
 
     def _step(
-        self, seen: Observation, expert: Any, episode: Episode, clean: bool
+        self, observation: Observation, expert: Any, episode: Episode, clean: bool
     ) -> dict[str, Any]:
+        # copies, because a world may reuse its arrays
         return {
-            "frames": {name: np.array(seen[name]) for name in self.needs},  # a world may reuse its
-            "clean": {name: np.array(seen.clean[name]) for name in self.needs if clean},  # arrays
+            "frames": {name: np.array(observation[name]) for name in self.needs},
+            "clean": {name: np.array(observation.clean[name]) for name in self.needs if clean},
             "answer": int(expert.action()),
             "text": episode.instruction.text,
             "episode_id": episode.episode_id,

@@ -1,12 +1,12 @@
-"""The words that agents know: what a view can show, and the vocabulary of instructions.
+"""The words that agents know: concepts of views, and the vocabulary of instructions.
 
-The RGB encoder predicts, for the central 36 degrees of each view, which concepts are there. The
-planner turns the probabilities into text embeddings of the concepts' words, so that views and
-instructions share one space from the start.
+The RGB encoder predicts the concepts in the central 36 degrees of each view. The planner multiplies
+their probabilities with the text embeddings of their words, so that views and instructions share
+one embedding space.
 
-A vocabulary is closed and small, with ``[MASK]`` and unknown words. It is one of an agent's
-settings, so it comes with the weights and is part of the agent's fingerprint: with other words of
-the same number, weights would load and be misread.
+A vocabulary is closed and small, with tokens for ``[MASK]`` and unknown words. It is one of an
+agent's settings, so it is stored with the weights and is part of the fingerprint. With other words
+of the same number, the weights would load but be misread.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ THING_NAMES = (
 )
 COLOUR_NAMES = ("red", "orange", "yellow", "green", "blue", "purple", "brown", "white")
 ROOM_NAMES = ("bedroom", "bathroom", "kitchen", "living room", "office", "dining room")
-# visible things, things nearer than 2 m, colours of coloured things, kinds of the rooms seen
+# visible objects, objects nearer than 2 m, colours of objects, kinds of visible rooms
 CONCEPTS = (
     *THING_NAMES,
     *(f"near {name}" for name in THING_NAMES),
@@ -54,8 +54,12 @@ _WORD = re.compile(r"\[MASK\]|[a-z]+")
 class Vocabulary:
     """The words an agent knows, in the order of their ids.
 
-    Args: words: lower-case words without the special ones; None: ``WORDS``. Raises ValueError for
-    a word that comes twice or that no text could hold, and if a concept's word is missing.
+    Args:
+        words: lower-case words without the special ones; None: ``WORDS``.
+
+    Raises:
+        ValueError: A word is repeated or has other characters than a to z, or a concept's word is
+            missing.
     """
 
     def __init__(self, words: Sequence[str] | None = None) -> None:
@@ -63,15 +67,15 @@ class Vocabulary:
         wrong = [word for word in self.words if not re.fullmatch("[a-z]+", word)]
         if wrong or len(set(self.words)) < len(self.words):
             raise ValueError(
-                f"A vocabulary lists words of the letters a to z, each once; these are not: "
-                f"{', '.join(map(repr, wrong[:4])) or 'some come twice'}."
+                "words of a vocabulary must be unique and have only the letters a to z, got "
+                f"{', '.join(map(repr, wrong[:4])) or 'repeated words'}."
             )
         self.ids = {word: index for index, word in enumerate((*SPECIAL, *self.words))}
         lacking = {w for concept in CONCEPTS for w in _words_of(concept)} - self.ids.keys()
         if lacking:
             raise ValueError(
-                f"The vocabulary lacks {', '.join(sorted(lacking)[:8])}: the agent names what it "
-                "sees by these words."
+                f"The vocabulary lacks {', '.join(sorted(lacking)[:8])}. The agent needs these "
+                "words for the concepts that it recognises."
             )
 
     def __len__(self) -> int:
@@ -81,13 +85,13 @@ class Vocabulary:
         return iter(self.ids)
 
     def encode(self, text: str) -> list[int]:
-        """Ids of the words of an instruction (lower case; at most ``MAX_WORDS``), never empty."""
+        """Return the ids of an instruction's words, at most ``MAX_WORDS`` and never empty."""
         lowered = re.sub(r"\[mask\]", "[MASK]", text.lower())
         ids = [self.ids.get(word, UNKNOWN) for word in _WORD.findall(lowered)]
         return ids[:MAX_WORDS] or [UNKNOWN]
 
     def concept_words(self) -> torch.Tensor:
-        """Matrix float32 [concepts, vocabulary]: row c averages the words of concept c."""
+        """Return float32 [concepts, vocabulary]; row c averages the words of concept c."""
         out = torch.zeros(len(CONCEPTS), len(self))
         for row, concept in enumerate(CONCEPTS):
             ids = [self.ids[word] for word in _words_of(concept)]
@@ -96,7 +100,7 @@ class Vocabulary:
 
 
 def pad(rows: list[list[int]]) -> torch.Tensor:
-    """Token rows to int64 [n, longest], padded with ``PAD``."""
+    """Return token rows as int64 [n, longest], padded with ``PAD``."""
     out = torch.full((len(rows), max(map(len, rows))), PAD, dtype=torch.int64)
     for index, row in enumerate(rows):
         out[index, : len(row)] = torch.tensor(row)

@@ -1,1 +1,1 @@
-"""Encoders that are not ours: loading, frames, the measurement of their features, adapters."""
+"""Encoders of users: loading them, frames to train on, measuring their features, adapters."""

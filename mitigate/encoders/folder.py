@@ -1,8 +1,8 @@
-"""What a training of an encoder leaves: a folder of data that plain PyTorch can load.
+"""Save and load the result of training an encoder: a folder that plain PyTorch can load.
 
-With adapters: ``adapters.safetensors`` and ``adapters.json``; with ``tune=all``:
-``model.safetensors``. ``encoder.json`` says what frames and which output they belong to; all files
-are listed in the manifest. Reading one runs nothing from it: the caller gives the encoder.
+Adapters are ``adapters.safetensors`` and ``adapters.json``; ``tune=all`` writes
+``model.safetensors``. ``encoder.json`` describes the frames and the output that they belong to. The
+manifest lists all files. Loading runs no code from the folder: the caller gives the encoder.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ encoder.load_state_dict(parse(open("{folder}/model.safetensors", "rb").read()))
 
 
 def write(encoder: Encoder, folder: str | Path) -> Path:
-    """Write what was trained of ``encoder`` into ``folder``; return it."""
+    """Write the trained weights of ``encoder`` into ``folder``; return it."""
     with folders.write_folder(folder, "encoder") as draft:
         if encoder.tune == "adapters":
             adapters.write_adapters(encoder.model, draft)
@@ -63,7 +63,7 @@ def write(encoder: Encoder, folder: str | Path) -> Path:
 
 
 def described(encoder: Encoder) -> dict[str, Any]:
-    """What ``encoder`` takes and gives, as plain data."""
+    """Return the settings of the input and output of ``encoder``, as plain data."""
     return {
         "sensor": encoder.sensor,
         "transform": encoder.transform.settings(),
@@ -74,7 +74,7 @@ def described(encoder: Encoder) -> dict[str, Any]:
 
 
 def lines(encoder: Encoder, folder: str | Path) -> str:
-    """The lines of plain PyTorch that load ``folder``."""
+    """Return the lines of plain PyTorch that load ``folder``."""
     return _LINES[encoder.tune].format(folder=folder)
 
 
@@ -83,8 +83,12 @@ def _inner(encoder: Encoder) -> Any:
 
 
 def card(folder: str | Path) -> dict[str, Any]:
-    """What ``encoder.json`` says. Raises FileNotFoundError if it is missing, ValueError if it is
-    damaged or of another form."""
+    """Return the content of ``encoder.json``.
+
+    Raises:
+        FileNotFoundError: The file is missing.
+        ValueError: It is damaged, or an entry is invalid.
+    """
     file = Path(folder) / CARD
     if not file.is_file():
         raise FileNotFoundError(
@@ -94,26 +98,27 @@ def card(folder: str | Path) -> dict[str, Any]:
     damage = folders.problem(file)
     if damage:
         raise ValueError(f"{file} is cut short or damaged: it {damage}. {_AGAIN}")
-    found = read_json(file, _AGAIN)
+    entries = read_json(file, _AGAIN)
     for name, kinds in ENTRIES.items():
-        value = found.get(name) if isinstance(found, dict) else None
+        value = entries.get(name) if isinstance(entries, dict) else None
         if type(value) not in kinds or (name == "format" and value != FORMAT):
             raise ValueError(f"{file}: {name} must not be {value!r:.60}. {_AGAIN}")
-    return found
+    return entries
 
 
 def fill(encoder: Encoder, folder: str | Path) -> None:
-    """Read what :func:`write` wrote into an encoder with the original weights.
+    """Load what :func:`write` wrote into an encoder with the original weights.
 
-    Raises as :func:`card` and ``load_adapters``; ValueError too for the folder of an encoder with
-    other settings.
+    Raises the errors of :func:`card` and ``load_adapters``; ValueError also if the folder belongs
+    to an encoder with other settings.
     """
-    held, own = card(folder), described(encoder)
-    wrong = [name for name, value in own.items() if held[name] != value]
+    stored = card(folder)
+    actual = described(encoder)
+    wrong = [name for name, value in actual.items() if stored[name] != value]
     if wrong:
         raise ValueError(
-            f"{folder} is of an encoder with {wrong[0]}={held[wrong[0]]!r:.100}, but this one has "
-            f"{own[wrong[0]]!r:.100}. Build it with the settings in {CARD}."
+            f"{folder} is of an encoder with {wrong[0]}={stored[wrong[0]]!r:.100}, but this one "
+            f"has {actual[wrong[0]]!r:.100}. Build it with the settings in {CARD}."
         )
     if encoder.tune == "adapters":
         adapters.remove_adapters(encoder.model)

@@ -1,4 +1,4 @@
-"""An encoder that is not ours, with its transform, the output that is its target, and adapters."""
+"""An encoder of the user with its transform, its target output, and adapters."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ import torch.nn.functional as F
 from torch import Tensor, nn
 
 from mitigate.agents import adapters as inserted
-from mitigate.agents.sites import choose, first, look
+from mitigate.agents.sites import choose, find_sites, first
 from mitigate.core.files import find
 from mitigate.core.names import short, unknown
 from mitigate.core.progress import say
@@ -25,22 +25,29 @@ from mitigate.encoders import folder as folders
 from mitigate.encoders import loading
 
 RESIZE = ("bilinear", "bicubic", "area", "nearest")
-FROM_UINT8 = 255.0  # of RGB frames
-MOST = 4096  # pixels of a side (ours)
+FROM_UINT8 = 255.0  # largest value of RGB frames
+MOST = 4096  # pixels of a side (heuristic)
 
 
 class Transform:
-    """uint8 ``[n, H, W, 3]`` or float metres ``[n, H, W, 1]`` to float32 ``[n, c, size, size]``.
+    """Convert uint8 ``[n, H, W, 3]`` or metres ``[n, H, W, 1]`` to ``[n, c, size, size]`` floats.
 
     Args:
-        size: pixels of a side. resize: one of ``RESIZE``; bilinear and bicubic are antialiased
-            where they shrink, as in torchvision and PIL. crop: resize the shorter side and take the
-            middle square (CLIP), in place of resizing both sides.
-        mean, std: of each channel, after ``scale``. scale: RGB is divided by it: 255 to get 0 to 1
-            (most encoders), 1 for encoders that take 0 to 255. bgr: channels in reverse.
-        near, far: metres. Depth is clipped to them and becomes (depth - near) / (far - near), as in
-            habitat-lab, and then meets mean and std; far null: metres as they are.
-    Raises ValueError for other values, naming the option.
+        size: pixels of a side.
+        resize: one of ``RESIZE``; bilinear and bicubic are antialiased when they shrink, as in
+            torchvision and PIL.
+        crop: resize the shorter side and take the centre square (as CLIP), instead of resizing
+            both sides.
+        mean: mean of each channel, after ``scale``.
+        std: standard deviation of each channel, after ``scale``.
+        scale: divisor of RGB: 255 for values 0 to 1 (most encoders), 1 for 0 to 255.
+        bgr: whether to reverse the channels.
+        near: metres; see ``far``.
+        far: depth is clipped to ``near`` and ``far``, scaled to (depth - near) / (far - near), as
+            in habitat-lab, and then normalised by ``mean`` and ``std``. None: metres, unscaled.
+
+    Raises:
+        ValueError: An argument is invalid; names the option.
     """
 
     def __init__(
@@ -61,7 +68,7 @@ class Transform:
         self.scale, self.near, self.far = float(scale), float(near), far
 
     def settings(self) -> dict:
-        """The arguments, as plain data."""
+        """Return the arguments, as plain data."""
         return dict(self.__dict__)
 
     def __call__(self, frames: Tensor) -> Tensor:
@@ -91,43 +98,46 @@ class Transform:
         return x[..., top : top + self.size, left : left + self.size]
 
 
-def transform_of(given: Mapping[str, Any]) -> Transform:
-    """The transform with the arguments ``given``. ValueError for a name that it does not have and
-    for a value that it does not take."""
+def transform_of(options: Mapping[str, Any]) -> Transform:
+    """Return the transform with the arguments ``options``.
+
+    Raises:
+        ValueError: An argument is unknown or invalid.
+    """
     known = [*signature(Transform).parameters]
-    for name in given:
+    for name in options:
         if name not in known:
             raise ValueError(unknown("setting of agent.transform", name, known))
-    return Transform(**{"size": None, **given})
+    return Transform(**{"size": None, **options})
 
 
-def _check(given: Mapping[str, Any]) -> None:
-    """Raise ValueError for the first argument of a :class:`Transform` that is none."""
-    if given["resize"] not in RESIZE:
-        raise ValueError(unknown("agent.transform.resize", given["resize"], RESIZE))
-    size, near, far, std = (given[name] for name in ("size", "near", "far", "std"))
+def _check(options: Mapping[str, Any]) -> None:
+    """Raise ValueError for the first invalid argument of a :class:`Transform`."""
+    if options["resize"] not in RESIZE:
+        raise ValueError(unknown("agent.transform.resize", options["resize"], RESIZE))
+    size, near, far, std = (options[name] for name in ("size", "near", "far", "std"))
     whole = isinstance(size, (int, np.integer)) and type(size) is not bool
-    wanted = {
+    rules = {
         "size": (whole and 1 <= size <= MOST, f"a whole number of 1 to {MOST} pixels"),
-        "crop": (type(given["crop"]) is bool, "true or false"),
-        "bgr": (type(given["bgr"]) is bool, "true or false"),
-        "scale": (_number(given["scale"]) and given["scale"] > 0, "a number above 0"),
-        "mean": (_numbers(given["mean"]), "a list of numbers, one a channel"),
-        "std": (_numbers(std) and min(std) > 0, "a list of numbers above 0, one a channel"),
+        "crop": (type(options["crop"]) is bool, "true or false"),
+        "bgr": (type(options["bgr"]) is bool, "true or false"),
+        "scale": (_number(options["scale"]) and options["scale"] > 0, "a number above 0"),
+        "mean": (_numbers(options["mean"]), "a list of numbers, one per channel"),
+        "std": (_numbers(std) and min(std) > 0, "a list of numbers above 0, one per channel"),
         "near": (_number(near) and near >= 0, "a number of metres, at least 0"),
         "far": (far is None or _number(far), "null or a number of metres"),
     }
-    for name, (good, words) in wanted.items():
-        if not good:
-            raise ValueError(f"agent.transform.{name}={short(given[name])} must be {words}.")
-    if len(given["mean"]) != len(std):
+    for name, (valid, words) in rules.items():
+        if not valid:
+            raise ValueError(f"agent.transform.{name} must be {words}, got {short(options[name])}.")
+    if len(options["mean"]) != len(std):
         raise ValueError(
-            f"agent.transform.mean={list(given['mean'])} and agent.transform.std={list(std)} must "
-            "have as many values."
+            "agent.transform.mean and agent.transform.std must have the same length, got "
+            f"{list(options['mean'])} and {list(std)}."
         )
     if far is not None and not near < far:
         raise ValueError(
-            f"agent.transform.near={near} must be less than agent.transform.far={far}."
+            f"agent.transform.near must be less than agent.transform.far, got {near} and {far}."
         )
 
 
@@ -147,20 +157,25 @@ AUTO, SITES = "auto", 6
 
 
 class Encoder(nn.Module):
-    """Frames in, features out; stands where the other recipes have an agent.
+    """Map frames to features; the recipe for encoders trains it in place of an agent.
 
     Args:
-        model, kwargs: as :func:`mitigate.encoders.loading.load_model`. weights, prefix: as
-            ``load_weights`` there; None: those that the model comes with.
-        sensor: "rgb" or "depth". transform: arguments of ``transform.Transform``.
-        output: what is the target: None: what the model returns; a number or a name: that item of
-            it (``pooler_output``); else the dotted name of a module, whose output it is.
-        pool: how features become a vector for the report: the mean over places or tokens, the first
-            token (CLIP's class token), or all of it. The target itself is not pooled.
-        tune: "adapters", or "all" of the encoder's weights (its BatchNorms keep their statistics).
-        adapters: targets ("auto", or regular expressions), sites (how many blocks "auto" takes),
-            reduction, kernel, middle, gate: as ``insert_adapters``.
-    Raises ValueError or FileNotFoundError for what does not fit, saying what would.
+        model: as for :func:`mitigate.encoders.loading.load_model`.
+        transform: arguments of :class:`Transform`.
+        kwargs: arguments of ``model``.
+        weights: as for :func:`mitigate.encoders.loading.load_weights`; None: those of the model.
+        prefix: as for :func:`mitigate.encoders.loading.load_weights`.
+        sensor: "rgb" or "depth".
+        output: the target features. None: the output of the model; a number or a name: that item
+            of the output (``pooler_output``); else the dotted name of a module.
+        pool: how the report turns features into a vector: "mean" over places or tokens, "first"
+            token (CLIP's class token), or "flatten". The target is not pooled.
+        tune: "adapters", or "all" weights of the encoder (BatchNorm statistics stay fixed).
+        adapters: targets ("auto", or regular expressions), sites (number of blocks for "auto"),
+            and reduction, kernel, middle and gate as for ``insert_adapters``.
+
+    Raises:
+        ValueError, FileNotFoundError: An argument is invalid; the message lists valid ones.
     """
 
     own_config_only = ("model", "kwargs", "weights", "prefix")  # core/build.py
@@ -188,7 +203,7 @@ class Encoder(nn.Module):
                 raise ValueError(unknown(f"agent.{name}", value, list(allowed)))
         if model is None:
             raise ValueError(
-                "agent.model is not set: name your encoder as agent.model=package.module:callable, "
+                "agent.model is not set. Name your encoder: agent.model=package.module:callable, "
                 "or a TorchScript (.ts, .pt) or exported (.pt2) file (docs/encoder.md)."
             )
         self.given = {"model": model, "kwargs": kwargs, "weights": weights, "prefix": prefix}
@@ -198,7 +213,8 @@ class Encoder(nn.Module):
         if means not in (1, channels):
             raise ValueError(
                 f"agent.transform.mean and std have {means} values, but {sensor} has {channels} "
-                "channels. For depth as it is: agent.transform.mean=[0] agent.transform.std=[1]."
+                "channels. For depth without normalisation set agent.transform.mean=[0] "
+                "agent.transform.std=[1]."
             )
         self.model = loading.load_model(model, kwargs)
         if weights is not None:
@@ -211,22 +227,22 @@ class Encoder(nn.Module):
             self.add_adapters(**(adapters or {}))
         elif not any(p.is_floating_point() for p in self.model.parameters()):
             raise ValueError(
-                f"agent.tune=all, but {model} has no parameters that could train (a frozen "
-                "TorchScript has none): agent.tune=adapters."
+                f"agent.tune=all, but {model} has no trainable parameters (as a frozen "
+                "TorchScript). Set agent.tune=adapters."
             )
         self.choose_trained()
 
     @property
     def wrapped(self) -> bool:
-        """Whether the model is a TorchScript, whose inside no adapter reaches."""
+        """Whether the model is a TorchScript, which takes no adapters inside."""
         return isinstance(self.model, loading.Wrapped)
 
     def settings(self) -> dict[str, Any]:
-        """What is known of it beside its config: nothing."""
+        """Return no settings in addition to those of its config."""
         return {}
 
     def choose_trained(self) -> None:
-        """Let the adapters train and nothing else, or all that can."""
+        """Make only the adapters trainable, or with ``tune="all"`` all weights."""
         self.model.requires_grad_(False)
         trained = inserted.adapter_parameters(self.model)
         if self.tune == "all":
@@ -235,31 +251,35 @@ class Encoder(nn.Module):
             parameter.requires_grad_(True)
 
     def train(self, mode: bool = True) -> Encoder:
-        """The encoder stays in eval mode: no dropout, and its BatchNorms keep their statistics."""
+        """Keep the encoder in eval mode: no dropout, fixed BatchNorm statistics."""
         super().train(mode)
         self.model.train(False)
         return self
 
     def forward(self, frames: Tensor) -> Tensor:
-        """Features of uint8 ``[n, H, W, 3]`` or metres ``[n, H, W, 1]``: ``[n, C]``,
-        ``[n, C, h, w]`` or ``[n, T, C]``, as the model gives them."""
-        given = self.transform(frames)
+        """Return features ``[n, C]``, ``[n, C, h, w]`` or ``[n, T, C]``, as the model gives them.
+
+        ``frames``: uint8 ``[n, H, W, 3]`` or metres ``[n, H, W, 1]``.
+        """
+        inputs = self.transform(frames)
         modules = dict(self.model.named_modules()) if isinstance(self.output, str) else {}
         if self.output not in modules or not self.output:
-            return self._item(self.model(given))
-        seen: list[Any] = []
+            return self._item(self.model(inputs))
+        outputs: list[Any] = []
         module = modules[self.output]
-        handle = module.register_forward_hook(lambda *called: seen.append(called[2]))
+        handle = module.register_forward_hook(lambda *call: outputs.append(call[2]))
         try:
-            self.model(given)
+            self.model(inputs)
         finally:
             handle.remove()
-        if not seen:
-            raise ValueError(f"The encoder does not call its module {self.output} (agent.output).")
-        return first(seen[-1])
+        if not outputs:
+            raise ValueError(
+                f"The encoder does not call its module {self.output}. Choose another agent.output."
+            )
+        return first(outputs[-1])
 
     def pooled(self, features: Tensor) -> Tensor:
-        """Features as vectors, float32 ``[n, C]``."""
+        """Return features as vectors, float32 ``[n, C]``."""
         features = features.float()
         if features.dim() <= 2 or self.pool == "flatten":
             return features.flatten(1)
@@ -276,11 +296,10 @@ class Encoder(nn.Module):
         middle: int | None = None,
         gate: bool = False,
     ) -> None:
-        """Freeze the encoder and put adapters into it; it computes what it did before."""
-        where = self.targets(targets, sites)
+        """Freeze the encoder and insert adapters; its output does not change yet."""
         names = inserted.insert_adapters(
             self.model,
-            where,
+            self.targets(targets, sites),
             reduction=reduction,
             kernel=kernel,
             run=self._probe,
@@ -291,23 +310,23 @@ class Encoder(nn.Module):
         say(f"adapters behind {', '.join(names)}: {share:.1%} of the encoder's weights")
 
     def targets(self, targets: str | Sequence[str], count: int) -> list[str]:
-        """Regular expressions of the modules that get adapters."""
+        """Return regular expressions for the modules that get adapters."""
         if targets != AUTO:
             return [targets] if isinstance(targets, str) else list(targets)
         if self.wrapped:
             return ["before", "behind"]
-        chosen = choose(look(self.model, self._probe), self.model, count)
+        chosen = choose(find_sites(self.model, self._probe), self.model, count)
         return [re.escape(name) for name in chosen]
 
     def _probe(self, count: int) -> Any:
-        """The model's answer to noise: to constant frames some normalisations give NaN."""
+        """Return the output for noise; some normalisations give NaN for constant frames."""
         size, channels = self.transform.size, SENSORS[self.sensor]
         noise = torch.rand(count, channels, size, size, generator=torch.Generator().manual_seed(0))
         like = next(self.model.parameters(), noise)
         return self.model(noise.to(like.device, like.dtype))
 
     def _item(self, output: Any) -> Tensor:
-        """The target in what the model returned."""
+        """Return the target features in the output of the model."""
         items: dict[Any, Any] = dict(output) if isinstance(output, Mapping) else {}
         if isinstance(output, (tuple, list)):
             items = dict(enumerate(output))
@@ -319,68 +338,71 @@ class Encoder(nn.Module):
             return chosen
         names = [str(name) for name, value in items.items() if isinstance(value, Tensor)]
         modules = [name for name, _ in self.model.named_modules() if name]
-        what = f"It returns {', '.join(names)}. " if names else ""
+        items_text = f" with {', '.join(names)}" if names else ""
         raise ValueError(
-            f"agent.output={self.output} is nothing that the encoder gives (it returns a "
-            f"{type(output).__name__}). {what}Name one of these, or a module, such as "
-            f"{', '.join(modules[-8:])}."
+            f"agent.output must name an item of the encoder's output or a module, got "
+            f"{self.output}. The encoder returns a {type(output).__name__}{items_text}; modules "
+            f"are, for example, {', '.join(modules[-8:])}."
         )
 
     @torch.no_grad()
     def _check(self) -> None:
-        """Run it once, so that what does not fit shows before anything is rendered."""
+        """Run the model once, so that errors appear before frames are rendered."""
         self.model.requires_grad_(False)
         size, channels = self.transform.size, SENSORS[self.sensor]
-        drawn = torch.rand(2, size, size, channels, generator=torch.Generator().manual_seed(0))
-        frames = (255 * drawn).to(torch.uint8) if self.sensor == "rgb" else 10 * drawn  # metres
+        noise = torch.rand(2, size, size, channels, generator=torch.Generator().manual_seed(0))
+        frames = (255 * noise).to(torch.uint8) if self.sensor == "rgb" else 10 * noise  # metres
         try:
-            given = self.model(self.transform(frames))
-        except Exception as error:  # of any kind: it is somebody's code
+            output = self.model(self.transform(frames))
+        except Exception as error:  # the user's code may raise any error
             raise ValueError(
                 f"The encoder {self.given['model']} does not take {self.sensor} frames [2, "
-                f"{channels}, {size}, {size}] ({loading.told(error, -1)}). Set "
-                "agent.transform.size to its input's pixels and agent.sensor to rgb or depth; a "
-                "program traced or exported for one frame takes no two: give it a dynamic number "
-                "of frames."
+                f"{channels}, {size}, {size}] ({loading.describe(error, -1)}). Set "
+                "agent.transform.size to the size of its input and agent.sensor to rgb or depth. A "
+                "program traced or exported for one frame does not accept two: export it with a "
+                "dynamic number of frames."
             ) from error
-        if isinstance(given, Tensor) and self.output is not None:
-            self.output = str(self.output)  # of one tensor there are no items: 3 is a module's name
+        if isinstance(output, Tensor) and self.output is not None:
+            self.output = str(self.output)  # a tensor has no items, so 3 is the name of a module
         features: Any = self(frames)
-        what = type(features).__name__
+        result = type(features).__name__
         if isinstance(features, Tensor):
-            what = f"{str(features.dtype).removeprefix('torch.')} {tuple(features.shape)}"
+            result = f"{str(features.dtype).removeprefix('torch.')} {tuple(features.shape)}"
             if features.is_floating_point() and features.dim() in (2, 3, 4) and len(features) == 2:
                 if bool(features.isfinite().all()):
                     return
-                what += " with NaN or infinity"
+                result += " with NaN or infinity"
         raise ValueError(
-            f"agent.output={self.output} gives {what} for two frames: it must be finite floats "
-            "[n, C], [n, C, h, w] or [n, T, C]. Name another module or item."
+            f"agent.output={self.output} must give finite floats [n, C], [n, C, h, w] or "
+            f"[n, T, C], got {result} for two frames. Name another module or item."
         )
 
     def far(self) -> DepthSensor:
-        """What depth corruptions must know of the sensor."""
+        """Return the sensor's range, which depth corruptions need."""
         far = self.transform.far
         return DepthSensor() if far is None else DepthSensor(z_max=float(far))
 
     def save(self, folder: str | Path) -> Path:
-        """Write what was trained: see ``folder.py``."""
+        """Write the trained weights; see ``folder.py``."""
         return folders.write(self, folder)
 
     def load(self, folder: str | Path) -> None:
-        """Read what :meth:`save` wrote; errors as ``folder.fill``."""
+        """Load what :meth:`save` wrote; errors as ``folder.fill``."""
         folders.fill(self, folder)
 
 
-def _check_fixed(model: str, made: nn.Module, again: nn.Module) -> None:
-    """Raise ValueError if what the callable ``model`` made twice has other weights each time:
-    adapters fit the weights that they were trained with, and those would be lost."""
-    if inserted.backbone_sha(made) == inserted.backbone_sha(again):
+def _check_fixed(model: str, first_model: nn.Module, second_model: nn.Module) -> None:
+    """Raise ValueError if two results of the callable ``model`` have different weights.
+
+    Adapters fit only the weights that they were trained with, and these would be lost.
+    """
+    if inserted.backbone_sha(first_model) == inserted.backbone_sha(second_model):
         return
-    other = again.state_dict()
-    drawn = [n for n, v in made.state_dict().items() if n in other and not v.equal(other[n])]
+    other = second_model.state_dict()
+    state = first_model.state_dict()
+    random = [n for n, v in state.items() if n in other and not v.equal(other[n])]
     raise ValueError(
-        f"agent.model={model} draws {len(drawn)} of its weights at random "
-        f"({', '.join(drawn[:3])}), so nothing would fit the adapters afterwards. Save its "
-        "state_dict() once, or take the trained one, and name the file: agent.weights=FILE."
+        f"agent.model={model} initialises {len(random)} of its weights at random "
+        f"({', '.join(random[:3])}), so the adapters would fit no later encoder. Save its "
+        "state_dict() once, or use trained weights, and name the file: agent.weights=FILE."
     )

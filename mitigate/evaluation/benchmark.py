@@ -1,4 +1,4 @@
-"""``mitigate.benchmark(agent)``: an agent under the suite, in one call; returns its entry."""
+"""``mitigate.benchmark(agent)``: evaluate an agent under the suite in one call."""
 
 from __future__ import annotations
 
@@ -41,9 +41,9 @@ from mitigate.guards.opening import labels, open_guards
 from mitigate.worlds.episodes import Episode, read_episodes
 from mitigate.worlds.world import Corrupted, World
 
-EPISODES = 20  # of a first look (ours): an SR is then known to about 17 points
+EPISODES = 20  # default number (heuristic): an SR then has an error of about 17 points
 OUT = Path("runs/benchmark")
-TIMED = 2  # clean walks, by the last of which the time is told (ours)
+TIMED = 2  # clean episodes, of which the last one gives the time estimate (heuristic)
 OPTION = re.compile(r"[+~]*(agent|env)[.=]|--config-dir\b")  # what options= may name
 
 
@@ -69,84 +69,99 @@ def benchmark(
 ) -> LeaderboardEntry:
     """Evaluate ``agent`` clean and under a suite of corruptions, and return its entry.
 
-    It says first how long that takes. The rows are in ``out``; the same call goes on with them.
+    It first prints how long the evaluation takes. The rows are in ``out``; the same call continues
+    from them.
 
     Args:
-        agent: any object of the contract (``mitigate/agents/agent.py``), or a path of weights.
-        name: heading of the entry; None: of the weights' folder, or the agent's class. version:
-            names what cannot be read of the agent (hooks); without it its rows are not reused.
-        split: list of episodes of the world; None: its own first, or the name of your own world.
-            episodes: how many, spread over the list; None: all, as entries have; unless told, 20 of
-            a split's, and all that are ``listed``.
-        suite: a name of ``conf/suite`` or a list of corruptions. severity: from 0 to 1. seed: of
-            the corruptions. workers: processes; None: one a core if there is work. More than one
-            read the script again, which keeps its call under ``if __name__ == "__main__":``.
-        safeguard, restore: guards in front of the agent: "rules", "checkpoints/restorer",
-            "module:callable".
-        options: of its kind and the world: "agent=recurrent", "env.views=1", "--config-dir=mine".
-        world, listed: makes a world of your own, and its episodes (or their file), in place of
-            those of ``options``; a world of another class than theirs needs both.
-        training_data, link: for the entry. out: folder of the rows; None: one in runs/benchmark.
-    Raises ValueError for no agent, what there is not, texts that an entry cannot hold and a folder
-    with rows of another world, FileNotFoundError for missing weights.
+        agent: any object with the interface in ``mitigate/agents/agent.py``, or a path of weights.
+        name: heading of the entry; None: the folder of the weights, or the class of the agent.
+        version: the user's name for state of the agent that cannot be read, such as hooks; without
+            it rows of such an agent are not reused.
+        split: list of episodes of the world; None: the default list, or the name of your world.
+        episodes: number of episodes, spread over the list; None: all, as for the leaderboard. By
+            default 20 of a split, and all of ``listed``.
+        suite: a name of ``conf/suite`` or a list of corruptions.
+        severity: from 0 to 1.
+        seed: corruption seed.
+        safeguard: guard for instructions, such as "rules" or "module:callable".
+        restore: guard for frames, such as "checkpoints/restorer".
+        workers: processes; None: one per core if there is enough work. With more than one the
+            call must be under ``if __name__ == "__main__":``, because processes import the script.
+        options: options of the agent and the world: "agent=recurrent", "env.views=1",
+            "--config-dir=mine".
+        world: makes a world of yours; it replaces the world of ``options``. A world of another
+            class needs ``listed``.
+        listed: its episodes, or their file.
+        training_data: for the entry.
+        link: for the entry.
+        out: folder of the rows; None: a folder in runs/benchmark.
+
+    Raises:
+        ValueError: The agent, an option or a text of the entry is invalid, or ``out`` holds rows of
+            another world.
+        FileNotFoundError: Weights are missing.
     """
     config, met = _conditions(agent, suite, severity, seed, options)
-    told = {"training_data": training_data, "link": link}
+    texts = {"training_data": training_data, "link": link}
     agent, name = _agent(agent, name, config, seed, labels(safeguard, restore))
-    check_texts(name=name, **told)
-    made = world or maker(config.env.world)
-    first, made_by = _first_world(made, met, agent, version)
+    check_texts(name=name, **texts)
+    make_world = world or maker(config.env.world)
+    first, made_by = _first_world(make_world, met, agent, version)
     split, chosen = _episodes(first, config, split, episodes, listed, world is not None)
     file = Path(out or OUT / f"{_plain(name)}-{split}-s{severity:g}") / ROWS
     guards = open_guards(safeguard, restore, first.sensors)
     known = Known(agent, first, guards.fingerprint(), version).check(file, name)
     label: dict[str, Any] = {"name": name, "split": split, "seed": seed, "known": known}
     with known:
-        _tell(agent, made, chosen, met, workers)
+        _print_estimate(agent, make_world, chosen, met, workers)
         with FolderLock(file.parent) as lock:
             provenance.keep(file.parent, first, made_by, split, chosen)
             lock.expect(file, *provenance.notes(file.parent, split))
             rows = evaluate(
-                agent, made, chosen, met, out=file, workers=workers, guards=guards, **label
+                agent, make_world, chosen, met, out=file, workers=workers, guards=guards, **label
             )
-    told["file"] = "" if file.is_absolute() else file.as_posix()
-    shown = sensor_lines(first.sensors, as_agent(agent).sensors)
-    return entry_of(rows, name, severity=severity, sensors=shown, **told)
+    texts["file"] = "" if file.is_absolute() else file.as_posix()
+    sensors = sensor_lines(first.sensors, as_agent(agent).sensors)
+    return entry_of(rows, name, severity=severity, sensors=sensors, **texts)
 
 
 def _conditions(
     agent: Any, suite: str | Sequence[str], severity: float, seed: int, options: Sequence[str]
 ) -> tuple[EvaluateConfig, list[Corruption]]:
-    """Return the config of an evaluation, for the kind of agent that a path of weights is of, and
-    the conditions of the suite, clean first."""
+    """Return the config of an evaluation and the conditions of the suite, clean first.
+
+    If ``agent`` is a path of weights, the config has the kind of agent that they belong to.
+    """
     seeding.check(seed)
     if isinstance(options, str) or not all(isinstance(one, str) for one in options or ()):
-        raise ValueError(f"options is a list of options ['env=mine'], not {options!r:.80}.")
+        raise ValueError(
+            f"options must be a list of strings such as ['env=mine'], got {options!r:.80}."
+        )
     options = [*(options or ())]
     folder = conf.config_folder(options)
     if folder is not None and not folder.is_dir():
-        raise ValueError(f"There is no folder {folder}, which --config-dir names.")
+        raise ValueError(f"--config-dir must name a folder, got {folder}, which does not exist.")
     for option in without_config_folder(options)[1]:
         if not OPTION.match(option):
             raise ValueError(
-                f"{option} has no effect here: options= are those of the agent and its world "
-                "(agent=..., agent.size=..., env=..., env.views=1, --config-dir=...). All else is "
-                'an argument of benchmark, such as severity=0.3, suite="quick" or '
+                f"{option} has no effect here: options= sets only the agent and its world "
+                "(agent=..., agent.size=..., env=..., env.views=1, --config-dir=...). Everything "
+                'else is an argument of benchmark, such as severity=0.3, suite="quick" or '
                 'restore="checkpoints/restorer".'
             )
     if isinstance(agent, (str, Path)):
         options = [*options, *agent_option(options, str(agent))]
-    named = [f"suite={suite}"] if isinstance(suite, str) else []
+    options += [f"suite={suite}"] if isinstance(suite, str) else []
     try:
-        config = read(conf.load_config("evaluate", [*options, *named]))
+        config = read(conf.load_config("evaluate", options))
     except (HydraException, OmegaConfBaseException) as error:
-        raise ValueError(conf.explain(error, "evaluate", [*options, *named])) from None
+        raise ValueError(conf.explain(error, "evaluate", options)) from None
     names = list(config.suite.conditions) if isinstance(suite, str) else list(suite)
     met = evaluation.conditions(list(dict.fromkeys(["clean", *names])), severity, None)
     if all(corruption.severity == 0 for corruption in met):
         raise ValueError(
-            f"suite={suite!r} at severity {severity:g} corrupts nothing: name a suite or "
-            "corruptions, and a severity above 0."
+            f"suite={suite!r} at severity {severity:g} has no effect. Name a suite or corruptions, "
+            "and a severity above 0."
         )
     return config, met
 
@@ -170,20 +185,24 @@ def _plain(name: str) -> str:
 def _first_world(
     make_world: Any, met: Sequence[Corruption], agent: Any, version: str | None
 ) -> tuple[World, dict[str, str]]:
-    """Return a world and what it was made by; raise ValueError if it is not made anew, shows too
-    little, or shows another number of views than the agent says."""
+    """Return a world and the description of how it was made (``provenance.first_world``).
+
+    Raises:
+        ValueError: ``make_world`` does not make a world, or the world lacks sensors of the agent
+            or of the conditions, or has another number of views.
+    """
     if not callable(make_world):
         raise ValueError(
-            f"world is a {type(make_world).__name__}: give what makes one, such as a function, "
-            "since each process has its own."
+            f"world must be a function that makes a world, got a {type(make_world).__name__}. "
+            "Each process makes its own world."
         )
     world, made_by = provenance.first_world(make_world, version)
-    if not hasattr(world, "sensors"):  # any object of the user may be given by mistake
+    if not hasattr(world, "sensors"):  # the user may give any object by mistake
         kind = type(world).__name__
         raise ValueError(
-            f"A {kind} is no world: it has no sensors (docs/bring-your-own.md). If it is a "
-            f"gymnasium environment, give world=lambda: GymWorld({kind}(...), success=...) "
-            "(mitigate.worlds.gym); if it is one of torchrl, EnvWorld "
+            f"A {kind} is not a world: it has no sensors (docs/bring-your-own.md). For a "
+            f"gymnasium environment give world=lambda: GymWorld({kind}(...), success=...) "
+            "(mitigate.worlds.gym); for a torchrl environment use EnvWorld "
             "(mitigate.worlds.tensordict)."
         )
     evaluation.check_sensors(met, world.sensors, type(world).__name__)
@@ -192,10 +211,13 @@ def _first_world(
 
 
 def _is_own(world: World, config: EvaluateConfig) -> bool:
-    """Whether the world is none of the config's, whose lists of episodes mean nothing in it."""
+    """Return whether the world has another class than that of the config.
+
+    The lists of episodes of the config are then meaningless.
+    """
     node = config.env.world
-    usual = located(node["_target_"])
-    kind = usual if isinstance(usual, type) else type(maker(node)())  # a function makes it
+    target = located(node["_target_"])
+    kind = target if isinstance(target, type) else type(maker(node)())  # the target is a function
     return not isinstance(world, kind)
 
 
@@ -205,65 +227,69 @@ def _episodes(
     split: str | None,
     count: int | EllipsisType | None,
     listed: Sequence[Episode] | Path | str | None,
-    given: bool,
+    custom: bool,
 ) -> tuple[str, list[Episode]]:
-    """Return the split and the episodes to walk; raise ValueError for none, and for a world that
-    was ``given``, of another class than the config's, without a list of its own."""
-    own = given and _is_own(world, config)
-    split = split or (provenance.name_of(world) if own else config.split)
-    if listed is None and own:
+    """Return the split and the episodes to run.
+
+    Raises:
+        ValueError: There are no episodes, or the user's (``custom``) world has another class than
+            that of the config and no list of episodes.
+    """
+    other_class = custom and _is_own(world, config)
+    split = split or (provenance.name_of(world) if other_class else config.split)
+    if listed is None and other_class:
         raise ValueError(
-            f"The episodes of {config.env.name} are none of {provenance.name_of(world)}: give its "
-            'own, listed="mine.json", or a list of Episode (mitigate.worlds.episodes, '
-            "docs/bring-your-own.md). Of a gymnasium or torchrl environment they are seeds: "
+            f"The episodes of {config.env.name} cannot run in {provenance.name_of(world)}. Give "
+            'its episodes: listed="mine.json", or a list of Episode (mitigate.worlds.episodes, '
+            "docs/bring-your-own.md). For a gymnasium or torchrl environment they are seeds: "
             "listed=seeded_episodes(range(20)) (mitigate.worlds.seeded)."
         )
     if listed is None:
         return split, evaluation.episodes(config.env, split, EPISODES if count is ... else count)
     check_count(None if count is ... else count)
     if isinstance(listed, Episode) or not isinstance(listed, (str, Path, Iterable)):
-        raise ValueError(f"listed={listed!r:.80} is no list of episodes, nor the file of one.")
-    found = list(read_episodes(listed) if isinstance(listed, (str, Path)) else listed)
-    for entry in found:
+        raise ValueError(f"listed must be a list of episodes or its file, got {listed!r:.80}.")
+    entries = list(read_episodes(listed) if isinstance(listed, (str, Path)) else listed)
+    for entry in entries:
         if not isinstance(entry, Episode):
             raise ValueError(
-                f"listed has {entry!r:.80} in it, which is no Episode. Of seeds, give "
+                f"listed must hold only objects of Episode, got {entry!r:.80}. For seeds give "
                 "listed=seeded_episodes([1, 2, 3]) (mitigate.worlds.seeded)."
             )
-    check_episodes("listed", found)
-    return split, spread(found, None if count is ... else count)
+    check_episodes("listed", entries)
+    return split, spread(entries, None if count is ... else count)
 
 
-def _check_copies(*things: Any) -> None:
-    """Raise ValueError for what other processes cannot be given."""
+def _check_copies(*objects: Any) -> None:
+    """Raise ValueError for objects that cannot be sent to other processes."""
     main = Path(vars(sys.modules["__main__"]).get("__file__") or "")
-    typed = [thing for thing in things if type(thing).__module__ == "__main__"]
-    own = "give workers=1, or define them at the head of a module"
-    if typed and not main.is_file():
+    interactive = [one for one in objects if type(one).__module__ == "__main__"]
+    solution = "give workers=1, or define them at the head of a module"
+    if interactive and not main.is_file():
         raise ValueError(
-            f"A {type(typed[0]).__name__} was typed in, and is in no file that other processes "
-            f"could read: {own}."
+            f"A {type(interactive[0]).__name__} was defined interactively, so other processes "
+            f"cannot import it: {solution}."
         )
-    packed(things, "The agent or its world", own)
+    packed(objects, "The agent or its world", solution)
 
 
-def _tell(
+def _print_estimate(
     agent: Any,
     make_world: Callable[[], World],
     episodes: Sequence[Episode],
     conditions: Sequence[Corruption],
     workers: int | None,
 ) -> None:
-    """Print how much there is to walk, and about how long it takes, from a few clean walks."""
+    """Print the number of rollouts and an estimate of the time, measured on a few clean ones."""
     total = len(episodes) * len(conditions)
     processes = min(count(LOCAL, workers, total, WORTH), len(episodes))
     if processes > 1:
         _check_copies(agent, make_world)
     world = make_world()
-    for condition in conditions:  # compiles what corrupts
+    for condition in conditions:  # compiles the corruptions
         dict(Corrupted(world, condition, 0).reset(episodes[0]))
     with in_eval_mode(agent):
-        for episode in episodes[:TIMED]:  # the first one loads what is needed
+        for episode in episodes[:TIMED]:  # the first one also pays for lazy loading
             started = time.monotonic()
             run_episode(agent, world, episode, CLEAN, 0)
             each = time.monotonic() - started

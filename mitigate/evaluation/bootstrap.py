@@ -1,9 +1,9 @@
 """Paired bootstrap over episodes: intervals for SR, SPL, PRS and differences of PRS.
 
-Values are ``[..., N]``, one column an episode. Every condition and agent sees the same resamples
-of the episodes, so what is easy or hard about an episode cancels. Several seeds of an episode must
-be averaged first: the unit drawn is the episode. Episodes in one scene are alike, so intervals for
-scenes that nobody saw are wider: ``units`` [N] names what an episode is drawn with (a cluster
+Values are ``[..., N]``, one column per episode. All conditions and agents use the same resamples of
+the episodes, so that the difficulty of an episode cancels. Several seeds of an episode must be
+averaged first, because the episode is the unit that is drawn. Episodes in one scene are similar, so
+intervals for new scenes are wider: episodes with equal ``units`` [N] are drawn together (cluster
 bootstrap: Davison and Hinkley 1997, section 3.8).
 """
 
@@ -21,19 +21,22 @@ from mitigate.evaluation import metrics
 
 RESAMPLES = 10_000
 LEVEL = 0.95
-Z = 1.959964  # of the normal distribution at LEVEL
+Z = 1.959964  # quantile of the normal distribution at LEVEL
 _BOUNDS = ((1 - LEVEL) / 2, (1 + LEVEL) / 2)
-ROUNDING = 1e-9  # by which resamples that are alike may differ (ours)
+ROUNDING = 1e-9  # tolerance for equal resamples (heuristic)
 NO_INTERVAL = "[–]"
-NO_WIDTH = f"{NO_INTERVAL}: no interval, as no resample differs (one episode alone, or all alike)."
-CHUNK = 1 << 20  # draws made at a time (ours): 8 MiB of indices
-PART = 1 << 14  # of them in one product (ours): as 128 KiB of float64 they stay in a core's cache
+NO_WIDTH = f"{NO_INTERVAL}: no interval, as no resample differs (only one episode, or all equal)."
+CHUNK = 1 << 20  # draws at a time (heuristic): 8 MiB of indices
+PART = 1 << 14  # draws in one product (heuristic): 128 KiB of float64 fit in a core's cache
 
 
 @dataclass(frozen=True)
 class Estimate:
-    """A value and its percentile interval; NaN bounds mean that it cannot be told. One without a
-    width says nothing either: of one episode, or where no resample differs."""
+    """A value and its percentile interval.
+
+    The interval is undefined if its bounds are NaN, or if it has no width: for one episode, or if
+    all resamples are equal.
+    """
 
     value: float
     low: float
@@ -46,12 +49,14 @@ class Estimate:
 
     @property
     def has_width(self) -> bool:
-        """Whether the interval says anything."""
+        """Whether the interval is defined."""
         return self.high - self.low > ROUNDING
 
     def interval(self, form: str, scale: float = 1.0) -> str:
-        """The interval as tables show it, each bound times ``scale`` in ``form``; ``NO_INTERVAL``
-        where it says nothing."""
+        """Return the interval as text, each bound times ``scale`` in the format ``form``.
+
+        ``NO_INTERVAL`` if it is undefined.
+        """
         if not self.has_width:
             return NO_INTERVAL
         return f"[{scale * self.low:{form}}, {scale * self.high:{form}}]"
@@ -66,20 +71,29 @@ def resampled_means(
 ) -> np.ndarray:
     """Return the means of ``values`` [C, N] over resampled episodes, float64 [resamples, C].
 
-    units: numbers [N]; episodes of one number are drawn together. None: each alone. The draws
-    depend on how many are drawn and ``seed`` alone, so calls on the same episodes are paired.
+    The draws depend only on the number of units and on ``seed``, so calls on the same episodes are
+    paired.
+
+    Args:
+        values: [C, N] or [N].
+        resamples: number of resamples.
+        seed: of the draws.
+        units: numbers [N]; episodes with equal numbers are drawn together. None: each separately.
+
+    Raises:
+        ValueError: There are no values, or some are not finite.
     """
     table = np.atleast_2d(np.asarray(values, float))
     if table.ndim != 2 or not table.size or not np.isfinite(table).all():
         raise ValueError(
-            f"The bootstrap needs finite values [conditions, episodes], not {table.shape} with "
-            f"{int(np.isnan(table).sum())} NaN: leave out the episodes that lack a result."
+            f"values must be finite [conditions, episodes], got {table.shape} with "
+            f"{int(np.isnan(table).sum())} NaN. Leave out the episodes that lack a result."
         )
-    own = np.arange(table.shape[1]) if units is None else np.unique(units, return_inverse=True)[1]
-    times = _times_drawn(int(own.max()) + 1, resamples, seed)
-    count = np.bincount(own).astype(float)
+    unit = np.arange(table.shape[1]) if units is None else np.unique(units, return_inverse=True)[1]
+    times = _times_drawn(int(unit.max()) + 1, resamples, seed)
+    count = np.bincount(unit).astype(float)
     parts = np.array_split(times, min(resamples, math.ceil(times.size / PART)))
-    sums = np.stack([np.bincount(own, row) for row in table], axis=1)
+    sums = np.stack([np.bincount(unit, row) for row in table], axis=1)
     return np.concatenate([part @ sums / (part @ count)[:, None] for part in parts])
 
 
@@ -106,38 +120,39 @@ def mean(values: ArrayLike, **options: Any) -> Estimate:
 def share(values: ArrayLike, **options: Any) -> Estimate:
     """Return the mean of ``values`` [N] in 0..1 (successes, SPLs) with its interval.
 
-    If all are 0 or all 1, no resample differs; the bound is then that of Wilson's score interval.
+    If all values are 0 or all are 1, all resamples are equal; the bound is then that of Wilson's
+    score interval.
     """
-    found, known = mean(values, **options), np.asarray(values, float)
+    estimate, known = mean(values, **options), np.asarray(values, float)
     units = options.get("units")
-    drawn = len(known) if units is None else len(np.unique(units))
-    reach = Z * Z / (drawn + Z * Z)
+    count = len(known) if units is None else len(np.unique(units))
+    reach = Z * Z / (count + Z * Z)
     if (known == 0).all():
-        return Estimate(found.value, 0.0, reach)
-    return Estimate(found.value, 1 - reach, 1.0) if (known == 1).all() else found
+        return Estimate(estimate.value, 0.0, reach)
+    return Estimate(estimate.value, 1 - reach, 1.0) if (known == 1).all() else estimate
 
 
 def means(table: ArrayLike, *, shares: bool = False, **options: Any) -> list[Estimate | None]:
     """Return the mean of each row of ``table`` [K, N] with its interval, None for a row of NaN.
 
-    Each is over the episodes that the row holds, as :func:`mean`, or :func:`share` with ``shares``,
-    of these alone; rows that hold the same ones are resampled at once.
+    Each is computed over the row's episodes that are not NaN, as :func:`mean`, or as :func:`share`
+    with ``shares``. Rows with the same episodes are resampled at once.
     """
     values = np.asarray(table, float)
     groups: dict[bytes, list[int]] = {}
     for place, known in enumerate(~np.isnan(values)):
         groups.setdefault(known.tobytes(), []).append(place)
-    found: list[Estimate | None] = [None] * len(values)
+    estimates: list[Estimate | None] = [None] * len(values)
     for places in groups.values():
-        held = values[np.ix_(places, ~np.isnan(values[places[0]]))]
-        if not held.size:
+        group = values[np.ix_(places, ~np.isnan(values[places[0]]))]
+        if not group.size:
             continue
-        low, high = np.quantile(resampled_means(held, **options), _BOUNDS, axis=0)
+        low, high = np.quantile(resampled_means(group, **options), _BOUNDS, axis=0)
         for k, place in enumerate(places):
-            even = shares and held[k].min() == held[k].max() and held[k, 0] in (0, 1)
-            own = Estimate(float(held[k].mean()), float(low[k]), float(high[k]))
-            found[place] = share(held[k], **options) if even else own
-    return found
+            constant = shares and group[k].min() == group[k].max() and group[k, 0] in (0, 1)
+            estimate = Estimate(float(group[k].mean()), float(low[k]), float(high[k]))
+            estimates[place] = share(group[k], **options) if constant else estimate
+    return estimates
 
 
 def prs(clean: ArrayLike, corrupted: ArrayLike, **options: Any) -> Estimate:
@@ -154,10 +169,13 @@ def ratio(parts: ArrayLike, wholes: ArrayLike, **options: Any) -> Estimate:
 def prs_difference(
     first: tuple[ArrayLike, ArrayLike], second: tuple[ArrayLike, ArrayLike], **options: Any
 ) -> Estimate:
-    """Return PRS(first) - PRS(second), paired; each is a (clean [N], corrupted [K, N]) of one N."""
+    """Return PRS(first) - PRS(second), paired; each is (clean [N], corrupted [K, N]), N equal."""
     counts = {np.shape(part)[-1] for pair in (first, second) for part in pair}
     if len(counts) > 1:
-        raise ValueError(f"A paired difference needs the same episodes; counts: {sorted(counts)}.")
+        raise ValueError(
+            "A paired difference needs the same episodes for both, got counts of "
+            f"{', '.join(map(str, sorted(counts)))}."
+        )
     (a, samples_a), (b, samples_b) = _prs(*first, options), _prs(*second, options)
     return _estimate(a - b, samples_a - samples_b)
 
@@ -165,7 +183,7 @@ def prs_difference(
 def _prs(
     clean: ArrayLike, corrupted: ArrayLike, options: dict[str, Any]
 ) -> tuple[float, np.ndarray]:
-    """PRS as ``metrics.prs`` defines it, and that of each resample."""
+    """Return the PRS (``metrics.prs``), and the PRS of each resample."""
     clean, corrupted = np.asarray(clean, float), np.atleast_2d(np.asarray(corrupted, float))
     means = resampled_means(np.stack([clean, corrupted.mean(axis=0)]), **options)
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -174,7 +192,7 @@ def _prs(
 
 
 def _estimate(value: float, samples: np.ndarray) -> Estimate:
-    """Return percentiles, leaving out resamples whose clean value is 0: PRS is undefined there."""
+    """Return percentiles of ``samples`` without those that are undefined (clean value 0)."""
     known = samples[np.isfinite(samples)]
     if not len(known) or math.isnan(value):
         return Estimate(value, math.nan, math.nan)

@@ -1,4 +1,4 @@
-"""What an evaluation asks for by name: the conditions of a suite, as corruptions."""
+"""Conditions of an evaluation: names of a suite as corruptions."""
 
 from __future__ import annotations
 
@@ -15,15 +15,17 @@ if TYPE_CHECKING:
 
 
 def suite_of(*modalities: str) -> list[str]:
-    """What ``${suite:rgb,depth}`` is in a config: clean, and the suite's corruptions of these."""
+    """Resolve ``${suite:rgb,depth}`` in a config: clean and the suite's corruptions of these."""
     from mitigate.corruptions.registry import names
 
     return ["clean", *names(*modalities)]
 
 
 def unseen_of(half: str, *modalities: str) -> list[str]:
-    """What ``${unseen:test,rgb,depth}`` is in a config: clean, and the unseen corruptions of these,
-    of the half "validation" or "test", or of "both"."""
+    """Resolve ``${unseen:test,rgb,depth}`` in a config: clean and unseen corruptions of these.
+
+    ``half``: "validation", "test" or "both".
+    """
     from mitigate.corruptions.registry import unseen_names
 
     return ["clean", *unseen_names(*modalities, half="" if half == "both" else half)]
@@ -41,9 +43,10 @@ def suite_conditions(suite: Mapping[str, Any]) -> list[str]:
 
 
 def conditions(names: list[str], severity: float, severity_depth: float | None) -> list:
-    """Return one Corruption for each name or pair of names, once; ``clean`` has severity 0.
+    """Return one Corruption per name or pair of names, without repeats; ``clean`` has severity 0.
 
-    Raises ValueError for no name, an unknown one, and two severities of a pair.
+    Raises:
+        ValueError: There are no names, a name is unknown, or a pair has two severities.
     """
     from mitigate.corruptions import CLEAN, Corruption
     from mitigate.corruptions.registry import known, parts
@@ -52,40 +55,41 @@ def conditions(names: list[str], severity: float, severity_depth: float | None) 
     allowed = ("clean", *known("rgb", "depth", "instruction"))
     if not names:
         raise ValueError(
-            "conditions=[] names none: give some, such as [clean,spatter], or null for the suite's."
+            "conditions must not be empty. Name some, such as [clean,spatter], or give null for "
+            "those of the suite."
         )
     for part in (part for name in names for part in parts(name)):
         if part not in allowed:
             raise ValueError(unknown("condition", part, allowed))
-    severity = check_severity(severity)  # also where all conditions are clean
+    severity = check_severity(severity)  # even if all conditions are clean
     depth = severity if severity_depth is None else check_severity(severity_depth)
-    found = [
+    corruptions = [
         CLEAN if name == "clean" else Corruption(name, severity) for name in dict.fromkeys(names)
     ]
-    for place, corruption in enumerate(found):
+    for place, corruption in enumerate(corruptions):
         if corruption.modality == "depth":
-            found[place] = Corruption(corruption.name, depth)
+            corruptions[place] = Corruption(corruption.name, depth)
         elif "depth" in corruption.modalities and depth != severity:
             raise ValueError(
                 f"The pair {corruption.name} has one severity, but severity is {severity:g} and "
-                f"severity_depth {depth:g}. Leave severity_depth out, or the pair."
+                f"severity_depth {depth:g}. Leave out severity_depth or the pair."
             )
-    return found
+    return corruptions
 
 
 def check_sensors(met: Iterable[Corruption], sensors: Iterable[str], world: str) -> None:
-    """Raise ValueError for corruptions of what the world named ``world`` does not show."""
-    shown = [*sensors]
-    lost = [c.name for c in met if not {*c.modalities} <= {*shown, "instruction"}]
-    if lost:
-        able = [name for name in (RGB, DEPTH) if name in shown]
-        other = (
-            f"Choose another, such as suite={able[0]}."
-            if able
-            else f"Frames that are to be corrupted are called {RGB} and {DEPTH}: name them so in "
-            "the world's sensors (of GymWorld: entries=)."
+    """Raise ValueError for corruptions of sensors that the world named ``world`` lacks."""
+    available = [*sensors]
+    missing = [c.name for c in met if not {*c.modalities} <= {*available, "instruction"}]
+    if missing:
+        usable = [name for name in (RGB, DEPTH) if name in available]
+        solution = (
+            f"Choose another, such as suite={usable[0]}."
+            if usable
+            else f"Only frames named {RGB} and {DEPTH} are corrupted: use these names for the "
+            "world's sensors (entries= of GymWorld)."
         )
         raise ValueError(
-            f"The suite has {', '.join(lost)}, but the world {world} shows only "
-            f"{', '.join(shown)}. {other}"
+            f"The suite has {', '.join(missing)}, but the world {world} has only "
+            f"{', '.join(available)}. {solution}"
         )

@@ -1,5 +1,6 @@
-"""The options of ``conf/evaluate.yaml`` as dataclasses, parts that trainings share, and names of
-columns and folders that follow from options.
+"""The options of ``conf/evaluate.yaml`` as dataclasses, and names that follow from options.
+
+Trainings share parts of these options. The names are those of columns and folders.
 """
 
 from __future__ import annotations
@@ -18,10 +19,10 @@ from mitigate.core.conf import CONF
 from mitigate.evaluation import conditions  # noqa: F401 - registers ${suite:...} of conf/suite
 from mitigate.guards.text.addresses import check_choice
 
-# the report that a training of an agent ends with
+# the report at the end of an agent's training
 REPORT = "mitigate.training.reports.before_after.report_before_after"
-TRAINING_OPTIONS = ("finetune.", "cost.")  # options of an agent that act on its trainings alone
-MOST_WORKERS = 100_000  # on all machines of a launcher, a generous bound
+TRAINING_OPTIONS = ("finetune.", "cost.")  # options that affect only the training of an agent
+MOST_WORKERS = 100_000  # on all machines of a launcher together (heuristic)
 
 Entries = TypeVar("Entries")
 
@@ -38,7 +39,7 @@ class EvaluationConfig:
 
 @dataclass
 class WeightsConfig:
-    """The weights that are shipped for the chosen kind of agent, if any."""
+    """The shipped weights of the chosen kind of agent, if any."""
 
     base: str | None = None
     teacher: str | None = None
@@ -75,7 +76,7 @@ OmegaConf.register_new_resolver("times", times, replace=True)
 
 @dataclass
 class EnvConfig:
-    """A file of ``conf/env``; its further entries become attributes."""
+    """A file of ``conf/env``; other entries become attributes, too."""
 
     name: str = ""
     world: dict[str, Any] = field(default_factory=dict)
@@ -86,17 +87,17 @@ class EnvConfig:
 
 @dataclass
 class SuiteConfig:
-    """A file of ``conf/suite``; its further entries become attributes."""
+    """A file of ``conf/suite``; other entries become attributes, too."""
 
     conditions: list[str] = field(default_factory=list)
 
 
 def open_entries(kind: type[Entries], entries: Mapping[str, Any]) -> Entries:
-    """Return a ``kind`` with ``entries``; those that it does not declare become attributes too."""
+    """Return a ``kind`` with ``entries``; entries without a field become attributes, too."""
     declared = {entry.name for entry in fields(kind)}  # type: ignore[arg-type]
-    made = kind(**{name: value for name, value in entries.items() if name in declared})
-    vars(made).update(entries)
-    return made
+    config = kind(**{name: value for name, value in entries.items() if name in declared})
+    vars(config).update(entries)
+    return config
 
 
 @dataclass
@@ -147,48 +148,54 @@ def read(cfg: DictConfig) -> EvaluateConfig:
 
 
 def check(config: EvaluateConfig, overrides: Sequence[str] = ()) -> None:
-    """Raise ValueError for settings that are well typed but make no sense."""
-    idle = [option for option in overrides if option.lstrip("+").startswith(TRAINING_OPTIONS)]
-    if idle:
-        raise ValueError(f"{idle[0]} is for trainings: an evaluation changes no weights.")
+    """Raise ValueError for settings that have the right type but an invalid value."""
+    unused = [option for option in overrides if option.lstrip("+").startswith(TRAINING_OPTIONS)]
+    if unused:
+        raise ValueError(
+            f"{unused[0]} has no effect: it is an option of trainings, and an evaluation changes "
+            "no weights. Leave it out."
+        )
     check_choice(config.safeguard)
     seeding.check(config.seed)
     if config.workers is not None and not 1 <= config.workers <= MOST_WORKERS:
         raise ValueError(
-            f"workers={config.workers} must be a number of processes from 1 to {MOST_WORKERS}, or "
-            "null for one a core."
+            f"workers must be a number of processes from 1 to {MOST_WORKERS}, or null for one per "
+            f"core, got {config.workers}."
         )
 
 
 def changed(overrides: Sequence[str]) -> list[str]:
-    """Return the options of a command line that change the agent or what it sees, as parts of a
-    column's name."""
-    own = [option.lstrip("+") for option in overrides]
-    own = [option for option in own if option.startswith(("agent.", "env.size="))]
-    return [_plain(option.removeprefix("agent.")).strip("-") for option in own]
+    """Return the options that change the agent or its input, as parts of a column's name."""
+    stripped = [option.lstrip("+") for option in overrides]
+    relevant = [option for option in stripped if option.startswith(("agent.", "env.size="))]
+    return [_plain(option.removeprefix("agent.")).strip("-") for option in relevant]
 
 
 def column_of(name: str, seed: int, folder: Path) -> str:
-    """Return the column of a training: the recipe, and the options that its folder's name holds, so
-    that other settings are no other seeds of it."""
+    """Return the column of a training: the recipe and the options in the name of its folder.
+
+    Otherwise trainings with other settings would count as other seeds of one column.
+    """
     options = folder.name.partition(f"-seed{seed}-")[2]
     return f"{name}+{options}" if options else name
 
 
 def default_folder(config: EvaluateConfig, name: str) -> str:
-    """Return ``runs/evaluate/<name>-[<world>-]<split>-s<severity>``; the world is named unless its
-    config is of this project, whose worlds have splits of their own."""
-    own = not (CONF / "env" / f"{config.env.name}.yaml").is_file()
-    split = f"{config.env.name}-{config.split}" if own else config.split
+    """Return ``runs/evaluate/<name>-[<world>-]<split>-s<severity>``.
+
+    Worlds of this project are left out, because their names of splits are unique.
+    """
+    custom = not (CONF / "env" / f"{config.env.name}.yaml").is_file()
+    split = f"{config.env.name}-{config.split}" if custom else config.split
     return f"{config.runs}/evaluate/{name}-{split}-s{_severities(config)}"
 
 
 def _severities(config: EvaluateConfig) -> str:
-    """The severities, as part of a folder's name."""
+    """Return the severities, as part of a folder's name."""
     depth = "" if config.severity_depth is None else f"-d{config.severity_depth:g}"
     return f"{config.severity:g}{depth}"
 
 
 def _plain(text: str) -> str:
-    """Return ``text`` with a dash for all that a file's name should not hold."""
+    """Return ``text`` with dashes for characters that a file name should not contain."""
     return re.sub(r"[^A-Za-z0-9.@-]+", "-", text)

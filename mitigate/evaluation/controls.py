@@ -1,9 +1,9 @@
-"""Walk the shortest-path oracle and a random walker: ``mitigate controls split=val_unseen``.
+"""Evaluate the shortest-path oracle and a random agent: ``mitigate controls split=val_unseen``.
 
-They frame every result: the oracle shows that a world's episodes can be solved with the low-level
-actions, the random walker what chance gives. Both walk clean, on the episodes of split=, episodes=
-and env=, as of mitigate evaluate; out= names the folder of the rows (runs/controls). The same
-command again only walks what is missing.
+They are the bounds of every result: the oracle shows that the episodes of a world can be solved
+with the low-level actions, the random agent shows the success of chance. Both run without
+corruption, on the episodes of split=, episodes= and env= (as for mitigate evaluate). out= names the
+folder of the rows (runs/controls). The same command again runs only missing episodes.
 """
 
 from __future__ import annotations
@@ -33,12 +33,12 @@ from mitigate.worlds.episodes import Episode
 from mitigate.worlds.world import World, expert_of
 
 OUT = "runs/controls"
-OPTIONS = ("env", "split", "episodes", "out")  # those of an evaluation that mean anything here
-_STOP_SHARE = 0.01  # of random actions; about 100 actions an episode
+OPTIONS = ("env", "split", "episodes", "out")  # options of an evaluation that apply here
+_STOP_SHARE = 0.01  # share of STOP in random actions: about 100 actions per episode
 
 
 class OracleAgent:
-    """Does what the world's expert says; it reads no frames."""
+    """Takes the actions of the world's expert; it reads no frames."""
 
     def __init__(self, world: World) -> None:
         self.world = world
@@ -51,8 +51,10 @@ class OracleAgent:
 
 
 class RandomAgent:
-    """Forward, left and right at random, with a small chance of STOP; keyed by ``episode``, an id,
-    since many episodes may have one text."""
+    """Random forward, left and right actions, with a small chance of STOP.
+
+    The generator is keyed by ``episode``, an id, because episodes may have equal texts.
+    """
 
     episode = ""
 
@@ -66,8 +68,10 @@ class RandomAgent:
 
 
 def run(config: EvaluateConfig, out: Path) -> list[rows.Row]:
-    """Walk both on the episodes that ``config`` names; return their rows, which are in the folder
-    ``out`` too. Those that it has count."""
+    """Run both on the episodes of ``config`` and return their rows.
+
+    The rows are also in the folder ``out``; rows that are there already are reused.
+    """
     from mitigate.evaluation import provenance
 
     env, split = config.env, config.split
@@ -76,17 +80,17 @@ def run(config: EvaluateConfig, out: Path) -> list[rows.Row]:
         world, made_by = provenance.first_world(maker(env.world))
         provenance.keep(out, world, made_by, split, chosen, env.episodes[split])
         lock.expect(out / rows.ROWS, *provenance.notes(out, split))
-        return _walked(world, split, chosen, out / rows.ROWS)
+        return _run_missing(world, split, chosen, out / rows.ROWS)
 
 
-def _walked(world: World, split: str, chosen: Sequence[Episode], out: Path) -> list[rows.Row]:
+def _run_missing(world: World, split: str, chosen: Sequence[Episode], out: Path) -> list[rows.Row]:
     from mitigate.evaluation.episode import run_episode
 
-    chance = RandomAgent()
-    controls: dict[str, Any] = {"oracle": OracleAgent(world), "random": chance}
+    random_agent = RandomAgent()
+    controls: dict[str, Any] = {"oracle": OracleAgent(world), "random": random_agent}
     earlier = rows.unique(rows.read(out) if out.exists() else ())
-    held = {rows.identity(row): row for row in earlier}
-    found = []
+    known = {rows.identity(row): row for row in earlier}
+    results = []
     for name, agent in controls.items():
         label = {
             "agent": name,
@@ -99,16 +103,16 @@ def _walked(world: World, split: str, chosen: Sequence[Episode], out: Path) -> l
             "rule": world.rule,
         }
         jobs = [(episode, {**label, **rows.of_episode(episode)}) for episode in chosen]
-        todo = [job for job in jobs if rows.identity(job[1]) not in held]
+        todo = [job for job in jobs if rows.identity(job[1]) not in known]
         with Progress(name, len(jobs), unit="episode", start=len(jobs) - len(todo)) as progress:
-            for episode, own in todo:
-                chance.episode = episode.episode_id
-                row = own | run_episode(agent, world, episode, CLEAN, 0)
-                held[rows.identity(row)] = row
+            for episode, entries in todo:
+                random_agent.episode = episode.episode_id
+                row = entries | run_episode(agent, world, episode, CLEAN, 0)
+                known[rows.identity(row)] = row
                 rows.append(out, [row])
                 progress.advance()
-        found += [held[rows.identity(own)] for _, own in jobs]
-    return found
+        results += [known[rows.identity(entries)] for _, entries in jobs]
+    return results
 
 
 def main() -> int:
@@ -116,22 +120,22 @@ def main() -> int:
     if {"-h", "--help"} & {*sys.argv[1:]}:
         print(__doc__)
         return 0
-    given = sys.argv[1:]
+    options = sys.argv[1:]
     try:
-        check_dashes(given)
-        _check(without_config_folder(given)[1])
-        config = read(conf.composed("evaluate", given))
+        check_dashes(options)
+        _check(without_config_folder(options)[1])
+        config = read(conf.composed("evaluate", options))
         out = Path(config.out or OUT)
-        found = run(config, out)
+        results = run(config, out)
     except (OSError, ValueError) as error:
         print(f"controls: {conf.said(error)}", file=sys.stderr)
         return 2
-    for name in dict.fromkeys(row["name"] for row in found):
-        own = [row for row in found if row["name"] == name]
-        success, spl = (share([float(row[key]) for row in own]) for key in ("success", "spl"))
+    for name in dict.fromkeys(row["name"] for row in results):
+        selected = [row for row in results if row["name"] == name]
+        success, spl = (share([float(row[key]) for row in selected]) for key in ("success", "spl"))
         print(
             f"{name}: SR {100 * success.value:.1f} [{100 * success.low:.1f}, "
-            f"{100 * success.high:.1f}] %, SPL {spl.value:.2f}, {counted(len(own), 'episode')}"
+            f"{100 * success.high:.1f}] %, SPL {spl.value:.2f}, {counted(len(selected), 'episode')}"
         )
     print(f"rows in {out}")
     return 0
@@ -143,8 +147,8 @@ def _check(options: Sequence[str]) -> None:
         name = re.split(r"[.=]", option.lstrip("+~"))[0]
         if not option.startswith("-") and name not in OPTIONS:
             raise ValueError(
-                f"{option} has no effect: oracle and random walker walk clean, by seed 0. Options "
-                f"are {', '.join(OPTIONS)}."
+                f"{option} has no effect: the oracle and the random agent run without corruption "
+                f"and with seed 0. Options are {', '.join(OPTIONS)}."
             )
 
 

@@ -1,4 +1,4 @@
-"""Episodes in a world: what the agent hears and sees, and how well it went."""
+"""Run episodes in a world, with corruptions and guards, and return their measures."""
 
 from __future__ import annotations
 
@@ -36,21 +36,23 @@ def run_episode(
     seed: int,
     guards: Guards = NO_GUARDS,
 ) -> dict[str, Any]:
-    """Run one episode behind ``guards`` to its end and return its measures, with ``decisions``: how
-    many observations the agent read.
+    """Run one episode with ``guards`` and return its measures.
 
-    A ValueError out of a step names the episode, the condition and the step; one is raised for an
-    action that is no whole number, and for a SystemExit of the agent or the world.
+    ``decisions`` is the number of observations that the agent read.
+
+    Raises:
+        ValueError: A step failed, an action is not a whole number, or the agent or the world
+            raised SystemExit. The message names the episode, the condition and the step.
     """
     with _no_exit(_name(episode, corruption)):
-        walk = _Walk(world, episode, corruption, seed, guards)
+        rollout = _Rollout(world, episode, corruption, seed, guards)
         with instructed(agent, episode, corruption, seed, guards):
             try:
-                while not walk.done:
-                    walk.step(action_of(agent.act(walk.observation), agent))
+                while not rollout.done:
+                    rollout.step(action_of(agent.act(rollout.observation), agent))
             except ValueError as error:
-                raise walk.failed(error) from error
-        return walk.measures()
+                raise rollout.failed(error) from error
+        return rollout.measures()
 
 
 def _name(episode: Episode, corruption: Corruption) -> str:
@@ -59,28 +61,27 @@ def _name(episode: Episode, corruption: Corruption) -> str:
 
 @contextmanager
 def _no_exit(name: str) -> Iterator[None]:
-    """Raise ValueError in place of a SystemExit, which would end the evaluation as if it were
-    finished."""
+    """Raise ValueError in place of SystemExit, which would look like a finished evaluation."""
     try:
         yield
     except SystemExit as error:
         place = own_place(error)
         raise ValueError(
-            f"{name}: the agent or the world ended the program by SystemExit({error.code!r})"
-            f"{f' (raised in {place})' if place else ''}, and the evaluation is not finished. "
-            "Raise an error in its place, or end the episode."
+            f"{name}: the agent or the world raised SystemExit({error.code!r})"
+            f"{f' in {place}' if place else ''} before the evaluation was finished. Raise another "
+            "error, or end the episode."
         ) from error
 
 
 def action_of(answer: Any, agent: Any) -> int:
-    """What ``agent`` answered as an action. Raises ValueError for what is no whole number."""
+    """Return the ``answer`` of ``agent`` as an action; raise ValueError unless it is an integer."""
     try:
         return operator.index(answer)
     except TypeError:
-        shown = " ".join(repr(answer).split())[:80]
+        text = " ".join(repr(answer).split())[:80]
         raise ValueError(
-            f"act() of {type(agent).__name__} returned {shown} ({type(answer).__name__}), which is "
-            "no action: return a whole number, such as int(logits.argmax())."
+            f"act() of {type(agent).__name__} must return a whole number, got {text} "
+            f"({type(answer).__name__}). Return, for example, int(logits.argmax())."
         ) from None
 
 
@@ -90,40 +91,43 @@ def run_side_by_side(
     jobs: Sequence[tuple[Episode, Corruption, int]],
     guards: Guards = NO_GUARDS,
 ) -> Iterator[dict[str, Any]]:
-    """Run (episode, corruption, seed) of each job, as many at a time as there are worlds, and yield
-    their measures in order, as :func:`run_episode` gives them. No guard may change the agent."""
+    """Run (episode, corruption, seed) of each job, and yield their measures in order.
+
+    As many episodes run at once as there are worlds. Measures are those of :func:`run_episode`. No
+    guard may change the agent.
+    """
     waiting, free = deque(enumerate(jobs)), list(worlds)
-    under_way: dict[int, tuple[_Walk, World, Any]] = {}
+    running: dict[int, tuple[_Rollout, World, Any]] = {}
     measured: dict[int, dict[str, Any]] = {}
     for number in range(len(jobs)):
         while number not in measured:
             while waiting and free:
-                begun, job = waiting.popleft()
+                started, job = waiting.popleft()
                 world = free.pop()
                 with _no_exit(_name(*job[:2])):
                     memory = agent.begin(guards.begin(start_of(agent, *job)))
-                    under_way[begun] = _Walk(world, *job, guards), world, memory
-            ended = [key for key, (walk, _, _) in under_way.items() if walk.done]
+                    running[started] = _Rollout(world, *job, guards), world, memory
+            ended = [key for key, (rollout, _, _) in running.items() if rollout.done]
             for key in ended:
-                walk, world, _ = under_way.pop(key)
-                with _no_exit(walk.name):
-                    measured[key] = walk.measures()
+                rollout, world, _ = running.pop(key)
+                with _no_exit(rollout.name):
+                    measured[key] = rollout.measures()
                 free.append(world)
             if not ended:
-                walks, _, memories = zip(*under_way.values(), strict=True)
-                with _no_exit(" and ".join(walk.name for walk in walks)):
-                    actions = agent.act_all([walk.observation for walk in walks], memories)
-                for walk, action in zip(walks, actions, strict=True):
-                    with _no_exit(walk.name):
+                rollouts, _, memories = zip(*running.values(), strict=True)
+                with _no_exit(" and ".join(rollout.name for rollout in rollouts)):
+                    actions = agent.act_all([r.observation for r in rollouts], memories)
+                for rollout, action in zip(rollouts, actions, strict=True):
+                    with _no_exit(rollout.name):
                         try:
-                            walk.step(action_of(action, agent))
+                            rollout.step(action_of(action, agent))
                         except ValueError as error:
-                            raise walk.failed(error) from error
+                            raise rollout.failed(error) from error
         yield measured.pop(number)
 
 
-class _Walk:
-    """An episode under way, and what the agent sees of it: ``observation``."""
+class _Rollout:
+    """A running episode; ``observation`` is the agent's current observation."""
 
     def __init__(
         self,
@@ -133,40 +137,45 @@ class _Walk:
         seed: int,
         guards: Guards,
     ) -> None:
-        self.name, self.steps = _name(episode, corruption), 0
-        self.met = Corrupted(world, corruption, seed)
-        self.shown = guarded(self.met, guards)
-        self.observation = self.shown.reset(episode)
+        self.name = _name(episode, corruption)
+        self.steps = 0
+        self.corrupted = Corrupted(world, corruption, seed)
+        self.guarded = guarded(self.corrupted, guards)
+        self.observation = self.guarded.reset(episode)
 
     @property
     def done(self) -> bool:
-        return self.met.done
+        return self.corrupted.done
 
     def step(self, action: int) -> None:
         """Take a step. Raises ValueError after :data:`MOST_STEPS` steps."""
         if self.steps >= MOST_STEPS:
             raise ValueError(
-                f"the world has not ended the episode after {MOST_STEPS:,} steps. Let its own task "
-                "end it (gymnasium: max_episode_steps=), or give limit=, which cuts episodes and "
+                f"the world has not ended the episode after {MOST_STEPS:,} steps. Let its task end "
+                "it (gymnasium: max_episode_steps=), or give limit=, which cuts episodes and "
                 "counts them."
             )
-        self.observation = self.shown.step(action)
+        self.observation = self.guarded.step(action)
         self.steps += 1
 
     def failed(self, error: ValueError) -> ValueError:
-        """What is raised in place of an ``error`` of the agent or the world: it says where."""
+        """Return ``error`` with the episode, the condition and the step in its message."""
         return ValueError(f"{self.name}, step {self.steps + 1}: {said(error)}")
 
     def measures(self) -> dict[str, Any]:
-        found: dict[str, Any] = {**self.met.measures(), "decisions": self.met.frames_read}
-        plain = {n: v if lacking(v, ("item",)) else v.item() for n, v in found.items()}  # arrays
-        found = {n: int(v) if isinstance(v, bool) else v for n, v in plain.items()}
-        return {name: found.pop(name) for name in MEASURES if name in found} | found
+        """Return the measures as plain numbers, in the order of ``MEASURES``."""
+        frames_read = self.corrupted.frames_read
+        values: dict[str, Any] = {**self.corrupted.measures(), "decisions": frames_read}
+        plain = {n: v if lacking(v, ("item",)) else v.item() for n, v in values.items()}  # arrays
+        values = {n: int(v) if isinstance(v, bool) else v for n, v in plain.items()}
+        return {name: values.pop(name) for name in MEASURES if name in values} | values
 
 
 def instruction(episode: Episode, corruption: Corruption, seed: int) -> str:
-    """Return the words of ``episode`` as ``corruption`` leaves them; those of another language than
-    English stay."""
+    """Return the instruction of ``episode`` under ``corruption``.
+
+    Only English instructions are corrupted.
+    """
     text, key = episode.instruction.text, Key(seed, episode.episode_id)
     for part in corruption.parts if is_english(episode.instruction.language) else ():
         if part.modality == "instruction" and part.name != "white_box":
@@ -175,8 +184,11 @@ def instruction(episode: Episode, corruption: Corruption, seed: int) -> str:
 
 
 def start_of(agent: Agent, episode: Episode, corruption: Corruption, seed: int) -> EpisodeStart:
-    """Return what guards know of an episode: its instruction, and the agent's prompt, as the
-    corruption leaves them. Raises ValueError for "white_box" without a prompt."""
+    """Return the input of guards: the corrupted instruction and prompt of an episode.
+
+    Raises:
+        ValueError: "white_box" is applied to an agent without a prompt.
+    """
     key = Key(seed, episode.episode_id)
     prompt = as_agent(agent).system_prompt
     if "white_box" in parts(corruption.name):
@@ -195,8 +207,10 @@ def instructed(
     seed: int,
     guards: Guards = NO_GUARDS,
 ) -> Iterator[None]:
-    """Reset the agent with the instruction that the corruption and ``guards`` leave it. Within the
-    block it has the corrupted prompt, and guards are attached to it."""
+    """Reset the agent with the corrupted and guarded instruction.
+
+    Within the block the agent has the corrupted prompt, and guards are attached to it.
+    """
     contract = as_agent(agent)
     prompt = contract.system_prompt
     start = start_of(agent, episode, corruption, seed)

@@ -1,7 +1,7 @@
-"""Which episodes of a list an evaluation takes, and which list its rows are of.
+"""Choose the episodes of an evaluation, and keep apart rows of different lists.
 
-Rows say their split and not where its episodes were read from. So the hash of the list is kept
-beside them, and rows that share no episode share no table.
+Rows name their split but not the file of its episodes. Therefore the hash of the list is stored
+next to the rows, and rows without common episodes are in different tables.
 """
 
 from __future__ import annotations
@@ -24,20 +24,21 @@ if TYPE_CHECKING:
 
 
 GOLDEN = (5**0.5 - 1) / 2
-TASKS = {"vln": "follow a route", "ogn": "find an object"}  # info["task"] of an episode, in words
+TASKS = {"vln": "follow a route", "ogn": "find an object"}  # descriptions of info["task"]
 
 
 def episodes(env: EnvConfig, split: str, count: int | None) -> list[Episode]:
     """Return ``count`` episodes of a split's shipped list (all, if None), as :func:`spread`.
 
-    Raises ValueError for an unknown split, a count below 1, and a list that is empty, names an
-    episode twice or has one without an instruction.
+    Raises:
+        ValueError: The split is unknown, the count is below 1, or the list is empty, repeats an id
+            or has an episode without an instruction.
     """
     from mitigate.worlds.episodes import read_episodes
 
     check_count(count)
     if not env.episodes:
-        raise ValueError(f"env={env.name} has no episodes, so nothing can be walked in it.")
+        raise ValueError(f"env={env.name} has no episodes to run. Choose another world.")
     if split not in env.episodes:
         raise ValueError(unknown("split", split, env.episodes))
     listed = list(read_episodes(find(env.episodes[split])))
@@ -48,48 +49,57 @@ def episodes(env: EnvConfig, split: str, count: int | None) -> list[Episode]:
 def spread(listed: Sequence[Episode], count: int | None) -> list[Episode]:
     """Return ``count`` of the episodes (all, if None), spread evenly over them, in their order.
 
-    A list goes layout by layout: the first 40 of ``val_unseen`` would be 4 of its 30 layouts. Those
-    whose multiples of the golden section have the smallest fractional parts are spread for any
-    count, and fewer are always among more: rows of 40 episodes count towards 100.
+    A list is ordered by layout: the first 40 of ``val_unseen`` cover only 4 of its 30 layouts.
+    Taking the indices whose multiples of the golden section have the smallest fractional parts
+    spreads any count. A smaller choice is always a subset of a larger one, so rows of 40 episodes
+    count towards 100.
     """
     chosen = sorted(range(len(listed)), key=lambda i: i * GOLDEN % 1)[:count]
     return [listed[i] for i in sorted(chosen)]
 
 
 def check_count(count: Any) -> None:
-    """Raise ValueError for what is no number of episodes, nor None for all."""
+    """Raise ValueError unless ``count`` is a number of episodes, or None for all."""
     if count is not None and not (isinstance(count, Integral) and int(count) >= 1):
         raise ValueError(
-            f"episodes={count!r} is none: give a whole number, 1 or more, or null for all of the "
-            "list."
+            f"episodes must be a whole number >= 1, or null for the whole list, got {count!r}."
         )
 
 
 def check_episodes(source: str, listed: Sequence[Episode]) -> None:
-    """Raise ValueError for a list that cannot be scored: rows name an episode by its id alone."""
+    """Raise ValueError for a list that cannot be evaluated.
+
+    Ids must be unique, because rows name an episode only by its id.
+    """
     twice = [name for name, n in Counter(e.episode_id for e in listed).items() if n > 1]
     silent = [e.episode_id for e in listed if not e.instruction.text.strip()]
     if not listed:
-        raise ValueError(f"{source} lists no episode.")
+        raise ValueError(f"{source} must list at least one episode.")
     if twice:
-        raise ValueError(f"{source} has the episode {twice[0]} twice: give each an id of its own.")
+        raise ValueError(f"{source} has the episode {twice[0]} twice. Give each a unique id.")
     if silent:
         raise ValueError(f"The episode {silent[0]} of {source} has no instruction.")
 
 
 def warn_of_tasks(agent: Any, chosen: Sequence[Episode], name: str, split: str) -> None:
-    """Warn of episodes of a task that ``agent``, called ``name``, says it cannot do (``tasks`` in
-    ``agents/agent.py``). split: the list to name in place of theirs, that of the agent's config."""
+    """Warn about episodes of a task that is not in the agent's ``tasks`` (``agents/agent.py``).
+
+    Args:
+        agent: the agent.
+        chosen: the episodes.
+        name: name of the agent.
+        split: a list with tasks of the agent, for the message.
+    """
     from mitigate.agents.agent import as_agent
 
-    able = as_agent(agent).tasks
-    asked = [str(episode.info["task"]) for episode in chosen if "task" in episode.info]
-    other = [] if able is None else [task for task in asked if task not in able]
-    if able is not None and other:
+    supported = as_agent(agent).tasks
+    tasks = [str(episode.info["task"]) for episode in chosen if "task" in episode.info]
+    other = [] if supported is None else [task for task in tasks if task not in supported]
+    if supported is not None and other:
         warnings.warn(
-            f"{name} can {_in_words(able)}, not {_in_words(other)}, but {len(other)} of "
-            f"{counted(len(chosen), 'episode')} ask for that: success there is chance. Choose a "
-            f"list of its own, such as split={split}.",
+            f"{name} can {_in_words(supported)}, not {_in_words(other)}, but {len(other)} of "
+            f"{counted(len(chosen), 'episode')} require that, so success there is chance. Choose a "
+            f"list with tasks of the agent, such as split={split}.",
             stacklevel=2,
         )
 
@@ -98,29 +108,35 @@ def _in_words(tasks: Sequence[str]) -> str:
     return " or ".join(TASKS.get(task, task) for task in sorted(set(tasks)))
 
 
-LIST_HASH = "episodes-{split}.sha256"  # of the file that the episodes of a split came from
+LIST_HASH = "episodes-{split}.sha256"  # hash of the episode file of a split
 _SHA256 = re.compile(r"[0-9a-f]{64}")
-OLD_LIST = "episodes.sha256"  # the same by an older version: a line a file, of whichever splits
+OLD_LIST = "episodes.sha256"  # the same by older versions: one line per file, for all splits
 
 
 def keep_list_hash(folder: Path, split: str, source: str) -> None:
-    """Keep the hash of a split's episode file beside the rows, as ``sha256sum`` writes it; raise
-    ValueError if it was another: a row names its episode by id alone, so another list's rows would
-    count as done."""
-    note, found = folder / LIST_HASH.format(split=split), sha256(find(source))
-    held = _list_hashes(folder, split, source)
-    if held and found not in held:
+    """Store the hash of a split's episode file next to the rows, as ``sha256sum`` writes it.
+
+    Raises:
+        ValueError: The rows belong to another list. Rows name episodes only by id, so they would
+            otherwise count as finished.
+    """
+    note = folder / LIST_HASH.format(split=split)
+    digest = sha256(find(source))
+    known = _list_hashes(folder, split, source)
+    if known and digest not in known:
         raise ValueError(
-            f"{folder} holds rows of another list of {split} than {source} is now. Name another "
-            "folder (out=..., of a training folder=...), or delete this one."
+            f"{folder} holds rows of another list of {split} than the current {source}. Name "
+            "another folder (out=..., for a training folder=...), or delete this one."
         )
     with atomic_text(note) as file:
-        file.write(f"{found}  {source}\n")
+        file.write(f"{digest}  {source}\n")
 
 
 def _list_hashes(folder: Path, split: str, source: str) -> list[str]:
-    """The hashes of the lists that the rows of ``split`` in ``folder`` may be of, none if it is not
-    known; an older version kept those of all splits in one file, by their paths."""
+    """Return the hashes of the lists that the rows of ``split`` may belong to; empty if unknown.
+
+    Older versions stored the hashes of all splits in one file, by path.
+    """
     note, old = folder / LIST_HASH.format(split=split), folder / OLD_LIST
     if note.is_file():
         words = note.read_text(encoding="utf-8", errors="replace").split()[:1]
@@ -130,28 +146,29 @@ def _list_hashes(folder: Path, split: str, source: str) -> list[str]:
                 f"{folder} aside and evaluate again."
             )
         return words
-    written = (folder / ROWS).is_file() and any(r["split"] == split for r in read(folder / ROWS))
-    if not written or not old.is_file():
+    has_rows = (folder / ROWS).is_file() and any(r["split"] == split for r in read(folder / ROWS))
+    if not has_rows or not old.is_file():
         return []
     lines = [line.partition("  ") for line in old.read_text(encoding="utf-8").splitlines()]
     return [d for d, _, name in lines if name == source] or [d for d, _, _ in lines]
 
 
 def by_list(rows: Iterable[Row]) -> list[list[Row]]:
-    """Return the rows of each list, in the order in which lists begin.
+    """Return the rows of each list, in the order of their first rows.
 
-    Two agents are of one list if they met an episode both, or each met one with a third.
+    Agents with a common episode belong to one list, directly or through other agents.
     """
     rows = list(rows)
-    met: dict[tuple[str, str], set[str]] = defaultdict(set)
+    by_agent: dict[tuple[str, str], set[str]] = defaultdict(set)
     for row in rows:
-        met[row["name"], row["agent"]].add(row["episode_id"])
+        by_agent[row["name"], row["agent"]].add(row["episode_id"])
     lists: list[set[str]] = []
-    for own in met.values():
-        joined = [held for held in lists if not held.isdisjoint(own)]
-        lists = [held for held in lists if held.isdisjoint(own)] + [own.union(*joined)]
-    place = {episode: n for n, held in enumerate(lists) for episode in held}
-    found: dict[int, list[Row]] = defaultdict(list)
+    for episodes_of_agent in by_agent.values():
+        overlapping = [one for one in lists if not one.isdisjoint(episodes_of_agent)]
+        separate = [one for one in lists if one.isdisjoint(episodes_of_agent)]
+        lists = [*separate, episodes_of_agent.union(*overlapping)]
+    index = {episode: n for n, one in enumerate(lists) for episode in one}
+    groups: dict[int, list[Row]] = defaultdict(list)
     for row in rows:
-        found[place[row["episode_id"]]].append(row)
-    return list(found.values())
+        groups[index[row["episode_id"]]].append(row)
+    return list(groups.values())

@@ -1,7 +1,7 @@
 """Evaluate an agent: ``mitigate evaluate checkpoint=checkpoints/base split=val_seen``.
 
-Writes one JSON line an episode and condition to ``rows.jsonl`` in the output folder; the same
-command again only fills what is missing.
+Writes one JSON line per episode and condition to ``rows.jsonl`` in the output folder. The same
+command again runs only what is missing.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ from mitigate.evaluation.episode_lists import episodes, warn_of_tasks
 from mitigate.evaluation.rows import ROWS
 from mitigate.guards.text.addresses import check_arguments
 
-DECISIONS = "safeguard.jsonl"  # what a safeguard made of each instruction
+DECISIONS = "safeguard.jsonl"  # log of a safeguard's decision on each instruction
 
 
 def run(cfg: DictConfig, overrides: Sequence[str] = ()) -> Path:
@@ -35,13 +35,13 @@ def run(cfg: DictConfig, overrides: Sequence[str] = ()) -> Path:
 
     Args:
         cfg: the composed options.
-        overrides: those of the command line; what they set of the agent (``agent.blind=[rgb]``)
-            counts more than the weights' own settings, and the table's column names it.
+        overrides: options of the command line. Those of the agent (``agent.blind=[rgb]``) take
+            precedence over the settings of the weights and are part of the column's name.
 
     Raises:
-        ValueError: for an unknown split or condition, weights that are not named, and an object
-            that is no agent or lacks an observation.
-        FileNotFoundError: for missing weights.
+        ValueError: The split or a condition is unknown, weights are not named, the agent lacks
+            ``reset`` or ``act``, or the world lacks a sensor.
+        FileNotFoundError: Weights are missing.
     """
     config = options.read(cfg)
     options.check(config, overrides)
@@ -49,12 +49,12 @@ def run(cfg: DictConfig, overrides: Sequence[str] = ()) -> Path:
 
 
 def evaluate_agent(config: EvaluateConfig, overrides: Sequence[str] = ()) -> Path:
-    """As :func:`run`, of typed options that were checked."""
+    """Evaluate as :func:`run`, with typed options that were checked."""
     env = config.env
     where = launcher.chosen(config.launcher)
     chosen = episodes(env, config.split, config.episodes)
     met = conditions(config.condition_names, config.severity, config.severity_depth)
-    # nothing slow is imported before the options are checked
+    # slow imports come after the checks of the options
     from mitigate.core import build
     from mitigate.evaluation import provenance
     from mitigate.evaluation.evaluator import evaluate
@@ -73,7 +73,7 @@ def evaluate_agent(config: EvaluateConfig, overrides: Sequence[str] = ()) -> Pat
     with FolderLock(out) as lock:
         provenance.keep(out, first, made_by, config.split, chosen, env.episodes[config.split])
         lock.expect(out / ROWS, *provenance.notes(out, config.split))
-        print(  # when all is checked: a mistake is told alone
+        print(  # after all checks, so that an error is the only output
             f"evaluate: {config.checkpoint or name} on {config.split}, "
             f"{counted(len(chosen), 'episode')} x {counted(len(met), 'condition')} at severity "
             f"{config.severity:g}",
@@ -102,33 +102,38 @@ def _column(config: EvaluateConfig, overrides: Sequence[str]) -> str:
     """Return the table's column: the weights, options that change the agent, and its guards."""
     from mitigate.guards.opening import labels
 
-    usual = name_of(config.checkpoint or config.agent["_target_"].rpartition(".")[2])
-    own = [config.name or usual, *changed(overrides)]
-    return "+".join([*own, *labels(config.safeguard, config.restore)])
+    default_name = name_of(config.checkpoint or config.agent["_target_"].rpartition(".")[2])
+    parts = [config.name or default_name, *changed(overrides)]
+    return "+".join([*parts, *labels(config.safeguard, config.restore)])
 
 
 def check_walks(agent: Any) -> None:
-    """Raise ValueError for what cannot be evaluated: it lacks ``reset`` or ``act``, or is the class
-    of an agent and not one."""
+    """Raise ValueError unless ``agent`` is an object with ``reset`` and ``act``."""
     if isinstance(agent, type):
-        raise ValueError(
-            f"{agent.__name__} is a class and walks no episodes: give an object of it."
-        )
+        raise ValueError(f"agent must be an object, got the class {agent.__name__}.")
     absent = [f"{name}()" for name in lacking(agent, ("reset", "act"))]
     if absent:
         raise ValueError(
-            f"A {type(agent).__name__} walks no episodes: it has no {' and no '.join(absent)}. "
-            "Choose an agent that does (agent=..., docs/agents.md)."
+            f"A {type(agent).__name__} cannot run episodes: it has no {' and no '.join(absent)}. "
+            "Choose another agent (agent=..., docs/agents.md)."
         )
 
 
 def load(
     node: Mapping[str, Any], weights: str | None, seed: int = 0, overrides: Sequence[str] = ()
 ) -> Any:
-    """Return the agent of ``weights`` in eval mode, by their own settings if they carry any, else
-    by ``node``; what ``overrides`` say of the agent counts more. None: the agent of ``node``, which
-    is no network. Raises FileNotFoundError if they are missing, ValueError if they do not fit."""
+    """Return an agent in eval mode.
 
+    Args:
+        node: the config of the agent; settings stored with the weights replace its values.
+        weights: file or folder of the weights; None: an agent without weights.
+        seed: seed of initial weights.
+        overrides: options of the command line, which take precedence.
+
+    Raises:
+        FileNotFoundError: The weights are missing.
+        ValueError: The weights do not fit, or the agent needs weights.
+    """
     from mitigate.agents import building
 
     settings = node if weights is None else building.settings_of(node, weights, overrides)
@@ -137,38 +142,40 @@ def load(
         return agent
     if weights is None:
         raise ValueError(
-            "checkpoint is not set, and no weights are shipped for this agent: name a run's agent "
+            "checkpoint is not set, and no weights are shipped for this agent. Name a run's agent "
             "folder (checkpoint=runs/.../agent) or a .safetensors file of its weights, or choose "
-            "an agent that walks episodes (agent=recurrent; docs/agents.md lists them)."
+            "an agent with shipped weights (agent=recurrent; docs/agents.md lists them)."
         )
     return agent.eval()
 
 
-def write_table(files: list[Path], out: Path, asked: list[dict[str, Any]] | None = None) -> None:
-    """Join row files into ``out/table.md`` and pictures, and print the table: of the rows that were
-    ``asked`` for alone, if there are others beside them."""
+def write_table(files: list[Path], out: Path, selected: list[dict[str, Any]] | None = None) -> None:
+    """Join row files into ``out/table.md`` and pictures, and print the table.
+
+    ``selected``: rows to print if the files hold others, too; None: all.
+    """
     from mitigate.evaluation import report, rows
     from mitigate.evaluation.sections import sections
 
-    found = rows.gather(files)
-    written = report.write(found, out)
-    others = 0 if asked is None else len(found) - len(asked)
-    if asked is None or others <= 0:
-        print(written[0].read_text(encoding="utf-8"))
+    all_rows = rows.gather(files)
+    paths = report.write(all_rows, out)
+    others = 0 if selected is None else len(all_rows) - len(selected)
+    if selected is None or others <= 0:
+        print(paths[0].read_text(encoding="utf-8"))
     else:
-        print(report.markdown(sections(asked)))
-        print(f"{out} holds {counted(others, 'other row')} besides: {written[0]} is of all.")
-    print("\n".join(f"wrote {path}" for path in written), flush=True)
+        print(report.markdown(sections(selected)))
+        print(f"{out} holds {counted(others, 'other row')}, too; {paths[0]} includes them.")
+    print("\n".join(f"wrote {path}" for path in paths), flush=True)
 
 
 @hydra.main(version_base="1.3", config_path=str(conf.CONF), config_name="evaluate")
 def hydra_main(cfg: DictConfig) -> None:
-    """Hydra's entry."""
+    """Run as Hydra's entry point."""
     run(cfg, HydraConfig.get().overrides.task)
 
 
 def _add_kind_of_agent() -> None:
-    """Check the command line, and add the kind of agent that its weights are of."""
+    """Check the command line, and add the kind of agent of its weights."""
     check_arguments(sys.argv)
     if any("checkpoint=" in option for option in sys.argv[1:]):
         from mitigate.agents.building import with_kind

@@ -1,10 +1,10 @@
-"""Closed-loop evaluation: every agent meets the same episodes and the same random keys.
+"""Closed-loop evaluation: all agents run the same episodes with the same random keys.
 
-An episode is run alone, so its result does not depend on how many run beside it; rows are written
-as they come, and an interrupted evaluation continues where it stopped. The conditions of an episode
-run in one process, which keeps what it rendered and what the agent encoded: equal frames give equal
-features, so no row depends on what was kept. An agent that can (``together``, ``agents/agent.py``)
-walks several at once.
+The result of an episode does not depend on other episodes. Rows are written as they are computed,
+and an interrupted evaluation continues where it stopped. All conditions of an episode run in one
+process, which caches renderings and features. Equal frames give equal features, so the cache does
+not change results. An agent with ``together`` > 1 (``agents/agent.py``) runs several episodes at
+once.
 """
 
 from __future__ import annotations
@@ -43,19 +43,19 @@ from mitigate.guards.guard import NO_GUARDS, Guards
 from mitigate.worlds.episodes import Episode
 from mitigate.worlds.world import World, as_world
 
-WORTH = 40  # episodes that make a process worth its start (ours): 4 s of 0.1 s each
-LOCAL = LauncherConfig()  # workers of this machine
-_PAUSE = 1.0  # seconds between two writes, at least
+WORTH = 40  # episodes that justify starting a process (heuristic): 4 s of 0.1 s each
+LOCAL = LauncherConfig()  # worker processes on this machine
+_PAUSE = 1.0  # smallest time between two writes in seconds
 
-Job = tuple[Episode, Corruption, dict[str, Any]]  # the last: what the row says besides measures
+Job = tuple[Episode, Corruption, dict[str, Any]]  # with the row's entries other than measures
 
 
 @dataclass
 class EpisodeTask:
-    """Runs jobs (``mitigate/core/workers.py``): each one's result is its label with its measures.
+    """Run jobs (``mitigate/core/workers.py``); the result of a job is its label with its measures.
 
-    make_world: each process makes one. A label holds "seed". classes: of ``Known``, which a worker
-    process compares with its own.
+    Each process calls ``make_world``. A label holds "seed". ``classes`` is the hash in ``Known``,
+    which worker processes compare with their own.
     """
 
     agent: Any
@@ -70,9 +70,11 @@ class EpisodeTask:
 
     @contextmanager
     def ready(self) -> Iterator[None]:
-        """One thread for torch, and fp32 whoever calls: results are then the same in any number of
-        processes, and inside a training in bf16. The agent's networks are in eval mode, and as they
-        were afterwards."""
+        """Use one torch thread, fp32 and eval mode within the context.
+
+        Results then do not depend on the number of processes, nor on a surrounding training in
+        bf16. Afterwards the networks have their former mode.
+        """
         threads = torch.get_num_threads()
         torch.set_num_threads(1)
         self.world = self.world or self.make_world()
@@ -86,38 +88,41 @@ class EpisodeTask:
             torch.set_num_threads(threads)
 
     def work(self, jobs: Sequence[Job]) -> Iterator[dict[str, Any]]:
-        """Rows of ``jobs``, which should be of one episode: frames and features are kept."""
+        """Yield the rows of ``jobs``, preferably of one episode, because frames are cached."""
         assert self.world is not None, "work() is called while ready()"
         with as_agent(self.agent).remembering(), as_world(self.world).remembering():
-            told = [(episode, condition, label["seed"]) for episode, condition, label in jobs]
-            measured = self._measures(self.world, told)
+            runs = [(episode, condition, label["seed"]) for episode, condition, label in jobs]
+            measured = self._measures(self.world, runs)
             for (_, _, label), measures in zip(jobs, measured, strict=True):
                 yield {**label, **measures}
 
     def _measures(
-        self, world: Any, told: Sequence[tuple[Episode, Corruption, int]]
+        self, world: Any, runs: Sequence[tuple[Episode, Corruption, int]]
     ) -> Iterator[dict[str, Any]]:
-        """Of (episode, corruption, seed) each, in order; one after the other if what all its walks
-        share is changed: the agent's prompt by a corruption, or the agent by a guard."""
+        """Yield the measures of each (episode, corruption, seed), in order.
+
+        Episodes run one after the other if the agent itself changes: its prompt by a corruption, or
+        the agent by a guard.
+        """
         count = _together(self.agent, world)
-        prompted = any("white_box" in parts(corruption.name) for _, corruption, _ in told)
+        prompted = any("white_box" in parts(corruption.name) for _, corruption, _ in runs)
         if count > 1 and not prompted and not self.guards.adapts:
             worlds = [world, *(world.beside() for _ in range(count - 1))]
-            yield from run_side_by_side(self.agent, worlds, told, self.guards)
+            yield from run_side_by_side(self.agent, worlds, runs, self.guards)
             return
-        for job in told:
-            yield run_episode(self.agent, world, *job, self.guards)
+        for run in runs:
+            yield run_episode(self.agent, world, *run, self.guards)
 
     def name(self, job: Job) -> str:
-        """The episode and its condition."""
+        """Return the episode and its condition."""
         return f"episode {job[0].episode_id}, {job[1].name}"
 
 
 def _together(agent: Any, world: Any) -> int:
-    """How many episodes the agent walks at once in such worlds."""
-    # one that a class inherits, or that is passed on from a world inside, may make other worlds
-    own = "beside" in vars(type(world))
-    return as_agent(agent).together if own else 1
+    """Return how many episodes the agent can run at once in such worlds."""
+    # an inherited or delegated beside() may make worlds of another class
+    defined = "beside" in vars(type(world))
+    return as_agent(agent).together if defined else 1
 
 
 def _parameters(agent: Any) -> Iterator[torch.nn.Parameter]:
@@ -142,43 +147,55 @@ def evaluate(
 ) -> list[dict[str, Any]]:
     """Evaluate an agent and return its rows, which are also in the file ``out``.
 
-    Args: world: makes a world, in each process. conditions: corruptions to meet, ``CLEAN`` among
-    them for PRS; "white_box" is left out with a warning if the agent has no ``system_prompt``.
-    name: the table's column. split: what the rows say. seed: of the corruptions' keys. workers:
-    processes, None: one a core if there is work for them; the rows do not depend on it, nor on the
-    launcher, which says on which machines (``cluster/launcher.py``). guards: between the world and
-    the agent (``guards/guard.py``). version: names what cannot be read of the agent, so that its
-    rows can be reused (``agents/fingerprint.py``). known: the agent's fingerprint, if it was taken
-    before. A row's ``agent`` is the fingerprint of the agent behind the sensors and guards.
+    The entry ``agent`` of a row is the fingerprint of the agent with its sensors and guards. Rows
+    do not depend on ``workers`` and ``launcher``.
 
-    Raises ValueError if ``out`` holds rows of this fingerprint and the agent cannot be read
-    completely; WorkersDied if worker processes die more than once; the rows so far are in ``out``.
+    Args:
+        agent: any object with the interface in ``agents/agent.py``.
+        world: makes a world, in each process.
+        episodes: the episodes.
+        conditions: corruptions, with ``CLEAN`` for the PRS. "white_box" is left out with a warning
+            if the agent has no ``system_prompt``.
+        name: column of the table.
+        out: file of the rows.
+        split: entry of the rows.
+        seed: corruption seed.
+        workers: processes; None: one per core if there is enough work.
+        launcher: the machines of the workers (``cluster/launcher.py``).
+        guards: guards between the world and the agent (``guards/guard.py``).
+        version: the user's name for state of the agent that cannot be read, so that its rows can be
+            reused (``agents/fingerprint.py``).
+        known: the agent's fingerprint, if it was computed before.
+
+    Raises:
+        ValueError: ``out`` holds rows of this fingerprint, and the agent cannot be read completely.
+        WorkersDied: Worker processes died more than once; ``out`` holds the finished rows.
     """
     out = Path(out)
     conditions = _applicable(agent, conditions, name)
     if isinstance(agent, torch.nn.Module):
         check_finite(agent, f"The weights of {name}")
-    made = world()
-    check_fits(agent, made.sensors, type(made).__name__)
+    first = world()
+    check_fits(agent, first.sensors, type(first).__name__)
     if known is None:
-        known = Known(agent, made, guards.fingerprint(), version).check(out, name)
+        known = Known(agent, first, guards.fingerprint(), version).check(out, name)
     label = {
         "agent": known.hash,
         "name": name,
         "split": split,
         "seed": seed,
         "suite": SUITE_VERSION,
-        "rule": made.rule,
+        "rule": first.rule,
         **({"weights": weights_sha(agent)} if isinstance(agent, torch.nn.Module) else {}),
     }
     task = EpisodeTask(agent, world, guards, classes=known.classes)
     jobs = _jobs(episodes, conditions, label)
     with known:
-        _run_missing(task, made, jobs, out, workers, launcher, f"{name}, {split}")
-    found = _in_order(out, [rows.identity(job[2]) for job in jobs])
-    if cut := rows.cuts(found):
+        _run_missing(task, first, jobs, out, workers, launcher, f"{name}, {split}")
+    results = _in_order(out, [rows.identity(job[2]) for job in jobs])
+    if cut := rows.cuts(results):
         print(f"{name}: {cut}", flush=True)
-    return found
+    return results
 
 
 def _run_missing(
@@ -190,8 +207,7 @@ def _run_missing(
     launcher: LauncherConfig,
     title: str,
 ) -> None:
-    """Run the jobs that have no row in ``out``, a group's in one process, and append their rows as
-    they come."""
+    """Run the jobs without a row in ``out``, each group in one process, and append their rows."""
     finished = {rows.identity(row) for row in rows.read(out)} if out.exists() else set()
     todo = [job for job in jobs if rows.identity(job[2]) not in finished]
     _warn_of_languages(todo)
@@ -212,14 +228,14 @@ def _run_missing(
             _write(results(launcher, task, groups, started, progress), out, progress)
         except processes.WorkersDied as error:
             raise processes.WorkersDied(
-                f"{error} The finished rows are in {out}: the same command goes on from there."
+                f"{error} The finished rows are in {out}. Run the same command again to continue."
             ) from None
 
 
 def _jobs(
     episodes: list[Episode], conditions: list[Corruption], label: dict[str, Any]
 ) -> list[Job]:
-    """All jobs, episode by episode, each with what its row says besides the measures."""
+    """Return all jobs, episode by episode, each with the entries of its row except measures."""
     return [
         (
             episode,
@@ -238,32 +254,32 @@ def _jobs(
 
 
 def _applicable(agent: Any, conditions: list[Corruption], name: str) -> list[Corruption]:
-    """Return the conditions that the agent can meet, and warn of the others."""
+    """Return the conditions that apply to the agent, and warn about the others."""
     if as_agent(agent).system_prompt:
         return conditions
-    kept = [condition for condition in conditions if "white_box" not in parts(condition.name)]
-    if len(kept) < len(conditions):
+    applicable = [one for one in conditions if "white_box" not in parts(one.name)]
+    if len(applicable) < len(conditions):
         warnings.warn(
             f"white_box is not applicable to {name}: the agent has no system prompt to inject "
-            "into. No rows are written for it, and it is no part of the PRS.",
+            "into. No rows are written for it, and it is not part of the PRS.",
             stacklevel=3,
         )
-    return kept
+    return applicable
 
 
 def _warn_of_languages(jobs: list[Job]) -> None:
-    """Warn of episodes whose instructions are to be corrupted and are not in English."""
-    found = {
+    """Warn about instructions that should be corrupted but are not in English."""
+    languages = {
         episode.episode_id: episode.instruction.language
         for episode, condition, _ in jobs
         if "instruction" in condition.modalities and not is_english(episode.instruction.language)
     }
-    if found:
-        warnings.warn(passed_through(Counter(map(str, found.values()))), stacklevel=3)
+    if languages:
+        warnings.warn(passed_through(Counter(map(str, languages.values()))), stacklevel=3)
 
 
 def _groups(jobs: list[Job], least: int) -> list[list[Job]]:
-    """The jobs of each episode, or of so many of them that they are ``least`` or more."""
+    """Return groups of at least ``least`` jobs, each of one or more whole episodes."""
     groups: list[list[Job]] = []
     for _, group in groupby(jobs, lambda job: job[0].episode_id):
         if groups and len(groups[-1]) < least:
@@ -273,42 +289,49 @@ def _groups(jobs: list[Job], least: int) -> list[list[Job]]:
     return groups
 
 
-def _write(found: Iterable[tuple[int, Any] | None], out: Path, progress: Progress) -> None:
-    """Append rows to ``out`` every ``_PAUSE`` seconds, and whatever happens at the end."""
-    fresh: list[dict[str, Any]] = []
-    written = time.monotonic()
+def _write(results: Iterable[tuple[int, Any] | None], out: Path, progress: Progress) -> None:
+    """Append rows to ``out`` every ``_PAUSE`` seconds, and at the end, also after an error."""
+    pending: list[dict[str, Any]] = []
+    last_write = time.monotonic()
     try:
-        for item in found:
+        for item in results:
             if item is not None:
-                fresh.append(item[1])
+                pending.append(item[1])
                 progress.advance()
-            if fresh and time.monotonic() - written >= _PAUSE:
-                done, fresh, written = fresh, [], time.monotonic()
+            if pending and time.monotonic() - last_write >= _PAUSE:
+                done = pending
+                pending = []  # reset first, so that a failing write is not repeated below
+                last_write = time.monotonic()
                 rows.append(out, done)
     finally:
-        if fresh:
-            rows.append(out, fresh)
+        if pending:
+            rows.append(out, pending)
 
 
-def _in_order(out: Path, wanted: list[tuple]) -> list[dict[str, Any]]:
-    """Return the ``wanted`` rows of ``out`` in that order, one per identity (``rows.unique``), and
-    put them into it in the file, each in the place of one of them: the file is then the same for
-    any number of processes. Raises FolderLostError if rows are missing."""
-    if not wanted:
+def _in_order(out: Path, identities: list[tuple]) -> list[dict[str, Any]]:
+    """Sort the rows with these identities in the file ``out`` and return them (``rows.unique``).
+
+    They only exchange places with each other; the file then does not depend on the number of
+    processes.
+
+    Raises:
+        FolderLostError: Rows are missing.
+    """
+    if not identities:
         return []
-    order = {identity: number for number, identity in enumerate(wanted)}
-    held = rows.read(out) if output.is_regular(out) else []
-    missing = len(order.keys() - {rows.identity(row) for row in held})
+    order = {identity: number for number, identity in enumerate(identities)}
+    stored = rows.read(out) if output.is_regular(out) else []
+    missing = len(order.keys() - {rows.identity(row) for row in stored})
     if missing:
         raise FolderLostError(
             f"{out} holds {len(order) - missing} of the {counted(len(order), 'row')} that were "
             "measured: another program removed or replaced the file during the evaluation. Run "
             "the same command again: it measures what is missing."
         )
-    places = [place for place, row in enumerate(held) if rows.identity(row) in order]
-    found = sorted((held[place] for place in places), key=lambda row: order[rows.identity(row)])
-    if found != [held[place] for place in places]:
-        for place, row in zip(places, found, strict=True):
-            held[place] = row
-        rows.write(out, held)
-    return rows.unique(found)
+    places = [place for place, row in enumerate(stored) if rows.identity(row) in order]
+    ordered = sorted((stored[place] for place in places), key=lambda row: order[rows.identity(row)])
+    if ordered != [stored[place] for place in places]:
+        for place, row in zip(places, ordered, strict=True):
+            stored[place] = row
+        rows.write(out, stored)
+    return rows.unique(ordered)

@@ -17,20 +17,20 @@ from mitigate.evaluation.sections import Section, label
 
 COLOURS = mpl.colormaps["RdYlGn"]
 LINES = [mpl.colormaps["tab10"](index) for index in range(10)]
-WIDTH, MARKER = 1.2, 3.0  # points, of a line and its markers where nothing coincides
-RIM = 1.8  # points by which a line is wider than one that lies on it
-CLOSE = 0.5  # points of SR that are less than a line is wide
+WIDTH, MARKER = 1.2, 3.0  # points: width of a line and size of its markers, without overlap
+RIM = 1.8  # points by which a line is wider than a line on top of it
+CLOSE = 0.5  # points of SR; a smaller difference is less than the width of a line
 DPI = 150
-STACKED = 5  # columns from which the panels of a heatmap stand one above the other
+STACKED = 5  # number of columns from which the panels of a heatmap are stacked vertically
 
-Curve = list[tuple[float, bootstrap.Estimate]]  # severities, rising, and SR in [0, 1]
+Curve = list[tuple[float, bootstrap.Estimate]]  # ascending severities, and SR in [0, 1]
 
 
 def heatmap(section: Section, path: Path | str) -> Path:
-    """Draw one panel a block: rows PRS-SR, PRS-SPL, clean and the corruptions; columns agents.
+    """Draw one panel per block: rows PRS-SR, PRS-SPL, clean and the corruptions; columns agents.
 
-    A cell shows SR (%) / SPL and is coloured by SR over the best clean SR; PRS by itself. The
-    panels of many agents stand one above the other.
+    A cell shows SR (%) / SPL; its colour is SR divided by the best clean SR. The colour of a PRS is
+    the PRS. With many agents the panels are stacked vertically.
     """
     rows = [3 + len(names) for names in section.blocks.values()]
     width, narrow = 1.6 + 1.15 * len(section.columns), len(section.columns) < STACKED
@@ -54,8 +54,10 @@ def heatmap(section: Section, path: Path | str) -> Path:
 
 
 def severity_curves(grid: Grid, path: Path | str) -> Path:
-    """Draw SR (%) against severity, one panel a corruption, with 95 % bootstrap bands. Where
-    lines coincide the first is the widest, so that each shows on both sides of the next."""
+    """Draw SR (%) against severity, one panel per corruption, with 95 % bootstrap bands.
+
+    Where lines coincide, earlier ones are wider, so that they are visible on both sides.
+    """
     names = grid.corruptions
     across = min(4, len(names))
     down = math.ceil(len(names) / across)
@@ -91,10 +93,10 @@ def _panel(axis: Axes, section: Section, block: str, names: tuple[str, ...]) -> 
     best = max((section.value(c, "clean") for c in section.columns), default=math.nan)
     for j, column in enumerate(section.columns):
         for i, metric in enumerate(("SR", "SPL")):
-            found = section.retained.get((column, block, metric))
-            if found is not None and not math.isnan(found.estimate.value):
-                colours[i, j] = found.estimate.value
-                texts[i, j] = f"{found.estimate.value:.2f}{section.marks(found, block)}"
+            retained = section.retained.get((column, block, metric))
+            if retained is not None and not math.isnan(retained.estimate.value):
+                colours[i, j] = retained.estimate.value
+                texts[i, j] = f"{retained.estimate.value:.2f}{section.marks(retained, block)}"
         for i, name in enumerate(("clean", *names), start=2):
             rate, spl = (section.value(column, name, metric) for metric in ("SR", "SPL"))
             if not math.isnan(rate):
@@ -115,24 +117,24 @@ def _panel(axis: Axes, section: Section, block: str, names: tuple[str, ...]) -> 
 
 
 def _curve(grid: Grid, column: str, name: str) -> Curve:
-    """What was measured of one column under one corruption, with the clean cell at 0."""
+    """Return the curve of one column under one corruption, with the clean cell at 0."""
     points: Curve = []
     measured = any(
         (column, name, severity, "success") in grid.cells for severity in grid.severities
     )
     for severity in (0.0, *grid.severities) if measured else ():
         cell = grid.cell(column, "clean" if severity == 0 else name, severity, "success")
-        held = ~np.isnan(cell)
-        if held.any():
-            found = bootstrap.share(cell[held], units=grid.units[held], resamples=1000)
-            points.append((severity, found))
+        mask = ~np.isnan(cell)
+        if mask.any():
+            estimate = bootstrap.share(cell[mask], units=grid.units[mask], resamples=1000)
+            points.append((severity, estimate))
     return points
 
 
-def _curves(axis: Axes, found: dict[str, Curve]) -> None:
-    """Draw the curves of one panel; a piece on which later ones lie is wider than they are."""
-    for index, (column, curve) in enumerate(found.items()):
-        colour, later = LINES[index % len(LINES)], list(found.values())[index + 1 :]
+def _curves(axis: Axes, curves: dict[str, Curve]) -> None:
+    """Draw the curves of one panel; pieces under later curves are wider."""
+    for index, (column, curve) in enumerate(curves.items()):
+        colour, later = LINES[index % len(LINES)], list(curves.values())[index + 1 :]
         _line(axis, curve, colour, label=plain(column))
         for piece in [curve[i : i + 2] for i in range(len(curve) - 1)] or [curve]:
             wider = RIM * sum(_lies_on(other, piece) for other in later)
@@ -155,15 +157,15 @@ def _line(axis: Axes, curve: Curve, colour: tuple, wider: float = 0.0, label: st
 
 
 def _lies_on(other: Curve, piece: Curve) -> bool:
-    """Whether a curve has the points of ``piece``, which has one at least."""
-    held = {severity: estimate.value for severity, estimate in other}
+    """Return whether a curve passes through all points of ``piece``, which is not empty."""
+    values = {severity: estimate.value for severity, estimate in other}
     return bool(piece) and all(
-        at in held and abs(100 * (estimate.value - held[at])) <= CLOSE for at, estimate in piece
+        at in values and abs(100 * (estimate.value - values[at])) <= CLOSE for at, estimate in piece
     )
 
 
 def plain(name: str) -> str:
-    """A name that rows bring, as matplotlib shows it as it is: no formula, in the legend too."""
+    """Escape a name for matplotlib: no formula, and visible in the legend."""
     return name.replace("$", r"\$").replace("_", " _", name.startswith("_"))
 
 

@@ -1,8 +1,8 @@
-"""What the rows in a folder belong to: the agent, the world, and the episodes.
+"""Record which agent, world and episodes the rows in a folder belong to.
 
-A row says its world's rule, and in the agent's hash its sensors; nothing of all else that a world
-is, and of its episode the id alone. So rows of another world would count as done. Notes beside the
-rows tell them apart.
+A row holds the rule of its world, the agent's hash (with the sensors) and the id of its episode.
+Nothing else in it describes the world or the episode, so rows of another world would count as
+finished. Notes next to the rows prevent that.
 """
 
 from __future__ import annotations
@@ -36,21 +36,23 @@ from mitigate.evaluation.rows import read
 from mitigate.worlds.episodes import Episode
 from mitigate.worlds.world import World
 
-# of agents without settings(), by id: the agent, its parts after the last run, and before the first
+# agents without settings(), by id: the agent, its parts after the last run, and before the first
 _last: dict[int, tuple[Callable[[], Any], Any, Any]] = {}
-# what the code of worlds reads, by their layers' classes and the user's version: a hash from before
-# the first episode, and one from after the last
+# hashes of the names that the code of worlds reads, before the first episode and after the last, by
+# the classes of the layers and the user's version
 _read_by: dict[tuple[tuple[type, ...], str | None], tuple[str, str]] = {}
 
 
 class Known:
-    """``hash`` of ``agent`` in ``world`` behind ``front``, taken before episodes change its
-    arrays and attributes, and ``classes``, a hash of what their classes read; a context manager
+    """Hashes of an agent and of classes, computed before episodes change them.
+
+    ``hash`` is the fingerprint of ``agent`` in ``world`` with the guards ``front``; ``classes`` is
+    a hash of the names that the classes of agent and world read. The object is a context manager
     around all episodes.
 
-    The attributes of an agent without ``settings()`` count. If only episodes have changed the
-    object since the last call, its hash is the one from before them. The same holds for the
-    attributes of the world's classes.
+    The attributes of an agent without ``settings()`` are part of the hash. If only episodes have
+    changed the object since the last call, the hash from before these episodes is used. The same
+    holds for the attributes of the world's classes.
     """
 
     def __init__(self, agent: Any, world: World, front: str, version: str | None = None) -> None:
@@ -63,13 +65,13 @@ class Known:
         self.layers = tuple(type(layer) for layer in _layers(world))
         self.version = version
         read = _read_by.get((self.layers, None))
-        of_world = read[0] if read else _what_is_read(self.layers, None)[0]
+        of_world = read[0] if read else _names_read(self.layers, None)[0]
         self.classes = _hash_of_classes(agent, of_world)
         self.without_settings = not says_all(agent)
-        found = contents(agent, version)
+        current = contents(agent, version)
         same, after, before = _last.get(id(agent), (lambda: None, None, None))
-        self.parts = before if same() is agent and after == found.parts else found.parts
-        self.unreadable = found.explain() if found.unreadable else ""
+        self.parts = before if same() is agent and after == current.parts else current.parts
+        self.unreadable = current.explain() if current.unreadable else ""
         self.hash = hash_of(self.parts, world.sensors, front)
 
     def __enter__(self) -> Known:
@@ -78,14 +80,14 @@ class Known:
     def __exit__(self, *_: object) -> None:
         place = self.layers, self.version
         if place in _read_by:
-            _read_by[place] = _read_by[place][0], _what_is_read(*place)[0]
+            _read_by[place] = _read_by[place][0], _names_read(*place)[0]
         if not self.without_settings:
             return
         agent = self.agent
         key = id(agent)
         try:
             same: Callable[[], Any] = weakref.ref(agent, lambda _: _last.pop(key, None))
-        except TypeError:  # its class takes no weak references: the agent is kept alive
+        except TypeError:  # its class allows no weak references, so the agent is kept alive
 
             def same() -> Any:
                 return agent
@@ -93,10 +95,10 @@ class Known:
         _last[key] = same, contents(agent, self.version).parts, self.parts
 
     def check(self, file: Path, name: str) -> Known:
-        """Report that all rows of ``name`` in ``file`` belong to another agent; return self.
+        """Print a message if all rows of ``name`` in ``file`` belong to another agent; return self.
 
         Raises:
-            ValueError: there are earlier rows, and the agent cannot be read completely.
+            ValueError: There are earlier rows, and the agent cannot be read completely.
         """
         rows = read(file) if file.exists() else []
         known = any(row["agent"] == self.hash for row in rows)
@@ -113,18 +115,18 @@ class Known:
         )
         if self.without_settings:
             print(
-                f"Every attribute of a {kind} counts, also one that changes by itself, such as a "
-                "clock: give it settings() if only some of them should.",
+                f"All attributes of a {kind} count, including those that change over time, such as "
+                "a clock. Give it settings() if only some of them should count.",
                 flush=True,
             )
         return self
 
 
 NOTE = "walked.json"
-CLASS, CODE, ENV = "its class", "its code", "its env"  # what differs, in words
+CLASS, CODE, ENV = "its class", "its code", "its env"  # keys of stored notes: do not change
 READ = "what its code reads"
 UNREADABLE = "what cannot be read of it"
-MOST_LAYERS = 20  # of wrappers around an environment (ours)
+MOST_LAYERS = 20  # wrappers around an environment (heuristic)
 
 
 def keep(
@@ -135,36 +137,48 @@ def keep(
     episodes: Sequence[Episode],
     source: str | None = None,
 ) -> None:
-    """Keep in ``folder`` what ``world`` is and what it was ``made_by`` (``first_world``), a sum of
-    each episode of ``split`` and one of ``source``, the file that they come from if they come from
-    one; raise ValueError, saying what differs, if one of them is another now.
+    """Store in ``folder`` a description of the world and hashes of the episodes.
 
-    Worlds of other sensors or of another rule stand beside one another: their rows say so. What a
-    note of an older version does not say may be anything, as may all where there is no note.
+    Worlds with other sensors or another rule can share a folder, because their rows differ. Entries
+    that a note of an older version lacks are not compared, nor is anything without a note.
+
+    Args:
+        folder: folder of the rows.
+        world: the world.
+        made_by: description of how the world was made (:func:`first_world`).
+        split: name of the list of episodes.
+        episodes: the episodes.
+        source: file of the episodes; None if they come from no file.
+
+    Raises:
+        ValueError: The folder has rows of another world or other episodes; names the difference.
     """
     if source is not None:
         keep_list_hash(folder, split, source)
     note = folder / NOTE
     known = _read(note) if output.is_regular(note) else {}
-    told, sums = {**_described(world), **made_by}, {e.episode_id: _sum(e) for e in episodes}
-    own, kind = known.get(split, {}), _told_by_rows(world)
-    worlds, sums_before = own.get("worlds", {}), own.get("sums", {})
-    if unreadable := told.pop(UNREADABLE, ""):
+    described = {**_described(world), **made_by}
+    sums = {episode.episode_id: _sum(episode) for episode in episodes}
+    entry = known.get(split, {})
+    kind = _rule_and_sensors(world)
+    worlds, sums_before = entry.get("worlds", {}), entry.get("sums", {})
+    if unreadable := described.pop(UNREADABLE, ""):
         owner = "the classes of this world"
         _report_unreadable(folder, name_of(world), "world", owner, unreadable, kind in worlds)
-    before = worlds.get(kind, told | _older(own))
-    if READ in told:  # older versions did not note it
-        before = {**before, READ: before.get(READ, told[READ])}
-    different = [k for k in {**before, **told} if not _is_same(before.get(k), told.get(k))]
-    other = [name for name, held in sums_before.items() if sums.get(name, held) != held]
-    if different or other:
-        what = f"episode {other[0]} of another list" if other else "another world"
-        key = "" if other else f": {_difference(different[0], before, told)}"
+    before = worlds.get(kind, described | _older(entry))
+    if READ in described:  # older versions did not store it
+        before = {**before, READ: before.get(READ, described[READ])}
+    keys = {**before, **described}
+    different = [k for k in keys if not _is_same(before.get(k), described.get(k))]
+    changed = [name for name, digest in sums_before.items() if sums.get(name, digest) != digest]
+    if different or changed:
+        what = f"episode {changed[0]} of another list" if changed else "another world"
+        detail = "" if changed else f": {_difference(different[0], before, described)}"
         raise ValueError(
-            f"{folder} holds rows of {what}{key}. Name another folder (out=..., of a training "
+            f"{folder} holds rows of {what}{detail}. Name another folder (out=..., for a training "
             "folder=...), or delete this one."
         )
-    known[split] = {"worlds": worlds | {kind: told}, "sums": sums_before | sums}
+    known[split] = {"worlds": worlds | {kind: described}, "sums": sums_before | sums}
     with atomic_text(note) as file:
         json.dump(known, file)
 
@@ -172,8 +186,11 @@ def keep(
 def _report_unreadable(
     place: Path, name: str, kind: str, owner: str, unreadable: str, earlier: bool
 ) -> None:
-    """Print that rows of an agent or a world cannot be reused; raise ValueError if there are
-    earlier ones in ``place``."""
+    """Print that rows of an agent or a world cannot be reused.
+
+    Raises:
+        ValueError: There are earlier rows in ``place``.
+    """
     if earlier:
         raise ValueError(
             f"{place} holds rows of {name}, perhaps of another {kind}: of {owner}, {unreadable} "
@@ -194,7 +211,7 @@ def notes(folder: Path, split: str) -> list[Path]:
 
 
 def _read(note: Path) -> dict[str, dict[str, Any]]:
-    """Return what the ``note`` of a folder says, by split. Raises ValueError if it is damaged."""
+    """Return the entries of a folder's ``note`` by split. Raises ValueError if it is damaged."""
     again = f"Copy the file back, or move {note.parent} aside and evaluate again."
     known = read_object(note, again)
     for split, entry in known.items():
@@ -204,7 +221,7 @@ def _read(note: Path) -> dict[str, dict[str, Any]]:
 
 
 def _is_entry(entry: Any) -> bool:
-    """Whether a note's entry of a split has objects where :func:`keep` reads them."""
+    """Return whether a note's entry of a split has the structure that :func:`keep` writes."""
     if not isinstance(entry, dict):
         return False
     worlds, sums = entry.get("worlds", {}), entry.get("sums", {})
@@ -214,15 +231,17 @@ def _is_entry(entry: Any) -> bool:
 
 
 def _described(world: World) -> dict[str, str]:
-    """Return what ``world`` is, as texts by name: its class, the environment inside it, and the
-    hash of their code where that is of neither this project nor an installed package."""
+    """Return a description of ``world`` by name: its class, its environment and a hash of the code.
+
+    The hash covers only the user's code, not that of this project or an installed package.
+    """
     sources = [source for layer in _layers(world) for source in source_of(type(layer))]
-    told = {CLASS: kind_of(world), ENV: _spec(world), CODE: json_hash(sources) if sources else ""}
-    return {key: value for key, value in told.items() if value}
+    texts = {CLASS: kind_of(world), ENV: _spec(world), CODE: json_hash(sources) if sources else ""}
+    return {key: value for key, value in texts.items() if value}
 
 
 def _is_same(before: str | None, now: str | None) -> bool:
-    """Whether two texts say the same: also by two paths of one file."""
+    """Return whether two texts are equal, or two paths of one file."""
     if before == now or CHANGES in (before, now):
         return True
     with suppress(OSError, TypeError, ValueError):
@@ -231,7 +250,7 @@ def _is_same(before: str | None, now: str | None) -> bool:
 
 
 def _layers(world: World) -> Iterator[Any]:
-    """The world, the environment in it, and those that this goes around."""
+    """Yield the world, the environment inside it, and the environments that it wraps."""
     layer: Any = world
     for _ in range(MOST_LAYERS):
         if layer is None:
@@ -241,25 +260,27 @@ def _layers(world: World) -> Iterator[Any]:
 
 
 def name_of(world: World) -> str:
-    """Return what a world is called: its class, or, of one of ours around an environment, the
-    class of that."""
+    """Return the name of a world's class.
+
+    For a world of this project around an environment it is the class of the environment.
+    """
     env = _environment(world)
-    ours = type(world).__module__.startswith("mitigate.")
-    inner = _member(env, "unwrapped") or env if ours and env is not None else world
+    shipped = type(world).__module__.startswith("mitigate.")
+    inner = _member(env, "unwrapped") or env if shipped and env is not None else world
     return type(inner).__name__
 
 
-def _told_by_rows(world: World) -> str:
-    """Return the hash of a world's rule and sensors."""
+def _rule_and_sensors(world: World) -> str:
+    """Return the hash of a world's rule and sensors, which rows depend on."""
     return json_hash(
         [world.rule, {name: asdict(one) for name, one in sorted(world.sensors.items())}]
     )
 
 
-def _older(own: Mapping[str, Any]) -> dict[str, str]:
-    """What a note of an older version says of the world, by today's names."""
-    named = {"world": CLASS, "env": ENV}
-    return {key: own[name] for name, key in named.items() if own.get(name)}
+def _older(entry: Mapping[str, Any]) -> dict[str, str]:
+    """Return the description of the world in a note of an older version, with current keys."""
+    keys = {"world": CLASS, "env": ENV}
+    return {key: entry[name] for name, key in keys.items() if entry.get(name)}
 
 
 def _difference(key: str, before: Mapping[str, str], now: Mapping[str, str]) -> str:
@@ -270,26 +291,30 @@ def _difference(key: str, before: Mapping[str, str], now: Mapping[str, str]) -> 
             f"the class attributes of {now[CLASS]}, or the global variables and functions that its "
             "code names, were changed"
         )
-    was, is_ = (short(held[key], 200) if key in held else "not set" for held in (before, now))
+    was, is_ = (short(texts[key], 200) if key in texts else "not set" for texts in (before, now))
     return f"{key} was {was} and is {is_}"
 
 
 def _sum(episode: Episode) -> str:
-    """Return 12 hex digits of what an agent and a world are told of an episode; whatever else it
-    carries may look otherwise in another process."""
-    held = {
+    """Return the hash of the parts of an episode that an agent and a world use.
+
+    Other parts may differ between processes.
+    """
+    content = {
         "ids": [episode.episode_id, episode.trajectory_id, episode.scene_id],
         "start": [*map(float, (*episode.start_position, *episode.start_rotation))],
         "goals": [[[*map(float, goal.position)], goal.radius] for goal in episode.goals],
         "instruction": episode.instruction.text,
         "seed": str(episode.info.get("seed")),
     }
-    return json_hash(held)
+    return json_hash(content)
 
 
 def _spec(world: World) -> str:
-    """Return what the environment inside a world, if there is one, says it was made of: worlds of
-    one class differ in it alone."""
+    """Return the id and arguments of the environment inside a world; empty if there is none.
+
+    Worlds of one class may differ only in these.
+    """
     spec = _member(_environment(world), "spec")
     entries: Mapping[str, Any] = {}
     with suppress(TypeError):  # None, or an object with slots
@@ -297,54 +322,59 @@ def _spec(world: World) -> str:
     if entries.get("id") is None:
         return ""
     kwargs = entries.get("kwargs", {})
-    made = json.dumps(kwargs, sort_keys=True, default=lambda x: str(type(x)))
-    return f"{entries['id']} {made}"
+    arguments = json.dumps(kwargs, sort_keys=True, default=lambda x: str(type(x)))
+    return f"{entries['id']} {arguments}"
 
 
 def _environment(layer: Any) -> Any:
-    """The environment inside a world or a wrapper, None if there is none."""
+    """Return the environment inside a world or a wrapper, or None."""
     return _member(layer, "env")
 
 
-def _member(thing: Any, name: str) -> Any:
-    """Return what gymnasium, torchrl and others call ``name``; None if ``thing`` has none."""
-    return getattr(thing, name, None)  # their classes have no base in common
+def _member(owner: Any, name: str) -> Any:
+    """Return the attribute ``name`` of an environment, or None."""
+    return getattr(owner, name, None)  # classes of gymnasium and torchrl have no common base
 
 
-MADE = "what makes it"
+MADE = "what makes it"  # keys and texts of stored notes: do not change
 CHANGES = "changes while worlds are made"
-SHOWN = 100  # characters of a value that are kept as they are; of the rest a hash (ours)
-DEEPEST, ENTRIES = 5, 50  # of nested values; of a mapping that are told one by one (ours)
-MOST = 100_000  # lists, mappings and objects in one value that are told (ours)
+SHOWN = 100  # characters of a value that are stored; the rest is hashed (heuristic)
+DEEPEST, ENTRIES = 5, 50  # depth of nested values; entries of a mapping (heuristic)
+MOST = 100_000  # lists, mappings and objects in one value that are described (heuristic)
 
 
 def first_world(
     make: Callable[[], World], version: str | None = None
 ) -> tuple[World, dict[str, str]]:
-    """Return a world and what it was made by: the entries of a config, or a function's arguments,
-    defaults and the values that it uses, a callable object's class and attributes. Of a value that
-    making one changes, such as a cache, ``CHANGES``. Also what the code of its classes reads.
+    """Return a world and a description of how it was made.
 
-    ``version`` names what cannot be read of the classes.
+    The description has the entries of a config, or the arguments, defaults and used values of a
+    function, or the class and attributes of a callable object. It also has a hash of the names that
+    the code of the world's classes reads. For a value that making a world changes, such as a cache,
+    it has ``CHANGES``.
+
+    ``version`` is the user's name for state of the classes that cannot be read.
     """
     before = dict(_made_by(make))
-    same = {place for place, (_, last) in _read_by.items() if last == _what_is_read(*place)[0]}
+    same = {place for place, (_, last) in _read_by.items() if last == _names_read(*place)[0]}
     world = make()
     after = dict(_made_by(make))
     changed = {key for key in {**before, **after} if before.get(key) != after.get(key)}
     place = tuple(type(layer) for layer in _layers(world)), version
-    digest, unreadable = _what_is_read(*place)
+    digest, unreadable = _names_read(*place)
     _read_by[place] = (_read_by[place][0] if place in same else digest), ""
-    told = {READ: _read_by[place][0], UNREADABLE: unreadable}
-    found = after | dict.fromkeys(changed, CHANGES)
-    return world, found | {key: text for key, text in told.items() if text}
+    of_classes = {READ: _read_by[place][0], UNREADABLE: unreadable}
+    made_by = after | dict.fromkeys(changed, CHANGES)
+    return world, made_by | {key: text for key, text in of_classes.items() if text}
 
 
 def check_classes(agent: Any, world: World, expected: str) -> None:
-    """Raise ValueError if the classes of an agent and a world in a worker process are not those of
-    the process that started it (``Known.classes``)."""
+    """Raise ValueError if classes in a worker process differ from those of its parent process.
+
+    ``expected`` is ``Known.classes`` of the parent.
+    """
     layers = tuple(type(layer) for layer in _layers(world))
-    if _hash_of_classes(agent, _what_is_read(layers, None)[0]) != expected:
+    if _hash_of_classes(agent, _names_read(layers, None)[0]) != expected:
         raise ValueError(
             f"The class attributes of {type(agent).__name__} or {name_of(world)}, or the global "
             "variables and functions that their code names, are not the same in a worker process, "
@@ -354,32 +384,34 @@ def check_classes(agent: Any, world: World, expected: str) -> None:
 
 
 def _hash_of_classes(agent: Any, of_world: str) -> str:
-    return json_hash([_what_is_read((type(agent),), None)[0], of_world])
+    return json_hash([_names_read((type(agent),), None)[0], of_world])
 
 
-def _what_is_read(kinds: Sequence[type], version: str | None) -> tuple[str, str]:
-    """Return a hash of the attributes of the user's classes among ``kinds``, with the functions
-    and global variables that their code names, and what cannot be read of them; "" if nothing."""
-    own = tuple(kind for kind in kinds if _is_users(kind))
-    if not own:
+def _names_read(kinds: Sequence[type], version: str | None) -> tuple[str, str]:
+    """Return a hash of the user's classes among ``kinds``, and a text on what cannot be read.
+
+    The hash covers their attributes, and the functions and global variables that their code names.
+    """
+    classes = tuple(kind for kind in kinds if _is_users(kind))
+    if not classes:
         return "", ""
-    found = contents(own)  # a tuple, as a class may have settings() for its objects
-    if found.unreadable and version is not None:
-        found = contents(own, version)
-    return json_hash(found.parts), found.explain() if found.unreadable else ""
+    content = contents(classes)  # a tuple, because a class may define settings() for its objects
+    if content.unreadable and version is not None:
+        content = contents(classes, version)
+    return json_hash(content.parts), content.explain() if content.unreadable else ""
 
 
 def _is_users(kind: type) -> bool:
     return kind.__module__ == "__main__" or bool(source_of(kind))
 
 
-def kind_of(thing: object) -> str:
-    """The name of a thing's class, with its module."""
-    return f"{type(thing).__module__}.{type(thing).__qualname__}"
+def kind_of(value: object) -> str:
+    """Return the name of an object's class, with its module."""
+    return f"{type(value).__module__}.{type(value).__qualname__}"
 
 
 def json_hash(value: Any) -> str:
-    """Return 12 hex digits of what is JSON, or numbers of other libraries."""
+    """Return 12 hex digits of the hash of JSON data, which may have numbers of other libraries."""
     return hashlib.sha256(json.dumps(value, default=float).encode()).hexdigest()[:12]
 
 
@@ -387,8 +419,8 @@ def _made_by(make: Any) -> Iterator[tuple[str, str]]:
     if isinstance(make, Maker):
         yield from _flat("env.world", make.node)
     elif isinstance(make, partial):
-        given = {str(number): value for number, value in enumerate(make.args)} | make.keywords
-        yield from _flat(f"{MADE}, argument", given)
+        arguments = {str(number): value for number, value in enumerate(make.args)} | make.keywords
+        yield from _flat(f"{MADE}, argument", arguments)
         yield from _made_by(make.func)
     elif isinstance(make, MethodType):
         yield from _made_by(make.__func__)
@@ -401,36 +433,36 @@ def _made_by(make: Any) -> Iterator[tuple[str, str]]:
 
 
 def _function(make: FunctionType) -> Iterator[tuple[str, str]]:
-    code = make.__code__  # not its source, which is that of all that its lines hold
+    code = make.__code__  # not its source: its lines may hold other code, too
     yield from _flat(MADE, [code.co_names, [c for c in code.co_consts if c is not None]])
     defaults = {str(number): value for number, value in enumerate(make.__defaults__ or ())}
     yield from _flat(f"{MADE}, default", defaults | (make.__kwdefaults__ or {}))
-    with suppress(ValueError):  # what it uses is not there yet
+    with suppress(ValueError):  # a value that it uses does not exist yet
         used = inspect.getclosurevars(make)
         yield from _each(f"{MADE}, value", {**used.globals, **used.nonlocals})
 
 
-def _object(thing: Any) -> Iterator[tuple[str, str]]:
-    """Of one whose method makes worlds, or that is called itself."""
-    if isinstance(thing, type):
-        yield f"{MADE}, class", thing.__qualname__
+def _object(owner: Any) -> Iterator[tuple[str, str]]:
+    """Describe an object that makes worlds when it or its method is called."""
+    if isinstance(owner, type):
+        yield f"{MADE}, class", owner.__qualname__
         return
-    yield f"{MADE}, class", kind_of(thing)
-    yield f"{MADE}, code", json_hash(source_of(type(thing)))
+    yield f"{MADE}, class", kind_of(owner)
+    yield f"{MADE}, code", json_hash(source_of(type(owner)))
     with suppress(TypeError):  # an object with slots
-        yield from _each(f"{MADE}, attribute", vars(thing))
+        yield from _each(f"{MADE}, attribute", vars(owner))
 
 
 def _each(name: str, values: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
-    """Each as a whole: it may change as a whole."""
+    """Describe each value as one text, because making a world may change all of it."""
     return ((f"{name}.{key}", _text(value)) for key, value in values.items())
 
 
 def _flat(name: str, value: Any, depth: int = 0) -> Iterator[tuple[str, str]]:
-    """The entries of nested mappings, by their names joined by points, as JSON."""
+    """Describe the entries of nested mappings as JSON, by dotted names."""
     parts: list[tuple[Any, Any]] = []
     if isinstance(value, Mapping) and depth < DEEPEST:
-        with suppress(Exception):  # a mapping of the user's
+        with suppress(Exception):  # a mapping of the user's class may raise any error
             parts = [*value.items()] if len(value) <= ENTRIES else []
     for key, part in parts:
         yield from _flat(f"{name}.{key}", part, depth + 1)
@@ -441,13 +473,16 @@ def _flat(name: str, value: Any, depth: int = 0) -> Iterator[tuple[str, str]]:
 def _text(value: Any) -> str:
     try:
         text = json.dumps(_data(value, 0, count()), sort_keys=True)
-    except Exception:  # whatever an object of the user's does when it is looked at
+    except Exception:  # an object of the user's class may raise any error
         return kind_of(value)
     return text if len(text) <= SHOWN else f"{text[:SHOWN]}... ({json_hash(text)})"
 
 
-def _data(value: Any, depth: int, told: Iterator[int]) -> Any:
-    """``value`` as JSON; what is no data, too deep, or beyond what is ``told``, by its class."""
+def _data(value: Any, depth: int, counter: Iterator[int]) -> Any:
+    """Return ``value`` as JSON data; objects, and values beyond the limits, as their class.
+
+    ``counter`` counts the described containers and objects.
+    """
     if isinstance(value, (Enum, PurePath)):
         return str(value)
     if value is None or isinstance(value, (bool, int, float, str)):
@@ -456,16 +491,16 @@ def _data(value: Any, depth: int, told: Iterator[int]) -> Any:
         return value.item()
     if isinstance(value, np.ndarray) and not value.dtype.hasobject:
         return f"array {value.dtype} {value.shape} {array_sha(value)}"
-    if depth < DEEPEST and next(told) < MOST:
-        inner = partial(_data, depth=depth + 1, told=told)
+    if depth < DEEPEST and next(counter) < MOST:
+        inner = partial(_data, depth=depth + 1, counter=counter)
         if is_dataclass(value) and not isinstance(value, type):
-            named = [getattr(value, one.name) for one in fields(value)]  # it may have slots
-            return [kind_of(value), [*map(inner, named)]]
+            entries = [getattr(value, one.name) for one in fields(value)]  # it may have slots
+            return [kind_of(value), [*map(inner, entries)]]
         if isinstance(value, dict):
             return {json.dumps(inner(key)): inner(part) for key, part in value.items()}
         if isinstance(value, (list, tuple)):
             return [*map(inner, value)]
         if isinstance(value, (set, frozenset)):
             return sorted(map(inner, value), key=json.dumps)
-    # a class or function of any kind, such as a builtin one, or else an object
+    # classes and functions have a qualified name; objects do not
     return str(getattr(value, "__qualname__", kind_of(value)))

@@ -1,6 +1,6 @@
-"""The report: the paper's Table II as Markdown with paired intervals, and the pictures beside it.
+"""The report: the paper's Table II as Markdown with paired intervals, and its pictures.
 
-Every number is computed from result rows. Partial rows give a partial table that lists its gaps.
+All numbers are computed from result rows. Incomplete rows give a table that lists its gaps.
 """
 
 from __future__ import annotations
@@ -15,12 +15,12 @@ from mitigate.core.files import atomic_text, make_folder
 from mitigate.core.markdown import markdown_of, markdown_table
 from mitigate.core.names import counted
 from mitigate.evaluation.bootstrap import LEVEL, NO_INTERVAL, NO_WIDTH, RESAMPLES, Estimate
-from mitigate.evaluation.grid import DRAWN, METRICS, PROMPT_ONLY, Grid, meant
+from mitigate.evaluation.grid import DRAWN, METRICS, PROMPT_ONLY, Grid, expected_corruptions
 from mitigate.evaluation.metrics import FLOOR
 from mitigate.evaluation.rows import Row
 from mitigate.evaluation.sections import Retained, Section, label, sections
 
-FEW = 10  # episodes below which no difference is called sure (ours)
+FEW = 10  # with fewer episodes no difference is in bold (heuristic)
 
 
 def markdown(parts: Sequence[Section], pictures: Sequence[Sequence[str]] = ()) -> str:
@@ -45,10 +45,15 @@ def write(
 ) -> list[Path]:
     """Write ``table.md``, ``heatmap.png`` and ``severity.png`` to ``folder``; return their paths.
 
-    Further sections and grids get ``heatmap-2.png``, ``severity-2.png`` and so on. ``first``: the
-    rule of success whose sections come first; ``least``: severities of which a curve is drawn.
-    ``against``: the column to compare with, ``drawn``: what the bootstrap draws, as in
-    :func:`sections`.
+    More sections and grids get ``heatmap-2.png``, ``severity-2.png`` and so on.
+
+    Args:
+        rows: result rows.
+        folder: where to write.
+        first: the success rule whose sections come first.
+        least: smallest number of severities for which curves are drawn.
+        against: the reference column, as in :func:`sections`.
+        drawn: what the bootstrap draws, as in :func:`sections`.
     """
     from mitigate.evaluation import plots  # matplotlib is slow to import
 
@@ -95,7 +100,7 @@ def _heading(section: Section) -> str:
 
 
 def _drawn(grid: Grid) -> str:
-    """What the bootstrap draws; how many, where that is not in the heading."""
+    """Return what the bootstrap draws, with the number of scenes."""
     if grid.drawn == DRAWN[0]:
         return "episodes"
     return f"{counted(len(np.unique(grid.units)), grid.drawn)} with their episodes"
@@ -135,11 +140,11 @@ def _table(section: Section) -> str:
 def _mean_sr(section: Section) -> list[list[str]]:
     """Return the lines of the mean SR over all corruptions, and of its differences."""
 
-    def cells(held: dict[str, Retained], shown: Callable[[Estimate], str]) -> list[str]:
-        found = {column: held.get(column) for column in section.columns}
+    def cells(values: dict[str, Retained], text: Callable[[Estimate], str]) -> list[str]:
+        by_column = [values.get(column) for column in section.columns]
         return [
-            "–" if r is None else shown(r.estimate) + _escaped(section.marks(r, *section.blocks))
-            for r in found.values()
+            "–" if r is None else text(r.estimate) + _escaped(section.marks(r, *section.blocks))
+            for r in by_column
         ]
 
     count = sum(map(section.whole, section.blocks))
@@ -152,13 +157,13 @@ def _mean_sr(section: Section) -> list[list[str]]:
 
 
 def _by_seed(
-    section: Section, key: str, title: str, shown: Callable[[float], str]
+    section: Section, key: str, title: str, text: Callable[[float], str]
 ) -> list[list[str]]:
-    """Return a line of each seed's own value, or nothing if no column has several seeds."""
-    found = [section.by_seed.get((column, key), {}) for column in section.columns]
-    if not any(len(values) > 1 for values in found):
+    """Return a line with the value of each seed, or nothing if no column has several seeds."""
+    columns = [section.by_seed.get((column, key), {}) for column in section.columns]
+    if not any(len(values) > 1 for values in columns):
         return []
-    cells = (" / ".join(map(shown, values.values())) or "–" for values in found)
+    cells = (" / ".join(map(text, values.values())) or "–" for values in columns)
     return [[f"{title}, seed by seed", *cells]]
 
 
@@ -169,35 +174,42 @@ def _notes(section: Section) -> str:
             f"‡ clean value below {FLOOR:g}: PRS saturates near the performance floor and says "
             "little."
         )
-    found = section.retained.items()
-    if any(len(r.corruptions) < section.whole(block) for (_, block, _), r in found):
+    retained = section.retained.items()
+    if any(len(r.corruptions) < section.whole(block) for (_, block, _), r in retained):
         notes.append("† over k of the K corruptions: the others are not measured or not complete.")
-    absent = [n for b, names in section.blocks.items() for n in meant(b, names) if n not in names]
+    absent = [
+        n
+        for b, names in section.blocks.items()
+        for n in expected_corruptions(b, names)
+        if n not in names
+    ]
     if absent:
         notes.append(f"Not measured: {', '.join(map(label, absent))}.")
     if any(_prompt_not_applicable(section, block) for block in section.blocks):
         notes.append(
             f"n/a: {label(PROMPT_ONLY)} changes an agent's system prompt; no agent here has one, "
-            "so it is not applicable and no part of the PRS."
+            "so it is not applicable and not part of the PRS."
         )
     if section.gained or section.moved:
         notes.append(
-            f"Under {FEW} episodes an interval says little: no difference is in bold."
+            f"With fewer than {FEW} episodes an interval says little: no difference is in bold."
             if _is_few(section)
             else "Differences in bold have intervals that exclude zero."
         )
     others = [c for c in section.columns if c != section.reference]
-    apart = [c for c in others if not section.grid.common((c, section.reference), section.severity)]
-    if apart:
+    unpaired = [
+        c for c in others if not section.grid.common((c, section.reference), section.severity)
+    ]
+    if unpaired:
         notes.append(
             f"No seed in common with {markdown_of(section.reference)}, and so no difference: "
-            f"{', '.join(map(markdown_of, apart))}."
+            f"{', '.join(map(markdown_of, unpaired))}."
         )
     if section.by_seed:
         notes.append(
-            "Several seeds: an episode counts as their mean, and two columns are compared over the "
-            "seeds that both have. Intervals are over episodes; how far another training would lie "
-            "apart is shown seed by seed."
+            "Several seeds: the value of an episode is their mean, and two columns are compared "
+            "over the seeds that both have. Intervals are over episodes; the values seed by seed "
+            "show the differences between trainings."
         )
     for column in section.columns:
         for seed, (have, want) in section.grid.unfinished[column, section.severity].items():
@@ -209,7 +221,7 @@ def _notes(section: Section) -> str:
         if column in section.grid.cut:
             notes.append(f"{markdown_of(column)}: {section.grid.cut[column]}")
     if section.gaps:
-        notes.append("\\* over the episodes at hand. Missing cells:")
+        notes.append("\\* over the available episodes. Missing cells:")
         notes += [
             f"- {markdown_of(gap.column)}, {gap.corruption} at {gap.severity:g}: "
             f"{gap.have} of {counted(gap.want, 'episode')}"
@@ -238,10 +250,10 @@ def _interval(estimate: Estimate | None, metric: str) -> str:
 
 
 def _prs(section: Section, place: tuple[str, str, str]) -> str:
-    found = section.retained.get(place)
-    if found is None:
+    value = section.retained.get(place)
+    if value is None:
         return "–"
-    prs, marks = found.estimate, _escaped(section.marks(found, place[1]))
+    prs, marks = value.estimate, _escaped(section.marks(value, place[1]))
     if math.isnan(prs.value):
         return f"undefined{marks}"
     return f"**{prs.value:.2f}** {prs.interval('.2f')}{marks}"
@@ -263,15 +275,15 @@ def _bold_if_sure(section: Section, text: str, change: Estimate) -> str:
 
 
 def _is_few(section: Section) -> bool:
-    """Whether so few episodes have too few resamples for an interval to cover what it says."""
+    """Return whether there are too few episodes for an interval to reach its level."""
     return len(section.grid.episodes) < FEW
 
 
 def _change(section: Section, place: tuple[str, str, str]) -> str:
-    found = section.gained.get(place)
-    if found is None or math.isnan(found.estimate.value):
+    value = section.gained.get(place)
+    if value is None or math.isnan(value.estimate.value):
         return "–"
-    change, marks = found.estimate, _escaped(section.marks(found, place[1]))
+    change, marks = value.estimate, _escaped(section.marks(value, place[1]))
     text = _bold_if_sure(section, f"{change.value:+.2f}", change)
     return f"{text} {change.interval('+.2f')}{marks}"
 
@@ -284,7 +296,7 @@ def _numbered(stem: str, index: int) -> str:
     return f"{stem}.png" if index == 0 else f"{stem}-{index + 1}.png"
 
 
-SEVERITY = 0.6  # of the paper's Table II (its caption); other severities stand alone
+SEVERITY = 0.6  # of the paper's Table II (its caption); other severities are not compared
 
 
 def beside(
@@ -293,8 +305,10 @@ def beside(
     """Return Markdown of ``section`` with the paper's figures and the CPU minutes that it cost.
 
     Args:
-        paper: "columns" -> names of its columns, and by row ("PRS-SR (RGB)", "motion_blur") its
-            figures in their order. spent: CPU minutes by what they were spent on, and by column.
+        section: the results.
+        paper: names of its columns under "columns", and figures in their order by row
+            ("PRS-SR (RGB)", "motion_blur").
+        spent: CPU minutes by kind of work and column.
     """
     theirs = {
         name: dict(zip(paper["columns"], values, strict=True))
@@ -309,17 +323,17 @@ def beside(
     lines = [["Clean SR", *(f"{100 * section.value(c, 'clean'):.1f}" for c in section.columns)]]
     for block, names in section.blocks.items():
         title = f"PRS-SR ({block})"
-        kept = {c: section.retained.get((c, block, "SR")) for c in section.columns}
+        retained = {c: section.retained.get((c, block, "SR")) for c in section.columns}
         values = {
             c: "–" if r is None else _rounded_prs(r.estimate.value) + section.marks(r, block)
-            for c, r in kept.items()
+            for c, r in retained.items()
         }
         lines.append(cells(f"**{title}**", title, values))
         for name in names:
             rates = {c: f"{100 * section.value(c, name):.1f}" for c in section.columns}
             lines.append(cells(label(name), name, rates))
-    held = (" ".join(map(str, section.grid.seeds[c, section.severity])) for c in section.columns)
-    lines.append(["Seeds", *held])
+    seeds = (" ".join(map(str, section.grid.seeds[c, section.severity])) for c in section.columns)
+    lines.append(["Seeds", *seeds])
     for kind, minutes in spent.items():
         cost = (f"{minutes[c]:.1f}" if c in minutes else "–" for c in section.columns)
         lines.append([f"CPU minutes, {kind}", *cost])

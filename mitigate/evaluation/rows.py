@@ -1,8 +1,8 @@
-"""Result rows: one JSON line an episode, saying exactly what produced it.
+"""Result rows: one JSON line per episode, with everything that identifies the measurement.
 
 A row holds its identity (:data:`IDENTITY`) and its measures (:data:`MEASURES`). Files end in
-``.jsonl`` (appended to during an evaluation) or ``.jsonl.gz`` (shipped). A plain file that was cut
-in the middle of its last line, as by a kill, is read up to there and mended by the next append.
+``.jsonl`` (appended to during an evaluation) or ``.jsonl.gz`` (shipped). If a plain file ends in an
+incomplete line, as after a kill, that line is ignored, and the next append repairs the file.
 """
 
 from __future__ import annotations
@@ -27,9 +27,9 @@ if TYPE_CHECKING:
 Row = dict[str, Any]
 ROWS = "rows.jsonl"  # in the folder of an evaluation
 IDENTITY: dict[str, Any] = {
-    "agent": str,  # agents/fingerprint.py: weights, code, settings, sensors, what stands in front
-    "name": str,  # "base", "da_per_episode" ...: the column of a table
-    "corruption": str,  # "clean" or one of the suite
+    "agent": str,  # agents/fingerprint.py: weights, code, settings, sensors and guards
+    "name": str,  # column of a table, such as "base" or "da_per_episode"
+    "corruption": str,  # "clean" or a corruption
     "severity": (int, float),
     "split": str,
     "episode_id": str,
@@ -42,51 +42,53 @@ MEASURES = (
     *("success", "spl", "path_length", "geodesic_distance", "distance_to_goal", "ndtw"),
     *("collisions", "decisions", "steps", "cut", "limit"),
 )
-SCENE = "scene"  # the entry of a row that says in which scene its episode is
+SCENE = "scene"  # the entry with the scene of the episode
 SUFFIXES = (".jsonl", ".jsonl.gz")
-LONGEST_LINE = 1 << 16  # characters; a row has about 450 (ours)
-LONGEST_TEXT = 200  # characters of an entry (ours)
-GREATEST = 1e9  # of a measure: metres, steps (ours)
-_NAME = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.+-]*")  # a corruption; + is between those of a pair
+LONGEST_LINE = 1 << 16  # characters (heuristic); a row has about 450
+LONGEST_TEXT = 200  # characters of an entry (heuristic)
+GREATEST = 1e9  # largest value of a measure, in metres or steps (heuristic)
+_NAME = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.+-]*")  # a corruption; + joins those of a pair
 _HASH = re.compile(r"[A-Za-z0-9_.-]+")
 _TEXTS = (*(key for key, kind in IDENTITY.items() if kind is str), "version", "weights", SCENE)
-_OF_A_SCENE = re.compile(r"(\d+)-\w+-\d+|(.+)/[^/]+")  # ids of apartments; of the bridge
+_OF_A_SCENE = re.compile(r"(\d+)-\w+-\d+|(.+)/[^/]+")  # episode ids of apartments; of the bridge
 _SHARES = ("severity", "success", "spl", "ndtw", "cut")  # numbers from 0 to 1
 _NUMBERS = ("severity", "seed", *MEASURES)
 _ROUNDING = 1e-9
-_MARK = "\ufeff"  # the byte order mark of editors of Windows; joined files have it in the middle
+_MARK = "\ufeff"  # byte order mark of Windows editors; joined files have it in the middle
 
 
 def identity(row: Row) -> tuple:
-    """Return what makes ``row`` itself: two rows with one identity are the same measurement."""
-    own = tuple(float(row[key]) if key == "severity" else row[key] for key in IDENTITY)
-    return (*own, row.get("version", ""))  # of a corruption that another package brings
+    """Return the identity of ``row``; rows with equal identities are the same measurement."""
+    values = tuple(float(row[key]) if key == "severity" else row[key] for key in IDENTITY)
+    return (*values, row.get("version", ""))  # version of a corruption of another package
 
 
 def of_episode(episode: Episode) -> Row:
-    """Return what a row says of which episode it is, and of its scene if that has a name."""
+    """Return the entries of a row that identify its episode, and its scene if it has a name."""
     scene = stem_of(episode.scene_id)
-    named = scene and not allowed(SCENE, scene)
-    return {"episode_id": episode.episode_id, **({SCENE: scene} if named else {})}
+    valid = scene and not allowed(SCENE, scene)
+    return {"episode_id": episode.episode_id, **({SCENE: scene} if valid else {})}
 
 
 def stem_of(scene: str) -> str:
-    """The name of a scene: of its file, without its folder and what a GLB file ends in."""
+    """Return the name of a scene: its file without the folder and the suffixes of GLB files."""
     return scene.rpartition("/")[2].removesuffix(".glb").removesuffix(".basis")
 
 
 def scene_of(row: Row) -> str:
-    """Return the scene of a row's episode: what the row says, or the id's part that names it, as in
-    rows of older versions and of the bridge.
+    """Return the scene of a row's episode, from its entry or from the id.
 
-    Raises ValueError if neither does.
+    Rows of older versions and of the bridge name the scene only in the id.
+
+    Raises:
+        ValueError: The row names no scene.
     """
-    found = _OF_A_SCENE.fullmatch(row["episode_id"])
-    scene = row.get(SCENE) or (found and (found[1] or found[2]))
+    match = _OF_A_SCENE.fullmatch(row["episode_id"])
+    scene = row.get(SCENE) or (match and (match[1] or match[2]))
     if not scene:
         raise ValueError(
-            f"The rows do not say in which scene episode {short(row['episode_id'])} is, so scenes "
-            "cannot be drawn: evaluate again (rows now say it), or draw episodes."
+            f"The rows do not name the scene of episode {short(row['episode_id'])}, so scenes "
+            "cannot be drawn. Evaluate again (new rows name it), or draw episodes."
         )
     return str(scene)
 
@@ -94,8 +96,10 @@ def scene_of(row: Row) -> str:
 def read(path: Path | str) -> list[Row]:
     """Return the rows of one file, in order.
 
-    Raises ValueError naming file, line and key if a row is not one; a last line cut short in a
-    plain file is left out.
+    An incomplete last line of a plain file is ignored.
+
+    Raises:
+        ValueError: A row is invalid; names file, line and key.
     """
     rows: list[Row] = []
     try:
@@ -110,25 +114,29 @@ def read(path: Path | str) -> list[Row]:
                     break
                 problem = _problem(row) if text else "is not UTF-8"
                 if problem:
-                    cure = "Delete the line and evaluate again." if rows else "Is it such a file?"
+                    advice = (
+                        "Delete the line and evaluate again."
+                        if rows
+                        else "Check that this is a file of result rows."
+                    )
                     raise ValueError(
-                        f"{path}, line {number} {problem}. A result row is one JSON object a line "
-                        f"with {', '.join(REQUIRED)}. {cure}"
+                        f"{path}, line {number} {problem}. A result row must be one JSON object "
+                        f"per line with {', '.join(REQUIRED)}. {advice}"
                     )
                 rows.append(row)
     except OSError as error:
         if isinstance(error, FileNotFoundError):
             raise
         raise ValueError(
-            f"{path} is damaged or not a file of result rows ({error}): fetch or evaluate it again."
+            f"{path} is damaged or not a file of result rows ({error}). Fetch or evaluate it again."
         ) from error
     return rows
 
 
 def append(path: Path | str, rows: Iterable[Row]) -> None:
-    """Add ``rows`` to the end of ``path`` and flush them to disk; create it if need be.
+    """Append ``rows`` to the file ``path`` and flush them to disk; create it if needed.
 
-    A plain file grows by one write; a ``.gz`` file is rewritten whole, atomically.
+    A plain file grows by one write; a ``.gz`` file is rewritten atomically.
     """
     path, rows = Path(path), list(rows)
     text = "".join(_line(row) for row in rows)
@@ -137,7 +145,7 @@ def append(path: Path | str, rows: Iterable[Row]) -> None:
         return
     make_folder(path.parent)
     with writing(path), open_output(path, "ab+") as file:
-        _mend(file)
+        _repair(file)
         file.write(text.encode())
         file.flush()
         os.fsync(file.fileno())
@@ -147,19 +155,19 @@ def write(path: Path | str, rows: Iterable[Row], *, fewer: bool = False) -> None
     """Replace the file ``path`` by ``rows``, atomically.
 
     Args:
-        path: The file, which need not exist.
-        rows: All rows of the new file.
-        fewer: Whether they may be fewer than the file holds: the caller has compared them.
+        path: the file, which need not exist.
+        rows: all rows of the new file.
+        fewer: whether they may be fewer than in the file; the caller has compared them.
 
     Raises:
-        ValueError: The file holds more rows than ``rows``, or is damaged. It stays as it is.
+        ValueError: The file has more rows than ``rows``, or is damaged. It is not changed.
     """
     path, rows = Path(path), list(rows)
     before = len(read(path)) if path.exists() and not fewer else 0
     if len(rows) < before:
         raise ValueError(
             f"{path} holds {counted(before, 'row')}, and only {len(rows)} would replace them. The "
-            "file was left as it is. Find out why rows are missing, or move the file to another "
+            "file was not changed. Find out why rows are missing, or move the file to another "
             "folder and run the same command again."
         )
     with atomic_text(path) as file:
@@ -167,12 +175,12 @@ def write(path: Path | str, rows: Iterable[Row], *, fewer: bool = False) -> None
 
 
 def upsert(*parts: Iterable[Row]) -> list[Row]:
-    """Return the rows of all ``parts``, one an identity: the last in the first one's place."""
+    """Return the rows of all ``parts``, one per identity: the last row at the first one's place."""
     return list({identity(row): row for row in chain(*parts)}.values())
 
 
 def cuts(rows: Iterable[Row]) -> str:
-    """Return in words how many episodes a world's ``limit=`` cut; empty if none were."""
+    """Return a text on how many episodes a world's ``limit=`` cut; empty if there are none."""
     rows = list(rows)
     cut = [row for row in rows if row.get("cut")]
     if not cut:
@@ -185,47 +193,55 @@ def cuts(rows: Iterable[Row]) -> str:
 
 
 def gather(paths: Iterable[Path | str]) -> list[Row]:
-    """Return the rows of files and of all row files under folders, as :func:`unique` does.
+    """Return the rows of files and of all row files in folders, one per identity (:func:`unique`).
 
-    In a folder, JSON lines of another kind are passed over. Raises FileNotFoundError if a path
-    does not exist or a folder holds no rows.
+    Other JSON lines in a folder are ignored.
+
+    Raises:
+        FileNotFoundError: A path does not exist, or a folder has no rows.
     """
     return unique(row for path in paths for file in files(path) for row in read(file))
 
 
 def unique(rows: Iterable[Row]) -> list[Row]:
-    """Return one row per identity, the last in the place of the first; warn of those with another
-    success or SPL than an earlier one."""
-    held: dict[tuple, Row] = {}
-    other: list[Row] = []
+    """Return one row per identity, the last at the place of the first.
+
+    Warns about rows whose success or SPL differs from an earlier one.
+    """
+    by_identity: dict[tuple, Row] = {}
+    different: list[Row] = []
     for row in rows:
-        before = held.get(identity(row), row)
-        other += [row] if any(before[key] != row[key] for key in ("success", "spl")) else []
-        held[identity(row)] = row
-    if other:
+        before = by_identity.get(identity(row), row)
+        different += [row] if any(before[key] != row[key] for key in ("success", "spl")) else []
+        by_identity[identity(row)] = row
+    if different:
+        first = different[0]
         warnings.warn(
-            f"{len(other)} rows say another success or SPL than one before of the same agent, "
-            f"episode and condition (first {other[0]['name']}, episode {other[0]['episode_id']}, "
-            f"{other[0]['corruption']}): the last counts. Name the files of one evaluation.",
-            stacklevel=1,  # one place, so that the same text is printed once
+            f"{len(different)} rows have another success or SPL than an earlier row of the same "
+            f"agent, episode and condition (first {first['name']}, episode {first['episode_id']}, "
+            f"{first['corruption']}). The last row counts. Name the files of one evaluation.",
+            stacklevel=1,  # a fixed place, so that the same text is printed once
         )
-    return list(held.values())
+    return list(by_identity.values())
 
 
 def files(path: Path | str) -> list[Path]:
-    """Return ``path``, or of a folder all row files in and below it. Raises FileNotFoundError if
-    there is none."""
+    """Return ``path``, or all row files in and below a folder.
+
+    Raises:
+        FileNotFoundError: The folder has no row files.
+    """
     path = Path(path)
     if not path.is_dir():
         return [path]
-    named = (p for p in path.rglob("*") if p.name.endswith(SUFFIXES) and not p.is_dir())
-    found = [p for p in named if _holds_rows(p)]
-    if not found:
+    candidates = (p for p in path.rglob("*") if p.name.endswith(SUFFIXES) and not p.is_dir())
+    row_files = [p for p in candidates if _holds_rows(p)]
+    if not row_files:
         raise FileNotFoundError(
             f"No result rows under {path}: no {' or '.join(SUFFIXES)} file there begins with a "
             "row. Name a run folder or a row file, or evaluate first with `make evaluate`."
         )
-    return sorted(found)
+    return sorted(row_files)
 
 
 def _holds_rows(path: Path) -> bool:
@@ -233,7 +249,7 @@ def _holds_rows(path: Path) -> bool:
         with open_text(path) as file:
             line = file.readline(LONGEST_LINE + 1)
     except (UnicodeDecodeError, OSError):
-        return True  # damaged: let read() say so
+        return True  # damaged; read() raises the error
     first = _parse(line)
     if first is None and line.strip() and len(line) <= LONGEST_LINE:
         return True
@@ -241,7 +257,7 @@ def _holds_rows(path: Path) -> bool:
 
 
 def _is_text(line: str) -> bool:
-    """Whether the bytes of a line were UTF-8: others were read as half of a surrogate pair."""
+    """Return whether the bytes of a line were UTF-8; invalid bytes were read as surrogates."""
     try:
         line.encode()
     except UnicodeEncodeError:
@@ -265,20 +281,19 @@ def _problem(row: Any) -> str:
     for key, kind in REQUIRED.items():
         if not isinstance(row[key], kind):
             kinds = kind if isinstance(kind, tuple) else (kind,)
-            wanted = " or ".join(one.__name__ for one in kinds)
-            found = type(row[key]).__name__
-            return f"has a wrong {key}: {short(row[key])} ({wanted}, not {found})"
+            expected = " or ".join(one.__name__ for one in kinds)
+            actual = type(row[key]).__name__
+            return f"has a wrong {key}: {short(row[key])} ({expected}, not {actual})"
     for key, value in row.items():
-        wanted = allowed(key, value)
-        if wanted:
-            return f"has a wrong {short(key)}: {short(value)} ({wanted})"
+        expected = allowed(key, value)
+        if expected:
+            return f"has a wrong {short(key)}: {short(value)} ({expected})"
     return ""
 
 
 def allowed(key: str, value: Any) -> str:
-    """Return what the ``value`` of a row's ``key`` may be in place of what it is; empty if it is
-    good."""
-    if key in _NUMBERS and isinstance(value, bool):  # which Python takes for one
+    """Return the allowed values of a row's ``key`` if ``value`` is invalid, else an empty text."""
+    if key in _NUMBERS and isinstance(value, bool):  # bool is a subclass of int
         return "a number: 1 for true, 0 for false"
     if key in _SHARES and value is not None and not _number(value, 0, 1):
         return "a number from 0 to 1"
@@ -287,7 +302,7 @@ def allowed(key: str, value: Any) -> str:
     if key == "agent" and not _HASH.fullmatch(value):
         return "a hash: letters, digits and _.-"
     if key in REQUIRED and value == "":
-        return "it is empty"
+        return "a text that is not empty"
     if key in _TEXTS and not (
         isinstance(value, str) and len(value) <= LONGEST_TEXT and value.isprintable()
     ):
@@ -306,18 +321,19 @@ def _number(value: Any, low: float, high: float) -> bool:
 def _line(row: Row) -> str:
     problem = _problem(row)
     if problem:
-        raise ValueError(f"A result row {problem}: {row!r:.300}. Needed: {', '.join(REQUIRED)}.")
+        raise ValueError(
+            f"A result row {problem}: {row!r:.300}. It must have {', '.join(REQUIRED)}."
+        )
     try:
         return json.dumps(row, allow_nan=False) + "\n"
     except (ValueError, TypeError) as error:
         raise ValueError(
-            f"A result row holds what JSON cannot ({error}): {row!r:.300}. Use plain finite "
-            "numbers and strings."
+            f"A result row must hold only finite numbers and strings ({error}), got {row!r:.300}."
         ) from error
 
 
-def _mend(file: Any) -> None:
-    """Make ``file`` end in a whole line: end the last one, or cut it off if it is not whole."""
+def _repair(file: Any) -> None:
+    """Make ``file`` end in a complete line: terminate the last line, or remove it if incomplete."""
     size = file.seek(0, os.SEEK_END)
     tail = b""
     while b"\n" not in tail and len(tail) < size:

@@ -1,4 +1,4 @@
-"""One table's worth of numbers: clean values, PRS and paired PRS differences with intervals."""
+"""The numbers of one table: clean values, PRS and paired PRS differences with intervals."""
 
 from __future__ import annotations
 
@@ -21,20 +21,22 @@ from mitigate.evaluation.grid import (
     Grid,
     Retention,
     by_kind,
+    expected_corruptions,
     grids,
     halves,
-    meant,
 )
 from mitigate.evaluation.metrics import FLOOR
 from mitigate.evaluation.rows import Row
 
-REFERENCES = ("base", "before")  # such a column comes first; the others are compared with it
+REFERENCES = ("base", "before")  # columns with these names come first and are the reference
 
 
 @dataclass(frozen=True)
 class Retained:
-    """A PRS, a mean SR or a difference of two, what it covers, and whether a clean value is too
-    low."""
+    """A PRS, a mean SR or a difference of two, with the corruptions and episodes that it covers.
+
+    ``near_floor``: whether a clean value is too low for a meaningful PRS.
+    """
 
     estimate: Estimate
     corruptions: tuple[str, ...]
@@ -44,16 +46,28 @@ class Retained:
 
 @dataclass(frozen=True)
 class Section:
-    """One table: a grid at one severity (0 where only clean cells exist).
+    """One table: a grid at one severity (0 if there are only clean cells).
 
-    ``kind`` says which corruptions it shows, empty for the suite's. ``halves`` are parts of a block
-    that have a PRS of their own, by block and heading.
-    ``clean`` is keyed by (column, metric), ``retained`` by (column, block or half, metric) and
-    ``gained``, the paired PRS difference to the ``reference`` column, likewise; metrics are "SR"
-    and "SPL". ``moved`` is the paired difference of clean SR, by column. Differences are over the
-    seeds that both columns have. ``corrupted`` is the mean SR over all
-    corruptions and ``raised`` its paired difference, by column. ``by_seed`` holds each seed's own
-    clean SR (key: column, "clean") and PRS-SR (column, block), for columns with several seeds.
+    Metrics are "SR" and "SPL". Differences are paired differences to the ``reference`` column, over
+    the seeds that both columns have.
+
+    Attributes:
+        grid: the results.
+        kind: the corruptions of the table; empty for the suite.
+        severity: of the corruptions.
+        columns: labels of the columns, the reference first.
+        blocks: corruptions by block.
+        halves: parts of a block with a separate PRS, by block and heading.
+        reference: the column that the others are compared with.
+        clean: clean values by (column, metric).
+        moved: difference of clean SR by column.
+        retained: PRS by (column, block or half, metric).
+        gained: difference of PRS by (column, block or half, metric).
+        corrupted: mean SR over all corruptions by column.
+        raised: difference of that mean SR by column.
+        gaps: cells with missing episodes.
+        by_seed: values of each seed for columns with several seeds: clean SR by (column, "clean"),
+            PRS-SR by (column, block).
     """
 
     grid: Grid
@@ -73,34 +87,37 @@ class Section:
     by_seed: dict[tuple[str, str], dict[int, float]]
 
     def value(self, column: str, corruption: str, metric: str = "SR") -> float:
-        """Return the mean of a cell over the episodes it holds, NaN if it holds none."""
+        """Return the mean of a cell over its episodes; NaN if it is empty."""
         return _mean(self.grid.cell(column, corruption, self.severity, METRICS[metric]))
 
     def partial(self, column: str, corruption: str) -> bool:
-        """Return whether a cell lacks episodes."""
+        """Return whether a cell has missing episodes."""
         return any((gap.column, gap.corruption) == (column, corruption) for gap in self.gaps)
 
     def whole(self, block: str) -> int:
-        """Return how many corruptions a PRS over ``block``, or a half of it, stands for, measured
-        or not."""
+        """Return how many corruptions a complete PRS over ``block``, or a half of it, covers."""
         half = next((parts[block] for parts in self.halves.values() if block in parts), None)
         if half is not None:
             name = block.rpartition(",")[0]
-            return len(meant(name, half))
-        return len(meant(block, self.blocks[block]))
+            return len(expected_corruptions(name, half))
+        return len(expected_corruptions(block, self.blocks[block]))
 
-    def marks(self, found: Retained, *blocks: str) -> str:
-        """Return the signs of a value that lacks corruptions or episodes, or is near the floor."""
-        held, wanted = len(found.corruptions), sum(map(self.whole, blocks))
-        fewer = "*" * (found.episodes < len(self.grid.episodes))
-        return fewer + f" † {held}/{wanted}" * (held < wanted) + " ‡" * found.near_floor
+    def marks(self, value: Retained, *blocks: str) -> str:
+        """Return the marks of a value: missing episodes (*) or corruptions (†), near floor (‡)."""
+        measured, expected = len(value.corruptions), sum(map(self.whole, blocks))
+        fewer = "*" * (value.episodes < len(self.grid.episodes))
+        return fewer + f" † {measured}/{expected}" * (measured < expected) + " ‡" * value.near_floor
 
 
 @dataclass(frozen=True)
 class Compared:
-    """Paired differences of one column to another, over the seeds that both have: of clean SR
-    (``moved``), of the mean SR under corruption (``raised``), and of PRS by (block or half,
-    metric), each where it was measured."""
+    """Paired differences of one column to another, over the seeds that both have.
+
+    Attributes:
+        moved: difference of clean SR; None if not measured.
+        raised: difference of the mean SR under corruption; None if not measured.
+        gained: difference of PRS by (block or half, metric).
+    """
 
     moved: Estimate | None
     raised: Retained | None
@@ -117,28 +134,33 @@ def sections(
 ) -> list[Section]:
     """Return one section for each kind of corruption, split, suite, rule and severity in ``rows``.
 
-    Where a column was never corrupted (a control), a clean-only section comes first. ``against``:
-    the column that comes first and that the others are compared with, where it is there; None:
-    :data:`REFERENCES`. ``drawn``: what the bootstrap draws, as in :func:`grids`. Raises ValueError
-    if a column to compare with is nowhere.
+    If a column has only clean rows (a control), a clean-only section comes first.
+
+    Args:
+        rows: result rows.
+        against: the reference column, in sections that have it; None: :data:`REFERENCES`.
+        drawn: what the bootstrap draws, as in :func:`grids`.
+
+    Raises:
+        ValueError: No row belongs to the column ``against``.
     """
     rows = list(rows)
     names = sorted({row["name"] for row in rows})
     if against is not None and against not in names:
         raise ValueError(unknown("column", against, names))
     first = REFERENCES if against is None else (against,)
-    found = []
-    for kind, held in (by_kind(rows) or {SUITE: []}).items():
-        for grid in grids(held, drawn):
+    results = []
+    for kind, table_rows in (by_kind(rows) or {SUITE: []}).items():
+        for grid in grids(table_rows, drawn):
             corrupted = {label for label, _, severity, _ in grid.cells if severity > 0}
             clean_only = [] if corrupted == grid.columns.keys() else [0.0]
-            found += [
+            results += [
                 _section(grid, kind, severity, first) for severity in clean_only + grid.severities
             ]
-    return found
+    return results
 
 
-label = title  # of a corruption, as the paper's table prints it
+label = title  # name of a corruption in the paper's table
 
 
 def _section(grid: Grid, kind: str, severity: float, first: Sequence[str]) -> Section:
@@ -158,15 +180,15 @@ def _section(grid: Grid, kind: str, severity: float, first: Sequence[str]) -> Se
         if parts := grid.retention([column], every, severity, METRICS["SR"]):
             corrupted[column] = mean_sr(parts)
         if column != reference:
-            found = _compared(grid, severity, (column, reference), blocks)
-            gained |= {(column, *place): value for place, value in found.gained.items()}
-            moved |= {column: found.moved} if found.moved else {}
-            raised |= {column: found.raised} if found.raised else {}
+            compared = _compared(grid, severity, (column, reference), blocks)
+            gained |= {(column, *place): value for place, value in compared.gained.items()}
+            moved |= {column: compared.moved} if compared.moved else {}
+            raised |= {column: compared.raised} if compared.raised else {}
         for metric, key in METRICS.items():
-            held = grid.measured(column, severity, key)
-            if held.any():
-                values = grid.cell(column, "clean", severity, key)[held]
-                clean[column, metric] = bootstrap.share(values, units=grid.units[held])
+            mask = grid.measured(column, severity, key)
+            if mask.any():
+                values = grid.cell(column, "clean", severity, key)[mask]
+                clean[column, metric] = bootstrap.share(values, units=grid.units[mask])
             for block, names in measured.items():
                 place = (column, block, metric)
                 if parts := grid.retention([column], names, severity, key):
@@ -191,51 +213,54 @@ def _section(grid: Grid, kind: str, severity: float, first: Sequence[str]) -> Se
 
 
 def _measured(blocks: dict[str, tuple[str, ...]]) -> dict[str, tuple[str, ...]]:
-    """Return the blocks and, where both were measured, their halves."""
-    own = halves(blocks).values()
-    return blocks | {half: names for parts in own for half, names in parts.items()}
+    """Return the blocks and, if both were measured, their halves."""
+    parted = halves(blocks).values()
+    return blocks | {half: names for parts in parted for half, names in parts.items()}
 
 
 def _compared(
     grid: Grid, severity: float, pair: tuple[str, str], blocks: dict[str, tuple[str, ...]]
 ) -> Compared:
-    """Return the differences of the first of ``pair`` to the second; none if no seed is common:
-    on other seeds they met corruptions of other keys."""
+    """Return the differences of the first of ``pair`` to the second.
+
+    There are none without a common seed, because corruptions of other seeds have other keys.
+    """
     if not grid.common(pair, severity):
         return Compared(None, None, {})
     both = grid.paired(pair, severity)
     first, second = (both.cell(label, "clean", severity, METRICS["SR"]) for label in pair)
     change = first - second
-    held = ~np.isnan(change)
+    mask = ~np.isnan(change)
     every = tuple(name for names in blocks.values() for name in names)
     parts = both.retention(pair, every, severity, METRICS["SR"])
     gained: dict[tuple[str, str], Retained] = {}
     for metric, key in METRICS.items():
         for block, names in _measured(blocks).items():
-            if found := both.retention(pair, names, severity, key):
-                gained[block, metric] = _retained(found)
-    moved = bootstrap.mean(change[held], units=grid.units[held]) if held.any() else None
+            if retention := both.retention(pair, names, severity, key):
+                gained[block, metric] = _retained(retention)
+    moved = bootstrap.mean(change[mask], units=grid.units[mask]) if mask.any() else None
     return Compared(moved, mean_sr(parts) if parts else None, gained)
 
 
 def _by_seed(
     grid: Grid, severity: float, blocks: dict[str, tuple[str, ...]]
 ) -> dict[tuple[str, str], dict[int, float]]:
-    """Return the clean SR and the PRS-SR of every block, of each seed that is pooled."""
-    found: dict[tuple[str, str], dict[int, float]] = defaultdict(dict)
+    """Return the clean SR and the PRS-SR of every block for each pooled seed."""
+    values: dict[tuple[str, str], dict[int, float]] = defaultdict(dict)
     for column in grid.columns:
         seeds = grid.seeds.get((column, severity), ())
         for seed in seeds if len(seeds) > 1 else ():
             run = grid.over([column], [seed], severity)
-            found[column, "clean"][seed] = _mean(run.cell(column, "clean", severity, METRICS["SR"]))
+            clean = run.cell(column, "clean", severity, METRICS["SR"])
+            values[column, "clean"][seed] = _mean(clean)
             for block, names in blocks.items():
                 for part in run.retention([column], names, severity, METRICS["SR"]) or ():
-                    found[column, block][seed] = part.prs
-    return dict(found)
+                    values[column, block][seed] = part.prs
+    return dict(values)
 
 
 def _retained(parts: list[Retention]) -> Retained:
-    """Return the PRS of one part, or the difference of the first's to the second's."""
+    """Return the PRS of one part, or the difference of the first to the second."""
     pairs, units = [(part.clean, part.corrupted) for part in parts], parts[0].units
     estimate = (
         bootstrap.prs(*pairs[0], units=units)

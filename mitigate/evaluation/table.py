@@ -1,8 +1,8 @@
 """Join result rows into one table: ``mitigate table RUNS... [--seed N] [--against NAME]``.
 
-``--draw scene`` makes intervals for scenes that nobody saw, in place of further episodes in these.
+``--draw scene`` computes intervals for new scenes, instead of new episodes in the same scenes.
 
-Takes row files and run or sweep folders, partial ones too. Prints the table and writes
+Takes row files and run or sweep folders, also partial ones. Prints the table and writes
 ``table.md``, ``heatmap.png`` and ``severity.png``.
 """
 
@@ -25,23 +25,32 @@ def run(
     against: str | None = None,
     drawn: str = "episode",
 ) -> list[Path]:
-    """Join the rows of ``paths``, write the report to ``out``; return its files, the table first.
+    """Join the rows of ``paths`` and write the report to ``out``; return its files, table first.
 
-    ``seeds``: those to take, None: all. ``against``: the column that the others are compared with,
-    None: "base" or "before", or else the first. ``drawn``: what the bootstrap draws, "episode" or
-    "scene".
-    Raises FileNotFoundError for a path without rows, ValueError for rows that are damaged, seeds
-    that no row is of and a column that is not there.
+    Args:
+        paths: row files or folders.
+        out: folder of the report.
+        seeds: the seeds to use; None: all.
+        against: the column that the others are compared with; None: "base" or "before", or else
+            the first.
+        drawn: what the bootstrap draws, "episode" or "scene".
+
+    Raises:
+        FileNotFoundError: A path has no rows.
+        ValueError: Rows are damaged, or a seed or the column does not exist.
     """
     from mitigate.evaluation import report, rows
 
-    found = rows.gather(paths)
-    held = sorted({row["seed"] for row in found})
+    all_rows = rows.gather(paths)
+    available = sorted({row["seed"] for row in all_rows})
     for seed in seeds or ():
-        if seed not in held:
-            raise ValueError(f"No row is of seed {seed}; there are {', '.join(map(str, held))}.")
-    taken = [row for row in found if seeds is None or row["seed"] in seeds]
-    return report.write(taken, out, against=against, drawn=drawn)
+        if seed not in available:
+            raise ValueError(
+                f"seeds must be among {', '.join(map(str, available))}, got {seed}, of which there "
+                "are no rows."
+            )
+    selected = [row for row in all_rows if seeds is None or row["seed"] in seeds]
+    return report.write(selected, out, against=against, drawn=drawn)
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -53,7 +62,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         type=int,
         action="append",
         metavar="N",
-        help="of these seeds alone (again for more)",
+        help="use only rows of this seed (repeat for more seeds)",
     )
     parser.add_argument(
         "--against", metavar="NAME", help="the column that the others are compared with"

@@ -1,4 +1,4 @@
-"""Pictures of walks: one episode clean, corrupted, and corrupted after training, from above."""
+"""Pictures of trajectories: one episode clean, corrupted, and corrupted after training."""
 
 from __future__ import annotations
 
@@ -27,15 +27,25 @@ from mitigate.worlds.episodes import Episode, from_vlnce
 from mitigate.worlds.world import World, WorldWrapper, as_world, depth_sensor
 
 REFERENCE, CLEAN_WALK = "#8a8a8a", "#1f77b4"
-CORRUPTED_WALKS = ("#d62728", "#2ca02c", "#9467bd", "#ff7f0e")  # one an agent, in their order
+CORRUPTED_WALKS = ("#d62728", "#2ca02c", "#9467bd", "#ff7f0e")  # one per agent, in order
 INCHES, DPI = (9.0, 10.5), 80
-PICTURES = 4  # episodes that are drawn after a training (ours)
+PICTURES = 4  # episodes drawn after a training (heuristic)
 
 
 @dataclass(frozen=True)
 class Walk:
-    """One agent's way through an episode: ``path`` float64 [n, 2], plan metres; ``agent`` is its
-    name alone, ``measures`` those of a row."""
+    """One agent's trajectory in an episode.
+
+    Attributes:
+        name: entry of the legend.
+        path: float64 [n, 2], plan metres.
+        won: whether the episode succeeded.
+        metres_left: geodesic metres to the goal at the end.
+        colour: of the line.
+        agent: name of the agent.
+        corruption: the corruption.
+        measures: the measures of a row.
+    """
 
     name: str
     path: np.ndarray
@@ -48,7 +58,7 @@ class Walk:
 
     @property
     def legend(self) -> str:
-        """The name, how it ended and how far from the goal (geodesic metres)."""
+        """The name, the result and the geodesic distance to the goal."""
         end = "success" if self.won else "fail"
         return f"{self.name}: {end}, {self.metres_left:.1f} m from the goal"
 
@@ -62,18 +72,21 @@ def draw_trajectories(
     seed: int = 0,
     guards: Mapping[str, Guards] | None = None,
 ) -> Path:
-    """Walk an episode and write one PNG: start panorama, plan, reference path, every walk.
+    """Run an episode and write one PNG: start panorama, plan, reference path, trajectories.
 
-    The first agent walks clean and corrupted, the others corrupted. The same ``seed`` as an
-    evaluation gives the same walks as its rows. A world that has ``draw(axes)`` draws its plan.
+    The first agent runs clean and corrupted, the others corrupted. The ``seed`` of an evaluation
+    gives the trajectories of its rows. A world with ``draw(axes)`` draws its plan.
 
     Args:
-        agents: name -> agent; the names are the legend's.
-        corruption: what the corrupted walks meet.
-        out: the PNG to write; parent folders are made.
-        seed: of the corruption's keys. guards: of agents, by their names.
+        agents: agents by name, as in the legend.
+        world: the world.
+        episode: the episode.
+        corruption: the corruption of corrupted runs.
+        out: the PNG to write; parent folders are created.
+        seed: corruption seed.
+        guards: guards by the name of their agent.
     """
-    walks = list(walked(agents, world, episode, corruption, seed, guards))
+    walks = list(run_agents(agents, world, episode, corruption, seed, guards))
     entry, sight = first_sight(world, episode, corruption, seed)
     figure = Figure(figsize=INCHES, layout="constrained")
     above, below, plan = figure.subplots(3, 1, height_ratios=(1, 1, 3.4))
@@ -93,16 +106,18 @@ def draw_trajectories(
 def first_sight(
     world: World, episode: Episode, corruption: Corruption, seed: int
 ) -> tuple[str, list[np.ndarray]]:
-    """Return what shows at the start: "depth" if ``corruption`` is of depth alone or the world has
-    no RGB, else "rgb", and pictures of it, uint8 [H, W, 3], clean and corrupted. Of a world without
-    frames "" and none."""
+    """Return the name of a sensor and its frames at the start of an episode, clean and corrupted.
+
+    The sensor is "depth" if ``corruption`` changes only depth or the world has no RGB, else "rgb".
+    Pictures are uint8 [H, W, 3]. A world without frames gives "" and no pictures.
+    """
     clean = dict(world.reset(episode))
     key, sensor = Key(seed, episode.episode_id, 0), depth_sensor(world.sensors)
     met = corrupt_observation(clean, corruption, key, sensor)
     first = DEPTH if {DEPTH, RGB}.intersection(corruption.modalities) == {DEPTH} else RGB
     entry = next((name for name in (first, RGB, DEPTH) if name in clean), "")
     far = float(clean[DEPTH].max()) if DEPTH in clean else 0.0
-    return entry, [_picture(np.asarray(held[entry]), far) for held in (clean, met) if entry]
+    return entry, [_picture(np.asarray(frames[entry]), far) for frames in (clean, met) if entry]
 
 
 def _picture(frames: np.ndarray, far: float) -> np.ndarray:
@@ -114,7 +129,7 @@ def _picture(frames: np.ndarray, far: float) -> np.ndarray:
 def won_back(rows: Sequence[Row], before: str, after: str) -> Iterator[tuple[str, Corruption]]:
     """Yield (episode id, corruption) where agent ``before`` fails and ``after`` succeeds.
 
-    In the rows' order of episodes, at most one an episode, no corruption twice.
+    The order is that of the rows; no episode and no corruption is repeated.
     """
     won = {(r["name"], r["episode_id"], r["corruption"], r["severity"]): r["success"] for r in rows}
     done: set[str] = set()
@@ -138,9 +153,20 @@ def write_pictures(
 ) -> list[Path]:
     """Draw the first ``PICTURES`` episodes that training won back, and ``sheet.png`` with all.
 
-    ``agents`` are before and after, by the names in ``rows`` (``won_back`` is the rule). Where
-    nothing was won back, or there is one agent alone, the first corrupted row is drawn instead. Of
-    a world without poses there are none. ``guards``: of agents, by name.
+    If none was won back (:func:`won_back`), or there is only one agent, the first corrupted row is
+    drawn. A world without poses gives no pictures.
+
+    Args:
+        agents: the agents before and after training, by their names in ``rows``.
+        world: the world.
+        episodes: the episodes of the rows.
+        rows: result rows.
+        folder: where to write.
+        seed: corruption seed.
+        guards: guards by the name of their agent.
+
+    Returns:
+        The paths of the pictures.
     """
     if POSE not in world.sensors:
         return []
@@ -149,17 +175,17 @@ def write_pictures(
     rows = sorted(rows, key=lambda row: place[row["episode_id"]])
     before, after = list(agents)[0], list(agents)[-1]
     chosen = list(won_back(rows, before, after))[:PICTURES] or _first_corrupted(rows)
-    written = []
+    paths = []
     for episode_id, corruption in chosen:
-        safe = re.sub(r"[^\w.-]+", "_", episode_id)[:60]  # an id may hold what no file name should
+        safe = re.sub(r"[^\w.-]+", "_", episode_id)[:60]  # an id may be an invalid file name
         out = Path(folder) / f"{safe}-{corruption.name}.png"
         episode = known[episode_id]
-        written.append(draw_trajectories(agents, world, episode, corruption, out, seed, guards))
-    return [*written, contact_sheet(written, Path(folder) / "sheet.png")] if written else []
+        paths.append(draw_trajectories(agents, world, episode, corruption, out, seed, guards))
+    return [*paths, contact_sheet(paths, Path(folder) / "sheet.png")] if paths else []
 
 
 def contact_sheet(pictures: Sequence[Path], out: Path, across: int = 2) -> Path:
-    """Write equally large ``pictures`` side by side, ``across`` a row, at half their size."""
+    """Write ``pictures`` of equal size as a grid, ``across`` per row, at half their size."""
     halves = [_half(path) for path in pictures]
     blank = np.full_like(halves[0], 255)
     halves += [blank] * (-len(halves) % across)
@@ -179,7 +205,7 @@ def _first_corrupted(rows: Sequence[Row]) -> list[tuple[str, Corruption]]:
     return [(r["episode_id"], Corruption(r["corruption"], r["severity"])) for r in met[:1]]
 
 
-def walked(
+def run_agents(
     agents: Mapping[str, Agent],
     world: World,
     episode: Episode,
@@ -187,9 +213,9 @@ def walked(
     seed: int,
     guards: Mapping[str, Guards] | None = None,
 ) -> Iterator[Walk]:
-    """Walk ``episode`` and yield the walks: the first agent's clean one, then each one's corrupted.
+    """Run ``episode`` and yield trajectories: the first agent's clean one, then all corrupted ones.
 
-    Keys and measures are those of an evaluation with ``seed``. ``guards``: of agents, by name.
+    Keys and measures are those of an evaluation with ``seed``. ``guards`` are by name of the agent.
     """
     plans: list[tuple[str, str, Corruption, str]] = []
     for index, name in enumerate(agents):
@@ -207,7 +233,7 @@ def walked(
 
 
 class Traced(WorldWrapper):
-    """A world that keeps where its agent was: ``path`` [n, 2], plan metres."""
+    """A world that records the agent's trajectory: ``path`` [n, 2], plan metres."""
 
     def __init__(self, world: World) -> None:
         super().__init__(world)

@@ -132,7 +132,7 @@ def finished(run: Path, walks: Walks | None = None) -> tuple[dict[str, Any], Any
             not fit float16.
     """
     weights, config = run / "agent" / checkpoint.WEIGHTS, run / loading.CONFIG
-    loading.refuse_what_ships_as_it_is(run)
+    loading.reject_other_models(run)
     if not (weights.is_file() and config.is_file()):
         inside = run.name == "agent" and (run / checkpoint.WEIGHTS).is_file()
         raise FileNotFoundError(

@@ -25,7 +25,7 @@ from omegaconf import OmegaConf
 from torch import nn
 
 from mitigate.agents.agent import as_agent
-from mitigate.agents.building import begun_from, build_agent
+from mitigate.agents.building import build_agent, inherit_settings
 from mitigate.agents.observation import check_fits
 from mitigate.core.build import build, located, maker
 from mitigate.core.conf import CONF
@@ -132,7 +132,7 @@ def plan(config: TrainConfig, ranks: Ranks) -> Plan:
     """
     config = copy.deepcopy(config)
     folder = Path(config.folder or "")
-    inherited = begun_from(config.agent, config.init)  # rejects weights of another kind of agent
+    inherited = inherit_settings(config.agent, config.init)  # rejects the weights of another kind
     node = config.agent if config.init_parts else inherited
     agent = build_agent(node, weights=config.init, seed=config.seed, parts=config.init_parts)
     check_teacher(config)

@@ -179,7 +179,7 @@ def test_what_cannot_be_scaled_is_refused():
         scale_adapters(model, 0.5)
     insert_adapters(model, ["0"])
     for strength in (-0.1, 1.5, float("nan")):
-        with pytest.raises(ValueError, match="share of the adapters' correction"):
+        with pytest.raises(ValueError, match="strength must be from 0 to 1"):
             scale_adapters(model, strength)
 
 
@@ -253,7 +253,7 @@ def test_a_child_that_is_called_adapter_already_is_not_overwritten():
     model = nn.Sequential(nn.Conv2d(3, 8, 3))
     model[0].add_module("adapter", nn.Conv2d(8, 8, 1))
     own = model[0].adapter
-    with pytest.raises(ValueError, match="'adapter' of its own"):
+    with pytest.raises(ValueError, match="already has an attribute 'adapter'"):
         insert_adapters(model, ["0"])
     assert model[0].adapter is own and all(p.requires_grad for p in model.parameters())
 
@@ -290,9 +290,9 @@ def test_a_target_that_matches_nothing_is_told_with_the_names_there_are():
 @pytest.mark.parametrize(
     ("targets", "kind", "text"),
     [
-        ("layer1", TypeError, r"is a list.*\['layer1'\]"),
+        ("layer1", TypeError, r"must be a list.*\['layer1'\]"),
         ([], ValueError, "names no module"),
-        (["layer[1"], ValueError, "no regular expression"),
+        (["layer[1"], ValueError, "must be a regular expression"),
     ],
 )
 def test_targets_that_are_no_list_of_patterns_leave_the_model_as_it_was(targets, kind, text):
@@ -310,12 +310,12 @@ def test_saving_warns_if_the_backbones_statistics_have_moved(tmp_path, recwarn):
     save_adapters(model, tmp_path / "kept")
     assert not recwarn.list
     model.train()(torch.randn(2, 3, 32, 32))
-    with pytest.warns(UserWarning, match=r"fit this backbone only.*model\.eval\(\)"):
+    with pytest.warns(UserWarning, match=r"fit only this backbone.*model\.eval\(\)"):
         save_adapters(model.eval(), tmp_path / "moved")
 
 
 def test_a_module_without_channels_is_refused():
-    with pytest.raises(ValueError, match="channels of fc cannot be told"):
+    with pytest.raises(ValueError, match="output channels of fc are unknown"):
         insert_adapters(ResNet(), ["fc"])
 
 

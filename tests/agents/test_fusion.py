@@ -77,7 +77,7 @@ def test_gradients_are_finite_for_blank_views():
 
 @pytest.mark.parametrize("bad", [{"rate": -1.0}, {"cap": -1.0}])
 def test_negative_constants_are_refused(views, bad):
-    with pytest.raises(ValueError, match="at least 0"):
+    with pytest.raises(ValueError, match="must be >= 0"):
         reliability(views, **bad)
 
 
@@ -117,9 +117,9 @@ def test_a_learned_reliability_finds_what_the_magnitude_hides():
 
 
 def test_a_learned_reliability_has_no_rate():
-    with pytest.raises(ValueError, match="rate=4 belongs to the rule"):
+    with pytest.raises(ValueError, match="rate must be null .* got 4"):
         weigher(8, learned=True, rate=4)
-    with pytest.raises(ValueError, match="at least 0"):
+    with pytest.raises(ValueError, match="must be >= 0"):
         weigher(8, learned=True, cap=-1)
 
 

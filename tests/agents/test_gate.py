@@ -79,7 +79,7 @@ class Patches(nn.Module):
 
 def test_a_gate_that_nothing_follows_is_refused():
     model, frames = Patches(), torch.randn(3, 3, 8, 8)
-    with pytest.raises(ValueError, match="gate at stem has no adapter of maps behind it"):
+    with pytest.raises(ValueError, match="gate at stem controls no adapter"):
         insert_adapters(model, ["block"], gates=["stem"], run=lambda n: model(frames[:n]))
     assert not adapters.adapted(model)
 
@@ -161,5 +161,5 @@ def test_each_encoder_has_its_own(frames):
 def test_without_adapters_behind_it_and_of_no_channels_it_is_refused(encoder):
     with pytest.raises(ValueError, match="target_modules names no module"):
         insert_adapters(encoder, [], gates=["stem"])
-    with pytest.raises(ValueError, match="A gate needs channels"):
+    with pytest.raises(ValueError, match="of a gate must be >= 1"):
         FrameGate(0)

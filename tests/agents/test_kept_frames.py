@@ -74,7 +74,7 @@ def stepwise() -> list[dict[str, np.ndarray]]:
 def recurrent() -> list[dict[str, np.ndarray]]:
     walk = TrainingWalk(Reusing(1), EPISODE, (RGB, DEPTH))
     for _ in range(3):
-        walk.note({}, clean=True, frames=True)
+        walk.record({}, clean=True, frames=True)
         walk.observation = walk.world.step(FORWARD)
     return [step["seen"] for step in walk.steps]
 

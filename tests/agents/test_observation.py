@@ -68,7 +68,7 @@ def test_an_episode_is_started_first_and_with_a_string():
     agent = TopologicalAgent().eval()
     with pytest.raises(RuntimeError, match="agent.reset"):
         agent.act(seen())
-    with pytest.raises(TypeError, match="string, not bytes"):
+    with pytest.raises(TypeError, match="must be a string, got a bytes"):
         agent.reset(b"walk to the sofa")
     with pytest.warns(UserWarning, match="knows no word"):
         agent.reset("走过红色沙发")
@@ -105,6 +105,6 @@ def test_a_world_without_what_an_agent_reads_is_refused(agent):
     shown = cameras(64)
     check_fits(agent, shown, "Hall")
     alone = {name: sensor for name, sensor in shown.items() if name != DEPTH}
-    with pytest.raises(ValueError, match="reads depth, which the world Hall does not show: .*rgb"):
+    with pytest.raises(ValueError, match="reads depth, which the world Hall does not have: .*rgb"):
         check_fits(agent, alone, "Hall")
     check_fits(nn.Linear(1, 1), alone, "Hall")  # it does not say what it reads

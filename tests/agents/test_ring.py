@@ -59,7 +59,7 @@ def test_a_lost_view_can_be_taken_from_its_neighbours(panorama):
 
 @pytest.mark.parametrize("wrong", [{"views": 2}, {"kernel": 2}, {"hfov": 180}, {"reduction": 0}])
 def test_impossible_shapes_are_refused(wrong):
-    with pytest.raises(ValueError, match="ring adapter needs"):
+    with pytest.raises(ValueError, match="of a ring adapter must be"):
         RingAdapter(8, **wrong)
 
 

@@ -139,7 +139,7 @@ def test_a_few_episodes_come_from_many_layouts_and_count_towards_more():
 @pytest.mark.parametrize(
     ("change", "text"),
     [
-        (lambda listed: [], "lists no episode"),
+        (lambda listed: [], "must list at least one episode"),
         (lambda listed: [*listed, listed[0]], "-0 twice"),
         (lambda listed: [replace(listed[0], instruction=Instruction(" "))], "has no instruction"),
     ],
@@ -240,7 +240,7 @@ def test_an_ablation_blanks_something():
 
 @pytest.mark.parametrize("count", [0, -1])
 def test_no_episodes_are_refused_before_a_training(count):
-    with pytest.raises(ValueError, match=f"episodes={count} is none"):
+    with pytest.raises(ValueError, match=f"episodes must be a whole number .* got {count}"):
         check(["recipe=da_per_episode", f"evaluation.episodes={count}"])
 
 

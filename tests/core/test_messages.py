@@ -69,9 +69,9 @@ def test_a_restorer_or_a_safeguard_that_is_not_there(evaluation):
 def test_no_weights_no_agent_and_a_sensor_that_is_not_shown(evaluation, monkeypatch):
     assert "checkpoint=runs/.../agent" in evaluation("checkpoint=null")
     restorer = ("agent=restorer", "checkpoint=checkpoints/restorer")
-    assert "A Restorer walks no episodes" in evaluation(*restorer)
+    assert "A Restorer cannot run episodes" in evaluation(*restorer)
     monkeypatch.setattr(world, "cameras", lambda size, views: {"rgb": None})
-    assert "shows only rgb. Choose another, such as suite=rgb." in evaluation("suite=quick")
+    assert "has only rgb. Choose another, such as suite=rgb." in evaluation("suite=quick")
 
 
 def test_an_encoder_that_an_extra_brings(monkeypatch):

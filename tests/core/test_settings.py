@@ -69,7 +69,7 @@ def refusals(folder: Path) -> list[str]:
     """What each reader of a folder's settings says; all must refuse it."""
     said = []
     for read in (
-        lambda: building.carried(node(), str(folder)),
+        lambda: building.stored_settings(node(), str(folder)),
         lambda: building.settings_of(node(), str(folder), []),
         lambda: loading.agent_settings(folder / loading.CONFIG),
         lambda: evaluate.load(node(), str(folder)),
@@ -293,7 +293,7 @@ def test_settings_of_an_agent_of_ones_own_are_those_of_its_constructor_or_config
     mine = OmegaConf.create({"_target_": WIDE, "width": 2, "further": 1})
     own = {"_target_": WIDE, "width": 3, "parts": {"a": [1, None, 0.5, "x", True]}, "further": 2}
     folder_with(tmp_path, yaml.safe_dump({"agent": own}))
-    assert building.carried(mine, str(tmp_path)) == {
+    assert building.stored_settings(mine, str(tmp_path)) == {
         k: v for k, v in own.items() if k != "_target_"
     }
     for wrong in (
@@ -304,7 +304,7 @@ def test_settings_of_an_agent_of_ones_own_are_those_of_its_constructor_or_config
     ):
         folder_with(tmp_path, yaml.safe_dump({"agent": {"_target_": WIDE, **wrong}}))
         with pytest.raises(ValueError, match="config.yaml"):
-            building.carried(mine, str(tmp_path))
+            building.stored_settings(mine, str(tmp_path))
 
 
 def test_the_config_of_a_run_is_read_in_the_same_way(tmp_path):

@@ -69,7 +69,7 @@ def test_a_changed_file_is_refused(tmp_path):
     data = bytearray(file.read_bytes())
     data[-1] ^= 1
     file.write_bytes(data)
-    with pytest.raises(ValueError, match="does not have the sha256 beside it"):
+    with pytest.raises(ValueError, match="does not have the sha256 of the manifest"):
         plain_adapters.attach(model, tmp_path)
 
 
@@ -128,7 +128,9 @@ def test_settings_of_any_other_form_are_refused(tmp_path, shape):
     settings = json.loads(file.read_text())
     settings["adapters"]["blocks.0"] = shape
     file.write_text(json.dumps(settings))
-    with pytest.raises(ValueError, match="damaged, or of adapters that this file does not know"):
+    with pytest.raises(
+        ValueError, match="damaged, or has adapters that this file does not support"
+    ):
         plain_adapters.attach(model, tmp_path)
 
 

@@ -12,7 +12,7 @@ from omegaconf import OmegaConf
 from PIL import Image
 
 from mitigate.agents.adapters import adapter_parameters
-from mitigate.agents.building import carried
+from mitigate.agents.building import stored_settings
 from mitigate.core import conf
 from mitigate.core.build import build
 from mitigate.core.checkpoint import weights_sha
@@ -199,7 +199,7 @@ def test_a_broken_unseen_frame_shows_before_the_training(tmp_path, pictures):
     shutil.copytree(pictures, own)
     last = own / "s5" / "0.png"
     last.write_bytes(last.read_bytes()[:200])
-    with pytest.raises(ValueError, match=rf"{last} cannot be decoded.*take it out of the folder"):
+    with pytest.raises(ValueError, match=rf"{last} cannot be decoded.*remove it from the folder"):
         train.run(config(tmp_path, own, *TINY))
     assert not list(tmp_path.glob("*/encoder/step-*.pt"))
 
@@ -249,12 +249,12 @@ def test_no_import_path_comes_from_a_folder(tmp_path, pictures):
     cfg = config(tmp_path, pictures, *TINY, "evaluation.enabled=false", "agent.tune=all")
     out = train.run(cfg) / "agent"
     assert "tests.encoders" not in (out / "config.yaml").read_text()
-    assert carried(cfg.agent, str(out))["sensor"] == "rgb"
+    assert stored_settings(cfg.agent, str(out))["sensor"] == "rgb"
     written = OmegaConf.load(out / "config.yaml")
     written.agent.model = "os:system"
     OmegaConf.save(written, out / "config.yaml")
     with pytest.raises(ValueError, match="There is no setting of agent 'model'"):
-        carried(cfg.agent, str(out))
+        stored_settings(cfg.agent, str(out))
 
 
 def test_the_unit_of_the_loss_is_what_differs_between_frames():

@@ -12,7 +12,7 @@ from transformers import CLIPVisionConfig, CLIPVisionModel, ResNetConfig, ResNet
 from mitigate.agents import adapters
 from mitigate.agents.adapter_layers import TokenAdapter
 from mitigate.agents.adapters import ConvAdapter, insert_adapters, load_adapters, save_adapters
-from mitigate.agents.sites import choose, look
+from mitigate.agents.sites import choose, find_sites
 from tests.encoders import shapes
 from tests.encoders.shapes import DdppoDepth, ListNet, OpenAIClip, TinyNet
 
@@ -108,7 +108,7 @@ def test_a_gate_that_is_shut_leaves_the_frame_alone():
 def test_blocks_are_chosen_evenly_from_what_there_is(name):
     make, shape, *_ = ENCODERS[name]
     model, frames = make().eval(), torch.randn(3, *shape)
-    found = choose(look(model, lambda n: model(frames[:n])), model, 3)
+    found = choose(find_sites(model, lambda n: model(frames[:n])), model, 3)
     assert len(found) == 3 and found[0].endswith(".0") and found[-1].endswith(".3")
 
 
@@ -130,5 +130,5 @@ def test_the_shapes_at_full_size_are_those_of_the_agents():
 @pytest.mark.parametrize("kind", [ConvAdapter, TokenAdapter])
 @pytest.mark.parametrize("middle", [0, -1])
 def test_a_bottleneck_has_channels(kind, middle):
-    with pytest.raises(ValueError, match=rf"middle \({middle}\) of at least 1"):
+    with pytest.raises(ValueError, match=rf"must be >= 1, got 8, 8 and {middle}"):
         kind(8, middle=middle)

@@ -79,7 +79,7 @@ def test_controls_warns_of_conflicting_rows_and_notices_lost_ones(
     file = tmp_path / "rows.jsonl"
     assert called(monkeypatch, *given) == 0
     rows.append(file, [rows.read(file)[0] | {"success": 0, "spl": 0.0}])
-    with pytest.warns(UserWarning, match="1 rows say another success"):
+    with pytest.warns(UserWarning, match="1 rows have another success"):
         assert called(monkeypatch, *given) == 0
 
     def walk(*_):
@@ -95,7 +95,7 @@ def test_controls_warns_of_conflicting_rows_and_notices_lost_ones(
 @pytest.mark.parametrize(
     ("option", "words"),
     [
-        ("episodes=0", "episodes=0 is none: give a whole number, 1 or more"),
+        ("episodes=0", "episodes must be a whole number >= 1, or null for the whole list, got 0"),
         ("split=val_sen", "Did you mean val_seen?"),
         ("env=corridor", "There is no env 'corridor'"),
         ("--split", "Write split=VALUE"),

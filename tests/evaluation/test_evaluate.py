@@ -23,11 +23,11 @@ def test_the_table_printed_is_of_what_was_asked_for_and_the_file_of_all(tmp_path
     evaluate.write_table([tmp_path / "rows.jsonl"], tmp_path, all_rows[:2])
     told = capsys.readouterr().out
     assert "N = 2 episodes" in told and "N = 3" not in told
-    assert f"{tmp_path} holds 1 other row besides: {tmp_path / 'table.md'} is of all." in told
+    assert f"{tmp_path} holds 1 other row, too; {tmp_path / 'table.md'} includes them." in told
     assert "N = 3 episodes" in (tmp_path / "table.md").read_text()
     evaluate.write_table([tmp_path / "rows.jsonl"], tmp_path, all_rows)
     told = capsys.readouterr().out
-    assert "N = 3 episodes" in told and "besides" not in told
+    assert "N = 3 episodes" in told and "other row" not in told
 
 
 def test_a_safeguard_that_does_not_exist_leaves_no_folder(tmp_path):
@@ -49,7 +49,7 @@ def test_another_severity_of_depth_or_a_world_of_ones_own_is_another_folder():
 @pytest.mark.parametrize("option", ["finetune.lr=9", "++cost.evaluation=4"])
 def test_an_option_of_trainings_is_refused(tmp_path, option):
     cfg = conf.load_config("evaluate", [option, f"runs={tmp_path}"])
-    with pytest.raises(ValueError, match="is for trainings"):
+    with pytest.raises(ValueError, match="is an option of trainings"):
         evaluate.run(cfg, [option])
     assert not list(tmp_path.iterdir())
 
@@ -77,7 +77,7 @@ def test_an_agent_without_weights_is_evaluated_also_behind_a_restorer(policies, 
     assert {row["name"] for row in found} == {"Straight+restorer-rgb"} and len(found) == 2
     weights = tmp_path / "w.safetensors"
     save_file({"w": torch.zeros(1)}, weights)
-    with pytest.raises(ValueError, match=r"Straight is no torch.nn.Module.*leave out .*w.safe"):
+    with pytest.raises(ValueError, match=r"Straight is not a torch.nn.Module.*Leave out .*w.safe"):
         evaluate.run(policies(straight, f"checkpoint={weights}", settings=", steps: 2"))
 
 
@@ -103,7 +103,7 @@ class Slots:
 
 
 def test_an_agent_that_takes_no_settings_is_told_to_have_some(policies):
-    with pytest.raises(ValueError, match=r"Slots takes no attribute settings .* settings\(\)"):
+    with pytest.raises(ValueError, match=r"Slots accepts no attribute .settings. .* settings\(\)"):
         evaluate.run(policies(f"{__name__}.Slots"))
 
 

@@ -73,7 +73,7 @@ def test_evaluate_warns_of_conflicting_rows(tmp_path):
     one = run(tmp_path, agent=Straight(1), conditions=[CLEAN])
     other = one[0] | {"success": 1 - one[0]["success"]}
     result_rows.append(tmp_path / "rows.jsonl", [other])
-    with pytest.warns(UserWarning, match="1 rows say another success"):
+    with pytest.warns(UserWarning, match="1 rows have another success"):
         assert run(tmp_path, agent=Straight(1), conditions=[CLEAN]) == [other, one[1]]
 
 

@@ -73,7 +73,7 @@ def test_intervals_may_be_of_scenes(says):
 
 
 def test_scenes_that_the_rows_do_not_say_are_not_drawn():
-    with pytest.raises(ValueError, match="do not say in which scene episode '0' is"):
+    with pytest.raises(ValueError, match="do not name the scene of episode '0'"):
         sections(column(8, ALL), drawn="scene")
 
 
@@ -107,7 +107,7 @@ def test_few_episodes_make_no_difference_sure():
         return [row(e, 0 if e else 1) for e in range(count)] + better
 
     few, enough = (markdown(sections(made(count))) for count in (9, 10))
-    assert "Under 10 episodes an interval says little" in few and "| **+" not in few
+    assert "With fewer than 10 episodes an interval says little" in few and "| **+" not in few
     assert "Differences in bold" in enough and "| **+90.0**" in enough
 
 
@@ -268,7 +268,10 @@ def test_seeds_and_the_column_to_compare_with_may_be_chosen(tmp_path, capsys):
     printed = capsys.readouterr().out
     assert "| Corruption | da_per_episode | base |" in printed
     assert "| Clean SR against da_per_episode | – | +20.0" in printed and "seed 0," in printed
-    for wrong, words in (("--seed=4", "seed 4; there are 0, 1"), ("--against=bas", "Did you mean")):
+    for wrong, words in (
+        ("--seed=4", "seeds must be among 0, 1, got 4"),
+        ("--against=bas", "Did you mean"),
+    ):
         assert table.main([*given, wrong]) == 2
         assert words in capsys.readouterr().err
 
@@ -294,7 +297,7 @@ def test_instruction_families_have_their_own_block_and_white_box_is_not_applicab
     found, text = lines(made), markdown([section])
     assert found["**PRS-SR (Instruction)**"][0].startswith("**0.50**")
     assert found["White-box prompt"] == ["n/a"] and found["Black-box prompt"] == ["40.0"]
-    assert "not applicable and no part of the PRS" in text
+    assert "not applicable and not part of the PRS" in text
     prompted = lines(column(8, spoken | {"white_box": 8}))
     assert prompted["White-box prompt"] == ["80.0"]
     assert prompted["**PRS-SR (Instruction)**"][0].startswith("**0.56**")

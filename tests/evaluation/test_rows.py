@@ -206,7 +206,7 @@ def test_rows_that_contradict_one_before_are_told_and_repeated_ones_are_not(tmp_
     rows.write(tmp_path / "a.jsonl", first)
     rows.write(tmp_path / "b.jsonl", second)
     assert rows.gather([tmp_path / "a.jsonl", tmp_path / "a.jsonl"]) == first and not recwarn.list
-    with pytest.warns(UserWarning, match="2 rows say another success.*first base, episode 5"):
+    with pytest.warns(UserWarning, match="2 rows have another success.*first base, episode 5"):
         assert rows.gather([tmp_path]) == second
 
 

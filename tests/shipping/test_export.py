@@ -453,7 +453,7 @@ def test_what_ships_as_it_is_needs_no_export(tmp_path, target, page, named):
     (tmp_path / "run/agent").mkdir(parents=True)
     for config in ("run/config.yaml", "run/agent/config.yaml"):
         (tmp_path / config).write_text(yaml.safe_dump({"agent": {"_target_": target}}))
-    with pytest.raises(ValueError, match=rf"run/agent ships as it is\. {page}"):
+    with pytest.raises(ValueError, match=rf"run/agent directly, as {page}"):
         export.export(tmp_path / named, "mine", out=tmp_path / "out")
 
 

@@ -48,7 +48,7 @@ def test_an_agent_with_other_settings_than_the_folders_is_refused(tmp_path):
     config = tmp_path / "config.yaml"
     config.write_text(yaml.safe_dump({"agent": {"_target_": "mine.Mine", "gain": -1.0}}))
     check_same(Mine(-1.0), config, "")
-    with pytest.raises(ValueError, match=r"with gain=-1.0, but the one given has 5.0"):
+    with pytest.raises(ValueError, match=r"with gain=-1.0, but the given agent has 5.0"):
         check_same(Mine(5.0), config, "")
 
 
@@ -70,7 +70,7 @@ def test_what_cannot_be_filled_is_named(filled):
     folder = "checkpoints/hardened/ts_distill" if filled is load_hardened else "checkpoints/base"
     with pytest.raises(TypeError, match="the class Silent: give an object"):
         filled(folder, agent=Silent)
-    with pytest.raises(TypeError, match="a object, which has no weights to fill"):
+    with pytest.raises(TypeError, match="got a object, which has no weights"):
         filled(folder, agent=object())
 
 
@@ -85,7 +85,7 @@ def test_of_an_agent_without_settings_attributes_are_compared_and_it_has_the_fol
     """So an evaluation and ``benchmark(load_hardened(...))`` have one hash for it."""
     config = tmp_path / "config.yaml"
     config.write_text(yaml.safe_dump({"agent": {"_target_": "mine.Silent", "gain": 1, "net": "a"}}))
-    with pytest.warns(UserWarning, match=r"with gain=1, but the one given has 5\.0"):
+    with pytest.warns(UserWarning, match=r"with gain=1, but the given agent has 5\.0"):
         check_same(Silent(5.0), config, "")
     agent = Silent(1.0)
     with warnings.catch_warnings():

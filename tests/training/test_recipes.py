@@ -6,7 +6,7 @@ import pytest
 import torch
 from omegaconf import OmegaConf
 
-from mitigate.agents.building import LORA, carried
+from mitigate.agents.building import LORA, stored_settings
 from mitigate.agents.topological import stored
 from mitigate.core import checkpoint, conf
 from mitigate.core.build import build
@@ -105,6 +105,8 @@ def test_training_inherits_vocabulary_and_adapters(tmp_path, agent, recipe, weig
     for stage in cfg.stages.values():
         stage.trainer.steps = 1
     folder = train.run(cfg)
-    before, after = (carried(cfg.agent, w) for w in (f"checkpoints/{weights}", folder / "agent"))
+    before, after = (
+        stored_settings(cfg.agent, w) for w in (f"checkpoints/{weights}", folder / "agent")
+    )
     assert before.get("vocabulary") in (None, after.get("vocabulary"))
     assert recipe == "conv_adapter" or after["adapters"] == before["adapters"]

@@ -1,4 +1,4 @@
-"""An agent that searches for an object on a map of frontiers, after VLFM and L3MVN."""
+"""Agent that searches for an object with a frontier map, after VLFM and L3MVN."""
 
 from mitigate.agents.frontier.agent import FrontierAgent
 

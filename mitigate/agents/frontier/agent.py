@@ -1,8 +1,8 @@
-"""The frontier agent: look around, map, go to the most promising frontier, walk up to the object.
+"""The frontier agent: turn around, map, go to the most promising frontier, walk to the object.
 
-It stands where VLFM, L3MVN and WMNav do: nothing of it is learned but what recognises objects, its
-RGB encoder. ``reset(instruction)`` starts an episode; ``act(observation)`` returns one low-level
-action. ``begin`` and ``act_all`` do the same for several episodes side by side.
+It follows VLFM, L3MVN and WMNav. Only its RGB encoder, which recognises objects, is learned.
+``reset(instruction)`` starts an episode; ``act(observation)`` returns one low-level action.
+``begin`` and ``act_all`` do the same for several episodes at once.
 """
 
 from __future__ import annotations
@@ -46,19 +46,19 @@ from mitigate.core.observation import (
     TURN_DEGREES,
 )
 
-TURNS = 18  # at the start: 270 degrees, with a view of 90 all around
-AGAIN = 8  # actions until it plans anew
-LEG = 1.5  # metres that it goes straight before it looks at its route again
-STUCK = 0.05  # metres of a step forward below which something is in the way
-SLID, BUMPS = 0.2, 4  # metres of a step that slid along something; so many end the way to an object
-LAST = 400  # actions until it goes to the likeliest place that it knows and stops
-WORTH = 6.0  # metres of way that a frontier of value 1 is worth (chosen on val_seen_ogn)
-FOUND, MAYBE = 4.0, 1.0  # evidence for the object to go there, and to go there in the end
-TRIES = 12  # plans in one instant
-NEAR_ENOUGH = 0.4  # probability that the object is near, at which it stops in front of it
+TURNS = 18  # initial turns: 270 degrees, which with a field of view of 90 cover the full circle
+AGAIN = 8  # actions until it plans again
+LEG = 1.5  # metres that it goes straight before it checks its route again
+STUCK = 0.05  # a forward step shorter than these metres was blocked
+SLID, BUMPS = 0.2, 4  # metres of a step that slid along something; such steps before it gives up
+LAST = 400  # actions after which it goes to the most likely known place and stops
+WORTH = 6.0  # path length in metres that a frontier of value 1 is worth (chosen on val_seen_ogn)
+FOUND, MAYBE = 4.0, 1.0  # evidence at which it goes to the object; the same after LAST actions
+TRIES = 12  # attempts to plan per step
+NEAR_ENOUGH = 0.4  # probability that the object is near, above which it stops in front of it
 ARRIVED = 0.9  # metres from the object's cells within which it stops
-MIDDLE = 3.0  # metres of way that a metre nearer to the object's middle is worth (ours)
-# the agent's common sense: in which rooms a thing is likely. L3MVN asks a language model for it.
+MIDDLE = 3.0  # metres of path that a metre closer to the object's centre is worth (heuristic)
+# the rooms in which an object is likely; L3MVN asks a language model for them
 LIKELY = {
     "bedroom": ("bed", "wardrobe", "lamp", "rug"),
     "bathroom": ("toilet", "bathtub", "sink", "washing machine"),
@@ -67,17 +67,22 @@ LIKELY = {
     "office": ("desk", "chair", "bookshelf", "lamp"),
     "dining room": ("table", "chair", "cabinet", "painting"),
 }
-ROOM_SHARE = 0.3  # what a likely room counts against the object itself (ours)
+ROOM_SHARE = 0.3  # weight of a likely room relative to the object itself (heuristic)
 _ROOMS = slice(len(CONCEPTS) - len(ROOM_NAMES), len(CONCEPTS))
 
 
 class FrontierAgent(SideBySide, nn.Module):
-    """Args: width: of the features of a column of the view. adapters: keyword arguments of
-    ``insert_adapters``, for an encoder with adapters. blind: of "rgb", "depth" and "instruction",
-    what is blanked before it enters (the ablations). size: pixels of a square view that it works
-    on. eye: metres of the camera above the floor.
+    """Search for an object by going to frontiers of a map (object-goal tasks).
 
-    Raises ValueError for an unknown name in ``blind``.
+    Args:
+        width: features of a column of the view.
+        adapters: keyword arguments of ``insert_adapters``; None: no adapters.
+        blind: inputs to blank for ablations: "rgb", "depth" or "instruction".
+        size: side in pixels to which frames are resized.
+        eye: height of the camera above the floor in metres.
+
+    Raises:
+        ValueError: A name in ``blind`` is unknown.
     """
 
     fingerprint_kind = "mitigate.agents.frontier.agent.FrontierAgent"  # in published fingerprints
@@ -87,8 +92,8 @@ class FrontierAgent(SideBySide, nn.Module):
         {**schema.ENCODERS, "width": schema.whole(4, 1024), "eye": schema.number(0.05, 5)}
     )
     views, sensors = 1, (RGB, DEPTH, POSE)
-    tasks = ("ogn",)  # it finds objects, it follows no routes
-    together = 8  # episodes side by side (ours): encoding one frame alone takes twice as long
+    tasks = ("ogn",)
+    together = 8  # episodes at once (heuristic): a frame encoded alone takes twice as long
     encoders = {RGB: CAMERA_ENCODERS[RGB]}
     labels = {RGB: CAMERA_LABELS[RGB]}
     _started = False
@@ -114,29 +119,32 @@ class FrontierAgent(SideBySide, nn.Module):
             insert_adapters(self, **{**adapters, "views": 1})
 
     def settings(self) -> dict[str, Any]:
-        """All that makes it besides weights: what its config must say."""
+        """Return the constructor's arguments, which the config stores."""
         return copy.deepcopy(self._settings)
 
     def parts(self) -> dict[str, nn.Module]:
-        """Its encoder by name."""
+        """Return its encoder by name."""
         return {"rgb_encoder": self.rgb_encoder}
 
     def see(self, sensor: str, frames: Tensor, truth: Tensor | None = None) -> Output:
-        """View features of RGB frames."""
+        """Return view features of RGB frames."""
         return see_camera(self.rgb_encoder, sensor, frames, truth)
 
     # closed loop ------------------------------------------------------------------------------
 
     def reset(self, instruction: str) -> None:
-        """Start an episode. Raises TypeError if ``instruction`` is no string; warns if it names
-        nothing that the agent knows."""
+        """Start an episode; warn if ``instruction`` names no object that the agent knows.
+
+        Raises:
+            TypeError: ``instruction`` is not a string.
+        """
         if not isinstance(instruction, str):
-            raise TypeError(f"An instruction is a string, not {type(instruction).__name__}.")
+            raise TypeError(f"instruction must be a string, got a {type(instruction).__name__}.")
         self.thing = None if "instruction" in self.blind else named(instruction)
         if self.thing is None and "instruction" not in self.blind:
             warnings.warn(
                 f"The instruction {instruction[:60]!r} names no object that the agent knows, so it "
-                "explores until nothing is left.",
+                "explores until there is nothing left to explore.",
                 stacklevel=2,
             )
         self._started = True
@@ -146,10 +154,10 @@ class FrontierAgent(SideBySide, nn.Module):
         self._before: np.ndarray | None = None  # where the last step forward began
 
     def begin(self, instruction: str) -> FrontierAgent:
-        """An episode of its own: a copy that shares the weights. As :meth:`reset`."""
-        walker = copy.copy(self)
-        walker.reset(instruction)
-        return walker
+        """Return a copy that shares the weights, after :meth:`reset`, as memory of an episode."""
+        runner = copy.copy(self)
+        runner.reset(instruction)
+        return runner
 
     def answers(
         self,
@@ -157,46 +165,48 @@ class FrontierAgent(SideBySide, nn.Module):
         memories: Sequence[FrontierAgent],
         count: int,
     ) -> list[int]:
-        """One low-level action of each of the first ``count`` episodes; frames are encoded at
-        once."""
-        known = self._recognise(np.stack([checked.frame(seen, RGB, 1) for seen in observations]))
-        walking = [*zip(memories, observations, known, strict=True)][:count]
-        return [walker._act(seen, concepts) for walker, seen, concepts in walking]
+        """Return one action for each of the first ``count`` episodes; encode the frames at once."""
+        concepts = self._recognise(np.stack([checked.frame(o, RGB, 1) for o in observations]))
+        episodes = [*zip(memories, observations, concepts, strict=True)][:count]
+        return [runner._act(observation, columns) for runner, observation, columns in episodes]
 
     def act(self, observation: Mapping[str, np.ndarray]) -> int:
-        """One low-level action. Raises RuntimeError before the first ``reset``, and what
-        ``agents/observation.py`` refuses."""
+        """Return one low-level action.
+
+        Raises RuntimeError before the first ``reset``, and the errors of
+        ``agents/observation.py``.
+        """
         check_started(self._started)
         return self.answers([observation], [self], 1)[0]
 
     def _act(self, observation: Mapping[str, np.ndarray], concepts: np.ndarray) -> int:
-        """``concepts`` [4, C]: probabilities of what the columns of the frame show."""
+        """Return an action; ``concepts`` [4, C] are probabilities per column of the frame."""
         pose = checked.pose(observation).astype(np.float64)
-        self._look(observation, pose, concepts)
+        self._update_map(observation, pose, concepts)
         self.actions += 1
         action = LEFT if self.actions <= TURNS else self._walk(pose)
         self._before = pose[:2] if action == FORWARD else None
         return action
 
     def taken(self, action: int, metres: float, radians: float) -> None:
-        """Somebody else drives: forget the route, and plan anew at the next step."""
+        """Drop the route after another driver moved the agent, and plan at the next step."""
         self._planned = 0
         if action != FORWARD:
             self._before = None
 
     @property
     def aim(self) -> np.ndarray | None:  # type: ignore[override]
-        """Where the leg that it walks ends, plan metres [2], or None."""
+        """The end of the current leg, plan metres [2], or None."""
         return self.controller.route[-1] if self.controller.route else None
 
-    def _look(
+    def _update_map(
         self, observation: Mapping[str, np.ndarray], pose: np.ndarray, concepts: np.ndarray
     ) -> None:
-        """Lay what is seen over the map."""
+        """Add an observation to the map."""
         if self.grid is None:
             self.grid = Grid(pose, self.eye)
         if self._before is not None:
-            self._bump(pose, float(np.hypot(*(pose[:2] - self._before))))
+            self._check_progress(pose, float(np.hypot(*(pose[:2] - self._before))))
         depth = checked.frame(observation, DEPTH, 1)[..., 0]
         thing = np.zeros((len(concepts), 2), np.float32)
         if self.thing is not None:
@@ -205,34 +215,34 @@ class FrontierAgent(SideBySide, nn.Module):
         self._near = float(thing[:, 1].max())
         self.grid.add(depth, pose, thing, worth(concepts, self.thing))
 
-    def _bump(self, pose: np.ndarray, gone: float) -> None:
-        """Take note of a step forward of ``gone`` metres: was something in the way?"""
+    def _check_progress(self, pose: np.ndarray, moved: float) -> None:
+        """Mark the cells ahead as blocked if a forward step of ``moved`` metres was too short."""
         assert self.grid is not None
-        self._bumps += gone < SLID
-        if gone < STUCK:
+        self._bumps += moved < SLID
+        if moved < STUCK:
             self.grid.block(pose)
             self._planned = 0
 
     @torch.inference_mode()
     def _recognise(self, rgb: np.ndarray) -> np.ndarray:
-        """Probabilities [n, 4, C] of what the columns of frames [n, H, W, 3] show."""
+        """Return concept probabilities [n, 4, C] of the columns of frames [n, H, W, 3]."""
         rgb = np.zeros_like(rgb) if RGB in self.blind else rgb
         device = self.rgb_encoder.embed.weight.device
         _, logits = self.rgb_encoder(torch.from_numpy(rgb).to(device))
         return logits.float().sigmoid().cpu().numpy()
 
     def _walk(self, pose: np.ndarray) -> int:
-        """The next action towards where it is worth going."""
+        """Return the next action of the plan; plan again if needed."""
         action = self.controller.action(pose) if self._planned > 0 else None
         self._planned -= 1
-        for _ in range(TRIES):  # a leg may end where the agent stands
+        for _ in range(TRIES):  # a leg may end at the agent's position
             if action is not None:
                 return action
             action = self._plan(pose)
         return LEFT
 
     def _plan(self, pose: np.ndarray) -> int | None:
-        """Choose where to go, and return an action, or None if there is nothing to do there."""
+        """Choose a target and return an action, or None if no action is needed to reach it."""
         assert self.grid is not None
         ways, late = routes(self.grid, pose[:2]), self.actions > LAST
         thing = object_cells(self.grid, MAYBE if late else FOUND)
@@ -244,7 +254,7 @@ class FrontierAgent(SideBySide, nn.Module):
             self._bumps = 0
             target = self._frontier(ways)
             if target is not None and self._at(target, pose):
-                self.grid.settle(target)  # what is unknown there cannot be seen
+                self.grid.settle(target)  # the unknown cells around it cannot be observed
                 return None
         if target is None and not late:
             self.actions = LAST
@@ -257,8 +267,7 @@ class FrontierAgent(SideBySide, nn.Module):
         return self.controller.action(pose)
 
     def _check(self, thing: np.ndarray, pose: np.ndarray) -> int | None:
-        """Standing at the object's cells: face them, and stop if it is seen near there; if not,
-        they are forgotten."""
+        """Turn to the object's cells and stop if it is seen nearby; else discard the cells."""
         assert self.grid is not None
         dx, dy = self.grid.place(thing).mean(0) - pose[:2]
         error = np.arctan2(-dx, dy) - pose[2]
@@ -271,13 +280,15 @@ class FrontierAgent(SideBySide, nn.Module):
         return None
 
     def _at(self, target: np.ndarray, pose: np.ndarray) -> bool:
-        """Whether the agent stands at ``target``, as near as its steps allow."""
+        """Return whether the agent is within one step of ``target``."""
         assert self.grid is not None
         return bool(np.hypot(*(self.grid.place(target[None])[0] - pose[:2])) < FORWARD_METRES)
 
     def _beside(self, ways: Routes, thing: np.ndarray) -> np.ndarray | None:
-        """The cell [2] within ``ARRIVED`` of the object that is cheap to reach and near its middle;
-        None if there is none."""
+        """Return the best cell [2] within ``ARRIVED`` of the object, or None.
+
+        The best cell is cheap to reach and near the object's centre.
+        """
         assert self.grid is not None
         reach = int(ARRIVED / CELL)
         steps = np.arange(-reach, reach + 1)
@@ -286,47 +297,50 @@ class FrontierAgent(SideBySide, nn.Module):
         cells = np.unique((thing[:, None] + around[None]).reshape(-1, 2), axis=0)
         if not len(cells):
             return None
-        sure = self.grid.evidence[thing[:, 0], thing[:, 1]]
-        middle = (thing * sure[:, None]).sum(0) / sure.sum()
-        away = np.hypot(*(cells - middle).T) * CELL
-        cost = ways.at(cells) + MIDDLE * away
+        evidence = self.grid.evidence[thing[:, 0], thing[:, 1]]
+        centre = (thing * evidence[:, None]).sum(0) / evidence.sum()
+        distance = np.hypot(*(cells - centre).T) * CELL
+        cost = ways.at(cells) + MIDDLE * distance
         return cells[int(cost.argmin())] if np.isfinite(cost.min()) else None
 
     def _frontier(self, ways: Routes) -> np.ndarray | None:
-        """The cell [2] of the frontier that is worth most, less the way there."""
+        """Return the nearest cell [2] of the frontier with the highest value minus path cost."""
         assert self.grid is not None
-        best, found = -np.inf, None
+        best = -np.inf
+        target = None
         for group in frontiers(self.grid):
             cost = ways.at(group)
             nearest = int(cost.argmin())
             value = float(self.grid.value[group[:, 0], group[:, 1]].max())
             if np.isfinite(cost[nearest]) and WORTH * value - cost[nearest] > best:
-                best, found = WORTH * value - cost[nearest], group[nearest]
-        return found
+                best = WORTH * value - cost[nearest]
+                target = group[nearest]
+        return target
 
 
 def named(text: str) -> int | None:
-    """The index of the thing that is named last in ``text``, of ``THING_NAMES``; None if none is.
-    A route ends at what is named last; a plain "find a chair" names one thing alone."""
+    """Return the index in ``THING_NAMES`` of the object named last in ``text``, or None.
+
+    A route ends at the object named last; "find a chair" names only one.
+    """
     ends = [
         (match.end(), len(name), i)
         for i, name in enumerate(THING_NAMES)
-        for match in _finds(name, text)
+        for match in re.finditer(rf"\b{re.escape(name)}s?\b", text.lower())
     ]
     return max(ends)[2] if ends else None
 
 
-def _finds(name: str, text: str) -> list[re.Match]:
-    return list(re.finditer(rf"\b{re.escape(name)}s?\b", text.lower()))
-
-
 def shows(concepts: np.ndarray, thing: int) -> np.ndarray:
-    """Of the probabilities [n, C] of what columns show, those of ``thing`` and of it near."""
+    """Return the probabilities [n, 2] that columns show ``thing``, and that it is near."""
     return concepts[:, [thing, NEAR.start + thing]]
 
 
 def worth(concepts: np.ndarray, thing: int | None) -> np.ndarray:
-    """How likely the thing is where columns look: [n], from it and from the rooms that show."""
+    """Return how likely the object is in the direction of each column, [n].
+
+    Evidence is the object itself and the rooms that are visible.
+    """
     if thing is None:
         return np.zeros(len(concepts), np.float32)
     name = THING_NAMES[thing]

@@ -1,10 +1,9 @@
-"""The map of one episode, and where to go on it.
+"""The map of one episode, and functions that plan on it.
 
-``Grid`` says where it is free, what it is worth looking at and where the object may be: square
-cells around the start, in the world's own axes. Depth says what is free and occupied, by log-odds
-(Moravec and Elfes 1985); what the RGB encoder recognises is laid over the cells that each column of
-the view shows. The functions behind it plan routes over what is free or unknown, and find frontiers
-and the object's place.
+``Grid`` holds square cells around the start, in the world's axes: free space, value and evidence
+for the object. Depth updates free and occupied cells by log-odds (Moravec and Elfes 1985). What the
+RGB encoder recognises is projected onto the cells that each column of the view shows. The functions
+plan routes over free and unknown cells, and find frontiers and the object.
 """
 
 from __future__ import annotations
@@ -22,28 +21,36 @@ from mitigate.core.observation import FORWARD_METRES
 
 CELL = 0.1  # metres
 SIDE = 320  # cells: 32 m
-REACH = 5.0  # metres to which depth is used (VLFM: 5)
-LOW, HIGH = 0.15, 1.5  # metres above the floor of what an agent bumps into
-THINGS_LOW, THINGS_HIGH = 0.05, 2.3  # metres above the floor at which objects show
-HIT, MISS, MOST = 0.9, 0.4, 3.5  # log-odds of a cell that is met, seen through; their bound
-NEAR = 2.0  # metres up to which the encoder calls things near (agents/concepts.py)
-SLACK = 0.3  # metres by which that may be wrong (ours)
+REACH = 5.0  # metres up to which depth is used (VLFM: 5)
+LOW, HIGH = 0.15, 1.5  # heights in metres between which an agent collides
+THINGS_LOW, THINGS_HIGH = 0.05, 2.3  # heights in metres between which objects are visible
+HIT, MISS, MOST = 0.9, 0.4, 3.5  # log-odds of an occupied and a free observation; their bound
+NEAR = 2.0  # metres up to which the encoder labels objects as near (agents/text.py)
+SLACK = 0.3  # tolerance of that distance in metres (heuristic)
 SURE = 40.0  # bound of the evidence for the object, a sum of log-odds
 
-RADIUS = 0.2  # metres kept from what is occupied
-TIGHT, WIDE = 3.0, 0.4  # cells nearer than WIDE metres to something cost TIGHT times as much
-UNKNOWN = 4.0  # cost of a cell that was never seen: depth that fails must not wall the agent in
-MARGIN = 12  # cells around what is known that are planned over
-SHARE = 0.7  # of the most evidence of any cell, for others to count (heuristic)
-SMALLEST = 4  # cells of a frontier worth going to
+RADIUS = 0.2  # clearance in metres from occupied cells
+TIGHT, WIDE = 3.0, 0.4  # cells with less than WIDE metres of clearance cost TIGHT times as much
+UNKNOWN = 4.0  # cost of unknown cells; finite, so that missing depth does not enclose the agent
+MARGIN = 12  # cells around the known area that planning includes
+SHARE = 0.7  # cells with this share of the highest evidence count as the object (heuristic)
+SMALLEST = 4  # cells of the smallest frontier that is used
 
 
 class Grid:
-    """Args: start: pose [3] of the first look. eye: metres of the camera above the floor.
+    """Map of one episode: arrays [SIDE, SIDE], rows along y.
 
-    Arrays [SIDE, SIDE], row by y: occupied (log-odds), known, blocked (bool; what was bumped into),
-    value (0 to 1, how likely the
-    object is over there), evidence (sum of log-odds that the object is here).
+    Args:
+        start: pose [3] of the first observation.
+        eye: height of the camera above the floor in metres.
+
+    Attributes:
+        occupied: log-odds that a cell is occupied.
+        known: bool, cells that were observed.
+        blocked: bool, cells that the agent collided with.
+        value: 0 to 1, how likely the object is in the direction of a cell.
+        trust: weight of ``value``, by how well the cell was seen.
+        evidence: sum of log-odds that the object is in a cell.
     """
 
     def __init__(self, start: np.ndarray, eye: float) -> None:
@@ -53,24 +60,28 @@ class Grid:
             np.zeros((SIDE, SIDE), np.float32) for _ in range(3)
         )
         self.known, self.blocked = (np.zeros((SIDE, SIDE), np.bool_) for _ in range(2))
-        self.trust = np.zeros((SIDE, SIDE), np.float32)  # of the value: how well it was seen
+        self.trust = np.zeros((SIDE, SIDE), np.float32)
         self._stamp = np.zeros((SIDE, SIDE), np.int32)
         self._looks = 0
 
     def cell(self, xy: np.ndarray) -> tuple[int, int]:
-        """Row and column of a position, the nearest one of those outside."""
+        """Return row and column of a position, clipped to the map."""
         j, i = np.clip((np.asarray(xy) - self.origin) / CELL, 0, SIDE - 1).astype(int)
         return int(i), int(j)
 
     def place(self, cells: np.ndarray) -> np.ndarray:
-        """Positions [n, 2] of the middles of cells [n, 2]."""
+        """Return the centres [n, 2] of cells [n, 2] in metres."""
         return self.origin + (np.asarray(cells)[:, ::-1] + 0.5) * CELL
 
     def add(self, depth: np.ndarray, pose: np.ndarray, seen: np.ndarray, worth: np.ndarray) -> None:
-        """Enter one look: depth float32 [H, W] metres of 90 degrees ahead, pose [3].
+        """Add one observation.
 
-        Of each column of the view, left to right: seen [n, 2], the probabilities that the object
-        shows there, and that it does within 2 m; worth [n], how likely it is over there.
+        Args:
+            depth: float32 [H, W] metres, 90 degrees ahead.
+            pose: [3].
+            seen: [n, 2], for each column from left to right the probability that the object is
+                visible, and that it is visible within 2 m.
+            worth: [n], how likely the object is in the direction of each column.
         """
         self._looks += 1
         x, y = pose[:2] - self.origin
@@ -93,7 +104,7 @@ class Grid:
         )
 
     def block(self, pose: np.ndarray) -> None:
-        """The way ahead of a pose [3] is blocked, whatever depth says."""
+        """Mark the cells ahead of a pose [3] as blocked, whatever depth shows."""
         ahead = np.array([-np.sin(pose[2]), np.cos(pose[2])])
         aside = np.array([ahead[1], -ahead[0]])
         for offset in (-2 * CELL, -CELL, 0.0, CELL, 2 * CELL):
@@ -101,13 +112,13 @@ class Grid:
             self.blocked[i, j] = self.known[i, j] = True
 
     def settle(self, cell: np.ndarray) -> None:
-        """What is still unknown within half a metre of ``cell`` is no frontier any more."""
+        """Mark all cells within half a metre of ``cell`` as known, so that no frontier is left."""
         reach = int(0.5 / CELL)
         i, j = np.maximum(cell - reach, 0)
         self.known[i : i + 2 * reach + 1, j : j + 2 * reach + 1] = True
 
     def doubt(self, cells: np.ndarray) -> None:
-        """The object is not at ``cells`` [n, 2] or right around them, whatever was seen."""
+        """Set the evidence at and around ``cells`` [n, 2] to its minimum."""
         here = np.zeros(self.evidence.shape, np.uint8)
         here[cells[:, 0], cells[:, 1]] = 1
         self.evidence[cv2.dilate(here, np.ones((5, 5), np.uint8)) > 0] = -SURE
@@ -162,9 +173,9 @@ def _scan(
                 _witness(
                     x + dx * r, y + dy * r, r, odds[column], seen[column], evidence, stamp, look
                 )
-        met = second <= REACH  # one reading alone may be noise
+        met = second <= REACH  # a single reading may be noise
         end = second if met else min(floor, REACH)
-        conf = 1 / stretch**2  # VLFM: cos^2 of the angle from the middle of the view
+        conf = 1 / stretch**2  # VLFM: cos^2 of the angle from the centre of the view
         for k in range(int(end / CELL)):
             i, c = int((y + dy * k * CELL) / CELL), int((x + dx * k * CELL) / CELL)
             if i < 0 or c < 0 or i >= occupied.shape[0] or c >= occupied.shape[1]:
@@ -183,7 +194,7 @@ def _scan(
 
 @njit(cache=True)
 def _witness(x, y, r, odds, seen, evidence, stamp, look):
-    """Evidence of one look for the cell of a surface at (x, y), ``r`` metres away."""
+    """Add evidence of one observation to the cell of a surface at (x, y), ``r`` metres away."""
     i, j = int(y / CELL), int(x / CELL)
     if i < 0 or j < 0 or i >= evidence.shape[0] or j >= evidence.shape[1] or stamp[i, j] == look:
         return
@@ -192,64 +203,68 @@ def _witness(x, y, r, odds, seen, evidence, stamp, look):
     if seen[0] > 0.5 and (
         (seen[1] > 0.6 and r > NEAR + SLACK) or (seen[1] < 0.3 and r < NEAR - SLACK)
     ):
-        weight = -0.5  # it shows, but nearer or farther than this
+        weight = -0.5  # the object is visible, but closer or farther than this surface
     evidence[i, j] = min(max(evidence[i, j] + weight, -SURE), SURE)
 
 
 @dataclass
 class Routes:
-    """Costs in metres from the agent over a window of the map: cost [h, w], corner (row, column) of
-    the window, and from where each cell is reached: before int [h * w]."""
+    """Path costs from the agent over a window of the map.
+
+    Attributes:
+        cost: float [h, w] in metres.
+        before: int [h * w], the predecessor of each cell.
+        corner: row and column of the window's first cell.
+    """
 
     cost: np.ndarray
     before: np.ndarray
     corner: tuple[int, int]
 
     def to(self, cell: np.ndarray) -> np.ndarray:
-        """Cells [n, 2] of the map from the agent to ``cell`` [2]."""
+        """Return the cells [n, 2] of the path from the agent to ``cell`` [2]."""
         width = self.cost.shape[1]
-        here = int((cell[0] - self.corner[0]) * width + cell[1] - self.corner[1])
-        found = [here]
-        while self.before[found[-1]] >= 0:
-            found.append(int(self.before[found[-1]]))
-        cells = np.array(found[::-1])
+        path = [int((cell[0] - self.corner[0]) * width + cell[1] - self.corner[1])]
+        while self.before[path[-1]] >= 0:
+            path.append(int(self.before[path[-1]]))
+        cells = np.array(path[::-1])
         return np.stack([cells // width, cells % width], 1) + self.corner
 
     def at(self, cells: np.ndarray) -> np.ndarray:
-        """Costs [n] of cells [n, 2] of the map; infinite outside of the window."""
-        own = np.asarray(cells) - self.corner
-        inside = ((own >= 0) & (own < self.cost.shape)).all(1)
-        out = np.full(len(own), np.inf)
-        out[inside] = self.cost[own[inside, 0], own[inside, 1]]
+        """Return the costs [n] of cells [n, 2] of the map; infinite outside the window."""
+        local = np.asarray(cells) - self.corner
+        inside = ((local >= 0) & (local < self.cost.shape)).all(1)
+        out = np.full(len(local), np.inf)
+        out[inside] = self.cost[local[inside, 0], local[inside, 1]]
         return out
 
 
 def clearance(grid: Grid) -> np.ndarray:
-    """Metres from each cell of the map to the nearest occupied one: float32 [SIDE, SIDE]."""
+    """Return metres from each cell to the nearest occupied one: float32 [SIDE, SIDE]."""
     free = ((grid.occupied <= 0) & ~grid.blocked).astype(np.uint8)
     return cv2.distanceTransform(free, cv2.DIST_L2, 5) * CELL
 
 
 def routes(grid: Grid, xy: np.ndarray) -> Routes:
-    """Cheapest routes from ``xy`` to all cells around what is known."""
+    """Return the cheapest routes from ``xy`` to all cells in and around the known area."""
     here = np.array(grid.cell(xy))
     seen = np.argwhere(grid.known)
     low = np.maximum(np.minimum(seen.min(0, initial=10**6), here) - MARGIN, 0)
     high = np.minimum(np.maximum(seen.max(0, initial=0), here) + MARGIN, len(grid.known) - 1) + 1
     window = np.s_[low[0] : high[0], low[1] : high[1]]
     gap, known = clearance(grid)[window], grid.known[window]
-    own = here - low
+    start_cell = here - low
     rows, columns = np.ogrid[: gap.shape[0], : gap.shape[1]]
-    around = np.hypot(rows - own[0], columns - own[1]) * CELL
+    around = np.hypot(rows - start_cell[0], columns - start_cell[1]) * CELL
     open_ = (gap > RADIUS) | (around < 2 * RADIUS) & (gap > 0)
     price = np.where(known, 1.0, UNKNOWN) * np.where(gap < WIDE, TIGHT, 1.0)
-    start = int(own[0] * gap.shape[1] + own[1])
+    start = int(start_cell[0] * gap.shape[1] + start_cell[1])
     cost, before = dijkstra(_graph(open_, price), indices=start, return_predecessors=True)
     return Routes(cost.reshape(gap.shape), before, (int(low[0]), int(low[1])))
 
 
 def _graph(open_: np.ndarray, price: np.ndarray) -> coo_matrix:
-    """8-connected graph over the open cells; an edge costs its metres times the mean price."""
+    """Return the 8-connected graph of open cells; an edge costs its length times mean price."""
     index = np.arange(open_.size).reshape(open_.shape)
     parts = []
     for di, dj in ((0, 1), (1, 0), (1, 1), (1, -1)):
@@ -264,7 +279,7 @@ def _graph(open_: np.ndarray, price: np.ndarray) -> coo_matrix:
 
 
 def frontiers(grid: Grid) -> list[np.ndarray]:
-    """Groups of known, free cells [n, 2] that touch unknown ones; each at least ``SMALLEST``."""
+    """Return groups of at least ``SMALLEST`` known free cells [n, 2] next to unknown ones."""
     free = grid.known & (clearance(grid) > RADIUS)
     unknown = (~grid.known).astype(np.uint8)
     edge = free & (cv2.dilate(unknown, np.ones((3, 3), np.uint8)) > 0)
@@ -276,8 +291,11 @@ def frontiers(grid: Grid) -> list[np.ndarray]:
 
 
 def object_cells(grid: Grid, least: float) -> np.ndarray:
-    """Cells [n, 2] of the group with the most evidence for the object, of those above ``least``
-    and above ``SHARE`` of the most that any cell has: more looks narrow it down."""
+    """Return the group of cells [n, 2] with the most evidence for the object.
+
+    Cells count above ``least`` and above ``SHARE`` of the highest evidence, so that more
+    observations narrow the group down.
+    """
     likely = grid.evidence > max(least, SHARE * float(grid.evidence.max()))
     if not likely.any():
         return np.zeros((0, 2), int)
@@ -288,9 +306,11 @@ def object_cells(grid: Grid, least: float) -> np.ndarray:
 
 
 def clear_ahead(grid: Grid, path: np.ndarray, most: float) -> np.ndarray:
-    """The last cell of ``path`` [n, 2], at most ``most`` metres away, to which the straight line
-    from its first cell keeps ``RADIUS`` from what is occupied. It is at least a step away, if the
-    path is: where the agent stands, it may be nearer to things than that."""
+    """Return the farthest cell of ``path`` [n, 2] that can be reached in a straight line.
+
+    The line keeps ``RADIUS`` from occupied cells and is at most ``most`` metres long. The first
+    step is not checked, because the agent may already be closer to an obstacle.
+    """
     gap, step = clearance(grid), int(np.ceil(FORWARD_METRES / CELL))
     best = min(step, len(path) - 1)
     for k in range(step + 1, min(len(path), int(most / CELL) + 1)):

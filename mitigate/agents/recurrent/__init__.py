@@ -1,4 +1,4 @@
-"""An agent with one forward camera and a memory, after VLN-CE's cross-modal attention agent."""
+"""Agent with one forward camera and a recurrent memory, after VLN-CE's cross-modal attention."""
 
 from mitigate.agents.recurrent.agent import RecurrentAgent
 

@@ -1,8 +1,8 @@
 """The recurrent agent: one forward camera, a memory, a low-level action at every step.
 
-It stands where VLN-CE's recurrent agents do, with RGB alone where single-camera language models
-do. ``reset(instruction)`` starts an episode; ``act(observation)`` returns one low-level action.
-``begin`` and ``act_all`` do the same for several episodes side by side.
+It corresponds to VLN-CE's recurrent agents; with RGB only it has the input of single-camera
+language models. ``reset(instruction)`` starts an episode; ``act(observation)`` returns one
+low-level action. ``begin`` and ``act_all`` do the same for several episodes at once.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ from mitigate.worlds.episodes import Episode
 from mitigate.worlds.world import World
 
 LOSS_WEIGHTS = {"distance": 0.3, "grounding": 0.3}
-LIMIT = 90  # steps of a training walk (heuristic): the expert takes 53 on average
+LIMIT = 90  # steps of a training rollout (heuristic): the expert takes 53 on average
 _SCALE = 5.0  # metres: the unit of the predicted distance
 
 POLICY = {  # allowed values of the keyword arguments of ``Policy``
@@ -54,7 +54,7 @@ POLICY = {  # allowed values of the keyword arguments of ``Policy``
 
 @dataclass
 class Walk:
-    """What it remembers of an episode: words and state of one row, and its steps."""
+    """Memory of one episode: its text, the state of the policy, and odometry."""
 
     text: Text
     state: State
@@ -62,14 +62,20 @@ class Walk:
 
 
 class RecurrentAgent(SideBySide, nn.Module):
-    """Args:
-    sensors: "rgb", "depth" or both; frames are [H, W, c] of one camera that looks ahead.
-    rgb_width, depth_width: of the features of a column of the view. policy: keyword arguments of
-    ``Policy``. adapters: keyword arguments of ``insert_adapters``, for an agent with adapters.
-    blind: of its sensors and "instruction", what is blanked before it enters (the ablations).
-    size: pixels of a square view that it works on; frames of another size are resized.
-    vocabulary: the words it knows; None: those of the shipped agents.
-    Raises ValueError for an unknown name in ``sensors`` or ``blind``, and for no sensor.
+    """Choose a low-level action at every step from one forward camera and a recurrent memory.
+
+    Args:
+        sensors: "rgb", "depth" or both; frames are [H, W, c].
+        rgb_width: RGB features of a column of the view.
+        depth_width: depth features of a column of the view.
+        policy: keyword arguments of ``Policy``.
+        blind: inputs to blank for ablations: its sensors or "instruction".
+        adapters: keyword arguments of ``insert_adapters``; None: no adapters.
+        size: side in pixels to which frames are resized.
+        vocabulary: the words it knows; None: those of the shipped agents.
+
+    Raises:
+        ValueError: ``sensors`` is empty, or a name in ``sensors`` or ``blind`` is unknown.
     """
 
     fingerprint_kind = "mitigate.agents.recurrent.agent.RecurrentAgent"  # in published fingerprints
@@ -90,7 +96,7 @@ class RecurrentAgent(SideBySide, nn.Module):
     sensors: tuple[str, ...]
     views = 1
     actions = ACTIONS
-    together = 8  # episodes side by side (ours): a step of one costs 2.5 times as much alone
+    together = 8  # episodes at once (heuristic): a single one costs 2.5 times as much per step
     loss_weights = LOSS_WEIGHTS
     _walk: Walk | None = None
 
@@ -115,14 +121,17 @@ class RecurrentAgent(SideBySide, nn.Module):
                     unknown("sense to blank (agent.blind)", name, (*sensors, "instruction"))
                 )
         if not sensors:
-            raise ValueError("sensors=[] leaves the agent nothing to see: name rgb, depth or both.")
-        given: dict[str, Any] = {
+            raise ValueError("sensors must name rgb, depth or both, got [].")
+        settings: dict[str, Any] = {
             "rgb_width": rgb_width,
             "depth_width": depth_width,
             "policy": policy,
+            "sensors": list(sensors),
+            "blind": list(blind),
+            "adapters": adapters,
+            "size": size,
         }
-        given |= {"sensors": list(sensors), "blind": list(blind), "adapters": adapters}
-        self._settings = copy.deepcopy({**given, "size": size})
+        self._settings = copy.deepcopy(settings)
         self.sensors, self.blind = tuple(sensors), tuple(blind)
         self.encoders = {name: CAMERA_ENCODERS[name] for name in self.sensors}
         self.labels = {name: CAMERA_LABELS[name] for name in self.sensors}
@@ -137,7 +146,7 @@ class RecurrentAgent(SideBySide, nn.Module):
             insert_adapters(self, **{**adapters, "views": 1})
 
     def settings(self) -> dict[str, Any]:
-        """All that makes it besides weights: what its config must say."""
+        """Return the constructor's arguments, which the config stores."""
         return {**self._settings, "vocabulary": list(self.vocabulary.words)}
 
     @property
@@ -145,7 +154,7 @@ class RecurrentAgent(SideBySide, nn.Module):
         return self.policy.places.weight.device
 
     def tokens(self, instructions: list[str]) -> Tensor:
-        """Instructions to padded token ids int64 [E, L]."""
+        """Return padded token ids int64 [E, L] of instructions."""
         encode = self.vocabulary.encode
         rows = [[1] if "instruction" in self.blind else encode(text) for text in instructions]
         return pad(rows).to(self.device)
@@ -153,7 +162,7 @@ class RecurrentAgent(SideBySide, nn.Module):
     # training ---------------------------------------------------------------------------------
 
     def parts(self) -> dict[str, nn.Module]:
-        """Its encoders and its policy by name."""
+        """Return its encoders and its policy by name."""
         return dict(self.named_children())
 
     @torch.no_grad()
@@ -166,17 +175,16 @@ class RecurrentAgent(SideBySide, nn.Module):
         rngs: Sequence[np.random.Generator],
         clean: bool = False,
     ) -> Piece:
-        """Walk episodes with the expert's answers (``agents/agent.py``).
+        """Run episodes and return the decisions with the expert's answers (``agents/agent.py``).
 
-        A walk ends where the expert's STOP is taken, or after ``LIMIT`` steps. The agent's own STOP
-        is not taken, so that what follows a wrong one is learned, too. The piece is plain data,
-        tensors and lists. Views of encoders that do not train are kept as features, in place of the
-        frames.
+        A rollout ends when the expert's STOP is taken, or after ``LIMIT`` steps. The agent's STOP
+        is never taken, so that it also learns from the steps after a wrong one. The piece is plain
+        data. If the encoders are frozen, it holds their features in place of frames.
         """
         walks = [TrainingWalk(w, e, self.sensors) for w, e in zip(worlds, episodes, strict=True)]
         text = self.policy.read(self.tokens([e.instruction.text for e in episodes]))
         state, running = State.start(text), list(range(len(walks)))
-        frames_kept = self._trains_encoders()
+        keep_frames = self._trains_encoders()
         for _ in range(LIMIT):
             rows, here = torch.tensor(running, device=self.device), [walks[i] for i in running]
             frames = {n: np.stack([walk.see()[n] for walk in here]) for n in self.sensors}
@@ -189,8 +197,8 @@ class RecurrentAgent(SideBySide, nn.Module):
             logits = check_logits(self.policy.answer(fresh.hidden), self)
             chances = logits.double().softmax(-1).cpu().numpy()
             for row, i in enumerate(running):
-                kept = {} if frames_kept else {"views": views[row].float().cpu().numpy()}
-                walks[i].note(kept, clean, frames_kept)
+                features = {} if keep_frames else {"views": views[row].float().cpu().numpy()}
+                walks[i].record(features, clean, keep_frames)
                 walks[i].go(chances[row], expert_share, rngs[i])
             running = [i for i in running if not worlds[i].done]
             if not running:
@@ -198,15 +206,15 @@ class RecurrentAgent(SideBySide, nn.Module):
         return piece_of(walks)
 
     def precompute(self, piece: Piece, *, clean: bool) -> Piece:
-        """With ``clean``: features in place of the clean frames."""
-        names = {f"clean_{name}": name for name in self.sensors}
-        if clean and all(name in piece["seen"] for name in names):
-            frames = {own: piece["seen"].pop(name).numpy() for name, own in names.items()}
+        """Replace clean frames by their features if ``clean``."""
+        sensors = {f"clean_{name}": name for name in self.sensors}
+        if clean and all(entry in piece["seen"] for entry in sensors):
+            frames = {name: piece["seen"].pop(entry).numpy() for entry, name in sensors.items()}
             piece["seen"]["clean_views"] = self._encode(frames).float().cpu()
         return piece
 
     def join(self, pieces: Sequence[Piece]) -> WalkDecisions:
-        """One batch of all walks of the pieces."""
+        """Return one batch of all rollouts of the pieces."""
         lengths = [n for piece in pieces for n in piece["lengths"]]
         names = [name for piece in pieces for name in piece["ids"]]
         seen = {n: torch.cat([p["seen"][n] for p in pieces]) for n in pieces[0]["seen"]}
@@ -222,7 +230,7 @@ class RecurrentAgent(SideBySide, nn.Module):
         )
 
     def decide(self, decisions: WalkDecisions, *, clean: bool = False) -> Output:
-        """Logits over the actions; features "views" [N, F] and "state" [N, width]."""
+        """Return logits over the actions; features "views" [N, F] and "state" [N, width]."""
         seen, prefix = decisions.seen, "clean_" if clean else ""
         losses: dict[str, Tensor] = {}
         views = seen.get(f"{prefix}views")
@@ -230,12 +238,12 @@ class RecurrentAgent(SideBySide, nn.Module):
             frames = {name: seen[f"{prefix}{name}"] for name in self.sensors}
             views, losses = self._perceive(frames, {} if clean else seen)
         text = self.policy.read(decisions.tokens)
-        made = self.policy(text, decisions.padded(views), decisions.padded(decisions.moves))
-        out = {name: value[decisions.walk, decisions.time] for name, value in made.items()}
+        padded = self.policy(text, decisions.padded(views), decisions.padded(decisions.moves))
+        out = {name: value[decisions.walk, decisions.time] for name, value in padded.items()}
         known = torch.isfinite(decisions.metres)
         if known.any():
-            wanted = decisions.metres[known] / _SCALE
-            losses["distance"] = F.smooth_l1_loss(out["distance"][known], wanted)
+            target = decisions.metres[known] / _SCALE
+            losses["distance"] = F.smooth_l1_loss(out["distance"][known], target)
         if "goal" in seen:
             losses["grounding"] = presence_loss(out["grounding"], seen["goal"])
         stop = decisions.target[:, STOP] > 0
@@ -247,21 +255,24 @@ class RecurrentAgent(SideBySide, nn.Module):
         return Output(out["logits"], None, {"views": views, "state": out["state"]}, losses, figures)
 
     def see(self, sensor: str, frames: Tensor, truth: Tensor | None = None) -> Output:
-        """View features of a sensor's frames (``agents/agent.py``)."""
+        """Return view features of a sensor's frames (``agents/agent.py``)."""
         encoder = self.rgb_encoder if sensor == RGB else self.depth_encoder
         return see_camera(encoder, sensor, frames, truth)
 
     @torch.no_grad()
     def _encode(self, frames: dict[str, np.ndarray]) -> Tensor:
-        """Features [N, F] of frames [N, H, W, c], without gradients."""
+        """Return features [N, F] of frames [N, H, W, c], without gradients."""
         on = {name: torch.from_numpy(f).to(self.device) for name, f in frames.items()}
         return self._perceive(on, {})[0]
 
     def _perceive(
         self, frames: dict[str, Tensor], truth: dict[str, Tensor]
     ) -> tuple[Tensor, dict[str, Tensor]]:
-        """Features [N, F] of frames: of RGB its columns' features and what shows there, of depth
-        its columns' features and the metres that are free; with the truth the encoders' losses."""
+        """Return features [N, F] of frames, and with ``truth`` the encoders' losses.
+
+        Features are those of the columns, with the probabilities of concepts (RGB) and the free
+        distance in metres (depth).
+        """
         parts, losses = [], {}
         if RGB in self.sensors:
             rgb = torch.zeros_like(frames[RGB]) if RGB in self.blind else frames[RGB]
@@ -278,7 +289,7 @@ class RecurrentAgent(SideBySide, nn.Module):
         return torch.cat(parts, -1), losses
 
     def _trains_encoders(self) -> bool:
-        """Whether any weight that makes view features is trained."""
+        """Return whether any weight of the encoders is trained."""
         encoders = (m for name, m in self.parts().items() if name != "policy")
         return any(p.requires_grad for encoder in encoders for p in encoder.parameters())
 
@@ -286,11 +297,14 @@ class RecurrentAgent(SideBySide, nn.Module):
 
     @torch.inference_mode()
     def begin(self, instruction: str) -> Walk:
-        """What it remembers of an episode. Raises TypeError if ``instruction`` is no string; warns
-        if the agent knows none of its words."""
+        """Return the memory of a new episode; warn if the agent knows no word of ``instruction``.
+
+        Raises:
+            TypeError: ``instruction`` is not a string.
+        """
         checked.instruction(instruction, self.vocabulary)
         tokens = self.tokens([instruction])
-        tokens = F.pad(tokens, (0, MAX_WORDS - tokens.shape[1]), value=PAD)  # all of one length
+        tokens = F.pad(tokens, (0, MAX_WORDS - tokens.shape[1]), value=PAD)  # one length for all
         text = self.policy.read(tokens)
         return Walk(text, State.start(text), Odometer())
 
@@ -301,7 +315,7 @@ class RecurrentAgent(SideBySide, nn.Module):
         memories: Sequence[Walk],
         count: int,
     ) -> list[int]:
-        """The likeliest actions of the first ``count`` episodes, whose memories change."""
+        """Return the likeliest actions of the first ``count`` episodes; update their memories."""
         frames = {
             name: np.stack([checked.frame(seen, name, 1) for seen in observations])
             for name in self.sensors
@@ -323,12 +337,15 @@ class RecurrentAgent(SideBySide, nn.Module):
         self._walk = self.begin(instruction)
 
     def act(self, observation: Mapping[str, np.ndarray]) -> int:
-        """The likeliest action. Raises RuntimeError before the first ``reset``, and what
-        ``agents/observation.py`` refuses."""
+        """Return the likeliest action.
+
+        Raises RuntimeError before the first ``reset``, and the errors of
+        ``agents/observation.py``.
+        """
         check_started(self._walk is not None)
         return self.answers([observation], [self._walk], 1)[0]  # type: ignore[list-item]
 
     def taken(self, action: int, metres: float, radians: float) -> None:
-        """Somebody else drives: count what was done in place of the last answer."""
+        """Replace the last action in the odometry by the motion of another driver."""
         assert self._walk is not None, "reset first"
         self._walk.odometer.correct(action, metres, radians)

@@ -1,9 +1,9 @@
-"""The policy of the recurrent agent: what it saw, did and was told, to the next low-level action.
+"""The policy of the recurrent agent: from views, motion and text to the next low-level action.
 
-Structure after VLN-CE's cross-modal attention model (Krantz et al. 2020): one recurrent cell keeps
-what was seen and done, attention picks the words that are due and then the part of the view that
-they speak of, a second cell keeps both. The attention over words also knows where it was before
-(location-sensitive attention, Chorowski et al. 2015), since routes are told in order.
+Structure after VLN-CE's cross-modal attention model (Krantz et al. 2020). One recurrent cell stores
+views and actions. Attention selects the current words and then the part of the view that they
+describe, and a second cell stores both. The attention over words also reads its earlier positions
+(location-sensitive attention, Chorowski et al. 2015), because routes are described in order.
 """
 
 from __future__ import annotations
@@ -23,16 +23,15 @@ from mitigate.agents.encoders import DIRECTIONS, GRID
 from mitigate.agents.text import CONCEPTS, MAX_WORDS, NEAR, PAD, THINGS, Vocabulary
 from mitigate.core.observation import FORWARD, FORWARD_METRES, LEFT, RIGHT, TURN_DEGREES
 
-MOVES = 5 + 4  # last action (none, or one of four); heading as sine and cosine, metres gone, steps
-_METRES, _STEPS = 5.0, 50.0  # units in which metres gone and steps taken are given
+MOVES = 5 + 4  # last action (none, or one of four); sine and cosine of heading, metres, steps
+_METRES, _STEPS = 5.0, 50.0  # units of the distance moved and of the number of steps
 ACTIONS = 4
-KEYS = 64  # width of the attention over words: what it costs in training
-REACH = 7  # words around the last ones that the attention sees at once, odd
+KEYS = 64  # width of the attention over words; a compromise with training time
+REACH = 7  # odd kernel size over words of the location-sensitive attention
 
 
 class Odometer:
-    """What an agent knows of its own motion: it counts the actions of an episode, and reads no
-    sensor."""
+    """Dead reckoning: an agent's motion from the actions of an episode, without a sensor."""
 
     def __init__(self) -> None:
         self.last = -1
@@ -46,7 +45,7 @@ class Odometer:
         self.metres += FORWARD_METRES * (action == FORWARD)
 
     def correct(self, action: int, metres: float, radians: float) -> None:
-        """Count in place of the last action another one, or none (-1), which went so far."""
+        """Replace the last action by ``action`` (-1: none) and the motion that it made."""
         self.heading -= math.radians(TURN_DEGREES) * ((self.last == LEFT) - (self.last == RIGHT))
         self.metres -= FORWARD_METRES * (self.last == FORWARD)
         self.last = action
@@ -54,8 +53,11 @@ class Odometer:
         self.metres += max(0.0, metres)
 
     def moves(self) -> np.ndarray:
-        """float32 [9]: which action was the last one (none, or one of four), sine and cosine of the
-        turns since the start, metres gone / 5, steps taken / 50."""
+        """Return the motion as float32 [9].
+
+        It holds the last action (one-hot; none, or one of four), sine and cosine of the heading
+        since the start, metres moved / 5 and steps / 50.
+        """
         out = np.zeros(MOVES, np.float32)
         out[1 + self.last] = 1.0
         out[5:] = (
@@ -68,8 +70,13 @@ class Odometer:
 
 
 class Text(NamedTuple):
-    """Words of E instructions: keys [E, L, KEYS] and values [E, L, width]; mask bool [E, L], True
-    where there is a word."""
+    """Encoded words of E instructions.
+
+    Attributes:
+        keys: [E, L, KEYS].
+        values: [E, L, width].
+        mask: bool [E, L], True where there is a word.
+    """
 
     keys: Tensor
     values: Tensor
@@ -81,8 +88,13 @@ class Text(NamedTuple):
 
 @dataclass
 class State:
-    """Memory of E episodes: hidden [E, width], the last attention over words and the sum of all so
-    far, each [E, L]."""
+    """Memory of E episodes.
+
+    Attributes:
+        hidden: [E, width].
+        last: the last attention over words, [E, L].
+        sum: the sum of all attentions so far, [E, L].
+    """
 
     hidden: Tensor
     last: Tensor
@@ -95,7 +107,7 @@ class State:
 
     @classmethod
     def join(cls, states: Sequence[State]) -> State:
-        """All rows of ``states``, of texts of one length."""
+        """Concatenate ``states`` whose texts have equal length."""
         return cls(*(torch.cat([vars(s)[name] for s in states]) for name in vars(states[0])))
 
     def rows(self, index: Tensor) -> State:
@@ -108,17 +120,27 @@ class State:
 
 
 def gated(inputs: Tensor, hidden: Tensor, cell: nn.GRUCell) -> Tensor:
-    """What ``cell`` makes of ``hidden`` [E, width], its input's part [E, 3 width] given."""
+    """Return the next hidden state of ``cell``, with the input's part [E, 3 width] given."""
     reset, update, new = inputs.chunk(3, -1)
-    held_reset, held_update, held_new = F.linear(hidden, cell.weight_hh, cell.bias_hh).chunk(3, -1)
-    candidate = torch.tanh(new + torch.sigmoid(reset + held_reset) * held_new)
-    kept = torch.sigmoid(update + held_update)
-    return candidate + kept * (hidden - candidate)
+    state = F.linear(hidden, cell.weight_hh, cell.bias_hh)
+    state_reset, state_update, state_new = state.chunk(3, -1)
+    candidate = torch.tanh(new + torch.sigmoid(reset + state_reset) * state_new)
+    keep = torch.sigmoid(update + state_update)
+    return candidate + keep * (hidden - candidate)
 
 
 class Policy(nn.Module):
-    """Args: rgb, depth: features of a column of each sensor; 0 for one that the agent has not.
-    width, heads, text_layers: of the network. vocabulary: of the instructions."""
+    """Recurrent policy over instructions, views and motion.
+
+    Args:
+        rgb: RGB features of a column; 0 without RGB.
+        depth: depth features of a column; 0 without depth.
+        vocabulary: of the instructions.
+        width: width of all layers.
+        heads: attention heads of the text layers.
+        text_layers: number of transformer layers over the text.
+        dropout: dropout rate.
+    """
 
     concept_words: Tensor
 
@@ -166,7 +188,7 @@ class Policy(nn.Module):
         self.distance, self.grounding = nn.Linear(width, 1), nn.Linear(width, GRID)
 
     def read(self, tokens: Tensor) -> Text:
-        """Token ids [E, L] to words."""
+        """Encode token ids [E, L]."""
         mask = tokens != PAD
         x = self.words(tokens) + self.places.weight[: tokens.shape[1]]
         for layer in self.text:
@@ -175,7 +197,7 @@ class Policy(nn.Module):
         return Text(self.keys(x), x, mask)
 
     def look(self, views: Tensor) -> Tensor:
-        """Features [..., F] of views, as the agent encodes them, to columns [..., 4, width]."""
+        """Return columns [..., 4, width] of encoded views [..., F]."""
         rgb, concepts, depth, free = views.split(self.sizes, -1)
         x = self.column
         if self.sizes[0]:
@@ -190,11 +212,11 @@ class Policy(nn.Module):
         return self.column_norm(x)
 
     def step(self, text: Text, columns: Tensor, moves: Tensor, state: State) -> State:
-        """One instant of E episodes: columns [E, 4, width], moves [E, MOVES]."""
+        """Advance E episodes by one step: columns [E, 4, width], moves [E, MOVES]."""
         return self._step(text, columns, self._inputs(columns, moves), state)
 
     def _inputs(self, columns: Tensor, moves: Tensor) -> Tensor:
-        """What of both cells depends on no memory, [..., 6 width]: for all steps at once."""
+        """Return the part of both cells that needs no memory, [..., 6 width], for all steps."""
         x = self.whole(columns.flatten(-2)) + self.move(moves)
         width = x.shape[-1]
         first = F.linear(x, self.first.weight_ih, self.first.bias_ih)
@@ -206,34 +228,42 @@ class Policy(nn.Module):
         into_first, into_second = inputs.chunk(2, -1)
         first = gated(into_first, state.hidden, self.first)
         energy = (text.keys @ self.ask(first)[:, :, None]).squeeze(-1) * KEYS**-0.5
-        around = self.near(torch.stack([state.last, state.sum], 1).to(first.dtype))
-        energy = energy + self.place(torch.tanh(around).transpose(1, 2)).squeeze(-1)
-        due = energy.float().masked_fill(~text.mask, -1e4).softmax(-1).to(text.values.dtype)
-        words = (due[:, None] @ text.values).squeeze(1)
+        location = self.near(torch.stack([state.last, state.sum], 1).to(first.dtype))
+        energy = energy + self.place(torch.tanh(location).transpose(1, 2)).squeeze(-1)
+        attention = energy.float().masked_fill(~text.mask, -1e4).softmax(-1)
+        attention = attention.to(text.values.dtype)
+        words = (attention[:, None] @ text.values).squeeze(1)
         match = (columns @ self.look_for(words)[:, :, None]).squeeze(-1) * width**-0.5
-        found = (match.softmax(-1)[:, None] @ columns).squeeze(1)
-        read = torch.cat([words, found, match], -1)
+        view = (match.softmax(-1)[:, None] @ columns).squeeze(1)
+        read = torch.cat([words, view, match], -1)
         into_second = into_second + F.linear(read, self.second.weight_ih[:, width:])
         hidden = gated(into_second, first, self.second)
-        return State(hidden, due, state.sum + due)
+        return State(hidden, attention, state.sum + attention)
 
     def answer(self, hidden: Tensor) -> Tensor:
-        """Logits [..., 4] over the actions."""
+        """Return logits [..., 4] over the actions."""
         return self.act(self.dropout(hidden)).float()
 
     def forward(self, text: Text, views: Tensor, moves: Tensor) -> dict[str, Tensor]:
-        """All steps of E episodes: views [E, T, F], moves [E, T, MOVES].
+        """Run all steps of E episodes.
 
-        Returns logits [E, T, 4], distance [E, T] (predicted metres to the goal / 5), grounding
-        [E, T, 4] (logit that the goal's landmark shows in a column), state [E, T, width].
+        Args:
+            text: E instructions.
+            views: [E, T, F].
+            moves: [E, T, MOVES].
+
+        Returns:
+            "logits" [E, T, 4]; "distance" [E, T], predicted metres to the goal / 5; "grounding"
+            [E, T, 4], logits that a column shows the goal's landmark; "state" [E, T, width].
         """
         columns = self.look(views)
-        inputs, state = self._inputs(columns, moves), State.start(text)
-        made = []
-        for x, seen in zip(inputs.unbind(1), columns.unbind(1), strict=True):
-            state = self._step(text, seen, x, state)
-            made.append(state.hidden)
-        hidden = torch.stack(made, 1)
+        inputs = self._inputs(columns, moves)
+        state = State.start(text)
+        states = []
+        for x, step_columns in zip(inputs.unbind(1), columns.unbind(1), strict=True):
+            state = self._step(text, step_columns, x, state)
+            states.append(state.hidden)
+        hidden = torch.stack(states, 1)
         return {
             "logits": self.answer(hidden),
             "distance": self.distance(hidden).squeeze(-1).float(),

@@ -1,4 +1,4 @@
-"""Training walks of the recurrent agent: what was seen and done, and the batch made of it."""
+"""Training rollouts of the recurrent agent, and the batch of their steps."""
 
 from __future__ import annotations
 
@@ -17,17 +17,25 @@ from mitigate.worlds.episodes import Episode
 from mitigate.worlds.world import World, as_world, expert_of
 
 INFLECTION = 3.2  # weight of a step at which the expert changes its action (VLN-CE)
-_FARTHEST = 25.0  # metres; the distance loss asks for no more
+_FARTHEST = 25.0  # metres at which targets of the distance loss are clipped
 Piece = dict[str, Any]
 
 
 @dataclass
 class WalkDecisions:
-    """All N steps of E walks: walk, time int64 [N] place each; moves [N, MOVES]; tokens [E, L];
-    target [N, 4]; weight [N]; metres [N] to the goal, NaN where unknown.
+    """All N steps of E rollouts.
 
-    seen: what was seen, by name: features "views" and "clean_views" [N, F], or frames "rgb", ...,
-    "clean_rgb", ... [N, H, W, c]; and the world's labels.
+    Attributes:
+        walk: int64 [N], the rollout of each step.
+        time: int64 [N], the position of each step in its rollout.
+        moves: [N, MOVES].
+        tokens: [E, L].
+        target: [N, 4].
+        weight: [N].
+        metres: [N] to the goal; NaN where unknown.
+        seen: observations by name: features "views" and "clean_views" [N, F], or frames "rgb",
+            "clean_rgb" and so on [N, H, W, c]; and the world's labels.
+        episode_ids: the episode of each step.
     """
 
     walk: Tensor
@@ -48,13 +56,13 @@ class WalkDecisions:
         return replace(self, **moved, seen={n: v.to(device) for n, v in self.seen.items()})
 
     def padded(self, flat: Tensor) -> Tensor:
-        """[N, ...] to [E, T, ...], zeros behind the end of a walk."""
+        """Return [N, ...] as [E, T, ...], with zeros after the end of a rollout."""
         size = (len(self.tokens), int(self.time.max()) + 1)
         return flat.new_zeros(*size, *flat.shape[1:]).index_put((self.walk, self.time), flat)
 
 
 class TrainingWalk:
-    """One training walk: what was seen and done at each step, and the expert's answers."""
+    """One training rollout: the observation, action and expert's answer of each step."""
 
     def __init__(self, world: World, episode: Episode, sensors: Sequence[str]) -> None:
         self.world, self.episode, self.sensors = as_world(world), episode, sensors
@@ -64,17 +72,17 @@ class TrainingWalk:
         self.before = -1
 
     def see(self) -> dict[str, np.ndarray]:
-        """The frames here, in arrays that the world may use again."""
+        """Return the current frames, in arrays that the world may reuse."""
         return self._frames(self.observation)
 
     def _frames(self, observation: Observation) -> dict[str, np.ndarray]:
         return {n: checked.frame(observation, n, 1) for n in self.sensors}
 
-    def note(self, kept: dict[str, np.ndarray], clean: bool, frames: bool) -> None:
-        """Write a step down, with the expert's answer to it."""
+    def record(self, features: dict[str, np.ndarray], clean: bool, frames: bool) -> None:
+        """Add the current step with the expert's answer."""
         action = int(self.expert.action())
         seen = {n: np.array(f) for n, f in self.see().items()} if frames else {}
-        seen |= kept
+        seen |= features
         if clean:
             before = self._frames(self.observation.clean)
             seen |= {f"clean_{n}": np.array(f) for n, f in before.items()}
@@ -101,23 +109,23 @@ class TrainingWalk:
         return min(float(self.expert.distance(place)), _FARTHEST)
 
     def go(self, chances: np.ndarray, expert_share: float, rng: np.random.Generator) -> None:
-        """Take the expert's step, or one of the agent's own."""
+        """Take the expert's action, or an action sampled from ``chances`` [4]."""
         action = self.steps[-1]["answer"]
         if rng.random() >= expert_share:
             total = np.cumsum(chances)
-            own = int(min(np.searchsorted(total, rng.random() * total[-1]), len(total) - 1))
-            action = action if own == STOP else own
+            sampled = int(min(np.searchsorted(total, rng.random() * total[-1]), len(total) - 1))
+            action = action if sampled == STOP else sampled
         self.observation = self.world.step(action)
         self.odometer.add(action)
 
 
 def labels_of(sensors: Sequence[str]) -> tuple[str, ...]:
-    """Labels of the world's truth that encoders of the sensors are taught by."""
+    """Return the labels of the world's truth that train the encoders of ``sensors``."""
     return tuple(name for sensor, name in ((RGB, "concepts"), (DEPTH, "free")) if sensor in sensors)
 
 
 def piece_of(walks: Sequence[TrainingWalk]) -> Piece:
-    """Plain data, tensors and lists, of some walks."""
+    """Return rollouts as plain data: tensors and lists."""
     steps = [step for walk in walks for step in walk.steps]
 
     def column(name: str) -> Tensor:

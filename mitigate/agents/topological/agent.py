@@ -1,7 +1,7 @@
-"""The reference agent: perceive, extend the topological map, choose, walk.
+"""The reference agent: perceive, extend the topological map, choose a ghost, walk to it.
 
 ``reset(instruction)`` starts an episode; ``act(observation)`` returns one low-level action. The
-agent reads ``observation["rgb"]`` and ``["depth"]`` only when it takes a decision, so a lazy
+agent reads ``observation["rgb"]`` and ``["depth"]`` only when it decides, so that a lazy
 observation renders nothing in between.
 """
 
@@ -30,8 +30,8 @@ from mitigate.agents.encoders import (
     agreement,
     f1,
     free_loss,
+    label_output,
     presence_loss,
-    taught,
 )
 from mitigate.agents.text import THINGS, Vocabulary, pad
 from mitigate.agents.topological.mapping import TopologicalMap
@@ -50,13 +50,13 @@ if TYPE_CHECKING:  # it imports tensordict, which is as slow to import as torch
 MAX_DECISIONS = 15  # ETPNav: 15 in R2R-CE
 PERCEPTION = ("rgb_encoder", "depth_encoder", "waypoint_head")
 PARTS = (*PERCEPTION, "planner")
-# of the planner (metres to the goal, which views show what the instruction ends at) and of the
-# perception (what views show, where one can go); chosen for the shipped agents
+# losses of the planner (metres to the goal; which views show the goal's landmark) and of the
+# perception (concepts in views; free space); chosen for the shipped agents
 LOSS_WEIGHTS = {"distance": 0.3, "grounding": 0.3, "concepts": 2.0, "waypoints": 2.0}
-_SCALE = 5.0  # metres: the planner's distance is in units of it
+_SCALE = 5.0  # metres: the unit of the planner's distance
 OWN, IMAGENET = RGB_ENCODERS = ("own", "efficientnet_lite0")
-BORROWED = ("rgb_encoder.stem", "rgb_encoder.stages")  # what does not train of an encoder not ours
-FEATURES = 1 << 25  # bytes of features kept while remembering (heuristic): about 900 panoramas
+BORROWED = ("rgb_encoder.stem", "rgb_encoder.stages")  # frozen modules of the ImageNet encoder
+FEATURES = 1 << 25  # bytes of cached features (heuristic): about 900 panoramas
 
 PLANNER = {  # allowed values of the keyword arguments of ``Planner``
     "width": schema.whole(4, 1024),
@@ -76,14 +76,18 @@ class TopologicalAgent(Agent, nn.Module):
     """ETPNav's structure with about 2.5 M parameters.
 
     Args:
-        width: of view features of each sensor. planner: keyword arguments of ``Planner``.
-        adapters: keyword arguments of ``insert_adapters``, for an agent with adapters.
-        blind: sensors that are blanked before they enter (the ablations): of ``schema.SENSES``.
-        size: pixels of a square view that it works on; frames of another size are resized.
-        encoder: of RGB: "own", or "efficientnet_lite0" (``perception.py``), which stays as it is
-        but for adapters and what reads its map; ``size`` is its alone then, depth stays at 64.
+        width: view features of each sensor.
+        planner: keyword arguments of ``Planner``.
+        blind: inputs to blank for ablations, of ``schema.SENSES``.
+        adapters: keyword arguments of ``insert_adapters``; None: no adapters.
+        size: side in pixels to which frames are resized.
         vocabulary: the words it knows; None: those of the shipped agents.
-    Raises ValueError for an unknown name in ``blind`` and a size that is no multiple of 16.
+        encoder: the RGB encoder: "own", or "efficientnet_lite0" (``perception.py``), of which only
+            adapters and the layers after its feature map train. ``size`` then applies only to RGB;
+            depth stays at 64 pixels.
+
+    Raises:
+        ValueError: A name in ``blind`` is unknown, or ``size`` is not a multiple of 16.
     """
 
     fingerprint_kind = (
@@ -122,7 +126,7 @@ class TopologicalAgent(Agent, nn.Module):
         unknown = set(blind) - set(schema.SENSES)
         if unknown:
             raise ValueError(
-                f"blind={sorted(unknown)} is unknown; choose from {', '.join(schema.SENSES)}."
+                f"blind must be a list of {', '.join(schema.SENSES)}, got {sorted(unknown)}."
             )
         self.blind = tuple(blind)
         self._settings: dict[str, Any] = copy.deepcopy(
@@ -139,7 +143,7 @@ class TopologicalAgent(Agent, nn.Module):
         self._memory: Memory | None = None
         if encoder == IMAGENET:
             self.rgb_encoder, self.frozen = ImageNetEncoder(width, size), BORROWED
-            size = SIZE  # of depth, whose encoder is the base agent's
+            size = SIZE  # the depth encoder is that of the base agent
         else:
             self.rgb_encoder = RGBEncoder(width=width, size=size)
         self.depth_encoder = DepthEncoder(width=width, size=size)
@@ -150,44 +154,48 @@ class TopologicalAgent(Agent, nn.Module):
             insert_adapters(self, **adapters)
 
     def settings(self) -> dict[str, Any]:
-        """All that makes it besides weights: what its config must say."""
+        """Return the constructor's arguments, which the config stores."""
         return {**self._settings, "vocabulary": list(self.vocabulary.words)}
 
     @property
     def device(self) -> torch.device:
         return self.planner.places.weight.device
 
-    # features: what recipes train and distil -------------------------------------------------
+    # features, which recipes train and distil --------------------------------------------------
 
     def perceive(self, rgb: Tensor, depth: Tensor) -> tuple[Tensor, Tensor, Tensor]:
-        """Frames of P panoramas to named features.
+        """Encode P panoramas; blank inputs that the agent is blind to.
 
-        Args: rgb uint8 [P, 12, H, W, 3]; depth float32 metres [P, 12, H, W, 1].
-        Returns views [P, 12, rgb + concepts + depth] (concepts as probabilities), concept logits
-        [P, 12, C], waypoint logits [P, 120, 12].
+        Args:
+            rgb: uint8 [P, 12, H, W, 3].
+            depth: float32 metres [P, 12, H, W, 1].
+
+        Returns:
+            Views [P, 12, rgb + concepts + depth] (concepts as probabilities), concept logits
+            [P, 12, C], waypoint logits [P, 120, 12].
         """
         rgb = torch.zeros_like(rgb) if "rgb" in self.blind else rgb
         depth = torch.zeros_like(depth) if "depth" in self.blind else depth
         return self.encode(rgb, depth)
 
     def encode(self, rgb: Tensor, depth: Tensor) -> tuple[Tensor, Tensor, Tensor]:
-        """As :meth:`perceive`, whatever the agent is blind to."""
+        """Encode as :meth:`perceive`, without blanking."""
         features, concepts = self.encode_rgb(rgb)
         depth_features, waypoints = self.encode_depth(depth)
         return torch.cat([features, concepts.sigmoid(), depth_features], -1), concepts, waypoints
 
     def encode_rgb(self, rgb: Tensor) -> tuple[Tensor, Tensor]:
-        """Features [P, 12, width] and concept logits [P, 12, C]."""
+        """Return features [P, 12, width] and concept logits [P, 12, C]."""
         features, concepts = self.rgb_encoder(rgb.flatten(0, 1))
         return features.unflatten(0, (-1, VIEWS)), concepts.unflatten(0, (-1, VIEWS))
 
     def encode_depth(self, depth: Tensor) -> tuple[Tensor, Tensor]:
-        """Features [P, 12, width] and waypoint logits [P, 120, 12]."""
+        """Return features [P, 12, width] and waypoint logits [P, 120, 12]."""
         features = self.depth_encoder(depth.flatten(0, 1)).unflatten(0, (-1, VIEWS))
         return features, self.waypoint_head(features)
 
     def tokens(self, instructions: list[str]) -> Tensor:
-        """Instructions to padded token ids int64 [E, L]."""
+        """Return padded token ids int64 [E, L] of instructions."""
         encode = self.vocabulary.encode
         rows = [[1] if "instruction" in self.blind else encode(text) for text in instructions]
         return pad(rows).to(self.device)
@@ -198,20 +206,20 @@ class TopologicalAgent(Agent, nn.Module):
     encoders = {RGB: ("rgb_encoder",), DEPTH: ("depth_encoder", "waypoint_head")}
     labels = {RGB: "concepts", DEPTH: "free"}
     plain_walks = False
-    stored_parts = ("planner",)  # what trains on stored features
+    stored_parts = ("planner",)  # parts that can train on stored features
 
     def store(self, world: Callable[[], Any], folder: str, **variants: Any) -> Store:
-        """Features of all scenes of a world, to train on without rendering (``stored.py``)."""
+        """Return features of all scenes of a world, for training without rendering."""
         from mitigate.agents.topological.stored import Store
 
         return Store(self, world, folder, **variants)
 
     def parts(self) -> dict[str, nn.Module]:
-        """Its four modules by name."""
+        """Return its four modules by name."""
         return {name: self.get_submodule(name) for name in PARTS}
 
     def as_teacher(self) -> TopologicalAgent:
-        """A copy without adapters and with plain means over views."""
+        """Return a copy without adapters that takes plain means over views."""
         teacher = copy.deepcopy(self)
         remove_adapters(teacher)
         teacher.planner.fusion = None
@@ -226,8 +234,10 @@ class TopologicalAgent(Agent, nn.Module):
         rngs: Sequence[np.random.Generator],
         clean: bool = False,
     ) -> Piece:
-        """Roll out episodes with the oracle's answers (``agents/agent.py``). Views of a perception
-        that does not train are kept as features, in place of the frames."""
+        """Run episodes and return the decisions with the oracle's answers (``agents/agent.py``).
+
+        If the perception is frozen, the piece holds its features in place of frames.
+        """
         trains = self._trains_perception()
         labels = ("concepts", "free", "goal") if trains else ("goal",)
         walks = [LiveWalk(w, e, labels, clean) for w, e in zip(worlds, episodes, strict=True)]
@@ -255,32 +265,35 @@ class TopologicalAgent(Agent, nn.Module):
         return Piece(traces, seen)
 
     def precompute(self, piece: Piece, *, clean: bool) -> Piece:
-        """With ``clean``: features in place of the clean frames."""
+        """Replace clean frames by their features if ``clean``."""
         if clean and CLEAN_RGB in piece.seen:
             views, _ = self._perceived(piece.seen.pop(CLEAN_RGB), piece.seen.pop(CLEAN_DEPTH))
             piece.seen["clean_views"] = views
         return piece
 
     def join(self, pieces: Sequence[Piece]) -> MapDecisions:
-        """Pieces of :meth:`collect` as one padded batch."""
+        """Return the pieces of :meth:`collect` as one padded batch."""
         return join(pieces, self.tokens)
 
     def decide(self, decisions: MapDecisions, *, clean: bool = False) -> Output:
-        """Logits over [stop] and ghosts; features "views" [P, 12, F], "nodes" [n, width]."""
+        """Return logits over [stop] and ghosts; features "views" [P, 12, F], "nodes" [n, width]."""
         views, losses, figures = self._perception(decisions, clean)
         planner, choices = self.planner, decisions.choices
         out = planner(planner.read(decisions.tokens), planner.look(views), choices)
         distance = F.smooth_l1_loss(out["distance"], decisions.metres / _SCALE, reduction="none")
-        own = {"distance": (distance * choices.valid).sum() / choices.valid.sum()}
+        planner_losses = {"distance": (distance * choices.valid).sum() / choices.valid.sum()}
         if decisions.goal is not None:
-            own["grounding"] = presence_loss(out["grounding"], decisions.goal)
+            planner_losses["grounding"] = presence_loss(out["grounding"], decisions.goal)
         features = {"views": views, "nodes": out["nodes"][choices.valid]}
-        figures |= _stops(out["logits"], decisions.target[:, 0])
-        return Output(out["logits"], choices.allowed, features, {**own, **losses}, figures)
+        figures |= _stop_figures(out["logits"], decisions.target[:, 0])
+        losses = {**planner_losses, **losses}
+        return Output(out["logits"], choices.allowed, features, losses, figures)
 
     def see(self, sensor: str, frames: Tensor, truth: Tensor | None = None) -> Output:
-        """View features of a sensor's frames (``agents/agent.py``); of RGB they hold the
-        probabilities of concepts."""
+        """Return view features of a sensor's frames (``agents/agent.py``).
+
+        RGB features include the probabilities of concepts.
+        """
         views = frames.shape[1]
         if sensor == DEPTH:
             features = self.depth_encoder(frames.flatten(0, 1)).unflatten(0, (-1, views))
@@ -290,16 +303,16 @@ class TopologicalAgent(Agent, nn.Module):
                 x.unflatten(0, (-1, views)) for x in self.rgb_encoder(frames.flatten(0, 1))
             )
             features = torch.cat([features, logits.sigmoid()], -1)
-        return taught(features, logits, sensor, truth)
+        return label_output(features, logits, sensor, truth)
 
     def _trains_perception(self) -> bool:
-        """Whether any weight that makes view features is trained."""
+        """Return whether any weight of the perception is trained."""
         parts = self.parts()
         return any(p.requires_grad for name in PERCEPTION for p in parts[name].parameters())
 
     @torch.no_grad()
     def _perceived(self, rgb: np.ndarray, depth: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """View features and waypoint logits of panoramas, without gradients."""
+        """Return view features and waypoint logits of panoramas, without gradients."""
         frames = (torch.from_numpy(array).to(self.device) for array in (rgb, depth))
         views, _, waypoints = self.perceive(*frames)
         return views.float().cpu().numpy(), waypoints.float().cpu().numpy()
@@ -307,7 +320,7 @@ class TopologicalAgent(Agent, nn.Module):
     def _perception(
         self, seen: MapDecisions, clean: bool
     ) -> tuple[Tensor, dict[str, Tensor], dict[str, Tensor]]:
-        """View features [P, 12, F], and the perception's losses and figures where it trains."""
+        """Return view features [P, 12, F], and the losses and figures of a trained perception."""
         if clean:
             if seen.clean_views is not None:
                 return seen.clean_views, {}, {}
@@ -334,9 +347,11 @@ class TopologicalAgent(Agent, nn.Module):
 
     @contextmanager
     def remembering(self) -> Iterator[None]:
-        """Within it, :meth:`act` encodes equal frames once: what the encoders made of the latest
-        ones is kept. The same frames give the same features, so no action depends on it, as long
-        as the weights stay as they are; in training mode nothing is kept."""
+        """Cache the features of recent frames, so that :meth:`act` encodes equal frames once.
+
+        Actions do not change, because equal frames have equal features. The weights must not
+        change inside the context. In training mode nothing is cached.
+        """
         before, self._memory = self._memory, Memory(FEATURES)
         try:
             yield
@@ -344,24 +359,29 @@ class TopologicalAgent(Agent, nn.Module):
             self._memory = before
 
     def reset(self, instruction: str) -> None:
-        """Start an episode. Raises TypeError if ``instruction`` is no string; warns if the agent
-        knows none of its words."""
+        """Start an episode; warn if the agent knows no word of ``instruction``.
+
+        Raises:
+            TypeError: ``instruction`` is not a string.
+        """
         checked.instruction(instruction, self.vocabulary)
         self.map, self.controller = TopologicalMap(), Controller()
         self._started = True
         self.decisions = 0
         self._views: list[Tensor] = []
         self._stop_scores: list[tuple[float, int]] = []
-        self._chosen: int | None = None  # the ghost that it walks to
+        self._chosen: int | None = None  # the ghost that the agent is walking to
         self._final = False
         with torch.inference_mode():
             self._text = self.planner.read(self.tokens([instruction]))
 
     def act(self, observation: Mapping[str, np.ndarray]) -> int:
-        """One low-level action. Reads frames only when a decision is due.
+        """Return one low-level action; read frames only when a decision is due.
 
-        Raises RuntimeError before the first ``reset``, and what ``agents/observation.py`` refuses:
-        KeyError, TypeError or ValueError for a missing entry, a wrong dtype, shape or unit.
+        Raises:
+            RuntimeError: ``reset`` was not called.
+            KeyError, TypeError, ValueError: An entry of the observation is missing or has a wrong
+                dtype, shape or unit.
         """
         check_started(self._started)
         action = self.controller.action(checked.pose(observation))
@@ -372,13 +392,15 @@ class TopologicalAgent(Agent, nn.Module):
         return action
 
     def taken(self, action: int, metres: float, radians: float) -> None:
-        """Somebody else drives: forget the route, and decide anew at the next step."""
-        self.controller, self._chosen = Controller(), None
-        self.decisions, self._final = 0, False  # the limit is of its own walks
+        """Drop the route after another driver moved the agent, and decide at the next step."""
+        self.controller = Controller()
+        self._chosen = None
+        self.decisions = 0  # the limit counts only decisions since the last intervention
+        self._final = False
 
     @property
     def aim(self) -> np.ndarray | None:  # type: ignore[override]
-        """Where its route ends, plan metres [2], or None."""
+        """The end of its route, plan metres [2], or None."""
         return self.controller.route[-1] if self.controller.route else None
 
     @torch.inference_mode()
@@ -408,7 +430,7 @@ class TopologicalAgent(Agent, nn.Module):
         return True
 
     def _see(self, rgb: np.ndarray, depth: np.ndarray) -> tuple[Tensor, np.ndarray]:
-        """View features [1, 12, ...] and waypoints [n, 2] of one panorama, as :meth:`perceive`."""
+        """Return view features [1, 12, ...] and waypoints [n, 2] of one panorama."""
 
         def encode_rgb(frames: Tensor) -> tuple[Tensor, Tensor]:
             features, concepts = self.encode_rgb(frames)
@@ -423,28 +445,27 @@ class TopologicalAgent(Agent, nn.Module):
         return torch.cat([features, concepts, depth_features], -1), waypoints
 
     def _once(self, sensor: str, frames: np.ndarray, encode: Callable[[Tensor], tuple]) -> tuple:
-        """What ``encode`` makes of the frames [12, H, H, c] of a sensor, or made of equal ones
-        before, while :meth:`remembering`."""
+        """Return ``encode`` of a sensor's frames [12, H, H, c], cached in :meth:`remembering`."""
         frames = np.zeros_like(frames) if sensor in self.blind else frames
 
-        def made() -> tuple:
+        def encoded() -> tuple:
             return encode(torch.from_numpy(frames)[None].to(self.device))
 
         if self._memory is None or self.training:
-            return made()
+            return encoded()
         digest = blake2b(frames.data, digest_size=16).digest()
-        return self._memory.recall((sensor, frames.shape, digest), made)
+        return self._memory.recall((sensor, frames.shape, digest), encoded)
 
     def _give_up(self) -> bool:
-        """At the limit: walk to the visited node with the best stop score (as ETPNav) and stop."""
+        """Walk to the visited node with the best stop score and stop there (as ETPNav)."""
         self._final = True
         node = max(self._stop_scores)[1]
         self.controller.follow(self.map.route_to_node(node))
         return True
 
 
-def _stops(logits: Tensor, stop: Tensor) -> dict[str, Tensor]:
-    """How many of the stops were taken, and how many decisions were wrongly ended by one."""
+def _stop_figures(logits: Tensor, stop: Tensor) -> dict[str, Tensor]:
+    """Return the recall of stops and the rate of false stops."""
     chosen = logits.argmax(-1) == 0
     return {
         "stop_recall": (chosen & (stop > 0)).sum() / stop.sum().clamp(min=1),

@@ -13,13 +13,15 @@ import numpy as np
 from mitigate.core.observation import VIEW_STEP_DEGREES, VIEWS
 
 MERGE = 0.6  # metres (ETPNav: 0.5)
-SIGHTINGS = 4  # views remembered by a ghost
-GEOMETRY = 12  # numbers that place a token relative to the agent
+SIGHTINGS = 4  # views stored per ghost
+GEOMETRY = 12  # features of a token's position relative to the agent
 _STOP, _NODE, _GHOST = 0, 1, 2
 
 
 @dataclass
 class Ghost:
+    """A place that was seen from nodes ``parents`` but not visited."""
+
     position: np.ndarray
     parents: list[int]
     sightings: list[tuple[int, int]]  # (panorama, view)
@@ -28,11 +30,15 @@ class Ghost:
 
 @dataclass(frozen=True)
 class Decision:
-    """Everything a planner needs for one choice; token order is [stop], nodes, ghosts.
+    """Input of the planner for one decision; the order of tokens is [stop], nodes, ghosts.
 
-    panorama: index of the current panorama. nodes: int [n]; the panorama of each node. sightings:
-    int [g, SIGHTINGS, 2] = (panorama, view) of each ghost, -1 where unused. geometry: float32
-    [1 + n + g, GEOMETRY]. ghosts: their ids, in order. travel: metres along the map to each ghost.
+    Attributes:
+        panorama: index of the current panorama.
+        nodes: int [n], the panorama of each node.
+        sightings: int [g, SIGHTINGS, 2], (panorama, view) of each ghost; -1 where unused.
+        geometry: float32 [1 + n + g, GEOMETRY].
+        ghosts: ids of the ghosts, in order.
+        travel: metres along the map to each ghost.
     """
 
     panorama: int
@@ -45,6 +51,8 @@ class Decision:
 
 @dataclass
 class TopologicalMap:
+    """Visited nodes with edges in metres, ghosts by id, and the panorama of each node."""
+
     positions: list[np.ndarray] = field(default_factory=list)
     edges: list[dict[int, float]] = field(default_factory=list)
     ghosts: dict[int, Ghost] = field(default_factory=dict)
@@ -55,7 +63,7 @@ class TopologicalMap:
     _born: int = 0
 
     def add(self, pose: np.ndarray, waypoints: np.ndarray) -> None:
-        """Enter a panorama at ``pose`` [3] with ``waypoints`` [n, 2] (yaw clockwise, metres)."""
+        """Add a panorama at ``pose`` [3] with ``waypoints`` [n, 2] (yaw clockwise, metres)."""
         self.start = pose.copy() if self.start is None else self.start
         node = self._visit(pose[:2].astype(np.float64))
         for yaw, metres in waypoints:
@@ -66,21 +74,21 @@ class TopologicalMap:
         self.panoramas += 1
 
     def route(self, ghost: int) -> list[np.ndarray]:
-        """Positions to pass on the way to a ghost, the ghost last."""
+        """Return the positions on the way to a ghost, which is the last one."""
         distance, before = self._dijkstra()
         parent = min(self.ghosts[ghost].parents, key=lambda p: distance[p] + self._gap(p, ghost))
         return [*self._nodes_to(parent, before), self.ghosts[ghost].position]
 
     def route_to_node(self, node: int) -> list[np.ndarray]:
-        """Positions to pass on the way to a visited node."""
+        """Return the positions on the way to a visited node."""
         return self._nodes_to(node, self._dijkstra()[1])
 
     def arrive(self, ghost: int) -> None:
-        """Forget a ghost that was chosen: what is there now is a node."""
+        """Remove a ghost that was reached, because a node takes its place."""
         self.ghosts.pop(ghost, None)
 
     def decision(self, pose: np.ndarray) -> Decision:
-        """The choice at a pose, after ``add``."""
+        """Return the decision at a pose, after ``add``."""
         distance, _ = self._dijkstra()
         ids = list(self.ghosts)
         travel = np.array(
@@ -166,7 +174,7 @@ class TopologicalMap:
         return float(np.hypot(*(self.positions[node] - self.ghosts[ghost].position)))
 
     def _dijkstra(self) -> tuple[np.ndarray, dict[int, int]]:
-        """Metres from the current node to every node, and each node's predecessor."""
+        """Return metres from the current node to every node, and each node's predecessor."""
         distance = np.full(len(self.positions), np.inf)
         distance[self.current] = 0.0
         before: dict[int, int] = {}

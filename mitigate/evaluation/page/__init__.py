@@ -1,1 +1,1 @@
-"""One HTML file that shows result rows: tables, heatmaps, curves, episodes, walks; no network."""
+"""An HTML report of result rows in one file: tables, heatmaps, curves, episodes, trajectories."""

@@ -1,8 +1,8 @@
 """Write result rows as one HTML file: ``mitigate report ROWS... --out report.html``.
 
-Takes row files and run or sweep folders, partial ones too. The file needs no network and no other
-file: tables that sort, heatmaps whose cells list their episodes, curves, and walks where weights
-are named that can walk again (``--walk base=checkpoints/base``).
+Takes row files and run or sweep folders, also partial ones. The page is one file and needs no
+network. It has sortable tables, heatmaps whose cells list their episodes, and curves. With
+``--walk base=checkpoints/base`` agents run some episodes again, and the page draws their walks.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from mitigate.core.progress import Progress
 
 OUT = Path("runs/report.html")
 ROWS = "docs/results"
-MOST_WALKS = 200  # of a page (ours): each has two pictures, about 40 KB
+MOST_WALKS = 200  # largest number per page (heuristic): each has two pictures of about 40 KB
 
 
 def run(
@@ -33,27 +33,34 @@ def run(
     """Write the page of the rows in ``paths`` to ``out`` and return it.
 
     Args:
-        walk: (name in the rows, weights) of the agents whose walks are drawn, the plain one first.
-        walks: how many episodes of ``options``' split they walk. seed: of the rows' keys that they
-            walk by. options: of ``mitigate evaluate``, such as "split=val_seen".
-    Raises FileNotFoundError for a path without rows, ValueError for damaged rows, names that are
-    not in them, options without ``walk`` and an ``out`` that does not end in .html.
+        paths: row files or folders.
+        out: the page.
+        title: heading of the page.
+        walk: (name in the rows, weights) of agents whose trajectories are drawn, baseline first.
+        walks: number of episodes for that.
+        seed: corruption seed for that; one of the rows.
+        options: options of ``mitigate evaluate``, such as "split=val_seen".
+
+    Raises:
+        FileNotFoundError: A path has no rows.
+        ValueError: Rows are damaged, a name is not in them, there are options without ``walk``, or
+            ``out`` does not end in .html.
     """
     from mitigate.evaluation import rows
     from mitigate.evaluation.page import document
     from mitigate.evaluation.page.document import report
 
-    document.check_out(out)  # before the walks, which take minutes
+    document.check_out(out)  # before the rollouts, which take minutes
     if options and not walk:
         raise ValueError(
-            f"There is no file {options[0]}, and an option says only where agents walk: check the "
-            "path, or name the agents with --walk NAME=WEIGHTS."
+            f"There is no file {options[0]}, and options apply only to agents that run episodes. "
+            "Check the path, or name agents with --walk NAME=WEIGHTS."
         )
     files = [file for path in paths for file in rows.files(path)]
     with Progress("rows", len(files), unit="file") as progress:
-        held = rows.gather(_each(files, progress))
-    drawn = list(_walks(held, walk, walks, seed, options)) if walk else []
-    return document.write(report(held, title=title, walks=drawn), out)
+        all_rows = rows.gather(_each(files, progress))
+    drawn = list(_walks(all_rows, walk, walks, seed, options)) if walk else []
+    return document.write(report(all_rows, title=title, walks=drawn), out)
 
 
 def _each(files: Sequence[Path], progress: Progress) -> Iterator[Path]:
@@ -63,7 +70,7 @@ def _each(files: Sequence[Path], progress: Progress) -> Iterator[Path]:
 
 
 def _walks(
-    held: Sequence[dict[str, Any]],
+    rows: Sequence[dict[str, Any]],
     walk: Sequence[tuple[str, str]],
     most: int,
     seed: int,
@@ -76,31 +83,31 @@ def _walks(
     from mitigate.evaluation.config import read
     from mitigate.evaluation.page.walks import walk_again
 
-    names = {row["name"] for row in held}
+    names = {row["name"] for row in rows}
     for name, _ in walk:
         if name not in names:
             raise ValueError(unknown("agent in these rows", name, names))
     config = read(conf.load_config("evaluate", options))
     world = maker(config.env.world)()
-    own = [r for r in held if r["split"] == config.split and r["rule"] == world.rule]
+    matching = [r for r in rows if r["split"] == config.split and r["rule"] == world.rule]
     agents: dict[str, Any] = {
         name: evaluate.load(config.agent, weights or None, overrides=options)
         for name, weights in walk
     }
     listed = evaluate.episodes(config.env, config.split, None)
     with Progress("walks", most, unit="episode") as progress:
-        for drawn in walk_again(agents, world, listed, own, most=most, seed=seed):
+        for drawn in walk_again(agents, world, listed, matching, most=most, seed=seed):
             progress.advance()
             yield drawn
 
 
 def named(text: str) -> tuple[str, str]:
-    """Return ("base", "checkpoints/base") of "base=checkpoints/base"; no weights of "base="."""
+    """Split "base=checkpoints/base" into name and weights; the weights may be empty."""
     name, equals, weights = text.partition("=")
     if not name or not equals:
         raise argparse.ArgumentTypeError(
-            f"{text!r} must be NAME=WEIGHTS, such as base=checkpoints/base (NAME= of an agent that "
-            "has none)"
+            f"must be NAME=WEIGHTS, such as base=checkpoints/base (NAME= for an agent without "
+            f"weights), got {text!r}"
         )
     return name, weights
 
@@ -117,7 +124,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         nargs="*",
         metavar="ROWS",
         help=f"row files or run folders (default {ROWS}); words with = are options of mitigate "
-        "evaluate that say where agents walk, such as split=val_seen",
+        "evaluate for the agents of --walk, such as split=val_seen",
     )
     parser.add_argument("--out", type=Path, default=OUT, help=f"file to write (default {OUT})")
     parser.add_argument("--title", default="Results", help="heading of the page")
@@ -127,42 +134,44 @@ def main(argv: Sequence[str] | None = None) -> int:
         type=named,
         default=[],
         metavar="NAME=WEIGHTS",
-        help="draw walks of this agent of the rows; the plain one first, then hardened ones",
+        help="draw walks of this agent of the rows; the baseline first, then hardened agents",
     )
     parser.add_argument(
-        "--config-dir", type=Path, help="where the configs are of agents and worlds of your own"
+        "--config-dir", type=Path, help="folder of configs of your agents and worlds"
     )
-    parser.add_argument("--walks", type=int, default=12, help="how many episodes (default 12)")
-    parser.add_argument("--seed", type=int, default=0, help="of the rows that are walked again")
-    given = vars(parser.parse_intermixed_args(argv))
-    words, configs = given.pop("rows"), given.pop("config_dir")
+    parser.add_argument("--walks", type=int, default=12, help="number of episodes (default 12)")
+    parser.add_argument("--seed", type=int, default=0, help="corruption seed of the walks' rows")
+    arguments = vars(parser.parse_intermixed_args(argv))
+    words, configs = arguments.pop("rows"), arguments.pop("config_dir")
     paths = [word for word in words if "=" not in word or Path(word).exists()]
     options = [word for word in words if word not in paths]
-    if configs is not None and given["walk"]:
+    if configs is not None and arguments["walk"]:
         options = [f"--config-dir={configs}", *options]
-    if not 1 <= given["walks"] <= MOST_WALKS:
-        parser.error(f"--walks {given['walks']}: give 1 to {MOST_WALKS}.")
-    return told("report", lambda: run(paths or [_shipped()], options=options, **given))
+    if not 1 <= arguments["walks"] <= MOST_WALKS:
+        parser.error(f"--walks must be from 1 to {MOST_WALKS}, got {arguments['walks']}.")
+    return run_command("report", lambda: run(paths or [_shipped()], options=options, **arguments))
 
 
-def told(name: str, work: Callable[[], Path | None]) -> int:
-    """Do ``work``, which returns the file it wrote, if any; return the exit status, and say what is
-    wrong with an input in one paragraph."""
+def run_command(name: str, work: Callable[[], Path | None]) -> int:
+    """Call ``work`` and return the exit status: 2 for an invalid input, whose error is printed.
+
+    ``work`` returns the file that it wrote, if any.
+    """
     from hydra.errors import HydraException
     from omegaconf.errors import OmegaConfBaseException
 
     from mitigate.core import conf
 
     try:
-        written = work()
+        path = work()
     except (OSError, ValueError) as error:
         print(f"{name}: {conf.said(error)}", file=sys.stderr)
         return 2
     except (HydraException, OmegaConfBaseException) as error:
         print(f"{name}: {conf.explain(error, 'evaluate')}", file=sys.stderr)
         return 2
-    if written is not None:
-        print(f"wrote {written} ({Path(written).stat().st_size / 1e6:.1f} MB)")
+    if path is not None:
+        print(f"wrote {path} ({Path(path).stat().st_size / 1e6:.1f} MB)")
     return 0
 
 
@@ -171,5 +180,5 @@ def _shipped() -> Path:
 
     folder = find(ROWS)
     if not folder.is_dir():
-        raise FileNotFoundError(f"There is no {ROWS} here: name row files or run folders.")
+        raise FileNotFoundError(f"There is no folder {ROWS}. Name row files or run folders.")
     return folder

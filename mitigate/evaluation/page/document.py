@@ -1,7 +1,7 @@
-"""The page as one HTML file: styles, scripts and data inside, nothing fetched from anywhere.
+"""Write the page as one HTML file with its styles, scripts and data; nothing is fetched.
 
-What rows say is data to the scripts, which put it in as text. It cannot end its element (``<`` is
-escaped), and the page's policy lets no other script, style or address in than those written here.
+The contents of rows are data, which the scripts insert as text. They cannot close their element,
+because ``<`` is escaped, and the page's policy allows only the scripts and styles written here.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ SCRIPTS = ("dom", "data", "colours", "table", "heatmap", "episodes", "curves", "
 
 
 def _page(data: dict[str, Any], packed: str) -> str:
-    """Return the HTML page of ``data``, as the scripts read them; ``packed``: the episodes."""
+    """Return the HTML page of ``data``, which the scripts read, and the ``packed`` episodes."""
     style = (ASSETS / "style.css").read_text(encoding="utf-8")
     scripts = [(ASSETS / f"{name}.js").read_text(encoding="utf-8") for name in SCRIPTS]
     script = '(() => {\n"use strict";\n' + "\n".join(scripts) + "})();\n"
@@ -45,13 +45,14 @@ def _page(data: dict[str, Any], packed: str) -> str:
 
 
 def check_out(out: Path | str) -> Path:
-    """Return ``out``; raise ValueError unless it is the name of a page. A page replaces what is
-    there, which must not be rows."""
+    """Return ``out`` as a path; raise ValueError unless it is a name of an HTML file.
+
+    A page replaces an existing file, which must not be a file of rows.
+    """
     path = Path(out)
     if path.suffix.lower() not in SUFFIXES or path.is_dir():
         raise ValueError(
-            f"A page cannot be written to {str(out)!r}, which it would replace: name a file that "
-            "ends in .html, such as report.html."
+            f"The file of a page must end in .html, such as report.html, got {str(out)!r}."
         )
     return path
 
@@ -65,13 +66,13 @@ def write(text: str, out: Path | str) -> Path:
 
 
 def _filled(frame: str, values: dict[str, str]) -> str:
-    """Return ``frame`` with each ``%NAME%`` replaced once; what is put in is not read again."""
+    """Return ``frame`` with each ``%NAME%`` replaced once; replacements are not scanned again."""
     pieces = frame.split("%")
     return "".join(values.get(piece, piece) for piece in pieces)
 
 
 def _embedded(data: Any) -> str:
-    """Return JSON that an HTML parser takes as one text."""
+    """Return JSON that an HTML parser reads as one text."""
     text = json.dumps(data, allow_nan=False, separators=(",", ":"))
     return text.replace("<", "\\u003c").replace(">", "\\u003e").replace("&", "\\u0026")
 
@@ -90,41 +91,47 @@ def report(
 ) -> str:
     """Return the HTML page of ``rows``.
 
-    ``walks`` as ``walks.walk_again`` yields them; ``notes``: lines under the tables; ``most``: how
-    many episodes of cells it may hold.
-    Raises ValueError if there are no rows.
+    Args:
+        rows: result rows.
+        title: heading of the page.
+        walks: results of ``walks.walk_again``.
+        notes: lines below the tables.
+        most: largest number of episodes of cells in the page.
+
+    Raises:
+        ValueError: There are no rows.
     """
-    held = list(rows)
-    parts, packed = sections(held), Packed(most)
-    shown = [{**section_data(part), "grid": packed.add(part, held)} for part in parts]
-    largest = max(range(len(shown)), key=lambda n: _size(shown[n]))
+    rows = list(rows)
+    parts, packed = sections(rows), Packed(most)
+    tables = [{**section_data(part), "grid": packed.add(part, rows)} for part in parts]
+    largest = max(range(len(tables)), key=lambda n: _size(tables[n]))
     notes = list(notes)
     if packed.left_out:
         notes.append(
             f"The episodes of {counted(len(packed.left_out), 'cell')} are not in this file, which "
-            f"holds {most:,} episodes at most: their numbers stand, but such cells do not open. "
-            "Name fewer rows to see them."
+            f"holds at most {most:,} episodes. The numbers are correct, but these cells cannot be "
+            "opened. Name fewer rows to see them."
         )
     data = {
         "title": title,
-        "about": f"{len(held):,} rows: {_listed({row['name'] for row in held})}.",
-        "sections": shown,
+        "about": f"{len(rows):,} rows: {_listed({row['name'] for row in rows})}.",
+        "sections": tables,
         "curves": curves(parts),
         "grids": packed.grids,
         "walks": list(walks),
         "notes": notes,
         "first": largest,
         "end": f"Made by mitigate {version('mitigate')}, corruption suite {SUITE_VERSION}. "
-        "This file is whole: it asks no network for anything.",
+        "This file is self-contained and needs no network.",
     }
     return _page(data, packed.text())
 
 
-def _size(shown: dict[str, Any]) -> int:
-    return sum(cell[2] for line in shown["cells"] for cell in line)
+def _size(table: dict[str, Any]) -> int:
+    return sum(cell[2] for line in table["cells"] for cell in line)
 
 
 def _listed(names: set[str], most: int = 8) -> str:
-    held = sorted(names)
-    more = f" and {len(held) - most} more agents" if len(held) > most else ""
-    return ", ".join(held[:most]) + more
+    ordered = sorted(names)
+    more = f" and {len(ordered) - most} more agents" if len(ordered) > most else ""
+    return ", ".join(ordered[:most]) + more

@@ -1,7 +1,7 @@
-"""What the page shows, as plain data: numbers of sections, paired differences, curves and episodes.
+"""The page's content as plain data: numbers of sections, differences, curves and episodes.
 
-The page's scripts read these as JSON, draw them and compute nothing but signs. A number is
-``[value, low, high]`` with its 95 % interval, or None where nothing was measured.
+The page's scripts read it as JSON and draw it. A number is ``[value, low, high]`` with its 95 %
+interval, or None if nothing was measured.
 """
 
 from __future__ import annotations
@@ -21,21 +21,20 @@ from mitigate.evaluation.grid import METRICS, Grid
 from mitigate.evaluation.rows import Row
 from mitigate.evaluation.sections import Retained, Section, compare, label
 
-BASELINES = 12  # columns that the others can be compared with, the first ones (ours)
+BASELINES = 12  # number of first columns that others can be compared with (heuristic)
 DIGITS = 6
 CLEAN = "clean"
 Numbers = list[Any] | None
 
 
 def section_data(section: Section) -> dict[str, Any]:
-    """Return all that the page shows of one section but its episodes.
+    """Return the page's data of one section, except its episodes.
 
-    ``columns`` are the agents, ``measures`` the columns of the table, ``values[c][m]`` their
-    numbers, where one may need marks with these as the fourth entry. ``corruptions`` are those of
-    the heatmap, clean first, ``cells[c][k]`` is [SR, SPL, episodes held, shares of the column's own
-    clean SR and SPL]. ``pairs["i-j"]`` are the
-    differences of column i to column j, i > j, j one of the first ``baselines``; None for two
-    without a common seed.
+    ``columns`` are the agents and ``measures`` the columns of the table. ``values[c][m]`` are their
+    numbers, with marks as a fourth entry if needed. ``corruptions`` are those of the heatmap, clean
+    first. ``cells[c][k]`` is [SR, SPL, number of episodes, share of the column's clean SR, share of
+    its clean SPL]. ``pairs["i-j"]`` are the differences of column i to column j, for i > j and j
+    among the first ``baselines``; None without a common seed.
     """
     grid = section.grid
     values = [_values(section, column) for column in section.columns]
@@ -76,13 +75,15 @@ def numbers(found: Estimate | None) -> Numbers:
 
 
 def has_width(found: Sequence[Any]) -> bool:
-    """Whether numbers have an interval that says anything, or none that is shown."""
+    """Return whether numbers have an interval with a width, or no interval at all."""
     return None in found[1:3] or found[2] - found[1] > ROUNDING
 
 
 def shortened(x: float) -> float:
-    """Return ``x`` with :data:`DIGITS` digits, or whole where that would show another number: shown
-    is percent with one digit, or two digits."""
+    """Return ``x`` rounded to :data:`DIGITS` digits, or unchanged if that changes the page.
+
+    The page shows per cent with one digit, or two digits.
+    """
     short = round(x, DIGITS)
     same = f"{100 * x:.1f} {x:.2f}" == f"{100 * short:.1f} {short:.2f}"
     return short if same else x
@@ -126,12 +127,12 @@ def _prs_places(section: Section) -> list[tuple[str, str]]:
 
 
 def _measures(section: Section) -> list[dict[str, str]]:
-    shown = [{"title": "Clean SR", "unit": "%"}, {"title": "Clean SPL", "unit": ""}]
+    measures = [{"title": "Clean SR", "unit": "%"}, {"title": "Clean SPL", "unit": ""}]
     if section.corrupted:
-        shown.append({"title": f"Mean SR, {_whole(section)} corruptions", "unit": "%"})
+        measures.append({"title": f"Mean SR, {_whole(section)} corruptions", "unit": "%"})
     for part, metric in _prs_places(section):
-        shown.append({"title": f"PRS-{metric} ({part})", "unit": ""})
-    return shown
+        measures.append({"title": f"PRS-{metric} ({part})", "unit": ""})
+    return measures
 
 
 def _whole(section: Section) -> int:
@@ -171,15 +172,16 @@ def _cells(section: Section, column: str, names: Sequence[str]) -> list[list[Any
 
 
 def _kept(section: Section, column: str, name: str, metric: str) -> float | None:
-    """Return the PRS of one corruption alone: over the episodes that are measured clean, too, and
-    None where these are too few for a PRS."""
+    """Return the PRS of one corruption, or None if it has too few episodes for a PRS."""
     parts = section.grid.retention([column], [name], section.severity, METRICS[metric])
     return None if parts is None or math.isnan(parts[0].prs) else shortened(parts[0].prs)
 
 
 def _pairs(section: Section, names: Sequence[str]) -> dict[str, Any]:
-    """Return the differences of all columns to each of the first ones, paired over the seeds and
-    the episodes that both have: on other seeds they met corruptions of other keys."""
+    """Return the differences of all columns to each of the first ones.
+
+    They are paired over common seeds, whose corruptions have the same keys, and common episodes.
+    """
     found: dict[str, Any] = {}
     for j, second in enumerate(section.columns[:BASELINES]):
         for i, first in enumerate(section.columns[j + 1 :], start=j + 1):
@@ -215,12 +217,10 @@ def _notes(section: Section, values: list[list[Numbers]], pairs: Mapping[str, An
         notes.append("‡ The clean value is so low that a PRS says little.")
     if "†" in marks:
         notes.append(
-            "† k/K: over k of the K corruptions; the others are not measured or not whole."
+            "† k/K: over k of the K corruptions; the others are not measured or not complete."
         )
     if section.gaps:
-        notes.append(
-            "* Over fewer episodes than there are: point at a cell to read how many it holds."
-        )
+        notes.append("* Over a part of the episodes: point at a cell to read how many it has.")
     for column in section.columns:
         for seed, (have, want) in section.grid.unfinished[column, section.severity].items():
             notes.append(
@@ -235,17 +235,17 @@ def _notes(section: Section, values: list[list[Numbers]], pairs: Mapping[str, An
     return notes
 
 
-CURVE_RESAMPLES = 2000  # of a point's interval (ours)
+CURVE_RESAMPLES = 2000  # resamples of a point's interval (heuristic)
 
 
 def curves(parts: Sequence[Section]) -> list[dict[str, Any]]:
-    """Return a figure for each grid of ``parts`` where a corruption was met at two severities.
+    """Return a figure for each grid of ``parts`` with a corruption at two or more severities.
 
-    ``panels[p]["lines"]`` hold "column", "count" and "points" [severity, SR, low, high]. All points
-    of a line, the clean one at 0 too, are over the same seeds and episodes, those that each of them
-    holds: ``count`` episodes.
+    ``panels[p]["lines"]`` have "column", "count" and "points" [severity, SR, low, high]. All points
+    of a line, including the clean one at 0, are over the same seeds and the same ``count``
+    episodes.
     """
-    found: list[dict[str, Any]] = []
+    figures: list[dict[str, Any]] = []
     done: list[Grid] = []
     for section in parts:
         if any(section.grid is grid for grid in done):
@@ -257,8 +257,8 @@ def curves(parts: Sequence[Section]) -> list[dict[str, Any]]:
             title = f"{grid.heading}, suite {grid.suite}"
             columns = [x for x in grid.columns if any(_has(panel, x) for panel in panels)]
             title += f", {section.kind}" if section.kind else ""
-            found.append({"title": title, "columns": columns, "panels": panels})
-    return found
+            figures.append({"title": title, "columns": columns, "panels": panels})
+    return figures
 
 
 def _has(panel: dict[str, Any], column: str) -> bool:
@@ -299,17 +299,23 @@ def _line(grid: Grid, column: str, name: str) -> dict[str, Any] | None:
     return {"column": column, "count": int(common.sum()), "points": points}
 
 
-MOST_EPISODES = 500_000  # episodes of cells in one page (ours): 4 MB
+MOST_EPISODES = 500_000  # episodes of cells in one page (heuristic): 4 MB
 MISSING = 65_535
-SCALE = 1000  # of success and SPL
+SCALE = 1000  # factor of success and SPL
 _Place = tuple[str, str, float, int]  # column, corruption, severity, seed
 
 
 @dataclass
 class Packed:
-    """Cells of any number of grids. ``grids`` are what the page reads: the episodes' ids, and where
-    in the data each cell begins, by "column|corruption|severity|seed"; ``left_out`` are the cells
-    that the bound leaves no room for, all seeds of each."""
+    """Cells of any number of grids, packed for the page.
+
+    Attributes:
+        most: largest number of episodes of cells.
+        grids: per grid the ids of its episodes, and the offset of each cell in the data, by
+            "column|corruption|severity|seed".
+        left_out: cells that exceed ``most``, with all their seeds.
+        held: number of packed episodes.
+    """
 
     most: int = MOST_EPISODES
     grids: list[dict[str, Any]] = field(default_factory=list)
@@ -319,9 +325,10 @@ class Packed:
     _known: list[Grid] = field(default_factory=list)
 
     def add(self, section: Section, rows: Iterable[Row]) -> int:
-        """Pack the cells of ``section`` that are not there yet; return the number of its grid.
+        """Pack the cells of ``section`` that are not packed yet; return the number of its grid.
 
-        ``rows`` are all rows, of which the steps are read."""
+        ``rows`` are all result rows, from which steps are read.
+        """
         grid = section.grid
         if not any(grid is known for known in self._known):
             self._known.append(grid)
@@ -344,7 +351,7 @@ class Packed:
         return base64.b64encode(flat.astype("<u2").tobytes()).decode()
 
     def _add(self, number: int, key: str, grid: Grid, places: Sequence[_Place]) -> None:
-        """Pack what is not there yet of a cell that all its seeds measured, if all have room."""
+        """Pack all seeds of a cell that are not packed yet, or none if they exceed the limit."""
         cells, count = self.grids[number]["cells"], len(grid.episodes)
         if not all((name, at, METRICS["SR"]) in grid.runs[x][seed] for x, name, at, seed in places):
             return
@@ -368,7 +375,7 @@ class Packed:
 
 
 def _steps(grid: Grid, rows: Iterable[Row]) -> dict[_Place, np.ndarray]:
-    """Return the steps of each cell [N], NaN where a row does not say."""
+    """Return the steps of each cell [N]; NaN where a row lacks them."""
     index = {episode: n for n, episode in enumerate(grid.episodes)}
     labels = {(name, agent): x for x, (name, own) in grid.columns.items() for agent in own}
     found: dict[_Place, np.ndarray] = defaultdict(lambda: np.full(len(index), np.nan))

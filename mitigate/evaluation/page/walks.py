@@ -1,8 +1,8 @@
-"""Walks for the page: episodes chosen by rule from the rows, walked again, seen from above.
+"""Trajectories for the page: run some episodes of the rows again and draw them from above.
 
-Rows say how an episode went, not where the agent was. So agents whose weights are at hand walk some
-episodes again, with the keys of the rows: what they then measure is compared with their rows, and
-the page says where the two differ.
+Rows hold measures but no trajectories. Agents whose weights are available therefore run some
+episodes again with the keys of the rows. The measures are compared with the rows, and the page
+reports differences.
 """
 
 from __future__ import annotations
@@ -23,83 +23,86 @@ from mitigate.evaluation.episode import instruction
 from mitigate.evaluation.episode_lists import GOLDEN
 from mitigate.evaluation.rows import Row
 from mitigate.evaluation.sections import label
-from mitigate.evaluation.trajectories import Walk, first_sight, walked
+from mitigate.evaluation.trajectories import Walk, first_sight, run_agents
 from mitigate.worlds.episodes import Episode, from_vlnce
 from mitigate.worlds.world import World, as_world
 
-KINDS = {  # (the first agent succeeds, the last one does): what the page calls it
+KINDS = {  # names of outcomes, by success of the first and the last agent
     (False, True): "won back",
     (False, False): "lost by both",
     (True, True): "won by both",
     (True, False): "lost by the last",
 }
-ALONE = {True: "won", False: "lost"}  # where there is one agent
+ALONE = {True: "won", False: "lost"}  # names of outcomes with one agent
 
 
 def outcome(won: Sequence[bool]) -> str:
-    """Return what the page calls it that the agents won or not, in their order."""
+    """Return the name of an outcome, given the success of each agent in order."""
     return KINDS[won[0], won[-1]] if len(won) > 1 else ALONE[won[0]]
 
 
 def choose(rows: Sequence[Row], agents: Sequence[str], most: int) -> list[tuple[str, Corruption]]:
-    """Return at most ``most`` pairs (episode id, corruption) that the first and the last of
-    ``agents`` both met.
+    """Return at most ``most`` pairs (episode id, corruption) with rows of the first and last agent.
 
-    By turns of the kinds of :data:`KINDS`, and of each kind by turns of the corruptions, in the
-    order of ``rows``; no episode twice. It is a choice to look at, not a sample: how often each
-    kind comes is in the tables.
+    The choice alternates between the outcomes in :data:`KINDS`, and within an outcome between
+    corruptions, in the order of ``rows``. No episode is repeated. The choice is for display and not
+    a sample; frequencies are in the tables.
     """
     first, last = _won(rows, agents[0]), _won(rows, agents[-1])
-    found: dict[tuple[bool, bool], dict[tuple[str, float], list[str]]] = {k: {} for k in KINDS}
+    outcomes: dict[tuple[bool, bool], dict[tuple[str, float], list[str]]] = {k: {} for k in KINDS}
     for place, won in first.items():
         if place in last:
             episode, corruption, severity = place
             kind = (bool(won), bool(last[place]))
-            found[kind].setdefault((corruption, severity), []).append(episode)
-    turns = [_turns(held, offset) for offset, held in enumerate(found.values())]
-    return list(islice(_once(turns), most))
+            outcomes[kind].setdefault((corruption, severity), []).append(episode)
+    sources = [_alternate(group, offset) for offset, group in enumerate(outcomes.values())]
+    return list(islice(_distinct_episodes(sources), most))
 
 
 def _won(rows: Sequence[Row], name: str) -> dict[tuple[str, str, float], float]:
-    """Return the success of an agent under each corruption, of the lowest seed that it ran with."""
-    own = [row for row in rows if row["name"] == name and row["corruption"] != "clean"]
-    seed = min((row["seed"] for row in own), default=0)
-    kept = [row for row in own if row["seed"] == seed]
-    return {(r["episode_id"], r["corruption"], float(r["severity"])): r["success"] for r in kept}
+    """Return the success of an agent under each corruption, for its lowest seed."""
+    corrupted = [row for row in rows if row["name"] == name and row["corruption"] != "clean"]
+    seed = min((row["seed"] for row in corrupted), default=0)
+    selected = [row for row in corrupted if row["seed"] == seed]
+    return {
+        (r["episode_id"], r["corruption"], float(r["severity"])): r["success"] for r in selected
+    }
 
 
-def _turns(
-    held: Mapping[tuple[str, float], Sequence[str]], offset: int
+def _alternate(
+    episodes: Mapping[tuple[str, float], Sequence[str]], offset: int
 ) -> Iterator[tuple[str, Corruption]]:
-    """Yield the first of each corruption, then the second of each and so on; ``offset``: which
-    corruption begins."""
-    names = [*held][offset:] + [*held][:offset]
+    """Yield the first episode of each corruption, then the second of each, and so on.
+
+    ``offset``: index of the corruption to begin with.
+    """
+    names = [*episodes][offset:] + [*episodes][:offset]
     for turn in count():
-        left = [at for at in names if len(held[at]) > turn]
+        left = [at for at in names if len(episodes[at]) > turn]
         if not left:
             return
         for at in left:
-            yield held[at][turn], Corruption(*at)
+            yield episodes[at][turn], Corruption(*at)
 
 
-def _once(turns: Sequence[Iterator[Any]]) -> Iterator[tuple[str, Corruption]]:
-    """Yield from each of ``turns`` in turn what is of an episode not yet seen."""
+def _distinct_episodes(sources: Sequence[Iterator[Any]]) -> Iterator[tuple[str, Corruption]]:
+    """Yield from the sources in turn, without repeating an episode."""
     seen: set[str] = set()
-    waiting = list(turns)
+    waiting = list(sources)
     while waiting:
-        for turn in list(waiting):
-            found = next((pair for pair in turn if pair[0] not in seen), None)
-            if found is None:
-                waiting.remove(turn)
+        for source in list(waiting):
+            pair = next((pair for pair in source if pair[0] not in seen), None)
+            if pair is None:
+                waiting.remove(source)
             else:
-                seen.add(found[0])
-                yield found
+                seen.add(pair[0])
+                yield pair
 
 
-AGREED = ("success", "spl", "steps")
-CLOSE = 1e-6  # of a measure that rows round to six digits
-PLAN_INCHES, PLAN_DPI, PLAN_COLOURS = 6.0, 110, 64  # of a plan's longer side (ours)
-QUALITY = 80  # of a JPEG of the first view
+AGREED = ("success", "spl", "steps")  # measures that are compared with the rows
+CLOSE = 1e-6  # tolerance: rows round measures to six digits
+PLAN_INCHES, PLAN_DPI, PLAN_COLOURS = 6.0, 110, 64  # longer side of a plan (heuristic)
+QUALITY = 80  # JPEG quality of the first view
 
 
 def walk_again(
@@ -111,52 +114,65 @@ def walk_again(
     most: int,
     seed: int,
 ) -> Iterator[dict[str, Any]]:
-    """Yield each chosen episode as the page reads it, walked by the first agent clean, and by all
-    corrupted.
+    """Yield the page's data of each chosen episode, run clean by the first agent, corrupted by all.
 
-    ``agents`` by their names in ``rows``, which are of one split and rule; of these, those of other
-    agents of that name, or of another seed, are passed over. Raises ValueError if an agent has none
-    at all, no episode is to be chosen, or the world has no poses.
+    Args:
+        agents: agents by their names in ``rows``.
+        world: the world.
+        episodes: the episodes of the split.
+        rows: rows of one split and rule; those of other agents or seeds are ignored.
+        most: largest number of episodes.
+        seed: corruption seed.
+
+    Raises:
+        ValueError: An agent has no rows, no episode can be chosen, or the world has no poses.
     """
     if POSE not in world.sensors:
-        raise ValueError("This world gives no poses, so there is no walk to be drawn.")
+        raise ValueError("The world must have poses to draw walks, and it has none.")
     known = {episode.episode_id: episode for episode in episodes}
     spread = {episode_id: n * GOLDEN % 1 for n, episode_id in enumerate(known)}
     hashes = {name: fingerprint(agent, world.sensors) for name, agent in agents.items()}
-    own = [row for row in _own(rows, hashes) if row["episode_id"] in known and row["seed"] == seed]
-    own.sort(key=lambda row: spread[row["episode_id"]])
-    chosen = choose(own, list(agents), most)
+    selected = [
+        row for row in _rows_of(rows, hashes) if row["episode_id"] in known and row["seed"] == seed
+    ]
+    selected.sort(key=lambda row: spread[row["episode_id"]])
+    chosen = choose(selected, list(agents), most)
     if not chosen:
         raise ValueError(
-            f"No episode of these was met under a corruption by {' and '.join(agents)} with seed "
-            f"{seed}: the names must be those of the rows."
+            f"There are no rows of {' and '.join(agents)} with seed {seed} under a corruption for "
+            "these episodes. The names must be those of the rows."
         )
-    index = {(r["name"], r["episode_id"], r["corruption"], r["severity"]): r for r in own}
+    index = {(r["name"], r["episode_id"], r["corruption"], r["severity"]): r for r in selected}
     for episode_id, corruption in chosen:
         with as_world(world).remembering():
             episode = known[episode_id]
-            walks = list(walked(agents, world, episode, corruption, seed))
+            walks = list(run_agents(agents, world, episode, corruption, seed))
             views = [_jpeg(sight) for sight in first_sight(world, episode, corruption, seed)[1]]
-            drawn = _drawn(episode, corruption, walks, index, hashes)
-            drawn |= {key: own[0][key] for key in ("split", "rule", "seed")}
-            drawn |= {"views": views, "heard": instruction(episode, corruption, seed)}
-            yield drawn | _plan(world)
+            data = _episode_data(episode, corruption, walks, index, hashes)
+            data |= {key: selected[0][key] for key in ("split", "rule", "seed")}
+            data |= {"views": views, "heard": instruction(episode, corruption, seed)}
+            yield data | _plan(world)
 
 
-def _own(rows: Sequence[Row], hashes: Mapping[str, str]) -> list[Row]:
-    """Return the rows of the agents of ``hashes``, by name. Raises ValueError if one has none."""
-    for name, own in hashes.items():
+def _rows_of(rows: Sequence[Row], hashes: Mapping[str, str]) -> list[Row]:
+    """Return the rows of the agents in ``hashes`` (by name).
+
+    Raises:
+        ValueError: The rows of a name belong only to agents with other hashes.
+    """
+    for name, agent_hash in hashes.items():
         others = sorted({row["agent"] for row in rows if row["name"] == name})
-        if others and own not in others:
+        if others and agent_hash not in others:
             raise ValueError(
-                f"The rows of {name} are of {', '.join(others)}, and the weights named for it are "
-                f"{own}, another agent: name the weights that made the rows, and what `mitigate "
-                "evaluate` was told of the agent and the world (agent=..., env.views=1)."
+                f"The rows of {name} belong to the agent {', '.join(others)}, but the named "
+                f"weights are the agent {agent_hash}. Name the weights of the rows, and the "
+                "options of `mitigate evaluate` for the agent and the world (agent=..., "
+                "env.views=1)."
             )
     return [row for row in rows if hashes.get(row["name"]) == row["agent"]]
 
 
-def _drawn(
+def _episode_data(
     episode: Episode,
     corruption: Corruption,
     walks: Sequence[Walk],
@@ -199,8 +215,7 @@ def _points(path: Any) -> list[list[float]]:
 
 
 def _plan(world: World) -> dict[str, Any]:
-    """Return the plan as a PNG, where the world draws one, and its corners [x0, y0, x1, y1] in
-    metres."""
+    """Return the world's plan as a PNG, if any, and its corners [x0, y0, x1, y1] in metres."""
     draw = as_world(world).draw
     if draw is None:
         return {"plan": None, "corners": None}

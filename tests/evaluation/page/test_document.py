@@ -92,7 +92,7 @@ def test_rows_that_are_missing_are_missing_in_the_page(rows):
     begin = data["grids"][0]["cells"]["0|spatter|0.6|0"]
     assert packed[3 * begin + 3] == 65535
     assert data["sections"][0]["cells"][0][1][2] == 9
-    assert any("fewer episodes" in note for note in data["sections"][0]["notes"])
+    assert any("part of the episodes" in note for note in data["sections"][0]["notes"])
 
 
 def test_a_page_is_bounded_and_says_what_it_leaves_out(rows):
@@ -207,7 +207,9 @@ def test_a_walk_is_compared_with_no_row_of_another_agent_of_its_name():
     (drawn,) = walk_again(agents, world, [episode], made + others, most=3, seed=0)
     assert [walk["agrees"] for walk in drawn["walks"]] == [True, True]
     assert {walk["hash"] for walk in drawn["walks"]} == {made[0]["agent"]}
-    with pytest.raises(ValueError, match=r"rows of base are of ba9876543210, and the weights"):
+    with pytest.raises(
+        ValueError, match=r"rows of base belong to the agent ba9876543210, but the named weights"
+    ):
         next(walk_again(agents, world, [episode], others, most=3, seed=0))
 
 
@@ -250,7 +252,7 @@ def test_a_page_replaces_no_rows_and_a_place_that_cannot_be_is_told(tmp_path, ca
     (tmp_path / "folder.html").mkdir()
     for out in (file, tmp_path / "folder.html", tmp_path, "", tmp_path / "report"):
         assert command.main([str(file), "--out", str(out)]) == 2
-        assert "name a file that ends in .html" in capsys.readouterr().err
+        assert "must end in .html" in capsys.readouterr().err
     for out in (file / "report.html", tmp_path / f"{'x' * 300}.html"):
         assert command.main([str(file), "--out", str(out)]) == 2
         assert capsys.readouterr().err.startswith("report: ")
