@@ -325,7 +325,6 @@ def test_one_sensor_alone_is_restored_and_is_another_restorer(tmp_path):
     [
         (["--suite", "fulll"], "no suite 'fulll'. Did you mean full?"),
         (["--suite", "instructions"], "suite=instructions corrupts no frames of rgb, depth"),
-        (["--count", "0"], "--count 0: give 1 instant or more"),
         (["--split", "nowhere"], "no split 'nowhere'"),
     ],
 )
@@ -333,6 +332,12 @@ def test_the_report_says_what_is_wrong_and_writes_nothing(tmp_path, options, wor
     with pytest.raises(ValueError, match=words):
         report.main([str(SHIPPED), "--out", str(tmp_path / "out"), *options])
     assert not [*tmp_path.iterdir()]
+
+
+def test_restorer_report_rejects_a_count_below_one(tmp_path, capsys):
+    with pytest.raises(SystemExit):
+        report.main([str(SHIPPED), "--out", str(tmp_path / "out"), "--count", "0"])
+    assert "--count" in capsys.readouterr().err and not [*tmp_path.iterdir()]
 
 
 def test_the_shipped_restorer_leaves_a_clean_panorama_alone(shipped, panorama):
