@@ -24,7 +24,7 @@ FOLDER = (
     "mitigate.guards.text.fit --out FOLDER`), or card.json, adapter_config.json and "
     "adapter_model.safetensors of an adapter (`make train RECIPE=safeguard_lora`)."
 )
-VERSION = "9"  # of what is decided: a new number where any text is repaired differently
+VERSION = "10"  # of what is decided: a new number where any text is repaired differently
 ANSWERS = "3"  # of what is accepted of a language model's answers
 
 

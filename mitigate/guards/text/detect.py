@@ -1,26 +1,33 @@
-"""Find what does not belong to an instruction, and take it out if the gate allows."""
+"""Find what does not belong to an instruction, and take it out if the gate allows.
+
+A sentence is foreign if it looks like an attack more than the rest of the text does. Sentences
+beside it go with it if they look foreign, too. Clauses within the other sentences are tried in the
+same way. The constants were chosen on the half "choose" of the fresh banks.
+"""
 
 from __future__ import annotations
 
-import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from itertools import groupby
-
-import numpy as np
 
 from mitigate.corruptions.language.fidelity import facts
 from mitigate.guards.text import gate
-from mitigate.guards.text.classifier import FEATURES, Classifier, Segment, spans
+from mitigate.guards.text.classifier import Classifier, Clause
 from mitigate.guards.text.pieces import Piece, without
 
-MOST = 40  # clauses that are read together; the time grows with their square
 FOREIGN = 0.3  # share of letters in another script from which the route may be in it
 ROUTE = -1.0  # score below which English text is surely a route
-STYLED = 1.2  # less log odds are needed beside text in a style, which looks foreign itself
-EDGE = 4  # words at an end of the text that go with what stands beside them
-CUTS = 4  # spans that are taken out of as many clauses
+CONTRAST = 0.2  # share of the rest's score that is subtracted: all of an odd route looks foreign
+LIMIT = 3.0  # of the rest's score, in both directions
+NAMED = 0.3  # what a sentence that names a place or a turn needs more
+STEP = 5  # words up to which text that names a turn is a step of the route: "Turn back."
+SENTENCE = 1.2  # score from which a sentence is foreign
+CLAUSE = 3.0  # score from which a clause within a sentence is foreign
+BESIDE = -0.5  # score from which a sentence beside a foreign one is foreign, too
+BESIDE_CLAUSE = 0.5  # as BESIDE, for clauses
+SHORTEST = 3  # words of a run of clauses that may go
+LONG = 20  # words of a text from which clauses may go; short object goals lost too much
 READ = 60_000  # characters that are read
-_COLUMN = {name: number for number, name in enumerate(FEATURES)}
 
 
 def take_out(text: str, classifier: Classifier) -> tuple[str, list[str], list[str]]:
@@ -28,116 +35,98 @@ def take_out(text: str, classifier: Classifier) -> tuple[str, list[str], list[st
 
     Only whole pieces go, and an instruction is left.
     """
-    segments = classifier.segments(text[:READ])
     pieces: list[Piece] = []
     refusals: list[str] = []
-    for part in windows(segments):
-        for piece in foreign(part, classifier):
-            piece = _to_the_edge(text, piece)
-            rest = without(text, [*pieces, piece])
-            problem = gate.leaves_no_instruction(text, piece.of(text), rest)
-            if problem:
-                refusals.append(f"kept {piece.of(text)[:40]!r}: {problem}")
-            else:
-                pieces.append(piece)
+    for piece in foreign(text, classifier):
+        rest = without(text, [*pieces, piece])
+        problem = gate.leaves_no_instruction(text, piece.of(text), rest)
+        if problem:
+            refusals.append(f"kept {piece.of(text)[:40]!r}: {problem}")
+        else:
+            pieces.append(piece)
     removed = [piece.of(text) for piece in sorted(pieces, key=lambda piece: piece.start)]
     return (without(text, pieces) if pieces else text), removed, refusals
 
 
-def _to_the_edge(text: str, piece: Piece) -> Piece:
-    """Return a piece with the few words that are left between it and an end of the text, if they
-    say nothing of the way: "Warning!", "Sure!"."""
-    head, tail = text[: piece.start].strip(), text[piece.end :].strip()
-    start = 0 if head and _says_nothing(head) else piece.start
-    end = len(text) if tail and _says_nothing(tail) else piece.end
-    return Piece(start, end) if (start or end < len(text)) else piece
+def foreign(text: str, classifier: Classifier) -> list[Piece]:
+    """Return the pieces of a text that do not belong to it: sentences, then clauses."""
+    clauses = classifier.clauses(text[:READ])
+    english = [clause for clause in clauses if clause.script != "other"]
+    other = sum(clause.letters for clause in clauses if clause.script == "other")
+    much = other > FOREIGN * sum(clause.letters for clause in clauses)
+    if other and (much or classifier.score(english) > ROUTE):
+        return _english_attacks(clauses, classifier)
+    sentences = [list(run) for _, run in groupby(clauses, key=lambda clause: clause.sentence)]
+    total = classifier.total(clauses)
+    scores = [
+        _contrast(sentence, total, classifier) - NAMED * _names_the_way(_span(sentence).of(text))
+        for sentence in sentences
+    ]
+    sentence_runs = runs(scores, SENTENCE, BESIDE) if len(sentences) > 1 else []
+    pieces = [_span(sentences[first] + sentences[last]) for first, last in sentence_runs]
+    pieces = [piece for piece in pieces if not _is_step(piece.of(text))]
+    if sum(clause.words for clause in clauses) < LONG:
+        return pieces
+    for number, sentence in enumerate(sentences):
+        if any(first <= number <= last for first, last in sentence_runs):
+            continue
+        scores = [_contrast([clause], total, classifier) for clause in sentence]
+        for first, last in runs(scores, CLAUSE, BESIDE_CLAUSE):
+            run = sentence[first : last + 1]
+            if len(run) < len(sentence) and sum(clause.words for clause in run) >= SHORTEST:
+                pieces.append(_span(run))
+    return pieces
 
 
-def _says_nothing(text: str) -> bool:
-    if not text.isascii() or not 0 < len(text.split()) <= EDGE:
-        return False
+def _contrast(part: Sequence[Clause], total: tuple[float, float], classifier: Classifier) -> float:
+    """Return the score of a part of a text, less ``CONTRAST`` of the score of the rest."""
+    product, square = classifier.total(part)
+    rest = classifier.of_sums(total[0] - product, total[1] - square)
+    return classifier.of_sums(product, square) - CONTRAST * max(-LIMIT, min(LIMIT, rest))
+
+
+def runs(scores: Sequence[float], least: float, beside: float) -> list[tuple[int, int]]:
+    """Return first and last place of the runs around a score above ``least``, highest first.
+
+    A run reaches as far as the scores are above ``beside``.
+    """
+    result: list[tuple[int, int]] = []
+    for place in sorted(range(len(scores)), key=lambda place: -scores[place]):
+        if scores[place] <= least:
+            break
+        if any(first <= place <= last for first, last in result):
+            continue
+        first = last = place
+        while first > 0 and scores[first - 1] > beside:
+            first -= 1
+        while last + 1 < len(scores) and scores[last + 1] > beside:
+            last += 1
+        result.append((first, last))
+    return result
+
+
+def _span(clauses: Sequence[Clause]) -> Piece:
+    return Piece(clauses[0].piece.start, clauses[-1].piece.end)
+
+
+def _names_the_way(text: str) -> bool:
     said = facts(text)
-    return not (said.directions or set(said.landmarks) & gate.KNOWN or said.numbers)
+    return bool(said.directions or set(said.landmarks) & gate.KNOWN)
 
 
-def windows(segments: Sequence[Segment]) -> Iterator[list[Segment]]:
-    """Yield the clauses in groups of at most ``MOST``, cut between sentences if possible."""
-    start = 0
-    while start < len(segments):
-        end = min(len(segments), start + MOST)
-        if end < len(segments):
-            cuts = [
-                i for i in range(start + 1, end) if segments[i].sentence != segments[i - 1].sentence
-            ]
-            end = cuts[-1] if cuts else end
-        yield list(segments[start:end])
-        start = end
+def _is_step(text: str) -> bool:
+    return len(text.split()) <= STEP and bool(set(facts(text).directions) - {"stop"})
 
 
-def foreign(segments: list[Segment], classifier: Classifier) -> list[Piece]:
-    """Return the spans of a text that do not belong to it, the surest first."""
-    english = [s for s in segments if s.script != "other"]
-    other = sum(s.letters for s in segments if s.script == "other")
-    much = other > FOREIGN * sum(s.letters for s in segments)
-    if other and (much or whole(english, classifier.bias) > ROUTE):
-        return _english_attacks(segments, classifier.bias)
-    found: list[Piece] = []
-    cuts: set[int] = set()  # places between segments where something was taken out
-    while len(segments) > 1 and len(found) < CUTS:
-        first, last, rows = spans(segments, classifier.bias, cuts)
-        score = np.where(_allowed(rows), classifier.logits(rows), -np.inf)
-        best = int(score.argmax()) if len(score) else 0
-        if not len(score):
-            break
-        low, high = int(first[best]), int(last[best])
-        needed = classifier.threshold - STYLED * _is_styled(segments, low, high, classifier)
-        if _evidence(score) < needed:
-            break
-        found.append(Piece(segments[low].piece.start, segments[high].piece.end))
-        segments = segments[:low] + segments[high + 1 :]
-        removed = high + 1 - low
-        cuts = {place if place <= low else max(low, place - removed) for place in cuts} | {low}
-    return found
-
-
-def _is_styled(segments: list[Segment], low: int, high: int, classifier: Classifier) -> bool:
-    """Return whether what is left around a span is in a style."""
-    rest = [*segments[:low], *segments[high + 1 :]]
-    square = sum(s.square for s in rest)
-    style = sum(s.style for s in rest) / math.sqrt(square + 1e-6)
-    return bool(rest) and style + float(classifier.config["style_bias"]) > 0
-
-
-def _english_attacks(segments: list[Segment], bias: float) -> list[Piece]:
+def _english_attacks(clauses: Sequence[Clause], classifier: Classifier) -> list[Piece]:
     """Return the runs of English beside text in another script that look like attacks.
 
     The route is in the other script, since the English is none; that script is never touched.
     """
     found = []
-    for other, run in groupby(segments, key=lambda segment: segment.script == "other"):
+    for other, run in groupby(clauses, key=lambda clause: clause.script == "other"):
         parts = list(run)
-        if not other and whole(parts, bias) > 0 and sum(s.words for s in parts) > 2:
-            found.append(Piece(parts[0].piece.start, parts[-1].piece.end))
+        words = sum(clause.words for clause in parts)
+        if not other and words >= SHORTEST and classifier.score(parts) > 0:
+            found.append(_span(parts))
     return found
-
-
-def whole(segments: list[Segment], bias: float) -> float:
-    """Return the score of some segments as one text."""
-    square = sum(s.square for s in segments)
-    return sum(s.product for s in segments) / math.sqrt(square + 1e-6) + bias
-
-
-def _evidence(score: np.ndarray) -> float:
-    """Return the log odds of any span against none."""
-    top = score.max()
-    return float(top + np.log(np.exp(score - top).sum())) if np.isfinite(top) else -np.inf
-
-
-def _allowed(rows: np.ndarray) -> np.ndarray:
-    """Return which spans may go at all.
-
-    Text in another script goes only if what is left is surely an English route.
-    """
-    other = rows[:, _COLUMN["other script"]] > 0
-    surely_route = rows[:, _COLUMN["rest"]] < ROUTE
-    return (rows[:, _COLUMN["words of the rest"]] >= np.log1p(2)) & (~other | surely_route)

@@ -1,11 +1,10 @@
-"""What the classifier learns from: attacks and honest texts, alone and one in the other."""
+"""What the classifier learns from: attacks and honest texts."""
 
 from __future__ import annotations
 
 import base64
 import codecs
 import json
-import zlib
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -18,10 +17,7 @@ from mitigate.corruptions.language.prefixes import prefixes
 from mitigate.corruptions.language.style import MANNERS
 from mitigate.guards.text.learning.routes import draw_route
 from mitigate.guards.text.learning.styler import draw_styled
-from mitigate.guards.text.pieces import clause_pieces, sentence_pieces
 
-FOLDS = 5
-PLACES = ("any", "inside", "wrap")
 ROUTES = 1200  # drawn from templates, and as many in random styles
 # Weights of lines: hand-written honest texts that look like attacks count most.
 ALIKE = {"lookalikes": 2.0, "fresh_lookalikes": 2.0, "near_misses": 2.0, "odd_routes": 2.0}
@@ -29,31 +25,16 @@ ALIKE = {"lookalikes": 2.0, "fresh_lookalikes": 2.0, "near_misses": 2.0, "odd_ro
 
 @dataclass(frozen=True)
 class Line:
-    """A text that is whole attack or whole honest; ``group``: its mechanism, bank or style.
+    """A text that is whole attack or whole honest.
 
-    ``place`` of an attack: "any", "inside" a sentence, or "wrap" around the route. ``styled``:
-    whether an honest text is in a style; None where that is open.
+    ``styled``: whether an honest text is in a style; None where that is open. An attack around the
+    route holds "{route}".
     """
 
     text: str
     attack: bool
-    group: str
     weight: float = 1.0
-    place: str = "any"
     styled: bool | None = None
-
-    @property
-    def fold(self) -> int:
-        return zlib.crc32(f"fold {self.group}".encode()) % FOLDS
-
-
-@dataclass(frozen=True)
-class Composed:
-    """A text and the spans of it that are attacks; ``fold``: of the attack, or of honest text."""
-
-    text: str
-    attacks: Sequence[tuple[int, int]]
-    fold: int
 
 
 def read_lines(folder: Path, routes: int = ROUTES) -> list[Line]:
@@ -66,45 +47,33 @@ def read_lines(folder: Path, routes: int = ROUTES) -> list[Line]:
         )
     lines = []
     for name in ("attacks", "fresh_attacks"):
-        for d in _json(banks / f"{name}.jsonl", "attack", "mechanism", "place"):
-            if d["place"] not in PLACES:
-                raise ValueError(
-                    f"place must be one of {', '.join(PLACES)}, got {d['place']!r:.40} in "
-                    f"{banks / name}.jsonl, beside {d['attack']!r:.60}."
-                )
-            lines.append(Line(d["attack"], True, d["mechanism"], place=d["place"]))
-    for i, text in enumerate(_text(banks / "fit_attacks.txt")):
-        lines.append(Line(text, True, f"lines {i % 8}", 0.7))
+        found = _json(banks / f"{name}.jsonl", "attack")
+        lines += [Line(d["attack"], True) for d in found]
+    lines += [Line(text, True, 0.7) for text in _text(banks / "fit_attacks.txt")]
     for split in ("train", "validation"):  # never the test families, which the suite speaks
-        for family, texts in prefixes(split).items():
-            lines += [Line(text, True, f"prefix {family}") for text in texts]
+        for texts in prefixes(split).values():
+            lines += [Line(text, True) for text in texts]
     for name, weight in ALIKE.items():
-        for i, d in enumerate(_json(banks / f"{name}.jsonl", "text")):
-            lines.append(Line(d["text"], False, f"{name} {i % 6}", weight))
-    for i, text in enumerate(_text(banks / "fit_routes.txt")):
-        lines.append(Line(text, False, f"fit_routes {i % 4}", 1.5))
+        lines += [Line(d["text"], False, weight) for d in _json(banks / f"{name}.jsonl", "text")]
+    lines += [Line(text, False, 1.5) for text in _text(banks / "fit_routes.txt")]
     for name in ("lies", "honest"):
-        for i, d in enumerate(_json(banks / f"{name}.jsonl")):
-            lines += [
-                Line(text, False, f"{name} {i % 4}", 0.5)
-                for key, text in d.items()
-                if key != "kind"
-            ]
+        for d in _json(banks / f"{name}.jsonl"):
+            lines += [Line(text, False, 0.5) for key, text in d.items() if key != "kind"]
     for file in sorted((folder / "styles").glob("*.jsonl")):
         for d in _json(file):
             said = " ".join(said for said, _ in d["parts"])
             plain = " ".join(plain for _, plain in d["parts"] if plain)
-            lines.append(Line(said, False, f"style {file.stem}", 1.0, styled=True))
-            lines.append(Line(plain, False, f"style {file.stem}", 0.5, styled=False))
+            lines.append(Line(said, False, 1.0, styled=True))
+            lines.append(Line(plain, False, 0.5, styled=False))
     for i in range(routes):
         text = draw_route(generator(0, "fit", i))
-        lines.append(Line(text, False, f"drawn {i % 8}", 0.5))
+        lines.append(Line(text, False, 0.5))
         styled = draw_styled(generator(0, "styled", i))
-        lines.append(Line(styled, False, f"styled {i % 8}", 0.7, styled=True))
+        lines.append(Line(styled, False, 0.7, styled=True))
         if i % 3 == 0:
             manner, key = MANNERS[i // 3 % len(MANNERS)], Key(0, f"fit {i}")
             said = corrupt_instruction(text, manner, 1.0, key, split="train")
-            lines.append(Line(said, False, f"drawn {i % 8}", 0.5))
+            lines.append(Line(said, False, 0.5))
     return lines
 
 
@@ -170,51 +139,3 @@ HIDE: tuple[Callable[[str], str], ...] = (
     lambda text: "".join(chr(ord(c) + 0xFEE0) if "!" <= c <= "~" else c for c in text),
     lambda text: text.replace("a", "а").replace("e", "е").replace("o", "о"),
 )
-
-
-def compose(lines: Sequence[Line], count: int) -> Iterator[Composed]:
-    """Yield all honest lines, then ``count`` of them with an attack.
-
-    A route is of its attack's fold, so that a model exists that has seen neither.
-    """
-    attacks = [line for line in lines if line.attack and line.text.strip()]
-    honest = [line for line in lines if not line.attack]
-    pools: list[list[str]] = [[] for _ in range(FOLDS)]
-    for line in honest:
-        yield Composed(line.text, (), line.fold)
-        if len(line.text.split()) > 6:
-            pools[line.fold].append(line.text)
-    for number in range(count):
-        rng = generator(0, "composed", number)
-        attack = attacks[int(rng.integers(len(attacks)))]
-        pool = pools[attack.fold]
-        route = pool[int(rng.integers(len(pool)))]
-        if attack.place == "wrap":
-            before, _, after = attack.text.partition("{route}")
-            text = f"{before} {route} {after}"
-            ends = (0, len(before)), (len(text) - len(after), len(text))
-            yield Composed(text, ends, attack.fold)
-            continue
-        said = attack.text
-        if rng.random() < 0.12:
-            said = f"{said} {attacks[int(rng.integers(len(attacks)))].text}"
-        if rng.random() < 0.2:
-            said = said.rstrip(" .!?")
-        pieces = sentence_pieces(route)
-        short = len(said.split()) < 16
-        if attack.place == "inside" or (short and rng.random() < 0.25):
-            cuts = [c.start for p in pieces for c in clause_pieces(route, p)[1:]]
-            at = cuts[int(rng.integers(len(cuts)))] if cuts else len(route)
-            said = said.strip(" .") if rng.random() < 0.6 else said
-            comma = "," if rng.random() < 0.6 and said[-1:].isalnum() else ""
-            said = said[:1].lower() + said[1:] + comma
-        else:
-            cuts = [0, 0, len(route), len(route), *(p.start for p in pieces[1:])]
-            at = cuts[int(rng.integers(len(cuts)))]
-        before, after = route[:at].rstrip(), route[at:].lstrip()
-        if before and before[-1].isalnum() and rng.random() < 0.5:
-            before += "," if attack.place == "inside" else "."
-        start = len(before) + 1 if before else 0
-        yield Composed(
-            f"{before} {said} {after}".strip(), [(start, start + len(said))], attack.fold
-        )
