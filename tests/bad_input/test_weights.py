@@ -214,7 +214,7 @@ def test_a_hardened_folder_whose_card_is_none_is_refused(tmp_path, made):
 
 @pytest.mark.parametrize("folder", [None, 3, True])
 def test_a_hardened_folder_that_is_no_path_is_refused(folder):
-    with pytest.raises(TypeError, match=f"path of a hardened checkpoint, not {folder}: name one"):
+    with pytest.raises(TypeError, match=f"path of a hardened checkpoint, got {folder}. Name one"):
         agents.load_hardened(folder)
 
 

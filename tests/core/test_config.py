@@ -356,7 +356,7 @@ def test_help_needs_no_config_to_compose(monkeypatch, capsys):
     monkeypatch.setattr(sys, "argv", ["mitigate train", "--help", "sevrity=1"])
     train.main()
     shown = capsys.readouterr().out
-    assert "Train an agent with a recipe" in shown and "severity: 0.6  # of the training" in shown
+    assert "Train an agent with a recipe" in shown and "severity: 0.6  # " in shown
 
 
 def test_hydras_own_line_goes_before_no_paragraph(monkeypatch, capsys, tmp_path):

@@ -83,7 +83,7 @@ def test_training_brings_corrupted_features_nearer_to_the_clean_ones(tmp_path, p
 def test_only_corruptions_of_the_encoders_sensor_are_drawn(pictures):
     recipe = recipe_of(made(), pictures)
     assert "missing_data" not in recipe.schedule.names and "spatter" in recipe.schedule.names
-    with pytest.raises(ValueError, match="no corruption of rgb"):
+    with pytest.raises(ValueError, match="must contain a corruption of rgb"):
         source = {"world": lambda: FolderFrames(str(pictures))}
         assemble(
             HardenEncoder,
@@ -178,7 +178,7 @@ def test_there_is_no_before_of_an_encoder_that_changed(tmp_path, pictures, monke
     cfg = config(tmp_path, pictures, *TINY, "agent.tune=all", "evaluation.enabled=false")
     out, trained = train.run(cfg), build(cfg.agent)
     monkeypatch.setattr("tests.encoders.shapes.tiny", lambda **_: TinyNet())
-    with pytest.raises(ValueError, match="has other weights than when the training began"):
+    with pytest.raises(ValueError, match="has other weights than at the start of the training"):
         before_after(read(cfg), None, trained, out)
 
 

@@ -404,7 +404,7 @@ def test_evaluation_and_training_refuse_a_changed_folder(copied):
 
 def test_a_folder_of_another_agent_than_its_card_says_is_refused(copied):
     resign(copied, agent="0123456789ab")
-    with pytest.raises(ValueError, match=r"card\.json is of '0123456789ab'"):
+    with pytest.raises(ValueError, match="'0123456789ab'"):
         loading.load_hardened(copied)
     own = TopologicalAgent(**TINY).eval()
     assert loading.fill(own, copied) is own  # to train from: with adapters it is another one
@@ -420,11 +420,13 @@ def test_a_card_lists_only_names_that_can_be_held_and_shown(copied, name):
     assert str(told.value).isprintable() and len(str(told.value)) < 500
 
 
-@pytest.mark.parametrize("path", ["n" * 300, "a/" * 3000, "a\ud800"])
+@pytest.mark.parametrize(
+    "path", ["n" * 300, "a/" * 3000, "a\ud800"], ids=["long name", "long path", "surrogate"]
+)
 def test_a_card_names_a_base_that_can_be_held_and_shown(place, tmp_path, path):
     folder = Path(shutil.copytree(place / "hardened/adapted", tmp_path / "adapted"))
     resign(folder, base={"weights": path, "sha256": "0" * 64})
-    with pytest.raises(ValueError, match="to which base"):
+    with pytest.raises(ValueError, match="does not name the base of its adapters"):
         loading.load_hardened(folder)
 
 
