@@ -216,7 +216,7 @@ def _run_missing(
             [start_of(task.agent, episode, met, label["seed"]) for episode, met, label in todo]
         )
     if not todo:
-        print(f"{title}: {counted(len(jobs), 'walk')}, all done before, in {out}", flush=True)
+        print(f"{title}: {counted(len(jobs), 'walk')}, all already done, in {out}", flush=True)
         return
     at_once = _together(task.agent, world)
     groups = _groups(todo, 4 * at_once if at_once > 1 else 1)

@@ -64,7 +64,7 @@ def test_success_is_stop_strictly_within_the_threshold(distance, stopped, expect
 def test_the_threshold_can_be_scaled_and_is_named():
     assert not success(2.5, True, threshold=2.0)
     assert str(Rule("vln", 2)) == "vln: STOP and geodesic < 2.0 m"
-    with pytest.raises(ValueError, match="NaN"):
+    with pytest.raises(ValueError, match="got nan"):
         success(math.nan, True)
 
 
@@ -74,7 +74,7 @@ def test_spl_divides_by_the_longer_of_the_two_lengths():
     assert spl(False, 10.0, 10.0) == 0.0
     assert spl(True, 0.0, 0.0) == 1.0
     for wrong in (math.nan, math.inf, -1.0):
-        with pytest.raises(ValueError, match="finite geodesic distance"):
+        with pytest.raises(ValueError, match="geodesic distance of SPL must be finite"):
             spl(True, wrong, 1.0)
 
 
@@ -115,11 +115,11 @@ def test_turning_in_place_costs_nothing():
 
 
 def test_paths_that_cannot_be_compared_are_refused():
-    with pytest.raises(ValueError, match=r"shape \(0,\)"):
+    with pytest.raises(ValueError, match=r"with N > 0, got \(0,\)"):
         dtw([], LINE)
     with pytest.raises(ValueError, match="2 coordinates, the other 3"):
         dtw(LINE, [(0, 0, 0)])
-    with pytest.raises(ValueError, match="NaN"):
+    with pytest.raises(ValueError, match="got nan"):
         path_length([(0, math.nan)])
 
 
@@ -145,7 +145,7 @@ def test_prs_reproduces_the_papers_table(strategy):
 def test_prs_is_not_clipped_and_undefined_without_clean_success():
     assert prs(0.5, [0.6, 0.6]) == pytest.approx(1.2)
     assert math.isnan(prs(0.0, [0.0, 0.0]))
-    with pytest.raises(ValueError, match="at least one"):
+    with pytest.raises(ValueError, match="one value per corruption"):
         prs(0.5, [])
 
 

@@ -141,7 +141,9 @@ def test_a_killed_worker_changes_neither_rows_nor_file(tmp_path, capsys):
 
 def test_a_second_death_keeps_the_rows_and_says_how_to_go_on(tmp_path):
     out = tmp_path / "rows.jsonl"
-    with pytest.raises(workers.WorkersDied, match=r"finished rows are in .*rows.jsonl: the same"):
+    with pytest.raises(
+        workers.WorkersDied, match=r"finished rows are in .*rows.jsonl. Run the same"
+    ):
         run(Mortal(tmp_path, deaths=9), out, 2)
     kept = rows.read(out)
     assert kept and len(kept) < 12

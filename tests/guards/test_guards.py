@@ -129,7 +129,7 @@ def test_fingerprint_of_a_guard_covers_its_attributes_and_version():
 def test_guarded_world_changes_frames_when_they_are_read():
     world = guarded(Room(), Guards([Dark()]))
     observation = world.reset(EPISODE)
-    assert observation["pose"] == 1 and observation._made is None
+    assert observation["pose"] == 1 and observation._frame_data is None
     assert observation[RGB].max() == 45 and observation.clean[RGB].max() == 90
 
 
