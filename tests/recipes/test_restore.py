@@ -170,7 +170,7 @@ def test_folder_depth_uses_the_range_of_the_restorer(tmp_path):
 
 
 def test_a_schedule_without_a_corruption_of_the_sensor_is_refused():
-    with pytest.raises(ValueError, match="draws no depth corruption"):
+    with pytest.raises(ValueError, match="must contain a depth corruption"):
         recipe_of(DEPTH, names=("flare",))
 
 

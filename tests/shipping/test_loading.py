@@ -43,7 +43,7 @@ def test_what_says_nothing_of_its_agent_or_is_of_another_is_refused(tmp_path):
     (tmp_path / "config.yaml").write_text(yaml.safe_dump({"agent": {"_target_": "os.system"}}))
     with pytest.raises(ValueError, match=r"belongs to the agent os\.system"):
         mitigate.load(tmp_path)
-    with pytest.raises(TypeError, match="not None"):
+    with pytest.raises(TypeError, match="got None"):
         mitigate.load(None)
 
 
