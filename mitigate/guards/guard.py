@@ -22,17 +22,17 @@ from mitigate.worlds.world import World, WorldWrapper
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-RESTORER = "restorer-"  # begins the fingerprint of what ``restore=`` names
+RESTORER = "restorer-"  # prefix of the fingerprints of guards that ``restore=`` names
 
 
 @dataclass(frozen=True)
 class EpisodeStart:
-    """What a guard knows of an episode that begins.
+    """What a guard knows when an episode begins.
 
     Attributes:
         key: seed and episode id, for random draws.
-        instruction: as the corruption left it.
-        system_prompt: of an agent that has one, as the corruption left it.
+        instruction: the instruction after corruption.
+        system_prompt: the agent's system prompt after corruption; None if it has none.
     """
 
     key: Key
@@ -43,14 +43,14 @@ class EpisodeStart:
 class Guard:
     """Base class of guards. A subclass overrides what it needs; every default changes nothing.
 
-    An episode's result must not depend on other episodes, nor on their order: ``observe`` keeps
-    nothing between calls, unless the guard overrides ``attach``. Then episodes run one after the
+    An episode's result must not depend on other episodes or on their order. So ``observe`` must not
+    keep state between calls, unless the guard overrides ``attach``: then episodes run one after the
     other.
 
     Attributes:
         label: part of a table's column name.
         frames: frames that ``observe`` reads or changes.
-        version: names what :meth:`fingerprint` cannot read, such as weights in a file.
+        version: identifies state that :meth:`fingerprint` cannot read, such as weights in a file.
     """
 
     label: str = ""
@@ -66,50 +66,58 @@ class Guard:
         return [self.begin(episode) for episode in episodes]
 
     def observe(self, observation: Mapping[str, Any]) -> Mapping[str, Any]:
-        """Return the observation that the agent gets. Only frames may differ from ``observation``,
-        whose arrays must not be changed in place."""
+        """Return the observation that the agent gets.
+
+        Only frames may differ from ``observation``. Its arrays must not be changed in place.
+        """
         return observation
 
     def observe_all(self, observations: Sequence[Mapping[str, Any]]) -> list[Mapping[str, Any]]:
-        """Return :meth:`observe` of observations of different episodes."""
+        """Return :meth:`observe` of each observation; they belong to different episodes."""
         return [self.observe(observation) for observation in observations]
 
     def attach(self, agent: Any) -> AbstractContextManager:
-        """Return a context within which ``agent`` is adapted, for one episode. When it ends, the
-        agent is as it was before."""
+        """Return a context that adapts ``agent`` for one episode.
+
+        When the context ends, the agent is as before.
+        """
         return nullcontext()
 
     def prepared(self, episodes: Sequence[EpisodeStart]) -> Guard:
-        """Return the guard that worker processes get for these episodes; it is pickled. A guard
-        with a large model answers all of them here."""
+        """Return the guard that is pickled for the worker processes of these episodes.
+
+        A guard with a large model computes all its answers here.
+        """
         return self
 
     def fingerprint(self) -> str:
-        """Return a content hash that identifies this guard in rows: its class, the code of a user's
-        class, ``settings()`` or attributes, weights and ``version``.
+        """Return a content hash that identifies this guard in rows.
+
+        It covers the class, the code of a user's class, ``settings()`` or attributes, weights and
+        ``version``.
 
         Raises:
-            ValueError: a part cannot be read, and ``version`` is None.
+            ValueError: A part cannot be read, and ``version`` is None.
         """
         from mitigate.agents.fingerprint import contents, hash_of
 
-        found = contents(self, self.version)
+        content = contents(self, self.version)
         kind = type(self).__name__
-        if found.unreadable:
+        if content.unreadable:
             raise ValueError(
-                f"The fingerprint of a {kind} must cover all of it, but {found.explain()} cannot "
+                f"The fingerprint of a {kind} must cover all of it, but {content.explain()} cannot "
                 "be read. Give the guard an attribute version, and change it whenever the guard's "
                 "behaviour changes."
             )
-        return f"{kind}-{hash_of(found.parts, {})}"
+        return f"{kind}-{hash_of(content.parts, {})}"
 
     def check_shown(self, sensors: Iterable[str], where: str) -> None:
         """Raise ValueError if ``where`` shows none of the ``frames`` that this guard changes."""
-        shown = [*sensors]
-        if overrides(self, "observe") and not set(self.frames) & {*shown}:
+        available = [*sensors]
+        if overrides(self, "observe") and not set(self.frames) & {*available}:
             raise ValueError(
                 f"The guard {self.label or type(self).__name__} is for {', '.join(self.frames)}, "
-                f"but {where} shows {', '.join(shown) or 'no frames'}: leave restore= out."
+                f"but {where} shows {', '.join(available) or 'no frames'}: leave restore= out."
             )
 
 
@@ -134,13 +142,13 @@ class Guards(Guard):
 
     @property
     def frames(self) -> tuple[str, ...]:  # type: ignore[override]
-        """Frames that any of them reads or changes; empty if none defines ``observe``."""
+        """Frames that any guard reads or changes; empty if no guard defines ``observe``."""
         names = (name for guard in self._overriding("observe") for name in guard.frames)
         return tuple(dict.fromkeys(names))
 
     @property
     def adapts(self) -> bool:
-        """Whether one of them changes the agent."""
+        """Whether a guard changes the agent."""
         return bool(self._overriding("attach"))
 
     def begin(self, episode: EpisodeStart) -> str:
@@ -171,28 +179,35 @@ class Guards(Guard):
             yield
 
     def prepared(self, episodes: Sequence[EpisodeStart]) -> Guards:
-        found = []
+        guards = []
         for guard in self.guards:
-            found.append(guard.prepared(episodes))
-            episodes = _with(episodes, found[-1].begin_all(episodes))
-        return Guards(found)
+            guards.append(guard.prepared(episodes))
+            episodes = _with(episodes, guards[-1].begin_all(episodes))
+        return Guards(guards)
 
     def fingerprint(self) -> str:
-        """Return the fingerprints of all, joined; "none" comes first where no guard changes the
-        instruction, and is all where there is no guard."""
+        """Return the fingerprints of all guards, joined by "+".
+
+        The text starts with "none" if no guard changes the instruction, and is "none" without
+        guards.
+        """
         words = [] if self._overriding("begin") else ["none"]
         return "+".join([*words, *(guard.fingerprint() for guard in self.guards)])
 
     def frames_hash(self) -> str | None:
-        """Return the fingerprint of the guards that change frames, None without any; of a restorer
-        it is its hash alone."""
-        found = [guard.fingerprint() for guard in self._overriding("observe")]
-        return "+".join(part.removeprefix(RESTORER) for part in found) if found else None
+        """Return the joined fingerprints of the guards that change frames; None without any.
+
+        The fingerprint of a restorer appears without its prefix.
+        """
+        fingerprints = [guard.fingerprint() for guard in self._overriding("observe")]
+        return (
+            "+".join(part.removeprefix(RESTORER) for part in fingerprints) if fingerprints else None
+        )
 
     def check_shown(self, sensors: Iterable[str], where: str) -> None:
-        shown = [*sensors]
+        available = [*sensors]
         for guard in self.guards:
-            guard.check_shown(shown, where)
+            guard.check_shown(available, where)
 
 
 def _with(episodes: Sequence[EpisodeStart], instructions: Sequence[str]) -> list[EpisodeStart]:
@@ -204,10 +219,10 @@ NO_GUARDS = Guards()
 
 
 class Guarded(WorldWrapper):
-    """A world whose frames a guard has changed; itself a world, as a corrupted one is.
+    """A world whose frames a guard changes.
 
     Frames are changed when the agent reads them, so an agent that reads none pays nothing.
-    ``observation.clean`` stays what it was.
+    ``observation.clean`` does not change.
     """
 
     def __init__(self, world: World, guard: Guard) -> None:
@@ -216,12 +231,12 @@ class Guarded(WorldWrapper):
 
     def _observe(self, met: Observation) -> Observation:
         def observed() -> dict[str, Any]:
-            shown = self.guard.observe(dict(met))
-            return {name: shown[name] for name in met.frames}
+            guarded_frames = self.guard.observe(dict(met))
+            return {name: guarded_frames[name] for name in met.frames}
 
         return Observation(met.ready, observed, met.frames, clean=met.clean)
 
 
 def guarded(world: World, guards: Guards) -> World:
-    """Return ``world`` behind ``guards``: itself if none of them changes frames."""
+    """Return ``world`` with its frames guarded; ``world`` itself if no guard changes frames."""
     return Guarded(world, guards) if guards.frames else world

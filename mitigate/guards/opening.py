@@ -1,4 +1,4 @@
-"""From the options ``safeguard=`` and ``restore=`` to guards. Only what is chosen is imported."""
+"""Build guards from the options ``safeguard=`` and ``restore=``; import only the chosen ones."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ NONE = (None, "none")
 
 
 class TextGuard(Guard):
-    """A safeguard (``safeguard=``) as a guard.
+    """A guard that applies a safeguard (``safeguard=``) to instructions.
 
     Args:
         safeguard: repairs instructions.
-        label: see :class:`Guard`.
+        label: part of a table's column name (:class:`Guard`).
     """
 
     def __init__(self, safeguard: Safeguard, label: str) -> None:
@@ -36,7 +36,7 @@ class TextGuard(Guard):
         return [decision.text for decision in decisions]
 
     def prepared(self, episodes: Sequence[EpisodeStart]) -> Guard:
-        """Answer all episodes in this process, which has the only copy of a language model."""
+        """Compute all answers in this process, which has the only copy of a language model."""
         texts = [episode.instruction for episode in episodes]
         answers = dict(zip(texts, self.begin_all(episodes), strict=True))
         return AnsweredText(answers, self.label, self.fingerprint())
@@ -46,7 +46,7 @@ class TextGuard(Guard):
 
 
 class AnsweredText(Guard):
-    """The answers of a :class:`TextGuard` for worker processes. Other texts stay as they are."""
+    """The answers of a :class:`TextGuard`, for worker processes. Other texts stay unchanged."""
 
     def __init__(self, answers: dict[str, str], label: str, fingerprint: str) -> None:
         self.answers = answers
@@ -69,12 +69,12 @@ def open_guards(
     """Return the guards of the two options, the safeguard first.
 
     Args:
-        safeguard: as in ``text/guard.py``, or None.
-        restore: as :func:`open_restorer`.
-        sensors: what the world shows.
+        safeguard: a value as in ``text/guard.py``, or None.
+        restore: a value as in :func:`open_restorer`.
+        sensors: names of the world's sensors.
         log: file for the decisions of the safeguard.
     """
-    found: list[Guard] = []
+    guards: list[Guard] = []
     restorer = open_restorer(restore, sensors)
     if safeguard not in NONE:
         from mitigate.guards.text.choices import label
@@ -82,42 +82,42 @@ def open_guards(
 
         opened = open_safeguard(str(safeguard), log=log)
         assert opened is not None, "only none has no safeguard"
-        found.append(TextGuard(opened, label(str(safeguard))))
-    return Guards([*found, *([] if restorer is None else [restorer])])
+        guards.append(TextGuard(opened, label(str(safeguard))))
+    return Guards([*guards, *([] if restorer is None else [restorer])])
 
 
 def open_restorer(choice: str | None, sensors: Iterable[str] = SENSORS) -> Guard | None:
-    """Return the guard of ``restore=`` (``frames/choices.py``), None for None and "none".
+    """Return the guard of ``restore=`` (``frames/choices.py``); None for None and "none".
 
     Raises:
-        FileNotFoundError: the folder holds no restorer.
-        ValueError: it is damaged, there is no such callable, or it changes none of ``sensors``,
-            which are what a world shows.
+        FileNotFoundError: The folder holds no restorer.
+        ValueError: The restorer is damaged, the callable does not exist, or the guard changes none
+            of ``sensors``, the sensors of the world.
     """
     if choice in NONE:
         return None
     if callable_of(str(choice)) is not None:
         from mitigate.guards.frames.callables import open_callable
 
-        made = open_callable(str(choice))
+        guard = open_callable(str(choice))
     else:
         from mitigate.guards.frames.restorer import load_restorer
 
         folder, only = parted(str(choice))
         restorer = load_restorer(folder)
-        made = restorer if only is None else restorer.only(only)
-        made.label = restorers.label(str(choice))
-    made.check_shown(sensors, "the world")
-    return made
+        guard = restorer if only is None else restorer.only(only)
+        guard.label = restorers.label(str(choice))
+    guard.check_shown(sensors, "the world")
+    return guard
 
 
 def labels(safeguard: str | None, restore: str | None) -> list[str]:
     """Return the labels of the guards of the two options, without opening them."""
-    found = []
+    names = []
     if safeguard not in NONE:
         from mitigate.guards.text import choices
 
-        found.append(choices.label(str(safeguard)))
+        names.append(choices.label(str(safeguard)))
     if restore not in NONE:
-        found.append(restorers.label(str(restore)))
-    return found
+        names.append(restorers.label(str(restore)))
+    return names

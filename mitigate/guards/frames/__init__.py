@@ -1,1 +1,1 @@
-"""Frames restored in front of any agent: what a corrupted camera shows, as a clean one would."""
+"""Guards for frames: estimate the clean frame of a corrupted camera, before any agent reads it."""

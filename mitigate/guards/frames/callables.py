@@ -1,5 +1,6 @@
-"""Frames changed by a callable of the user, ``restore=module:callable``: somebody else's
-depth-completion or denoising network, or a filter. Needs no torch.
+"""Use a callable of the user as a restorer, with ``restore=module:callable``.
+
+The callable may be a network for depth completion or denoising, or a filter. Needs no torch.
 
 The rule: a class is constructed once per process, without arguments; any other object is used as it
 is. If the result is a :class:`~mitigate.guards.guard.Guard`, it is the guard. Otherwise it is
@@ -35,18 +36,18 @@ FRAMES = (
 
 
 class FramesCallable(Guard):
-    """A callable of the user as a guard.
+    """A guard that calls a callable of the user.
 
-    It is called with copies of the frames by sensor name, "rgb" uint8 [H, W, 3] or [V, H, W, 3] and
-    "depth" float32 metres [H, W, 1] or [V, H, W, 1], and returns those that it changed. Each call
-    must stand alone.
+    The callable gets copies of the frames by sensor name, "rgb" uint8 [H, W, 3] or [V, H, W, 3] and
+    "depth" float32 metres [H, W, 1] or [V, H, W, 1], and returns those that it changed. A result
+    must not depend on earlier calls.
 
     Args:
-        choice: ``module:callable`` or ``module:callable@VERSION``. Pickles hold this text alone, so
+        choice: ``module:callable`` or ``module:callable@VERSION``. Pickles hold only this text, so
             each process imports the module itself.
-        call: the callable; its attributes ``frames`` (names of sensors, default both) and
+        call: the callable. Its attributes ``frames`` (names of sensors, default both) and
             ``version`` are optional.
-        module: the file of this module is part of the fingerprint.
+        module: the module of the callable. Its source file is part of the fingerprint.
     """
 
     def __init__(self, choice: str, call: Callable[[dict], Mapping], module: ModuleType) -> None:
@@ -54,39 +55,41 @@ class FramesCallable(Guard):
         self.choice = choice
         self.label = label(choice)
         self.call = call
-        # A callable of the user needs neither attribute.
+        # Both attributes of the callable are optional.
         version = named.version or getattr(call, "version", None)
         self.version = None if version is None else str(version)
         self.frames = _frames(getattr(call, "frames", SENSORS), choice)
-        held = [f"{named.module}:{named.name}", _source(module, self.version), self.version]
-        digest = hashlib.sha256(json.dumps(held).encode()).hexdigest()
+        identity = [f"{named.module}:{named.name}", _source(module, self.version), self.version]
+        digest = hashlib.sha256(json.dumps(identity).encode()).hexdigest()
         self._fingerprint = RESTORER + digest[:DIGITS]
 
     def __reduce__(self) -> tuple[Any, ...]:
         return open_callable, (self.choice,)
 
     def fingerprint(self) -> str:
-        """Return the hash of the module's source file, as it was when it was imported, and of
-        ``version``."""
+        """Return the hash of the callable's name, its module's source file and ``version``.
+
+        The file is read once, when the module is loaded.
+        """
         return self._fingerprint
 
     def observe(self, observation: Mapping[str, Any]) -> Mapping[str, Any]:
-        given = {name: observation[name] for name in self.frames if name in observation}
-        if not given:
+        frames = {name: observation[name] for name in self.frames if name in observation}
+        if not frames:
             return observation
-        copies = {name: np.array(frame) for name, frame in given.items()}
+        copies = {name: np.array(frame) for name, frame in frames.items()}
         try:
-            made = self.call(copies)
-        except Exception as error:  # of the user's code: say whose it is
+            results = self.call(copies)
+        except Exception as error:  # raised by the user's code: name the option that selected it
             raise ValueError(
                 f"restore={self.choice} failed with {type(error).__name__}: {error}"
             ) from error
-        self._check(made, given)
-        changed = {n: f for n, f in made.items() if not np.array_equal(f, given[n])}
+        self._check(results, frames)
+        changed = {n: f for n, f in results.items() if not np.array_equal(f, frames[n])}
         return {**observation, **changed} if changed else observation
 
     def _check(self, made: Any, given: Mapping[str, np.ndarray]) -> None:
-        """Raise ValueError for what is not changed frames of those given."""
+        """Raise ValueError unless ``made`` holds frames of ``given`` with equal shape and dtype."""
         if not isinstance(made, Mapping):
             self._reject(f"returned a {type(made).__name__}, not a dict")
         for name, frame in made.items():
@@ -94,14 +97,14 @@ class FramesCallable(Guard):
                 self._reject(f"returned an entry {name!r}, but it was given {', '.join(given)}")
             if not isinstance(frame, np.ndarray):
                 self._reject(f"returned {name} as a {type(frame).__name__}, not a numpy array")
-            wanted = given[name]
-            if frame.shape != wanted.shape:
+            original = given[name]
+            if frame.shape != original.shape:
                 self._reject(
-                    f"returned {name} of shape {list(frame.shape)}, not {list(wanted.shape)}"
+                    f"returned {name} of shape {list(frame.shape)}, not {list(original.shape)}"
                 )
-            if frame.dtype != wanted.dtype:
-                self._reject(f"returned {name} of dtype {frame.dtype}, not {wanted.dtype}")
-            if frame.dtype.kind == "f" and not np.isfinite(frame[np.isfinite(wanted)]).all():
+            if frame.dtype != original.dtype:
+                self._reject(f"returned {name} of dtype {frame.dtype}, not {original.dtype}")
+            if frame.dtype.kind == "f" and not np.isfinite(frame[np.isfinite(original)]).all():
                 self._reject(f"returned {name} with NaN or infinity; 0 means no reading")
 
     def _reject(self, what: str) -> None:
@@ -112,7 +115,7 @@ def open_callable(choice: str) -> Guard:
     """Return the guard of ``restore=module:callable``.
 
     Raises:
-        ValueError: there is no such module or callable, or it cannot be called.
+        ValueError: The module or the callable does not exist, or the object cannot be called.
     """
     named = _parts(choice)
     try:
@@ -125,23 +128,23 @@ def open_callable(choice: str) -> Guard:
             f"in the folder you are in, or on PYTHONPATH, or the folder of a restorer.{hint}"
         ) from error
     try:
-        found = getattr(module, named.name)  # the user names it at run time
+        target = getattr(module, named.name)  # the name comes from an option
     except AttributeError as error:
         public = [name for name in vars(module) if not name.startswith("_")]
         raise ValueError(
             f"restore={choice}: {unknown(f'object of {named.module}', named.name, public)}"
         ) from error
-    made = found() if isinstance(found, type) else found
-    if isinstance(made, Guard):
-        made.version = named.version or made.version
-        made.label = made.label or label(choice)
-        return made
-    if not callable(made):
+    instance = target() if isinstance(target, type) else target
+    if isinstance(instance, Guard):
+        instance.version = named.version or instance.version
+        instance.label = instance.label or label(choice)
+        return instance
+    if not callable(instance):
         raise ValueError(
-            f"restore={choice}: a {type(made).__name__} cannot be called with frames. Name a "
+            f"restore={choice}: a {type(instance).__name__} cannot be called with frames. Name a "
             "function, an object that can be called, or a class of such objects."
         )
-    return FramesCallable(choice, made, module)
+    return FramesCallable(choice, instance, module)
 
 
 def _parts(choice: str) -> CallableChoice:
@@ -161,8 +164,10 @@ def _frames(frames: Any, choice: str) -> tuple[str, ...]:
 
 
 def _source(module: ModuleType, version: str | None) -> str:
-    """Return the sha256 of a module's source file, "" if there is none. Raises ValueError if there
-    is no version in its place."""
+    """Return the sha256 of a module's source file; "" if it has none but ``version`` is given.
+
+    Raises ValueError if there is neither a source file nor a version.
+    """
     source = _source_sha(module)
     if not source and version is None:
         raise ValueError(
@@ -174,9 +179,12 @@ def _source(module: ModuleType, version: str | None) -> str:
 
 @cache
 def _source_sha(module: ModuleType) -> str:
-    """As :func:`_source`, read once: a later edit of the file does not change a loaded module."""
+    """Return the sha256 of a module's source file, or "".
+
+    The file is read once, because a later edit does not change a loaded module.
+    """
     try:
         file = inspect.getsourcefile(module)
-    except TypeError:  # a module of the interpreter itself
+    except TypeError:  # a built-in module
         return ""
     return sha256(Path(file)) if file and Path(file).is_file() else ""

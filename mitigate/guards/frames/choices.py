@@ -1,5 +1,8 @@
-"""What ``restore=`` names: the folder of a restorer, ``FOLDER:rgb`` for one of its sensors alone,
-or ``module:callable`` of the user (``callables.py``). Needs no torch."""
+"""Parse the values of ``restore=``.
+
+A value is the folder of a restorer, ``FOLDER:rgb`` or ``FOLDER:depth`` for one of its sensors, or
+``module:callable`` of the user (``callables.py``). Needs no torch.
+"""
 
 from __future__ import annotations
 
@@ -15,7 +18,7 @@ _CALLABLE = re.compile(r"([A-Za-z_][\w.]*):([A-Za-z_]\w*)(?:@(.+))?")
 
 
 class CallableChoice(NamedTuple):
-    """``module:name@version``; ``version`` is None if it is not given."""
+    """The parts of ``module:name@version``; ``version`` is None if omitted."""
 
     module: str
     name: str
@@ -23,14 +26,16 @@ class CallableChoice(NamedTuple):
 
 
 def parted(choice: str) -> tuple[str, str | None]:
-    """Return the folder, and the one sensor that is restored; None: all that it is for."""
+    """Return the folder and the sensor to restore; None means all sensors of the restorer."""
     folder, colon, sensor = str(choice).rpartition(":")
     return (folder, sensor) if colon and sensor in SENSORS else (str(choice), None)
 
 
 def callable_of(choice: str) -> CallableChoice | None:
-    """Return the parts of ``module:callable``, None for a folder. A folder of this name comes
-    first, and a name "rgb" or "depth" is a sensor of a folder."""
+    """Return the parts of ``module:callable``; None for a folder.
+
+    An existing path of this name is a folder, and the names "rgb" and "depth" are its sensors.
+    """
     match = _CALLABLE.fullmatch(choice)
     if match is None or match[2] in SENSORS or Path(choice).exists():
         return None
@@ -38,12 +43,14 @@ def callable_of(choice: str) -> CallableChoice | None:
 
 
 def label(choice: str) -> str:
-    """Return what ``choice`` adds to a column's name: the folder's name and the sensor, or the
-    names of the module and the callable and the version."""
+    """Return the text that ``choice`` adds to a column's name.
+
+    It is the folder's name and the sensor, or the names of module and callable and the version.
+    """
     named = callable_of(str(choice))
     if named is not None:
-        own = f"{named.module.rpartition('.')[2]}.{named.name}"
-        own += "" if named.version is None else f"@{named.version}"
-        return re.sub(r"[^\w.@-]+", "-", own)
+        text = f"{named.module.rpartition('.')[2]}.{named.name}"
+        text += "" if named.version is None else f"@{named.version}"
+        return re.sub(r"[^\w.@-]+", "-", text)
     folder, sensor = parted(choice)
     return "-".join(filter(None, (name_of(folder), sensor)))

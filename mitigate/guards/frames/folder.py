@@ -1,6 +1,7 @@
-"""A restorer on disk: ``model.safetensors``, ``card.json`` (plain data) and the manifest.
+"""Write and read the folder of a restorer: ``model.safetensors``, ``card.json`` and the manifest.
 
-Reading one builds our own class with the card's numbers, which are bounded, and runs nothing else.
+Reading runs no code of the folder. It builds the class ``Restorer`` with the numbers of the card,
+which must be within ``LIMITS``.
 """
 
 from __future__ import annotations
@@ -18,14 +19,16 @@ if TYPE_CHECKING:
     from mitigate.guards.frames.restorer import Restorer
 
 FORMAT, CARD = 4, "card.json"
-LIMITS = {"width": (4, 128), "depth_width": (4, 128), "size": (32, 512)}  # (ours)
-FARTHEST = 1000.0  # metres (ours)
+LIMITS = {"width": (4, 128), "depth_width": (4, 128), "size": (32, 512)}  # heuristic
+FARTHEST = 1000.0  # metres, heuristic
 _AGAIN = "Fetch the folder again, or train it again with `make train RECIPE=restore`."
 
 
 def write(restorer: Restorer, folder: str | Path, *, half: bool = False) -> Path:
-    """Write ``restorer`` into ``folder``; return it. The card says what the weights add up to, as
-    they are read again."""
+    """Write ``restorer`` into ``folder`` and return the folder.
+
+    The card holds the hash of the weights as they are read back, so ``half`` rounds them first.
+    """
     with folders.write_folder(folder, "restorer") as draft:
         checkpoint.write_tensors(restorer, draft / checkpoint.WEIGHTS, half=half)
         if half:
@@ -36,8 +39,12 @@ def write(restorer: Restorer, folder: str | Path, *, half: bool = False) -> Path
 
 
 def card(folder: str | Path) -> dict[str, Any]:
-    """What ``card.json`` says. Raises FileNotFoundError if a file is missing, ValueError if the
-    card is damaged or of another form."""
+    """Return the content of ``card.json``.
+
+    Raises:
+        FileNotFoundError: A file of the folder is missing.
+        ValueError: The card is damaged or has another format.
+    """
     folder = Path(folder)
     missing = [n for n in (CARD, checkpoint.WEIGHTS) if not (folder / n).is_file()]
     if missing:
@@ -49,15 +56,15 @@ def card(folder: str | Path) -> dict[str, Any]:
     damage = folders.problem(folder / CARD)
     if damage:
         raise ValueError(f"{folder / CARD} is cut short or damaged: it {damage}. {_AGAIN}")
-    found = read_json(folder / CARD, _AGAIN)
-    wrong = _wrong(found)
+    content = read_json(folder / CARD, _AGAIN)
+    wrong = _wrong(content)
     if wrong:
         raise ValueError(f"{folder / CARD}: {wrong}. {_AGAIN}")
-    return found
+    return content
 
 
 def _wrong(found: Any) -> str:
-    """What is wrong with a card; empty if nothing is."""
+    """Return the first problem of a card; empty if it is valid."""
     if not isinstance(found, dict) or found.get("format") != FORMAT:
         return f"it must be an object of format {FORMAT}"
     settings = found.get("settings")
@@ -74,7 +81,7 @@ def _wrong(found: Any) -> str:
 
 
 def problem(sizes: dict[str, Any]) -> str:
-    """What is wrong with the sizes of a network; empty if nothing is."""
+    """Return the first size of a network that is out of range; empty if all are valid."""
     for name, (least, most) in LIMITS.items():
         value = sizes[name]
         if type(value) is not int or not least <= value <= most:
@@ -83,27 +90,27 @@ def problem(sizes: dict[str, Any]) -> str:
 
 
 def fill(restorer: Restorer, folder: str | Path) -> None:
-    """Read the weights in ``folder`` into ``restorer``, whose settings must be the card's.
+    """Read the weights in ``folder`` into ``restorer``, whose settings must equal the card's.
 
-    Raises as :func:`card`; ValueError for other settings, a missing or another checksum, and
-    weights that are not what the card says.
+    Raises the errors of :func:`card`, and ValueError if the settings differ, or if a checksum is
+    missing or does not match the weights.
     """
-    held, own = card(folder), restorer.settings()
-    other = [name for name, value in own.items() if held["settings"][name] != value]
-    if other:
+    content, current = card(folder), restorer.settings()
+    names = [name for name, value in current.items() if content["settings"][name] != value]
+    if names:
         raise ValueError(
-            f"{folder} is of a restorer with {other[0]}={held['settings'][other[0]]!r:.60}, not "
-            f"{own[other[0]]!r:.60}: set agent.{other[0]} to that, or start anew (init=null)."
+            f"{folder} is of a restorer with {names[0]}={content['settings'][names[0]]!r:.60}, not "
+            f"{current[names[0]]!r:.60}: set agent.{names[0]} to that, or start anew (init=null)."
         )
     file = Path(folder) / checkpoint.WEIGHTS
     if not folders.is_listed(file):
         raise ValueError(f"{file} has no {folders.MANIFEST} beside it that lists it. {_AGAIN}")
     wrong = folders.problem(file)
-    if wrong:  # said here: load_weights would advise to delete the checksum, which must be there
+    if wrong:  # load_weights would advise to delete the checksum, but it is required here
         raise ValueError(f"{file} is cut short or damaged: it {wrong}. {_AGAIN}")
     checkpoint.load_weights(restorer, folder)
-    if restorer.hash != held["hash"]:
+    if restorer.hash != content["hash"]:
         raise ValueError(
             f"The weights in {folder} are not those of its {CARD} ({restorer.hash}, not "
-            f"{held['hash'][:20]}). {_AGAIN}"
+            f"{content['hash'][:20]}). {_AGAIN}"
         )

@@ -1,6 +1,7 @@
-"""The network of a restorer: a small U-Net that also judges whether a frame needs it.
+"""The network of a restorer: a small U-Net, and a gate that detects corrupted frames.
 
-No normalisation layers: how dark a frame is must not be lost. All sizes are multiples of 8 pixels.
+The U-Net has no normalisation layers, because they would hide how dark a frame is. Heights and
+widths are multiples of 8 pixels.
 """
 
 from __future__ import annotations
@@ -11,14 +12,14 @@ import torch
 import torch.nn.functional as F
 from torch import Tensor, nn
 
-SLOPE = 0.1  # of the activations below 0 (ours)
-FLAT = (1e-4, 1e-3, 1e-2)  # second differences that count as none (ours)
-TEXTURES = 6 + 4 * (3 + len(FLAT))  # numbers of :func:`texture`
-FACTOR = 8  # pixels that height and width of the input are a multiple of
+SLOPE = 0.1  # of the activations below 0, heuristic
+FLAT = (1e-4, 1e-3, 1e-2)  # second differences that count as flat, heuristic
+TEXTURES = 6 + 4 * (3 + len(FLAT))  # numbers that :func:`texture` returns
+FACTOR = 8  # pixels; height and width of the input are multiples of it
 
 
 class Encoded(NamedTuple):
-    """Maps of the three levels, and ``stats`` [n, 14 width]: mean sizes and maxima of each."""
+    """Feature maps of three levels; ``stats`` [n, 14 width]: their mean magnitudes and maxima."""
 
     fine: Tensor
     middle: Tensor
@@ -27,8 +28,10 @@ class Encoded(NamedTuple):
 
 
 def active(x: Tensor) -> Tensor:
-    """Leaky: without normalisation, channels of plain ReLUs die (measured: 83 % of the coarsest in
-    700 steps)."""
+    """Apply a leaky ReLU.
+
+    Without normalisation, channels of plain ReLUs die: 83 % of the coarsest in 700 steps, measured.
+    """
     return F.leaky_relu(x, SLOPE)
 
 
@@ -45,12 +48,15 @@ class Block(nn.Module):
 
 
 class UNet(nn.Module):
-    """float ``[n, inputs, h, w]`` to ``[n, outputs, h, w]``, zero before it has learned.
+    """Map float ``[n, inputs, h, w]`` to ``[n, outputs, h, w]``; the output is zero at first.
 
-    It works on blocks of 2 x 2 pixels (pixel unshuffle), so the finest maps are half the size. The
-    coarsest maps are told the mean over the view and over all views of the instant.
+    It works on blocks of 2 x 2 pixels (pixel unshuffle), so the finest maps have half the size. The
+    coarsest maps also get their mean over the view and over all views of the instant.
 
-    Args: inputs, outputs: channels. width: of the finest maps; the next are 2 and 4 times as wide.
+    Args:
+        inputs: channels of the input.
+        outputs: channels of the output.
+        width: channels of the finest maps; the next levels have 2 and 4 times as many.
     """
 
     def __init__(self, inputs: int, outputs: int, width: int) -> None:
@@ -74,15 +80,17 @@ class UNet(nn.Module):
         nn.init.zeros_(self.head.bias)  # type: ignore[arg-type]
 
     def encode(self, x: Tensor, views: int) -> Encoded:
-        """Maps of ``x`` [n, inputs, h, w]; every ``views`` of the n are one instant."""
+        """Return the maps of ``x`` [n, inputs, h, w]; each group of ``views`` is one instant."""
         x = F.pixel_unshuffle(x, 2).contiguous(memory_format=torch.channels_last)
         fine = self.fine(active(self.stem(x)))
         middle = self.middle(active(self.down1(fine)))
         coarse = self.coarse[0](active(self.down2(middle)))
-        own = coarse.mean((2, 3))
-        instant = own.unflatten(0, (-1, views)).mean(1, keepdim=True).expand(-1, views, -1)
-        told = self.context(torch.cat([own, instant.flatten(0, 1)], 1))
-        coarse = self.coarse[1](coarse + told[..., None, None])
+        view_mean = coarse.mean((2, 3))
+        instant_mean = (
+            view_mean.unflatten(0, (-1, views)).mean(1, keepdim=True).expand(-1, views, -1)
+        )
+        context = self.context(torch.cat([view_mean, instant_mean.flatten(0, 1)], 1))
+        coarse = self.coarse[1](coarse + context[..., None, None])
         levels = (fine, middle, coarse)
         stats = [
             part for level in levels for part in (level.abs().mean((2, 3)), level.amax((2, 3)))
@@ -90,15 +98,18 @@ class UNet(nn.Module):
         return Encoded(*levels, torch.cat(stats, 1).float())
 
     def decode(self, maps: Encoded) -> Tensor:
-        """The output for what :meth:`encode` gave, float32."""
+        """Return the output for the maps of :meth:`encode`, float32."""
         x = F.interpolate(self.up2(maps.coarse), scale_factor=2.0) + maps.middle
         x = F.interpolate(self.up1(self.middle_out(x)), scale_factor=2.0) + maps.fine
         return F.pixel_shuffle(self.head(self.fine_out(x)).float(), 2)
 
 
 class Gate(nn.Module):
-    """Logit [instants] of "this frame is corrupted", from the maps of all its views and from
-    :func:`texture`. Gradients do not go back into the maps: they are for restoring."""
+    """Predict the logit [instants] that a frame is corrupted.
+
+    It reads the maps of all views and :func:`texture`. Its gradients do not reach the maps, which
+    are trained only to restore.
+    """
 
     def __init__(self, width: int, hidden: int = 64) -> None:
         super().__init__()
@@ -107,8 +118,13 @@ class Gate(nn.Module):
         self.hidden, self.out = nn.Linear(3 * inputs, hidden), nn.Linear(hidden, 1)
 
     def forward(self, stats: Tensor, texture: Tensor, views: int) -> Tensor:
-        """``stats``: of :class:`Encoded`; ``texture`` [n, TEXTURES]; every ``views`` rows are one
-        instant."""
+        """Return the logits [instants].
+
+        Args:
+            stats: the field of :class:`Encoded`.
+            texture: float [n, TEXTURES].
+            views: rows per instant.
+        """
         each = torch.cat([self.norm(stats.detach()), texture], 1).float()
         ring = each.unflatten(0, (-1, views))
         all_views = torch.cat([ring.mean(1), ring.amax(1), ring.amin(1)], 1)
@@ -116,24 +132,31 @@ class Gate(nn.Module):
 
 
 def texture(x: Tensor, valid: Tensor) -> Tensor:
-    """What tells noise, blur, steps, dark and holes from a clean view, float32 [n, TEXTURES]: sizes
-    and shares, as logarithms over their usual range.
+    """Return statistics that reveal noise, blur, steps, darkness and holes, float32 [n, TEXTURES].
 
-    Args: x [n, c, h, w] in [0, 1]; valid [n, 1, h, w], which pixels are a reading.
+    They are magnitudes and shares of pixels, on a logarithmic scale.
+
+    Args:
+        x: float [n, c, h, w] in [0, 1].
+        valid: [n, 1, h, w], 1 where a pixel is a reading.
     """
     grey = x.float().mean(1, keepdim=True)
-    found = [grey.mean((1, 2, 3)), grey.std((1, 2, 3)), 1 - valid.float().mean((1, 2, 3))]
-    found += [(grey < 0.01).float().mean((1, 2, 3)), (grey > 0.99).float().mean((1, 2, 3))]
+    statistics = [grey.mean((1, 2, 3)), grey.std((1, 2, 3)), 1 - valid.float().mean((1, 2, 3))]
+    statistics += [(grey < 0.01).float().mean((1, 2, 3)), (grey > 0.99).float().mean((1, 2, 3))]
     for scale in (1, 2):
         level = grey if scale == 1 else F.avg_pool2d(grey, 2)
         for axis in (2, 3):
             step = level.diff(dim=axis).abs()
             bend = level.diff(n=2, dim=axis).abs()
-            found += [step.mean((1, 2, 3)), bend.mean((1, 2, 3)), bend.square().mean((1, 2, 3))]
+            statistics += [
+                step.mean((1, 2, 3)),
+                bend.mean((1, 2, 3)),
+                bend.square().mean((1, 2, 3)),
+            ]
             flat = bend.flatten(1)
-            found += [(flat < t).float().mean(1) for t in FLAT]
+            statistics += [(flat < t).float().mean(1) for t in FLAT]
     if x.shape[1] == 3:
-        found.append((x - grey).abs().mean((1, 2, 3)))
+        statistics.append((x - grey).abs().mean((1, 2, 3)))
     else:
-        found.append(torch.zeros_like(found[0]))
-    return (torch.stack(found, 1) + 1e-4).log() / 3 + 1
+        statistics.append(torch.zeros_like(statistics[0]))
+    return (torch.stack(statistics, 1) + 1e-4).log() / 3 + 1

@@ -1,4 +1,4 @@
-"""A restorer: a guard that restores corrupted frames, whatever agent or program reads them."""
+"""The restorer: a guard that estimates the clean frames, independently of the agent."""
 
 from __future__ import annotations
 
@@ -26,11 +26,17 @@ from mitigate.guards.guard import RESTORER, Guard
 
 
 class Restorer(nn.Module, Guard):
-    """Restores the frames of each of ``sensors`` with a network of its own.
+    """Restores corrupted frames with one network per sensor.
 
-    Args: sensors: of "rgb" and "depth". width, depth_width: of their networks. size: pixels of the
-    shorter side that they work at. far: metres of the farthest reading of depth.
-    Raises ValueError for other sensors and sizes.
+    Args:
+        sensors: "rgb", "depth" or both.
+        width: channels of the finest maps of the RGB network.
+        depth_width: the same for the depth network.
+        size: shorter side in pixels at which the networks work.
+        far: farthest depth in metres.
+
+    Raises:
+        ValueError: A sensor is unknown, or a size is out of range.
     """
 
     def __init__(
@@ -62,7 +68,7 @@ class Restorer(nn.Module, Guard):
 
     @property
     def encoders(self) -> dict[str, tuple[str, ...]]:
-        """By sensor, the part that is for it (``training/plan.py``)."""
+        """The parts of the agent that read each sensor (``training/plan.py``)."""
         return {sensor: (sensor,) for sensor in self.nets}
 
     def parts(self) -> dict[str, SensorRestorer]:
@@ -70,11 +76,14 @@ class Restorer(nn.Module, Guard):
         return {sensor: self._net(sensor) for sensor in self.nets}
 
     def settings(self) -> dict[str, Any]:
-        """All that makes it besides weights."""
+        """Return the constructor arguments."""
         return dict(self._settings)
 
     def only(self, sensor: str) -> Restorer:
-        """Itself, for one of its sensors alone. ValueError for another sensor."""
+        """Drop the networks of all other sensors, in place; return self.
+
+        Raises ValueError for a sensor that it does not restore.
+        """
         if sensor not in self.nets:
             raise ValueError(
                 f"This restorer is for {', '.join(self.nets)}, not for {sensor}: leave the "
@@ -86,7 +95,7 @@ class Restorer(nn.Module, Guard):
 
     @property
     def hash(self) -> str:
-        """12 hex digits over weights, thresholds and settings: equal hash, equal frames."""
+        """12 hex digits over weights, thresholds and settings; equal hashes mean equal frames."""
         text = json.dumps([weights_sha(self), self.settings()], sort_keys=True)
         return hashlib.sha256(text.encode()).hexdigest()[:DIGITS]
 
@@ -96,7 +105,7 @@ class Restorer(nn.Module, Guard):
         return tuple(self.nets)
 
     def fingerprint(self) -> str:
-        """Return :attr:`hash` with a prefix, as rows hold it."""
+        """Return :attr:`hash` with the prefix that rows have."""
         return RESTORER + self.hash
 
     def observe(self, observation: Mapping[str, Any]) -> Mapping[str, Any]:
@@ -104,37 +113,53 @@ class Restorer(nn.Module, Guard):
         return self.forward(observation)
 
     def forward(self, observation: Mapping[str, Any]) -> dict[str, Any]:
-        """As ``observation`` (``core/observation.py``), with those of its frames restored that the
-        gate takes for corrupted; every other entry, and a frame taken for clean, is the same
-        object. Raises TypeError or ValueError for frames of another dtype or shape."""
-        made = dict(observation)
+        """Return ``observation`` with the frames restored that the gate judges to be corrupted.
+
+        All other entries, and frames judged to be clean, are the same objects.
+
+        Raises:
+            TypeError, ValueError: A frame has the wrong dtype or shape.
+        """
+        restored = dict(observation)
         for sensor in self.nets:
-            if sensor in made:
-                made[sensor] = self.restore(sensor, made[sensor])
-        return made
+            if sensor in restored:
+                restored[sensor] = self.restore(sensor, restored[sensor])
+        return restored
 
     def restore(self, sensor: str, frame: np.ndarray) -> np.ndarray:
-        """A frame of one instant: uint8 [H, W, 3] or [V, H, W, 3], or float32 metres [H, W],
-        [H, W, 1] or [V, H, W, 1]. What the gate takes for clean is returned as it came, and so is
-        depth that the network does not know (``frames.py``), else a new array of the same shape and
-        dtype. Raises KeyError for another sensor, TypeError and
-        ValueError for what is no array, another dtype or shape, and depth that is no metres."""
+        """Return the restored frame, a new array of the same shape and dtype.
+
+        A frame that the gate judges to be clean is returned unchanged, and so is depth outside the
+        range that the network knows (:meth:`SensorRestorer.knows`).
+
+        Args:
+            sensor: "rgb" or "depth".
+            frame: frames of one instant: uint8 [H, W, 3] or [V, H, W, 3]; or float32 metres [H, W],
+                [H, W, 1] or [V, H, W, 1].
+
+        Raises:
+            KeyError: The restorer has no network for ``sensor``.
+            TypeError, ValueError: ``frame`` has the wrong type, dtype or shape, or its depth is not
+                in metres.
+        """
         net, views = self._net(sensor), self._views(sensor, frame)
-        changed, made = net.judged(torch.from_numpy(views))
-        return made.numpy().reshape(frame.shape).astype(frame.dtype) if changed else frame
+        changed, result = net.judged(torch.from_numpy(views))
+        return result.numpy().reshape(frame.shape).astype(frame.dtype) if changed else frame
 
     def check_shown(self, sensors: Iterable[str], where: str) -> None:
-        """Raise ValueError if it restores none of ``sensors``, which are what ``where`` shows."""
-        shown = [*sensors]
-        if not any(sensor in self.nets for sensor in shown):
+        """Raise ValueError if it restores none of ``sensors``, the sensors of ``where``."""
+        present = [*sensors]
+        if not any(sensor in self.nets for sensor in present):
             raise ValueError(
                 f"The restorer of restore= is for {', '.join(self.nets)}, but {where} shows "
-                f"{', '.join(shown) or 'no frames'}: leave restore= out, or train one for these."
+                f"{', '.join(present) or 'no frames'}: leave restore= out, or train one for these."
             )
 
     def doubt(self, sensor: str, frame: np.ndarray) -> float:
-        """How far the gate's logit lies above its threshold; above 0 the frame is restored, unless
-        that would move most of its depth far. -inf where nothing reads anything, or most too far.
+        """Return the gate's logit minus its threshold.
+
+        Above 0 the frame is restored, unless that would move most of its depth far. The value is
+        -inf for depth without a reading, or with too many readings beyond ``far``.
         """
         net, views = self._net(sensor), self._views(sensor, frame)
         return net.doubt(torch.from_numpy(views))
@@ -145,7 +170,7 @@ class Restorer(nn.Module, Guard):
         return self.nets[sensor]  # type: ignore[return-value]
 
     def _views(self, sensor: str, frame: np.ndarray) -> np.ndarray:
-        """``frame`` as [V, H, W, c] that torch takes as it is."""
+        """Return ``frame`` as a contiguous, writable [V, H, W, c]; raise for invalid frames."""
         channels, kind = CHANNELS[sensor], np.uint8 if sensor == RGB else np.float32
         if not isinstance(frame, np.ndarray):
             raise TypeError(
@@ -172,20 +197,22 @@ class Restorer(nn.Module, Guard):
         return views
 
     def save(self, folder: str | Path, *, half: bool = False) -> None:
-        """Write a folder that :func:`load_restorer` reads; ``half``: weights in float16."""
+        """Write a folder for :func:`load_restorer`; ``half`` stores the weights in float16."""
         folders.write(self, folder, half=half)
 
     def load(self, folder: str | Path) -> None:
-        """Fill it from such a folder; ValueError if that is of one with other settings."""
+        """Load the weights of such a folder; raise ValueError if its settings differ."""
         folders.fill(self, folder)
 
 
 def load_restorer(folder: str | Path) -> Restorer:
-    """The restorer in ``folder``, in eval mode: ``restorer(observation)`` restores.
+    """Return the restorer in ``folder``, in eval mode; call it with an observation.
 
-    Raises FileNotFoundError if there is none, ValueError if it is damaged, or not as its card says.
+    Raises:
+        FileNotFoundError: The folder holds no restorer.
+        ValueError: A file is damaged or differs from the card.
     """
-    found = find(str(folder))
-    made = Restorer(**folders.card(found)["settings"])
-    made.load(found)
-    return made.eval()
+    path = find(str(folder))
+    restorer = Restorer(**folders.card(path)["settings"])
+    restorer.load(path)
+    return restorer.eval()

@@ -1,6 +1,6 @@
-"""What the views of a panorama say of each other: where they disagree, and what one has lost.
+"""Compare the overlapping views of a panorama, and fill pixels of one view from the others.
 
-The views share one centre and overlap, so up to four others show a point that a view should show.
+All views share one centre, so up to four other views show the same point.
 """
 
 from __future__ import annotations
@@ -16,16 +16,20 @@ from torch import Tensor
 from mitigate.agents.adapter_layers import neighbour_grid
 from mitigate.core.observation import HFOV_DEGREES, VIEW_STEP_DEGREES, VIEWS
 
-STEPS = (1, 2)  # views away that still overlap: of 90 degrees, 30 and 60 apart
-SURE = 0.05  # of trust squared at which what the neighbours show is half believed (ours)
-FAINT = 0.02  # weight of the coarser level where a hole is filled from around it (ours)
+STEPS = (1, 2)  # overlapping neighbours: 90 degree views that are 30 and 60 degrees apart
+SURE = 0.05  # squared trust at which the neighbours' value gets weight 1/2, heuristic
+FAINT = 0.02  # weight of the coarser level when a hole is filled from around it, heuristic
 
 
 @lru_cache(maxsize=8)
-@torch.inference_mode(False)  # what is kept serves training, too
+@torch.inference_mode(False)  # training uses the cached tensors, too
 def neighbours(size: int) -> tuple[Tensor, Tensor]:
-    """Of the views at -1, +1, -2 and +2 steps: ``grid`` [4, size, size, 2] as ``neighbour_grid``,
-    and ``ahead`` [4, size, size]: metres along the neighbour's axis for one along the own."""
+    """Return the geometry of the neighbours at -1, +1, -2 and +2 steps.
+
+    Returns:
+        ``grid`` [4, size, size, 2] as ``neighbour_grid``, and ``ahead`` [4, size, size]: depth
+        along the neighbour's axis divided by depth along the view's own axis.
+    """
     half = math.tan(math.radians(HFOV_DEGREES) / 2)
     x = ((torch.arange(size) + 0.5) / size * 2 - 1) * half
     grids, aheads = [], []
@@ -39,60 +43,79 @@ def neighbours(size: int) -> tuple[Tensor, Tensor]:
 
 
 def is_ring(views: int, height: int, width: int) -> bool:
-    """Whether frames are a panorama of 12 square views, whose geometry is known."""
+    """Return whether frames are a panorama of 12 square views, whose geometry is known."""
     return views == VIEWS and height == width
 
 
 def compared(values: Tensor, valid: Tensor, depth: bool) -> tuple[Tensor, Tensor, Tensor]:
-    """The least and the greatest of what the other views of each panorama show of every pixel.
+    """Return the smallest and the largest value that other views show at every pixel.
 
-    A direction is seen by three views or more, so whoever lies outside of the two is alone with it.
+    At least three views see each direction, so a value outside this range contradicts the others.
 
-    Args: values float [P * 12, c, s, s] in [0, 1], of depth along each view's axis. valid
-    [P * 12, 1, s, s]: which of them are a reading.
-    Returns least, greatest [P * 12, c, s, s], the values themselves where no other view has a
-    reading, and whether one has, [P * 12, 1, s, s] in 0 and 1.
+    Args:
+        values: float [P * 12, c, s, s] in [0, 1]; depth is along each view's axis.
+        valid: [P * 12, 1, s, s], 1 where a pixel is a reading.
+        depth: whether ``values`` is depth.
+
+    Returns:
+        Smallest and largest [P * 12, c, s, s], equal to ``values`` where no other view has a
+        reading; and whether another view has one, [P * 12, 1, s, s] of 0 and 1.
     """
     low, high = torch.full_like(values, torch.inf), torch.full_like(values, -torch.inf)
-    for value, sure, scale in _turned(values * valid, valid):
-        shown = (value / sure.clamp(min=0.5) / (scale if depth else 1.0)).clamp(max=1)
-        low = torch.where(sure > 0.5, torch.minimum(low, shown), low)
-        high = torch.where(sure > 0.5, torch.maximum(high, shown), high)
+    for value, weight, scale in _turned(values * valid, valid):
+        other = (value / weight.clamp(min=0.5) / (scale if depth else 1.0)).clamp(max=1)
+        low = torch.where(weight > 0.5, torch.minimum(low, other), low)
+        high = torch.where(weight > 0.5, torch.maximum(high, other), high)
     seen = torch.isfinite(low)
     return torch.where(seen, low, values), torch.where(seen, high, values), seen[:, :1].float()
 
 
 def _turned(values: Tensor, weights: Tensor) -> Iterator[tuple[Tensor, Tensor, Tensor]]:
-    """Of each neighbour, in the view's own frame: its ``values`` [P * 12, c, s, s]; how much they
-    count, ``weights`` [P * 12, 1 or c, s, s]; the metres along its axis for one along the own."""
+    """Yield for each neighbour, resampled into the view: values, weights and depth scale.
+
+    The shapes are [P * 12, c, s, s], [P * 12, 1 or c, s, s] and [s, s] (``ahead`` of
+    :func:`neighbours`).
+    """
     grid, ahead = (part.to(values.device) for part in neighbours(values.shape[-1]))
     parts = [values.shape[1], weights.shape[1]]
     ring = torch.cat([values, weights], 1).unflatten(0, (-1, VIEWS))
     shifts = [sign * step for step in STEPS for sign in (1, -1)]
-    for shift, turned, scale in zip(shifts, grid, ahead, strict=True):
+    for shift, resampling, scale in zip(shifts, grid, ahead, strict=True):
         rolled = ring.roll(shift, 1).flatten(0, 1)
-        seen = F.grid_sample(rolled, turned.expand(len(rolled), -1, -1, -1), align_corners=False)
-        yield *seen.split(parts, 1), scale
+        neighbour = F.grid_sample(
+            rolled, resampling.expand(len(rolled), -1, -1, -1), align_corners=False
+        )
+        yield *neighbour.split(parts, 1), scale
 
 
 def from_neighbours(values: Tensor, trust: Tensor, depth: bool) -> tuple[Tensor, Tensor]:
-    """What the other views of each panorama say of every pixel.
+    """Return the weighted mean of the values that other views show at every pixel.
 
-    Args: values float [P * 12, c, s, s]: colours, or (``depth``) metres along each view's axis over
-    anything. trust [P * 12, 1 or c, s, s] in [0, 1]: which of them are to be believed.
-    Returns their mean [P * 12, c, s, s] and how sure it is, as ``trust`` in [0, 1).
+    Args:
+        values: float [P * 12, c, s, s]: colours, or depth along each view's axis in any unit.
+        trust: [P * 12, 1 or c, s, s] in [0, 1], the weights.
+        depth: whether ``values`` is depth.
+
+    Returns:
+        The mean [P * 12, c, s, s], and its confidence in [0, 1) with the shape of ``trust``.
     """
     total = torch.zeros_like(values)
     weight = torch.zeros_like(trust)
-    for value, sure, scale in _turned(values * trust, trust):
-        total = total + value * sure / (scale if depth else 1.0)
-        weight = weight + sure.square()
+    for value, confidence, scale in _turned(values * trust, trust):
+        total = total + value * confidence / (scale if depth else 1.0)
+        weight = weight + confidence.square()
     return total / (weight + 1e-4), weight / (weight + SURE)
 
 
 def from_around(values: Tensor, trust: Tensor) -> Tensor:
-    """``values`` [n, c, h, w] where ``trust`` [n, 1 or c, h, w] is 1, and elsewhere the mean of
-    what is trusted around, the nearer the more: a pyramid of halvings, filled from its top."""
+    """Fill pixels without trust from trusted pixels around them; near pixels count more.
+
+    It halves the frame repeatedly and fills from the coarsest level.
+
+    Args:
+        values: float [n, c, h, w].
+        trust: [n, 1 or c, h, w]; values are kept where it is 1.
+    """
     sums, weights = [values * trust], [trust]
     while min(sums[-1].shape[-2:]) > 1:
         sums.append(F.avg_pool2d(sums[-1], 2, ceil_mode=True, count_include_pad=False))

@@ -1,13 +1,13 @@
-"""The restorer of one sensor: judge, correct, fill what is lost.
+"""Restore the frames of one sensor: detect corruption, correct pixels, fill lost ones.
 
-    low, high = least and greatest of what the other views of the panorama show
+    low, high = smallest and largest value in the other views of the panorama
     lost, gain, bias = U-Net(x, low - x, high - x) zero-initialised: at first nothing changes
-    trust = sigmoid(-lost - alone * how far x lies outside of low and high), of each colour
-    y = x gain + bias                              light, blur, noise
-    out = y where trusted, else what other views of the panorama show, else what is around
+    trust = sigmoid(-lost - alone * distance of x outside [low, high]), per colour
+    y = x gain + bias                              corrects light, blur, noise
+    out = y where trusted, else from other views of the panorama, else from pixels around
 
-At sizes above the working size all but ``x`` and what other views show is computed small and
-enlarged, so detail stays.
+For frames above the working size, the maps of the U-Net are computed at the working size and
+enlarged. ``x`` and the other views keep their full size, so detail stays.
 """
 
 from __future__ import annotations
@@ -24,28 +24,33 @@ from mitigate.guards.frames import ring
 from mitigate.guards.frames.network import FACTOR, Encoded, Gate, UNet, texture
 
 CHANNELS = {RGB: 3, DEPTH: 1}
-TOLERANCE = 0.02  # of the range: a pixel that is off by less is right (ours)
-# Of the range: by less than this the other views contradict about 99 % of clean pixels (measured on
-# 20 panoramas of val_seen: 98.6 and 99.2 %).
+TOLERANCE = 0.02  # of the range: a smaller error counts as correct, heuristic
+# Share of the range. About 99 % of clean pixels differ less from the other views (measured on 20
+# panoramas of val_seen: 98.6 and 99.2 %).
 MARGIN = {RGB: 0.2, DEPTH: 0.02}
-ALONE = 2.0  # logit that a pixel loses for each further margin, before anything is learned (ours)
-LOST = -3.0  # logit of "lost" before anything is learned: 5 % (ours)
-SUREST = 6.0  # the greatest logit, either way: a pixel is never given up for good (ours)
-# Of the readings of depth (ours). Frames of the apartments are far from both: at most 1.3 % of a
-# view lies beyond their 10 m (600 panoramas), and restoring moves half of the readings of a
-# corrupted instant by at most 0.4 m (400 views alone and 200 panoramas, all corruptions of depth),
-# but of single views in which all read exactly 10 m.
-BEYOND = 0.1  # share farther than ``far``: what the network never learned from
-MOVED = 0.1  # of the range: by more than this no more than half of them may be wrong
-GAINS = (-2.0, 3.6)  # limits of the logarithm of the gain: 0.14 to 37 (ours; low light leaves 0.03)
+ALONE = 2.0  # initial loss of logit per margin outside the range, heuristic
+LOST = -3.0  # initial logit of "lost": 5 %, heuristic
+SUREST = 6.0  # bound of the logit, so that its gradient never vanishes; heuristic
+# Heuristic limits for depth. Frames of the apartments are far from both: at most 1.3 % of a view
+# lies beyond their 10 m (600 panoramas), and restoring moves half of the readings of a corrupted
+# instant by at most 0.4 m (400 single views and 200 panoramas, all depth corruptions). The only
+# exception are single views in which all pixels read exactly 10 m.
+BEYOND = 0.1  # largest share of readings farther than ``far``, which training never showed
+MOVED = 0.1  # of the range: a frame stays unchanged if over half of its readings would move more
+GAINS = (-2.0, 3.6)  # limits of the log gain: 0.14 to 37; heuristic (low light leaves 0.03)
 
 
 class SensorRestorer(nn.Module):
     """Restores the frames of one sensor.
 
-    Args: sensor: "rgb" or "depth". width: of the U-Net's finest maps. size: pixels of the shorter
-    side that it works at; larger frames are reduced to it. far: metres that depth is divided by.
-    ``threshold``: logit of the gate above which a frame is restored (a buffer; training sets it).
+    Args:
+        sensor: "rgb" or "depth".
+        width: channels of the U-Net's finest maps.
+        size: shorter side in pixels at which it works; larger frames are reduced to it.
+        far: metres that depth is divided by.
+
+    Attributes:
+        threshold: logit of the gate above which a frame is restored (a buffer that training sets).
     """
 
     threshold: Tensor
@@ -62,12 +67,15 @@ class SensorRestorer(nn.Module):
 
     @property
     def range(self) -> float:
-        """Levels of RGB, or metres of depth, that count as 1."""
+        """Levels of RGB, or metres of depth, that are scaled to 1."""
         return 255.0 if self.sensor == RGB else self.far
 
     def scaled(self, frames: Tensor) -> tuple[Tensor, Tensor]:
-        """Frames [n, H, W, c] as they come to values [n, c, H, W] in [0, 1], and which pixels
-        [n, 1, H, W] are a reading (of depth: finite and above 0)."""
+        """Scale frames [n, H, W, c] of the sensor to values [n, c, H, W] in [0, 1].
+
+        Returns:
+            The values, and a mask [n, 1, H, W] of readings (for depth: finite and above 0).
+        """
         x = frames.permute(0, 3, 1, 2).float()
         if self.sensor == RGB:
             return x / self.range, torch.ones_like(x[:, :1])
@@ -75,12 +83,12 @@ class SensorRestorer(nn.Module):
         return torch.where(valid, x, 0.0).div(self.range).clamp(max=1), valid.float()
 
     def working(self, height: int, width: int) -> tuple[int, int]:
-        """The size that frames of a size are worked on at: multiples of 8."""
+        """Return the working size for frames of this size; both sides are multiples of 8."""
         scale = min(1.0, self.size / min(height, width))
         return tuple(max(1, round(n * scale / FACTOR)) * FACTOR for n in (height, width))  # type: ignore[return-value]
 
     def small(self, x: Tensor, valid: Tensor) -> tuple[Tensor, Tensor]:
-        """Values and readings at the working size; a hole does not darken what is beside it."""
+        """Resize values and mask to the working size; holes do not darken their neighbours."""
         size = self.working(*x.shape[-2:])
         if size == tuple(x.shape[-2:]):
             return x, valid
@@ -88,38 +96,47 @@ class SensorRestorer(nn.Module):
         return _resized(x * valid, size) / weight.clamp(min=1e-3), (weight > 0.5).float()
 
     def forward(self, frames: Tensor, views: int) -> Tensor:
-        """Frames [n, H, W, c] as they come, every ``views`` of them one instant, all restored: as
-        values [n, c, H, W] in [0, 1]."""
+        """Restore all frames [n, H, W, c]; return values [n, c, H, W] in [0, 1].
+
+        Each group of ``views`` frames is one instant. The gate is not applied.
+        """
         x, valid = self.scaled(frames)
         maps, outside, _ = self.judge(*self.small(x, valid), views)
         return self._composed(x, valid, self._corrections(maps, outside), views)
 
     def judge(self, x: Tensor, valid: Tensor, views: int) -> tuple[Encoded, Tensor, Tensor]:
-        """Of frames at the working size: the U-Net's maps, how far each pixel is contradicted
-        [n, c, h, w], in margins, and the gate's logits [instants]."""
+        """Encode frames at the working size.
+
+        Returns:
+            The U-Net's maps; how far each pixel contradicts the other views [n, c, h, w], in
+            margins; and the gate's logits [instants].
+        """
         shown, outside = self.seen(x, valid, views)
         maps = self.net.encode(shown, views)
         return maps, outside, self.gate(maps.stats, texture(x, valid), views)
 
     def seen(self, x: Tensor, valid: Tensor, views: int) -> tuple[Tensor, Tensor]:
-        """What goes into the U-Net: the frame, of depth where it reads something, and how far
-        below and above it the other views of its panorama are; and how far it lies outside."""
-        own = [x * 2 - 1, valid] if self.sensor == DEPTH else [x * 2 - 1]
+        """Return the U-Net's input, and how far each pixel contradicts the other views.
+
+        The input holds the frame, for depth the mask of readings, the differences to the smallest
+        and largest value in the other views, and whether another view has a reading.
+        """
+        inputs = [x * 2 - 1, valid] if self.sensor == DEPTH else [x * 2 - 1]
         if not ring.is_ring(views, *x.shape[-2:]):
-            none = torch.zeros_like(x)
-            return torch.cat([*own, none, none, none[:, :1]], 1), none
+            zeros = torch.zeros_like(x)
+            return torch.cat([*inputs, zeros, zeros, zeros[:, :1]], 1), zeros
         low, high, seen = ring.compared(x, valid, self.sensor == DEPTH)
-        off = torch.maximum(low - x, x - high).clamp(min=0)
-        outside = (off / MARGIN[self.sensor] - 1).clamp(min=0)
-        return torch.cat([*own, (low - x) * 2, (high - x) * 2, seen], 1), outside
+        distance = torch.maximum(low - x, x - high).clamp(min=0)
+        outside = (distance / MARGIN[self.sensor] - 1).clamp(min=0)
+        return torch.cat([*inputs, (low - x) * 2, (high - x) * 2, seen], 1), outside
 
     def _corrections(self, maps: Encoded, outside: Tensor) -> Tensor:
-        """Gain, bias and how surely lost each pixel is, at the working size."""
+        """Return log gain, bias and logit of "lost" per pixel, at the working size."""
         gain_bias, lost = self.net.decode(maps).tensor_split([2 * CHANNELS[self.sensor]], 1)
         return torch.cat([gain_bias, lost + self.alone * outside], 1)
 
     def _composed(self, x: Tensor, valid: Tensor, maps: Tensor, views: int) -> Tensor:
-        """Frames [n, c, H, W] with the U-Net's ``maps`` at the working size."""
+        """Return frames [n, c, H, W] restored with ``maps`` of :meth:`_corrections`."""
         channels, full, small = x.shape[1], x.shape[-2:], maps.shape[-2:]
         maps = maps if full == small else _resized(maps, full)
         gain, bias, lost = maps.split(channels, 1)
@@ -127,18 +144,22 @@ class SensorRestorer(nn.Module):
         y = (x * gain.clamp(*GAINS).exp() + bias).clamp(0, 1)
         known, values = trust, y
         if ring.is_ring(views, *full):
-            other, sure = ring.from_neighbours(y, trust, self.sensor == DEPTH)
-            values = y + (1 - trust) * sure * (other - y)
-            known = trust + (1 - trust) * sure
+            other, confidence = ring.from_neighbours(y, trust, self.sensor == DEPTH)
+            values = y + (1 - trust) * confidence * (other - y)
+            known = trust + (1 - trust) * confidence
         around = ring.from_around(values, known)
         return values + (1 - known) * (around - values)
 
-    # one instant, as an agent sees it ----------------------------------------------------------
+    # one instant -------------------------------------------------------------------------------
 
     @torch.inference_mode()
     def judged(self, frames: Tensor) -> tuple[bool, Tensor]:
-        """Whether frames [V, H, W, c] are restored, and the frames restored if so, else as they
-        are: what the gate takes for clean, and what the network does not know."""
+        """Restore frames [V, H, W, c] if the gate judges them to be corrupted.
+
+        Returns:
+            Whether they were restored, and the frames. They are unchanged if they are judged to be
+            clean, are out of the known range, or would move too far.
+        """
         x, valid = self.scaled(frames)
         if not self.knows(frames, valid):
             return False, frames
@@ -152,16 +173,20 @@ class SensorRestorer(nn.Module):
 
     @torch.inference_mode()
     def doubt(self, frames: Tensor) -> float:
-        """How far the gate's logit for frames [V, H, W, c] of an instant lies above its threshold;
-        -inf for what the network does not know."""
+        """Return the gate's logit for frames [V, H, W, c] of an instant minus its threshold.
+
+        The value is -inf for frames out of the known range.
+        """
         x, valid = self.scaled(frames)
         if not self.knows(frames, valid):
             return -math.inf
         return float(self.judge(*self.small(x, valid), len(frames))[2] - self.threshold)
 
     def knows(self, frames: Tensor, valid: Tensor) -> bool:
-        """Whether frames [V, H, W, c] read anything, and most of it within ``far``; warns of what
-        reads too far."""
+        """Return whether frames [V, H, W, c] have readings, most of them within ``far``.
+
+        RGB frames are always known. Warns if too much depth is beyond ``far``.
+        """
         if self.sensor == RGB or not bool(valid.any()):
             return self.sensor == RGB
         near = _share(frames.permute(0, 3, 1, 2) > self.range, valid) <= BEYOND
@@ -175,7 +200,7 @@ class SensorRestorer(nn.Module):
         return near
 
     def unscaled(self, out: Tensor) -> Tensor:
-        """Values [n, c, H, W] as the sensor gives them: uint8, or metres above 0."""
+        """Convert values [n, c, H, W] to frames [n, H, W, c]: uint8, or metres above 0."""
         out = out.clamp(0, 1).permute(0, 2, 3, 1)
         if self.sensor == RGB:
             return (out * self.range).round().to(torch.uint8)
@@ -183,7 +208,7 @@ class SensorRestorer(nn.Module):
 
 
 def _share(found: Tensor, valid: Tensor) -> float:
-    """Of the readings [n, 1, H, W], how many are ``found`` [n, c, H, W]."""
+    """Return the share of the readings ``valid`` [n, 1, H, W] for which ``found`` is true."""
     return float((found * valid).sum() / (valid.sum() * found.shape[1]))
 
 
