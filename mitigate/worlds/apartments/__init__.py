@@ -1,1 +1,1 @@
-"""Procedural apartments rendered in software by Panda3D: layouts, episodes, simulator."""
+"""Procedural apartments, rendered in software by Panda3D: layouts, episodes, simulator."""

@@ -23,33 +23,37 @@ from mitigate.worlds.episodes import from_vlnce
 
 
 def show(seed: int, episode: int, task: str, size: int, out: Path) -> None:
-    """Write a PNG with the panorama, its depth, the plan with the reference path, the text."""
+    """Write a PNG with the panorama, its depth, the reference path on the plan and the text."""
     from matplotlib.figure import Figure
 
-    made = make_episode(Apartment(seed), task, episode)
+    selected = make_episode(Apartment(seed), task, episode)
     simulator = Simulator(size)
-    simulator.reset(made)
-    seen = simulator.observe()
+    simulator.reset(selected)
+    observation = simulator.observe()
     figure = Figure(figsize=(10, 11.5), layout="constrained")
     axes = figure.subplots(3, 1, height_ratios=(1, 1, 3.2))
-    axes[0].imshow(strip(seen[RGB]))
+    axes[0].imshow(strip(observation[RGB]))
     axes[0].set_title(
-        f"panorama at the start, straight ahead in the middle ({made.scene_id})", fontsize=10
+        f"panorama at the start, straight ahead in the middle ({selected.scene_id})",
+        fontsize=10,
     )
-    depth = axes[1].imshow(strip(seen[DEPTH])[..., 0], cmap="viridis_r")
+    depth = axes[1].imshow(strip(observation[DEPTH])[..., 0], cmap="viridis_r")
     figure.colorbar(depth, ax=list(axes[:2]), label="depth [m]", fraction=0.03, pad=0.01)
     for axis in axes[:2]:
         axis.axis("off")
     draw_plan(axes[2], simulator.apartment)
     draw_path(
-        axes[2], np.stack([from_vlnce(p) for p in made.reference_path]), "#d62728", "reference path"
+        axes[2],
+        np.stack([from_vlnce(p) for p in selected.reference_path]),
+        "#d62728",
+        "reference path",
     )
     arrow = 0.6 * np.array([-np.sin(simulator.heading), np.cos(simulator.heading)])
     axes[2].arrow(*simulator.xy, *arrow, width=0.05, color="#1f77b4", zorder=8)
-    figure.suptitle("\n".join(textwrap.wrap(made.instruction.text, 100)), fontsize=11)
+    figure.suptitle("\n".join(textwrap.wrap(selected.instruction.text, 100)), fontsize=11)
     write_figure(out, figure, dpi=80, facecolor="white")
     print(
-        f"{made.episode_id}: {made.geodesic_distance:.1f} m. {made.instruction.text}\nwrote {out}"
+        f"{selected.episode_id}: {selected.geodesic_distance:.1f} m. {selected.instruction.text}\nwrote {out}"
     )
 
 

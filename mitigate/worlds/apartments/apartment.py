@@ -1,4 +1,4 @@
-"""One apartment from one seed: rooms, furniture, faces to draw, free space to walk."""
+"""Generate an apartment from a seed: rooms, furniture, faces to draw and free space."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ _ATTEMPTS = 60
 
 
 class Apartment:
-    """Rooms, doors and furniture of a seed; the split follows from the seed's range."""
+    """Rooms, doors and furniture of one seed; the range of the seed determines the split."""
 
     def __init__(self, seed: int) -> None:
         self.seed, self.split = int(seed), split_of(int(seed))
@@ -53,7 +53,7 @@ class Apartment:
         return max(r.rect[2] for r in self.rooms), max(r.rect[3] for r in self.rooms)
 
     def room_at(self, xy: np.ndarray) -> int:
-        """Index of the room that holds a plan position; the nearest room outside all."""
+        """Return the index of the room at a plan position; outside all rooms, of the nearest."""
         for index, room in enumerate(self.rooms):
             if room.holds(xy[0], xy[1]):
                 return index
@@ -67,7 +67,7 @@ class Apartment:
         return FaceBuilder(self).build()
 
     def _walkable(self) -> bool:
-        """Every door's centre and the larger part of the free cells form one component."""
+        """Return whether the largest free component reaches all doors, all rooms and most cells."""
         cells = [self.space.index[int(d.y / CELL), int(d.x / CELL)] for d in self.doors]
         reached = {self.room_at(self.space.centre(c)) for c in range(0, len(self.space.cells), 7)}
         return min(cells) >= 0 and self.space.share > 0.8 and len(reached) == len(self.rooms)
@@ -92,9 +92,12 @@ class Apartment:
         return np.pad(blocked[1:-1, 1:-1], 1, constant_values=True)
 
 
-@lru_cache(maxsize=512)  # of 0.3 MB each; another takes 8 ms
+@lru_cache(maxsize=512)  # 0.3 MB per apartment; building one takes 8 ms
 def apartment_of(scene_id: str) -> Apartment:
-    """The apartment of a scene id "apartments/<split>/<seed>". Raises ``ValueError`` for others."""
+    """Return the apartment of a scene id "apartments/<split>/<seed>".
+
+    Raises ValueError for other ids, and for a seed of another split.
+    """
     parts = scene_id.split("/")
     if len(parts) != 3 or parts[0] != "apartments" or not parts[2].isdigit():
         raise ValueError(
@@ -112,6 +115,6 @@ def apartment_of(scene_id: str) -> Apartment:
 
 
 def _fill(grid: np.ndarray, rect: Rect, value: bool) -> None:
-    """Set the cells whose centres lie in the rectangle."""
+    """Set the cells whose centres lie in the rectangle to ``value``."""
     x0, y0, x1, y1 = (max(0, int(round(v / CELL))) for v in rect)
     grid[y0 : max(y1, y0 + 1), x0 : max(x1, x0 + 1)] = value

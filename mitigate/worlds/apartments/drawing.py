@@ -1,4 +1,4 @@
-"""Pictures of apartments: the panorama, its depth, the plan with paths."""
+"""Draw the plan of an apartment."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _ROOMS = {
 
 
 def draw_plan(axes: Any, apartment: Apartment) -> None:
-    """Rooms, doorways and furniture seen from above on matplotlib axes, metres."""
+    """Draw rooms, doorways and furniture from above on matplotlib axes, in metres."""
     for room in apartment.rooms:
         _draw_room(axes, room)
     for door in apartment.doors:

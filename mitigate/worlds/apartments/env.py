@@ -1,4 +1,4 @@
-"""The apartments as a torchrl environment: ``ApartmentsEnv``, one agent, low-level actions."""
+"""The apartments as a torchrl environment with one agent and low-level actions."""
 
 from __future__ import annotations
 
@@ -16,13 +16,16 @@ class ApartmentsEnv(WorldEnv):
     """Vision-and-language navigation in apartments: a ``WorldEnv`` of ``ApartmentsWorld``.
 
     Args:
-        episodes: a VLN-CE file, or a list of episodes, run in order and over again; None draws
-            training episodes from ``seed``.
-        apartments, ogn_share: of the drawn episodes (see ``draw_training_episode``).
-        size: pixels of a view. seed, worker, workers: as ``WorldEnv``.
+        episodes: a VLN-CE file or a list of episodes, which repeat in order. None draws training
+            episodes from ``seed``.
+        seed, worker, workers: see ``WorldEnv``.
+        apartments: number of training layouts for drawn episodes.
+        ogn_share: share of object-goal episodes among drawn episodes.
+        size: side of a square view in pixels.
 
-    Raises ValueError as ``WorldEnv`` does; on reset, for an episode of a scene that is not an
-    apartment.
+    Raises:
+        ValueError: Raised by ``WorldEnv``; or on reset, the scene of the episode is not an
+            apartment.
     """
 
     key = "apartments env"
@@ -50,5 +53,5 @@ class ApartmentsEnv(WorldEnv):
 
     @property
     def simulator(self) -> Simulator:
-        """The simulator of the current episode; opened at first use, so specs cost no rendering."""
+        """The simulator of the current episode, created at first use; specs need no rendering."""
         return self.world.simulator

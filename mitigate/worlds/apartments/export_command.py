@@ -47,9 +47,9 @@ from mitigate.worlds.apartments.tasks import (
 )
 from mitigate.worlds.episodes import Episode, to_json
 
-TRAIN = 100  # apartments of train that are written if nothing is said (ours)
+TRAIN = 100  # default number of apartments of train, heuristic
 PER_APARTMENT = 10  # episodes of one apartment in the lists
-NAVMESH = {  # of habitat_sim.NavMeshSettings; the agent is lifted by cell_height
+NAVMESH = {  # habitat_sim.NavMeshSettings; cell_height also lifts the agent
     "agent_radius": RADIUS,
     "agent_height": 1.5,
     "agent_max_climb": 0.05,
@@ -59,7 +59,7 @@ NAVMESH = {  # of habitat_sim.NavMeshSettings; the agent is lifted by cell_heigh
     "camera_height": EYE,
 }
 PAD, UNKNOWN = "<pad>", "<unk>"
-TOKENS = 200  # of an instruction, padded, as in R2R-CE's files
+TOKENS = 200  # per instruction, padded, as in R2R-CE's files
 DEFAULTS = {"split": "val_unseen", "scenes": "null", "task": "both"}
 ALLOWED = {"split": SPLITS, "task": ("vln", "ogn", "both")}
 
@@ -87,29 +87,29 @@ def _write(out: Path, split: str, listed: dict[str, list[Episode]]) -> list[Path
 
 
 def _episodes(split: str, task: str, scenes: int | None) -> list[Episode]:
-    """The shipped list of a split, of its first ``scenes`` apartments; train has none shipped."""
+    """Return the shipped episodes of the first ``scenes`` apartments; generate those of train."""
     if split == "train":
         return list(fixed_episodes(split, task, PER_APARTMENT * (scenes or TRAIN)))
-    found = load_episodes(split, task)
-    kept = sorted({episode.scene_id for episode in found})[:scenes]
-    return [episode for episode in found if episode.scene_id in kept]
+    episodes = load_episodes(split, task)
+    selected = sorted({episode.scene_id for episode in episodes})[:scenes]
+    return [episode for episode in episodes if episode.scene_id in selected]
 
 
 def write_vln(out: Path, split: str, episodes: Sequence[Episode]) -> Path:
-    """Write episodes as R2R-CE's files are: tokens by the vocabulary that the file holds."""
+    """Write episodes in R2R-CE's format, with tokens of the vocabulary in the file."""
     words = sorted({w for e in episodes for w in _words(e.instruction.text)})
     vocabulary = [PAD, UNKNOWN, *words]
     numbers = {word: number for number, word in enumerate(vocabulary)}
-    listed = []
+    entries = []
     for episode in episodes:
         tokens = [numbers[word] for word in _words(episode.instruction.text)][:TOKENS]
-        made = to_json(episode)
-        made["scene_id"] = f"{episode.scene_id}.glb"
-        made["instruction"] = {
+        entry = to_json(episode)
+        entry["scene_id"] = f"{episode.scene_id}.glb"
+        entry["instruction"] = {
             "instruction_text": episode.instruction.text,
             "instruction_tokens": tokens + [0] * (TOKENS - len(tokens)),
         }
-        listed.append(made)
+        entries.append(entry)
     stored = {
         "word_list": vocabulary,
         "word2idx_dict": numbers,
@@ -121,7 +121,7 @@ def write_vln(out: Path, split: str, episodes: Sequence[Episode]) -> Path:
     }
     path = out / "datasets" / "vln" / f"{split}.json.gz"
     with atomic_text(path) as file:
-        json.dump({"episodes": listed, "instruction_vocab": stored}, file)
+        json.dump({"episodes": entries, "instruction_vocab": stored}, file)
     return path
 
 
@@ -130,7 +130,7 @@ def _words(text: str) -> list[str]:
 
 
 def write_objectnav(out: Path, split: str, episodes: Sequence[Episode]) -> Path:
-    """Write episodes as HM3D's ObjectNav files are: a file of each scene beside an empty one."""
+    """Write episodes in HM3D's ObjectNav format: one file per scene and an empty list."""
     ids = {category: number for number, category in enumerate(CATEGORIES)}
     known = {
         "category_to_task_category_id": ids,
@@ -140,14 +140,15 @@ def write_objectnav(out: Path, split: str, episodes: Sequence[Episode]) -> Path:
     for episode in episodes:
         by_scene[episode.scene_id].append(episode)
     folder = out / "datasets" / "objectnav" / split
-    for scene, own in by_scene.items():
+    for scene, scene_episodes in by_scene.items():
         name = f"{scene}.glb"
         goals = {
-            f"{Path(name).name}_{episode.info['category']}": _goals(episode) for episode in own
+            f"{Path(name).name}_{episode.info['category']}": _goals(episode)
+            for episode in scene_episodes
         }
-        listed = [_objectnav(episode, name) for episode in own]
+        entries = [_objectnav(episode, name) for episode in scene_episodes]
         with atomic_text(folder / "content" / f"{Path(scene).name}.json.gz") as file:
-            json.dump({"episodes": listed, "goals_by_category": goals, **known}, file)
+            json.dump({"episodes": entries, "goals_by_category": goals, **known}, file)
     path = folder / f"{split}.json.gz"
     with atomic_text(path) as file:
         json.dump({"episodes": [], **known}, file)
@@ -155,9 +156,9 @@ def write_objectnav(out: Path, split: str, episodes: Sequence[Episode]) -> Path:
 
 
 def _objectnav(episode: Episode, scene: str) -> dict[str, Any]:
-    made = to_json(episode)
+    entry = to_json(episode)
     return {
-        **{name: made[name] for name in ("episode_id", "start_position", "start_rotation")},
+        **{name: entry[name] for name in ("episode_id", "start_position", "start_rotation")},
         "scene_id": scene,
         "info": {"geodesic_distance": episode.geodesic_distance},
         "goals": [],
@@ -166,8 +167,8 @@ def _objectnav(episode: Episode, scene: str) -> dict[str, Any]:
 
 
 def _goals(episode: Episode) -> list[dict[str, Any]]:
-    """All things of the category, each with the free cells beside it as view points."""
-    apartment, found = apartment_of(episode.scene_id), []
+    """Return all objects of the category, with the free cells beside each as view points."""
+    apartment, goals = apartment_of(episode.scene_id), []
     for thing in landmarks(episode):
         piece = apartment.furniture[thing]
         x0, y0, x1, y1 = piece.rect
@@ -175,7 +176,7 @@ def _goals(episode: Episode) -> list[dict[str, Any]]:
             {"agent_state": {"position": to_vlnce(xy), "rotation": [0.0, 0.0, 0.0, 1.0]}}
             for xy in map(apartment.space.centre, view_cells(apartment, thing))
         ]
-        found.append(
+        goals.append(
             {
                 "position": to_vlnce(((x0 + x1) / 2, (y0 + y1) / 2)),
                 "object_id": thing,
@@ -184,13 +185,13 @@ def _goals(episode: Episode) -> list[dict[str, Any]]:
                 "view_points": [{**view, "iou": 1.0} for view in views],
             }
         )
-    return found
+    return goals
 
 
 def parse(arguments: Sequence[str]) -> tuple[Path, str, int | None, tuple[str, ...]]:
-    """OUT, split, scenes and tasks. Raises ValueError in one paragraph for what cannot be read."""
-    (out,), given = paths_and_options(arguments, ("OUT",), DEFAULTS)
-    options = {**DEFAULTS, **given}
+    """Return OUT, split, scenes and tasks. Raises ValueError for invalid arguments."""
+    (out,), overrides = paths_and_options(arguments, ("OUT",), DEFAULTS)
+    options = {**DEFAULTS, **overrides}
     for name, allowed in ALLOWED.items():
         if options[name] not in allowed:
             raise ValueError(unknown(name, options[name], allowed))
@@ -225,7 +226,7 @@ _TRIANGLES = np.array([0, 1, 2, 0, 2, 3], np.uint32)
 
 
 class _Buffer:
-    """Collects binary parts, aligned to 4 bytes, and what describes them."""
+    """Collects binary parts, aligned to 4 bytes, and their views and accessors."""
 
     def __init__(self) -> None:
         self.data = bytearray()
@@ -255,9 +256,9 @@ class _Buffer:
 def glb(faces: Faces) -> bytes:
     """Return the bytes of a GLB file (glTF 2.0, Khronos) with all faces of an apartment.
 
-    Coordinates are the plan's, z up, as Habitat reads a stage file without a config of its own; it
-    turns them into VLN-CE's frame. Materials are unlit (KHR_materials_unlit) and textures not
-    filtered, so that a renderer shows the colours that ours does.
+    Coordinates are the plan's, with z up. Habitat expects this of a stage file without a config,
+    and converts them to VLN-CE's frame. Materials are unlit (KHR_materials_unlit) and textures are
+    not filtered, so that other renderers show the same colours as ours.
     """
     buffer, primitives = _Buffer(), []
     used = [k for k in range(len(PATTERNS)) if (faces.pattern == k).any()]
@@ -305,7 +306,7 @@ def _material(name: str, number: int) -> dict[str, Any]:
 
 
 def _primitive(buffer: _Buffer, faces: Faces, chosen: np.ndarray) -> dict[str, Any]:
-    """The triangles of the chosen faces."""
+    """Add the triangles of the chosen faces; return their primitive."""
     corners = faces.corners[chosen].reshape(-1, 3).astype(np.float32)
     count = int(chosen.sum())
     colours = np.full((4 * count, 4), 255, np.uint8)

@@ -69,7 +69,7 @@ class FaceBuilder:
         return self._faces()
 
     def _faces(self) -> Faces:
-        """The arrays of all rectangles collected, made at one go."""
+        """Return the arrays of all collected rectangles."""
         axis, sign, pattern, room, category, instance = np.array(self.kinds).T
         at, tile, *span = np.array(self.places, float).T
         low, high = np.stack(span[:2], 1), np.stack(span[2:], 1)
@@ -88,7 +88,7 @@ class FaceBuilder:
     def _tints(
         self, axis: np.ndarray, sign: np.ndarray, room: np.ndarray, corners: np.ndarray
     ) -> np.ndarray:
-        """Colours by the light of side and room; upright faces are darker towards the floor."""
+        """Shade colours by side and room; upright faces are darker towards the floor."""
         sides = np.array([self._SHADE[k] for k in range(3)])
         shade = sides[axis, (sign > 0).astype(int)] * self.light[room]
         dim = (0.82 + 0.18 * np.clip(corners[..., 2:] / 1.2, 0, 1)).astype(float)
@@ -110,7 +110,7 @@ class FaceBuilder:
         instance: int = -1,
         tile: float = 1.0,
     ) -> None:
-        """One rectangle on plane ``axis = at`` seen from side ``sign``; low/high: other axes."""
+        """Add a rectangle on plane ``axis = at``, facing ``sign``; low/high are on other axes."""
         self.kinds.append((axis, sign, pattern, room, category, instance))
         self.places.append((at, tile, *low, *high))
         self.colours.append(colour)
@@ -200,8 +200,11 @@ class FaceBuilder:
 def _corners(
     axis: np.ndarray, sign: np.ndarray, at: np.ndarray, low: np.ndarray, high: np.ndarray
 ) -> np.ndarray:
-    """Corners float32 [n, 4, 3] of rectangles on planes ``axis = at``, in the order in which each
-    is seen from its side ``sign``. low, high: [n, 2] on the other two axes."""
+    """Return the corners float32 [n, 4, 3] of rectangles on planes ``axis = at``.
+
+    The order of the corners follows from the side ``sign`` that each faces. ``low`` and ``high``
+    are [n, 2] on the other two axes.
+    """
     n = len(axis)
     others = np.array([[1, 2], [0, 2], [0, 1]])[axis]
     corners, every = np.zeros((n, 4, 3), np.float32), np.arange(n)
@@ -214,7 +217,7 @@ def _corners(
 
 
 def _turned(part: tuple, piece: Furniture) -> tuple[tuple, tuple]:
-    """World box of a part. Turn 0 backs on low y, 1 on high x, 2 on high y, 3 on low x."""
+    """Return the box of a part in plan coordinates, as two corners (see :class:`Furniture`)."""
     px0, px1, py0, py1, z0, z1, _ = part
     x0, y0, x1, y1 = piece.rect
     if piece.turn == 0:

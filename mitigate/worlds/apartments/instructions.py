@@ -1,7 +1,7 @@
-"""Language: what a person would say about a path, in templates that no two splits share.
+"""Write instructions for paths, from templates that no two splits share.
 
-Every split owns its phrasings (``templates.json``); the words of the validation splits all occur in
-the training phrasings, so an agent meets new sentences, not new words.
+Every split has its own templates (``templates.json``). All words of the validation splits occur in
+the training templates, so an agent meets new sentences, but no new words.
 """
 
 from __future__ import annotations
@@ -16,14 +16,14 @@ import numpy as np
 
 from mitigate.worlds.apartments.layout import CATALOGUE
 
-if TYPE_CHECKING:  # the words are used where there is no simulator
+if TYPE_CHECKING:  # this module also serves code without the simulator
     from mitigate.worlds.apartments.apartment import Apartment
 
 _FILE = Path(__file__).with_name("templates.json")
 TEMPLATES: dict[str, dict[str, list[str]]] = json.loads(_FILE.read_text(encoding="utf-8"))
-SAID_BEFORE = 0.25  # of the turns behind a doorway, in training: people say these both ways (ours)
-_BESIDE = 1.6  # metres before and behind a doorway within which a turn belongs to it (ours)
-_NEAR_PATH = 1.3  # metres from the path to a landmark that is worth naming
+SAID_BEFORE = 0.25  # share of turns behind a door named before it, in training; heuristic
+_BESIDE = 1.6  # metres around a doorway within which a turn belongs to it, heuristic
+_NEAR_PATH = 1.3  # largest distance in metres from the path to a landmark that is named
 
 
 @dataclass(frozen=True)
@@ -37,7 +37,7 @@ class Event:
 
 
 def name_of(apartment: Apartment, instance: int) -> str:
-    """What a person calls a piece of furniture, for example "red sofa"."""
+    """Return the name of a piece of furniture in instructions, for example "red sofa"."""
     piece = apartment.furniture[instance]
     return f"{piece.colour} {piece.category}" if piece.colour else piece.category
 
@@ -45,7 +45,7 @@ def name_of(apartment: Apartment, instance: int) -> str:
 def describe(
     apartment: Apartment, path: np.ndarray, heading: float, target: int, rng: np.random.Generator
 ) -> str:
-    """An instruction for a path (float [n, 2], metres) that ends beside furniture ``target``."""
+    """Return an instruction for a path (float [n, 2], metres) that ends at piece ``target``."""
     clauses = [
         _clause(apartment, event, rng) for event in _events(apartment, path, heading, target, rng)
     ]
@@ -57,7 +57,7 @@ def describe(
 
 
 def find(apartment: Apartment, category: str, rng: np.random.Generator) -> str:
-    """An object-goal instruction: "find a <category>"."""
+    """Return an object-goal instruction: "find a <category>"."""
     article = "an" if category[0] in "aeiou" else "a"
     text = _pick(TEMPLATES[apartment.split]["find"], rng).format(a=article, thing=category)
     return text[0].upper() + text[1:] + "."
@@ -90,7 +90,7 @@ def _clause(apartment: Apartment, event: Event, rng: np.random.Generator) -> str
 def _events(
     apartment: Apartment, path: np.ndarray, heading: float, target: int, rng: np.random.Generator
 ) -> list[Event]:
-    """First turn, room changes with the turn beside them, up to two landmarks, in order."""
+    """Return first turn, room changes with their turns and up to two landmarks, in order."""
     steps = np.hypot(*np.diff(path, axis=0).T)
     along = np.concatenate([[0.0], np.cumsum(steps)])
     events = [Event(0.0, turn_word(_direction(path, along, 0.0), heading))]
@@ -112,8 +112,10 @@ def _events(
 
 
 def _turn_beside(path: np.ndarray, along: np.ndarray, door: float) -> Event | None:
-    """The turn to the left or right that a path makes at the doorway ``door`` metres along it, at
-    the place where half of it is done; None if there is none, or the path has only begun."""
+    """Return the left or right turn of a path at the doorway ``door`` metres along it.
+
+    The event is where half of the turn is done. None without a turn, or near the start of the path.
+    """
     if door <= _BESIDE:
         return None
     before, after = (_direction(path, along, at) for at in (door - _BESIDE, door))
@@ -128,7 +130,7 @@ def _turn_beside(path: np.ndarray, along: np.ndarray, door: float) -> Event | No
 
 
 def _direction(path: np.ndarray, along: np.ndarray, at: float, span: float = 1.2) -> float:
-    """Heading (radians) from the point ``at`` metres along the path to ``span`` metres further."""
+    """Return the heading (radians) of the path from ``at`` to ``at + span`` metres along it."""
     i = int(np.searchsorted(along, max(at, 0.0)))
     j = int(np.searchsorted(along, max(at, 0.0) + span))
     i, j = min(i, len(path) - 2), min(max(j, i + 1), len(path) - 1)
@@ -137,7 +139,7 @@ def _direction(path: np.ndarray, along: np.ndarray, at: float, span: float = 1.2
 
 
 def turn_word(to: float, heading: float) -> str:
-    """The word for turning from one heading to another (counter-clockwise radians)."""
+    """Return the turn from one heading to another (counter-clockwise radians) as a word."""
     angle = np.degrees(_angle(to, heading))
     if abs(angle) < 35:
         return "ahead"
@@ -147,14 +149,14 @@ def turn_word(to: float, heading: float) -> str:
 
 
 def _angle(to: float, heading: float) -> float:
-    """From one heading to another, radians in [-pi, pi)."""
+    """Return the angle from one heading to another, radians in [-pi, pi)."""
     return (to - heading + np.pi) % (2 * np.pi) - np.pi
 
 
 def _landmarks(
     apartment: Apartment, path: np.ndarray, along: np.ndarray, target: int, rng: np.random.Generator
 ) -> list[Event]:
-    found = []
+    events = []
     for instance, piece in enumerate(apartment.furniture):
         if instance == target:
             continue
@@ -166,7 +168,7 @@ def _landmarks(
         i = int(gap.argmin())
         same_room = apartment.room_at(path[i]) == piece.room
         if gap[i] < _NEAR_PATH and same_room and 0.8 < along[i] < along[-1] - 1.5:
-            found.append(
+            events.append(
                 Event(
                     float(along[i]),
                     _side(path, i, piece.centre, rng)
@@ -175,8 +177,8 @@ def _landmarks(
                     thing=instance,
                 )
             )
-    keep = rng.permutation(len(found))[: int(rng.integers(0, 3))]
-    return [found[k] for k in keep]
+    selected = rng.permutation(len(events))[: int(rng.integers(0, 3))]
+    return [events[k] for k in selected]
 
 
 def _side(path: np.ndarray, i: int, centre: tuple[float, float], rng: np.random.Generator) -> str:

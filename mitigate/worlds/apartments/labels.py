@@ -1,7 +1,8 @@
-"""What a panorama shows, by the semantic ids that the renderer gives for free.
+"""Labels of what a panorama shows, from the face ids of the renderer.
 
-Labels of a panorama are of the central 36 degrees of each view, so that those of neighbouring
-views, 30 degrees apart, hardly overlap; those of one camera are of ``COLUMNS`` columns of its view.
+Labels of a panorama describe the central 36 degrees of each view, so that labels of neighbouring
+views, which are 30 degrees apart, hardly overlap. Labels of a single camera describe ``COLUMNS``
+columns of its view.
 """
 
 from __future__ import annotations
@@ -26,29 +27,31 @@ CONCEPTS = (
     *ROOM_KINDS,
 )
 _HALF_ANGLE = np.radians(18.0)
-ANGLES, DISTANCES, STEP = 120, 12, 0.25  # of the free directions: bins, bins, metres a bin
+ANGLES, DISTANCES, STEP = 120, 12, 0.25  # of free directions: bins, bins, metres per bin
 COLUMNS = 4  # of a view, of equal width in pixels
 YAWS = np.radians(360.0 / ANGLES * (np.arange(ANGLES) + 0.5) - 180.0 / VIEWS)  # to the right
 
 
 def free_directions(space: FreeSpace, xy: np.ndarray, heading: float) -> np.ndarray:
-    """Where one can go straight from a pose: float32 [120, 12] in {0, 1}, by angle to the right of
-    the heading (bin ``10 k + i`` at ``30 k - 15 + 3 (i + 0.5)`` degrees) and distance in steps of
-    0.25 m."""
+    """Return which straight paths from a pose are free: float32 [120, 12] in {0, 1}.
+
+    The axes are the angle to the right of the heading (bin ``10 k + i`` is at
+    ``30 k - 15 + 3 (i + 0.5)`` degrees) and the distance in steps of 0.25 m.
+    """
     fine = space.rays(xy, 4 * ANGLES, STEP * DISTANCES)
     world = (np.round((heading - YAWS) / (2 * np.pi) * 4 * ANGLES).astype(int)) % (4 * ANGLES)
     return (fine[world][:, None] >= STEP * (np.arange(DISTANCES) + 1) - 1e-3).astype(np.float32)
 
 
 def ahead(directions: np.ndarray) -> np.ndarray:
-    """Of :func:`free_directions` those in a view of 90 degrees ahead: [30, 12], left to right."""
+    """Select the :func:`free_directions` of a 90 degree view ahead: [30, 12], left to right."""
     half = round(ANGLES * HFOV_DEGREES / 720)
     middle = round(ANGLES / VIEWS / 2)  # bin 0 is half a view's step to the left
     return np.roll(directions, half - middle, 0)[: 2 * half]
 
 
 def band(size: int) -> tuple[int, int]:
-    """First and last + 1 column of the central 36 degrees of a 90 degree view."""
+    """Return the first and end column of the central 36 degrees of a 90 degree view."""
     half = np.tan(_HALF_ANGLE) * size / 2
     return int(round(size / 2 - half)), int(round(size / 2 + half))
 
@@ -56,10 +59,11 @@ def band(size: int) -> tuple[int, int]:
 def view_labels(
     apartment: Apartment, ids: np.ndarray, depth: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Labels of a panorama from its face ids.
+    """Return the labels of a panorama from its face ids.
 
-    Returns concepts float32 ``[12, len(CONCEPTS)]`` in {0, 1} and seen bool ``[12, furniture]``:
-    which pieces of furniture show in the central band of each view.
+    Returns:
+        concepts float32 ``[12, len(CONCEPTS)]`` in {0, 1}, and seen bool ``[12, furniture]``: which
+        pieces of furniture are visible in the central band of each view.
     """
     return _within(apartment, ids, depth, *band(ids.shape[2]))
 
@@ -67,8 +71,11 @@ def view_labels(
 def column_labels(
     apartment: Apartment, ids: np.ndarray, depth: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """As :func:`view_labels`, of each of the ``COLUMNS`` columns of each view: concepts float32
-    [views, 4, len(CONCEPTS)] and seen bool [views, 4, furniture]."""
+    """Return the labels of :func:`view_labels` for each of the ``COLUMNS`` columns of each view.
+
+    Returns:
+        concepts float32 [views, 4, len(CONCEPTS)], and seen bool [views, 4, furniture].
+    """
     edges = np.linspace(0, ids.shape[2], COLUMNS + 1).round().astype(int)
     parts = [_within(apartment, ids, depth, a, b) for a, b in pairwise(edges.tolist())]
     concepts, seen = (np.stack(part, 1) for part in zip(*parts, strict=True))
@@ -78,7 +85,7 @@ def column_labels(
 def _within(
     apartment: Apartment, ids: np.ndarray, depth: np.ndarray, low: int, high: int
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Labels of the columns of pixels from ``low`` to ``high``."""
+    """Return the labels of the pixel columns from ``low`` to ``high``."""
     instance, room, category, colour, kind = _tables(apartment)
     return _label(
         ids,

@@ -95,7 +95,7 @@ class Furniture:
 
 
 def split_rooms(rng: np.random.Generator) -> list[Rect]:
-    """4 to 8 rectangles from recursive splits of a 9-12 m by 8-10 m outline."""
+    """Split an outline of 9-12 m by 8-10 m recursively into 4 to 8 rectangles."""
     outline = (0.0, 0.0, float(rng.uniform(9.0, 12.0)), float(rng.uniform(8.0, 10.0)))
     rects, target = [outline], int(rng.integers(4, 9))
     while len(rects) < target:
@@ -123,7 +123,7 @@ def _cut(rect: Rect, rng: np.random.Generator) -> list[Rect]:
 
 
 def shared_wall(a: Rect, b: Rect) -> tuple[int, float, float, float] | None:
-    """(axis of the normal, wall coordinate, low, high) of the border of two rooms, if any."""
+    """Return (axis of the normal, wall coordinate, low, high) of a shared wall, or None."""
     for axis in (0, 1):
         other = 1 - axis
         for near, far in ((a, b), (b, a)):
@@ -135,7 +135,7 @@ def shared_wall(a: Rect, b: Rect) -> tuple[int, float, float, float] | None:
 
 
 def place_doors(rects: list[Rect], rng: np.random.Generator) -> list[Door]:
-    """A spanning tree of doorways in random order, plus a loop with probability 0.3 a wall."""
+    """Connect the rooms by a random tree; add other doors with probability 0.3 per wall."""
     pairs = [(i, j) for i in range(len(rects)) for j in range(i) if shared_wall(rects[i], rects[j])]
     rng.shuffle(pairs)
     group = list(range(len(rects)))
@@ -153,7 +153,7 @@ def place_doors(rects: list[Rect], rng: np.random.Generator) -> list[Door]:
 
 
 def name_rooms(rects: list[Rect], rng: np.random.Generator) -> list[Room]:
-    """Kinds: one of each as far as they go, then a second bedroom, bathroom or office."""
+    """Assign each kind once, in random order, then a second bedroom, bathroom or office."""
     kinds = list(ROOMS)
     rng.shuffle(kinds)
     kinds += [str(kind) for kind in rng.permutation(["bedroom", "bathroom", "office"])]
@@ -163,7 +163,7 @@ def name_rooms(rects: list[Rect], rng: np.random.Generator) -> list[Room]:
 def furnish(
     rooms: list[Room], doors: list[Door], colours: tuple[str, ...], rng: np.random.Generator
 ) -> list[Furniture]:
-    """Furniture of every room: its signature pieces first, then a few of the others."""
+    """Place the furniture of every room: its required pieces first, then 2 to 4 optional ones."""
     placed: list[Furniture] = []
     for index, room in enumerate(rooms):
         always, choice = ROOMS[room.kind]

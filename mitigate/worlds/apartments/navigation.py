@@ -1,4 +1,4 @@
-"""Where an agent can stand and how far it is: occupancy grid, geodesics, straight-line motion."""
+"""Free space of an apartment: occupancy grid, geodesic distances and straight motion."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from scipy.sparse.csgraph import dijkstra
 
 CELL = 0.1  # metres
 RADIUS = 0.18  # agent radius, metres (VLN-CE's LoCoBot-like agent: 0.1-0.2)
-GRAPHS = 32  # kept at once, of half a megabyte each; another takes 1.3 ms (ours)
+GRAPHS = 32  # cached graphs, heuristic: half a megabyte each; building one takes 1.3 ms
 _SAMPLE = 0.04  # metres between collision samples on a straight move
 
 
 class FreeSpace:
-    """Cells of ``CELL`` metres where the centre of the agent may be.
+    """The cells of ``CELL`` metres where the centre of an agent may be.
 
     ``free`` is bool ``[ny, nx]``; cell (i, j) covers x in [j, j + 1) * CELL and y likewise.
     """
@@ -44,36 +44,40 @@ class FreeSpace:
 
     @property
     def graph(self) -> csr_matrix:
-        """8-connected graph of the free cells; edge weights in metres. Ways may cut the corner of a
-        cell that is not free, by at most 0.06 m, and are 5 % longer than straight ones on average
-        (docs/agents.md)."""
+        """8-connected graph of the free cells; edge weights in metres.
+
+        Paths may cut the corner of a blocked cell by at most 0.06 m. On average they are 5 % longer
+        than straight lines (docs/agents.md).
+        """
         return _graph_of(self)
 
     def cell_of(self, xy: np.ndarray | tuple[float, float]) -> int:
-        """Index of the free cell nearest to a plan position (metres)."""
+        """Return the index of the free cell nearest to a plan position (metres)."""
         return int(self.nearest[self._place(xy)])
 
     def _place(self, xy: np.ndarray | tuple[float, float]) -> tuple[int, int]:
-        """(i, j) of the cell, free or not, nearest to a plan position (metres)."""
+        """Return (i, j) of the cell, free or not, nearest to a plan position (metres)."""
         i = min(max(int(xy[1] / CELL), 0), self.free.shape[0] - 1)
         j = min(max(int(xy[0] / CELL), 0), self.free.shape[1] - 1)
         return i, j
 
     def stand(self, xy: np.ndarray) -> np.ndarray:
-        """Where an agent can stand that is put at a plan position [2] (metres): there, if its cell
-        is free, else in the middle of the nearest that is."""
+        """Return a position where an agent can stand, float [2] in metres.
+
+        It is ``xy`` if its cell is free, else the middle of the nearest free cell.
+        """
         return xy if self.free[self._place(xy)] else self.centre(self.cell_of(xy))
 
     def centre(self, cell: int) -> np.ndarray:
-        """Plan position (metres) of the middle of a free cell."""
+        """Return the plan position (metres) of the middle of a free cell."""
         return (self.cells[cell][::-1] + 0.5) * CELL
 
     def distances(self, targets: list[int]) -> np.ndarray:
-        """Geodesic metres from every free cell to the nearest of the target cells: float32 [n]."""
+        """Return geodesic metres from every free cell to the nearest target cell, float32 [n]."""
         return dijkstra(self.graph, indices=targets, min_only=True).astype(np.float32)
 
     def shortest_path(self, start: int, field: np.ndarray) -> np.ndarray:
-        """Cells' centres ``[n, 2]`` from a start cell down a ``distances`` field to its zero."""
+        """Return cell centres ``[n, 2]`` from ``start`` to the zero of a ``distances`` field."""
         path, graph = [start], self.graph
         while field[path[-1]] > 1e-6:
             near = slice(graph.indptr[path[-1]], graph.indptr[path[-1] + 1])
@@ -82,20 +86,20 @@ class FreeSpace:
         return (self.cells[path][:, ::-1] + 0.5) * CELL
 
     def move(self, xy: np.ndarray, heading: float, metres: float) -> tuple[np.ndarray, bool]:
-        """One straight move, sliding along walls (as VLN-CE's R2R agents): (new xy, collided)."""
+        """Move straight, sliding along walls as VLN-CE's R2R agents; return (xy, collided)."""
         dx, dy = -np.sin(heading), np.cos(heading)
-        gone = _march(self.free, xy[0], xy[1], dx, dy, metres)
-        new = np.array([xy[0] + dx * gone, xy[1] + dy * gone])
-        if metres - gone < 1e-6:
+        distance = _march(self.free, xy[0], xy[1], dx, dy, metres)
+        new = np.array([xy[0] + dx * distance, xy[1] + dy * distance])
+        if metres - distance < 1e-6:
             return new, False
-        rest = metres - gone
+        rest = metres - distance
         slides = [(np.sign(dx), 0.0, abs(dx) * rest), (0.0, np.sign(dy), abs(dy) * rest)]
         moved = [_march(self.free, new[0], new[1], sx, sy, length) for sx, sy, length in slides]
         best = int(np.argmax(moved))
         return new + np.array(slides[best][:2]) * moved[best], True
 
     def rays(self, xy: np.ndarray, count: int, reach: float) -> np.ndarray:
-        """Free metres (at most ``reach``) along ``count`` headings 0, 360/count, ... (CCW)."""
+        """Return the free metres, at most ``reach``, along ``count`` even headings from 0 (CCW)."""
         return _rays(self.free, float(xy[0]), float(xy[1]), count, reach)
 
 
@@ -121,19 +125,19 @@ def _grid_graph(free: np.ndarray, index: np.ndarray) -> csr_matrix:
 
 @njit(cache=True)
 def _march(free, x, y, dx, dy, length):
-    """Metres that can be gone from (x, y) along (dx, dy), at most ``length``."""
+    """Return the free metres from (x, y) along (dx, dy), at most ``length``."""
     norm = np.hypot(dx, dy)
     if norm < 1e-9 or length <= 0:
         return length
     ux, uy = dx / norm, dy / norm
     steps = int(np.ceil(length / _SAMPLE))
-    gone = 0.0
+    distance = 0.0
     for k in range(1, steps + 1):
         t = length * k / steps
         i, j = int((y + uy * t) / CELL), int((x + ux * t) / CELL)
         if i < 0 or j < 0 or i >= free.shape[0] or j >= free.shape[1] or not free[i, j]:
-            return gone
-        gone = t
+            return distance
+        distance = t
     return length
 
 

@@ -1,4 +1,4 @@
-"""Colours, textures and split seeds: what makes one split look different from another.
+"""Colours, textures and seed ranges, which make splits look different.
 
 Layouts, palettes and instruction templates of ``train``, ``val_seen`` and ``val_unseen`` never
 overlap: each split owns a range of apartment seeds and draws its colour variants and texture
@@ -47,7 +47,7 @@ class Palette:
 
 
 def split_of(seed: int) -> str:
-    """The split that owns an apartment seed. Raises ``ValueError`` for a seed of none."""
+    """Return the split of an apartment seed; raise ValueError if no split contains it."""
     for split, (low, high) in SEED_RANGES.items():
         if low <= seed < high:
             return split
@@ -56,7 +56,7 @@ def split_of(seed: int) -> str:
 
 
 def palette(split: str) -> Palette:
-    """The fixed palette of a split, drawn from that split's own generator."""
+    """Return the fixed palette of a split, drawn from its own generator."""
     rng = np.random.default_rng([2024, SPLITS.index(split)])
     count = _VARIANTS[split]
     colours = {name: _variants(rng, spec, count) for name, spec in COLOURS.items()}
@@ -74,7 +74,7 @@ def _variants(rng: np.random.Generator, spec: tuple, count: int) -> np.ndarray:
 
 
 def texture(pattern: str, variant: int) -> np.ndarray:
-    """A grey texture to be tinted by vertex colours: uint8 ``[32, 32]`` around 200-255."""
+    """Return a grey texture, tinted by vertex colours: uint8 ``[32, 32]``, mostly 200-255."""
     rng = np.random.default_rng([7, PATTERNS.index(pattern), variant])
     n = TEXTURE_PIXELS
     y, x = np.mgrid[0:n, 0:n]

@@ -1,8 +1,8 @@
 """Panda3D renderer: one off-screen buffer holds the 12 RGB views and the 12 face-id views.
 
-It draws on the processor (Panda3D's ``p3tinydisplay``: no GPU, GL or display), which cannot read
-depth back, so a second pass draws every planar face in a flat id colour: the id gives the semantic
-label, and ray-plane intersection gives exact metric depth.
+It draws on the CPU with Panda3D's ``p3tinydisplay``, without GPU, GL or display. This pipe cannot
+read depth back. So a second pass draws every planar face in a flat id colour: the id gives the
+semantic label, and ray-plane intersection gives exact metric depth.
 """
 
 from __future__ import annotations
@@ -24,15 +24,15 @@ from mitigate.worlds.apartments.palette import PATTERNS, TEXTURE_PIXELS, texture
 
 EYE = 1.25  # camera height, metres (VLN-CE)
 FARTHEST = 17.0  # metres; longer than any line through an apartment
-LEAST = 4  # pixels of a view (ours)
-SCENES = 128  # whose geometry a shared renderer keeps, 0.35 MB each; another takes 6 ms (ours)
+LEAST = 4  # smallest view in pixels, heuristic
+SCENES = 128  # cached per shared renderer, heuristic: 0.35 MB each; building one takes 6 ms
 PIPE = "p3tinydisplay"
 _COLUMNS, _ROWS = 4, 3  # the 12 views tile the buffer
 _NEAR = 0.1  # metres; a wall at the agent's radius is at least 0.127 m deep in a 90 degree view
 
 
 def _panda() -> Any:
-    with unbroken():  # an error inside its first import ends the process (panda3d 1.10.16)
+    with unbroken():  # an error in its first import would end the process (panda3d 1.10.16)
         from panda3d import core
 
     settings = "\n".join(
@@ -52,7 +52,7 @@ def _panda() -> Any:
 
 
 class Renderer:
-    """Renders RGB and face ids of apartments; keeps the scenes of the ``scenes`` latest ones.
+    """Renders RGB and face ids of apartments; caches the geometry of the last ``scenes`` scenes.
 
     Raises ValueError for a ``size`` in pixels below ``LEAST``.
     """
@@ -81,7 +81,7 @@ class Renderer:
         self.buffer.add_render_texture(self.image, core.GraphicsOutput.RTM_copy_ram)
         self.buffer.set_clear_color((0, 0, 0, 1))
         self.textures = [self._texture(pattern) for pattern in PATTERNS]
-        self.regions: list[list[Any]] = []  # of the RGB views, and of the id views
+        self.regions: list[list[Any]] = []  # one list for the RGB views, one for the id views
         self.rig_rgb, self.rig_ids = self._rig(0), self._rig(1)
         self.scenes: OrderedDict[int, tuple[Any, Any, Faces]] = OrderedDict()
         self.capacity, self.current = scenes, -1
@@ -109,17 +109,23 @@ class Renderer:
         views: Iterable[int] = range(VIEWS),
         rgb: bool = True,
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """rgb uint8 [12, S, S, 3], depth float32 metres [12, S, S, 1], ids int32 [12, S, S].
+        """Render the current scene at a pose.
 
-        ``views``: those that are wanted; the others stay 0, in ids -1. ``rgb`` False leaves the
-        colours out. Both save time and change no pixel of what is drawn.
+        Args:
+            x, y: plan position in metres.
+            heading: counter-clockwise radians.
+            views: views to draw; all others are 0, and -1 in ids. Drawn pixels do not depend on it.
+            rgb: whether to draw colours; without them rgb is 0.
+
+        Returns:
+            rgb uint8 [12, S, S, 3], depth float32 metres [12, S, S, 1], ids int32 [12, S, S].
         """
         for rig in (self.rig_rgb, self.rig_ids):
             rig.set_pos(x, y, EYE)
             rig.set_h(np.degrees(heading))
-        wanted = np.zeros(VIEWS, np.bool_)
-        wanted[list(views)] = True
-        for layer, drawn in zip(self.regions, (wanted & rgb, wanted), strict=True):
+        is_drawn = np.zeros(VIEWS, np.bool_)
+        is_drawn[list(views)] = True
+        for layer, drawn in zip(self.regions, (is_drawn & rgb, is_drawn), strict=True):
             for region, active in zip(layer, drawn, strict=True):
                 region.set_active(bool(active))
         self.buffer.set_active(True)
@@ -128,7 +134,7 @@ class Renderer:
         raw = np.frombuffer(self.image.get_ram_image(), np.uint8)
         frame = raw.reshape(2 * _ROWS * self.size, _COLUMNS * self.size, 4)
         plane = self.faces.plane
-        return _split(frame, self.size, plane, x, y, EYE, heading, _NEAR, wanted, rgb)
+        return _split(frame, self.size, plane, x, y, EYE, heading, _NEAR, is_drawn, rgb)
 
     def _rig(self, layer: int) -> Any:
         core = self.core
@@ -166,7 +172,7 @@ class Renderer:
         rgb, ids = self.core.NodePath("rgb"), self.core.NodePath("ids")
         for room in range(int(faces.room.max()) + 1):
             here = faces.room == room
-            group = rgb.attach_new_node(f"room{room}")  # rooms out of view are culled whole
+            group = rgb.attach_new_node(f"room{room}")  # Panda3D culls a room as a whole
             for pattern, image in enumerate(self.textures):
                 chosen = np.flatnonzero(here & (faces.pattern == pattern))
                 if len(chosen):
@@ -220,8 +226,10 @@ class Renderer:
 
 @lru_cache(maxsize=4)
 def shared_renderer(size: int) -> Renderer:
-    """The one renderer of this process for views of ``size`` pixels: whoever draws through it finds
-    the scenes that others have built. It keeps ``SCENES`` of them."""
+    """Return the renderer of this process for views of ``size`` pixels.
+
+    All its users share its cache of ``SCENES`` scenes.
+    """
     return Renderer(size, scenes=SCENES)
 
 
@@ -235,7 +243,7 @@ def _make_pipe(core: Any) -> Any:
 
 
 def _id_colours(ids: np.ndarray) -> np.ndarray:
-    """Face id + 1 in base 32 as colours far from rounding: float32 [n, 3] in [0, 1]."""
+    """Encode face id + 1 in base 32 as colours that survive rounding: float32 [n, 3]."""
     code = ids + 1
     digits = np.stack([code % 32, code // 32 % 32, code // 1024 % 32], 1)
     return (digits * 8 + 4).astype(np.float32) / 255
@@ -243,7 +251,7 @@ def _id_colours(ids: np.ndarray) -> np.ndarray:
 
 @njit(cache=True)
 def _split(frame, size, plane, x, y, z, heading, near, wanted, colours):
-    """Tiles (bottom-up BGRA) to views; ids from the upper half; depth by ray-plane meeting."""
+    """Split bottom-up BGRA tiles into views; ids are in the upper half; compute depth per ray."""
     rgb = np.zeros((12, size, size, 3), np.uint8)
     depth = np.zeros((12, size, size, 1), np.float32)
     ids = np.full((12, size, size), -1, np.int32)
@@ -278,7 +286,7 @@ def _split(frame, size, plane, x, y, z, heading, near, wanted, colours):
                     t = (plane[face, 1] - y) / (fy + right * ry)
                 else:
                     t = (plane[face, 1] - z) / up
-                if not near <= t <= FARTHEST:  # a face seen edge-on: take the pixel beside it
+                if not near <= t <= FARTHEST:  # a face seen edge-on: use the pixel to the left
                     t = depth[k, i, j - 1, 0] if j > 0 else 0.0
                 depth[k, i, j, 0] = t
     return rgb, depth, ids

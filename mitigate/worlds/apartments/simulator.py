@@ -1,4 +1,4 @@
-"""The simulator: continuous motion in an apartment, RGB-D panoramas on demand, geodesics."""
+"""Simulate continuous motion in an apartment, with RGB-D panoramas and geodesic distances."""
 
 from __future__ import annotations
 
@@ -26,12 +26,12 @@ from mitigate.worlds.episodes import Episode, Vector, from_vlnce, heading_of
 from mitigate.worlds.measures import Rule
 from mitigate.worlds.world import Expert
 
-NEAR = 0.5  # metres from a free cell that a start or goal may lie (ours): furniture may be a goal
+NEAR = 0.5  # metres from a start or goal to a free cell, heuristic: a goal may be furniture
 
 
-@lru_cache(maxsize=256)  # of 20 kB each; another takes half a millisecond
+@lru_cache(maxsize=256)  # 20 kB per field; computing one takes half a millisecond
 def goal_field(scene_id: str, goals: tuple[tuple[float, float, float], ...]) -> np.ndarray:
-    """Geodesic metres from every free cell of a scene to the nearest goal."""
+    """Return the geodesic metres from every free cell of a scene to the nearest goal."""
     space = apartment_of(scene_id).space
     return space.distances([space.cell_of(from_vlnce(goal)) for goal in goals])
 
@@ -50,9 +50,9 @@ class Simulator:
         return self._renderer
 
     def reset(self, episode: Episode) -> None:
-        """Put the agent at the start of an episode; of one inside of something, beside it.
+        """Put the agent at the start of an episode, or at the nearest free cell.
 
-        Raises ValueError if start or goal lie farther than ``NEAR`` from where one can stand.
+        Raises ValueError if the start or a goal is farther than ``NEAR`` from every free cell.
         """
         self.episode, self.apartment = episode, apartment_of(episode.scene_id)
         self.space = self.apartment.space
@@ -68,10 +68,10 @@ class Simulator:
 
     def _check_place(self, what: str, position: Vector) -> None:
         xy = from_vlnce(position)
-        away = float(np.hypot(*(self.space.centre(self.space.cell_of(xy)) - xy)))
-        if not away <= NEAR:
+        gap = float(np.hypot(*(self.space.centre(self.space.cell_of(xy)) - xy)))
+        if not gap <= NEAR:
             raise ValueError(
-                f"The episode {self.episode.episode_id} {what} at {list(position)}, {away:.1f} m "
+                f"The episode {self.episode.episode_id} {what} at {list(position)}, {gap:.1f} m "
                 f"from where one can stand in {self.episode.scene_id}. Positions are VLN-CE's: "
                 "(x, up, z) with z = -y of the plan."
             )
@@ -81,25 +81,29 @@ class Simulator:
         return self.stopped or self.steps >= MAX_STEPS
 
     def odometry(self) -> dict[str, np.ndarray]:
-        """The pose alone: float32 [3] = (x, y, heading)."""
+        """Return only the pose: float32 [3] = (x, y, heading)."""
         return {POSE: np.array([self.xy[0], self.xy[1], self.heading], np.float32)}
 
     def observe(self) -> dict[str, np.ndarray]:
-        """A full observation (see ``mitigate.core.observation``)."""
+        """Return a full observation (see ``mitigate.core.observation``)."""
         rgb, depth, _ = self.observe_faces()
         return {RGB: rgb, DEPTH: depth, **self.odometry()}
 
     def observe_faces(
         self, views: Iterable[int] = range(VIEWS)
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """RGB, depth and face ids of the panorama at the current pose; only ``views`` are drawn."""
+        """Render RGB, depth and face ids of ``views`` of the panorama at the current pose."""
         self.renderer.load(self.apartment)
         place = float(self.xy[0]), float(self.xy[1]), float(self.heading)
         return self.renderer.render(*place, views=views)
 
     def step(self, action: int) -> None:
-        """One low-level action. Raises ``ValueError`` for an action that does not exist,
-        ``RuntimeError`` after the last one."""
+        """Execute one low-level action.
+
+        Raises:
+            RuntimeError: The episode is over.
+            ValueError: The action does not exist.
+        """
         if self.done:
             raise RuntimeError("The episode is over: reset first.")
         if action == FORWARD:
@@ -117,13 +121,16 @@ class Simulator:
         self.steps += 1
 
     def distance_to_goal(self, xy: np.ndarray | None = None) -> float:
-        """Geodesic metres from a position (default: the agent's) to the nearest goal."""
+        """Return the geodesic metres from ``xy`` (default: the agent) to the nearest goal."""
         return float(self.field[self.space.cell_of(self.xy if xy is None else xy)])
 
 
 class GeodesicExpert(Expert):
-    """Distances and the greedy follower of a geodesic ``field``: it turns to the heading whose step
-    lowers the distance most, and stops within what ``rule`` counts."""
+    """Greedy follower of a geodesic ``field``.
+
+    It turns to the heading whose next step lowers the distance most, and stops at the distance that
+    ``rule`` sets.
+    """
 
     def __init__(self, simulator: Simulator, rule: Rule, field: np.ndarray) -> None:
         self.simulator, self.rule, self.field = simulator, rule, field

@@ -33,25 +33,25 @@ from mitigate.worlds.episodes import (
 SUCCESS_METRES = 2.0  # R2R-CE's 3.0 m over 10 m paths, scaled to ours (docs/base-agent.md)
 SHORTEST, LONGEST = 4.0, 12.0  # metres of geodesic distance
 TASKS = ("vln", "ogn")
-EDITION = 2  # of the lists and their texts, part of every id: rows of two editions never meet
-OGN_SHARE = 0.15  # of training episodes (ours)
+EDITION = 2  # version of the lists and texts; part of every id, so that rows never mix
+OGN_SHARE = 0.15  # of training episodes, heuristic
 _TRIES = 60
 _POOL = 60  # training paths of one apartment
 _PER_APARTMENT = 10  # episodes of one apartment in the fixed lists
 
 
 def to_vlnce(xy: np.ndarray | tuple[float, float]) -> tuple[float, float, float]:
-    """Plan position to a VLN-CE position (x, y up, z)."""
+    """Convert a plan position to a VLN-CE position (x, y up, z)."""
     return round(float(xy[0]), 4), 0.0, round(-float(xy[1]), 4)
 
 
 def rotation_of(heading: float) -> tuple[float, float, float, float]:
-    """Heading (radians, counter-clockwise) to a quaternion [x, y, z, w]."""
+    """Convert a heading (counter-clockwise radians) to a quaternion [x, y, z, w]."""
     return 0.0, float(np.sin(heading / 2)), 0.0, float(np.cos(heading / 2))
 
 
 def make_episode(apartment: Apartment, task: str, index: int, seed: int = 0) -> Episode:
-    """Episode ``index`` of an apartment: a pure function of (apartment, task, index, seed).
+    """Return episode ``index`` of an apartment, a pure function of all arguments.
 
     Raises ``RuntimeError`` if no start lies ``SHORTEST`` to ``LONGEST`` metres from a goal.
     """
@@ -95,7 +95,7 @@ def _draw_ogn(apartment: Apartment, rng: np.random.Generator) -> tuple[list[int]
 
 
 def view_cells(apartment: Apartment, instance: int) -> np.ndarray:
-    """Free cells of the same room within 0.8 m of a piece of furniture."""
+    """Return the free cells of the same room within 0.8 m of a piece of furniture."""
     space, piece = apartment.space, apartment.furniture[instance]
     xy = (space.cells[:, ::-1] + 0.5) * 0.1
     x0, y0, x1, y1 = piece.rect
@@ -150,20 +150,26 @@ def _episode(
 
 @dataclass(frozen=True)
 class DrawnEpisodes:
-    """Training episodes (``worlds/world.py``) of the first ``layouts`` training layouts,
-    ``ogn_share`` of them object-goal episodes."""
+    """A source of training episodes (``worlds/world.py``).
+
+    Attributes:
+        layouts: number of training layouts.
+        ogn_share: share of object-goal episodes.
+    """
 
     layouts: int = 400
     ogn_share: float = OGN_SHARE
 
     def draw(self, rng: np.random.Generator, share: tuple[int, int] = (0, 1)) -> Episode:
-        """A function of the generator's state and of ``share``: (piece, of how many)."""
+        """Draw an episode from part ``share`` = (index, count) of the layouts."""
         return draw_training_episode(rng, share_of(range(self.layouts), *share), self.ogn_share)
 
 
 def landmarks(episode: Episode) -> list[int]:
-    """Furniture that marks the goal: the one an instruction ends at, or all of an OGN category.
-    Raises ValueError for an episode that does not say it."""
+    """Return the furniture that marks the goal: one piece in VLN, all of the category in OGN.
+
+    Raises ValueError if the info of the episode lacks it.
+    """
     furniture = apartment_of(episode.scene_id).furniture
     info, here = episode.info, range(len(furniture))
     if info.get("task") == "vln" and info.get("landmark") in here:
@@ -177,8 +183,10 @@ def landmarks(episode: Episode) -> list[int]:
 
 
 def view_field(episode: Episode) -> np.ndarray:
-    """Metres from every free cell of the scene to the nearest place to see the goal from: one
-    beside it, as VLN-CE's object goals have view points."""
+    """Return the metres from every free cell to the nearest view point of the goal.
+
+    View points are the cells beside the goal, like those of VLN-CE's object goals.
+    """
     return _view_field(episode.scene_id, tuple(landmarks(episode)))
 
 
@@ -190,7 +198,7 @@ def _view_field(scene_id: str, things: tuple[int, ...]) -> np.ndarray:
 
 
 def fixed_episodes(split: str, task: str, count: int) -> Iterator[Episode]:
-    """A split's validation list: ``_PER_APARTMENT`` episodes an apartment, in seed order."""
+    """Yield a split's validation list: ``_PER_APARTMENT`` episodes per apartment, by seed."""
     low, _ = SEED_RANGES[split]
     for number in range(count):
         yield make_episode(Apartment(low + number // _PER_APARTMENT), task, number % _PER_APARTMENT)
@@ -198,7 +206,7 @@ def fixed_episodes(split: str, task: str, count: int) -> Iterator[Episode]:
 
 @lru_cache(maxsize=100_000)
 def _pooled(seed: int, task: str, index: int) -> bytes:
-    """An episode of the pool, pickled: as objects the many that are kept take ten times as much."""
+    """Return a pickled episode of the pool; cached as objects, they need ten times the memory."""
     scene = f"apartments/train/{seed:06d}"
     return pickle.dumps(make_episode(apartment_of(scene), task, index, seed=1))
 
@@ -206,10 +214,15 @@ def _pooled(seed: int, task: str, index: int) -> bytes:
 def draw_training_episode(
     rng: np.random.Generator, apartments: int | range, ogn_share: float
 ) -> Episode:
-    """A training episode in one of ``apartments``, training seeds or how many of the first, its
-    instruction told anew.
+    """Draw a training episode with a newly written instruction.
 
-    A pure function of the generator's state and the arguments; ``_POOL`` paths an apartment.
+    It is a pure function of the generator's state and the arguments. Each apartment has ``_POOL``
+    paths.
+
+    Args:
+        rng: generator of all draws.
+        apartments: training seeds, or a number of first seeds.
+        ogn_share: share of object-goal episodes.
     """
     seeds = range(apartments) if isinstance(apartments, int) else apartments
     seed, index = seeds[int(rng.integers(len(seeds)))], int(rng.integers(_POOL))
@@ -226,12 +239,12 @@ def draw_training_episode(
 
 
 def episode_file(split: str, task: str = "vln") -> Path:
-    """The shipped list of a validation split."""
+    """Return the path of the shipped list of a validation split."""
     return Path(__file__).parent / "episodes" / f"{split}_{task}.json.gz"
 
 
 def load_episodes(split: str, task: str = "vln") -> list[Episode]:
-    """The shipped episodes of a validation split, in order."""
+    """Return the shipped episodes of a validation split, in order."""
     return list(read_episodes(episode_file(split, task)))
 
 

@@ -1,4 +1,4 @@
-"""The apartments as a world (``worlds/world.py``): episodes, measures, oracle, labels, poses."""
+"""The apartments as a world (``worlds/world.py``): episodes, measures, expert, labels, poses."""
 
 from __future__ import annotations
 
@@ -37,18 +37,23 @@ from mitigate.worlds.apartments.tasks import SUCCESS_METRES, landmarks, view_fie
 from mitigate.worlds.episodes import Episode, from_vlnce
 from mitigate.worlds.world import World
 
-KEPT = 1 << 26  # bytes of rendered frames kept while remembering (ours)
-LARGEST = 2048  # pixels of a view (ours)
-APART = 0.5  # metres between the way that a file says and the measured, to warn of (ours)
+KEPT = 1 << 26  # bytes of rendered frames that ``remembering`` caches, heuristic
+LARGEST = 2048  # pixels of a view, heuristic
+APART = 0.5  # metres between recorded and measured distance that cause a warning, heuristic
 RULES = {"apartments": measures.Rule("vln", SUCCESS_METRES), **measures.RULES}
 
 
 class ApartmentsWorld(World):
-    """One agent in one apartment; all of a process draw through one renderer.
+    """One agent in one apartment. All worlds of a process share one renderer per size.
 
-    Args: size: pixels of a square view. layouts: how many training layouts ``scenes`` names.
-    views: 12, a panorama, or 1, a camera that looks ahead. rule: what counts as success, of
-    ``RULES``. Raises ValueError for another number of views and an unknown rule.
+    Args:
+        size: side of a square view in pixels.
+        layouts: number of training layouts in ``scenes``.
+        views: 12 for a panorama, or 1 for a camera that looks ahead.
+        rule: name of the success rule in ``RULES``.
+
+    Raises:
+        ValueError: A size or number of views is not allowed, or the rule is unknown.
     """
 
     def __init__(
@@ -62,7 +67,7 @@ class ApartmentsWorld(World):
             raise ValueError(f"size={size}: a view has from 8 to {LARGEST} pixels, as env.size=64.")
         self.size, self.layouts, self.views = size, layouts, views
         self._rule, self.rule = rule, str(RULES[rule])
-        if RULES[rule].view_points:  # rows of older versions had them to the goal
+        if RULES[rule].view_points:  # older versions recorded distances to the goal
             self.rule += ", as are all distances"
         self.sensors: dict[str, Sensor] = cameras(size, views)
         self._memory = Memory(0)
@@ -84,7 +89,7 @@ class ApartmentsWorld(World):
 
     @contextmanager
     def remembering(self) -> Iterator[None]:
-        """Within it, a pose that is met again is not rendered again."""
+        """Return a context in which repeated poses are not rendered again."""
         before, self._memory = self._memory, Memory(KEPT)
         try:
             yield
@@ -92,7 +97,7 @@ class ApartmentsWorld(World):
             self._memory = before
 
     def beside(self) -> ApartmentsWorld:
-        """Another one, for an episode at the same time; both keep what the other rendered."""
+        """Return another world for a simultaneous episode; both share rendered frames."""
         other = ApartmentsWorld(**self.__getstate__())
         other._memory = self._memory
         return other
@@ -104,7 +109,7 @@ class ApartmentsWorld(World):
         return self.simulator.done
 
     def reset(self, episode: Episode) -> Observation:
-        """Raises ValueError for an episode that is not one of an apartment."""
+        """Start an episode. Raises ValueError if its scene is not an apartment."""
         self.simulator.reset(episode)
         self._shortest = self._shortest_way(episode)
         return self._observation()
@@ -114,21 +119,24 @@ class ApartmentsWorld(World):
         return self._observation()
 
     def measures(self) -> dict[str, float]:
-        """success, spl, path_length, geodesic_distance, distance_to_goal (metres), ndtw,
-        collisions and steps. Both distances are to what the rule counts from, the first from where
-        the episode starts; ndtw is to the reference path, by the rule's
-        ``path_metres``."""
+        """Return the measures of the episode.
+
+        These are success, spl, path_length, geodesic_distance and distance_to_goal (metres), ndtw,
+        collisions and steps. Both distances are to the target of the rule: geodesic_distance from
+        the start of the episode, distance_to_goal from the agent. ndtw compares with the reference
+        path and uses the rule's ``path_metres``.
+        """
         simulator, rule = self.simulator, RULES[self._rule]
-        walked, left = np.array(simulator.path), self._left()
-        length, won = measures.path_length(walked), rule.met(left, simulator.stopped)
+        positions, remaining = np.array(simulator.path), self._left()
+        length, success = measures.path_length(positions), rule.met(remaining, simulator.stopped)
         reference = np.stack([from_vlnce(p) for p in simulator.episode.reference_path])
         return {
-            "success": int(won),
-            "spl": round(measures.spl(won, self._shortest, length), 6),
+            "success": int(success),
+            "spl": round(measures.spl(success, self._shortest, length), 6),
             "path_length": round(length, 4),
             "geodesic_distance": self._shortest,
-            "distance_to_goal": round(left, 4),
-            "ndtw": round(measures.ndtw(walked, reference, threshold=rule.path_metres), 6),
+            "distance_to_goal": round(remaining, 4),
+            "ndtw": round(measures.ndtw(positions, reference, threshold=rule.path_metres), 6),
             "collisions": int(simulator.collisions),
             "steps": simulator.steps,
         }
@@ -137,26 +145,29 @@ class ApartmentsWorld(World):
         return GeodesicExpert(self.simulator, RULES[self._rule], self._field())
 
     def _field(self) -> np.ndarray:
-        """Metres from every free cell to what the rule counts from: the goal, or a view point."""
+        """Return metres from every free cell to the target of the rule: goal or view points."""
         points = RULES[self._rule].view_points
         return view_field(self.simulator.episode) if points else self.simulator.field
 
     def _left(self) -> float:
-        """Metres from the agent to what the rule counts from."""
+        """Return the metres from the agent to the target of the rule."""
         return float(self._field()[self.simulator.space.cell_of(self.simulator.xy)])
 
     def _shortest_way(self, episode: Episode) -> float:
-        """Metres from the start to what the rule counts from, or what the file says where goals are
-        hidden. Warns, once a world, of a file that says another way to the goal."""
-        told, measured = episode.geodesic_distance, self.simulator.distance_to_goal()
-        if told is None:
+        """Return the metres from the start to the target of the rule.
+
+        If goals are hidden, it is the distance recorded in the file. Warns once per world if the
+        recorded distance differs from the measured one.
+        """
+        recorded, measured = episode.geodesic_distance, self.simulator.distance_to_goal()
+        if recorded is None:
             return round(self._left(), 4)
         if not episode.goals:
-            return told
-        if abs(told - measured) > APART and not self._warned:
+            return recorded
+        if abs(recorded - measured) > APART and not self._warned:
             self._warned = True
             warnings.warn(
-                f"The episode {episode.episode_id} says a geodesic_distance of {told:g} m, but "
+                f"The episode {episode.episode_id} says a geodesic_distance of {recorded:g} m, but "
                 f"its goal is {measured:.1f} m from its start; SPL goes by what is measured. Was "
                 "the list made for these apartments, in metres? Others of it may be wrong, too.",
                 stacklevel=3,
@@ -164,12 +175,17 @@ class ApartmentsWorld(World):
         return round(self._left(), 4)
 
     def truth(self) -> Mapping[str, np.ndarray]:
-        """concepts float32 [12, C] (``labels.CONCEPTS``: what shows in the middle of each view),
-        seen bool [12, things] (which pieces of furniture do), free float32 [120, 12] (where one can
-        go straight), goal float32 [12] (which views show what the instruction ends at).
+        """Return the labels of the current pose.
 
-        Of one camera: the same of the four columns of its view, concepts [4, C], seen [4, things]
-        and goal [4], and free [30, 12] of the directions in it, left to right."""
+        Returns:
+            concepts float32 [12, C] (``labels.CONCEPTS`` visible in the middle of each view), seen
+            bool [12, things] (visible furniture), free float32 [120, 12] (free straight paths) and
+            goal float32 [12] (views that show the goal).
+
+            With one camera the labels describe the four columns of its view: concepts [4, C], seen
+            [4, things] and goal [4]; free is [30, 12], the directions in the view from left to
+            right.
+        """
         simulator = self.simulator
         _, depth, ids = self._frames()
         place = (simulator.xy, simulator.heading)
@@ -179,11 +195,11 @@ class ApartmentsWorld(World):
         return Labels(*seen) if self.views == VIEWS else CameraLabels(*seen)
 
     def landmarks(self, episode: Episode) -> list[int]:
-        """Which things, of the truth's "seen", mark the goal of an episode."""
+        """Return the indices in the label "seen" that mark the goal of an episode."""
         return landmarks(episode)
 
     def draw(self, axes: Any) -> None:
-        """The plan of the apartment on matplotlib axes, in the metres of poses."""
+        """Draw the plan of the apartment on matplotlib axes, in metres."""
         draw_plan(axes, self.simulator.apartment)
 
     def _observation(self) -> Observation:
@@ -191,12 +207,12 @@ class ApartmentsWorld(World):
         return Observation(self.simulator.odometry(), self._given, (RGB, DEPTH))
 
     def _given(self) -> dict[str, np.ndarray]:
-        """Copies of what is kept: an agent may write into what it gets."""
+        """Return copies of the cached frames, because an agent may write into its observation."""
         rgb, depth, _ = self._frames()
         return self._shaped(rgb.copy(), depth.copy())
 
     def _shaped(self, rgb: np.ndarray, depth: np.ndarray) -> dict[str, np.ndarray]:
-        """Frames as ``sensors`` says: those of one camera without the axis of views."""
+        """Return frames with the shapes in ``sensors``: one camera has no axis of views."""
         return {RGB: rgb, DEPTH: depth} if self.views > 1 else {RGB: rgb[0], DEPTH: depth[0]}
 
     def _frames(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -208,7 +224,7 @@ class ApartmentsWorld(World):
         return self._rendered
 
     def _observe(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """RGB, depth and face ids of what the cameras see."""
+        """Render RGB, depth and face ids of the cameras."""
         rgb, depth, ids = self.simulator.observe_faces(range(self.views))
         return rgb[: self.views], depth[: self.views], ids[: self.views]
 
@@ -219,7 +235,7 @@ class ApartmentsWorld(World):
         return [f"apartments/train/{seed:06d}" for seed in range(self.layouts)]
 
     def enter(self, scene: str) -> None:
-        """Go to a scene, to look around in; raises ValueError for an unknown one."""
+        """Select the scene for ``point`` and ``put``. Raises ValueError for an unknown scene."""
         self._entered: Apartment = apartment_of(scene)
 
     def point(self, rng: np.random.Generator) -> np.ndarray:
@@ -227,7 +243,7 @@ class ApartmentsWorld(World):
         return space.centre(int(rng.integers(len(space.cells)))) + rng.uniform(-0.05, 0.05, 2)
 
     def points(self) -> np.ndarray:
-        """All points [n, 2] of the scene where an agent can stand, a cell apart."""
+        """Return all points [n, 2] of the scene where an agent can stand, one per cell."""
         return (self._entered.space.cells[:, ::-1] + 0.5) * CELL
 
     def put(
@@ -238,21 +254,23 @@ class ApartmentsWorld(World):
         views: Sequence[int] | None = None,
         rgb: bool = True,
     ) -> tuple[dict[str, np.ndarray], Mapping[str, np.ndarray]]:
-        """Frames with the pose, and the truth without "goal". Of one camera ``views`` means
-        nothing."""
+        """Return the frames with the pose, and the labels without "goal".
+
+        ``views`` limits the views to render; it has no effect with one camera.
+        """
         apartment = self._entered
         renderer = shared_renderer(self.size)
         renderer.load(apartment)
-        wanted = range(self.views) if views is None or self.views == 1 else views
-        drawn = renderer.render(float(xy[0]), float(xy[1]), heading, views=wanted, rgb=rgb)
-        frames, depth, ids = (part[: self.views] for part in drawn)
+        selected = range(self.views) if views is None or self.views == 1 else views
+        rendered = renderer.render(float(xy[0]), float(xy[1]), heading, views=selected, rgb=rgb)
+        frames, depth, ids = (part[: self.views] for part in rendered)
         pose = np.array([*xy, heading], np.float32)
         truth = self._labels(apartment, xy, heading, ids, depth)
         return {**self._shaped(frames, depth), POSE: pose}, truth
 
 
 class Labels(Mapping[str, np.ndarray]):
-    """The truth of a pose, each label computed when it is first read."""
+    """The labels of a pose, computed when they are read."""
 
     def __init__(
         self,
@@ -289,7 +307,7 @@ class Labels(Mapping[str, np.ndarray]):
 
 
 class CameraLabels(Labels):
-    """The truth of one camera's view: of its columns."""
+    """The labels of the columns of one camera's view."""
 
     free = staticmethod(ahead)
 
