@@ -35,9 +35,9 @@ from mitigate.corruptions.language.tokens import VOCABULARY, Tokenizer, tokenize
 from mitigate.corruptions.suite import INSTRUCTION, SUITE_VERSION, check_name, check_severity
 from mitigate.worlds.episodes import Episode, read_episodes, read_extras, write_episodes
 
-ORIGINAL = "original_text"  # where the clean text is kept
-STALE = ("timed_instruction",)  # RxR: the clean words again, with their times
-SUMMARY = ".summary.json"  # behind the name of the file
+ORIGINAL = "original_text"  # key of the clean text
+STALE = ("timed_instruction",)  # RxR: the clean words with their times
+SUMMARY = ".summary.json"  # suffix of the name of the output file
 NAMES = tuple(name for name in INSTRUCTION if name != "white_box")
 USES = {"black_box": ("split",), "mask": ("mask_token", "tagger"), "capitalize": ("tagger",)}
 
@@ -69,24 +69,34 @@ def run(
 ) -> dict[str, Any]:
     """Corrupt the file ``source`` into ``out`` and return the summary that is written beside it.
 
-    Args: corruption: one of ``NAMES``. seed: with the episode id, the key of each draw, as in an
-    evaluation. tokenizer: "vocabulary" for the file's own, a folder or hub name for transformers;
-    None removes the tokens of changed instructions. The others are those of
-    ``corrupt_instruction``; the mask token is by default the tokenizer's own, else "[MASK]". The
-    summary has those that the corruption uses (``USES``).
+    The summary records the options that the corruption uses (``USES``).
 
-    Raises ValueError or FileNotFoundError for wrong options or files, and for an ``out`` that is
-    there and was not made so; then ``out`` is untouched.
+    Args:
+        source: a VLN-CE episode file.
+        out: the file to write.
+        corruption: one of ``NAMES``.
+        severity: s in [0, 1].
+        seed: together with the episode id, the key of each random draw, as in an evaluation.
+        split: see ``corrupt_instruction``.
+        tokenizer: "vocabulary" for the vocabulary of the file, or a folder or hub name for
+            transformers. None removes the tokens of changed instructions.
+        mask_token: the default is the mask token of the tokenizer, else "[MASK]".
+        tagger: see ``corrupt_instruction``.
+        rewrite: see ``corrupt_instruction``.
+
+    Raises:
+        ValueError, FileNotFoundError: An option or file is invalid, or ``out`` exists and this
+            function did not write it. ``out`` is then unchanged.
     """
     check_for_file(corruption)
     severity = check_severity(severity)
-    Key(seed, "0")  # refuses a seed that is none
+    Key(seed, "0")  # raises ValueError for an invalid seed
     check_options(split, "[MASK]" if mask_token is None else mask_token, tagger)
     _check_target(source, out)
     extras = read_extras(source)
     words = tokenizer_for(tokenizer, extras) if tokenizer else None
     mask = mask_token if mask_token is not None else (words and words.mask_token) or "[MASK]"
-    given = {"split": split, "mask_token": mask, "tagger": tagger}
+    options = {"split": split, "mask_token": mask, "tagger": tagger}
     counts = Counts()
 
     def corrupted(episode: Episode) -> str:
@@ -107,7 +117,7 @@ def run(
         "seed": seed,
         "suite": SUITE_VERSION,
         "tokenizer": tokenizer,
-        **{name: given[name] for name in USES.get(corruption, ())},
+        **{name: options[name] for name in USES.get(corruption, ())},
     }
     return _summarised(settings, counts, out)
 
@@ -138,7 +148,7 @@ def _check_target(source: Path | str, out: Path | str) -> None:
 
 
 def _check_own(out: Path, summary: Path) -> None:
-    """Raise ValueError unless ``out`` is as :func:`run` wrote it."""
+    """Raise ValueError unless :func:`run` wrote ``out`` and it has not changed since."""
     move = "Give another name, or move the file away first."
     if not summary.is_file():
         raise ValueError(
@@ -154,7 +164,7 @@ def _check_own(out: Path, summary: Path) -> None:
             f"{out} is there already and no file of corrupt_episodes: {summary} beside it holds "
             f"other things. {move}"
         ) from None
-    if recorded is None:  # of an earlier version
+    if recorded is None:  # summaries of earlier versions have no checksum
         try:
             same = sum(1 for _ in read_episodes(out, hidden_goals=True)) == episodes
         except (ValueError, OSError):
@@ -166,7 +176,7 @@ def _check_own(out: Path, summary: Path) -> None:
 
 
 def _summarised(settings: dict[str, Any], counts: Counts, out: Path | str) -> dict[str, Any]:
-    """Write the summary of what was done beside ``out``, and return it."""
+    """Write the summary beside ``out`` and return it."""
     summary = {
         **settings,
         "episodes": counts.episodes,
@@ -193,16 +203,16 @@ def _changed(
 ) -> Iterator[Episode]:
     """Yield the episodes with their instructions corrupted, one at a time.
 
-    ``every``: also instructions that stay as they are get the tokens of ``words``, whose
-    vocabulary is not the file's.
+    With ``every``, unchanged instructions also get tokens of ``words``, because its vocabulary is
+    not that of the file.
     """
 
     def unchanged(episode: Episode) -> Episode:
         if not every:
             return episode
-        said = episode.instruction
-        tokens = _tokens(said.text, said.tokens, words, counts.tokens)
-        return replace(episode, instruction=replace(said, tokens=tokens))
+        original = episode.instruction
+        tokens = _tokens(original.text, original.tokens, words, counts.tokens)
+        return replace(episode, instruction=replace(original, tokens=tokens))
 
     for episode in episodes:
         counts.episodes += 1
@@ -235,7 +245,7 @@ def _changed(
 def _tokens(
     text: str, old: Sequence[int] | None, words: Tokenizer | None, counts: Counter
 ) -> tuple[int, ...] | None:
-    """Return the tokens of ``text``, as many as the file had, or None; never those it had."""
+    """Return new tokens of ``text``, padded or cut to the old length; None without ``words``."""
     if words is None:
         counts["removed"] += old is not None
         return None
@@ -250,13 +260,13 @@ def _restyled(
 ) -> str:
     if not is_rewritten(manner, severity, key):
         return text
-    found = restyle(text, manner, key, rewrite)
+    result = restyle(text, manner, key, rewrite)
     gate["rewrites"] += 1
-    gate["passed_at_once"] += found.passed and found.tries == 1
-    gate["passed"] += found.passed
-    gate["clauses"] += found.clauses
-    gate["clauses_kept"] += found.plain
-    return found.text
+    gate["passed_at_once"] += result.passed and result.tries == 1
+    gate["passed"] += result.passed
+    gate["clauses"] += result.clauses
+    gate["clauses_kept"] += result.plain
+    return result.text
 
 
 def _rates(gate: Counter) -> dict[str, Any]:
@@ -271,7 +281,7 @@ def _rates(gate: Counter) -> dict[str, Any]:
     }
 
 
-ALIAS = "family"  # of corruption=, in older command lines
+ALIAS = "family"  # former name of the option corruption=
 OPTIONS: dict[str, Callable[[str], Any]] = {
     "corruption": str,
     ALIAS: str,
@@ -285,7 +295,7 @@ OPTIONS: dict[str, Callable[[str], Any]] = {
 
 
 def _options(given: Mapping[str, str]) -> dict[str, Any]:
-    """Options in their types; ValueError names the choices, and what has no effect."""
+    """Parse the options; raise ValueError for invalid ones and those without effect."""
     if ALIAS in given and "corruption" in given:
         raise ValueError(f"{ALIAS}= is another word for corruption=: give one of the two.")
     options: dict[str, Any] = {}
@@ -313,27 +323,29 @@ def _options(given: Mapping[str, str]) -> dict[str, Any]:
 
 
 def notices(summary: dict[str, Any]) -> list[str]:
-    """Return what a user must know of a finished file."""
-    told = []
+    """Return the warnings and notices about a finished file."""
+    lines = []
     if not summary["episodes"]:
-        told.append("warning: the file holds no episode")
+        lines.append("warning: the file holds no episode")
     if summary["skipped_languages"]:
-        told.append(f"warning: {passed_through(summary['skipped_languages'])}")
+        lines.append(f"warning: {passed_through(summary['skipped_languages'])}")
     if summary["blank"]:
-        told.append(
+        lines.append(
             f"warning: {summary['blank']} instructions hold no word and passed through unchanged"
         )
     removed = summary["tokens"].get("removed", 0)
     if removed:
-        told.append(
+        lines.append(
             f"notice: instruction_tokens of {removed} changed instructions were removed, because "
             "they are of the clean words; an agent that reads tokens needs tokenizer=vocabulary "
             "(the file's own) or tokenizer=NAME (its own)"
         )
     cut = summary["tokens"].get("cut_short", 0)
     if cut:
-        told.append(f"warning: {cut} instructions have more tokens than the file's rows; cut short")
-    return told
+        lines.append(
+            f"warning: {cut} instructions have more tokens than the file's rows; cut short"
+        )
+    return lines
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -343,8 +355,8 @@ def main(argv: Sequence[str] | None = None) -> int:
         print(__doc__)
         return 0 if arguments else 2
     try:
-        (source, out), given = paths_and_options(arguments, ("IN", "OUT"), OPTIONS)
-        summary = run(source, out, **_options(given))
+        (source, out), options = paths_and_options(arguments, ("IN", "OUT"), OPTIONS)
+        summary = run(source, out, **_options(options))
     except (OSError, ValueError) as error:
         print(f"corrupt_episodes: {error}", file=sys.stderr)
         return 2
