@@ -1,4 +1,4 @@
-"""Define objectives: a loss and the source of its batches, all that the trainer needs.
+"""Define objectives: a loss and the source of its batches.
 
 A stage of a recipe (YAML) names an objective and lists its arguments. :class:`ObjectiveSpec` gives
 each argument to the constructor that names it: that of the objective or that of its source.
@@ -24,7 +24,7 @@ from mitigate.core.precision import computing
 from mitigate.training.config import in_range, number_text
 from mitigate.training.parts import hold_statistics
 
-WEIGHT = 1e9  # largest weight of a loss, a generous bound
+WEIGHT = 1e9  # largest weight of a loss
 
 
 class Objective(nn.Module):
@@ -38,11 +38,11 @@ class Objective(nn.Module):
     Attributes:
         sources: functions that build the source of the batches, by the name of the constructor's
             parameter that takes it (``{"rollouts": Rollouts}``).
-        here: run jobs in the training process, never in a worker.
-        ahead: jobs depend on no weights, so workers may run them ahead of time.
+        here: whether jobs run only in the training process, never in a worker.
+        ahead: whether workers may run jobs ahead of time, because they read no weights.
         needs: names of the agent's attributes that the objective uses.
-        otherwise: what to do if the agent lacks one of them, for the message.
-        workers: processes that ``jobs`` may start; None is one per core, 0 is none.
+        otherwise: advice in the message if the agent lacks one of them.
+        workers: number of worker processes for jobs; None means one per core.
     """
 
     sources: ClassVar[Mapping[str, Callable[..., Any]]] = {}
@@ -91,7 +91,7 @@ class Objective(nn.Module):
     def jobs(self, step: int) -> list[Any]:
         """Return the jobs of the batch of ``step``, for worker processes.
 
-        The list is empty if :meth:`batch` makes the batch alone. The number of jobs must not depend
+        The list is empty if :meth:`batch` is overridden. The number of jobs must not depend
         on the number of workers. A job holds what :meth:`work` needs in addition to the settings,
         the seed and the weights: the step, the number of the piece, the state of the schedule. Jobs
         and objectives are pickled.
@@ -120,16 +120,16 @@ class Objective(nn.Module):
     def micro_batches(self, batch: dict[str, Any]) -> list[dict[str, Any]]:
         """Split ``batch`` into parts that go forward and backward one after the other.
 
-        Memory is then that of one part. Gradients and values of the parts are summed. By default
-        the whole batch is one part.
+        This limits memory to that of one part. Gradients and values of the parts are summed. By
+        default the whole batch is one part.
         """
         return [batch]
 
     def weight(self, batch: dict[str, Any]) -> float:
         """Return the weight of a rank's batch in means over ranks.
 
-        It is the total weight that its losses average over. By default that of its decisions, or 1
-        without decisions.
+        It is the total weight that its losses average over. The default is the weight of its
+        decisions, or 1 without decisions.
         """
         decisions = batch.get("decisions")
         return 1.0 if decisions is None else float(decisions.weight.sum())
@@ -153,7 +153,7 @@ class Objective(nn.Module):
     def identity(self) -> dict[str, str]:
         """Return inputs that the settings do not contain, such as a teacher's sha256.
 
-        Checkpoints record it: a run is not resumed with another identity.
+        Checkpoints record it. A run is not resumed with another identity.
         """
         return {}
 
@@ -179,7 +179,7 @@ def do(objective: Objective, job: Any) -> Any:
     threads = torch.get_num_threads()
     training = objective.training
     try:
-        torch.set_num_threads(1)  # same order of sums with any number of processes
+        torch.set_num_threads(1)  # the order of sums must not depend on the number of processes
         return objective.eval().work(job)
     finally:
         objective.train(training)
@@ -287,8 +287,8 @@ def split_arguments(
 ) -> tuple[dict[str, Any], dict[str, Any]]:
     """Return the arguments of the objective ``kind`` and those of its source.
 
-    An argument that both constructors name goes to both. Raises ValueError for one that neither
-    names.
+    An argument that both constructors name goes to both. Raises ValueError for an argument that
+    neither names.
     """
     names, is_open = _parameters(kind)
     source_names, source_open = _parameters(kind.sources[parameter]) if parameter else ((), False)
@@ -306,7 +306,7 @@ def split_arguments(
 
 
 def _parameters(kind: Any) -> tuple[tuple[str, ...], bool]:
-    """Return the parameters that a callable names, and whether it takes any others."""
+    """Return the named parameters of a callable, and whether it accepts any others."""
     try:
         parameters = signature(kind).parameters.values()
     except (ValueError, TypeError):  # a callable written in C has no signature
@@ -324,14 +324,14 @@ def _source_of(kind: Any, arguments: Container[str]) -> str:
 
 
 def is_objective(kind: Any) -> bool:
-    """Return whether ``kind`` is a subclass of Objective, not a function that makes one."""
+    """Return whether ``kind`` is a subclass of Objective, and not a function that builds one."""
     return isinstance(kind, type) and issubclass(kind, Objective)
 
 
 def check_kind(kind: Any, target: str) -> None:
     """Raise ValueError for a class that is not an objective or takes no agent.
 
-    A function is not checked here; its result is.
+    A function is not checked here: ``ObjectiveSpec.build`` checks its result.
     """
     if not isinstance(kind, type):
         return
