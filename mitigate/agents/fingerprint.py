@@ -2,7 +2,7 @@
 
 Result rows hold the fingerprint in addition to a display name. Agents with different settings,
 weights or sensors are different agents in tables, and rows are reused only for an equal
-fingerprint. For state that cannot be read (:attr:`Contents.unreadable`) the user gives
+fingerprint. If state cannot be read (:attr:`Contents.unreadable`), the user identifies it with
 ``version=``.
 """
 
@@ -28,23 +28,23 @@ from mitigate.core.checksums import DIGITS
 from mitigate.core.contracts import read
 from mitigate.core.observation import Sensor
 
-KIND = "fingerprint_kind"  # attribute of shipped classes: a name that stays when a module moves
+KIND = "fingerprint_kind"  # attribute of shipped classes: a name that is stable when a module moves
 
 
 @dataclass(frozen=True)
 class Contents:
-    """What a fingerprint hashes, and why it is incomplete.
+    """The data that a fingerprint hashes, and the state that could not be read.
 
     Attributes:
         parts: plain data by name.
-        unreadable: reasons by dotted place; empty if everything could be read.
+        unreadable: the reason for each unreadable attribute, by its dotted path.
     """
 
     parts: Mapping[str, Any]
     unreadable: Mapping[str, str]
 
     def explain(self) -> str:
-        """Return the first unreadable places in words."""
+        """Return the first unreadable attributes and their reasons as text."""
         places = [f"{place or 'the agent'} ({why})" for place, why in self.unreadable.items()]
         more = f" and {len(places) - 3} more" if len(places) > 3 else ""
         return "; ".join(places[:3]) + more
@@ -58,7 +58,7 @@ def fingerprint(
     Args:
         agent: any object.
         sensors: the sensors of the world.
-        front: hashes of the guards between the world and the agent.
+        front: fingerprints of the guards between the world and the agent.
         version: the user's name for state that cannot be read.
     """
     return hash_of(contents(agent, version).parts, sensors, front)
@@ -67,9 +67,10 @@ def fingerprint(
 def contents(agent: Any, version: str | None = None) -> Contents:
     """Return everything that determines the behaviour of ``agent``.
 
-    For every agent: its kind, ``settings()``, weights, buffers, layers, hooks, the user's code and
-    the objects that this code names. For a shipped agent also everything that differs from a new
-    agent with the same settings. If ``settings()`` is missing or inherited, also all attributes.
+    For every agent these are its kind, ``settings()``, weights, buffers, layers, hooks, the user's
+    code and the objects that this code names. A shipped agent adds everything that differs from a
+    new agent with the same settings. An agent whose ``settings()`` is missing or inherited adds all
+    its attributes.
     """
     shipped = KIND in vars(type(agent))
     settings = agent.settings if _definer(agent) is not None else {}
@@ -110,16 +111,16 @@ def _definer(agent: Any) -> Any:
 def _changes(agent: Any) -> State:
     """Return the parts of a shipped agent's state that differ from a new one with its settings.
 
-    Weights and the memory of an episode are left out.
+    Weights and the memory of an episode are excluded.
     """
     with torch.random.fork_rng(devices=[]):
         new = type(agent)(**agent.settings())
     state = read_state(agent, like=new)
-    usual = read_state(new, like=new)
-    apart = {line for line in usual.lines if not line.startswith("class ")}
-    missing = [f"not {line}" for line in apart - {*state.lines}]
-    lines = [line for line in state.lines if line not in apart] + missing
-    unreadable = {k: v for k, v in state.unreadable.items() if k not in usual.unreadable}
+    baseline = read_state(new, like=new)
+    state_lines = {line for line in baseline.lines if not line.startswith("class ")}
+    missing = [f"not {line}" for line in state_lines - {*state.lines}]
+    lines = [line for line in state.lines if line not in state_lines] + missing
+    unreadable = {k: v for k, v in state.unreadable.items() if k not in baseline.unreadable}
     return replace(state, lines=lines, unreadable=unreadable)
 
 
@@ -148,7 +149,7 @@ def _codes(agent: Any, state: State) -> list[str]:
 
 @cache
 def _code_source(code: types.CodeType, file: str) -> str:
-    """Return the source of ``code`` at its first reading; without a file, its bytecode."""
+    """Return the source of ``code`` when it was first read; without a file, its bytecode."""
     try:
         return inspect.getsource(code)
     except (OSError, TypeError):
@@ -174,7 +175,7 @@ def _source_of(kind: type) -> tuple[str, ...]:
 
 
 def _weights(state: State) -> str | list[tuple[str, str]]:
-    """Return the hash of the agent's weights, else of each network, else of each array."""
+    """Return the hash of the weights; for several networks or plain arrays, of each."""
     shas = [(place, weights_sha(net)) for place, net in state.networks]
     if len(shas) == 1 and not shas[0][0]:
         return shas[0][1]

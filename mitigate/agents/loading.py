@@ -37,10 +37,10 @@ FILES = (CONFIG, README, INPUTS)  # files of an agent with programs, in addition
 ONNX = ("perceive.onnx", "decide.onnx")
 # files that an export may write; a folder must not hold one that its manifest does not list
 KNOWN = (checkpoint.WEIGHTS, adapters.WEIGHTS, adapters.SETTINGS, *FILES, PROGRAM, *ONNX)
-ENTRIES = ("adapters_only", "base", "vocabulary", "commit", "agent")  # needed entries of a card
+ENTRIES = ("adapters_only", "base", "vocabulary", "commit", "agent")  # required in a card
 LONGEST_PATH = 1000  # characters of the path of a base (heuristic; the limit of Linux is 4095)
 TARGET = schema.KINDS[0]
-PAGES = {  # documentation of models that are no agents, by package; they need no export
+PAGES = {  # documentation of models that are not agents, by package; they need no export
     "mitigate.encoders": "docs/encoder.md",
     "mitigate.guards.frames": "docs/restoration.md",
     "mitigate.guards.text": "docs/safeguard.md",
@@ -82,7 +82,7 @@ def load(folder: str | Path, *, agent: Any = None) -> Any:
             f"{config} is missing, so the settings of the agent in {folder} are unknown."
         )
     folders.check(config.parent)
-    with torch.random.fork_rng(devices=[]):  # does not change the caller's random state
+    with torch.random.fork_rng(devices=[]):  # keeps the caller's random state
         filled = _agent_to_fill(agent, config, _RUN)
         checkpoint.load_agent(filled, place)
     if config.is_file():
@@ -93,8 +93,8 @@ def load(folder: str | Path, *, agent: Any = None) -> Any:
 def load_hardened(folder: str | Path, *, base: str | Path | None = None, agent: Any = None) -> Any:
     """Return the agent of a hardened checkpoint on the CPU, in eval mode, ready for ``reset``.
 
-    It needs neither Hydra nor the simulator. Warns about attributes of ``agent`` that have the name
-    of a setting and another value.
+    This needs neither Hydra nor the simulator. Warns if an attribute of ``agent`` has the name of a
+    setting, but another value.
 
     Args:
         folder: a folder such as ``checkpoints/hardened/ts_distill``.
@@ -142,7 +142,7 @@ def _check_path(folder: object, what: str, example: str) -> None:
 
 
 def _agent_to_fill(agent: Any, config: Path, again: str) -> Any:
-    """Return ``agent`` after comparing its settings with ``config``; None: a new agent from it."""
+    """Return ``agent`` if its settings match ``config``; for None, a new agent from it."""
     if agent is None:
         return build_from(config)
     check_fillable(agent)
@@ -201,12 +201,12 @@ def reject_other_models(run: Path) -> None:
 
 
 def check_fillable(agent: Any) -> None:
-    """Raise TypeError for a class in place of an object, and for an object without weights."""
+    """Raise TypeError if ``agent`` is a class, or an object without weights."""
     if isinstance(agent, type):
         raise TypeError(
             f"agent must be an object, got the class {agent.__name__}. Create it first."
         )
-    if not hasattr(agent, "eval"):  # an object of any class
+    if not hasattr(agent, "eval"):  # the user may pass any object
         raise TypeError(
             f"agent must be a torch.nn.Module, got a {type(agent).__name__}, which has no weights. "
             "Give an object of the class that was trained."
@@ -267,14 +267,14 @@ def _as_json(value: Any) -> Any:
 
 
 def kind_of(config: Path) -> str:
-    """Return which of ``schema.KINDS`` the agent in ``config`` is; the first if it does not say."""
+    """Return the kind (``schema.KINDS``) of the agent in ``config``; by default the first."""
     node = settings.read(config).get("agent")
     target = node.get("_target_") if isinstance(node, dict) else None
     return target if isinstance(target, str) and target in schema.KINDS else TARGET
 
 
 def is_ours(target: str) -> bool:
-    """Return whether ``target`` is a shipped class, which can be built from a folder alone."""
+    """Return whether ``target`` is a shipped class, which can be built from a folder."""
     return target in schema.KINDS
 
 
@@ -399,7 +399,7 @@ def _is_path(value: Any) -> bool:
 
 
 def vocabulary_sha(agent: Any) -> str | None:
-    """Return 12 hex digits of the sha256 of an agent's words, in the order of their ids.
+    """Return 12 hex digits of the sha256 of an agent's words in id order.
 
     None for an agent without a vocabulary.
     """
@@ -410,16 +410,16 @@ def vocabulary_sha(agent: Any) -> str | None:
 
 def _find_base(folder: Path, reference: dict[str, str], base: str | Path | None) -> Path:
     """Return the file of the weights that the adapters in ``folder`` belong to."""
-    near = [parent / reference["weights"] for parent in folder.resolve().parents]
-    here, *shipped = places(reference["weights"])
-    candidates = [here, *near, *shipped] if base is None else [Path(base)]
+    parents = [parent / reference["weights"] for parent in folder.resolve().parents]
+    local, *shipped = places(reference["weights"])
+    candidates = [local, *parents, *shipped] if base is None else [Path(base)]
     files = [p if p.suffix == ".safetensors" else p / checkpoint.WEIGHTS for p in candidates]
-    existing = [file for file in files if file.is_file()]
-    for file in existing:
+    present = [file for file in files if file.is_file()]
+    for file in present:
         if sha256(file) == reference["sha256"]:
             return file
-    cause = f"{existing[0]} has another" if existing else f"{files[0]} does not exist"
-    raise (ValueError if existing else FileNotFoundError)(
+    cause = f"{present[0]} has another" if present else f"{files[0]} does not exist"
+    raise (ValueError if present else FileNotFoundError)(
         f"The adapters in {folder} belong to the weights {reference['weights']} with sha256 "
         f"{reference['sha256']}, but {cause}. Name these weights: load_hardened(folder, base=...)."
     )
