@@ -26,15 +26,15 @@ def show(seed: int, episode: int, task: str, size: int, out: Path) -> None:
     """Write a PNG with the panorama, its depth, the reference path on the plan and the text."""
     from matplotlib.figure import Figure
 
-    selected = make_episode(Apartment(seed), task, episode)
+    drawn = make_episode(Apartment(seed), task, episode)
     simulator = Simulator(size)
-    simulator.reset(selected)
+    simulator.reset(drawn)
     observation = simulator.observe()
     figure = Figure(figsize=(10, 11.5), layout="constrained")
     axes = figure.subplots(3, 1, height_ratios=(1, 1, 3.2))
     axes[0].imshow(strip(observation[RGB]))
     axes[0].set_title(
-        f"panorama at the start, straight ahead in the middle ({selected.scene_id})",
+        f"panorama at the start, straight ahead in the middle ({drawn.scene_id})",
         fontsize=10,
     )
     depth = axes[1].imshow(strip(observation[DEPTH])[..., 0], cmap="viridis_r")
@@ -44,16 +44,17 @@ def show(seed: int, episode: int, task: str, size: int, out: Path) -> None:
     draw_plan(axes[2], simulator.apartment)
     draw_path(
         axes[2],
-        np.stack([from_vlnce(p) for p in selected.reference_path]),
+        np.stack([from_vlnce(p) for p in drawn.reference_path]),
         "#d62728",
         "reference path",
     )
     arrow = 0.6 * np.array([-np.sin(simulator.heading), np.cos(simulator.heading)])
     axes[2].arrow(*simulator.xy, *arrow, width=0.05, color="#1f77b4", zorder=8)
-    figure.suptitle("\n".join(textwrap.wrap(selected.instruction.text, 100)), fontsize=11)
+    figure.suptitle("\n".join(textwrap.wrap(drawn.instruction.text, 100)), fontsize=11)
     write_figure(out, figure, dpi=80, facecolor="white")
     print(
-        f"{selected.episode_id}: {selected.geodesic_distance:.1f} m. {selected.instruction.text}\nwrote {out}"
+        f"{drawn.episode_id}: {drawn.geodesic_distance:.1f} m. {drawn.instruction.text}\n"
+        f"wrote {out}"
     )
 
 
