@@ -1,1 +1,1 @@
-"""What the instruction families and their fidelity gate know about English."""
+"""English language rules for the instruction corruptions and their fidelity gate."""

@@ -1,4 +1,4 @@
-"""Instructions cut into clauses, one command each, without the words that only join them."""
+"""Split instructions into clauses of one command each, without joining words."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ COMMANDS = (
     "position|locate|end|search"
 )
 _ADVERBS = r"(?:then|next|now|immediately|finally|again|just|simply|slowly|directly|please|also)"
-MOST_ADVERBS = 8  # in front of a command (ours): a longer row of them is no speech
-# a run of white space is tried from its start alone and read in one way: time is linear in it
+MOST_ADVERBS = 8  # in front of a command; heuristic, because speech has no longer sequences
+# White space matches only from its start and in one way, so that the time is linear.
 _JOIN = (
     r"(?:(?:(?<!\s)\s+)?[,;]\s*(?:and\s+)?|(?<!\s)\s+(?:and|but)\s+"
     r"|(?:(?<!\s)\s+)?(?:,\s*)?(?:and\s+)?\bthen\b(?:\s*,)?\s*)"
@@ -42,15 +42,15 @@ _NO_COMMAND_AFTER = listed("no_command_after")
 
 @dataclass(frozen=True)
 class Clause:
-    """One command, ``main``, and ``when`` it holds ("once you reach the bed"; may be empty)."""
+    """One command, ``main``, and its condition ``when`` ("once you reach the bed" or empty)."""
 
     when: str
     main: str
 
 
 def clauses(text: str) -> list[Clause]:
-    """Return the clauses of ``text`` in order, without joining words and end marks."""
-    found = []
+    """Return the clauses of ``text`` in order, without joining words and final punctuation."""
+    parsed = []
     for sentence in _SENTENCE.split(text.strip()):
         pending = ""
         for part in _SPLIT.split(_led(sentence)):
@@ -61,10 +61,10 @@ def clauses(text: str) -> list[Clause]:
             if _hanging(part):
                 pending = part + ", "
                 continue
-            found.append(_clause(part))
+            parsed.append(_clause(part))
         if pending:
-            found.append(_clause(pending.rstrip(", ")))
-    return found or [Clause("", text.strip())]
+            parsed.append(_clause(pending.rstrip(", ")))
+    return parsed or [Clause("", text.strip())]
 
 
 def _hanging(part: str) -> bool:
@@ -81,12 +81,12 @@ def _clause(part: str) -> Clause:
 
 
 def _led(text: str) -> str:
-    """Return ``text`` without leading words such as "and then", unless nothing else is there."""
+    """Return ``text`` without leading words such as "and then", unless nothing would remain."""
     return _LEAD.sub("", text).strip(" ,") or text.strip()
 
 
 def _divided(body: str) -> tuple[str, str] | None:
-    """Return (condition, command) of "at the bench, turn left", with or without its comma."""
+    """Return (condition, command) of text such as "at the bench, turn left", or None."""
     if not _BEGINS_CONDITION.match(body):
         return None
     for match in _COMMAND.finditer(body):

@@ -1,8 +1,8 @@
-"""Which way a text tells one to go: left, right, around, straight, up, down and stop, in order;
-and its numbers, ordinals and distances.
+"""Extract the directions of an instruction in order, and its numbers, ordinals and distances.
 
-"down the hall" goes along, "down the stairs" goes down; "right before" and "you left the room" turn
-nowhere; "wait there" after "stop" stops once.
+Directions are left, right, around, straight, up, down and stop. "down the stairs" means down, but
+"down the hall" does not. "right before" and "you left the room" are not turns. "wait there" after
+"stop" is not a second stop.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ _AROUND = re.compile(
 
 
 def about_turns(found: list[Token]) -> dict[int, int]:
-    """Return first place -> last place of every phrase that means turning around."""
+    """Return {first index: last index} of every phrase that means turning around."""
     text, starts = "", {}
     for index, token in enumerate(found):
         starts[len(text)] = index
@@ -52,9 +52,9 @@ def about_turns(found: list[Token]) -> dict[int, int]:
 
 
 def directions(found: list[Token], turned: dict[int, int]) -> list[str]:
-    """Return the directions in order; what is told twice in a row, with no move between, once.
+    """Return the directions in order, without repetitions that no movement separates.
 
-    ``turned``: the places of :func:`about_turns`.
+    ``turned`` is the result of :func:`about_turns`.
     """
     names: list[str] = []
     last = skip = -1
@@ -72,7 +72,7 @@ def directions(found: list[Token], turned: dict[int, int]) -> list[str]:
 
 
 def turns(found: list[Token], turned: dict[int, int]) -> int:
-    """Return how often a turn is told, by a turning verb or as "take a left" and the like."""
+    """Count the turns, by a turning verb or by phrases such as "take a left"."""
     count = len(turned)
     inside = {place for first, last in turned.items() for place in range(first, last + 1)}
     for place, token in enumerate(found):
@@ -82,8 +82,8 @@ def turns(found: list[Token], turned: dict[int, int]) -> int:
         if token.lower in TURN_VERBS and token.tag == "VERB":
             count += 1
         elif token.lower in ("left", "right") and token.tag != "ADJ":
-            told = any(verb in before for verb in ("take", "make", "go", "head"))
-            count += told and TURN_VERBS.isdisjoint(before)
+            is_turn = any(verb in before for verb in ("take", "make", "go", "head"))
+            count += is_turn and TURN_VERBS.isdisjoint(before)
     return count
 
 
@@ -97,11 +97,13 @@ def _repeats(name: str, between: list[Token]) -> bool:
 def _direction(found: list[Token], place: int) -> str | None:
     word, before, after = found[place].lower, at(found, place - 1), at(found, place + 1)
     if word in _LEFT:
-        gone = before in ("have", "has", "you've") or (before == "you" and after in ("the", "your"))
-        return None if gone else "left"
+        is_past = before in ("have", "has", "you've") or (
+            before == "you" and after in ("the", "your")
+        )
+        return None if is_past else "left"
     if word in _RIGHT:
-        stressed = before not in _SIDE_AFTER and after in _ADVERB_BEFORE
-        return None if word == "right" and (stressed or before == "all") else "right"
+        is_emphasis = before not in _SIDE_AFTER and after in _ADVERB_BEFORE
+        return None if word == "right" and (is_emphasis or before == "all") else "right"
     if word in _STRAIGHT:
         return None if before == "go" and after in ("and", ",") and word == "ahead" else "straight"
     if word in _UP or word in _DOWN:
@@ -114,7 +116,7 @@ def _direction(found: list[Token], place: int) -> str | None:
 
 
 def _vertical(found: list[Token], place: int, before: str) -> str | None:
-    """Return "up" or "down" where it changes the level, None where it means along or near."""
+    """Return "up" or "down" if it changes the level; None if it means along or near."""
     if before in _NO_CLIMB:
         return None
     for token in found[place + 1 : place + 7]:
@@ -134,7 +136,7 @@ def _stops(found: list[Token], place: int) -> bool:
 
 
 def at(found: list[Token], place: int) -> str:
-    """Return the word at a place in lower case, "" outside the text."""
+    """Return the word at an index in lower case, "" outside the text."""
     return found[place].lower if 0 <= place < len(found) else ""
 
 
@@ -158,7 +160,7 @@ _LONE_UNITS = _UNITS - bag("step steps m cm ft foot feet yard yards")
 def quantities(found: list[Token], turned: dict[int, int]) -> list[str]:
     """Return the numbers, ordinals and distances in order: "two", "first", "two step", "meter".
 
-    ``turned``: the places of ``directions.about_turns``, whose 180 degrees are no quantity.
+    ``turned`` is the result of :func:`about_turns`, whose 180 degrees are not a quantity.
     """
     inside = {place for first, last in turned.items() for place in range(first, last + 1)}
     names = []
@@ -182,7 +184,7 @@ def _unit(word: str) -> str:
 
 
 def _orders_sentences(found: list[Token], place: int) -> bool:
-    """Return whether "first" or "last" orders what is said ("first, turn left"; "at last")."""
+    """Return whether "first" or "last" orders sentences ("first, turn left"; "at last")."""
     before, after = at(found, place - 1), found[place + 1] if place + 1 < len(found) else None
     loose = after is None or not after.is_word or after.tag in ("VERB", "PRON", "ADV")
     begins = place == 0 or before in SENTENCE_ENDS or before in ("and", ",", "at")

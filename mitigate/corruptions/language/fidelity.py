@@ -1,7 +1,7 @@
-"""What an instruction says, and whether a rewritten one still says it.
+"""Fidelity gate: check that a rewritten instruction keeps the meaning of the original.
 
-:func:`facts` reads the directions, landmarks, numbers, compass words, attributes, relations and
-denials of a text; :func:`check` lists what changed from one text to another.
+:func:`facts` extracts the directions, landmarks, numbers, compass words, attributes, relations and
+denials of a text. :func:`check` lists the differences between two texts.
 """
 
 from __future__ import annotations
@@ -28,13 +28,17 @@ _RELATIONS = {word: name for name, forms in WORDS["relations"].items() for word 
 
 @dataclass(frozen=True)
 class Facts:
-    """What a text says.
+    """The facts of a text.
 
-    ``directions``: left, right, around, straight, up, down and stop in the order of the text.
-    ``landmarks``: canonical nouns in order, repeated as in the text. ``numbers``: numbers, ordinals
-    and distances ("two", "first", "two step"). ``compass``: compass words. ``attributes``: colours,
-    shapes and sizes. ``relations``: into, out, past, between, behind ... in order. ``turns``: how
-    often one is told to turn. ``denials``: how often something is denied (not, never, avoid ...).
+    Attributes:
+        directions: left, right, around, straight, up, down and stop, in order.
+        landmarks: canonical nouns in order, repeated as in the text.
+        numbers: numbers, ordinals and distances ("two", "first", "two step").
+        compass: compass words.
+        attributes: colours, shapes and sizes.
+        relations: into, out, past, between, behind and similar words, in order.
+        turns: number of commands to turn.
+        denials: number of negations (not, never, avoid and similar words).
     """
 
     directions: tuple[str, ...]
@@ -57,36 +61,36 @@ class _Reading:
 
 
 def facts(text: str) -> Facts:
-    """Return what ``text`` says."""
+    """Return the facts of ``text``."""
     return _read(text).facts
 
 
 def check(original: str, rewritten: str) -> list[str]:
-    """Return what ``rewritten`` changes of ``original``'s meaning, in words; empty if nothing.
+    """Return the changes of meaning from ``original`` to ``rewritten``; empty if there are none.
 
     Every entry begins with its kind and a colon: "directions", "landmark lost", "landmark
     invented", "landmark order", "number lost", "number invented", "compass lost", "compass
     invented", "attribute lost", "attribute invented", "relation lost", "relation invented",
     "denial".
-    Words are compared through the synonyms of ``landmarks.py``. Turns are not compared: their
-    directions are. Landmarks of one clause may change places.
+    Synonyms of ``landmarks.py`` are equal. The number of turns is not compared, because their
+    directions are. Landmarks may be reordered within a clause.
     """
     before, after = _read(original), _read(rewritten)
     (old, known), (new, kept) = (before.facts, before.words), (after.facts, after.words)
-    found = []
+    changes = []
     if old.directions != new.directions:
-        found.append(f"directions: {_listed(old.directions)} -> {_listed(new.directions)}")
-    found += _changes("landmark", old.landmarks, new.landmarks, known, kept)
+        changes.append(f"directions: {_listed(old.directions)} -> {_listed(new.directions)}")
+    changes += _changes("landmark", old.landmarks, new.landmarks, known, kept)
     clauses = [before.clause[name] for name in after.clause if name in before.clause]
     if clauses != sorted(clauses):
-        found.append(f"landmark order: {_listed(old.landmarks)} -> {_listed(new.landmarks)}")
-    found += _counted("number", old.numbers, new.numbers)
-    found += _changes("compass", old.compass, new.compass, known, kept)
-    found += _counted("attribute", old.attributes, new.attributes)
-    found += _changes("relation", old.relations, new.relations, old.relations, new.relations)
+        changes.append(f"landmark order: {_listed(old.landmarks)} -> {_listed(new.landmarks)}")
+    changes += _counted("number", old.numbers, new.numbers)
+    changes += _changes("compass", old.compass, new.compass, known, kept)
+    changes += _counted("attribute", old.attributes, new.attributes)
+    changes += _changes("relation", old.relations, new.relations, old.relations, new.relations)
     if old.denials != new.denials:
-        found.append(f"denial: {old.denials} -> {new.denials}")
-    return found
+        changes.append(f"denial: {old.denials} -> {new.denials}")
+    return changes
 
 
 def _changes(
@@ -96,13 +100,13 @@ def _changes(
     known: Iterable[str],
     kept: Iterable[str],
 ) -> list[str]:
-    """Return what of ``old`` is not in ``kept``, and what of ``new`` is not in ``known``."""
+    """List names of ``old`` that are not in ``kept``, and of ``new`` that are not in ``known``."""
     lost = [f"{kind} lost: {name}" for name in dict.fromkeys(old) if name not in kept]
     return lost + [f"{kind} invented: {name}" for name in dict.fromkeys(new) if name not in known]
 
 
 def _counted(kind: str, old: Sequence[str], new: Sequence[str]) -> list[str]:
-    """Return what comes less often in ``new``, and what comes there alone."""
+    """List names that occur less often in ``new``, and names that occur only in ``new``."""
     lost = [f"{kind} lost: {name}" for name in Counter(old) - Counter(new)]
     return lost + [f"{kind} invented: {name}" for name in dict.fromkeys(new) if name not in old]
 
@@ -113,29 +117,31 @@ def _listed(names: Iterable[str]) -> str:
 
 @lru_cache(maxsize=512)
 def _read(text: str) -> _Reading:
-    found = tag(text)
-    names = _names(found)
-    turned = directions.about_turns(found)
-    said = Facts(
-        directions=tuple(directions.directions(found, turned)),
+    tokens = tag(text)
+    names = _names(tokens)
+    turned = directions.about_turns(tokens)
+    extracted = Facts(
+        directions=tuple(directions.directions(tokens, turned)),
         landmarks=tuple(name for _, name, is_landmark in names if is_landmark),
-        numbers=tuple(directions.quantities(found, turned)),
-        compass=tuple(t.lower for t in found if COMPASS.match(t.lower)),
-        attributes=tuple(a for t in found if (a := _same(t)) in ATTRIBUTES),
-        relations=tuple(_relations(found)),
-        turns=directions.turns(found, turned),
-        denials=sum(token.lower in DENIALS for token in found),
+        numbers=tuple(directions.quantities(tokens, turned)),
+        compass=tuple(t.lower for t in tokens if COMPASS.match(t.lower)),
+        attributes=tuple(a for t in tokens if (a := _same(t)) in ATTRIBUTES),
+        relations=tuple(_relations(tokens)),
+        turns=directions.turns(tokens, turned),
+        denials=sum(token.lower in DENIALS for token in tokens),
     )
-    numbers = _clauses(found)
+    numbers = _clauses(tokens)
     clause: dict[str, int] = {}
     for place, name, is_landmark in names:
         if is_landmark:
             clause.setdefault(name, numbers[place])
-    return _Reading(said, frozenset(n for _, n, _ in names) | {_same(t) for t in found}, clause)
+    return _Reading(
+        extracted, frozenset(n for _, n, _ in names) | {_same(t) for t in tokens}, clause
+    )
 
 
 def _clauses(found: list[Token]) -> list[int]:
-    """Return for every token the number of its clause, one command."""
+    """Return the clause number of every token; a clause is one command."""
     ends = [
         token.lower in SENTENCE_ENDS
         or token.lower == "then"
@@ -150,7 +156,7 @@ def _clauses(found: list[Token]) -> list[int]:
 
 
 def _relations(found: list[Token]) -> list[str]:
-    """Return into, out, past, between ...; "pass through" goes through and past nothing."""
+    """Return the relations in order; "pass through" means "through", not "past"."""
     return [
         _RELATIONS[token.lower]
         for place, token in enumerate(found)
@@ -163,7 +169,7 @@ def _same(token: Token) -> str:
 
 
 def _names(found: list[Token]) -> list[tuple[int, str, bool]]:
-    """Return (place, canonical name, is a landmark) of every word, known phrases as one."""
+    """Return (index, canonical name, is a landmark) of every word or known phrase."""
     names: list[tuple[int, str, bool]] = []
     place = 0
     while place < len(found):
@@ -180,9 +186,9 @@ def _names(found: list[Token]) -> list[tuple[int, str, bool]]:
 def _phrase(found: list[Token], place: int) -> tuple[str, int]:
     """Return the canonical name and the length of the longest known phrase at ``place``."""
     for length in range(min(landmarks.LONGEST, len(found) - place), 1, -1):
-        spoken = [token.lower for token in found[place : place + length]]
-        for last in (spoken[-1], spoken[-1].removesuffix("s")):
-            name = landmarks.PHRASES.get((*spoken[:-1], last))
+        words = [token.lower for token in found[place : place + length]]
+        for last in (words[-1], words[-1].removesuffix("s")):
+            name = landmarks.PHRASES.get((*words[:-1], last))
             if name:
                 return name, length
     return "", 1

@@ -1,12 +1,12 @@
-"""Landmarks: which nouns name something to see, and their synonyms."""
+"""Landmarks: nouns that name visible things, and their synonyms."""
 
 from __future__ import annotations
 
 from mitigate.corruptions.language.words import WORDS, listed
 
-# canonical name -> other names; a phrase of several words is joined before nouns are read
+# canonical name -> other names; phrases of several words are matched before single nouns
 SYNONYMS: dict[str, list[str]] = WORDS["landmarks"]
-# nouns that name no landmark: parts of the way, of speech, of politeness
+# nouns that name no landmark: parts of a route, of speech and of polite phrases
 PLAIN = listed("no_landmarks")
 
 CANONICAL = {form: name for name, forms in SYNONYMS.items() for form in forms if " " not in form}

@@ -1,6 +1,6 @@
-"""What the four manners say: clause patterns, the templates for each, frames, openers, nouns.
+"""Phrases of the four styles: clause patterns, templates, frames, openers, closers, nouns.
 
-Templates begin with a bare verb, so that a frame such as "you'll want to {}" fits each of them.
+Templates begin with a bare verb, so that each fits a frame such as "you'll want to {}".
 """
 
 from __future__ import annotations
@@ -80,7 +80,7 @@ PATTERNS = {
 
 @dataclass(frozen=True)
 class Voice:
-    """How one manner speaks: templates by kind of clause, frames by place, openers and closers."""
+    """Phrases of one style: templates by kind of clause, frames by place, openers and closers."""
 
     openers: tuple[str, ...]
     frames: dict[str, tuple[str, ...]]
@@ -90,13 +90,13 @@ class Voice:
 
 
 def swap_nouns(text: str, nouns: dict[str, str]) -> str:
-    """Return ``text`` with the nouns of a manner in place of their synonyms."""
+    """Replace nouns in ``text`` by the synonyms of a style."""
     names = sorted(nouns, key=len, reverse=True)
     return re.sub(rf"\b({'|'.join(names)})\b", lambda m: nouns[m.group()], text)
 
 
 def _voice(held: dict[str, Any]) -> Voice:
-    """Return a voice of ``voices.json``, lists as tuples."""
+    """Build a voice from an entry of ``voices.json``, with lists as tuples."""
     frames, commands = (
         {name: tuple(options) for name, options in held[part].items()}
         for part in ("frames", "commands")

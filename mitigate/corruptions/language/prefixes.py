@@ -1,7 +1,8 @@
 """The prefix bank: misleading sentences that an attacker puts in front of an instruction.
 
-Families never cross splits, so a safeguard trained on ``train`` is tested on kinds of attack it
-never saw. All sentences are ours; the kinds follow SUITE's list for NavTrust's malicious prompts.
+Kinds of attack never occur in two splits, so a safeguard trained on ``train`` is tested on kinds
+that it never saw. This project wrote all sentences; the kinds follow SUITE's list for NavTrust's
+malicious prompts.
 """
 
 from __future__ import annotations
@@ -13,7 +14,7 @@ _BANK: dict[str, dict[str, list[str]]] = read_data("prefixes.json")
 
 
 def prefixes(split: str) -> dict[str, tuple[str, ...]]:
-    """Return kind of attack -> sentences of ``split`` ("train", "validation" or "test").
+    """Return the sentences of ``split`` ("train", "validation" or "test") by kind of attack.
 
     Raises ValueError for another split.
     """

@@ -1,8 +1,8 @@
-"""Styles by a language model, every answer kept in a file: the paper's way of making them.
+"""Rewrite styles by a language model, as in the paper, with a cache of all answers.
 
-The model is any function (system prompt, text) -> answer, such as a chat endpoint's or a local
-model's. Answers are read from the cache by (text, manner, model, prompt, seed), so a file of
-corrupted episodes is made again without the model, word for word.
+The model is any function (system prompt, text) -> answer, for example a chat endpoint or a local
+model. Answers are cached by (text, style, model, prompt, seed), so a file of corrupted episodes can
+be reproduced exactly without the model.
 """
 
 from __future__ import annotations
@@ -29,20 +29,21 @@ PROMPT = (
     "down, straight and stop, in the same order. Keep every object, room, colour and number. Add "
     "no distance, no compass word and no object. Answer with the rewritten instruction alone."
 )
-_HALF = re.compile("[\ud800-\udfff]")  # half characters, which no file of text can hold
+_HALF = re.compile("[\ud800-\udfff]")  # lone surrogates, which a text file cannot hold
 
 
 class Rewriter:
-    """Says texts in a manner by a model, from the cache where it has been asked before.
+    """Rewrites texts in a style by a model, and caches the answers.
 
     Args:
         ask: (system prompt, text) -> answer.
-        model: its name, part of the cache's key.
-        cache: a JSONL file; it grows by one line an answer. Lines that hold none, such as a cut
-            last one, are passed over.
-        seed: part of the key, for models that answer differently each time.
+        model: name of the model, part of the cache key.
+        cache: a JSONL file with one line per answer. Invalid lines, such as an incomplete last one,
+            are ignored.
+        seed: part of the cache key, for models that answer differently each time.
 
-    Raises ValueError if ``cache`` is a folder.
+    Raises:
+        ValueError: ``cache`` is a folder.
     """
 
     def __init__(
@@ -54,22 +55,22 @@ class Rewriter:
         self._known = dict(_read(self._cache))
 
     def __call__(self, text: str, manner: str) -> str:
-        """Return ``text`` in ``manner``.
+        """Return ``text`` rewritten in the style ``manner``.
 
-        Raises ValueError for an unknown manner, and for an answer that is no text, which is not
-        kept: the next call asks again.
+        Raises ValueError for an unknown style, and for an answer that is not a text. Such an answer
+        is not cached: the next call asks again.
         """
         if manner not in TONES:
             raise ValueError(f"There is no manner {manner!r}. Choose one of: {', '.join(MANNERS)}.")
         prompt = PROMPT.format(tone=TONES[manner])
-        asked = {
+        request = {
             "text": text,
             "manner": manner,
             "model": self._model,
             "prompt": prompt,
             "seed": self._seed,
         }
-        key = _key(asked)
+        key = _key(request)
         if key not in self._known:
             answer = self._ask(prompt, text)
             if not _is_said(answer):
@@ -79,7 +80,7 @@ class Rewriter:
                     "model."
                 )
             self._known[key] = answer
-            self._append(asked | {"answer": answer})
+            self._append(request | {"answer": answer})
         return self._known[key]
 
     def _append(self, line: dict[str, object]) -> None:
@@ -95,19 +96,19 @@ def _key(asked: dict[str, object]) -> str:
 
 
 def _is_said(answer: object) -> bool:
-    """Return whether ``answer`` is a text that is not blank and can be written."""
+    """Return whether ``answer`` is a text that is not blank and can be encoded."""
     return isinstance(answer, str) and bool(answer.strip()) and not _HALF.search(answer)
 
 
 def _read(cache: Path) -> list[tuple[str, str]]:
-    """Return (key, answer) of every whole line."""
-    found = []
+    """Return (key, answer) of every valid line."""
+    answers = []
     for line in cache.read_bytes().split(b"\n") if cache.is_file() else ():
         try:
-            kept = json.loads(line)
-            answer = kept.pop("answer")
+            entry = json.loads(line)
+            answer = entry.pop("answer")
         except (ValueError, KeyError, AttributeError, RecursionError):
             continue
         if _is_said(answer):
-            found.append((_key(kept), answer))
-    return found
+            answers.append((_key(entry), answer))
+    return answers

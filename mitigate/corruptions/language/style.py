@@ -1,8 +1,8 @@
-"""Four manners of speaking: friendly, novice, professional, formal; offline and by rule.
+"""Rewrite instructions in four styles by rule: friendly, novice, professional, formal.
 
-Every clause of an instruction is recognised (turn, climb, pass, enter ...) and said again in the
-words of the manner; a clause that is not understood keeps its words inside a frame of the manner.
-The fidelity gate looks at each clause and at the whole, and what it refuses is said more plainly.
+Each clause of an instruction is recognised (turn, climb, pass, enter and others) and rewritten with
+a template of the style. An unknown clause keeps its words inside a frame of the style. The fidelity
+gate checks each clause and the whole text. A rejected text is rewritten with fewer changes.
 """
 
 from __future__ import annotations
@@ -18,17 +18,22 @@ from mitigate.corruptions.language.fidelity import check
 from mitigate.corruptions.language.text import check_text
 
 MANNERS = ("friendly", "novice", "professional", "formal")
-TRIES = 3  # rewrites of one instruction before the original is kept (ours)
+TRIES = 3  # rewrites of one instruction before the original is used, heuristic
 Rewrite = Callable[[str, str], str]
 
 
 @dataclass(frozen=True)
 class Restyled:
-    """A rewritten instruction: ``text``, what the gate refused on the way, and the outcome.
+    """A rewritten instruction and the decisions of the fidelity gate.
 
-    ``tries``: rewrites the gate looked at. ``passed``: False if all were refused and ``text`` is
-    the original. ``plain``: how many of the ``clauses`` kept their words, because no
-    template fits them or the gate refused what it gave.
+    Attributes:
+        text: the rewritten instruction, or the original.
+        tries: number of rewrites that the gate checked.
+        passed: False if all rewrites were rejected and ``text`` is the original.
+        plain: number of clauses that kept their words, because no template matched or the gate
+            rejected its result.
+        clauses: number of clauses.
+        refused: problems of the rejected rewrites.
     """
 
     text: str
@@ -40,33 +45,33 @@ class Restyled:
 
 
 def restyle(text: str, manner: str, key: Key, rewrite: Rewrite | None = None) -> Restyled:
-    """Say ``text`` in a manner, and return it with what the fidelity gate found.
+    """Rewrite ``text`` in a style and check the result with the fidelity gate.
 
-    ``rewrite`` (text, manner) -> text asks a language model instead; what the gate refuses is
-    replaced by the rewrite by rule. Raises ValueError for a text without a word.
+    ``rewrite`` (text, style) -> text asks a language model first. If the gate rejects its answer,
+    the rules rewrite the text. Raises ValueError for a text without a word.
     """
     check_text(text)
     refused: list[str] = []
     tries = count = 0
     if rewrite is not None:
         answer = rewrite(text, manner)
-        spoken = answer.strip() if isinstance(answer, str) else ""
-        tries, problems = 1, check(text, spoken) if spoken else ["empty answer"]
+        rewritten = answer.strip() if isinstance(answer, str) else ""
+        tries, problems = 1, check(text, rewritten) if rewritten else ["empty answer"]
         if not problems:
-            return Restyled(spoken, tries, True, 0, 0, ())
+            return Restyled(rewritten, tries, True, 0, 0, ())
         refused += problems
     for attempt in range(TRIES):
-        spoken, plain, count = _speak(text, manner, digest(key, f"{manner}-{attempt}"), attempt)
+        rewritten, plain, count = _speak(text, manner, digest(key, f"{manner}-{attempt}"), attempt)
         tries += 1
-        problems = check(text, spoken)
+        problems = check(text, rewritten)
         if not problems:
-            return Restyled(spoken, tries, True, plain, count, tuple(refused))
+            return Restyled(rewritten, tries, True, plain, count, tuple(refused))
         refused += problems
     return Restyled(text, tries, False, count, count, tuple(refused))
 
 
 class _Draw:
-    """Choices of one stream, in the order in which they are made."""
+    """A sequence of random choices from one stream."""
 
     def __init__(self, stream: int) -> None:
         self._stream, self._count = stream, 0
@@ -77,16 +82,16 @@ class _Draw:
 
 
 def _speak(text: str, manner: str, stream: int, attempt: int) -> tuple[str, int, int]:
-    """Return ``text`` in a manner, how many clauses kept their words, and of how many.
+    """Return the rewritten text, the number of clauses that kept their words, and of all clauses.
 
-    The first attempt uses templates and synonyms, the second templates, the third frames alone.
+    The first attempt uses templates and synonyms, the second only templates, the third only frames.
     """
     draw, voice = _Draw(stream), phrases.VOICES[manner]
     parts = clauses(text)
     sentences, plain, last = [draw(voice.openers)], 0, ""
     for index, clause in enumerate(parts):
-        said = _say(clause, voice, draw, attempt)
-        plain += said is None
+        command = _say(clause, voice, draw, attempt)
+        plain += command is None
         place = "first" if index == 0 else "last" if index == len(parts) - 1 else "middle"
         if clause.when:
             place, last = "when", ""
@@ -94,14 +99,14 @@ def _speak(text: str, manner: str, stream: int, attempt: int) -> tuple[str, int,
         while frame == last:
             frame = draw(voice.frames[place])
         last = frame
-        sentences.append(_framed(frame, clause.when, said or clause.main))
+        sentences.append(_framed(frame, clause.when, command or clause.main))
     if sentences[0].endswith(","):
         sentences[1] = sentences[1] if sentences[1][:2] == "I " else _lowered(sentences[1])
     return " ".join(part for part in (*sentences, draw(voice.closers)) if part), plain, len(parts)
 
 
 def _say(clause: Clause, voice: phrases.Voice, draw: _Draw, attempt: int) -> str | None:
-    """Return the command of ``clause`` in the words of ``voice``, None to keep its own."""
+    """Return the command of ``clause`` rewritten in the style; None to keep its words."""
     if attempt >= 2:
         return None
     for kind, pattern in phrases.PATTERNS.items():
@@ -110,11 +115,11 @@ def _say(clause: Clause, voice: phrases.Voice, draw: _Draw, attempt: int) -> str
             continue
         template = draw(voice.commands[kind])
         slots = {name: value or "" for name, value in match.groupdict().items()}
-        said = re.sub(r"\s+", " ", template.format_map(slots)).strip()
-        said = re.sub(r"\s+([,.])", r"\1", said)
+        command = re.sub(r"\s+", " ", template.format_map(slots)).strip()
+        command = re.sub(r"\s+([,.])", r"\1", command)
         if attempt == 0:
-            said = phrases.swap_nouns(said, voice.nouns)
-        return said if not check(clause.main, said) else None
+            command = phrases.swap_nouns(command, voice.nouns)
+        return command if not check(clause.main, command) else None
     return None
 
 
@@ -123,7 +128,7 @@ def _lowered(text: str) -> str:
 
 
 def _framed(frame: str, when: str, said: str) -> str:
-    """Return one sentence; a command that does not begin with a verb is not put after "to"."""
+    """Return one sentence; a frame applies only to a command that begins with a verb."""
     if not re.match(phrases.BARE_VERB, said, re.IGNORECASE):
         frame = "{}"
     body = said if frame == "{}" else frame.format(_lowered(said))

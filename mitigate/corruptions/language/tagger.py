@@ -1,7 +1,8 @@
-"""Parts of speech (Universal POS tags) of instructions: by our own tagger or by spaCy's.
+"""Tag the parts of speech (Universal POS) of instructions, by a built-in tagger or by spaCy.
 
-Our own knows the closed word classes and the verbs, adjectives and adverbs of navigation
-(``words.py``), decides words of two classes by their neighbours, and calls every other word a noun.
+The built-in tagger ("own") knows the closed word classes and the verbs, adjectives and adverbs of
+navigation (``words.py``). It uses the neighbours of words with two classes, and tags every other
+word as a noun.
 """
 
 from __future__ import annotations
@@ -24,7 +25,7 @@ _BEFORE_NOUN = frozenset({"DET", "ADJ", "NUM"})
 
 @dataclass(frozen=True)
 class Token:
-    """A word or mark of a text: ``text[start:end]``, its lower case and its tag."""
+    """A word or punctuation mark: its text, start, lower case and tag."""
 
     text: str
     start: int
@@ -33,17 +34,17 @@ class Token:
 
     @property
     def end(self) -> int:
-        """Return the place after the last character."""
+        """Return the index after the last character."""
         return self.start + len(self.text)
 
     @property
     def is_word(self) -> bool:
-        """Return whether this is a word, and neither a mark nor a ``[MASK]``."""
+        """Return whether this is a word, not punctuation or a ``[MASK]``."""
         return bool(WORD.match(self.text))
 
 
 def tokens(text: str) -> list[Token]:
-    """Split ``text`` into words, marks and bracketed tokens such as ``[MASK]``, untagged."""
+    """Split ``text`` into untagged words, punctuation and tokens such as ``[MASK]``."""
     return [
         Token(m.group(), m.start(), m.group().lower().replace("’", "'"))
         for m in TOKEN.finditer(text)
@@ -51,12 +52,12 @@ def tokens(text: str) -> list[Token]:
 
 
 def tag(text: str) -> list[Token]:
-    """Return the tokens of ``text`` with the tags of our own tagger."""
-    found = tokens(text)
+    """Return the tokens of ``text`` with the tags of the built-in tagger."""
+    untagged = tokens(text)
     tagged: list[Token] = []
-    for index, token in enumerate(found):
+    for index, token in enumerate(untagged):
         before = tagged[-1] if tagged else None
-        after = found[index + 1] if index + 1 < len(found) else None
+        after = untagged[index + 1] if index + 1 < len(untagged) else None
         tagged.append(Token(token.text, token.start, token.lower, _tag(token, before, after)))
     return tagged
 
@@ -64,8 +65,8 @@ def tag(text: str) -> list[Token]:
 def named(name: str = "own") -> Callable[[str], list[Token]]:
     """Return the tagger ``name``: "own" (:func:`tag`), or "spacy", an installed English pipeline.
 
-    "own" is the default, so that equal keys give equal words on every machine.
-    Raises ValueError for another name, or if there is no such pipeline.
+    "own" is the default, so that equal keys change the same words on every machine.
+    Raises ValueError for another name, or if no pipeline is installed.
     """
     if name not in TAGGERS:
         raise ValueError(f"There is no tagger {name!r}. Choose one of: {', '.join(TAGGERS)}.")
@@ -77,7 +78,7 @@ def named(name: str = "own") -> Callable[[str], list[Token]]:
 
 @lru_cache(maxsize=1)
 def _spacy() -> Any:
-    """Load the installed English spaCy pipeline that comes first by name."""
+    """Load the first installed English spaCy pipeline by name."""
     try:
         import spacy
 
@@ -94,7 +95,7 @@ def _spacy() -> Any:
 
 
 def _spacy_tags(pipeline: Any, text: str) -> list[Token]:
-    """Tags of ``pipeline`` on our tokens; words it misreads in instructions keep our tags."""
+    """Return our tokens with the tags of ``pipeline``, except words that it often mistags."""
     places = {token.idx: token.pos_ for token in pipeline(text)}
     return [
         token
@@ -132,7 +133,7 @@ def _tag(token: Token, before: Token | None, after: Token | None) -> str:
 
 
 def _by_context(word: str, before: Token | None, after: Token | None) -> str:
-    """Tag a word of two classes: verb where a clause begins, noun after a determiner."""
+    """Tag a word of two classes by its neighbours, such as a noun after a determiner."""
     first, second = words.AMBIGUOUS[word]
     if word in ("left", "right"):
         return _side(before, after)
@@ -144,8 +145,8 @@ def _by_context(word: str, before: Token | None, after: Token | None) -> str:
         of = after is not None and after.lower == "of"
         return first if of or _begins_noun(after) else second
     if (first, second) == ("VERB", "NOUN"):
-        told = before is not None and before.tag in ("PART", "AUX")
-        return first if told or not (_determined(before) or _governed(before)) else second
+        is_command = before is not None and before.tag in ("PART", "AUX")
+        return first if is_command or not (_determined(before) or _governed(before)) else second
     if (first, second) == ("ADJ", "NOUN"):
         return first if _can_be_noun(after) else second
     known = _determined(before) or (before is not None and before.tag == "AUX")
@@ -153,7 +154,7 @@ def _by_context(word: str, before: Token | None, after: Token | None) -> str:
 
 
 def _side(before: Token | None, after: Token | None) -> str:
-    """Tag "left" or "right": after "the" or "your" a noun, or an adjective if a noun follows."""
+    """Tag "left" or "right"; after "the" or "your" it is a noun or an adjective."""
     if before is not None and before.lower in words.POSSESSORS:
         return "ADJ" if _can_be_noun(after) else "NOUN"
     if before is not None and before.lower in ("have", "has", "you've", "having"):

@@ -1,4 +1,4 @@
-"""Which texts are corrupted: those that hold a word, in English; what is said of the others."""
+"""Check that texts can be corrupted: they must be in English and hold a word."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 
 def has_word(text: object) -> bool:
-    """Return whether ``text`` is a text with a letter or a digit in it."""
+    """Return whether ``text`` is a string with a letter or digit."""
     return isinstance(text, str) and any(character.isalnum() for character in text)
 
 
@@ -20,12 +20,14 @@ def check_text(text: str) -> None:
 
 
 def is_english(language: str | None) -> bool:
-    """Return whether a language code or name is English's: "en", "en-US" ... in any case; so is
-    what names none (None or empty)."""
+    """Return whether a language code or name means English.
+
+    "en" and "en-US" do, in any case, and so does a missing language (None or empty).
+    """
     return not language or language.lower().startswith("en")
 
 
 def passed_through(languages: Mapping[str, int]) -> str:
-    """Say how many instructions of which ``languages`` were not corrupted."""
+    """Return a message with the number of instructions per language that were not corrupted."""
     which = ", ".join(f"{count} in {language}" for language, count in languages.items())
     return f"instructions in other languages passed through unchanged: {which}"

@@ -1,4 +1,4 @@
-"""Tokens of corrupted instructions: by an R2R-CE file's vocabulary, or by a named tokenizer."""
+"""Tokenize corrupted instructions by the vocabulary of an R2R-CE file or a named tokenizer."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ _WORD = re.compile(r"\[\w+\]|\w+(?:-\w+)*|[^\w\s]", re.UNICODE)
 
 
 class Tokenizer(Protocol):
-    """What turns text into the numbers an agent reads."""
+    """Converts text to the token ids that an agent reads."""
 
     mask_token: str | None
 
@@ -21,9 +21,9 @@ class Tokenizer(Protocol):
 
 
 class FileVocabulary:
-    """The ``instruction_vocab`` of an R2R-CE file: lower-case words and marks, one number each.
+    """The ``instruction_vocab`` of an R2R-CE file: ids of lower-case words and punctuation.
 
-    It has no mask: "[MASK]" is read as an unknown word.
+    It has no mask token: "[MASK]" becomes the unknown word.
     """
 
     mask_token: str | None = None
@@ -33,7 +33,7 @@ class FileVocabulary:
         self._unknown, self._pad = vocabulary["UNK_INDEX"], vocabulary["PAD_INDEX"]
 
     def encode(self, text: str, length: int | None) -> tuple[tuple[int, ...], bool]:
-        """Words that the file does not know become its unknown word, marks are left out."""
+        """Encode ``text``; words that the file lacks become unknown, such punctuation is dropped."""
         ids = [
             self._numbers.get(word, self._unknown)
             for word in _WORD.findall(text.lower())
@@ -43,7 +43,7 @@ class FileVocabulary:
 
 
 class NamedTokenizer:
-    """A tokenizer of the transformers package, by folder or hub name."""
+    """A tokenizer of the transformers package, loaded by folder or hub name."""
 
     def __init__(self, name: str) -> None:
         try:
@@ -64,7 +64,7 @@ class NamedTokenizer:
         self.mask_token: str | None = self._tokenizer.mask_token
 
     def encode(self, text: str, length: int | None) -> tuple[tuple[int, ...], bool]:
-        """Tokens with the tokenizer's own begin and end marks, which stay where text is cut."""
+        """Encode ``text`` with begin and end tokens, which remain if the text is cut."""
         ids = list(self._tokenizer(text)["input_ids"])
         cut = length is not None and len(ids) > length
         if cut:
@@ -75,7 +75,7 @@ class NamedTokenizer:
 def tokenizer_for(name: str, extras: Mapping[str, Any]) -> Tokenizer:
     """Return the tokenizer ``name`` for a file with the top-level keys ``extras``.
 
-    Raises ValueError if there is no such tokenizer, or no vocabulary in the file.
+    Raises ValueError if the tokenizer does not exist, or the file has no vocabulary.
     """
     if name != VOCABULARY:
         return NamedTokenizer(name)

@@ -1,7 +1,6 @@
-"""Words of navigation: their classes, and what must never be masked.
+"""Words of navigation: their classes, and the words that masks never hide.
 
-All lists are in ``words.json``. They are ours, written with the vocabulary of indoor instructions
-in mind.
+All lists are in ``words.json``. This project wrote them for indoor instructions.
 """
 
 from __future__ import annotations
@@ -30,7 +29,7 @@ def listed(name: str) -> frozenset[str]:
 
 
 _CLASSES = {name: " ".join(lines) for name, lines in WORDS["classes"].items()}
-# words of two classes; which of them is decided by the neighbours
+# words of two classes; the neighbours decide between them
 _TWO = {pair: " ".join(lines) for pair, lines in WORDS["two_classes"].items()}
 
 AMBIGUOUS: dict[str, tuple[str, str]] = {
@@ -40,13 +39,13 @@ TAGS = {word: name for name, text in reversed(_CLASSES.items()) for word in text
 VERBS = bag(_CLASSES["VERB"])
 AMBIGUOUS_NOUNS = frozenset(word for word, pair in AMBIGUOUS.items() if "NOUN" in pair)
 POSSESSORS = listed("possessors")
-# what general taggers misread in instructions (turn, exit, left ...): our tag is kept there
+# words that general taggers mistag in instructions (turn, exit, left ...); they keep our tag
 OVERRIDES = listed("overrides")
 
-# never masked: words that say where, which way or which one, or that deny (and all in n't)
+# never masked: words for places, directions, identity or negation (and all words in n't)
 SPATIAL = (bag(_CLASSES["ADP"]) - bag("of for with like per about during")) | listed("spatial")
 
 
 def is_kept(word: str) -> bool:
-    """Return whether masks never hide ``word``, in lower case with a straight apostrophe."""
+    """Return whether masks never hide ``word`` (lower case, straight apostrophe)."""
     return word in SPATIAL or word.endswith("n't")
