@@ -1,8 +1,9 @@
-"""Corruptions that no recipe trains on: what an agent keeps where its list ends.
+"""Unseen corruptions: corruptions that no recipe trains on.
 
-They differ in mechanism from the twelve of the suite, and no schedule draws one that it does not
-name. Each modality has two halves: methods may be chosen by what they keep on the validation half,
-and are reported on the test half. Each file is a family of mechanisms, with corruptions in both.
+They measure whether robustness transfers. Their mechanisms differ from those of the standard suite,
+and a schedule draws one only if it names it. Each modality has two halves: methods may be chosen on
+the validation half and are reported on the test half. Each file holds a family of mechanisms, with
+corruptions in both halves.
 """
 
 from mitigate.corruptions.unseen import calibration, codec, edges, light, optics, returns, signal

@@ -1,7 +1,7 @@
-"""Unseen depth corruptions of calibration: scale, place beside RGB, wiggling.
+"""Unseen depth corruptions of calibration: scale, misalignment with RGB, wiggling.
 
-Functions take and give what those of ``corruptions/depth.py`` do, and keep its rules of invalid
-pixels.
+Functions have the arguments and results of those in ``corruptions/depth.py``, and treat invalid
+pixels in the same way.
 """
 
 from __future__ import annotations
@@ -16,8 +16,8 @@ from mitigate.corruptions.keying import Key, digest, uniform
 from mitigate.corruptions.record import TEST, VALIDATION, Record
 
 SCALE_LEAST, SCALE_MOST = 0.25, 0.40  # of the depth at s = 1
-ASIDE = 0.12  # of W at s = 1
-ASIDE_DOWN = 0.25  # of that, down or up
+ASIDE = 0.12  # of W at s = 1, sideways
+ASIDE_DOWN = 0.25  # of the sideways shift, down or up
 WIGGLE = 0.30  # metres at s = 1
 WIGGLE_HERTZ = 20e6
 WIGGLE_PERIOD = LIGHT_SPEED / (2.0 * WIGGLE_HERTZ) / 4.0  # metres: four samples of the phase
@@ -25,18 +25,18 @@ WIGGLE_CELLS = 4096
 
 
 def valid(views: np.ndarray) -> np.ndarray:
-    """Whether each depth is a reading."""
+    """Return whether each depth is a reading."""
     return (views > 0) & (views < np.inf)
 
 
 def kept(views: np.ndarray, moved: np.ndarray, sensor: DepthSensor) -> np.ndarray:
-    """``moved`` within the sensor's range where ``views`` is valid, else ``views``."""
+    """Return ``moved``, clipped to the sensor's range, where ``views`` is valid, else ``views``."""
     inside = np.clip(moved, NEAREST, np.float32(sensor.z_max))
     return np.where(valid(views), inside, views)
 
 
 def scale_error(views: np.ndarray, severity: float, key: Key, sensor: DepthSensor) -> np.ndarray:
-    """z (1 + s k), k of either sign and 0.25 to 0.4 for the episode."""
+    """Scale depth by 1 +- s k, with sign and k ~ U(0.25, 0.4) per episode."""
     value = digest(key, "scale_error")
     factor = SCALE_LEAST + (SCALE_MOST - SCALE_LEAST) * uniform(value, 0)
     factor = 1.0 + severity * factor * (1 if uniform(value, 1) < 0.5 else -1)
@@ -44,7 +44,7 @@ def scale_error(views: np.ndarray, severity: float, key: Key, sensor: DepthSenso
 
 
 def misalignment(views: np.ndarray, severity: float, key: Key, sensor: DepthSensor) -> np.ndarray:
-    """Depth of the pixel 0.12 s W aside, where that is valid; edges are replicated."""
+    """Shift depth by 0.12 s W where the source is valid; edges are replicated."""
     _, height, width = views.shape
     value = digest(key, "misalignment")
     reach = ASIDE * severity * width * (1 if uniform(value, 0) < 0.5 else -1)
@@ -57,14 +57,14 @@ def misalignment(views: np.ndarray, severity: float, key: Key, sensor: DepthSens
 
 @lru_cache(maxsize=32)
 def wiggle_table(phase: float, amplitude: float, z_max: float) -> np.ndarray:
-    """float32 [WIGGLE_CELLS + 1]: metres to add at z = 0 .. z_max."""
+    """Return float32 [WIGGLE_CELLS + 1]: metres to add at z = 0 .. z_max."""
     z = np.linspace(0.0, z_max, WIGGLE_CELLS + 1)
     turns = z / WIGGLE_PERIOD + phase
     return (amplitude * np.sin(2.0 * math.pi * turns)).astype(np.float32)
 
 
 def wiggling(views: np.ndarray, severity: float, key: Key, sensor: DepthSensor) -> np.ndarray:
-    """z + 0.3 s sin(2 pi (z/P + p)): the harmonics of a time-of-flight camera's light."""
+    """Add 0.3 s sin(2 pi (z/P + p)), the harmonics of a time-of-flight camera's light."""
     phase = uniform(digest(key, "wiggling"))
     table = wiggle_table(phase, WIGGLE * severity, sensor.z_max)
     clean = np.clip(np.where(valid(views), views, 0), 0, np.float32(sensor.z_max))

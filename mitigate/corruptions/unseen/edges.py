@@ -1,7 +1,7 @@
 """Unseen depth corruptions beside edges: fattening, flying pixels, shadows of the projector.
 
-Functions take and give what those of ``corruptions/depth.py`` do, and keep its rules of invalid
-pixels.
+Functions have the arguments and results of those in ``corruptions/depth.py``, and treat invalid
+pixels in the same way.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ _U = np.uint64
 
 @njit(cache=True)
 def extremes(view, reach, sign, out):
-    """out [H, W] = the largest of sign z in a square of 2 reach + 1; -inf where all is invalid."""
+    """Set out [H, W] to the maximum of sign z in a square of 2 reach + 1; -inf if none is valid."""
     height, width = view.shape
     rows = height + 2 * reach
     wide = np.full((rows, width + 2 * reach), np.float32(-np.inf), np.float32)
@@ -61,7 +61,7 @@ def _fatten(views, reach, share, z_max, out):
 
 
 def fattening(views: np.ndarray, severity: float, key: Key, sensor: DepthSensor) -> np.ndarray:
-    """The nearest surface within 0.08 s side: what is near grows, as in a matching window."""
+    """Set each pixel to the nearest depth within 0.08 s side, as a matching window does."""
     reach = FATTENING * severity * min(views.shape[1:])
     out, whole = np.empty_like(views), math.floor(reach)
     _fatten(views, whole, np.float32(reach - whole), np.float32(sensor.z_max), out)
@@ -85,7 +85,7 @@ def _fly(views, streams, reach, least, z_max, out):
 
 
 def flying_pixels(views: np.ndarray, severity: float, key: Key, sensor: DepthSensor) -> np.ndarray:
-    """The share s of the pixels reads somewhere between the nearest and the farthest around it."""
+    """Set the share s of pixels to a random depth between nearest and farthest around them."""
     reach = max(1, round(FOOTPRINT * min(views.shape[1:])))
     streams, out = view_streams(key, "flying_pixels", len(views)), np.empty_like(views)
     _fly(views, streams, reach, _U(round(severity * 2**32)), np.float32(sensor.z_max), out)
@@ -94,7 +94,7 @@ def flying_pixels(views: np.ndarray, severity: float, key: Key, sensor: DepthSen
 
 @njit(cache=True)
 def _shade(views, offset, side, missing, z_max, out):
-    """A ray of the projector meets the row at x + offset / z, and stops at the first surface."""
+    """Remove readings that no projector ray reaches; a ray meets the row at x + offset / z."""
     width = views.shape[2]
     for v in range(views.shape[0]):
         for y in range(views.shape[1]):
@@ -112,7 +112,7 @@ def _shade(views, offset, side, missing, z_max, out):
 
 
 def edge_shadow(views: np.ndarray, severity: float, key: Key, sensor: DepthSensor) -> np.ndarray:
-    """No reading where a nearer surface hides the light of a projector 0.5 s metres aside."""
+    """Remove readings in the shadow of nearer surfaces, for a projector 0.5 s metres aside."""
     width, out = views.shape[2], np.empty_like(views)
     focal = 0.5 * width / math.tan(math.radians(HFOV_DEGREES) / 2.0)
     offset = np.float32(BASELINE * severity * focal)

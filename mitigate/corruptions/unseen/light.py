@@ -1,6 +1,6 @@
 """Unseen RGB corruptions of light and colour: white balance, exposure, haze, hue.
 
-Functions take and give what those of ``corruptions/rgb.py`` do.
+Functions have the arguments and results of those in ``corruptions/rgb.py``.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from mitigate.corruptions.record import TEST, VALIDATION, Record
 
 STOPS, STOPS_SPREAD = 2.0, 0.2  # of exposure at s = 1
 CAST = 2.0  # stops between red and blue at s = 1: Afifi & Brown 2019 have 2800 to 10000 K
-TINT = 0.5  # of that, between green and the other two
+TINT = 0.5  # of CAST, between green and the other two
 HAZE_DEPTH = 1.5  # optical depth at s = 1, where the haze is average
 HAZE_OCTAVES = ((0.16, 1.0), (0.08, 0.5), (0.04, 0.25))  # correlation over the side, weight
 HAZE_UNEVEN = 0.4  # standard deviation of the haze over its mean
@@ -27,7 +27,7 @@ HUE_DEGREES = 180.0  # at s = 1
 
 
 def _by_table(views: np.ndarray, tables: list[np.ndarray]) -> np.ndarray:
-    """Each colour of uint8 [V, H, W, 3] through its own uint8 [256] table."""
+    """Map each colour of uint8 [V, H, W, 3] by its own uint8 [256] table."""
     out = np.empty_like(views)
     for colour, table in enumerate(tables):
         out[..., colour] = table[views[..., colour]]
@@ -35,12 +35,12 @@ def _by_table(views: np.ndarray, tables: list[np.ndarray]) -> np.ndarray:
 
 
 def _amplified(stops: float) -> np.ndarray:
-    """uint8 [256]: grey levels after ``stops`` more of light, clipped at white."""
+    """Return uint8 [256]: grey levels with ``stops`` more light, clipped at white."""
     return np.rint(np.minimum(np.arange(256) * 2.0 ** (stops / GAMMA), 255.0)).astype(np.uint8)
 
 
 def white_balance(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
-    """Gains of red, green and blue of a wrong light, one direction for the episode."""
+    """Apply gains of red, green and blue for a wrong light colour, fixed per episode."""
     angle = 2.0 * math.pi * uniform(digest(key, "white_balance"))
     warm, green = 0.5 * CAST * math.cos(angle), 0.5 * CAST * TINT * math.sin(angle)
     stops = (warm - green, green, -warm - green)
@@ -48,14 +48,14 @@ def white_balance(views: np.ndarray, severity: float, key: Key, heading=None) ->
 
 
 def overexposure(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
-    """Light times 2^(2 s u), u ~ U(0.8, 1.2) for the episode; what is over white is lost."""
+    """Multiply light by 2^(2 s u), u ~ U(0.8, 1.2) per episode, and clip at white."""
     spread = 1.0 + STOPS_SPREAD * (2.0 * uniform(digest(key, "overexposure")) - 1.0)
     return _by_table(views, [_amplified(STOPS * spread * severity)] * 3)
 
 
 @cached
 def haze_density(value: int, height: int, width: int) -> np.ndarray:
-    """float32 [H, W]: the haze over its mean, a fractal field."""
+    """Return float32 [H, W]: the haze divided by its mean, a fractal field."""
     parts = [
         weight * field(scramble(value, octave), height, width, correlation)[0]
         for octave, (correlation, weight) in enumerate(HAZE_OCTAVES)
@@ -67,13 +67,13 @@ def haze_density(value: int, height: int, width: int) -> np.ndarray:
 
 @cached
 def haze_mask(value: int, severity: float, height: int, width: int) -> np.ndarray:
-    """int16 [H, 3 W]: the opacity of the haze, in 1/32768."""
+    """Return int16 [H, 3 W]: the opacity of the haze, in 1/32768."""
     lost = np.exp(-HAZE_DEPTH * severity * haze_density(value, height, width).astype(np.float64))
     return masks.opacity_mask((1.0 - lost).astype(np.float32), 1.0, masks.NEUTRAL)
 
 
 def haze(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
-    """x t + A (1 - t): smoke or dust between camera and scene; every view sees another part."""
+    """Blend x t + A (1 - t), like smoke or dust; each view has another part of the field."""
     count, height, width, _ = views.shape
     value, out = digest(key, "haze"), np.empty_like(views)
     mask, grey = (
@@ -82,14 +82,14 @@ def haze(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarr
     )
     for view in range(count):
         shift = int(uniform(scramble(value, view)) * width)
-        seen = np.roll(mask, 3 * shift, axis=1)
-        masks.cover(views[view : view + 1], seen, grey, out[view : view + 1])
+        shifted = np.roll(mask, 3 * shift, axis=1)
+        masks.cover(views[view : view + 1], shifted, grey, out[view : view + 1])
     return out
 
 
 @lru_cache(maxsize=32)
 def hue_matrix(degrees: float) -> np.ndarray:
-    """int32 [3, 3] in 1/4096: a turn of colours about grey (Rodrigues)."""
+    """Return int32 [3, 3] in 1/4096: a rotation of colours about grey (Rodrigues)."""
     angle = math.radians(degrees)
     third, cross = np.full((3, 3), 1.0 / 3.0), np.zeros((3, 3))
     cross[[0, 1, 2], [2, 0, 1]], cross[[0, 1, 2], [1, 2, 0]] = 1.0, -1.0
@@ -98,7 +98,7 @@ def hue_matrix(degrees: float) -> np.ndarray:
 
 
 def hue_shift(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
-    """Turn all hues by 180 s degrees, one way or the other for the episode; grey stays."""
+    """Rotate all hues by +-180 s degrees, with the sign fixed per episode; grey stays."""
     sign = 1.0 if uniform(digest(key, "hue_shift")) < 0.5 else -1.0
     matrix = hue_matrix(sign * HUE_DEGREES * severity)
     colours = [views[..., c].astype(np.int32) for c in range(3)]

@@ -1,6 +1,6 @@
-"""Unseen RGB corruptions of what is before the sensor: panes, drops, scratches.
+"""Unseen RGB corruptions in front of the sensor: panes, drops, scratches.
 
-Functions take and give what those of ``corruptions/rgb.py`` do.
+Functions have the arguments and results of those in ``corruptions/rgb.py``.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ GHOST = 0.5  # share of the ghost at s = 1
 GHOST_NEAR, GHOST_FAR, GHOST_DOWN = 0.06, 0.16, 0.04  # of W, W and H: where the ghost lies
 DROPS = 0.06  # correlation of the surface over the side
 BEND = 0.045  # rms displacement over the side at s = 1
-SCRATCHES = 14  # all there at s = 1
+SCRATCHES = 14  # number at s = 1
 SCRATCH_CORE, SCRATCH_GLOW = 0.006, 0.035  # widths over the side
 SCRATCH_OPACITY, GLOW_OPACITY = 0.9, 0.45
 SCRATCH_LONG = (0.3, 1.0)  # length over the side
@@ -27,7 +27,7 @@ SCRATCH_COLOUR = (226, 226, 222)
 
 
 def ghosting(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
-    """(1 - a) x + a x', a = 0.5 s: x' is the picture moved aside, edges replicated."""
+    """Blend (1 - a) x + a x', a = 0.5 s; x' is the shifted picture, edges replicated."""
     _, height, width, _ = views.shape
     value = digest(key, "ghosting")
     away = GHOST_NEAR + (GHOST_FAR - GHOST_NEAR) * uniform(value, 0)
@@ -43,9 +43,9 @@ def ghosting(views: np.ndarray, severity: float, key: Key, heading=None) -> np.n
 
 @njit(cache=True)
 def displaced(view, down, right, out):
-    """out[y, x] = view at (y + down, x + right), bilinear, edges replicated.
+    """Set out[y, x] = view at (y + down, x + right), bilinear, edges replicated.
 
-    uint8 [H, W, 3] and float32 [H, W]; displacements in pixels, taken in 1/256.
+    ``view`` is uint8 [H, W, 3]. Displacements are float32 [H, W] in pixels, rounded down to 1/256.
     """
     height, width, _ = view.shape
     for y in range(height):
@@ -62,7 +62,7 @@ def displaced(view, down, right, out):
 
 @cached
 def slopes(value: int, height: int, width: int) -> tuple[np.ndarray, np.ndarray]:
-    """float32 [H, W] each: slope down and to the right of a random surface, rms 1 together."""
+    """Return the slopes down and right of a random surface, float32 [H, W], joint rms 1."""
     surface = field(value, height, width, DROPS)[0].astype(np.float64)
     down, right = (np.roll(surface, -1, axis) - np.roll(surface, 1, axis) for axis in (0, 1))
     scale = 1.0 / max(math.sqrt(np.mean(down**2 + right**2)), 1e-9)
@@ -70,7 +70,7 @@ def slopes(value: int, height: int, width: int) -> tuple[np.ndarray, np.ndarray]
 
 
 def refraction(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
-    """Every pixel looks aside by the slope of a wet pane's surface, rms 0.045 s side."""
+    """Displace every pixel by the slope of a wet pane's surface, rms 0.045 s side."""
     _, height, width, _ = views.shape
     reach = np.float32(BEND * severity * min(height, width))
     down, right = slopes(digest(key, "refraction"), height, width)
@@ -81,7 +81,7 @@ def refraction(views: np.ndarray, severity: float, key: Key, heading=None) -> np
 
 
 def _along(value: int, number: int, height: int, width: int) -> tuple[np.ndarray, np.ndarray]:
-    """float64 [H, W] each: distance from the line of a scratch, and beyond its ends, in sides."""
+    """Return float64 [H, W]: distance to a scratch's line, and beyond its ends, in sides."""
     draw = [uniform(value, 5 * number + part) for part in range(4)]
     side, angle = min(height, width), math.pi * draw[2]
     half = 0.5 * (SCRATCH_LONG[0] + (SCRATCH_LONG[1] - SCRATCH_LONG[0]) * draw[3])
@@ -94,7 +94,7 @@ def _along(value: int, number: int, height: int, width: int) -> tuple[np.ndarray
 
 @cached
 def scratch_mask(value: int, severity: float, height: int, width: int) -> np.ndarray:
-    """int16 [H, 3 W]: the opacity of the scratches that are there, in 1/32768."""
+    """Return int16 [H, 3 W]: the opacity of the scratches, in 1/32768."""
     clear = np.ones((height, width))
     for number in range(SCRATCHES):
         strength = min(max(SCRATCHES * severity - number, 0.0), 1.0)
@@ -110,7 +110,7 @@ def scratch_mask(value: int, severity: float, height: int, width: int) -> np.nda
 
 
 def scratches(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
-    """Bright lines with a glow around them: the first 14 s scratches of the episode."""
+    """Draw the first 14 s scratches of the episode: bright lines with a glow."""
     height, width = views.shape[1:3]
     mask = scratch_mask(digest(key, "scratches"), severity, height, width)
     out = np.empty_like(views)

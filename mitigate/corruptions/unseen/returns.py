@@ -1,7 +1,7 @@
-"""Unseen depth corruptions of what comes back: ripple, mismatches, range, glossy floors.
+"""Unseen depth corruptions of the returned signal: ripple, range, mismatches, glossy floors.
 
-Functions take and give what those of ``corruptions/depth.py`` do, and keep its rules of invalid
-pixels.
+Functions have the arguments and results of those in ``corruptions/depth.py``, and treat invalid
+pixels in the same way.
 """
 
 from __future__ import annotations
@@ -29,29 +29,29 @@ RIPPLE = 0.06  # per metre, at s = 1: sd of z is 0.06 z^2
 RIPPLE_CORRELATION = 0.04  # of the side
 RANGE_LEFT = 0.10  # of z_max at s = 1
 WRONG = 0.30  # of the readings at s = 1
-SPECKLE = 0.02  # of the side: what is wrong together
+SPECKLE = 0.02  # of the side: size of a cell of wrong readings
 GLOSS_CORRELATION = 0.08  # of the side
-FLOOR = 0.92  # of the height of the camera: what lies deeper is the floor
-UPSIDE_DOWN = 3.0  # times the floor's depth: a ceiling twice as high as the camera, mirrored
+FLOOR = 0.92  # of the camera height: everything farther below is floor
+UPSIDE_DOWN = 3.0  # times the floor's depth: mirrored ceiling, twice as high as the camera
 
 _U = np.uint64
 
 
 def ripple(views: np.ndarray, severity: float, key: Key, sensor: DepthSensor) -> np.ndarray:
-    """z + 0.06 s z^2 F: waves over walls, another place of one field F in every view and frame."""
+    """Add 0.06 s z^2 F: waves over walls. Every view and frame shifts the field F."""
     count, height, width = views.shape
     waves = field(digest(key, "ripple"), height, width, RIPPLE_CORRELATION)[0]
     moved = np.where(valid(views), np.minimum(views, np.float32(sensor.z_max)), 0)
     strength = np.float32(RIPPLE * severity)
     for view, stream in enumerate(view_streams(key, "ripple_offset", count)):
         down, right = (int(uniform(int(stream), i) * n) for i, n in enumerate((height, width)))
-        seen = np.roll(waves, (down, right), axis=(0, 1))
-        moved[view] += strength * moved[view] * moved[view] * seen
+        shifted = np.roll(waves, (down, right), axis=(0, 1))
+        moved[view] += strength * moved[view] * moved[view] * shifted
     return kept(views, moved, sensor)
 
 
 def range_limit(views: np.ndarray, severity: float, key: Key, sensor: DepthSensor) -> np.ndarray:
-    """No reading beyond z_max 0.1^s: too little of the camera's light comes back."""
+    """Remove readings beyond z_max 0.1^s, where too little light returns to the camera."""
     limit = np.float32(sensor.z_max * RANGE_LEFT**severity)
     near = kept(views, views, sensor)
     return np.where(valid(views) & (near > limit), np.float32(sensor.missing), near)
@@ -70,7 +70,7 @@ def _mismatch(views, streams, cell, least, z_max, out):
 
 
 def mismatches(views: np.ndarray, severity: float, key: Key, sensor: DepthSensor) -> np.ndarray:
-    """0.3 s of the readings, in speckles of 0.02 side, are anywhere in the sensor's range."""
+    """Set 0.3 s of the readings, in cells of 0.02 side, to random depths in the range."""
     cell = max(1, round(SPECKLE * min(views.shape[1:])))
     streams, out = view_streams(key, "mismatches", len(views)), np.empty_like(views)
     least = _U(round(WRONG * severity * 2**32))
@@ -79,15 +79,17 @@ def mismatches(views: np.ndarray, severity: float, key: Key, sensor: DepthSensor
 
 
 def below_camera(views: np.ndarray) -> np.ndarray:
-    """float32 [V, H, W]: how far a level camera sees each pixel below itself, in half widths at one
-    metre; 0 or less above the horizon."""
+    """Return float32 [V, H, W]: distance of pixels below a level camera, <= 0 above it.
+
+    The unit is half the image width at a depth of one metre.
+    """
     _, height, width = views.shape
     down = (np.arange(height) + 0.5 - 0.5 * height) / (0.5 * width)
     return np.where(valid(views), views, 0) * down.astype(np.float32)[:, None]
 
 
 def glossy_floor(views: np.ndarray, severity: float, key: Key, sensor: DepthSensor) -> np.ndarray:
-    """The share s of the floor reads as deep as the room that it mirrors."""
+    """Set the share s of the floor to the depth of the room that it mirrors."""
     _, height, width = views.shape
     value, out, depth = (
         digest(key, "glossy_floor"),
@@ -96,12 +98,12 @@ def glossy_floor(views: np.ndarray, severity: float, key: Key, sensor: DepthSens
     )
     smooth, cells = field(value, height, width, GLOSS_CORRELATION)
     gloss = smooth >= top_share(cells, severity)
-    for view, seen in enumerate(out):
+    for view, clean in enumerate(out):
         floor = (depth[view] > 0) & (depth[view] >= FLOOR * depth[view].max())
         floor &= np.roll(gloss, int(uniform(scramble(value, view)) * width), axis=1)
-        wall = np.where(valid(seen), seen, 0).max(axis=0)
-        mirrored = np.minimum(np.float32(UPSIDE_DOWN) * seen, wall)
-        out[view] = np.where(floor & (mirrored > seen), mirrored, seen)
+        wall = np.where(valid(clean), clean, 0).max(axis=0)
+        mirrored = np.minimum(np.float32(UPSIDE_DOWN) * clean, wall)
+        out[view] = np.where(floor & (mirrored > clean), mirrored, clean)
     return out
 
 

@@ -1,6 +1,6 @@
 """Unseen RGB corruptions of read-out: rolling shutter, flicker, bit errors.
 
-Functions take and give what those of ``corruptions/rgb.py`` do.
+Functions have the arguments and results of those in ``corruptions/rgb.py``.
 """
 
 from __future__ import annotations
@@ -16,9 +16,9 @@ from mitigate.corruptions.record import TEST, VALIDATION, Record
 from mitigate.corruptions.unseen.optics import displaced
 
 WOBBLE = 0.05  # of W at s = 1
-WOBBLE_WAVES = (1.0, 2.5)  # in the height of a frame
+WOBBLE_WAVES = (1.0, 2.5)  # per frame height
 FLICKER = 0.8  # of the light at s = 1
-BANDS = (2.0, 4.0)  # in the height of a frame: 100 Hz read out in 1/50 to 1/25 s
+BANDS = (2.0, 4.0)  # per frame height: 100 Hz read out in 1/50 to 1/25 s
 IMPULSES = 0.3  # of the pixels at s = 1
 
 _U = np.uint64
@@ -29,7 +29,7 @@ def _between(value: int, counter: int, ends: tuple[float, float]) -> float:
 
 
 def rolling_shutter(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
-    """Each row was read at another time of a vibration: it lies 0.05 s W sin(...) aside."""
+    """Shift each row by 0.05 s W sin(...), as if a vibration moved the camera at read-out."""
     _, height, width, _ = views.shape
     waves = _between(digest(key, "rolling_shutter"), 0, WOBBLE_WAVES)
     phase = uniform(digest(key, "rolling_shutter", frame=True))
@@ -43,7 +43,7 @@ def rolling_shutter(views: np.ndarray, severity: float, key: Key, heading=None) 
 
 
 def flicker_bands(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
-    """Rows brighter and darker by a share of 0.8 s cos(...): lamps on mains, a short exposure."""
+    """Scale the light of each row by 1 + 0.8 s cos(...), like lamps on mains power."""
     count, height, _, _ = views.shape
     bands = _between(digest(key, "flicker_bands"), 0, BANDS)
     value = digest(key, "flicker_bands", frame=True)
@@ -56,7 +56,7 @@ def flicker_bands(views: np.ndarray, severity: float, key: Key, heading=None) ->
 
 @njit(cache=True)
 def _strike(views, streams, least, out):
-    """Pixels [V, P, 3] whose hash is below ``least`` (of 2^32) become black or white."""
+    """Set colours of pixels [V, P, 3] whose hash is below ``least`` (of 2^32) to 0 or 255."""
     for v in range(views.shape[0]):
         for i in range(views.shape[1]):
             word = mix(streams[v], _U(i))
@@ -67,7 +67,7 @@ def _strike(views, streams, least, out):
 
 
 def impulse_noise(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
-    """0.3 s of the pixels of every frame read 0 or 255, each colour by itself."""
+    """Set 0.3 s of the pixels of every frame to 0 or 255, separately per colour."""
     out, count = np.empty_like(views), len(views)
     least = _U(round(IMPULSES * severity * 2**32))
     streams = view_streams(key, "impulse_noise", count)
