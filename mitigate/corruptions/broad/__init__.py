@@ -1,10 +1,10 @@
-"""Broad augmentation: random compositions of primitive transforms, for training alone.
+"""Broad augmentation: random compositions of primitive transforms, only for training.
 
-A schedule with ``broad_share`` draws them beside the named corruptions, so that what an agent
-learns is not the list. They are never part of a suite. The primitives are those of PRIME (Modas et
-al., ECCV 2022: tone, filter, warp) and of AugMix's kin, and what sensors share: noise, covers, lost
-parts. They use OpenCV, which is imported when a first frame is corrupted: who only loads an agent
-needs none.
+A schedule with ``broad_share`` draws them in addition to the named corruptions, so that an agent
+does not learn only this list. They are never part of a suite. The primitives follow PRIME (Modas et
+al., ECCV 2022: tone, filter, warp) and methods like AugMix, and add sensor failures: noise, covers,
+lost parts. They use OpenCV, which is imported when the first frame is corrupted, so loading an
+agent does not need it.
 """
 
 from __future__ import annotations
@@ -15,25 +15,25 @@ from mitigate.corruptions.depth_sensor import DepthSensor
 from mitigate.corruptions.keying import Key
 from mitigate.corruptions.record import Record
 
-STATE = "primitives, maps"  # kept through an episode
+STATE = "primitives, maps"  # fixed during an episode
 
 
 def broad_rgb(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
-    """One to three primitives of ``rgb.py``, of random strength up to ``severity``."""
+    """Apply one to three primitives of ``rgb.py``, of random strength up to ``severity``."""
     from mitigate.corruptions.broad import rgb
 
     return rgb.compose(views, severity, key)
 
 
 def broad_depth(views: np.ndarray, severity: float, key: Key, sensor: DepthSensor) -> np.ndarray:
-    """One to three primitives of ``depth.py``, of random strength up to ``severity``."""
+    """Apply one to three primitives of ``depth.py``, of random strength up to ``severity``."""
     from mitigate.corruptions.broad import depth
 
     return depth.compose(views, severity, key, sensor)
 
 
 def primitives(name: str, key: Key) -> list[str]:
-    """What ``broad_rgb`` or ``broad_depth`` does in the key's episode: its primitives in order."""
+    """Return the primitives that ``broad_rgb`` or ``broad_depth`` applies in this episode."""
     from mitigate.corruptions.broad import composition, depth, rgb
 
     module = {"broad_rgb": rgb, "broad_depth": depth}[name]

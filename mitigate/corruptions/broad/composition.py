@@ -1,8 +1,8 @@
-"""Which primitives a composition has, how strong each is, and the random maps that they share.
+"""Draw the primitives of a composition, their strengths and the random maps that they share.
 
 A primitive is a function of (views, strength in (0, 1], ``rng`` of the episode, ``now`` of the
-frame) that returns views of the same shape. Constants without a source were chosen by this project,
-before any agent trained with them had met an unseen corruption.
+frame) that returns views of the same shape. Constants without a source were chosen by this project
+before any agent trained with them was measured under unseen corruptions.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ import numpy as np
 from mitigate.corruptions.keying import Key, digest
 
 COUNTS = (0.4, 0.35, 0.25)  # probability of one, two, three primitives
-LEAST_STRENGTH = 0.35  # of the severity: each primitive draws its share from here to 1
+LEAST_STRENGTH = 0.35  # of the severity; the strength of each primitive is from this to 1
 
 Primitive = Callable[..., np.ndarray]
 
@@ -27,7 +27,7 @@ def composed(
     name: str,
     primitives: Sequence[Primitive],
 ) -> np.ndarray:
-    """``views`` through one to three of ``primitives``, drawn for the key's episode."""
+    """Apply one to three of ``primitives`` to ``views``, drawn for the key's episode."""
     chosen, rng = drawn(key, name, primitives)
     now = stream(digest(key, name, frame=True))
     for primitive in chosen:
@@ -39,20 +39,22 @@ def composed(
 def drawn(
     key: Key, name: str, primitives: Sequence[Primitive]
 ) -> tuple[list[Primitive], np.random.Generator]:
-    """The primitives of the key's episode, in their order, and the stream of its other draws."""
+    """Return the primitives of the key's episode, in order, and a generator for other draws."""
     rng = stream(digest(key, name))
     places = rng.permutation(len(primitives))[: 1 + rng.choice(len(COUNTS), p=COUNTS)]
     return [primitives[place] for place in places], rng
 
 
 def stream(value: int) -> np.random.Generator:
-    """Random numbers of a 64-bit digest."""
+    """Return a generator seeded by a 64-bit digest."""
     return np.random.Generator(np.random.Philox(value))
 
 
 def field(rng: np.random.Generator, shape: tuple[int, int], cell: float) -> np.ndarray:
-    """float32 [H, W]: a smooth random map of mean 0 and standard deviation about 1, whose cells
-    have ``cell`` of the shorter side."""
+    """Return a smooth random map, float32 [H, W], of mean 0 and standard deviation about 1.
+
+    The size of its cells is ``cell`` times the shorter side.
+    """
     height, width = shape
     size = max(1.0, cell * min(height, width))
     rows, columns = (2 + round(length / size) for length in (height, width))
@@ -62,12 +64,12 @@ def field(rng: np.random.Generator, shape: tuple[int, int], cell: float) -> np.n
 
 
 def log_uniform(rng: np.random.Generator, low: float, high: float) -> float:
-    """A number whose logarithm is uniform."""
+    """Draw a number whose logarithm is uniform."""
     return float(np.exp(rng.uniform(np.log(low), np.log(high))))
 
 
 def shapes(rng: np.random.Generator, shape: tuple[int, int], area: float) -> np.ndarray:
-    """bool [H, W]: one to eight ellipses, polygons and bars over about ``area`` of the map."""
+    """Return bool [H, W]: one to eight shapes that cover about the share ``area`` of the map."""
     height, width = shape
     mask = np.zeros((height, width), np.uint8)
     count = int(rng.integers(1, 9))
@@ -87,14 +89,16 @@ _CIRCLE = np.linspace(0, 2 * np.pi, 24, endpoint=False)
 
 
 def displaced(rng: np.random.Generator, shape: tuple[int, int], reach: float) -> tuple:
-    """Where each pixel is read, float32 maps x and y [H, W]: moved by a smooth random map of cells
-    from 0.06 to 0.6 of the side and turned, scaled and shifted as a whole; ``reach``, as a share of
-    the side, is about the largest move."""
+    """Return the source coordinates x and y of each pixel, float32 [H, W].
+
+    Pixels move by a smooth random map, with cells of 0.06 to 0.6 of the side, and are rotated,
+    scaled and shifted together. The largest move is about ``reach`` times the side.
+    """
     (height, width), cell = shape, log_uniform(rng, 0.06, 0.6)
     side = min(height, width)
     y, x = np.mgrid[:height, :width].astype(np.float32)
     local = rng.uniform(0.0, 1.0)
-    slope = reach * side * local * min(1.0, 3.0 * cell)  # small cells fold if they move far
+    slope = reach * side * local * min(1.0, 3.0 * cell)  # far moves would fold small cells
     turn, scale = (1.0 - local) * reach * rng.uniform(-1.5, 1.5, 2)
     shift = (1.0 - local) * reach * side * rng.uniform(-1.0, 1.0, 2)
     right, down = x - (width - 1) / 2, y - (height - 1) / 2

@@ -1,7 +1,7 @@
 """Primitive transforms of depth views, and their random composition ``broad_depth``.
 
-Each primitive takes and gives float32 views [V, H, W] in shares of the sensor's range; what reads
-nothing is NaN. An invalid pixel comes back as it was, as everywhere.
+Each primitive maps float32 views [V, H, W], divided by the sensor's range, to views of the same
+shape. NaN means no reading. Invalid pixels are returned unchanged.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ NAME = "broad_depth"
 
 
 def curve(views, strength, rng, now):
-    """Another scale and offset, and waves along the range."""
+    """Change scale and offset, and add waves along the range."""
     scale, offset = 1.0 + 0.5 * strength * rng.uniform(-1, 1), 0.1 * strength * rng.uniform(-1, 1)
     waves, phase = rng.uniform(1.0, 8.0), rng.uniform(0, 2 * np.pi)
     wave = 0.04 * strength * rng.random() * np.sin(2 * np.pi * waves * views + phase)
@@ -25,19 +25,19 @@ def curve(views, strength, rng, now):
 
 
 def uneven(views, strength, rng, now):
-    """Errors that go together over a patch, added, or growing with z or its square."""
+    """Add spatially correlated errors, constant or growing with z or its square."""
     power, amount = rng.choice((0, 1, 2)), strength * rng.uniform(0.02, 0.25)
     error = field(rng, views.shape[1:], log_uniform(rng, 0.02, 0.6))
     moving = rng.random() < 0.5
     out = np.empty_like(views)
     for place, view in enumerate(views):
-        turned = np.roll(error, int((now if moving else rng).integers(view.shape[1])), 1)
-        out[place] = view + amount * turned * view**power * (1.0 if power else 0.3)
+        shifted = np.roll(error, int((now if moving else rng).integers(view.shape[1])), 1)
+        out[place] = view + amount * shifted * view**power * (1.0 if power else 0.3)
     return out
 
 
 def noisy(views, strength, rng, now):
-    """Noise of a random grain, of the same size everywhere or growing with the square of z."""
+    """Add noise of a random grain, constant or growing with the square of z."""
     grain = rng.choice((1, 1, 2, 4)) * max(1, min(views.shape[1:]) // 128)
     height, width = views.shape[1:]
     shape = (len(views), -(-height // grain), -(-width // grain))
@@ -48,7 +48,7 @@ def noisy(views, strength, rng, now):
 
 
 def smooth(views, strength, rng, now):
-    """The median or the mean around a pixel."""
+    """Apply a median or mean filter."""
     size = 1 + 2 * max(1, round(0.06 * strength * rng.uniform(0.3, 1.0) * min(views.shape[1:])))
     if rng.random() < 0.4:
         return _each(views, lambda view: cv2.medianBlur(view, min(5, size)))
@@ -56,7 +56,7 @@ def smooth(views, strength, rng, now):
 
 
 def steps(views, strength, rng, now):
-    """Few levels, at even distances or at even disparities."""
+    """Round to few levels, evenly spaced in distance or in disparity."""
     if rng.random() < 0.5:
         step = np.float32(strength * rng.uniform(0.02, 0.15))
         return np.rint(views / step) * step
@@ -65,7 +65,7 @@ def steps(views, strength, rng, now):
 
 
 def warped(views, strength, rng, now):
-    """Pixels moved by smooth random maps, or as a whole."""
+    """Move pixels by smooth random maps, or all together."""
     map_x, map_y = displaced(rng, views.shape[1:], 0.12 * strength)
     border = cv2.BORDER_REPLICATE
     return _each(
@@ -74,7 +74,7 @@ def warped(views, strength, rng, now):
 
 
 def swapped(views, strength, rng, now):
-    """Some pixels read what another one nearby should."""
+    """Replace some pixels by other pixels nearby."""
     reach = max(1, round(0.15 * rng.uniform(0.2, 1.0) * min(views.shape[1:])))
     out, share = views.copy(), 0.6 * strength * rng.random()
     for view, clean in zip(out, views, strict=True):
@@ -86,8 +86,10 @@ def swapped(views, strength, rng, now):
 
 
 def holes(views, strength, rng, now):
-    """The share up to 0.7 a of the pixels, chosen by a random mixture of a smooth map, chance,
-    distance and edges, reads nothing, or near or far."""
+    """Remove or replace up to the share 0.7 a of the pixels, ``a`` being the strength.
+
+    A random mixture of a smooth map, chance, distance and edges selects them.
+    """
     weights = rng.dirichlet(np.full(4, 0.5)) * (1, 1, rng.choice((-1, 1)), 1)
     place = field(rng, views.shape[1:], log_uniform(rng, 0.02, 0.5))
     share, fill, out = 0.7 * strength * rng.random(), _fill(rng), views.copy()
@@ -101,7 +103,7 @@ def holes(views, strength, rng, now):
 
 
 def hidden(views, strength, rng, now):
-    """Shapes, the same in all views or others in each, that read nothing, near or far."""
+    """Remove or replace depth within random shapes, shared by all views or drawn for each."""
     area, fill, alike = 0.5 * strength * rng.uniform(0.1, 1.0), _fill(rng), rng.random() < 0.6
     mask, out = shapes(rng, views.shape[1:], area), views.copy()
     for view in out:
@@ -111,19 +113,19 @@ def hidden(views, strength, rng, now):
 
 
 def lost(views, strength, rng, now):
-    """Each view reads nothing, or far, with probability 0.5 a."""
+    """Set each view to no reading, or far, with probability 0.5 times the strength."""
     out = views.copy()
     out[now.random(len(views)) < 0.5 * strength] = rng.choice((np.nan, np.nan, 1.0))
     return out
 
 
 def _fill(rng: np.random.Generator) -> float:
-    """What is read in place of depth: mostly nothing, else any distance of the range."""
+    """Draw the value that replaces depth: mostly no reading, else any depth of the range."""
     return float("nan") if rng.random() < 0.6 else float(rng.choice((1.0, rng.random())))
 
 
 def _each(views, change) -> np.ndarray:
-    """``change`` of each view, whose holes read far meanwhile and are holes after it."""
+    """Apply ``change`` to each view, with holes filled as far; they are holes again after it."""
     holes = np.isnan(views)
     out = np.stack([change(view) for view in np.where(holes, np.float32(1.0), views)])
     return np.where(holes, np.float32(np.nan), out)
@@ -133,11 +135,11 @@ PRIMITIVES = (curve, uneven, noisy, smooth, steps, warped, swapped, holes, hidde
 
 
 def compose(views: np.ndarray, severity: float, key: Key, sensor: DepthSensor) -> np.ndarray:
-    """One to three primitives of random strength up to ``severity``, kept through the episode."""
+    """Apply one to three primitives of random strength up to ``severity``, fixed per episode."""
     valid = (views > 0) & np.isfinite(views)
     z_max = np.float32(sensor.z_max)
     shares = np.where(valid, np.minimum(views, z_max) / z_max, np.float32(np.nan))
-    made = composed(shares, severity, key, NAME, PRIMITIVES) * z_max
-    metres = np.clip(made, NEAREST, z_max)
-    metres = np.where(np.isnan(made), np.float32(sensor.missing), metres).astype(np.float32)
+    changed = composed(shares, severity, key, NAME, PRIMITIVES) * z_max
+    metres = np.clip(changed, NEAREST, z_max)
+    metres = np.where(np.isnan(changed), np.float32(sensor.missing), metres).astype(np.float32)
     return np.where(valid, metres, views)

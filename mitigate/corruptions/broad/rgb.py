@@ -1,6 +1,6 @@
 """Primitive transforms of RGB views, and their random composition ``broad_rgb``.
 
-Each primitive takes and gives float32 views [V, H, W, 3] in [0, 1].
+Each primitive maps float32 views [V, H, W, 3] in [0, 1] to views of the same shape.
 """
 
 from __future__ import annotations
@@ -18,12 +18,12 @@ from mitigate.corruptions.broad.composition import (
 from mitigate.corruptions.keying import Key
 
 NAME = "broad_rgb"
-STOPS = (-4.0, 2.5)  # of light at strength 1
+STOPS = (-4.0, 2.5)  # range of the change of light at strength 1
 GAMMA = 2.2  # of displays: from stored levels to light
 
 
 def exposure(views, strength, rng, now):
-    """More or less light, all over or along a smooth random map; or as the frame flickers."""
+    """Change the light, evenly or along a smooth random map, constantly or per frame."""
     stops = strength * rng.uniform(*STOPS)
     if rng.random() < 0.3:
         stops = stops * now.uniform(0.0, 1.0)
@@ -34,7 +34,7 @@ def exposure(views, strength, rng, now):
 
 
 def tone(views, strength, rng, now):
-    """x + a sum of b_n sin(pi n x) for each colour or for all three (PRIME), by table."""
+    """Add a random sum of b_n sin(pi n x) per colour or to all three (PRIME), by table."""
     levels = np.linspace(0.0, 1.0, 256, dtype=np.float32)
     most = int(rng.integers(1, 6))
     colours = 3 if rng.random() < 0.5 else 1
@@ -49,7 +49,7 @@ def tone(views, strength, rng, now):
 
 
 def colour_mix(views, strength, rng, now):
-    """A random matrix for the three colours, near the identity, or towards grey."""
+    """Mix the three colours by a random matrix, near the identity or towards grey."""
     matrix = np.eye(3) + 0.6 * strength * rng.standard_normal((3, 3))
     if rng.random() < 0.3:
         matrix = (1.0 - strength) * np.eye(3) + strength / 3.0
@@ -59,7 +59,7 @@ def colour_mix(views, strength, rng, now):
 
 
 def contrast(views, strength, rng, now):
-    """Less contrast, towards a colour, or more."""
+    """Increase contrast, or reduce it towards a colour."""
     share, colour = strength * rng.uniform(0.3, 0.95), _colour(rng)
     if rng.random() < 0.25:
         return np.clip(views + 2.0 * share * (views - np.float32(0.5)), 0.0, 1.0)
@@ -67,7 +67,7 @@ def contrast(views, strength, rng, now):
 
 
 def filtered(views, strength, rng, now):
-    """A random kernel (PRIME), or a blur along any direction, blended with the identity."""
+    """Convolve with a random kernel (PRIME), or blur along a random direction."""
     side = min(views.shape[1:3])
     size = 1 + 2 * max(1, round(0.5 * strength * rng.uniform(0.04, 0.2) * side))
     if rng.random() < 0.4:
@@ -85,7 +85,7 @@ def filtered(views, strength, rng, now):
 
 
 def coarse(views, strength, rng, now):
-    """Fewer pixels, fewer levels, or both."""
+    """Reduce the resolution, the number of levels, or both."""
     height, width = views.shape[1:3]
     if rng.random() < 0.7:
         factor = 1.0 + strength * rng.uniform(0.5, 1.0) * 0.12 * min(height, width)
@@ -105,7 +105,7 @@ def coarse(views, strength, rng, now):
 
 
 def warped(views, strength, rng, now):
-    """Pixels moved by smooth random maps (PRIME's diffeomorphisms), or as a whole."""
+    """Move pixels by smooth random maps (PRIME's diffeomorphisms), or all together."""
     source = now if rng.random() < 0.3 else rng
     map_x, map_y = displaced(source, views.shape[1:3], 0.12 * strength)
     border = cv2.BORDER_REPLICATE
@@ -115,7 +115,7 @@ def warped(views, strength, rng, now):
 
 
 def noisy(views, strength, rng, now):
-    """Noise of a random grain, spectrum, distribution and colour, added or multiplied."""
+    """Add or multiply noise of a random grain, distribution and colour, or in bands."""
     height, width = views.shape[1:3]
     colours, amount = 3 if rng.random() < 0.5 else 1, 0.35 * strength * rng.uniform(0.3, 1.0)
     grain = rng.choice((1, 1, 2, 4)) * max(1, min(height, width) // 128)
@@ -131,22 +131,22 @@ def noisy(views, strength, rng, now):
 
 
 def covered(views, strength, rng, now):
-    """A random map of opacity, fine or wide, soft or hard, of a random colour."""
+    """Cover views with a random colour; its opacity is a random map, fine or wide."""
     height, width = views.shape[1:3]
     soft, colour = log_uniform(rng, 0.1, 3.0), _colour(rng)
     level = rng.uniform(-0.3, 1.5) + (1.0 - strength)
-    turned, most = rng.random() < 0.3, (0.4 + 0.6 * rng.random()) * min(1.0, 1.5 * strength)
+    is_shifted, most = rng.random() < 0.3, (0.4 + 0.6 * rng.random()) * min(1.0, 1.5 * strength)
     cover = field(rng, (height, width), log_uniform(rng, 0.02, 0.8))
     opacity = most * np.clip((cover - level) / soft + 0.5, 0.0, 1.0)
     out = np.empty_like(views)
     for place, view in enumerate(views):
-        alpha = np.roll(opacity, int(rng.integers(width)), 1) if turned else opacity
+        alpha = np.roll(opacity, int(rng.integers(width)), 1) if is_shifted else opacity
         out[place] = view + (colour - view) * alpha[..., None]
     return out
 
 
 def hidden(views, strength, rng, now):
-    """Shapes before the lens, or others in each view, of a colour, of noise or of other parts."""
+    """Fill random shapes, shared or drawn per view, with a colour, noise or other parts."""
     height, width = views.shape[1:3]
     area, kind, alike = 0.6 * strength * rng.uniform(0.1, 1.0), rng.random(), rng.random() < 0.7
     mask, colour, out = shapes(rng, (height, width), area), _colour(rng), views.copy()
@@ -163,8 +163,10 @@ def hidden(views, strength, rng, now):
 
 
 def lost(views, strength, rng, now):
-    """Each view is lost with probability 0.8 a, whole or from a column or row on: one level, noise,
-    or another view's picture."""
+    """Lose each view with probability 0.8 times the strength, whole or from a row or column on.
+
+    The lost part holds one level, noise or another view.
+    """
     height, width = views.shape[1:3]
     out, kind, level = views.copy(), rng.random(), rng.choice((0.0, 0.0, 0.5, 1.0))
     part = rng.random() < 0.3
@@ -182,7 +184,7 @@ def lost(views, strength, rng, now):
 
 
 def _colour(rng: np.random.Generator) -> np.ndarray:
-    """Black, white, a grey, or any colour."""
+    """Draw black, white, a grey or any colour."""
     kind = rng.random()
     grey = np.repeat(0.0 if kind < 0.3 else 1.0 if kind < 0.4 else rng.random(), 3)
     return (grey if kind < 0.6 else rng.random(3)).astype(np.float32)
@@ -208,6 +210,6 @@ PRIMITIVES = (
 
 
 def compose(views: np.ndarray, severity: float, key: Key) -> np.ndarray:
-    """One to three primitives of random strength up to ``severity``, kept through the episode."""
-    made = composed(views.astype(np.float32) / 255.0, severity, key, NAME, PRIMITIVES)
-    return np.rint(np.clip(made, 0.0, 1.0) * 255.0).astype(np.uint8)
+    """Apply one to three primitives of random strength up to ``severity``, fixed per episode."""
+    changed = composed(views.astype(np.float32) / 255.0, severity, key, NAME, PRIMITIVES)
+    return np.rint(np.clip(changed, 0.0, 1.0) * 255.0).astype(np.uint8)
