@@ -1,7 +1,8 @@
 """Compiled blurs of uint8 panoramas: a line and a Gaussian. Edges are replicated.
 
-Everything is 16-bit integer arithmetic on whole rows. Every intermediate is cast back to 16 bits:
-that is what lets LLVM use full-width vector instructions, about three times as fast as 32 bits.
+All arithmetic is on whole rows of 16-bit integers. Every intermediate value is cast back to 16
+bits, so that LLVM uses full-width vector instructions. They are about three times as fast as 32
+bits.
 """
 
 from __future__ import annotations
@@ -9,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
-LINE_UNITS = 256  # 256 * 255 still fits 16 bits: line taps are added up in groups of this weight
+LINE_UNITS = 256  # largest weight of a group of line taps: 256 * 255 still fits 16 bits
 
 _I16, _I32 = np.int16, np.int32
 
@@ -30,7 +31,7 @@ def _pad(view, y, rx, scale, row):
 
 @njit(cache=True)
 def _hat(row, out):
-    """out = (left + 2 row + right) / 4, rounded, for interleaved colours; out is 6 shorter."""
+    """Set out = (left + 2 row + right) / 4, rounded, per colour; out is 6 entries shorter."""
     left, centre, right = row, row[3:], row[6:]
     for i in range(out.size):
         outer = _I16(_I16(left[i]) + _I16(right[i]))
@@ -48,7 +49,7 @@ def _add_taps(total, a, b, c, d, wa, wb, wc, wd):
 
 @njit(cache=True)
 def _mix(total, blurred, source, kept, target):
-    """target = (total blurred + source kept) / 65536, rounded; total is set to zero."""
+    """Set target = (total blurred + source kept) / 65536, rounded; reset total to zero."""
     for i in range(target.size):
         mean = _I32(_I32(total[i]) * blurred)
         target[i] = _I32(_I32(mean + _I32(_I32(source[i]) * kept)) + _I32(32768)) >> 16
@@ -57,11 +58,11 @@ def _mix(total, blurred, source, kept, target):
 
 @njit(cache=True)
 def line(views, dy, dx, weights, step, strength, out):
-    """(1 - strength) x + strength (mean of the taps), for uint8 [V, H, W, 3].
+    """Set out = (1 - strength) x + strength (mean of the taps), for uint8 [V, H, W, 3].
 
-    ``dy, dx`` int64 [4 n] are offsets in pixels and ``weights`` int16 [4 n] small integers, at most
-    LINE_UNITS for each four. With ``step`` 2 the taps lie 2 px apart in a row and the picture is
-    first smoothed along x by (1 2 1)/4, so that they do not miss what lies between.
+    ``dy, dx`` int64 [4 n] are offsets in pixels. ``weights`` int16 [4 n] are small integers; each
+    group of four sums to at most LINE_UNITS. With ``step`` 2 the taps of a row are 2 px apart, and
+    the picture is first smoothed along x by (1 2 1)/4, so that no pixel between them is lost.
     """
     count, height, width, _ = views.shape
     ry, rx = np.max(np.abs(dy)), np.max(np.abs(dx))
@@ -69,7 +70,7 @@ def line(views, dy, dx, weights, step, strength, out):
     wide = np.empty(padded.shape[1] + 6, np.uint8)
     part, total = np.zeros(3 * width, np.int16), np.zeros(3 * width, np.int32)
     sums = part.view(np.uint16)  # int16 sums may wrap; they are never negative
-    full = np.zeros(dy.size, np.bool_)  # before these taps, what was added up is moved to total
+    full = np.zeros(dy.size, np.bool_)  # before these taps, the sums are moved to total
     used = 0
     for k in range(0, dy.size, 4):
         four = np.sum(weights[k : k + 4])
@@ -110,7 +111,7 @@ def line(views, dy, dx, weights, step, strength, out):
 
 @njit(cache=True)
 def _smooth(row, near, far):
-    """row = (row + 2 near + far) / 4; all int16 in [0, 2^14]; near and far do not overlap row."""
+    """Set row = (row + 2 near + far) / 4, int16 in [0, 2^14]; row overlaps neither of them."""
     for i in range(near.size):
         outer = _I16(_I16(row[i] + far[i]) >> _I16(1))
         row[i] = _I16(_I16(_I16(outer + near[i]) + _I16(1)) >> _I16(1))
@@ -162,11 +163,11 @@ def _weigh_columns(row, centre, step, weights, rounding, total):
 
 @njit(cache=True)
 def gaussian(views, weights, levels, out):
-    """Separable convolution of uint8 [V, H, W, 3].
+    """Convolve uint8 [V, H, W, 3] with a separable kernel.
 
-    ``weights`` int16 [r + 1] in 1/65536, r even, the centre (halved) first, are those of taps
-    2^levels pixels apart. Before them the picture is smoothed by (1 2 1)/4 with steps of 1, 2, ...
-    2^(levels - 1) pixels, so that the taps do not miss what lies between them ("a trous").
+    ``weights`` int16 [r + 1] in 1/65536, r even, belong to taps 2^levels pixels apart; the first is
+    half of the centre weight. The picture is first smoothed by (1 2 1)/4 with steps of 1, 2, ...
+    2^(levels - 1) pixels, so that no pixel between the taps is lost ("a trous").
     """
     count, height, width, _ = views.shape
     r, step = weights.size - 1, 1 << levels
@@ -174,7 +175,7 @@ def gaussian(views, weights, levels, out):
     padded = np.empty((height + 2 * reach, 3 * (width + 2 * reach)), np.int16)
     tall, spare = np.empty(padded.shape[1], np.int16), np.empty(padded.shape[1], np.int16)
     total = np.empty(size, np.int16)
-    rounding = _I16((r + 1) // 2)  # a product is cut off, by half a unit on average
+    rounding = _I16((r + 1) // 2)  # truncation of each product loses half a unit on average
     for v in range(count):
         rows = height + 2 * reach
         for y in range(rows):

@@ -1,7 +1,7 @@
 """The four depth corruptions of float32 panoramas [V, H, W] in metres.
 
-A pixel is invalid where z <= 0, NaN or infinite: it comes back as it was and takes no part in a
-neighbourhood. Valid depth becomes invalid only through missing data; the rest is clipped to
+A pixel is invalid where z <= 0, NaN or infinite. It is returned unchanged and is ignored in
+neighbourhoods. Only missing data makes valid depth invalid; all other valid depth is clipped to
 [0.001, z_max]. Formulas and sources: docs/corruptions.md.
 """
 
@@ -26,14 +26,17 @@ from mitigate.corruptions.keying import (
 )
 from mitigate.corruptions.record import Record
 
-ECHO_REACH = 0.03  # of min(H, W): half side of the square in which an echo is found
+ECHO_REACH = 0.03  # of min(H, W): half side of the square searched for an echo
 ECHO_GAP = 2.5  # metres
 ECHO_STRENGTH = 0.9
 ECHO_HERTZ = 20e6
 
 
 def echo_shift(gap: np.ndarray, severity: float) -> np.ndarray:
-    """Over-estimation in metres for ``gap`` metres to the farther surface (two-path phasor sum)."""
+    """Return the over-estimation in metres for a surface ``gap`` metres farther.
+
+    It is the phasor sum of two light paths.
+    """
     scale = LIGHT_SPEED / (4.0 * math.pi * ECHO_HERTZ)
     beta, phase = ECHO_STRENGTH * severity, gap / scale
     return scale * np.arctan2(beta * np.sin(phase), 1.0 + beta * np.cos(phase))
@@ -41,10 +44,10 @@ def echo_shift(gap: np.ndarray, severity: float) -> np.ndarray:
 
 @lru_cache(maxsize=32)
 def echo_polynomial(severity: float) -> np.ndarray:
-    """float32 [8]: p with echo_shift = gap p(gap) up to 0.01 mm, lowest power first.
+    """Return float32 [8]: p with echo_shift = gap p(gap) up to 0.01 mm, lowest power first.
 
-    It is the interpolation at Chebyshev's nodes of [0, 2.5] m, where the shift is smooth: a kernel
-    without table look-ups runs in vectors.
+    It interpolates at the Chebyshev nodes of [0, 2.5] m, where the shift is smooth. The compiler
+    can vectorise a polynomial, but not table look-ups.
     """
     degree = 7
     nodes = 0.5 * ECHO_GAP * (1.0 + np.cos(np.pi * (np.arange(degree + 1) + 0.5) / (degree + 1)))
@@ -55,14 +58,14 @@ def echo_polynomial(severity: float) -> np.ndarray:
 
 @njit(cache=True)
 def larger(row, other):
-    """In place: row = max(row, other), float32; the two do not overlap."""
+    """Set row = max(row, other) in place, float32; the two must not overlap."""
     for x in range(row.size):
         row[x] = row[x] if row[x] > other[x] else other[x]
 
 
 @njit(cache=True)
 def farthest_along(row, spare, reach):
-    """In place: maximum over the 2 reach + 1 entries from each on (van Herk's doubling)."""
+    """Replace each entry by the maximum of the 2 reach + 1 entries from it on, by doubling."""
     have, want, size = 1, 2 * reach + 1, row.size
     while have < want:
         step = min(have, want - have)
@@ -116,18 +119,18 @@ def _echo(views, reach, polynomial, z_max, out):
 
 
 def multipath(views: np.ndarray, severity: float, key: Key, sensor: DepthSensor) -> np.ndarray:
-    """Over-estimate depth beside farther surfaces, as a second light path does."""
+    """Over-estimate depth beside farther surfaces, like a second light path."""
     reach = max(1, round(ECHO_REACH * min(views.shape[1:])))
     out = np.empty_like(views)
     _echo(views, reach, echo_polynomial(severity), np.float32(sensor.z_max), out)
     return out
 
 
-NOISE_BASE, NOISE_SQUARE = 0.02, 0.02  # D435: RMS grows with z^2; s = 0.1 is about a Kinect
+NOISE_BASE, NOISE_SQUARE = 0.02, 0.02  # D435: RMS grows with z^2; s = 0.1 is similar to a Kinect
 HOLE_CORRELATION = 0.025  # of min(H, W)
 HOLE_SHARE = 0.5  # of the pixels at s = 1 (Zhang & Funkhouser 2018: often over half indoors)
-FAR_SHARE = 0.25  # of the holes read z_max ("incorrectly large")
-HOLE_FRAMES = 5  # frames between two placements of the holes
+FAR_SHARE = 0.25  # of the holes that read z_max ("incorrectly large")
+HOLE_FRAMES = 5  # frames after which the holes move
 STEP = 0.5  # metres at s = 1
 STEP_LEAST = 1e-30  # metres: depth over a smaller step would overflow float32
 
@@ -136,7 +139,7 @@ _U = np.uint64
 
 @njit(cache=True)
 def _add_noise(views, streams, base, square, z_max, table, out):
-    """Two loops over 256 pixels at a time: table look-ups, then arithmetic in vectors."""
+    """Add noise to 256 pixels at a time: first table look-ups, then vector arithmetic."""
     draws = np.empty(256, np.float32)
     for v in range(views.shape[0]):
         stream = streams[v]
@@ -153,7 +156,7 @@ def _add_noise(views, streams, base, square, z_max, table, out):
 
 
 def gaussian_noise(views: np.ndarray, severity: float, key: Key, sensor: DepthSensor) -> np.ndarray:
-    """z + s (0.02 + 0.02 z^2) n, n ~ N(0, 1) for each pixel of each frame; z at most z_max."""
+    """Add s (0.02 + 0.02 z^2) N(0, 1) to each pixel of each frame; z is at most z_max."""
     base, square = np.float32(severity * NOISE_BASE), np.float32(severity * NOISE_SQUARE)
     out = np.empty_like(views)
     streams, z_max = view_streams(key, "gaussian_noise", len(views)), np.float32(sensor.z_max)
@@ -163,8 +166,10 @@ def gaussian_noise(views: np.ndarray, severity: float, key: Key, sensor: DepthSe
 
 @cached
 def hole_map(value: int, severity: float, height: int, width: int) -> np.ndarray:
-    """uint8 [H, 2 W]: 0 kept, 1 no reading, 2 reads z_max; the map twice, side by side, so that a
-    row of it from any column on is one piece."""
+    """Return uint8 [H, 2 W]: 0 unchanged, 1 no reading, 2 reads z_max.
+
+    It holds the map twice, side by side, so that a shifted row is one contiguous slice.
+    """
     smooth, cells = field(value, height, width, HOLE_CORRELATION)
     holes = smooth >= top_share(cells, HOLE_SHARE * severity)
     far = smooth >= top_share(cells, HOLE_SHARE * FAR_SHARE * severity)
@@ -181,8 +186,8 @@ def _drop_row(source, holes, missing, z_max, target):
     for x in range(source.size):
         z, hole = source[x], holes[x]
         read = missing if hole == 1 else z_max
-        kept = read if hole > 0 else min(max(z, NEAREST), z_max)
-        target[x] = kept if is_valid(z) else z
+        changed = read if hole > 0 else min(max(z, NEAREST), z_max)
+        target[x] = changed if is_valid(z) else z
 
 
 @njit(cache=True)
@@ -197,7 +202,7 @@ def _drop(views, holes, streams, missing, z_max, out):
 
 
 def missing_data(views: np.ndarray, severity: float, key: Key, sensor: DepthSensor) -> np.ndarray:
-    """Lose the top 0.5 s of a random field; a quarter of it reads z_max. Moves every 5 frames."""
+    """Remove the top 0.5 s of a random field; a quarter reads z_max. It moves every 5 frames."""
     count, height, width = views.shape
     holes = hole_map(digest(key, "missing_data"), severity, height, width)
     placement = int(key.frame) // HOLE_FRAMES

@@ -1,12 +1,12 @@
-"""Low light with sensor noise: the ELD model (Wei et al., "Physics-based noise modeling for extreme
-low-light photography", IEEE TPAMI 2021), our own code.
+"""Low light with sensor noise: an implementation of the ELD model.
 
-D = K Poisson(I) + TukeyLambda + row noise, rounded by the ADC. Simplifications:
-sRGB is treated as a 2.2 power, noise is drawn per channel without a Bayer pattern, and a row's
-draw is common to its three channels. Clipping at 0 brightens deep shadows as real cameras do.
+Source: Wei et al., "Physics-based noise modeling for extreme low-light photography", IEEE TPAMI
+2021. D = K Poisson(I) + TukeyLambda + row noise, rounded by the ADC. Simplifications: sRGB is
+treated as a 2.2 power, noise is drawn per channel without a Bayer pattern, and the three channels
+of a row share its row noise. Clipping at 0 brightens deep shadows, as in real cameras.
 
-Sampling is two table look-ups a channel: a (signal level x quantile) table of photon counts and a
-quantile table of read noise, indexed by the bits of one hash a pixel.
+Sampling needs two table look-ups per channel: a (signal level x quantile) table of photon counts
+and a quantile table of read noise, indexed by the bits of one hash per pixel.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ _U = np.uint64
 
 @dataclass(frozen=True)
 class Camera:
-    """A calibration of the paper: gain range, and (a, b) of ln sigma = a ln K + b."""
+    """A camera calibrated in the paper: gain range, and (a, b) of ln sigma = a ln K + b."""
 
     name: str
     gain: tuple[float, float]
@@ -49,7 +49,7 @@ CANON_5D4 = Camera("Canon 5D4", (0.218, 13.96), (0.6559, 1.0927), (0.4713, -0.80
 
 @dataclass(frozen=True)
 class Noise:
-    """The parameters of one severity: exposure ratio, gain K, Tukey lambda, two widths."""
+    """Noise parameters at one severity: exposure ratio, gain K, Tukey lambda, two sigmas."""
 
     ratio: float
     gain: float
@@ -59,7 +59,7 @@ class Noise:
 
 
 def noise_at(severity: float, camera: Camera = SONY_A7S2) -> Noise:
-    """The noise parameters at ``severity``; sigmas in sensor units."""
+    """Return the noise parameters at ``severity``; sigmas are in sensor units."""
     low, high = camera.gain
     gain = low * (high / low) ** severity
     read, row = (math.exp(a * math.log(gain) + b) for a, b in (camera.read, camera.row))
@@ -67,7 +67,10 @@ def noise_at(severity: float, camera: Camera = SONY_A7S2) -> Noise:
 
 
 def tukey_lambda(u: np.ndarray, shape: float) -> np.ndarray:
-    """Quantiles (u^l - (1 - u)^l) / l of the Tukey lambda distribution; logistic at l = 0."""
+    """Return quantiles (u^l - (1 - u)^l) / l of the Tukey lambda distribution.
+
+    At l = 0 it is the logistic distribution.
+    """
     if abs(shape) < 1e-9:
         return np.log(u / (1.0 - u))
     return (u**shape - (1.0 - u) ** shape) / shape
@@ -75,7 +78,7 @@ def tukey_lambda(u: np.ndarray, shape: float) -> np.ndarray:
 
 @njit(cache=True)
 def _photon_table(means, points, deviates, out):
-    """Poisson quantiles [means, points]: the exact CDF up to 64, Cornish-Fisher above."""
+    """Compute Poisson quantiles [means, points]: exact up to mean 64, else Cornish-Fisher."""
     for level in range(means.size):
         mean = means[level]
         if mean > 64.0:
@@ -97,10 +100,10 @@ def _photon_table(means, points, deviates, out):
 
 @dataclass(frozen=True)
 class Tables:
-    """Look-up tables of one severity. int32 ones are sensor units in 1/256.
+    """Look-up tables of one severity. Tables of int32 hold sensor units in 1/256.
 
-    photons int32 [LEVELS * 256], read int32 [4096], row int32 [4096]; decode uint8 [D] gives the
-    grey level of a sum of the three plus ``offset``, in whole sensor units.
+    photons int32 [LEVELS * 256], read int32 [4096], row int32 [4096]. decode uint8 [D] maps the sum
+    of the three plus ``offset``, in whole sensor units, to a grey level.
     """
 
     photons: np.ndarray
@@ -112,7 +115,7 @@ class Tables:
 
 @lru_cache(maxsize=16)
 def tables(severity: float, camera: Camera = SONY_A7S2) -> Tables:
-    """The look-up tables of one severity, about 3 ms to build."""
+    """Return the look-up tables of one severity; building them takes about 3 ms."""
     noise = noise_at(severity, camera)
     signal = (np.arange(LEVELS) / (LEVELS - 1)) ** GAMMA * WHITE / noise.ratio
     points = (np.arange(1 << PHOTON_BITS) + 0.5) / (1 << PHOTON_BITS)
@@ -130,7 +133,7 @@ def tables(severity: float, camera: Camera = SONY_A7S2) -> Tables:
 
 @njit(cache=True)
 def _levels(source, opacity, part, out):
-    """Darken one row as ``low_light`` does, but to quarters of a grey level."""
+    """Darken one row like ``low_light``, but in quarters of a grey level."""
     for i in range(part.size):
         gap = np.int16(np.int16(-np.int16(source[i])) << 7)
         part[i] = (np.int32(gap) * np.int32(opacity[i])) >> np.int32(16)
@@ -140,7 +143,7 @@ def _levels(source, opacity, part, out):
 
 @njit(cache=True)
 def _sample(views, opacity, streams, row_streams, photons, read, row, decode, offset, out):
-    """uint8 [V, H, W, 3]. The indices are unsigned, or numba would test each for a negative one."""
+    """Sample uint8 [V, H, W, 3]; unsigned indices save numba's test for negative ones."""
     count, height, width, _ = views.shape
     size = 3 * width
     flat, into = views.reshape(count, height, size), out.reshape(count, height, size)
@@ -165,8 +168,11 @@ def _sample(views, opacity, streams, row_streams, photons, read, row, decode, of
 def low_light_noise(
     views: np.ndarray, severity: float, key: Key, heading=None, camera: Camera = SONY_A7S2
 ) -> np.ndarray:
-    """``low_light`` seen by a noisy sensor: same mask, and up to s = 0.6 the same mean within 1 %
-    (beyond, noise that is clipped at 0 brightens: 1 is no darker than 0.8). uint8 [V, H, W, 3]."""
+    """Apply ``low_light`` and add sensor noise; uint8 [V, H, W, 3].
+
+    The mask is the same. Up to s = 0.6 the mean is the same within 1 %. Above that, clipping noise
+    at 0 brightens the frame: s = 1 is not darker than s = 0.8.
+    """
     count, height, width, _ = views.shape
     t = tables(severity, camera)
     mask = low_light_mask(digest(key, "low_light"), severity, height, width)

@@ -1,8 +1,9 @@
-"""Instruction corruptions: what can happen to the words before an episode begins.
+"""Instruction corruptions, applied before an episode begins.
 
-Five families after NavTrust: style (four manners), capitals, masks, misleading prefixes in front of
-the instruction (black box) and in the agent's system prompt (white box). Each is a pure function of
-(text, severity, key). Severity 0 changes nothing; what one severity changes, a higher one does too.
+There are five families, after NavTrust: style (four of them), capitals, masks, and misleading
+sentences in front of the instruction (black box) or in the agent's system prompt (white box). Each
+is a pure function of (text, severity, key). Severity 0 changes nothing, and a higher severity
+changes everything that a lower one does.
 """
 
 from __future__ import annotations
@@ -20,8 +21,10 @@ from mitigate.corruptions.language.tagger import Token, named
 from mitigate.corruptions.language.text import check_text
 from mitigate.corruptions.suite import INSTRUCTION, check_name, check_severity
 
-SPOKEN = words.bag("NOUN PROPN VERB ADP")  # what capitals stress
-SLIGHT = words.bag("DET AUX CCONJ SCONJ PRON ADJ ADV PART ADP INTJ")  # what masks may hide
+SPOKEN = words.bag("NOUN PROPN VERB ADP")  # tags of the words that capitals change
+SLIGHT = words.bag(
+    "DET AUX CCONJ SCONJ PRON ADJ ADV PART ADP INTJ"
+)  # tags of the words that masks may hide
 _SLOT = re.compile(
     r"\{\{?\s*(?:instruction|task|goal|command|query|input)\s*\}?\}|<task>|<instruction>",
     re.IGNORECASE,
@@ -30,7 +33,7 @@ _SLOT = re.compile(
 
 @dataclass(frozen=True)
 class NotApplicable:
-    """What a corruption that an agent cannot suffer gives instead of a result."""
+    """The result of a corruption that does not apply to an agent."""
 
     name: str
     reason: str
@@ -51,18 +54,19 @@ def corrupt_instruction(
 
     Args:
         text: the instruction, in English.
-        name: one of INSTRUCTION but "white_box", which corrupts a prompt: ``inject_system_prompt``.
+        name: one of INSTRUCTION, except "white_box", which corrupts a system prompt
+            (``inject_system_prompt``).
         severity: s in [0, 1]: the probability of a rewrite (styles), the share of eligible words
             (capitals, masks), the share of the prefix bank (black box); 0 returns ``text``.
-        key: names the random draw; its frame is not used. A whole number is a seed, a text an
+        key: determines the random draws; its frame is not used. An integer is a seed, a string an
             episode.
-        split: of the prefix bank: "train", "validation" or "test".
-        mask_token: what stands for a hidden word.
-        rewrite: (text, manner) -> text, a language model in place of the rules for styles.
-        tagger: what finds the eligible words, "own" or "spacy".
+        split: split of the prefix bank: "train", "validation" or "test".
+        mask_token: replaces a hidden word.
+        rewrite: (text, style) -> text, a language model that replaces the rules for styles.
+        tagger: finds the eligible words: "own" or "spacy".
 
-    Raises ValueError for a wrong name, severity, key, split, mask token or tagger, and for an empty
-    text.
+    Raises:
+        ValueError: An argument is invalid, or the text is empty.
     """
     check_name(name, INSTRUCTION)
     severity = check_severity(severity)
@@ -92,7 +96,7 @@ def corrupt_instruction(
 
 
 def check_options(split: str, mask_token: str, tagger: str) -> None:
-    """Raise ValueError for a split, a mask token or a tagger that is none."""
+    """Raise ValueError for an invalid split, mask token or tagger."""
     prefixes(split)
     if not isinstance(mask_token, str) or not mask_token.strip():
         raise ValueError(
@@ -103,7 +107,7 @@ def check_options(split: str, mask_token: str, tagger: str) -> None:
 
 
 def is_rewritten(manner: str, severity: float, key: Key) -> bool:
-    """Return whether the episode of ``key`` is among the share ``severity`` said in a manner."""
+    """Return whether the instruction of this episode is rewritten; the probability is s."""
     return uniform(digest(key, manner)) < severity
 
 
@@ -112,9 +116,11 @@ def inject_system_prompt(
 ) -> str | NotApplicable:
     """Return ``prompt`` with misleading sentences in front of its task slot, or at its end.
 
-    The slot is the first ``{instruction}``, ``{task}`` or the like. Severity is as for "black_box".
-    An agent without a prompt (None or empty) gives NotApplicable, never a clean result.
-    Raises ValueError for a wrong severity, key or split.
+    The slot is the first ``{instruction}``, ``{task}`` or similar. Severity is the same as for
+    "black_box". Without a prompt (None or empty) the result is NotApplicable.
+
+    Raises:
+        ValueError: The severity, key or split is invalid.
     """
     severity, key = check_severity(severity), as_key(key)
     if not prompt:
@@ -129,7 +135,7 @@ def inject_system_prompt(
 
 
 def stacked(severity: float, key: Key, split: str) -> list[str]:
-    """Return the sentences in front: of each kind one, drawn by key; the share ``severity``."""
+    """Draw one misleading sentence per kind; return the share ``severity`` of them."""
     bank, stream = prefixes(split), digest(key, "prefixes")
     drawn = [
         sentences[int(uniform(stream, index) * len(sentences))]
@@ -141,11 +147,11 @@ def stacked(severity: float, key: Key, split: str) -> list[str]:
 
 
 def _eligible(text: str, name: str, tagger: str) -> list[Token]:
-    """Return the tokens that capitals or masks may change."""
-    found = [token for token in named(tagger)(text) if token.is_word]
+    """Return the tokens that capitals (or masks) may change."""
+    candidates = [token for token in named(tagger)(text) if token.is_word]
     if name == "capitalize":
-        return [token for token in found if token.tag in SPOKEN]
-    return [t for t in found if t.tag in SLIGHT and not words.is_kept(t.lower)]
+        return [token for token in candidates if token.tag in SPOKEN]
+    return [t for t in candidates if t.tag in SLIGHT and not words.is_kept(t.lower)]
 
 
 def _replaced(

@@ -1,9 +1,9 @@
-"""Masks of the RGB corruptions: where a frame is darkened, dirty, flared or hidden, and how much.
+"""Opacity masks of the RGB corruptions: darkness, dirt, glare and a disk.
 
-Darkening, dirt and glare are one operation, ``out = x + (colour - x) alpha``, with an opacity mask
-of 16 bits. Masks are cached by the 64-bit digest of the episode scope that they are drawn from, so
-a frame in the course of an episode pays for the look-up alone. Formulas and sources:
-docs/corruptions.md; constants without a source were chosen by this project.
+Darkness, dirt and glare use one operation, ``out = x + (colour - x) alpha``, with a 16-bit opacity
+mask. Masks are cached by the 64-bit digest of their episode, so later frames of an episode only
+look them up. Formulas and sources: docs/corruptions.md; constants without a source were chosen by
+this project.
 """
 
 from __future__ import annotations
@@ -25,14 +25,14 @@ SPATTER_COLOURS = ((63, 42, 20), (175, 238, 238))  # mud, water (ImageNet-C)
 FLARE_CORE, FLARE_CORE_WIDTH = 0.85, 0.18  # width over the image diagonal
 FLARE_HALO, FLARE_HALO_WIDTH = 0.30, 0.35
 FLARE_TINT = (1.0, 0.96, 0.88)
-GLOW_REACH, GLOW_CELLS = 1.5, 16384  # of the radial table: less than 0.04 grey levels a cell
+GLOW_REACH, GLOW_CELLS = 1.5, 16384  # of the radial table: less than 0.04 grey levels per cell
 DISK_RADIUS = 0.5  # of min(H, W)
 NEUTRAL = (1.0, 1.0, 1.0)
 
 
 @njit(cache=True)
 def _expand(share, weight, out):
-    """out int16 [H, 3 W] = min(share [H, W] times weight of the channel, 1) in 1/32768."""
+    """Set out int16 [H, 3 W] = min(share [H, W] times channel weight, 1) in 1/32768."""
     for y in range(share.shape[0]):
         row, target = share[y], out[y]
         for c in range(3):
@@ -45,7 +45,7 @@ def _expand(share, weight, out):
 def opacity_mask(
     share: np.ndarray, strength: float, tint: tuple[float, float, float]
 ) -> np.ndarray:
-    """Opacity mask int16 [H, 3 W] of the float32 [H, W] shares >= 0, times strength and tint."""
+    """Return the opacity mask int16 [H, 3 W] = share [H, W] (>= 0) times strength and tint."""
     out = np.empty((share.shape[0], 3 * share.shape[1]), np.int16)
     _expand(share, strength * np.array(tint), out)
     return out
@@ -53,15 +53,15 @@ def opacity_mask(
 
 @lru_cache(maxsize=64)
 def colour_row(colour: tuple[int, int, int], width: int) -> np.ndarray:
-    """int16 [3 W]: one colour all along a row, the form that ``cover`` takes."""
+    """Return int16 [3 W]: a row of one colour, as ``cover`` needs it."""
     return np.tile(np.array(colour, np.int16), width)
 
 
 @njit(cache=True)
 def cover(views, alpha, colour, out):
-    """out = x + (colour - x) alpha for uint8 [V, H, W, 3]; int16 alpha [H, 3 W], colour [3 W].
+    """Set out = x + (colour - x) alpha for uint8 [V, H, W, 3]; int16 alpha [H, 3 W], colour [3 W].
 
-    Two loops over a row of 16-bit numbers, which is what compiles to full-width vector code.
+    Two loops over a row of 16-bit numbers compile to full-width vector code.
     """
     count, height, _, _ = views.shape
     flat, into = views.reshape(count, height, -1), out.reshape(count, height, -1)
@@ -78,7 +78,7 @@ def cover(views, alpha, colour, out):
 
 @cached
 def light_ramp(value: int, height: int, width: int) -> np.ndarray:
-    """float32 [H, W] in [0, 1]: a linear ramp along an angle, or the distance to one light."""
+    """Return float32 [H, W] in [0, 1]: a linear ramp, or the distance to a light."""
     y, x = (np.arange(height) + 0.5) / height, (np.arange(width) + 0.5) / width
     if uniform(value, 0) < 0.5:
         angle = 2.0 * math.pi * uniform(value, 1)
@@ -92,20 +92,20 @@ def light_ramp(value: int, height: int, width: int) -> np.ndarray:
 
 
 def light_loss(value: int, severity: float, height: int, width: int) -> np.ndarray:
-    """float32 [H, W]: the share of light taken away, s (0.60 + 0.37 t)."""
+    """Return float32 [H, W]: the lost share of light, s (0.60 + 0.37 t)."""
     ramp = light_ramp(value, height, width)
     return ramp * np.float32(severity * DARK_RAMP) + np.float32(severity * DARK_BASE)
 
 
 @cached
 def low_light_mask(value: int, severity: float, height: int, width: int) -> np.ndarray:
-    """int16 [H, 3 W]: the opacity of the dark, in 1/32768."""
+    """Return int16 [H, 3 W]: the opacity of the darkness, in 1/32768."""
     return opacity_mask(light_loss(value, severity, height, width), 1.0, NEUTRAL)
 
 
 @cached
 def spatter_mask(value: int, severity: float, height: int, width: int) -> np.ndarray:
-    """int16 [H, 3 W]: the opacity of the dirt, in 1/32768."""
+    """Return int16 [H, 3 W]: the opacity of the dirt, in 1/32768."""
     smooth, cells = field(value, height, width, SPATTER_CORRELATION)
     level = top_share(cells, SPATTER_COVER * severity)
     share = np.clip((smooth - np.float32(level)) * np.float32(1.0 / SPATTER_EDGE), 0.0, 1.0)
@@ -114,7 +114,7 @@ def spatter_mask(value: int, severity: float, height: int, width: int) -> np.nda
 
 @lru_cache(maxsize=64)
 def spatter_row(value: int, width: int) -> np.ndarray:
-    """int16 [3 W]: mud or water, as ``colour_row``."""
+    """Return int16 [3 W]: a ``colour_row`` of mud or water."""
     return colour_row(SPATTER_COLOURS[uniform(value) < 0.5], width)
 
 
@@ -122,12 +122,11 @@ def spatter_row(value: int, width: int) -> np.ndarray:
 def flare_centres(
     value: int, views: int, height: int, width: int, heading: float | None
 ) -> tuple[tuple[float, float] | None, ...]:
-    """Where the light falls in each view: (x, y) in pixels, or None where it is not in the view.
+    """Return the position of the light in each view: (x, y) in pixels, None if not visible.
 
     The light has a fixed direction in the world: column U(0.1, 0.9) W, row U(0, 0.5) H of a camera
-    at a random world yaw. ``heading`` (rad, counter-clockwise) turns with the agent and view k
-    looks at heading - 30 k degrees, level, even from the 13th view on. Without a heading that
-    camera is view 0.
+    at a random world yaw. View k looks level at ``heading`` - 30 k degrees (``heading`` in rad,
+    counter-clockwise), for any number of views. Without a heading, that camera is view 0.
     """
     column, row = 0.1 + 0.8 * uniform(value, 0), 0.5 * uniform(value, 1)
     focal = 0.5 / math.tan(math.radians(observation.HFOV_DEGREES) / 2.0)  # over the width
@@ -140,15 +139,15 @@ def flare_centres(
         turn = yaw + math.radians(observation.VIEW_STEP_DEGREES) * view
         ahead, left = math.cos(turn), math.sin(turn)
         x = 0.5 - focal * left / ahead if ahead > 1e-6 else -1.0
-        seen = 0.0 <= x <= 1.0
-        y = 0.5 * height - width * focal * tangent / ahead if seen else 0.0
-        centres.append((x * width, y) if seen else None)
+        visible = 0.0 <= x <= 1.0
+        y = 0.5 * height - width * focal * tangent / ahead if visible else 0.0
+        centres.append((x * width, y) if visible else None)
     return tuple(centres)
 
 
 @lru_cache(maxsize=1)
 def _glow_table() -> np.ndarray:
-    """float32 [GLOW_CELLS + 1]: the light at r = 0 .. 1.5 image diagonals, before severity."""
+    """Return float32 [GLOW_CELLS + 1]: the light at r = 0 .. 1.5 diagonals, at severity 1."""
     r = np.arange(GLOW_CELLS + 1) * (GLOW_REACH / GLOW_CELLS)
     glow = FLARE_CORE * np.exp(-0.5 * (r / FLARE_CORE_WIDTH) ** 2)
     return (glow + FLARE_HALO * np.exp(-r / FLARE_HALO_WIDTH)).astype(np.float32)
@@ -156,7 +155,7 @@ def _glow_table() -> np.ndarray:
 
 @njit(cache=True)
 def _look_up(down, right, table, out):
-    """out[y, x] = table at the nearest cell to sqrt(down[y] + right[x]), all float32."""
+    """Set out[y, x] = table at the nearest cell to sqrt(down[y] + right[x]), all float32."""
     for y in range(down.size):
         for x in range(right.size):
             out[y, x] = table[np.int32(np.sqrt(down[y] + right[x]) + np.float32(0.5))]
@@ -164,7 +163,7 @@ def _look_up(down, right, table, out):
 
 @cached
 def flare_mask(x: float, y: float, severity: float, height: int, width: int) -> np.ndarray:
-    """int16 [H, 3 W]: the opacity of the glow around (x, y) pixels, in 1/32768."""
+    """Return int16 [H, 3 W]: the opacity of the glow around (x, y) pixels, in 1/32768."""
     cells = GLOW_CELLS / GLOW_REACH / math.hypot(height, width)
     down = ((np.arange(height) + 0.5 - y) * cells) ** 2
     right = ((np.arange(width) + 0.5 - x) * cells) ** 2
@@ -175,7 +174,7 @@ def flare_mask(x: float, y: float, severity: float, height: int, width: int) -> 
 
 @lru_cache(maxsize=32)
 def disk_spans(severity: float, height: int, width: int) -> np.ndarray:
-    """int64 [H, 2]: the first and end column of the disk in each row."""
+    """Return int64 [H, 2]: the first and end column of the disk in each row."""
     radius = DISK_RADIUS * severity * min(height, width)
     reach = radius**2 - (np.arange(height) + 0.5 - 0.5 * height) ** 2
     half = np.sqrt(np.maximum(reach, 0.0))
@@ -186,7 +185,7 @@ def disk_spans(severity: float, height: int, width: int) -> np.ndarray:
 
 @njit(cache=True)
 def blacken(frames, spans):
-    """In place: uint8 [V, H, W, 3] is black inside the spans (int64 [H, 2])."""
+    """Make uint8 [V, H, W, 3] black inside the spans (int64 [H, 2]), in place."""
     count, height, _, _ = frames.shape
     flat = frames.reshape(count, height, -1)
     for v in range(count):

@@ -17,21 +17,22 @@ from mitigate.corruptions.keying import Key, digest, scramble, uniform
 from mitigate.corruptions.record import Record
 
 BLUR_LENGTH = 0.10  # of W at s = 1; ImageNet-C kernels are 3-14 % of W
-LONG_BLUR = 12.0  # px: from here every second column is enough
+LONG_BLUR = 12.0  # px: from this length on, every second column is enough
 BLUR_ANGLE = 10.0  # degrees either side of horizontal: yaw turns dominate
 DEFOCUS_SIGMA = 5.0 / 224.0  # of min(H, W); ImageNet-C disks have radii 3-10 px at 224
 DEFOCUS_SPREAD = 0.2
-DEFOCUS_LEAST = 0.15  # px: a narrower Gaussian changes nothing
+DEFOCUS_LEAST = 0.15  # px: a narrower Gaussian has no effect
 LEAST_TAP_SIGMA = 1.15  # of the distance of two taps: keeps the mean error under 0.4 grey levels
 BLACK, WHITE = (0, 0, 0), (255, 255, 255)
 
 
 @lru_cache(maxsize=64)
 def line_taps(length: float, angle: float, step: int = 1) -> tuple:
-    """Taps (dy, dx, weights) of a line of ``length`` px at ``angle`` rad; a multiple of four.
+    """Return the taps (dy, dx, weights) of a line of ``length`` px at ``angle`` rad.
 
-    Every ``step``-th column of the line weighs what the segment covers of it, shared between the
-    two nearest rows, in small integers: full columns weigh step LINE_UNITS / length, at least 2.
+    Their number is a multiple of four. The weight of every ``step``-th column is the part of it
+    that the segment covers, shared between the two nearest rows. Weights are small integers: a full
+    column has step LINE_UNITS / length, at least 2.
     """
     half = 0.5 * length * math.cos(angle)
     units = max(2.0, math.floor(step * blur.LINE_UNITS / length)) / step
@@ -42,7 +43,7 @@ def line_taps(length: float, angle: float, step: int = 1) -> tuple:
         y = abs(x) * math.tan(abs(angle))
         low = math.floor(y)
         upper = round(weight * (y - low))
-        sign = 1 if x * angle >= 0 else -1  # a line is the same seen from either end
+        sign = 1 if x * angle >= 0 else -1  # a line is symmetric
         for row, share in ((low, weight - upper), (low + 1, upper)):
             if share > 0:
                 taps[sign * row, x] = share
@@ -53,7 +54,7 @@ def line_taps(length: float, angle: float, step: int = 1) -> tuple:
 
 
 def motion_blur(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
-    """Blend with a line blur of length 0.10 s W, close to horizontal; under 1 px the identity."""
+    """Blend with a nearly horizontal line blur of length 0.10 s W; below 1 px, no change."""
     length = BLUR_LENGTH * severity * views.shape[2]
     if length < 1.0:
         return views.copy()
@@ -79,14 +80,14 @@ def low_light(views: np.ndarray, severity: float, key: Key, heading=None) -> np.
 
 
 def spatter(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
-    """Cover the top 0.45 s of a random field with mud or water; the lens is dirty all episode."""
+    """Cover the top 0.45 s of a random field with mud or water, fixed for the episode."""
     height, width = views.shape[1:3]
     mask = masks.spatter_mask(digest(key, "spatter"), severity, height, width)
     return _covered(views, mask, masks.spatter_row(digest(key, "spatter_colour"), width))
 
 
 def flare(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
-    """Screen blend with a radial glow from a fixed direction in the world, where a view sees it."""
+    """Screen-blend the views that see a light, at a fixed world direction, with a glow."""
     count, height, width, _ = views.shape
     out, white = np.empty_like(views), masks.colour_row(WHITE, width)
     centres = masks.flare_centres(digest(key, "flare"), count, height, width, heading)
@@ -101,10 +102,10 @@ def flare(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndar
 
 @lru_cache(maxsize=64)
 def gaussian_weights(sigma: float) -> tuple[np.ndarray, int]:
-    """The arguments ``weights, levels`` of ``blur.gaussian`` for ``sigma`` px, cut at 3 sigma.
+    """Return ``weights, levels`` of ``blur.gaussian`` for ``sigma`` px, cut at 3 sigma.
 
-    Smoothing by (1 2 1)/4 with a step of h pixels has variance h^2 / 2; the taps add the rest. They
-    keep a sigma of at least LEAST_TAP_SIGMA of their distance.
+    Smoothing by (1 2 1)/4 with a step of h pixels has variance h^2 / 2. The taps add the rest of
+    the variance; their sigma is at least LEAST_TAP_SIGMA times their distance.
     """
     levels, variance = 0, sigma**2
     while variance - 0.5 * 4**levels >= (LEAST_TAP_SIGMA * 2 ** (levels + 1)) ** 2:
@@ -119,7 +120,7 @@ def gaussian_weights(sigma: float) -> tuple[np.ndarray, int]:
 
 
 def defocus(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
-    """Gaussian blur, sigma = 5 s u min(H, W) / 224 with u ~ U(0.8, 1.2) for the episode."""
+    """Blur by a Gaussian, sigma = 5 s u min(H, W) / 224, u ~ U(0.8, 1.2) per episode."""
     spread = 1.0 + DEFOCUS_SPREAD * (2.0 * uniform(digest(key, "defocus")) - 1.0)
     sigma = DEFOCUS_SIGMA * severity * spread * min(views.shape[1:3])
     if sigma < DEFOCUS_LEAST:
@@ -131,14 +132,14 @@ def defocus(views: np.ndarray, severity: float, key: Key, heading=None) -> np.nd
 
 
 def foreign_object(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
-    """A black disk of radius 0.5 s min(H, W) at the centre."""
+    """Draw a black disk of radius 0.5 s min(H, W) at the centre."""
     out = views.copy()
     masks.blacken(out, masks.disk_spans(severity, *views.shape[1:3]))
     return out
 
 
 def black_out(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
-    """Each view of each frame is black with probability s."""
+    """Make each view of each frame black with probability s."""
     out, value = np.empty_like(views), digest(key, "black_out", frame=True)
     for view in range(len(views)):
         out[view] = 0 if uniform(scramble(value, view)) < severity else views[view]
