@@ -33,7 +33,7 @@ class FileVocabulary:
         self._unknown, self._pad = vocabulary["UNK_INDEX"], vocabulary["PAD_INDEX"]
 
     def encode(self, text: str, length: int | None) -> tuple[tuple[int, ...], bool]:
-        """Encode ``text``; words that the file lacks become unknown, such punctuation is dropped."""
+        """Encode ``text``; unknown words get the unknown id, unknown punctuation is dropped."""
         ids = [
             self._numbers.get(word, self._unknown)
             for word in _WORD.findall(text.lower())
