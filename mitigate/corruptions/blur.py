@@ -78,7 +78,7 @@ def line(views, dy, dx, weights, step, strength, out):
         used = four if full[k] else used + four
     units = np.sum(weights)
     blurred = _I32(round(strength * 65536.0 / units))
-    kept = _I32(65536 - blurred * units)
+    remainder = _I32(65536 - blurred * units)
     long = np.any(full)
     for v in range(count):
         for y in range(height + 2 * ry):
@@ -104,9 +104,9 @@ def line(views, dy, dx, weights, step, strength, out):
                 for i in range(part.size):
                     total[i] += sums[i]
                     part[i] = 0
-                _mix(total, blurred, source, kept, target)
+                _mix(total, blurred, source, remainder, target)
             else:
-                _mix(sums, blurred, source, kept, target)
+                _mix(sums, blurred, source, remainder, target)
 
 
 @njit(cache=True)

@@ -64,7 +64,7 @@ def card(folder: str | Path) -> dict[str, Any]:
 
 
 def _wrong(found: Any) -> str:
-    """Return the first problem of a card; empty if it is valid."""
+    """Return a message about the first problem of a card; empty if it is valid."""
     if not isinstance(found, dict) or found.get("format") != FORMAT:
         return f"it must be an object of format {FORMAT}"
     settings = found.get("settings")
@@ -81,7 +81,7 @@ def _wrong(found: Any) -> str:
 
 
 def problem(sizes: dict[str, Any]) -> str:
-    """Return the first size of a network that is out of range; empty if all are valid."""
+    """Return a message about the first size out of range; empty if all are valid."""
     for name, (least, most) in LIMITS.items():
         value = sizes[name]
         if type(value) is not int or not least <= value <= most:

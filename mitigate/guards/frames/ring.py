@@ -66,8 +66,12 @@ def compared(values: Tensor, valid: Tensor, depth: bool) -> tuple[Tensor, Tensor
         other = (value / weight.clamp(min=0.5) / (scale if depth else 1.0)).clamp(max=1)
         low = torch.where(weight > 0.5, torch.minimum(low, other), low)
         high = torch.where(weight > 0.5, torch.maximum(high, other), high)
-    seen = torch.isfinite(low)
-    return torch.where(seen, low, values), torch.where(seen, high, values), seen[:, :1].float()
+    has_reading = torch.isfinite(low)
+    return (
+        torch.where(has_reading, low, values),
+        torch.where(has_reading, high, values),
+        has_reading[:, :1].float(),
+    )
 
 
 def _turned(values: Tensor, weights: Tensor) -> Iterator[tuple[Tensor, Tensor, Tensor]]:

@@ -111,8 +111,8 @@ class SensorRestorer(nn.Module):
             The U-Net's maps; how far each pixel contradicts the other views [n, c, h, w], in
             margins; and the gate's logits [instants].
         """
-        shown, outside = self.seen(x, valid, views)
-        maps = self.net.encode(shown, views)
+        inputs, outside = self.seen(x, valid, views)
+        maps = self.net.encode(inputs, views)
         return maps, outside, self.gate(maps.stats, texture(x, valid), views)
 
     def seen(self, x: Tensor, valid: Tensor, views: int) -> tuple[Tensor, Tensor]:
@@ -125,10 +125,10 @@ class SensorRestorer(nn.Module):
         if not ring.is_ring(views, *x.shape[-2:]):
             zeros = torch.zeros_like(x)
             return torch.cat([*inputs, zeros, zeros, zeros[:, :1]], 1), zeros
-        low, high, seen = ring.compared(x, valid, self.sensor == DEPTH)
+        low, high, has_other = ring.compared(x, valid, self.sensor == DEPTH)
         distance = torch.maximum(low - x, x - high).clamp(min=0)
         outside = (distance / MARGIN[self.sensor] - 1).clamp(min=0)
-        return torch.cat([*inputs, (low - x) * 2, (high - x) * 2, seen], 1), outside
+        return torch.cat([*inputs, (low - x) * 2, (high - x) * 2, has_other], 1), outside
 
     def _corrections(self, maps: Encoded, outside: Tensor) -> Tensor:
         """Return log gain, bias and logit of "lost" per pixel, at the working size."""
