@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from PIL import Image
 
 from mitigate.corruptions import frames_command
-from mitigate.corruptions.frame_files import PNG_START, LeftOutError, corrupted, read
+from mitigate.corruptions.frame_files import PNG_START, LeftOutError, corrupt_file, read
 
 
 def chunk(name: bytes, data: bytes) -> bytes:
@@ -92,7 +92,7 @@ def test_a_frame_that_is_none_is_left_out_with_a_reason(tmp_path, name):
     path = tmp_path / name
     path.write_bytes(FRAMES[name])
     for take in (
-        lambda: corrupted(path, path.suffix, 0.001, lambda frame: frame),
+        lambda: corrupt_file(path, path.suffix, 0.001, lambda frame: frame),
         lambda: read(path, 0.001),
     ):
         with pytest.raises(LeftOutError) as error:

@@ -126,7 +126,7 @@ def test_sweep_continues_after_a_failed_run(tmp_path, fake):
     ("own", "options", "said"),
     [
         (["command=trian"], [], "Did you mean train"),
-        (["jobs must be >= 1"], [], "jobs must be >= 1"),
+        (["jobs=0"], [], "jobs must be >= 1"),
         ([], ["recipe=stacked,da_per_fram"], "Did you mean da_per_frame"),
         ([], ["sevrity=0.1"], "Did you mean severity"),
         ([], ["severity=high"], "must be a number"),

@@ -73,7 +73,7 @@ def test_a_corruption_in_place_of_a_schedule_meets_every_frame_and_a_pair_both_e
         assert (a["rgb"] != b["rgb"]).any() and (a["depth"] != b["depth"]).any()
     with pytest.raises(ValueError, match="draws 'quantization', which corrupts depth"):
         CorruptObservation(Room(FRAME), Corruption("spatter+quantization", 0.7))
-    with pytest.raises(ValueError, match=r"Corruption\('spatter', 0.6\), but it is 'flare'"):
+    with pytest.raises(ValueError, match=r"such as Corruption\('spatter', 0.6\), got 'flare'"):
         CorruptObservation(Room(FRAME), "flare")
 
 
