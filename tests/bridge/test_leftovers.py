@@ -109,7 +109,11 @@ def test_run_leaves_no_process_behind_when_a_signal_ends_it(sleeper, tmp_path, n
     out = tmp_path / "o"
     words = [sys.executable, "-m", "mitigate", "run", f"out={out}", "conditions=[clean]", "--"]
     process = subprocess.Popen(
-        [*words, *command], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
+        [*words, *command],
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+        # tests in the background inherit an ignored SIGINT
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
     )
     events = out / "conditions/clean/events.jsonl"
     until = time.monotonic() + 60
