@@ -11,6 +11,7 @@ from __future__ import annotations
 import hashlib
 import inspect
 import json
+import re
 import types
 from collections.abc import Mapping
 from contextlib import suppress
@@ -64,6 +65,9 @@ def fingerprint(
     return hash_of(contents(agent, version).parts, sensors, front)
 
 
+_SETTINGS_LINE = re.compile(r"settings[.( ]")
+
+
 def contents(agent: Any, version: str | None = None) -> Contents:
     """Return everything that determines the behaviour of ``agent``.
 
@@ -77,7 +81,8 @@ def contents(agent: Any, version: str | None = None) -> Contents:
     state = _changes(agent) if shipped else read_state(agent, attributes=not says_all(agent))
     optional = {
         "code": _codes(agent, state),
-        "state": sorted(state.lines),
+        # "settings" counts by what it returns, not as an attribute, which loading may have set
+        "state": sorted(line for line in state.lines if not _SETTINGS_LINE.match(line)),
         "version": version,
         "unreadable": sorted(state.unreadable.items()) if version is None else [],
     }

@@ -44,7 +44,7 @@ def test_a_condition_that_lost_its_worker_is_run_anew_and_a_finished_one_is_kept
     plan = Plan(config, tuple(command), "agent", out)
     spatter = make_cells(plan)[1]
     assert run_on_launcher(plan, [spatter]) == []
-    assert (tmp_path / "died").exists() and "starts again on another" in capsys.readouterr().out
+    assert (tmp_path / "died").exists() and "again on another" in capsys.readouterr().out
     found = [(row["episode_id"], row["rule"]) for row in spatter.rows()]
     assert {episode for episode, _ in found} == {"a", "b"} and len(found) == len({*found})
     assert run_on_launcher(plan, [spatter]) == []
