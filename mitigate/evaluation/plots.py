@@ -15,7 +15,7 @@ from mitigate.evaluation import bootstrap
 from mitigate.evaluation.grid import Grid
 from mitigate.evaluation.sections import Section, label
 
-COLOURS = mpl.colormaps["RdYlGn"]
+COLOURS = mpl.colormaps["viridis"]  # readable without colour vision; bright is good
 LINES = [mpl.colormaps["tab10"](index) for index in range(10)]
 WIDTH, MARKER = 1.2, 3.0  # points: width of a line and size of its markers, without overlap
 RIM = 1.8  # points by which a line is wider than a line on top of it
@@ -86,6 +86,11 @@ def severity_curves(grid: Grid, path: Path | str) -> Path:
     return _save(figure, path)
 
 
+def text_colour(value: float) -> str:
+    """Return the colour of text on a cell with ``value`` in [0, 1] in :data:`COLOURS`."""
+    return "white" if value < 0.6 else "black"  # NaN has no colour: black
+
+
 def _panel(axis: Axes, section: Section, block: str, names: tuple[str, ...]) -> None:
     rows = ["PRS-SR", "PRS-SPL", "Clean", *map(label, names)]
     shape = (len(rows), len(section.columns))
@@ -104,9 +109,8 @@ def _panel(axis: Axes, section: Section, block: str, names: tuple[str, ...]) -> 
                 texts[i, j] = f"{100 * rate:.0f} / {spl:.2f}" + "*" * section.partial(column, name)
     axis.imshow(colours, cmap=COLOURS, vmin=0, vmax=1, aspect="auto")
     for (i, j), text in np.ndenumerate(texts):
-        dark = abs(colours[i, j] - 0.5) > 0.35  # both ends of the colour map; False for NaN
         axis.text(
-            *(j, i, text), ha="center", va="center", fontsize=8, color="white" if dark else "black"
+            *(j, i, text), ha="center", va="center", fontsize=8, color=text_colour(colours[i, j])
         )
     axis.axhline(1.5, color="black", linewidth=1.5)
     axis.set_xticks(

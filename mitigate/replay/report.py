@@ -15,7 +15,7 @@ from mitigate.core.observation import DEPTH, RGB, VIEWS
 from mitigate.core.pictures import depth_picture, strip
 from mitigate.corruptions import Corruption
 from mitigate.evaluation.bootstrap import Estimate
-from mitigate.evaluation.plots import COLOURS, DPI, plain
+from mitigate.evaluation.plots import COLOURS, DPI, plain, text_colour
 from mitigate.evaluation.sections import label
 from mitigate.guards.guard import NO_GUARDS, Guards
 from mitigate.replay.walk import ACTIONS, MIN_BLOCKS, Answers, Changes
@@ -112,8 +112,7 @@ def heatmap(changes: AgentChanges, severity: float, path: Path) -> Path:
     for (i, j), value in np.ndenumerate(values):
         if np.isnan(value):
             continue
-        dark = abs(1 - value - 0.5) > 0.35  # both ends of the colour map
-        colour = "white" if dark else "black"
+        colour = text_colour(1 - value)
         axes.text(j, i, f"{100 * value:.0f}", ha="center", va="center", color=colour, fontsize=9)
     axes.set_xticks(range(len(agents)), [*map(plain, agents)], rotation=25, ha="right", fontsize=9)
     axes.set_yticks(range(len(names)), [label(name) for name in names], fontsize=9)
