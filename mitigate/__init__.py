@@ -8,8 +8,10 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from mitigate.agents.loading import load, load_hardened
+    from mitigate.agents.policies import as_policy, load_policy
     from mitigate.evaluation.benchmark import benchmark
     from mitigate.evaluation.leaderboard.entry import LeaderboardEntry
+    from mitigate.shipping.harden import harden
 
 # OpenMP reads this when torch is imported. By default a waiting thread spins. If another process
 # runs at the same time, such as a worker that makes the next batch, the spinning thread occupies
@@ -21,12 +23,23 @@ os.environ.setdefault("OMP_WAIT_POLICY", "PASSIVE")
 # Modules such as ``python -m mitigate.train``, which torchrun needs, are in ``commands/``.
 __path__.append(os.path.join(os.path.dirname(__file__), "commands"))
 
-__all__ = ["LeaderboardEntry", "benchmark", "load", "load_hardened"]
+__all__ = [
+    "LeaderboardEntry",
+    "as_policy",
+    "benchmark",
+    "harden",
+    "load",
+    "load_hardened",
+    "load_policy",
+]
 _MODULES = {
     "LeaderboardEntry": "mitigate.evaluation.leaderboard.entry",
+    "as_policy": "mitigate.agents.policies",
     "benchmark": "mitigate.evaluation.benchmark",
+    "harden": "mitigate.shipping.harden",
     "load": "mitigate.agents.loading",
     "load_hardened": "mitigate.agents.loading",
+    "load_policy": "mitigate.agents.policies",
 }
 
 

@@ -11,6 +11,7 @@ from typing import Any
 from mitigate.agents.agent import Agent, as_agent
 from mitigate.core.contracts import lacking
 from mitigate.core.errors import own_place, said
+from mitigate.core.spaces import ActionSpace
 from mitigate.corruptions import (
     Corruption,
     Key,
@@ -49,7 +50,7 @@ def run_episode(
         with instructed(agent, episode, corruption, seed, guards):
             try:
                 while not rollout.done:
-                    rollout.step(action_of(agent.act(rollout.observation), agent))
+                    rollout.step(action_of(agent.act(rollout.observation), agent, rollout.space))
             except ValueError as error:
                 raise rollout.failed(error) from error
         return rollout.measures()
@@ -73,8 +74,17 @@ def _no_exit(name: str) -> Iterator[None]:
         ) from error
 
 
-def action_of(answer: Any, agent: Any) -> int:
-    """Return the ``answer`` of ``agent`` as an action; raise ValueError unless it is an integer."""
+def action_of(answer: Any, agent: Any, space: ActionSpace | None = None) -> Any:
+    """Return the ``answer`` of ``agent`` as an action of ``space``; None: whole numbers.
+
+    Raises:
+        ValueError: It is not such an action.
+    """
+    if space is not None:
+        try:
+            return space.check(answer)
+        except ValueError as error:
+            raise ValueError(f"act() of {type(agent).__name__}: {said(error)}") from None
     try:
         return operator.index(answer)
     except TypeError:
@@ -120,7 +130,7 @@ def run_side_by_side(
                 for rollout, action in zip(rollouts, actions, strict=True):
                     with _no_exit(rollout.name):
                         try:
-                            rollout.step(action_of(action, agent))
+                            rollout.step(action_of(action, agent, rollout.space))
                         except ValueError as error:
                             raise rollout.failed(error) from error
         yield measured.pop(number)
@@ -140,6 +150,8 @@ class _Rollout:
         self.name = _name(episode, corruption)
         self.steps = 0
         self.corrupted = Corrupted(world, corruption, seed)
+        space = self.corrupted.action_space
+        self.space = space if isinstance(space, ActionSpace) else None
         self.guarded = guarded(self.corrupted, guards)
         self.observation = self.guarded.reset(episode)
 
@@ -147,7 +159,7 @@ class _Rollout:
     def done(self) -> bool:
         return self.corrupted.done
 
-    def step(self, action: int) -> None:
+    def step(self, action: Any) -> None:
         """Take a step. Raises ValueError after :data:`MOST_STEPS` steps."""
         if self.steps >= MOST_STEPS:
             raise ValueError(

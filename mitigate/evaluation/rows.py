@@ -37,6 +37,8 @@ IDENTITY: dict[str, Any] = {
     "suite": str,  # SUITE_VERSION of the corruptions
     "rule": str,  # what counts as success
 }
+RETURN = "return"  # sum of the rewards; the only score of rows whose rule is "return"
+SCORES = ("success", "spl", RETURN)
 REQUIRED = IDENTITY | {"success": (int, float), "spl": (int, float)}
 MEASURES = (
     *("success", "spl", "path_length", "geodesic_distance", "distance_to_goal", "ndtw"),
@@ -212,7 +214,7 @@ def unique(rows: Iterable[Row]) -> list[Row]:
     different: list[Row] = []
     for row in rows:
         before = by_identity.get(identity(row), row)
-        different += [row] if any(before[key] != row[key] for key in ("success", "spl")) else []
+        different += [row] if any(before.get(key) != row.get(key) for key in SCORES) else []
         by_identity[identity(row)] = row
     if different:
         first = different[0]
@@ -275,10 +277,11 @@ def _parse(line: str) -> Any:
 def _problem(row: Any) -> str:
     if not isinstance(row, dict):
         return f"is not a JSON object of finite numbers and at most {LONGEST_LINE} characters"
-    lacking = [key for key in REQUIRED if key not in row]
+    required = IDENTITY | {RETURN: (int, float)} if row.get("rule") == RETURN else REQUIRED
+    lacking = [key for key in required if key not in row]
     if lacking:
         return f"lacks {', '.join(lacking)}"
-    for key, kind in REQUIRED.items():
+    for key, kind in required.items():
         if not isinstance(row[key], kind):
             kinds = kind if isinstance(kind, tuple) else (kind,)
             expected = " or ".join(one.__name__ for one in kinds)
@@ -311,6 +314,8 @@ def allowed(key: str, value: Any) -> str:
         return "a whole number below 2^63"
     if key in MEASURES and value is not None and not _number(value, 0, GREATEST):
         return f"a number from 0 to {GREATEST:g}"
+    if key == RETURN and not _number(value, -GREATEST, GREATEST):
+        return f"a number from {-GREATEST:g} to {GREATEST:g}"
     return ""
 
 

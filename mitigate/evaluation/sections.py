@@ -26,7 +26,7 @@ from mitigate.evaluation.grid import (
     halves,
 )
 from mitigate.evaluation.metrics import FLOOR
-from mitigate.evaluation.rows import Row
+from mitigate.evaluation.rows import RETURN, Row
 
 REFERENCES = ("base", "before")  # columns with these names come first and are the reference
 
@@ -145,6 +145,11 @@ def sections(
         ValueError: No row belongs to the column ``against``.
     """
     rows = list(rows)
+    if any(row["rule"] == RETURN for row in rows):
+        raise ValueError(
+            "These rows hold the return of a task without a success, so that SR is undefined. Use "
+            "mitigate.evaluation.returns.returns(rows), as mitigate.benchmark does."
+        )
     names = sorted({row["name"] for row in rows})
     if against is not None and against not in names:
         raise ValueError(unknown("column", against, names))

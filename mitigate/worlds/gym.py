@@ -2,23 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
 
 from mitigate.core.observation import DEPTH, POSE, RGB, Observation
+from mitigate.core.spaces import from_gymnasium
 from mitigate.worlds.episodes import Episode
-from mitigate.worlds.seeded import SeededWorld, Success
-
-WHOLE = ""  # the name of an observation that is a single frame
+from mitigate.worlds.seeded import WHOLE, SeededWorld, Success
 
 
 class GymWorld(SeededWorld):
     """A gymnasium environment as a world.
 
     Args:
-        env: An environment with discrete actions. Its observation is an RGB frame (uint8 [H, W, 3]
+        env: An environment. Its observation is an RGB frame (uint8 [H, W, 3]
             or [V, H, W, 3]) or a ``Dict`` that contains one.
         entries: Names of the entries of a ``Dict``, by default "rgb", "depth" and "pose". Nested
             entries are written as "camera.rgb".
@@ -26,9 +25,12 @@ class GymWorld(SeededWorld):
         unit: See :class:`~mitigate.worlds.seeded.SeededWorld`.
         limit: See ``SeededWorld``.
         rule: See ``SeededWorld``.
+        score: See ``SeededWorld``.
+        extra: See ``SeededWorld``.
 
     Raises:
-        ValueError: The actions are not discrete, or as in ``SeededWorld``.
+        ValueError: The actions are of a kind that ``core/spaces.py`` lacks, or as in
+            ``SeededWorld``.
     """
 
     def __init__(
@@ -40,14 +42,10 @@ class GymWorld(SeededWorld):
         unit: float | None = None,
         limit: int | None = None,
         rule: str | None = None,
+        score: str = "success",
+        extra: Sequence[str] = (),
     ) -> None:
-        space = env.action_space
-        if _attribute(space, "n") is None or _attribute(space, "shape", ()) != ():
-            raise ValueError(
-                f"The action space must be discrete, got {env.action_space}. Wrap the environment "
-                "in a gymnasium.ActionWrapper with a Discrete action_space, whose action() "
-                "converts each number."
-            )
+        self.action_space = from_gymnasium(env.action_space)
         spaces = _by_name(env.observation_space)
         default = {n: n for n in (RGB, DEPTH, POSE) if n in spaces}
         if WHOLE in spaces:
@@ -57,7 +55,7 @@ class GymWorld(SeededWorld):
             if space.shape is not None:  # text and Tuple have none
                 high = float(np.max(_attribute(space, "high", np.inf)))
                 arrays[name] = (space.shape, str(space.dtype), high)
-        super().__init__(arrays, entries or default, success, unit, limit, rule)
+        super().__init__(arrays, entries or default, success, unit, limit, rule, score, extra)
         self.env = env
 
     def reset(self, episode: Episode) -> Observation:
@@ -67,7 +65,7 @@ class GymWorld(SeededWorld):
             parts = _by_name(observation)
         return self._observation(parts)
 
-    def step(self, action: int) -> Observation:
+    def step(self, action: Any) -> Observation:
         """Take an action.
 
         Raises:
@@ -75,12 +73,9 @@ class GymWorld(SeededWorld):
                 the episode.
         """
         self._check_not_done()
-        space = self.env.action_space
-        if not 0 <= action < space.n:
-            raise ValueError(f"The action must be 0 to {space.n - 1}, got {action}.")
-        first = int(_attribute(space, "start", 0))
+        action = self.action_space.check(action)
         with self._calling(f"{type(self.env).__name__}.step()"):
-            observation, reward, terminated, truncated, info = self.env.step(action + first)
+            observation, reward, terminated, truncated, info = self.env.step(action)
             reward = float(reward)
             over = bool(terminated or truncated)
             parts = _by_name(observation)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any
@@ -48,6 +48,10 @@ def seeded_episodes(seeds: Iterable[int], instruction: str = "Reach the goal.") 
     ]
 
 
+RETURN = "return"  # a measure, and the rule of worlds without a success
+SCORES = ("success", RETURN)
+
+
 @dataclass(frozen=True)
 class Ending:
     """The end of an episode, the argument of a ``success`` function.
@@ -63,6 +67,52 @@ class Ending:
     reward: float
     total: float
     steps: int
+
+
+WHOLE = ""  # the name of an observation that is a single frame
+
+
+@dataclass(frozen=True)
+class NativeFormat:
+    """Convert frames back to an environment's own observation, on which its policy was trained.
+
+    Attributes:
+        entries: Entry of the observation by sensor; nested entries are written as "camera.rgb".
+        dtypes: dtype of the entry by sensor.
+        unit: Metres per unit of depth.
+    """
+
+    entries: Mapping[str, str]
+    dtypes: Mapping[str, str]
+    unit: float = 1.0
+
+    def __call__(self, frames: Mapping[str, Any]) -> Any:
+        """Return the observation: an array, or nested dictionaries of arrays.
+
+        Args:
+            frames: Arrays by sensor, also with a first axis for a batch.
+        """
+        observation: dict[str, Any] = {}
+        for name, entry in self.entries.items():
+            array = np.asarray(frames[name])
+            if name == DEPTH:
+                array = self._depth(array)
+            if entry == WHOLE:
+                return array
+            *path, last = entry.split(".")
+            inner = observation
+            for part in path:
+                inner = inner.setdefault(part, {})
+            inner[last] = array
+        return observation
+
+    def _depth(self, metres: np.ndarray) -> np.ndarray:
+        dtype = np.dtype(self.dtypes[DEPTH])
+        depth = metres / np.float32(self.unit)
+        if np.issubdtype(dtype, np.integer):
+            limits = np.iinfo(dtype)
+            depth = np.rint(np.clip(depth, limits.min, limits.max))
+        return depth.astype(dtype)
 
 
 Success = str | Callable[[Ending], bool]  # an entry that the environment reports, or a function
@@ -87,6 +137,13 @@ class SeededWorld(World):
             measures contain ``limit``, and ``cut``: whether it ended the episode.
         rule: The success rule in words, for rows and tables; None: the name of the entry. Required
             for a function.
+        score: "success", or "return" for a task without a success: rows then hold the sum of the
+            rewards, and tables show its retention (``evaluation/returns.py``).
+        extra: More entries that the environment reports at the end of an episode, as measures.
+
+    Attributes:
+        action_space: The actions (``core/spaces.py``).
+        native: Converts frames to the environment's own observation (:class:`NativeFormat`).
 
     Raises:
         ValueError: An argument is invalid, an entry is missing, or frames have another shape or
@@ -104,7 +161,13 @@ class SeededWorld(World):
         unit: float | None,
         limit: int | None,
         rule: str | None,
+        score: str = "success",
+        extra: Sequence[str] = (),
     ) -> None:
+        if score not in SCORES:
+            raise ValueError(f"score must be one of {', '.join(SCORES)}, got {score!r:.80}.")
+        if score == RETURN and (success is not None or rule is not None):
+            raise ValueError("score='return' takes no success and no rule. Leave them out.")
         if limit is not None and (type(limit) is not int or limit < 1):
             raise ValueError(
                 f"limit must be a whole number of steps >= 1 or None, got {limit!r}. None lets the "
@@ -115,7 +178,8 @@ class SeededWorld(World):
         self.success: Success = "success" if success is None else success
         self.unit = 1.0 if unit is None else unit
         self.limit = limit
-        self.rule = rule or f"{self.success} at the end"
+        self.rule = RETURN if score == RETURN else rule or f"{self.success} at the end"
+        self.extra = tuple(extra)
         missing = [
             repr(entry) if entry else name
             for name, entry in self.entries.items()
@@ -142,18 +206,29 @@ class SeededWorld(World):
         for name in [name for name in (RGB, DEPTH) if name in self.sensors]:
             _check_shape(name, self.entries[name], self.sensors[name].shape)
 
+        self.native = NativeFormat(
+            dict(self.entries),
+            {name: sensor.dtype for name, sensor in self.sensors.items()},
+            self.unit,
+        )
+
     def _check_not_done(self) -> None:
         """Raise RuntimeError after the last step of an episode."""
         if self.done:
             raise RuntimeError("The episode is over. Call reset() before step().")
 
     def measures(self) -> dict[str, float]:
-        """Return success, spl and steps; with a limit also ``cut`` and ``limit``.
+        """Return success, spl, return and steps; with a limit also ``cut`` and ``limit``.
 
-        ``spl`` equals ``success``, because the shortest path is unknown.
+        ``spl`` equals ``success``, because the shortest path is unknown. With score "return" there
+        is neither.
         """
-        succeeded = int(self.done and self._succeeded())
-        measures = {"success": succeeded, "spl": float(succeeded), "steps": self._steps}
+        measures: dict[str, float] = {RETURN: self._total, "steps": self._steps}
+        if self.rule != RETURN:
+            succeeded = int(self.done and self._succeeded())
+            measures = {"success": succeeded, "spl": float(succeeded)} | measures
+        for name in self.extra:
+            measures[name] = self._extra(name)
         if self.limit is None:
             return measures
         return measures | {"cut": int(self._cut), "limit": self.limit}
@@ -174,24 +249,35 @@ class SeededWorld(World):
             ValueError: The environment ended the episode without reporting success, or the reward
                 is NaN and a function decides on success.
         """
-        if math.isnan(reward) and callable(self.success):
+        if math.isnan(reward) and (callable(self.success) or self.rule == RETURN):
             raise ValueError(
                 f"The reward of step {self._steps + 1} of episode {self._name} must be a number, "
-                "got NaN. The success function needs numbers."
+                "got NaN. The score needs numbers."
             )
         self._reward = reward
         self._total += reward
         self._steps += 1
         self._cut = not over and self.limit is not None and self._steps >= self.limit
         self.done = over or self._cut
-        if over and isinstance(self.success, str) and self.success not in self._report():
+        named = isinstance(self.success, str) and self.rule != RETURN
+        if over and named and self.success not in self._report():
             raise ValueError(
                 f"At the end of episode {self._name} the environment must report success, but it "
                 f"has no entry {self.success!r}, only "
                 f"{', '.join(map(repr, self._report())) or 'none'}. Set success= to the name of an "
                 "entry that is False after a failure, or to a function, such as "
-                'success=lambda end: end.total > 0, rule="return > 0".'
+                'success=lambda end: end.total > 0, rule="return > 0". For a task without a '
+                'success set score="return".'
             )
+
+    def _extra(self, name: str) -> float:
+        value = np.asarray(self._report().get(name, math.nan)).ravel()
+        if value.size != 1 or not value.dtype.kind in "biuf" or np.isnan(value[0]):
+            raise ValueError(
+                f"The entry {name!r} of extra must be a number at the end of episode {self._name}; "
+                f"the environment reports {', '.join(map(repr, self._report())) or 'nothing'}."
+            )
+        return float(value[0])
 
     def _report(self) -> Mapping[str, Any]:
         """Return what the environment reported with the last step."""

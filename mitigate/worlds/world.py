@@ -16,6 +16,7 @@ import numpy as np
 
 from mitigate.core.contracts import take_over
 from mitigate.core.observation import DEPTH, Observation, Sensor
+from mitigate.core.spaces import ActionSpace
 from mitigate.corruptions import Corruption, DepthSensor, Key, Schedule, corrupt_observation
 from mitigate.corruptions.schedule import drawn
 from mitigate.worlds.episodes import Episode
@@ -64,12 +65,16 @@ class World:
         rule: The success rule of ``measures`` in words, such as "STOP and geodesic < 3 m"; part of
             every row.
         done: Whether the episode is over; no step may follow.
+        action_space: Its actions (``core/spaces.py``); None: whole numbers, of which 0 is STOP.
+        native: Converts frames by sensor to the environment's own observation; None if it has none.
         draw: Function that draws a floor plan on Matplotlib axes; None if there is no plan.
     """
 
     rule: str
     sensors: Mapping[str, Sensor]
     done: bool
+    action_space: ActionSpace | None = None
+    native: Callable[[Mapping[str, Any]], Any] | None = None
     draw: Callable[[Any], None] | None = None
 
     def reset(self, episode: Episode) -> Observation:
@@ -82,7 +87,7 @@ class World:
         """
         raise NotImplementedError(f"{type(self).__name__} defines no reset(episode)")
 
-    def step(self, action: int) -> Observation:
+    def step(self, action: Any) -> Observation:
         """Take an action and return the next observation."""
         raise NotImplementedError(f"{type(self).__name__} defines no step(action)")
 
@@ -158,7 +163,7 @@ class TrainingEpisodes(Protocol):
         """
 
 
-OPTIONAL = ("expert", "truth", "remembering", "draw")
+OPTIONAL = ("expert", "truth", "remembering", "draw", "action_space", "native")
 
 
 def as_world(world: Any) -> World:
@@ -197,7 +202,7 @@ class WorldWrapper(World):
     def reset(self, episode: Episode) -> Observation:
         return self._observe(self._inner.reset(episode))
 
-    def step(self, action: int) -> Observation:
+    def step(self, action: Any) -> Observation:
         return self._observe(self._inner.step(action))
 
     def measures(self) -> dict[str, float]:
@@ -211,6 +216,14 @@ class WorldWrapper(World):
 
     def remembering(self) -> AbstractContextManager:
         return self._inner.remembering()
+
+    @property
+    def action_space(self) -> ActionSpace | None:  # type: ignore[override]
+        return self._inner.action_space
+
+    @property
+    def native(self) -> Callable[[Mapping[str, Any]], Any] | None:  # type: ignore[override]
+        return self._inner.native
 
     @property
     def draw(self) -> Callable[[Any], None] | None:  # type: ignore[override]
@@ -243,7 +256,7 @@ class _WorldView(World):
     def reset(self, episode: Episode) -> Observation:
         return self._world.reset(episode)
 
-    def step(self, action: int) -> Observation:
+    def step(self, action: Any) -> Observation:
         return self._world.step(action)
 
     def measures(self) -> dict[str, float]:

@@ -1,0 +1,453 @@
+"""Use trained policies of other libraries as agents: stable-baselines3, torchrl, plain torch.
+
+:func:`as_policy` recognises a policy by its methods; no other library is imported. The agent reads the
+frames of a world, converts them back to the environment's own observation
+(``World.native``), and asks the policy. :meth:`Policy.answer` gives the action distributions
+for batches of frames, with gradients, which ``mitigate.harden`` trains.
+"""
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import torch
+from torch import Tensor, nn
+from torch.distributions import (
+    Categorical,
+    Distribution,
+    Independent,
+    OneHotCategorical,
+    TransformedDistribution,
+    kl_divergence,
+)
+
+from mitigate.agents import adapters
+from mitigate.agents.agent import Agent, check_logits
+from mitigate.agents.sites import first
+from mitigate.core import checkpoint
+from mitigate.core.spaces import ActionSpace, Box, Discrete, MultiDiscrete
+
+# One distribution per part of the action, or the actions (or values of actions) [B, ...] themselves
+Answer = Sequence[Distribution] | Tensor
+Forward = Callable[..., Any]
+
+
+class Policy(Agent, nn.Module):
+    """A trained network with actions of any kind, as an agent.
+
+    A subclass defines ``answer`` for one library.
+
+    Args:
+        network: all weights of the policy.
+        native: converts frames to the environment's own observation (``World.native``).
+        space: actions of the world.
+
+    Attributes:
+        recurrent: whether the answer depends on earlier observations of the episode.
+    """
+
+    recurrent = False
+
+    def __init__(self, network: nn.Module, native: Any, space: ActionSpace) -> None:
+        super().__init__()
+        self.network = network
+        self.native = native
+        self.space = space
+        self._memory: Any = None
+
+    def answer(self, observation: Any, memory: Any = None) -> tuple[Answer, Any]:
+        """Return the policy's answers to a batch, and its memory after it.
+
+        Args:
+            observation: the environment's own observation, arrays with a first axis B.
+            memory: the memory before it; None at the start of an episode.
+        """
+        raise NotImplementedError(f"{type(self).__name__} defines no answer(observation, memory)")
+
+    def action(self, answer: Answer) -> Any:
+        """Return the likeliest action of the first answer of a batch."""
+        if isinstance(answer, Tensor):
+            values = answer[0]
+            chosen = int(check_logits(values, self).argmax()) if self.chooses else values
+        elif isinstance(self.space, MultiDiscrete):
+            chosen = np.array([int(mode(part)[0]) for part in answer]).reshape(
+                self.space.counts.shape
+            )
+        else:
+            chosen = mode(answer[0])[0]
+        if isinstance(self.space, Discrete):
+            return int(chosen) + self.space.start
+        if isinstance(self.space, Box):
+            values = chosen.double().cpu().numpy().reshape(self.space.low.shape)
+            if not np.isfinite(values).all():
+                raise ValueError(
+                    f"The action of {self.name} must be finite, got {values.tolist()}."
+                )
+            return np.clip(values, self.space.low, self.space.high).astype(self.space.low.dtype)
+        return chosen
+
+    @property
+    def chooses(self) -> bool:
+        """Whether an answer that is a tensor holds a value for each action, not the action."""
+        return isinstance(self.space, Discrete)
+
+    @property
+    def name(self) -> str:
+        """Class of the policy, for messages and tables."""
+        return type(self.network).__name__
+
+    @property
+    def sensors(self) -> tuple[str, ...]:  # type: ignore[override]
+        """The entries of observations that it reads."""
+        return tuple(self.native.entries)
+
+    @property
+    def device(self) -> torch.device:
+        """Device of the weights."""
+        return next(self.network.parameters()).device
+
+    def settings(self) -> dict[str, Any]:
+        """Return what determines its actions besides the weights."""
+        return {"policy": self.name, "architecture": str(self.network), "native": repr(self.native)}
+
+    def train(self, mode: bool = True) -> Any:
+        """Stay in eval mode: no dropout, and normalisations keep their statistics."""
+        return super().train(False)
+
+    def reset(self, instruction: str) -> None:
+        """Start an episode."""
+        self._memory = None
+
+    @torch.no_grad()
+    def act(self, observation: Mapping[str, Any]) -> Any:
+        """Return the likeliest action."""
+        frames = {name: np.asarray(observation[name])[None] for name in self.sensors}
+        answer, self._memory = self.answer(self.native(frames), self._memory)
+        return self.action(answer)
+
+    def answers(self, frames: Mapping[str, Tensor], length: int = 1) -> list[Answer]:
+        """Return the answers to windows of consecutive frames, a list with one batch per place.
+
+        Args:
+            frames: frames by sensor, [B * length, ...]; each window's frames follow each other.
+            length: frames per window. A recurrent policy starts each window without memory.
+        """
+        arrays = {name: frames[name].numpy(force=True) for name in self.sensors}
+        if not self.recurrent:
+            return [self.answer(self.native(arrays))[0]]
+        memory, answers = None, []
+        for place in range(length):
+            step = {name: array[place::length] for name, array in arrays.items()}
+            answer, memory = self.answer(self.native(step), memory)
+            answers.append(answer)
+        return answers
+
+    @contextmanager
+    def recording(self, module: str) -> Iterator[list[Tensor]]:
+        """Record the outputs of a module of the network in the yielded list."""
+        outputs: list[Tensor] = []
+        target = self.network.get_submodule(module)
+        handle = target.register_forward_hook(lambda *call: outputs.append(first(call[2])))
+        try:
+            yield outputs
+        finally:
+            handle.remove()
+
+
+class StableBaselinesPolicy(Policy):
+    """A policy of stable-baselines3 or sb3-contrib.
+
+    On-policy algorithms (PPO, A2C, RecurrentPPO) give the distribution of actions, SAC and TQC that
+    of their actor, DDPG and TD3 the action, DQN the values of the actions.
+    """
+
+    def __init__(self, network: Any, native: Any, space: ActionSpace) -> None:
+        super().__init__(network, native, space)
+        self.recurrent = hasattr(network, "lstm_actor")
+
+    def answer(self, observation: Any, memory: Any = None) -> tuple[Answer, Any]:
+        policy: Any = self.network
+        inputs, _ = policy.obs_to_tensor(observation)
+        if self.recurrent:
+            return self._recurrent(inputs, memory)
+        if hasattr(policy, "get_distribution"):
+            return _parts(policy.get_distribution(inputs).distribution), None
+        if hasattr(policy, "q_net"):
+            return policy.q_net(inputs), None
+        if hasattr(policy.actor, "get_action_dist_params"):
+            mean, log_std, _ = policy.actor.get_action_dist_params(inputs)
+            tanh = torch.distributions.TanhTransform(cache_size=1)
+            return [
+                TransformedDistribution(torch.distributions.Normal(mean, log_std.exp()), tanh)
+            ], None
+        return policy.actor(inputs), None
+
+    def _recurrent(self, inputs: Any, memory: Any) -> tuple[Answer, Any]:
+        policy: Any = self.network
+        count = len(next(iter(inputs.values())) if isinstance(inputs, dict) else inputs)
+        layers, _, size = policy.lstm_hidden_state_shape
+        starts = torch.zeros(count, device=policy.device)
+        if memory is None:
+            memory = (torch.zeros(layers, count, size, device=policy.device),) * 2
+        distribution, memory = policy.get_distribution(inputs, memory, starts)
+        return _parts(distribution.distribution), memory
+
+    def action(self, answer: Answer) -> Any:
+        policy: Any = self.network
+        if policy.squash_output and isinstance(self.space, Box):
+            chosen = answer[0] if isinstance(answer, Tensor) else mode(answer[0])[0]
+            return policy.unscale_action(chosen.cpu().numpy()).astype(self.space.low.dtype)
+        return super().action(answer)
+
+
+class TorchrlPolicy(Policy):
+    """A policy of torchrl or tensordict: a module with ``in_keys`` and ``out_keys``.
+
+    A probabilistic module gives the distribution of actions, another one ``logits``,
+    ``action_value`` or ``action``.
+    """
+
+    def __init__(self, network: Any, native: Any, space: ActionSpace) -> None:
+        super().__init__(network, native, space)
+        outputs = {_dotted(key) for key in network.out_keys}
+        self._fed_back = [
+            key for key in network.in_keys if f"next.{_dotted(key)}" in outputs
+        ]  # recurrent modules return their state as "next"
+        self.recurrent = bool(self._fed_back)
+
+    def answer(self, observation: Any, memory: Any = None) -> tuple[Answer, Any]:
+        from tensordict import TensorDict
+
+        network: Any = self.network
+        arrays = _flat(observation)
+        keys = [key for key in network.in_keys if key not in self._fed_back]
+        if list(arrays) == [""]:
+            arrays = {_dotted(keys[0]): arrays[""]}
+        count = len(next(iter(arrays.values())))
+        inputs = TensorDict({}, batch_size=[count], device=self.device)
+        for key in keys:
+            if _dotted(key) in arrays:
+                inputs[key] = torch.from_numpy(np.array(arrays[_dotted(key)])).to(self.device)
+        for key, value in (memory or {}).items():
+            inputs[key] = value
+        if self.recurrent:
+            inputs["is_init"] = torch.full((count, 1), memory is None, device=self.device)
+        if hasattr(network, "get_dist"):
+            return _parts(network.get_dist(inputs)), self._next(inputs)
+        outputs = network(inputs)
+        for key in ("logits", "action_value", "action"):
+            if key in outputs.keys():
+                values = outputs[key]
+                return ([Categorical(logits=values)] if key == "logits" else values), self._next(
+                    outputs
+                )
+        raise ValueError(
+            f"The policy's outputs must contain logits, action_value or action, got "
+            f"{', '.join(map(str, outputs.keys()))}. Rename them (out_keys=)."
+        )
+
+    def _next(self, outputs: Any) -> Any:
+        return {key: outputs["next", key] for key in self._fed_back} or None
+
+
+class ModulePolicy(Policy):
+    """A plain ``nn.Module``.
+
+    ``forward(network, observation)``, or with ``recurrent`` ``forward(network, observation, memory)``,
+    returns logits of the actions [B, n] (discrete actions), actions [B, ...] (continuous ones), a
+    ``torch.distributions`` object, or a list of these; with ``recurrent`` also the new memory. By
+    default the network is called itself. ``observation`` holds tensors on the network's device.
+    """
+
+    def __init__(
+        self,
+        network: nn.Module,
+        native: Any,
+        space: ActionSpace,
+        forward: Forward | None = None,
+        recurrent: bool = False,
+    ) -> None:
+        super().__init__(network, native, space)
+        self._forward = forward
+        self.recurrent = recurrent
+
+    def answer(self, observation: Any, memory: Any = None) -> tuple[Answer, Any]:
+        inputs = _tensors(observation, self.device)
+        arguments = (inputs, memory) if self.recurrent else (inputs,)
+        output = (
+            self.network(*arguments)
+            if self._forward is None
+            else self._forward(self.network, *arguments)
+        )
+        if self.recurrent:
+            output, memory = output
+        if isinstance(output, Tensor):
+            return self._of_tensor(output), memory
+        return _parts(output), memory
+
+    def _of_tensor(self, output: Tensor) -> Answer:
+        if isinstance(self.space, Discrete):
+            return [Categorical(logits=check_logits(output, self))]
+        if isinstance(self.space, MultiDiscrete):
+            counts = self.space.counts.ravel().tolist()
+            return [Categorical(logits=part) for part in output.split(counts, -1)]
+        return output
+
+
+def as_policy(
+    policy: Any, world: Any, *, forward: Forward | None = None, recurrent: bool = False
+) -> Policy:
+    """Return a trained policy as an agent of ``world``.
+
+    Args:
+        policy: a model or policy of stable-baselines3, a module of torchrl or tensordict, or any
+            ``nn.Module``. It is not copied.
+        world: a world of an environment (``GymWorld``, ``EnvWorld``).
+        forward: how to call an ``nn.Module`` (:class:`ModulePolicy`).
+        recurrent: whether ``forward`` takes and returns a memory.
+
+    Raises:
+        TypeError: The policy is of another kind.
+        ValueError: The world does not name its actions or its own observation, or the policy reads
+            entries that the world's ``entries`` lack.
+    """
+    if isinstance(policy, Policy):
+        return policy
+    if world.action_space is None or world.native is None:
+        raise ValueError(
+            f"{type(world).__name__} must have action_space (mitigate.core.spaces) and native, the "
+            "conversion of frames to the observation that the policy was trained on. GymWorld and "
+            "EnvWorld have both."
+        )
+    network = policy if isinstance(policy, nn.Module) else getattr(policy, "policy", None)
+    if not isinstance(network, nn.Module):
+        raise TypeError(
+            "policy must be a model of stable-baselines3, a module of torchrl, or a torch.nn.Module, "
+            f"got a {type(policy).__name__}. For a policy without weights only "
+            "mitigate.benchmark applies."
+        )
+    if forward is None and hasattr(network, "obs_to_tensor"):
+        _check_read(getattr(network.observation_space, "spaces", {}), world)
+        return StableBaselinesPolicy(network, world.native, world.action_space)
+    if forward is None and hasattr(network, "in_keys") and hasattr(network, "out_keys"):
+        return TorchrlPolicy(network, world.native, world.action_space)
+    return ModulePolicy(network, world.native, world.action_space, forward, recurrent)
+
+
+def _check_read(names: Any, world: Any) -> None:
+    """Raise ValueError if the policy reads entries that the world leaves out."""
+    known = {entry.split(".")[0] for entry in world.entries.values()}
+    missing = [name for name in names if name not in known]
+    if missing:
+        listed = ", ".join(f"{name!r}: {name!r}" for name in missing)
+        raise ValueError(
+            f"The policy reads {', '.join(missing)}, which the world's entries leave out. Add them: "
+            f"entries={{..., {listed}}}."
+        )
+
+
+def load_policy(policy: Any, folder: str | Path) -> Any:
+    """Load the weights that ``mitigate.harden`` wrote into ``policy``, in place, and return it.
+
+    Args:
+        policy: the policy before hardening, or another one with the same architecture.
+        folder: the folder ``agent`` of the run.
+
+    Raises:
+        FileNotFoundError, ValueError: The weights are missing, damaged, or do not fit.
+    """
+    network = policy if isinstance(policy, nn.Module) else policy.policy
+    if (Path(folder) / adapters.SETTINGS).is_file():
+        adapters.load_adapters(network, folder)
+    else:
+        checkpoint.load_weights(network, folder)
+    return policy
+
+
+def copied(policy: Policy) -> Policy:
+    """Return a copy of a policy with its own weights.
+
+    Raises:
+        ValueError: The network cannot be copied.
+    """
+    try:
+        twin = copy.copy(policy)
+        twin._modules = {"network": copy.deepcopy(policy.network)}
+    except Exception as error:  # of the user's code
+        raise ValueError(
+            f"{policy.name} cannot be copied ({type(error).__name__}: {str(error)[:200]}), which the "
+            "clean teacher needs. Give a policy without open files or environments."
+        ) from error
+    return twin
+
+
+def mode(distribution: Any) -> Tensor:
+    """Return the likeliest value of a distribution, [B, ...]."""
+    if isinstance(distribution, (Categorical, OneHotCategorical)):
+        return distribution.logits.argmax(-1)
+    if isinstance(distribution, Independent):
+        return mode(distribution.base_dist)
+    if isinstance(distribution, TransformedDistribution):
+        value = mode(distribution.base_dist)
+        for transform in distribution.transforms:
+            value = transform(value)
+        return value
+    return distribution.mode
+
+
+def divergence(teacher: Answer, student: Answer) -> Tensor:
+    """Return how far the student's answers are from the teacher's, the mean over the batch.
+
+    The KL divergence KL(teacher || student), summed over the parts of an action; for actions or
+    values without a distribution the squared error divided by the teacher's variance over the batch.
+    """
+    if isinstance(teacher, Tensor) or isinstance(student, Tensor):
+        assert isinstance(teacher, Tensor) and isinstance(student, Tensor)
+        error = (student.float() - teacher.float()).square().mean()
+        return error / teacher.float().var(0).mean().clamp(min=1e-6)
+    total = torch.zeros((), device=student[0].sample().device)
+    for one, other in zip(teacher, student, strict=True):
+        try:
+            kl = kl_divergence(_base(one), _base(other))
+        except NotImplementedError:  # such as a deterministic action in a distribution's clothes
+            return divergence(
+                torch.cat([mode(t) for t in teacher], -1), torch.cat([mode(s) for s in student], -1)
+            )
+        total = total + kl.flatten(1).sum(1).mean() if kl.dim() > 1 else total + kl.mean()
+    return total
+
+
+def _base(distribution: Any) -> Distribution:
+    """Return the distribution below bijections, which leave the divergence unchanged."""
+    while isinstance(distribution, (Independent, TransformedDistribution)):
+        distribution = distribution.base_dist
+    return distribution
+
+
+def _parts(distributions: Any) -> list[Distribution]:
+    return list(distributions) if isinstance(distributions, (list, tuple)) else [distributions]
+
+
+def _flat(observation: Any, prefix: str = "") -> dict[str, Any]:
+    """Return the arrays of an observation by dotted name."""
+    if not isinstance(observation, Mapping):
+        return {prefix: observation}
+    parts: dict[str, Any] = {}
+    for name, value in observation.items():
+        parts |= _flat(value, f"{prefix}.{name}".lstrip("."))
+    return parts
+
+
+def _tensors(observation: Any, device: torch.device) -> Any:
+    if isinstance(observation, Mapping):
+        return {name: _tensors(value, device) for name, value in observation.items()}
+    return torch.from_numpy(np.array(observation)).to(device)
+
+
+def _dotted(key: Any) -> str:
+    return key if isinstance(key, str) else ".".join(key)

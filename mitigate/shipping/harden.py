@@ -1,0 +1,315 @@
+"""``mitigate.harden(policy, world)``: make a trained policy robust, without expert and reward.
+
+The policy teaches its copy (``recipes/self_distil.py``). The episodes that compare both are never
+trained on.
+"""
+
+from __future__ import annotations
+
+import copy
+import re
+import time
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from torch import nn
+
+from mitigate.agents.adapters import (
+    adapter_parameters,
+    insert_adapters,
+    save_adapters,
+    trainable_share,
+)
+from mitigate.agents.policies import Forward, Policy, as_policy, copied
+from mitigate.agents.sites import find_sites
+from mitigate.core import checkpoint, conf, seeding
+from mitigate.core.locks import FolderLock
+from mitigate.core.names import counted
+from mitigate.core.observation import DEPTH, RGB
+from mitigate.core.progress import duration, say
+from mitigate.corruptions import CLEAN, Corruption, Schedule
+from mitigate.corruptions.registry import modality
+from mitigate.evaluation import report
+from mitigate.evaluation.evaluator import evaluate
+from mitigate.evaluation.episode import run_episode
+from mitigate.evaluation.returns import RANDOM, RandomPolicy, returns
+from mitigate.evaluation.rows import RETURN, ROWS, Row
+from mitigate.evaluation.sections import sections
+from mitigate.recipes.self_distil import SelfDistil, last_convolution
+from mitigate.training.trainer import Trainer
+from mitigate.worlds.episodes import Episode
+from mitigate.worlds.seeded import seeded_episodes
+from mitigate.worlds.world import World
+
+OUT = Path("runs/harden")
+EPISODES = 50  # that compare before and after, by default (heuristic): SR within about 10 points
+FIRST_TRAINING_SEED = 1_000_000  # seeds of training episodes; the comparison's seeds are smaller
+TUNE = ("all", "adapters")
+
+
+@dataclass(frozen=True)
+class Hardened:
+    """The result of :func:`harden`.
+
+    Attributes:
+        policy: a copy of the given policy with hardened weights, of the same class.
+        agent: the same as an agent, for ``mitigate.benchmark``.
+        report: SR and PRS (or return and retention) before and after, as Markdown.
+        rows: the result rows of both, named "before" and "after".
+        folder: the weights are in its folder ``agent`` (``mitigate.load_policy``).
+    """
+
+    policy: Any
+    agent: Policy
+    report: str
+    rows: list[Row]
+    folder: Path
+
+    def __str__(self) -> str:
+        return f"{self.report}\n\nWeights: {self.folder / 'agent'}"
+
+
+def harden(
+    policy: Any,
+    world: Callable[[], World],
+    *,
+    forward: Forward | None = None,
+    recurrent: bool = False,
+    listed: Sequence[Episode] | None = None,
+    training: Sequence[Episode] | None = None,
+    suite: str | Sequence[str] = "full",
+    severity: float = 0.6,
+    tune: str = "all",
+    targets: Sequence[str] | None = None,
+    steps: int = 1500,
+    lr: float = 3e-4,
+    broad_share: float = 0.5,
+    seed: int = 0,
+    workers: int | None = 1,
+    out: Path | str | None = None,
+    **settings: Any,
+) -> Hardened:
+    """Train a copy of ``policy`` to act under corruptions as ``policy`` acts on clean frames.
+
+    Needs no expert, no reward and no labels. The same call continues an interrupted run.
+
+    Args:
+        policy: a trained policy of stable-baselines3 or torchrl, or an ``nn.Module``
+            (``agents/policies.py``). It is not changed.
+        world: makes a world, such as ``lambda: GymWorld(gymnasium.make(...))``.
+        forward, recurrent: how to call an ``nn.Module`` (:class:`~mitigate.agents.policies.ModulePolicy`).
+        listed: episodes of the comparison; None: seeds 0 to 49 of the environment.
+        training: episodes to train on; None: other seeds of the environment.
+        suite: a name of ``conf/suite`` or a list of corruptions, for training and comparison;
+            corruptions of sensors that the policy does not read are left out.
+        severity: of the comparison, from 0 to 1. Training draws from 0.3 to 1.
+        tune: "all" weights, or "adapters" inserted into the frozen policy.
+        targets: regular expressions for the modules that get adapters; None: every convolution.
+        steps, lr: of the training.
+        broad_share: share of corrupted frames with random compositions in place of the suite's
+            corruptions, for corruptions that the suite lacks.
+        seed: seed of the training and of the corruptions.
+        workers: processes of the comparison; None: one per core if there is enough work.
+        out: folder of the run; None: a folder in runs/harden.
+        **settings: other arguments of :class:`~mitigate.recipes.self_distil.SelfDistil`, such as
+            ``episodes=16``.
+
+    Raises:
+        TypeError: The policy is of an unknown kind.
+        ValueError: An argument is invalid, or the folder holds another run.
+    """
+    seeding.check(seed)
+    if tune not in TUNE:
+        raise ValueError(f"tune must be one of {', '.join(TUNE)}, got {tune!r:.80}.")
+    first = world()
+    before = as_policy(policy, first, forward=forward, recurrent=recurrent)
+    after = copied(before)
+    names = _corruptions(suite, before)
+    folder = Path(out or OUT / f"{_plain(before.name)}-s{severity:g}-seed{seed}")
+    compared = seeded_episodes(range(EPISODES)) if listed is None else list(listed)
+    conditions = [CLEAN, *(Corruption(name, severity) for name in names)]
+    if tune == "adapters":
+        _insert_adapters(after, first, compared[0], targets)
+    schedule = Schedule("per_episode", (0.3, 1.0), names=tuple(names), broad_share=broad_share)
+    _print_estimate(before, world, compared, conditions, steps, folder)
+    with FolderLock(folder):
+        rows = _evaluate(before, "before", world, compared, conditions, folder, seed, workers)
+        if first.rule == RETURN:
+            random = RandomPolicy(before.space, seed)
+            rows += _evaluate(random, RANDOM, world, compared, [CLEAN], folder, seed, workers)
+            returns(rows)  # an error before the training, if the policy is no better than random
+        objective = SelfDistil(
+            after,
+            world,
+            _Training(training, compared),
+            schedule,
+            folder / "frames",
+            steps,
+            seed=seed,
+            **settings,
+        )
+        identity = {
+            "start": checkpoint.weights_sha(before.network),
+            "policy": before.settings(),
+            "names": list(names),
+            "broad_share": broad_share,
+            "tune": tune,
+            "settings": {name: str(value) for name, value in settings.items()},
+        }
+        Trainer(
+            objective,
+            steps=steps,
+            folder=folder / "training",
+            lr=lr,
+            warmup=min(50, steps // 10),
+            seed=seed,
+            precision="fp32",
+            save_every=max(1, steps // 5),
+            name="harden",
+            config=identity,
+        ).fit()
+        after.requires_grad_(True)
+        _write(after.network, folder / "agent", tune)
+        rows += _evaluate(after, "after", world, compared, conditions, folder, seed, workers)
+    return Hardened(_like(policy, after), after, describe(rows), rows, folder)
+
+
+def describe(rows: Sequence[Row]) -> str:
+    """Return the tables of the rows of a hardening, as Markdown."""
+    if any(row["rule"] == RETURN for row in rows):
+        return str(returns(rows))
+    return report.markdown(sections(rows, "before"))
+
+
+class _Training:
+    """Training episodes: a list, or seeds that the comparison does not use."""
+
+    def __init__(self, listed: Iterable[Episode] | None, compared: Sequence[Episode]) -> None:
+        self.listed = None if listed is None else list(listed)
+        shared = {e.episode_id for e in self.listed or ()} & {e.episode_id for e in compared}
+        if shared:
+            raise ValueError(
+                f"Training and comparison share {counted(len(shared), 'episode')} "
+                f"({', '.join(sorted(shared)[:3])}). Name other episodes, so that the comparison is fair."
+            )
+        if self.listed == []:
+            raise ValueError("training must hold at least one episode, or be None.")
+
+    def draw(self, rng: np.random.Generator, share: tuple[int, int]) -> Episode:
+        if self.listed is None:
+            return seeded_episodes([int(rng.integers(FIRST_TRAINING_SEED, 2**31 - 1))])[0]
+        return self.listed[int(rng.integers(len(self.listed)))]
+
+
+def _corruptions(suite: str | Sequence[str], policy: Policy) -> list[str]:
+    """Return the corruptions of a suite that change what the policy reads."""
+    listed = suite
+    if isinstance(suite, str):
+        listed = list(conf.load_config("evaluate", [f"suite={suite}"]).suite.conditions)
+    kinds = {name: modality(name) for name in listed if name != "clean"}
+    sensors = [sensor for sensor in (RGB, DEPTH) if sensor in policy.sensors]
+    names = [name for name, kind in kinds.items() if kind in sensors]
+    if not names:
+        raise ValueError(
+            f"No corruption of suite={suite} changes {' or '.join(sensors) or 'what it reads'}. Name "
+            "another suite, or a list of corruptions."
+        )
+    left = [name for name in kinds if name not in names]
+    if left:
+        say(f"{policy.name} reads only {' and '.join(sensors)}: left out {', '.join(left)}")
+    return names
+
+
+def _insert_adapters(
+    policy: Policy, world: World, episode: Episode, targets: Sequence[str] | None
+) -> None:
+    """Insert adapters behind the modules ``targets``, by default behind every convolution."""
+    observation = world.reset(episode)
+    frames = {name: np.asarray(observation[name]) for name in policy.sensors}
+
+    def run(count: int) -> Any:
+        return policy.answer(policy.native({n: np.stack([f] * count) for n, f in frames.items()}))
+
+    if targets is None:
+        called = find_sites(policy.network, run)
+        convolutions = [
+            name
+            for name, module in policy.network.named_modules()
+            if isinstance(module, nn.Conv2d) and name in called
+        ]
+        targets = [re.escape(name) for name in convolutions or [last_convolution(policy)]]
+    insert_adapters(policy.network, targets, run=run, reduction=2)
+    for parameter in adapter_parameters(policy.network):
+        parameter.requires_grad_(True)
+    say(f"adapters: {trainable_share(policy.network):.1%} of the policy's weights")
+
+
+def _write(network: nn.Module, folder: Path, tune: str) -> None:
+    if tune == "adapters":
+        save_adapters(network, folder)
+    else:
+        checkpoint.save_weights(network, folder)
+
+
+def _evaluate(
+    agent: Any,
+    name: str,
+    world: Callable[[], World],
+    episodes: list[Episode],
+    conditions: list[Corruption],
+    folder: Path,
+    seed: int,
+    workers: int | None,
+) -> list[Row]:
+    weights = checkpoint.weights_sha(agent.network) if isinstance(agent, Policy) else RANDOM
+    return evaluate(
+        agent,
+        world,
+        episodes,
+        conditions,
+        name=name,
+        out=folder / ROWS,
+        split="compared",
+        seed=seed,
+        workers=workers,
+        version=f"{name}-{weights}",
+    )
+
+
+def _print_estimate(
+    policy: Policy,
+    world: Callable[[], World],
+    episodes: Sequence[Episode],
+    conditions: Sequence[Corruption],
+    steps: int,
+    folder: Path,
+) -> None:
+    """Print the amount of work, with the time of the comparison, measured on one episode."""
+    made = world()
+    run_episode(policy, made, episodes[0], CLEAN, 0)  # the first episode also loads libraries
+    started = time.monotonic()
+    run_episode(policy, made, episodes[-1], CLEAN, 0)
+    each = time.monotonic() - started
+    total = 2 * len(episodes) * len(conditions)
+    say(
+        f"harden: {counted(steps, 'step')} of training, and {counted(total, 'episode')} before and "
+        f"after it, which take about {duration(each * total)}; in {folder}"
+    )
+
+
+def _like(policy: Any, hardened: Policy) -> Any:
+    """Return the hardened policy as an object of the class of ``policy``."""
+    if isinstance(policy, Policy):
+        return hardened
+    if isinstance(policy, nn.Module):
+        return hardened.network
+    twin = copy.copy(policy)  # a model of stable-baselines3, which holds its network
+    twin.policy = hardened.network
+    return twin
+
+
+def _plain(name: str) -> str:
+    return re.sub(r"[^A-Za-z0-9.@+-]+", "-", name)

@@ -1,0 +1,299 @@
+"""Self-distillation: a trained policy teaches its copy, without expert and without reward.
+
+The copy (student) runs episodes under corruptions. For every frame that it meets, the unchanged
+policy (teacher) answers to the clean frame, and the student learns to give the same answer to the
+corrupted one: DAgger (Ross et al. 2011) with the clean policy in place of an expert. Three terms:
+
+* ``w_policy``: the divergence of the action distributions (KL; for actions without a distribution
+  the squared error),
+* ``w_feat``: the squared error of the features of one module, relative to their variance,
+* ``w_consistency``: the divergence between the answers to two corruptions of the same frame.
+
+The severity rises over the first part of the training, and the last part is mostly clean frames, so
+that the student returns to the clean behaviour (the order of STRONG-VLA, 2026).
+
+Rollouts are slow and learning is fast, so the student runs episodes only every ``every`` steps. Their
+clean frames are stored, and each step corrupts a random sample of all stored frames anew.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import torch
+from safetensors import SafetensorError
+from safetensors.numpy import load_file, save
+from torch import Tensor
+
+from mitigate.agents.adapters import adapted
+from mitigate.agents.policies import Answer, Policy, copied, divergence
+from mitigate.core import checkpoint
+from mitigate.core.files import write_bytes
+from mitigate.core.observation import DEPTH, POSE, RGB
+from mitigate.core.pictures import picture
+from mitigate.core.seeding import generator
+from mitigate.corruptions import Schedule, corrupt_observation
+from mitigate.recipes.distil import feature_loss
+from mitigate.training.objective import Objective, check_weights
+from mitigate.worlds.world import Corrupted, TrainingEpisodes, World, depth_sensor
+
+RISE = 0.6  # share of the training over which the severity rises (heuristic)
+SETTLE = 0.85  # from this share of the training on, most frames are clean (heuristic)
+SETTLED_CLEAN = 0.75  # share of clean frames then (heuristic)
+
+
+class SelfDistil(Objective):
+    """Train a policy to act under corruptions as it does on clean frames.
+
+    Args:
+        agent: the student, trained in place; with adapters only these train. The teacher is a copy
+            of it at the start, without adapters.
+        world: makes a world.
+        training: source of the episodes.
+        schedule: draws the corruption of each frame.
+        folder: folder of the stored frames, one file per round of rollouts.
+        steps: number of steps of the training.
+        every: steps between two rounds of rollouts.
+        episodes: episodes per round.
+        frames: most frames that are kept of an episode, spread evenly.
+        batch: frames per step.
+        window: consecutive frames that a recurrent policy sees; 1 for other policies.
+        w_policy, w_feat, w_consistency: weights of the losses.
+        module: name of the module of the network whose output is compared; None: its last convolution.
+        curriculum: whether the severity rises and the end is mostly clean.
+        seed: seed of episodes and corruptions.
+
+    Raises:
+        ValueError: A number is out of its range, the policy reads no frames, or it has no such module.
+    """
+
+    def __init__(
+        self,
+        agent: Policy,
+        world: Callable[[], World],
+        training: TrainingEpisodes,
+        schedule: Schedule,
+        folder: str | Path,
+        steps: int,
+        every: int = 300,
+        episodes: int = 8,
+        frames: int = 400,
+        batch: int = 64,
+        window: int = 16,
+        w_policy: float = 1.0,
+        w_feat: float = 1.0,
+        w_consistency: float = 0.1,
+        module: str | None = None,
+        curriculum: bool = True,
+        seed: int = 0,
+    ) -> None:
+        super().__init__()
+        check_weights(w_policy=w_policy, w_feat=w_feat, w_consistency=w_consistency)
+        for name, value in {
+            "every": every,
+            "episodes": episodes,
+            "frames": frames,
+            "batch": batch,
+        }.items():
+            if value < 1:
+                raise ValueError(f"{name} must be a whole number >= 1, got {value}.")
+        if not {RGB, DEPTH} & set(agent.sensors):
+            raise ValueError(
+                f"{agent.name} reads {', '.join(agent.sensors) or 'nothing'}, but no rgb and no depth, "
+                "so that no corruption changes its input. Name its frames: GymWorld(entries=...)."
+            )
+        self.agent = agent
+        self.world = world
+        self.training_episodes = training
+        self.schedule = schedule
+        self.folder = Path(folder)
+        self.steps = steps
+        self.every = every
+        self.episodes = episodes
+        self.frames = frames
+        self.window = window if agent.recurrent else 1
+        self.batch_windows = max(1, batch // self.window)
+        self.w_policy = w_policy
+        self.w_feat = w_feat
+        self.w_consistency = w_consistency
+        self.curriculum = curriculum
+        self.seed = seed
+        self.teacher = copied(agent)
+        if adapted(self.teacher):
+            self.teacher = self.teacher.as_teacher()
+        self.teacher.requires_grad_(False)
+        self.module = module or last_convolution(agent)
+        self._stored: list[dict[str, np.ndarray]] = []  # windows of each round, [n, window, ...]
+        self._now = 0  # a resumed training has stored the rounds before this step
+        self._picture: np.ndarray | None = None
+        self._world: World | None = None  # made once, because making an environment takes time
+
+    def identity(self) -> dict[str, str]:
+        return {"teacher_sha256": checkpoint.weights_sha(self.teacher)}
+
+    def pieces(self) -> int:
+        """Return 1: a step learns from frames that its own process has stored."""
+        return 1
+
+    def batch(self, step: int) -> dict[str, Any]:
+        """Return clean frames and two corruptions of each, by sensor [B * window, ...]."""
+        for number in range(len(self._stored), step // self.every + 1):
+            self._stored.append(self._round(number * self.every))
+        rng = generator(self.seed, "self-distil", step)
+        ends = np.cumsum([len(next(iter(stored.values()))) for stored in self._stored])
+        places = rng.integers(ends[-1], size=self.batch_windows)
+        rounds = np.searchsorted(ends, places, side="right")
+        clean: list[dict[str, np.ndarray]] = []
+        corrupted: tuple[list, list] = ([], [])
+        schedule = self.schedule_at(step)
+        sensor = depth_sensor(self._made_world().sensors)
+        for place, number in zip(places, rounds, strict=True):
+            within = place - (ends[number - 1] if number else 0)
+            window = {name: frames[within] for name, frames in self._stored[number].items()}
+            for draw, observations in enumerate(corrupted):
+                name = f"{step}-{len(clean) // self.window}-{draw}"
+                for frame in range(self.window):
+                    observation = {n: frames[frame] for n, frames in window.items()}
+                    corruption, key = schedule.draw(self.seed, name, frame)
+                    observations.append(corrupt_observation(observation, corruption, key, sensor))
+            clean += [{n: frames[f] for n, frames in window.items()} for f in range(self.window)]
+        self._picture = picture(corrupted[0][0])
+        return {
+            "clean": _stacked(clean),
+            "first": _stacked(corrupted[0]),
+            "second": _stacked(corrupted[1]),
+        }
+
+    def schedule_at(self, step: int) -> Schedule:
+        """Return the schedule of a step: rising severity, and mostly clean frames at the end."""
+        if not self.curriculum:
+            return self.schedule
+        progress = step / max(1, self.steps)
+        clean_share = SETTLED_CLEAN if progress >= SETTLE else self.schedule.clean_share
+        severity = self.schedule.severity
+        if isinstance(severity, tuple):
+            low, high = severity
+            severity = (low, low + (high - low) * min(1.0, progress / RISE))
+        return replace(self.schedule, severity=severity, clean_share=clean_share)
+
+    def forward(self, batch: dict[str, Any]) -> dict[str, Tensor]:
+        first, features = self._answer(self.agent, batch["first"])
+        second, _ = self._answer(self.agent, batch["second"])
+        with torch.no_grad():
+            target, target_features = self._answer(self.teacher, batch["clean"])
+        policy = (_mean(target, first) + _mean(target, second)) / 2
+        values = {
+            "policy": policy,
+            "feat": feature_loss(features, target_features),
+            "consistency": _mean(first, second),
+        }
+        loss = self.w_policy * policy
+        if self.w_feat and (features.requires_grad or not torch.is_grad_enabled()):
+            loss = loss + self.w_feat * values["feat"]
+        if self.w_consistency:
+            loss = loss + self.w_consistency * values["consistency"]
+        return {**values, "loss": loss}
+
+    def figures(self, step: int) -> dict[str, np.ndarray]:
+        return {} if self._picture is None else {"seen": self._picture}
+
+    def _answer(self, policy: Policy, frames: dict[str, Tensor]) -> tuple[list[Answer], Tensor]:
+        with policy.recording(self.module) as outputs:
+            answers = policy.answers(frames, self.window)
+        return answers, torch.cat([output.float().flatten(1) for output in outputs])
+
+    def _round(self, step: int) -> dict[str, np.ndarray]:
+        """Return the windows of the rollouts at ``step``: run them, or read them if they are stored."""
+        file = self.folder / f"frames-{step:06d}.safetensors"
+        if file.is_file():
+            return _read(file)
+        if step < self._now:
+            raise ValueError(
+                f"{file} is missing. A training cannot resume without its stored frames. Restore the "
+                "file if you have a copy, or choose another folder (out=...)."
+            )
+        windows = [self._rollout(step, number) for number in range(self.episodes)]
+        stored = {name: np.concatenate([w[name] for w in windows]) for name in windows[0]}
+        write_bytes(file, save(stored))
+        return stored
+
+    def _rollout(self, step: int, number: int) -> dict[str, np.ndarray]:
+        """Run an episode and return windows of the clean frames that the student met."""
+        rng = generator(self.seed, "self-distil rollout", step, number)
+        episode = self.training_episodes.draw(rng, (0, 1))
+        schedule = self.schedule_at(step)
+        world = Corrupted(self._made_world(), schedule, self.seed, f"rollout {step}-{number}")
+        observation = world.reset(episode)
+        self.agent.reset(episode.instruction.text)
+        met: list[dict[str, np.ndarray]] = []
+        while not world.done:
+            met.append({name: np.array(observation.clean[name]) for name in self.agent.sensors})
+            observation = world.step(self.agent.act(observation))
+        met += [met[-1]] * (
+            -len(met) % self.window
+        )  # the last window is filled with its last frame
+        starts = np.arange(0, len(met), self.window)
+        most = max(1, self.frames // self.window)
+        if len(starts) > most:
+            starts = starts[np.sort(rng.choice(len(starts), most, replace=False))]
+        return {
+            name: np.stack([[m[name] for m in met[s : s + self.window]] for s in starts])
+            for name in met[0]
+        }
+
+    def _made_world(self) -> World:
+        self._world = self._world or self.world()
+        return self._world
+
+    def get_extra_state(self) -> dict[str, Any]:
+        return {"rounds": len(self._stored)}
+
+    def set_extra_state(self, state: dict[str, Any]) -> None:
+        self._now = int(state["rounds"]) * self.every
+
+
+def last_convolution(policy: Policy) -> str:
+    """Return the name of the last convolution of a policy's network, or of its first layer with weights.
+
+    Raises:
+        ValueError: The network has neither.
+    """
+    layers = [
+        (name, isinstance(module, (torch.nn.Conv1d, torch.nn.Conv2d, torch.nn.Conv3d)))
+        for name, module in policy.network.named_modules()
+        if isinstance(module, (torch.nn.Conv1d, torch.nn.Conv2d, torch.nn.Conv3d, torch.nn.Linear))
+    ]
+    if not layers:
+        raise ValueError(
+            f"{policy.name} has no convolution and no linear layer. Name the module whose output is to "
+            "be compared: module=..."
+        )
+    convolutions = [name for name, is_convolution in layers if is_convolution]
+    return convolutions[-1] if convolutions else layers[0][0]
+
+
+def _mean(teacher: list[Answer], student: list[Answer]) -> Tensor:
+    """Return the mean divergence over the places of a window."""
+    pairs = [divergence(one, other) for one, other in zip(teacher, student, strict=True)]
+    return torch.stack(pairs).mean()
+
+
+def _stacked(observations: list[dict[str, np.ndarray]]) -> dict[str, Tensor]:
+    return {
+        name: torch.from_numpy(np.stack([o[name] for o in observations]))
+        for name in observations[0]
+    }
+
+
+def _read(file: Path) -> dict[str, np.ndarray]:
+    try:
+        return load_file(file)
+    except (SafetensorError, OSError) as error:
+        raise ValueError(
+            f"The stored frames {file} are damaged. Restore the file if you have a copy, or choose "
+            "another folder (out=...)."
+        ) from error
