@@ -266,6 +266,7 @@ def last_convolution(policy: Policy) -> str:
         (name, isinstance(module, (torch.nn.Conv1d, torch.nn.Conv2d, torch.nn.Conv3d)))
         for name, module in policy.network.named_modules()
         if isinstance(module, (torch.nn.Conv1d, torch.nn.Conv2d, torch.nn.Conv3d, torch.nn.Linear))
+        and checkpoint.ADAPTER not in f".{name}."
     ]
     if not layers:
         raise ValueError(

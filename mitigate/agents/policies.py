@@ -30,6 +30,7 @@ from mitigate.agents import adapters
 from mitigate.agents.agent import Agent, check_logits
 from mitigate.agents.sites import first
 from mitigate.core import checkpoint
+from mitigate.core.contracts import lacking, read
 from mitigate.core.spaces import ActionSpace, Box, Discrete, MultiDiscrete
 
 # One distribution per part of the action, or the actions (or values of actions) [B, ...] themselves
@@ -100,6 +101,11 @@ class Policy(Agent, nn.Module):
     def name(self) -> str:
         """Class of the policy, for messages and tables."""
         return type(self.network).__name__
+
+    @property
+    def version(self) -> str:
+        """Class and hash of the weights, the name of this policy's rows."""
+        return f"{self.name}-{checkpoint.weights_sha(self.network)}"
 
     @property
     def sensors(self) -> tuple[str, ...]:  # type: ignore[override]
@@ -299,6 +305,12 @@ class ModulePolicy(Policy):
         return output
 
 
+def is_policy(thing: Any) -> bool:
+    """Return whether ``thing`` is a policy of another library, and not an agent."""
+    network = thing if isinstance(thing, nn.Module) else read(thing, "policy")
+    return isinstance(network, nn.Module) and bool(lacking(thing, ("act",)))
+
+
 def as_policy(
     policy: Any, world: Any, *, forward: Forward | None = None, recurrent: bool = False
 ) -> Policy:
@@ -324,7 +336,7 @@ def as_policy(
             "conversion of frames to the observation that the policy was trained on. GymWorld and "
             "EnvWorld have both."
         )
-    network = policy if isinstance(policy, nn.Module) else getattr(policy, "policy", None)
+    network = policy if isinstance(policy, nn.Module) else read(policy, "policy")
     if not isinstance(network, nn.Module):
         raise TypeError(
             "policy must be a model of stable-baselines3, a module of torchrl, or a torch.nn.Module, "

@@ -17,6 +17,7 @@ from mitigate.agents.agent import as_agent
 from mitigate.agents.building import agent_option
 from mitigate.agents.networks import in_eval_mode
 from mitigate.agents.observation import check_fits
+from mitigate.agents.policies import as_policy, is_policy
 from mitigate.cluster.launcher import count
 from mitigate.core import conf, seeding
 from mitigate.core.build import located, maker
@@ -36,7 +37,8 @@ from mitigate.evaluation.evaluator import LOCAL, WORTH, evaluate
 from mitigate.evaluation.leaderboard.entry import LeaderboardEntry, check_texts
 from mitigate.evaluation.leaderboard.figures import entry_of
 from mitigate.evaluation.provenance import Known
-from mitigate.evaluation.rows import ROWS
+from mitigate.evaluation.returns import RANDOM, RandomPolicy, ReturnReport, returns
+from mitigate.evaluation.rows import RETURN, ROWS, Row
 from mitigate.guards.opening import labels, open_guards
 from mitigate.worlds.episodes import Episode, read_episodes
 from mitigate.worlds.world import Corrupted, World
@@ -66,14 +68,15 @@ def benchmark(
     training_data: str = "",
     link: str = "",
     out: Path | str | None = None,
-) -> LeaderboardEntry:
+) -> LeaderboardEntry | ReturnReport:
     """Evaluate ``agent`` clean and under a suite of corruptions, and return its entry.
 
     It first prints how long the evaluation takes. The rows are in ``out``; the same call continues
     from them.
 
     Args:
-        agent: any object with the interface in ``mitigate/agents/agent.py``, or a path of weights.
+        agent: any object with the interface in ``mitigate/agents/agent.py``, a path of weights, or
+            a policy of another library (``mitigate/agents/policies.py``).
         name: heading of the entry; None: the folder of the weights, or the class of the agent.
         version: the user's name for state of the agent that cannot be read, such as hooks; without
             it rows of such an agent are not reused.
@@ -96,6 +99,9 @@ def benchmark(
         link: for the entry.
         out: folder of the rows; None: a folder in runs/benchmark.
 
+    Returns:
+        The entry; for a world with score "return" a table of the return, with its retention.
+
     Raises:
         ValueError: The agent, an option or a text of the entry is invalid, or ``out`` holds rows of
             another world.
@@ -103,10 +109,14 @@ def benchmark(
     """
     config, met = _conditions(agent, suite, severity, seed, options)
     texts = {"training_data": training_data, "link": link}
+    make_world = world or maker(config.env.world)
+    first, made_by = _first_world(make_world, met, version)
+    if is_policy(agent):
+        agent = as_policy(agent, first)
+        name, version = name or agent.name, version or agent.version
     agent, name = _agent(agent, name, config, seed, labels(safeguard, restore))
     check_texts(name=name, **texts)
-    make_world = world or maker(config.env.world)
-    first, made_by = _first_world(make_world, met, agent, version)
+    check_fits(agent, first.sensors, type(first).__name__)
     split, chosen = _episodes(first, config, split, episodes, listed, world is not None)
     file = Path(out or OUT / f"{_plain(name)}-{split}-s{severity:g}") / ROWS
     guards = open_guards(safeguard, restore, first.sensors)
@@ -120,6 +130,8 @@ def benchmark(
             rows = evaluate(
                 agent, make_world, chosen, met, out=file, workers=workers, guards=guards, **label
             )
+            if first.rule == RETURN:
+                return returns([*rows, *_random(first, make_world, chosen, file, split, seed)])
     texts["file"] = "" if file.is_absolute() else file.as_posix()
     sensors = sensor_lines(first.sensors, as_agent(agent).sensors)
     return entry_of(rows, name, severity=severity, sensors=sensors, **texts)
@@ -178,12 +190,38 @@ def _agent(
     return agent, "+".join([name or usual, *guards])
 
 
+def _random(
+    world: World,
+    make_world: Callable[[], World],
+    episodes: list[Episode],
+    file: Path,
+    split: str,
+    seed: int,
+) -> list[Row]:
+    """Return the rows of random actions on clean episodes, which retention needs."""
+    if world.action_space is None:
+        raise ValueError(
+            f"{type(world).__name__} must have action_space (mitigate.core.spaces), from which random "
+            "actions are drawn. The retention of a return is measured against them."
+        )
+    return evaluate(
+        RandomPolicy(world.action_space, seed),
+        make_world,
+        episodes,
+        [CLEAN],
+        name=RANDOM,
+        out=file,
+        split=split,
+        seed=seed,
+    )
+
+
 def _plain(name: str) -> str:
     return re.sub(r"[^A-Za-z0-9.@+-]+", "-", name)
 
 
 def _first_world(
-    make_world: Any, met: Sequence[Corruption], agent: Any, version: str | None
+    make_world: Any, met: Sequence[Corruption], version: str | None
 ) -> tuple[World, dict[str, str]]:
     """Return a world and the description of how it was made (``provenance.first_world``).
 
@@ -206,7 +244,6 @@ def _first_world(
             "(mitigate.worlds.tensordict)."
         )
     evaluation.check_sensors(met, world.sensors, type(world).__name__)
-    check_fits(agent, world.sensors, type(world).__name__)
     return world, made_by
 
 

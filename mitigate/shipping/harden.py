@@ -264,7 +264,6 @@ def _evaluate(
     seed: int,
     workers: int | None,
 ) -> list[Row]:
-    weights = checkpoint.weights_sha(agent.network) if isinstance(agent, Policy) else RANDOM
     return evaluate(
         agent,
         world,
@@ -275,7 +274,7 @@ def _evaluate(
         split="compared",
         seed=seed,
         workers=workers,
-        version=f"{name}-{weights}",
+        version=agent.version if isinstance(agent, Policy) else None,
     )
 
 

@@ -15,7 +15,7 @@ import torch
 from tensordict import TensorDict, TensorDictBase
 from torchrl.data import Bounded, Categorical, Composite, NonTensor, OneHot, Unbounded
 from torchrl.data.tensor_specs import ContinuousBox
-from torchrl.envs import EnvBase
+from torchrl.envs import EnvBase, GymLikeEnv
 
 from mitigate.core.observation import (
     DEPTH,
@@ -29,6 +29,7 @@ from mitigate.core.observation import (
     Sensor,
 )
 from mitigate.core.seeding import generator
+from mitigate.core.spaces import ActionSpace, Box, Discrete, MultiDiscrete
 from mitigate.worlds.episodes import Episode, read_episodes
 from mitigate.worlds.seeded import SeededWorld, Success
 from mitigate.worlds.world import TrainingEpisodes, World
@@ -160,8 +161,8 @@ class EnvWorld(SeededWorld):
         rule: See ``SeededWorld``.
 
     Raises:
-        ValueError: The environment is batched, its action is not one discrete number, or as in
-            ``SeededWorld``.
+        ValueError: The environment is batched, its actions are of another kind (``core/spaces.py``),
+            or as in ``SeededWorld``.
     """
 
     def __init__(
@@ -173,6 +174,8 @@ class EnvWorld(SeededWorld):
         unit: float | None = None,
         limit: int | None = None,
         rule: str | None = None,
+        score: str = "success",
+        extra: Sequence[str] = (),
     ) -> None:
         if env.batch_size.numel() != 1:
             raise ValueError(
@@ -181,29 +184,33 @@ class EnvWorld(SeededWorld):
             )
         action = env.full_action_spec
         actions = [action[key] for key in action.keys(True, True)]
-        if len(actions) != 1 or not _is_discrete(actions[0]):
-            listed = ", ".join(f"{type(spec).__name__} {list(spec.shape)}" for spec in actions)
+        if len(actions) != 1:
             raise ValueError(
-                "The actions of the environment must be one discrete number (Categorical or "
-                f"OneHot), got {listed}. Wrap the environment in a transform that converts a "
-                "number into its action."
+                f"The environment must have one action, got {len(actions)}. Wrap it in a transform "
+                "that makes them from one action."
             )
+        self.action_space = _space_of(actions[0], env.batch_size.numel())
         spec = env.observation_spec
         specs = {_dotted(key): spec[key] for key in spec.keys(True, True)}
         default = {name: name for name in (RGB, DEPTH, POSE) if name in specs}
         arrays = {name: _describe(spec) for name, spec in specs.items()}
-        super().__init__(arrays, entries or default, success, unit, limit, rule)
+        super().__init__(
+            arrays, entries or default, success, unit, limit, rule, score, extra
+        )
         self.env = env
 
     def reset(self, episode: Episode) -> Observation:
         seed = self._begin(episode)
         with self._calling(f"{type(self.env).__name__}.reset()"):
             self.env.set_seed(seed)
-            self._now = self.env.reset()
+            # torchrl resets a gymnasium environment twice; without the seed the second reset would
+            # start another episode than GymWorld does
+            is_gym = isinstance(getattr(self.env, "base_env", self.env), GymLikeEnv)
+            self._now = self.env.reset(seed=seed) if is_gym else self.env.reset()
             parts = self._parts()
         return self._observation(parts)
 
-    def step(self, action: int) -> Observation:
+    def step(self, action: Any) -> Observation:
         """Take an action.
 
         Raises:
@@ -212,12 +219,10 @@ class EnvWorld(SeededWorld):
         """
         self._check_not_done()
         spec = self.env.action_spec
-        if not 0 <= action < spec.space.n:
-            raise ValueError(f"The action must be 0 to {spec.space.n - 1}, got {action}.")
-        chosen = torch.tensor(action)
+        chosen = torch.as_tensor(np.asarray(self.action_space.check(action)))
         if isinstance(spec, OneHot):
-            chosen = torch.nn.functional.one_hot(chosen, spec.space.n).to(spec.dtype)
-        self._now.set(self.env.action_key, chosen.reshape(spec.shape))
+            chosen = torch.nn.functional.one_hot(chosen, spec.space.n)
+        self._now.set(self.env.action_key, chosen.to(spec.dtype).reshape(spec.shape))
         with self._calling(f"{type(self.env).__name__}.step()"):
             self._now = self.env.step(self._now)["next"]
             reward = float(self._now.get(self.env.reward_key).sum())
@@ -234,13 +239,26 @@ class EnvWorld(SeededWorld):
         return {e: self._now[keys[e]].numpy(force=True) for e in self.entries.values()}
 
 
-def _is_discrete(spec: Any) -> bool:
-    """Return whether an action is one number below ``spec.space.n``.
+def _space_of(spec: Any, batch: int) -> ActionSpace:
+    """Return the action space of a torchrl spec.
 
-    Subclasses of these specs, such as MultiCategorical, are several numbers.
+    Raises:
+        ValueError: It is neither Categorical, OneHot, MultiCategorical nor a bounded or unbounded
+            array.
     """
-    return type(spec) in (Categorical, OneHot) and spec.shape.numel() == (
-        spec.space.n if type(spec) is OneHot else 1
+    kind = type(spec).__name__
+    if kind in ("Categorical", "OneHot") and spec.shape.numel() == batch * (
+        spec.space.n if kind == "OneHot" else 1
+    ):
+        return Discrete(int(spec.space.n))
+    if kind == "MultiCategorical":
+        return MultiDiscrete(np.asarray(spec.nvec).reshape(spec.shape))
+    if isinstance(spec.space, ContinuousBox):
+        return Box(spec.space.low.numpy(force=True), spec.space.high.numpy(force=True))
+    raise ValueError(
+        "The action of the environment must be Categorical, OneHot, MultiCategorical, Bounded or "
+        f"Unbounded, got {kind} {list(spec.shape)}. Wrap the environment in a transform that converts "
+        "such an action into its own."
     )
 
 

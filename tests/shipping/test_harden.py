@@ -8,16 +8,18 @@ from gymnasium import spaces
 from torch import nn
 
 import mitigate
-from mitigate.agents.policies import as_policy, load_policy
+from mitigate.agents.policies import as_policy
 from mitigate.core import checkpoint
+from mitigate.recipes.self_distil import SelfDistil
 from mitigate.worlds.gym import GymWorld
+from mitigate.worlds.seeded import seeded_episodes
 
 
 class Lights(gymnasium.Env):
     """A light on the left or the right shows the side to choose, five times in a row."""
 
-    def __init__(self, continuous=False):
-        self.observation_space = spaces.Box(0, 255, (16, 16, 3), np.uint8)
+    def __init__(self, continuous=False, size=16):
+        self.observation_space = spaces.Box(0, 255, (size, size, 3), np.uint8)
         self.action_space = (
             spaces.Box(-1, 1, (1,), np.float32) if continuous else spaces.Discrete(2)
         )
@@ -30,7 +32,7 @@ class Lights(gymnasium.Env):
 
     def observe(self):
         self.side = int(self.np_random.integers(2))
-        frame = np.full((16, 16, 3), 90, np.uint8)
+        frame = np.full(self.observation_space.shape, 90, np.uint8)
         frame[4:12, 8 * self.side + 2 : 8 * self.side + 7] = (40, 220, 40)
         return frame
 
@@ -58,7 +60,7 @@ def trained(continuous=False):
     optimizer = torch.optim.Adam(net.parameters(), 1e-2)
     env.reset(seed=7)
     for _ in range(60):
-        frames, sides = zip(*[(env.observe(), env.side) for _ in range(16)])
+        frames, sides = zip(*[(env.observe(), env.side) for _ in range(16)], strict=True)
         output, target = net(torch.from_numpy(np.stack(frames))), torch.tensor(sides)
         loss = (
             (output[:, 0] - (2.0 * target - 1)).square().mean()
@@ -80,20 +82,129 @@ def continuous_world():
 
 
 SHORT = {"steps": 6, "every": 3, "episodes": 2, "batch": 8, "suite": ["low_light", "spatter"]}
+FEW = seeded_episodes(range(4))
 
 
-def test_harden_keeps_the_given_policy_and_returns_its_class(tmp_path):
+def test_harden_returns_a_hardened_copy_and_a_report(tmp_path):
     net = trained()
     before = checkpoint.weights_sha(net)
-    result = mitigate.harden(net, world, out=tmp_path, **SHORT)
+    result = mitigate.harden(net, world, listed=FEW, out=tmp_path, **SHORT)
     assert checkpoint.weights_sha(net) == before
     assert type(result.policy) is Net
     assert checkpoint.weights_sha(result.policy) != before
-    assert "PRS-SR" in result.report and "before" in result.report
-    print(result)
+    assert {row["name"] for row in result.rows} == {"before", "after"}
+    assert "**PRS-SR (RGB)**" in result.report
 
 
-def test_harden_continuous(tmp_path):
-    net = trained(True)
-    result = mitigate.harden(net, continuous_world, out=tmp_path, **SHORT)
-    print(result)
+def test_harden_writes_weights_that_load_policy_restores(tmp_path):
+    result = mitigate.harden(trained(), world, listed=FEW, out=tmp_path, **SHORT)
+    loaded = mitigate.load_policy(Net(), tmp_path / "agent")
+    assert checkpoint.weights_sha(loaded) == checkpoint.weights_sha(result.policy)
+
+
+@pytest.mark.parametrize("tune", ["all", "adapters"])
+def test_harden_resumes_to_the_same_bits(tmp_path, tune, monkeypatch):
+    whole = mitigate.harden(trained(), world, listed=FEW, tune=tune, out=tmp_path / "whole", **SHORT)
+    forward, calls = SelfDistil.forward, []
+
+    def interrupted(self, batch):
+        calls.append(1)
+        if len(calls) == 5:
+            raise KeyboardInterrupt
+        return forward(self, batch)
+
+    monkeypatch.setattr(SelfDistil, "forward", interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        mitigate.harden(trained(), world, listed=FEW, tune=tune, out=tmp_path / "cut", **SHORT)
+    resumed = mitigate.harden(trained(), world, listed=FEW, tune=tune, out=tmp_path / "cut", **SHORT)
+    assert len(calls) > 5
+    assert checkpoint.weights_sha(resumed.policy) == checkpoint.weights_sha(whole.policy)
+    assert [r["success"] for r in resumed.rows] == [r["success"] for r in whole.rows]
+
+
+def test_harden_with_adapters_leaves_the_policy_frozen(tmp_path):
+    net = trained()
+    result = mitigate.harden(net, world, listed=FEW, tune="adapters", out=tmp_path, **SHORT)
+    for name, value in net.state_dict().items():
+        assert torch.equal(result.policy.state_dict()[name], value)
+    loaded = mitigate.load_policy(trained(), tmp_path / "agent")
+    frames = torch.from_numpy(np.stack([Lights().reset(seed=s)[0] for s in range(4)]))
+    assert torch.equal(loaded(frames), result.policy(frames))
+
+
+def test_harden_continuous_policy_reports_the_return(tmp_path):
+    result = mitigate.harden(trained(True), continuous_world, listed=FEW, out=tmp_path, **SHORT)
+    assert "Retention, mean" in result.report
+    loaded = as_policy(mitigate.load_policy(Net(1), tmp_path / "agent"), continuous_world())
+    observation = continuous_world().reset(FEW[0])
+    np.testing.assert_array_equal(loaded.act(observation), result.agent.act(observation))
+
+
+def test_harden_stops_before_training_if_the_policy_is_no_better_than_random(tmp_path):
+    net = Net(1)
+    with torch.no_grad():
+        net.head.weight.zero_()
+        net.head.bias.fill_(1.0)  # always to the right
+    with pytest.raises(ValueError, match="no more than random"):
+        mitigate.harden(net, continuous_world, listed=seeded_episodes([3, 5]), out=tmp_path, **SHORT)
+    assert not (tmp_path / "training").exists()
+
+
+def test_harden_takes_a_model_of_stable_baselines(tmp_path):
+    sb3 = pytest.importorskip("stable_baselines3")
+    wide = {"size": 36}
+    env = Lights(**wide)
+    model = sb3.PPO("CnnPolicy", env, n_steps=16, seed=0)
+    result = mitigate.harden(model, lambda: GymWorld(Lights(**wide)), listed=FEW, out=tmp_path, **SHORT)
+    frame, _ = env.reset(seed=0)
+    action, _ = result.policy.predict(frame, deterministic=True)
+    assert int(action) == result.agent.act(GymWorld(env).reset(FEW[0]))
+    assert result.policy.policy is not model.policy
+
+
+def test_harden_rejects_training_on_the_compared_episodes(tmp_path):
+    with pytest.raises(ValueError, match="share 2 episodes"):
+        mitigate.harden(
+            trained(), world, listed=FEW, training=seeded_episodes([2, 3, 9]), out=tmp_path, **SHORT
+        )
+
+
+def test_harden_names_frames_that_were_lost(tmp_path):
+    mitigate.harden(trained(), world, listed=FEW, out=tmp_path, **SHORT)
+    for file in (tmp_path / "frames").iterdir():
+        file.unlink()
+    newest = max((tmp_path / "training").glob("step-*.pt"))
+    newest.unlink()
+    with pytest.raises(ValueError, match="cannot resume without its stored frames"):
+        mitigate.harden(trained(), world, listed=FEW, out=tmp_path, **SHORT)
+
+
+def test_harden_rejects_another_policy_in_the_folder(tmp_path):
+    mitigate.harden(trained(), world, listed=FEW, out=tmp_path, **SHORT)
+    other = trained()
+    with torch.no_grad():
+        other.head.bias.add_(1)
+    with pytest.raises(ValueError, match="start"):
+        mitigate.harden(other, world, listed=FEW, out=tmp_path, **SHORT)
+
+
+def test_harden_leaves_out_corruptions_of_sensors_that_are_not_read(tmp_path, capsys):
+    options = SHORT | {"suite": ["low_light", "missing_data"]}
+    result = mitigate.harden(trained(), world, listed=FEW, out=tmp_path, **options)
+    assert "left out missing_data" in capsys.readouterr().out
+    assert {row["corruption"] for row in result.rows} == {"clean", "low_light"}
+
+
+def test_benchmark_takes_a_policy_of_another_library(tmp_path):
+    entry = mitigate.benchmark(trained(), world=world, listed=FEW, suite=["spatter"], out=tmp_path)
+    assert entry.name == "Net"
+    assert entry.SR["clean"][0] == 1.0
+
+
+def test_benchmark_reports_the_return_and_reuses_rows(tmp_path, capsys):
+    for _ in range(2):
+        report = mitigate.benchmark(
+            trained(True), world=continuous_world, listed=FEW, suite=["spatter"], out=tmp_path
+        )
+        assert report.means["Net", "clean"].value == 5.0
+    assert "all already done" in capsys.readouterr().out

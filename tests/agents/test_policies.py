@@ -1,0 +1,218 @@
+"""Policies of other libraries as agents: the same actions, distributions with gradients, errors."""
+
+import gymnasium
+import numpy as np
+import pytest
+import torch
+from gymnasium import spaces
+from torch import nn
+from torch.distributions import Categorical, Normal
+
+from mitigate.agents.policies import as_policy, copied, divergence, load_policy, mode
+from mitigate.core import checkpoint
+from mitigate.worlds.gym import GymWorld
+from mitigate.worlds.seeded import seeded_episodes
+
+ACTIONS = {
+    "discrete": spaces.Discrete(3),
+    "box": spaces.Box(-2.0, 1.0, (2,), np.float32),
+    "multi": spaces.MultiDiscrete([2, 3]),
+}
+
+
+class Noise(gymnasium.Env):
+    """Random frames; depth in millimetres as uint16."""
+
+    def __init__(self, actions="discrete", depth=False, size=36):
+        frame = spaces.Box(0, 255, (size, size, 3), np.uint8)
+        metres = spaces.Box(0, 9000, (size, size, 1), np.uint16)
+        self.observation_space = spaces.Dict({"image": frame, "far": metres}) if depth else frame
+        self.action_space = ACTIONS[actions]
+        self.depth = depth
+
+    def reset(self, *, seed=None, options=None):
+        super().reset(seed=seed)
+        self.steps = 0
+        self.observation_space.seed(seed)
+        return self.observation_space.sample(), {}
+
+    def step(self, action):
+        assert self.action_space.contains(action)
+        self.steps += 1
+        return self.observation_space.sample(), 1.0, self.steps == 6, False, {"success": True}
+
+
+def world_of(env):
+    entries = {"rgb": "image", "depth": "far"} if env.depth else None
+    return GymWorld(env, entries, unit=0.001 if env.depth else None)
+
+
+def rollout(world, policy, seed=0):
+    """Return the observations and actions of an episode."""
+    observation = world.reset(seeded_episodes([seed])[0])
+    policy.reset("")
+    frames, actions = [], []
+    while not world.done:
+        frames.append(dict(observation))
+        actions.append(policy.act(observation))
+        observation = world.step(actions[-1])
+    return frames, actions
+
+
+@pytest.mark.parametrize("algorithm", ["PPO", "A2C", "DQN", "SAC", "TD3"])
+@pytest.mark.parametrize("depth", [False, True])
+def test_as_policy_acts_as_stable_baselines(algorithm, depth):
+    sb3 = pytest.importorskip("stable_baselines3")
+    env = Noise("box" if algorithm in ("SAC", "TD3") else "discrete", depth)
+    kind = "MultiInputPolicy" if depth else "CnnPolicy"
+    options = {"buffer_size": 10} if algorithm in ("DQN", "SAC", "TD3") else {}
+    model = getattr(sb3, algorithm)(kind, env, seed=0, **options)
+    world = world_of(env)
+    frames, actions = rollout(world, as_policy(model, world))
+    for observation, action in zip(frames, actions, strict=True):
+        native = world.native(observation)
+        expected, _ = model.predict(native, deterministic=True)
+        np.testing.assert_array_equal(action, expected)
+        assert env.observation_space.contains(native)
+
+
+def test_as_policy_remembers_as_recurrent_ppo():
+    contrib = pytest.importorskip("sb3_contrib")
+    env = Noise()
+    model = contrib.RecurrentPPO("CnnLstmPolicy", env, seed=0)
+    world = world_of(env)
+    policy = as_policy(model, world)
+    frames, actions = rollout(world, policy)
+    state, start = None, np.array([True])
+    for observation, action in zip(frames, actions, strict=True):
+        expected, state = model.predict(observation["rgb"], state, start, deterministic=True)
+        assert action == expected
+        start = np.array([False])
+    batch = {"rgb": torch.from_numpy(np.stack([f["rgb"] for f in frames]))}
+    places = policy.answers(batch, length=len(frames))
+    assert [int(mode(answer[0])[0]) for answer in places] == actions
+
+
+@pytest.mark.parametrize("actions", ["discrete", "box"])
+def test_as_policy_acts_as_torchrl(actions):
+    from tensordict import TensorDict
+    from tensordict.nn import NormalParamExtractor, ProbabilisticTensorDictSequential, TensorDictModule
+    from torchrl.modules import ProbabilisticActor, TanhNormal
+
+    class Net(nn.Module):
+        def __init__(self, count, extract):
+            super().__init__()
+            self.layers = nn.Sequential(nn.Conv2d(3, 4, 6, 6), nn.Flatten(), nn.Linear(144, count))
+            self.extract = extract
+
+        def forward(self, pixels):
+            return self.extract(self.layers(pixels.permute(0, 3, 1, 2).float() / 255))
+
+    torch.manual_seed(0)
+    if actions == "discrete":
+        module = TensorDictModule(Net(3, nn.Identity()), ["pixels"], ["logits"])
+        actor = ProbabilisticActor(module, in_keys=["logits"], distribution_class=Categorical)
+    else:
+        module = TensorDictModule(Net(4, NormalParamExtractor()), ["pixels"], ["loc", "scale"])
+        actor = ProbabilisticActor(
+            module,
+            in_keys=["loc", "scale"],
+            distribution_class=TanhNormal,
+            distribution_kwargs={"low": -2.0, "high": 1.0},
+        )
+    env = Noise(actions)
+    world = world_of(env)
+    frames, chosen = rollout(world, as_policy(actor, world))
+    for observation, action in zip(frames, chosen, strict=True):
+        inputs = TensorDict({"pixels": torch.from_numpy(observation["rgb"])[None]}, [1])
+        with torch.no_grad():
+            distribution = actor.get_dist(inputs)
+        expected = (
+            distribution.probs.argmax(-1) if actions == "discrete" else distribution.deterministic_sample
+        )
+        np.testing.assert_allclose(action, expected[0].numpy(), rtol=1e-5, atol=1e-6)
+
+
+class Memory(nn.Module):
+    def __init__(self):
+        super().__init__()
+        self.cell = nn.GRUCell(3, 5)
+        self.head = nn.Linear(5, 3)
+
+    def forward(self, frames, memory=None):
+        memory = self.cell(frames.float().mean((1, 2)) / 255, memory)
+        return self.head(memory), memory
+
+
+def test_as_policy_takes_a_recurrent_module():
+    torch.manual_seed(0)
+    world = world_of(Noise())
+    policy = as_policy(Memory(), world, recurrent=True)
+    frames, actions = rollout(world, policy)
+    batch = {"rgb": torch.from_numpy(np.stack([f["rgb"] for f in frames]))}
+    assert [int(mode(a[0])[0]) for a in policy.answers(batch, len(frames))] == actions
+
+
+def test_as_policy_splits_logits_of_several_choices():
+    net = nn.Sequential(nn.Flatten(), nn.Linear(36 * 36 * 3, 5))
+    world = world_of(Noise("multi"))
+    _, actions = rollout(world, as_policy(net, world, forward=lambda net, frames: net(frames.float())))
+    assert all(action.shape == (2,) for action in actions)
+
+
+def test_as_policy_names_entries_that_the_world_leaves_out():
+    sb3 = pytest.importorskip("stable_baselines3")
+    env = Noise(depth=True)
+    model = sb3.PPO("MultiInputPolicy", env)
+    with pytest.raises(ValueError, match="'far': 'far'"):
+        as_policy(model, GymWorld(env, {"rgb": "image"}))
+
+
+def test_as_policy_rejects_objects_without_weights():
+    with pytest.raises(TypeError, match="stable-baselines3"):
+        as_policy(object(), world_of(Noise()))
+
+
+@pytest.mark.parametrize(
+    "make",
+    [
+        lambda shift: [Categorical(logits=torch.zeros(4, 3) + shift * torch.arange(3.0))],
+        lambda shift: [Normal(torch.zeros(4, 2) + shift, 1.0)],
+        lambda shift: torch.randn(4, 2, generator=torch.Generator().manual_seed(0)) + shift,
+    ],
+    ids=["discrete", "normal", "actions"],
+)
+def test_divergence_is_zero_only_for_equal_answers(make):
+    assert float(divergence(make(0.0), make(0.0))) == 0
+    assert float(divergence(make(0.0), make(1.0))) > 0.1
+
+
+def test_divergence_of_normals_is_the_formula():
+    teacher, student = [Normal(torch.tensor([[1.0, 2.0]]), 1.0)], [Normal(torch.zeros(1, 2), 1.0)]
+    assert float(divergence(teacher, student)) == pytest.approx((1 + 4) / 2)
+
+
+def test_native_returns_the_environment_s_own_depth():
+    world = world_of(Noise(depth=True))
+    observation = world.reset(seeded_episodes([0])[0])
+    raw = world.env.observation_space
+    raw.seed(0)
+    expected = raw.sample()
+    native = world.native(observation)
+    np.testing.assert_array_equal(native["far"], expected["far"])
+    np.testing.assert_array_equal(native["image"], expected["image"])
+
+
+def test_load_policy_restores_the_weights(tmp_path):
+    net = nn.Linear(3, 2)
+    checkpoint.save_weights(net, tmp_path / "agent")
+    other = load_policy(nn.Linear(3, 2), tmp_path / "agent")
+    assert torch.equal(other.weight, net.weight)
+
+
+def test_copied_policies_share_no_weights():
+    policy = as_policy(Memory(), world_of(Noise()), recurrent=True)
+    twin = copied(policy)
+    with torch.no_grad():
+        twin.network.head.weight.zero_()
+    assert policy.network.head.weight.abs().sum() > 0
