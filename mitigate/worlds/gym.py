@@ -7,9 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from mitigate.core.observation import DEPTH, POSE, RGB, Observation
+from mitigate.core.observation import DEPTH, POSE, RGB
 from mitigate.core.spaces import from_gymnasium
-from mitigate.worlds.episodes import Episode
 from mitigate.worlds.seeded import WHOLE, SeededWorld, Success
 
 
@@ -45,7 +44,6 @@ class GymWorld(SeededWorld):
         score: str = "success",
         extra: Sequence[str] = (),
     ) -> None:
-        self.action_space = from_gymnasium(env.action_space)
         spaces = _by_name(env.observation_space)
         default = {n: n for n in (RGB, DEPTH, POSE) if n in spaces}
         if WHOLE in spaces:
@@ -55,33 +53,27 @@ class GymWorld(SeededWorld):
             if space.shape is not None:  # text and Tuple have none
                 high = float(np.max(_attribute(space, "high", np.inf)))
                 arrays[name] = (space.shape, str(space.dtype), high)
-        super().__init__(arrays, entries or default, success, unit, limit, rule, score, extra)
-        self.env = env
+        super().__init__(
+            env,
+            from_gymnasium(env.action_space),
+            arrays,
+            entries or default,
+            success,
+            unit,
+            limit,
+            rule,
+            score,
+            extra,
+        )
 
-    def reset(self, episode: Episode) -> Observation:
-        seed = self._begin(episode)
-        with self._calling(f"{type(self.env).__name__}.reset()"):
-            observation, self._info = self.env.reset(seed=seed)
-            parts = _by_name(observation)
-        return self._observation(parts)
+    def _reset_env(self, seed: int) -> dict[str, Any]:
+        observation, self._info = self.env.reset(seed=seed)
+        return _by_name(observation)
 
-    def step(self, action: Any) -> Observation:
-        """Take an action.
-
-        Raises:
-            ValueError: The action does not exist, or ``info`` does not report success at the end of
-                the episode.
-        """
-        self._check_not_done()
-        action = self.action_space.check(action)
-        with self._calling(f"{type(self.env).__name__}.step()"):
-            observation, reward, terminated, truncated, info = self.env.step(action)
-            reward = float(reward)
-            over = bool(terminated or truncated)
-            parts = _by_name(observation)
-            self._info = dict(info)
-        self._end_step(reward, over)
-        return self._observation(parts)
+    def _step_env(self, action: Any) -> tuple[dict[str, Any], float, bool]:
+        observation, reward, terminated, truncated, info = self.env.step(action)
+        self._info = dict(info)
+        return _by_name(observation), float(reward), bool(terminated or truncated)
 
     def _report(self) -> Mapping[str, Any]:
         return self._info

@@ -96,7 +96,11 @@ def test_as_policy_remembers_as_recurrent_ppo():
 @pytest.mark.parametrize("actions", ["discrete", "box"])
 def test_as_policy_acts_as_torchrl(actions):
     from tensordict import TensorDict
-    from tensordict.nn import NormalParamExtractor, ProbabilisticTensorDictSequential, TensorDictModule
+    from tensordict.nn import (
+        NormalParamExtractor,
+        ProbabilisticTensorDictSequential,
+        TensorDictModule,
+    )
     from torchrl.modules import ProbabilisticActor, TanhNormal
 
     class Net(nn.Module):
@@ -128,7 +132,9 @@ def test_as_policy_acts_as_torchrl(actions):
         with torch.no_grad():
             distribution = actor.get_dist(inputs)
         expected = (
-            distribution.probs.argmax(-1) if actions == "discrete" else distribution.deterministic_sample
+            distribution.probs.argmax(-1)
+            if actions == "discrete"
+            else distribution.deterministic_sample
         )
         np.testing.assert_allclose(action, expected[0].numpy(), rtol=1e-5, atol=1e-6)
 
@@ -156,7 +162,9 @@ def test_as_policy_takes_a_recurrent_module():
 def test_as_policy_splits_logits_of_several_choices():
     net = nn.Sequential(nn.Flatten(), nn.Linear(36 * 36 * 3, 5))
     world = world_of(Noise("multi"))
-    _, actions = rollout(world, as_policy(net, world, forward=lambda net, frames: net(frames.float())))
+    _, actions = rollout(
+        world, as_policy(net, world, forward=lambda net, frames: net(frames.float()))
+    )
     assert all(action.shape == (2,) for action in actions)
 
 

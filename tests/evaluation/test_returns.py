@@ -64,4 +64,12 @@ def test_random_policy_is_keyed():
         policy.reset("Reach the goal.")
         draws.append(np.stack([policy.act({}) for _ in range(3)]))
     np.testing.assert_array_equal(*draws)
-    assert len({RandomPolicy(Discrete(5, start=1)).space.sample(np.random.default_rng(s)) for s in range(40)}) == 5
+    assert (
+        len(
+            {
+                RandomPolicy(Discrete(5, start=1)).space.sample(np.random.default_rng(s))
+                for s in range(40)
+            }
+        )
+        == 5
+    )

@@ -104,7 +104,9 @@ def test_harden_writes_weights_that_load_policy_restores(tmp_path):
 
 @pytest.mark.parametrize("tune", ["all", "adapters"])
 def test_harden_resumes_to_the_same_bits(tmp_path, tune, monkeypatch):
-    whole = mitigate.harden(trained(), world, listed=FEW, tune=tune, out=tmp_path / "whole", **SHORT)
+    whole = mitigate.harden(
+        trained(), world, listed=FEW, tune=tune, out=tmp_path / "whole", **SHORT
+    )
     forward, calls = SelfDistil.forward, []
 
     def interrupted(self, batch):
@@ -116,7 +118,9 @@ def test_harden_resumes_to_the_same_bits(tmp_path, tune, monkeypatch):
     monkeypatch.setattr(SelfDistil, "forward", interrupted)
     with pytest.raises(KeyboardInterrupt):
         mitigate.harden(trained(), world, listed=FEW, tune=tune, out=tmp_path / "cut", **SHORT)
-    resumed = mitigate.harden(trained(), world, listed=FEW, tune=tune, out=tmp_path / "cut", **SHORT)
+    resumed = mitigate.harden(
+        trained(), world, listed=FEW, tune=tune, out=tmp_path / "cut", **SHORT
+    )
     assert len(calls) > 5
     assert checkpoint.weights_sha(resumed.policy) == checkpoint.weights_sha(whole.policy)
     assert [r["success"] for r in resumed.rows] == [r["success"] for r in whole.rows]
@@ -146,7 +150,9 @@ def test_harden_stops_before_training_if_the_policy_is_no_better_than_random(tmp
         net.head.weight.zero_()
         net.head.bias.fill_(1.0)  # always to the right
     with pytest.raises(ValueError, match="no more than random"):
-        mitigate.harden(net, continuous_world, listed=seeded_episodes([3, 5]), out=tmp_path, **SHORT)
+        mitigate.harden(
+            net, continuous_world, listed=seeded_episodes([3, 5]), out=tmp_path, **SHORT
+        )
     assert not (tmp_path / "training").exists()
 
 
@@ -155,7 +161,9 @@ def test_harden_takes_a_model_of_stable_baselines(tmp_path):
     wide = {"size": 36}
     env = Lights(**wide)
     model = sb3.PPO("CnnPolicy", env, n_steps=16, seed=0)
-    result = mitigate.harden(model, lambda: GymWorld(Lights(**wide)), listed=FEW, out=tmp_path, **SHORT)
+    result = mitigate.harden(
+        model, lambda: GymWorld(Lights(**wide)), listed=FEW, out=tmp_path, **SHORT
+    )
     frame, _ = env.reset(seed=0)
     action, _ = result.policy.predict(frame, deterministic=True)
     assert int(action) == result.agent.act(GymWorld(env).reset(FEW[0]))
