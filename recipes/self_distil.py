@@ -12,8 +12,8 @@ corrupted one: DAgger (Ross et al. 2011) with the clean policy in place of an ex
 The severity rises over the first part of the training, and the last part is mostly clean frames, so
 that the student returns to the clean behaviour (the order of STRONG-VLA, 2026).
 
-Rollouts are slow and learning is fast, so the student runs episodes only every ``every`` steps. Their
-clean frames are stored, and each step corrupts a random sample of all stored frames anew.
+Rollouts are slow and learning is fast, so the student runs episodes only every ``every`` steps.
+Their clean frames are stored, and each step corrupts a random sample of all stored frames anew.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ from mitigate.agents.adapters import adapted
 from mitigate.agents.policies import Answer, Policy, copied, divergence
 from mitigate.core import checkpoint
 from mitigate.core.files import write_bytes
-from mitigate.core.observation import DEPTH, POSE, RGB
+from mitigate.core.observation import DEPTH, RGB
 from mitigate.core.pictures import picture
 from mitigate.core.seeding import generator
 from mitigate.corruptions import Schedule, corrupt_observation
@@ -63,12 +63,14 @@ class SelfDistil(Objective):
         batch: frames per step.
         window: consecutive frames that a recurrent policy sees; 1 for other policies.
         w_policy, w_feat, w_consistency: weights of the losses.
-        module: name of the module of the network whose output is compared; None: its last convolution.
+        module: name of the module of the network whose output is compared; None: its last
+            convolution.
         curriculum: whether the severity rises and the end is mostly clean.
         seed: seed of episodes and corruptions.
 
     Raises:
-        ValueError: A number is out of its range, the policy reads no frames, or it has no such module.
+        ValueError: A number is out of its range, the policy reads no frames, or it has no such
+            module.
     """
 
     def __init__(
@@ -103,8 +105,9 @@ class SelfDistil(Objective):
                 raise ValueError(f"{name} must be a whole number >= 1, got {value}.")
         if not {RGB, DEPTH} & set(agent.sensors):
             raise ValueError(
-                f"{agent.name} reads {', '.join(agent.sensors) or 'nothing'}, but no rgb and no depth, "
-                "so that no corruption changes its input. Name its frames: GymWorld(entries=...)."
+                f"{agent.name} reads {', '.join(agent.sensors) or 'nothing'}, but no rgb and no "
+                "depth, so that no corruption changes its input. Name its frames: "
+                "GymWorld(entries=...)."
             )
         self.agent = agent
         self.world = world
@@ -207,14 +210,17 @@ class SelfDistil(Objective):
         return answers, torch.cat([output.float().flatten(1) for output in outputs])
 
     def _round(self, step: int) -> dict[str, np.ndarray]:
-        """Return the windows of the rollouts at ``step``: run them, or read them if they are stored."""
-        file = self.folder / f"frames-{step:06d}.safetensors"
+        """Return the windows of the rollouts at ``step``: run them, or read them if they are
+        stored."""
+        file = self.folder / ""
+        f"frames-{step:06d}.safetensors"
         if file.is_file():
-            return _read(file)
+            return
+            _read(file)
         if step < self._now:
             raise ValueError(
-                f"{file} is missing. A training cannot resume without its stored frames. Restore the "
-                "file if you have a copy, or choose another folder (out=...)."
+                f"{file} is missing. A training cannot resume without its stored frames. Restore "
+                "the file if you have a copy, or choose another folder (out=...)."
             )
         windows = [self._rollout(step, number) for number in range(self.episodes)]
         stored = {name: np.concatenate([w[name] for w in windows]) for name in windows[0]}
@@ -257,7 +263,8 @@ class SelfDistil(Objective):
 
 
 def last_convolution(policy: Policy) -> str:
-    """Return the name of the last convolution of a policy's network, or of its first layer with weights.
+    """Return the name of the last convolution of a policy's network, or of its first layer with
+    weights.
 
     Raises:
         ValueError: The network has neither.
@@ -270,8 +277,8 @@ def last_convolution(policy: Policy) -> str:
     ]
     if not layers:
         raise ValueError(
-            f"{policy.name} has no convolution and no linear layer. Name the module whose output is to "
-            "be compared: module=..."
+            f"{policy.name} has no convolution and no linear layer. Name the module whose output "
+            "is to be compared: module=..."
         )
     convolutions = [name for name, is_convolution in layers if is_convolution]
     return convolutions[-1] if convolutions else layers[0][0]

@@ -1,7 +1,7 @@
 """Use trained policies of other libraries as agents: stable-baselines3, torchrl, plain torch.
 
-:func:`as_policy` recognises a policy by its methods; no other library is imported. The agent reads the
-frames of a world, converts them back to the environment's own observation
+:func:`as_policy` recognises a policy by its methods; no other library is imported. The agent reads
+the frames of a world, converts them back to the environment's own observation
 (``World.native``), and asks the policy. :meth:`Policy.answer` gives the action distributions
 for batches of frames, with gradients, which ``mitigate.harden`` trains.
 """
@@ -247,7 +247,7 @@ class TorchrlPolicy(Policy):
             return _parts(network.get_dist(inputs)), self._next(inputs)
         outputs = network(inputs)
         for key in ("logits", "action_value", "action"):
-            if key in outputs.keys():
+            if key in outputs:
                 values = outputs[key]
                 return ([Categorical(logits=values)] if key == "logits" else values), self._next(
                     outputs
@@ -264,10 +264,11 @@ class TorchrlPolicy(Policy):
 class ModulePolicy(Policy):
     """A plain ``nn.Module``.
 
-    ``forward(network, observation)``, or with ``recurrent`` ``forward(network, observation, memory)``,
-    returns logits of the actions [B, n] (discrete actions), actions [B, ...] (continuous ones), a
-    ``torch.distributions`` object, or a list of these; with ``recurrent`` also the new memory. By
-    default the network is called itself. ``observation`` holds tensors on the network's device.
+    ``forward(network, observation)``, or with ``recurrent`` ``forward(network, observation,
+    memory)``, returns logits of the actions [B, n] (discrete actions), actions [B, ...]
+    (continuous ones), a ``torch.distributions`` object, or a list of these; with ``recurrent``
+    also the new memory. By default the network is called itself. ``observation`` holds tensors on
+    the network's device.
     """
 
     def __init__(
@@ -339,8 +340,8 @@ def as_policy(
     network = policy if isinstance(policy, nn.Module) else read(policy, "policy")
     if not isinstance(network, nn.Module):
         raise TypeError(
-            "policy must be a model of stable-baselines3, a module of torchrl, or a torch.nn.Module, "
-            f"got a {type(policy).__name__}. For a policy without weights only "
+            "policy must be a model of stable-baselines3, a module of torchrl, or a "
+            f"torch.nn.Module, got a {type(policy).__name__}. For a policy without weights only "
             "mitigate.benchmark applies."
         )
     if forward is None and hasattr(network, "obs_to_tensor"):
@@ -358,8 +359,8 @@ def _check_read(names: Any, world: Any) -> None:
     if missing:
         listed = ", ".join(f"{name!r}: {name!r}" for name in missing)
         raise ValueError(
-            f"The policy reads {', '.join(missing)}, which the world's entries leave out. Add them: "
-            f"entries={{..., {listed}}}."
+            f"The policy reads {', '.join(missing)}, which the world's entries leave out. Add "
+            f"them: entries={{..., {listed}}}."
         )
 
 
@@ -392,8 +393,8 @@ def copied(policy: Policy) -> Policy:
         twin._modules = {"network": copy.deepcopy(policy.network)}
     except Exception as error:  # of the user's code
         raise ValueError(
-            f"{policy.name} cannot be copied ({type(error).__name__}: {str(error)[:200]}), which the "
-            "clean teacher needs. Give a policy without open files or environments."
+            f"{policy.name} cannot be copied ({type(error).__name__}: {str(error)[:200]}), which "
+            "the clean teacher needs. Give a policy without open files or environments."
         ) from error
     return twin
 
@@ -416,7 +417,8 @@ def divergence(teacher: Answer, student: Answer) -> Tensor:
     """Return how far the student's answers are from the teacher's, the mean over the batch.
 
     The KL divergence KL(teacher || student), summed over the parts of an action; for actions or
-    values without a distribution the squared error divided by the teacher's variance over the batch.
+    values without a distribution the squared error divided by the teacher's variance over the
+    batch.
     """
     if isinstance(teacher, Tensor) or isinstance(student, Tensor):
         assert isinstance(teacher, Tensor) and isinstance(student, Tensor)

@@ -1,7 +1,7 @@
 """Action spaces: what a world accepts as an action.
 
-The classes correspond to the spaces of gymnasium with the same names; :func:`from_gymnasium` converts
-them. gymnasium itself is not needed, and random actions depend on a key alone.
+The classes correspond to the spaces of gymnasium with the same names; :func:`from_gymnasium`
+converts them. gymnasium itself is not needed, and random actions depend on a key alone.
 """
 
 from __future__ import annotations
@@ -55,7 +55,8 @@ class Discrete(ActionSpace):
 
 @dataclass(frozen=True, eq=False)
 class Box(ActionSpace):
-    """An array of real numbers between ``low`` and ``high`` (arrays of the same shape and dtype)."""
+    """An array of real numbers between ``low`` and ``high`` (arrays of the same shape and
+    dtype)."""
 
     low: np.ndarray
     high: np.ndarray
@@ -110,7 +111,8 @@ class Composite(ActionSpace):
     def check(self, action: Any) -> dict[str, Any]:
         if not isinstance(action, Mapping) or set(action) != set(self.spaces):
             raise ValueError(
-                f"The action must be a dictionary with {', '.join(self.spaces)}, got {_text(action)}."
+                f"The action must be a dictionary with {', '.join(self.spaces)}, got "
+                f"{_text(action)}."
             )
         checked = {}
         for name, space in self.spaces.items():
@@ -144,9 +146,9 @@ def from_gymnasium(space: Any) -> ActionSpace:
     if kind == "Dict":
         return Composite({name: from_gymnasium(part) for name, part in space.spaces.items()})
     raise ValueError(
-        "The action space must be Discrete, Box, MultiDiscrete, MultiBinary, or a Dict of these, got "
-        f"{space}. Wrap the environment in a gymnasium.ActionWrapper with such a space, whose action() "
-        "converts each action."
+        "The action space must be Discrete, Box, MultiDiscrete, MultiBinary, or a Dict of these, "
+        f"got {space}. Wrap the environment in a gymnasium.ActionWrapper with such a space, whose "
+        "action() converts each action."
     )
 
 

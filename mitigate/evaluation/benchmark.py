@@ -201,8 +201,8 @@ def _random(
     """Return the rows of random actions on clean episodes, which retention needs."""
     if world.action_space is None:
         raise ValueError(
-            f"{type(world).__name__} must have action_space (mitigate.core.spaces), from which random "
-            "actions are drawn. The retention of a return is measured against them."
+            f"{type(world).__name__} must have action_space (mitigate.core.spaces), from which "
+            "random actions are drawn. The retention of a return is measured against them."
         )
     return evaluate(
         RandomPolicy(world.action_space, seed),

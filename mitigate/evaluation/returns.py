@@ -1,7 +1,7 @@
 """Tables of the return: for tasks that have no success.
 
-The retention of a return is (R_corrupted - R_random) / (R_clean - R_random): 1 means that corruption
-costs nothing, 0 that the policy is no better than random actions.
+The retention of a return is (R_corrupted - R_random) / (R_clean - R_random): 1 means that
+corruption costs nothing, 0 that the policy is no better than random actions.
 """
 
 from __future__ import annotations
@@ -14,8 +14,8 @@ from typing import Any
 import numpy as np
 
 from mitigate.core.markdown import markdown_of, markdown_table
-from mitigate.core.spaces import ActionSpace
 from mitigate.core.seeding import generator
+from mitigate.core.spaces import ActionSpace
 from mitigate.evaluation.bootstrap import LEVEL, RESAMPLES, Estimate, resampled_means
 from mitigate.evaluation.rows import RETURN, Row
 
@@ -78,8 +78,8 @@ class ReturnReport:
         table = markdown_table(["", *map(markdown_of, agents)], lines)
         return (
             f"{table}\n\n{self.episodes} episodes. Random actions return {_cell(random, '.1f')}. "
-            f"Retention = (R - R_random) / (R_clean - R_random). Brackets: {100 * LEVEL:.0f} % paired "
-            f"bootstrap over episodes, {RESAMPLES:,} resamples."
+            f"Retention = (R - R_random) / (R_clean - R_random). Brackets: {100 * LEVEL:.0f} % "
+            f"paired bootstrap over episodes, {RESAMPLES:,} resamples."
         )
 
 
@@ -112,9 +112,9 @@ def returns(rows: Iterable[Row]) -> ReturnReport:
         span = value[agent, "clean"] - value[RANDOM, "clean"]
         if span <= 0:
             raise ValueError(
-                f"{agent} returns {value[agent, 'clean']:.1f} on clean episodes, no more than random "
-                f"actions ({value[RANDOM, 'clean']:.1f}), so that retention is undefined. Train it "
-                "further, or check its observations."
+                f"{agent} returns {value[agent, 'clean']:.1f} on clean episodes, no more than "
+                f"random actions ({value[RANDOM, 'clean']:.1f}), so that retention is undefined. "
+                "Train it further, or check its observations."
             )
         spans = sample[agent, "clean"] - sample[RANDOM, "clean"]
         shares = {

@@ -33,8 +33,8 @@ from mitigate.core.progress import duration, say
 from mitigate.corruptions import CLEAN, Corruption, Schedule
 from mitigate.corruptions.registry import modality
 from mitigate.evaluation import report
-from mitigate.evaluation.evaluator import evaluate
 from mitigate.evaluation.episode import run_episode
+from mitigate.evaluation.evaluator import evaluate
 from mitigate.evaluation.returns import RANDOM, RandomPolicy, returns
 from mitigate.evaluation.rows import RETURN, ROWS, Row
 from mitigate.evaluation.sections import sections
@@ -100,7 +100,8 @@ def harden(
         policy: a trained policy of stable-baselines3 or torchrl, or an ``nn.Module``
             (``agents/policies.py``). It is not changed.
         world: makes a world, such as ``lambda: GymWorld(gymnasium.make(...))``.
-        forward, recurrent: how to call an ``nn.Module`` (:class:`~mitigate.agents.policies.ModulePolicy`).
+        forward, recurrent: how to call an ``nn.Module``
+            (:class:`~mitigate.agents.policies.ModulePolicy`).
         listed: episodes of the comparison; None: seeds 0 to 49 of the environment.
         training: episodes to train on; None: other seeds of the environment.
         suite: a name of ``conf/suite`` or a list of corruptions, for training and comparison;
@@ -193,7 +194,8 @@ class _Training:
         if shared:
             raise ValueError(
                 f"Training and comparison share {counted(len(shared), 'episode')} "
-                f"({', '.join(sorted(shared)[:3])}). Name other episodes, so that the comparison is fair."
+                f"({', '.join(sorted(shared)[:3])}). Name other episodes, so that the "
+                "comparison is fair."
             )
         if self.listed == []:
             raise ValueError("training must hold at least one episode, or be None.")
@@ -214,8 +216,8 @@ def _corruptions(suite: str | Sequence[str], policy: Policy) -> list[str]:
     names = [name for name, kind in kinds.items() if kind in sensors]
     if not names:
         raise ValueError(
-            f"No corruption of suite={suite} changes {' or '.join(sensors) or 'what it reads'}. Name "
-            "another suite, or a list of corruptions."
+            f"No corruption of suite={suite} changes {' or '.join(sensors) or 'what it reads'}. "
+            "Name another suite, or a list of corruptions."
         )
     left = [name for name in kinds if name not in names]
     if left:

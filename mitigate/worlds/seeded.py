@@ -285,15 +285,15 @@ class SeededWorld(World):
             raise ValueError(
                 f"At the end of episode {self._name} the environment must report success, but it "
                 f"has no entry {self.success!r}, only "
-                f"{', '.join(map(repr, self._report())) or 'none'}. Set success= to the name of an "
-                "entry that is False after a failure, or to a function, such as "
+                f"{', '.join(map(repr, self._report())) or 'none'}. Set success= to the name of "
+                "an entry that is False after a failure, or to a function, such as "
                 'success=lambda end: end.total > 0, rule="return > 0". For a task without a '
                 'success set score="return".'
             )
 
     def _extra(self, name: str) -> float:
         value = np.asarray(self._report().get(name, math.nan)).ravel()
-        if value.size != 1 or not value.dtype.kind in "biuf" or np.isnan(value[0]):
+        if value.size != 1 or value.dtype.kind not in "biuf" or np.isnan(value[0]):
             raise ValueError(
                 f"The entry {name!r} of extra must be a number at the end of episode {self._name}; "
                 f"the environment reports {', '.join(map(repr, self._report())) or 'nothing'}."

@@ -161,8 +161,8 @@ class EnvWorld(SeededWorld):
         rule: See ``SeededWorld``.
 
     Raises:
-        ValueError: The environment is batched, its actions are of another kind (``core/spaces.py``),
-            or as in ``SeededWorld``.
+        ValueError: The environment is batched, its actions are of another kind
+            (``core/spaces.py``), or as in ``SeededWorld``.
     """
 
     def __init__(
@@ -243,8 +243,8 @@ def _space_of(spec: Any, batch: int) -> ActionSpace:
         return Box(spec.space.low.numpy(force=True), spec.space.high.numpy(force=True))
     raise ValueError(
         "The action of the environment must be Categorical, OneHot, MultiCategorical, Bounded or "
-        f"Unbounded, got {kind} {list(spec.shape)}. Wrap the environment in a transform that converts "
-        "such an action into its own."
+        f"Unbounded, got {kind} {list(spec.shape)}. Wrap the environment in a transform that "
+        "converts such an action into its own."
     )
 
 

@@ -98,7 +98,6 @@ def test_as_policy_acts_as_torchrl(actions):
     from tensordict import TensorDict
     from tensordict.nn import (
         NormalParamExtractor,
-        ProbabilisticTensorDictSequential,
         TensorDictModule,
     )
     from torchrl.modules import ProbabilisticActor, TanhNormal

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from mitigate.evaluation.returns import RANDOM, RandomPolicy, returns
 from mitigate.core.spaces import Box, Discrete
+from mitigate.evaluation.returns import RANDOM, RandomPolicy, returns
 
 
 def rows_of(name, corruption, values):
