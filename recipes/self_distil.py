@@ -210,13 +210,10 @@ class SelfDistil(Objective):
         return answers, torch.cat([output.float().flatten(1) for output in outputs])
 
     def _round(self, step: int) -> dict[str, np.ndarray]:
-        """Return the windows of the rollouts at ``step``: run them, or read them if they are
-        stored."""
-        file = self.folder / ""
-        f"frames-{step:06d}.safetensors"
+        """Run the rollouts of ``step``, or read them if they are stored; return their windows."""
+        file = self.folder / f"frames-{step:06d}.safetensors"
         if file.is_file():
-            return
-            _read(file)
+            return _read(file)
         if step < self._now:
             raise ValueError(
                 f"{file} is missing. A training cannot resume without its stored frames. Restore "
@@ -263,8 +260,7 @@ class SelfDistil(Objective):
 
 
 def last_convolution(policy: Policy) -> str:
-    """Return the name of the last convolution of a policy's network, or of its first layer with
-    weights.
+    """Return the name of the last convolution of a network, or else of its first layer.
 
     Raises:
         ValueError: The network has neither.

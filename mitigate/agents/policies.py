@@ -31,7 +31,7 @@ from mitigate.agents.agent import Agent, check_logits
 from mitigate.agents.sites import first
 from mitigate.core import checkpoint
 from mitigate.core.contracts import lacking, read
-from mitigate.core.spaces import ActionSpace, Box, Discrete, MultiDiscrete
+from mitigate.core.spaces import ActionSpace, Box, Composite, Discrete, MultiDiscrete
 
 # One distribution per part of the action, or the actions (or values of actions) [B, ...] themselves
 Answer = Sequence[Distribution] | Tensor
@@ -71,31 +71,24 @@ class Policy(Agent, nn.Module):
         raise NotImplementedError(f"{type(self).__name__} defines no answer(observation, memory)")
 
     def action(self, answer: Answer) -> Any:
-        """Return the likeliest action of the first answer of a batch."""
-        if isinstance(answer, Tensor):
-            values = answer[0]
-            chosen = int(check_logits(values, self).argmax()) if self.chooses else values
-        elif isinstance(self.space, MultiDiscrete):
-            chosen = np.array([int(mode(part)[0]) for part in answer]).reshape(
-                self.space.counts.shape
-            )
-        else:
-            chosen = mode(answer[0])[0]
-        if isinstance(self.space, Discrete):
-            return int(chosen) + self.space.start
-        if isinstance(self.space, Box):
-            values = chosen.double().cpu().numpy().reshape(self.space.low.shape)
-            if not np.isfinite(values).all():
-                raise ValueError(
-                    f"The action of {self.name} must be finite, got {values.tolist()}."
-                )
-            return np.clip(values, self.space.low, self.space.high).astype(self.space.low.dtype)
-        return chosen
+        """Return the likeliest action of the first answer of a batch.
 
-    @property
-    def chooses(self) -> bool:
-        """Whether an answer that is a tensor holds a value for each action, not the action."""
-        return isinstance(self.space, Discrete)
+        A tensor holds the value of each action if actions are discrete, else the action.
+        """
+        if isinstance(self.space, MultiDiscrete):
+            choices = [int(mode(part)[0]) for part in answer]
+            return np.array(choices).reshape(self.space.counts.shape)
+        first_answer = answer[0] if isinstance(answer, Tensor) else mode(answer[0])[0]
+        if isinstance(self.space, Discrete):
+            if isinstance(answer, Tensor):
+                first_answer = check_logits(first_answer, self).argmax()
+            return int(first_answer) + self.space.start
+        values = first_answer.double().cpu().numpy()
+        if not np.isfinite(values).all():
+            raise ValueError(f"The action of {self.name} must be finite, got {values.tolist()}.")
+        assert isinstance(self.space, Box), "as_policy rejects other spaces"
+        values = np.clip(values.reshape(self.space.low.shape), self.space.low, self.space.high)
+        return values.astype(self.space.low.dtype)
 
     @property
     def name(self) -> str:
@@ -331,6 +324,12 @@ def as_policy(
     """
     if isinstance(policy, Policy):
         return policy
+    if isinstance(world.action_space, Composite):
+        raise ValueError(
+            "A policy with a dictionary of actions must be an agent of its own: a class with "
+            "reset and "
+            "act (docs/bring-your-own.md)."
+        )
     if world.action_space is None or world.native is None:
         raise ValueError(
             f"{type(world).__name__} must have action_space (mitigate.core.spaces) and native, the "

@@ -55,8 +55,7 @@ class Discrete(ActionSpace):
 
 @dataclass(frozen=True, eq=False)
 class Box(ActionSpace):
-    """An array of real numbers between ``low`` and ``high`` (arrays of the same shape and
-    dtype)."""
+    """An array of real numbers between ``low`` and ``high``, which have its shape and dtype."""
 
     low: np.ndarray
     high: np.ndarray

@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 
+from mitigate.agents.agent import Agent
 from mitigate.core.markdown import markdown_of, markdown_table
 from mitigate.core.seeding import generator
 from mitigate.core.spaces import ActionSpace
@@ -23,8 +24,10 @@ RANDOM = "random"  # name of the rows of random actions
 _BOUNDS = ((1 - LEVEL) / 2, (1 + LEVEL) / 2)
 
 
-class RandomPolicy:
+class RandomPolicy(Agent):
     """An agent with uniformly random actions, keyed by a seed and the number of the episode."""
+
+    sensors: Sequence[str] = ()
 
     def __init__(self, space: ActionSpace, seed: int = 0) -> None:
         self.space = space
@@ -32,8 +35,6 @@ class RandomPolicy:
 
     def settings(self) -> dict[str, Any]:
         return {"space": str(self.space), "seed": self.seed}
-
-    sensors: Sequence[str] = ()
 
     def reset(self, instruction: str) -> None:
         self._rng = generator(self.seed, "random policy", instruction)

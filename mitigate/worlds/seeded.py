@@ -153,6 +153,7 @@ class SeededWorld(World):
     """
 
     done = True
+    action_space: ActionSpace
 
     def __init__(
         self,
