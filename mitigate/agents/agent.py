@@ -21,7 +21,7 @@ import torch
 from torch import Tensor, nn
 
 from mitigate.agents.adapters import remove_adapters
-from mitigate.core.contracts import lacking, read, take_over
+from mitigate.core.contracts import missing_members, read, take_over
 
 if TYPE_CHECKING:
     from mitigate.worlds.episodes import Episode
@@ -172,7 +172,7 @@ class _AgentView(Agent):
     def __init__(self, agent: Any) -> None:
         self._agent = agent
         take_over(self, agent, OPTIONAL)
-        if lacking(agent, ("begin", "act_all")):
+        if missing_members(agent, ("begin", "act_all")):
             self.together = 1
 
     @property

@@ -128,7 +128,7 @@ def main() -> int:
         out = Path(config.out or OUT)
         results = run(config, out)
     except (OSError, ValueError) as error:
-        print(f"controls: {conf.said(error)}", file=sys.stderr)
+        print(f"controls: {conf.error_message(error)}", file=sys.stderr)
         return 2
     for name in dict.fromkeys(row["name"] for row in results):
         selected = [row for row in results if row["name"] == name]

@@ -165,7 +165,7 @@ def run_command(name: str, work: Callable[[], Path | None]) -> int:
     try:
         path = work()
     except (OSError, ValueError) as error:
-        print(f"{name}: {conf.said(error)}", file=sys.stderr)
+        print(f"{name}: {conf.error_message(error)}", file=sys.stderr)
         return 2
     except (HydraException, OmegaConfBaseException) as error:
         print(f"{name}: {conf.explain(error, 'evaluate')}", file=sys.stderr)
