@@ -193,6 +193,7 @@ class _Crew:
                 for worker in [worker for worker in self.crew if worker.pipe in readable]:
                     yield from self._hear(worker)
                 self._report_stuck()
+                self.progress.advance(0)
                 yield None
                 ending.check()
         finally:
