@@ -1,4 +1,4 @@
-"""Corrupt the instructions of a VLN-CE episode file of any size, R2R-CE, RxR-CE or our own:
+"""Corrupt the instructions of a VLN-CE episode file (R2R-CE, RxR-CE or our own) of any size.
 
 ``mitigate corrupt_episodes IN OUT corruption=black_box severity=0.5 [seed=0] [split=test]
 [tokenizer=vocabulary|NAME] [mask_token=[MASK]] [tagger=own]``
@@ -6,11 +6,12 @@
 Corruptions (docs/instructions.md): friendly, novice, professional, formal, capitalize, mask,
 black_box. ``split`` is for black_box, ``mask_token`` for mask, ``tagger`` for capitalize and mask.
 
-``instruction_text`` is changed and the old text kept as ``original_text``. Tokens are made again
-for the tokenizer named (``vocabulary``: the file's own ``instruction_vocab``; else a folder or hub
-name for transformers), or removed with a notice: an agent that reads stale tokens hears the clean
-words. Instructions in other languages than English, and those without a word, pass through and are
-counted. Beside OUT comes ``OUT.summary.json``; an OUT that is there without one is left alone.
+The clean text is kept as ``original_text``. ``tokenizer`` makes the tokens of the new text:
+``vocabulary`` uses the ``instruction_vocab`` of the file, NAME is a folder or hub name for
+transformers. Without it, the tokens of changed instructions are removed, because they encode the
+clean text. Instructions in other languages than English, and those without a word, are copied and
+counted. The command also writes ``OUT.summary.json``. It never overwrites an OUT that it did not
+write, or that has changed since.
 """
 
 from __future__ import annotations
@@ -72,17 +73,17 @@ def run(
     The summary records the options that the corruption uses (``USES``).
 
     Args:
-        source: a VLN-CE episode file.
-        out: the file to write.
-        corruption: one of ``NAMES``.
+        source: A VLN-CE episode file.
+        out: The file to write.
+        corruption: One of ``NAMES``.
         severity: s in [0, 1].
-        seed: together with the episode id, the key of each random draw, as in an evaluation.
-        split: see ``corrupt_instruction``.
+        seed: Together with the episode id, the key of each random draw, as in an evaluation.
+        split: See ``corrupt_instruction``.
         tokenizer: "vocabulary" for the vocabulary of the file, or a folder or hub name for
             transformers. None removes the tokens of changed instructions.
-        mask_token: the default is the mask token of the tokenizer, else "[MASK]".
-        tagger: see ``corrupt_instruction``.
-        rewrite: see ``corrupt_instruction``.
+        mask_token: None: the mask token of the tokenizer, or "[MASK]" if it has none.
+        tagger: See ``corrupt_instruction``.
+        rewrite: See ``corrupt_instruction``.
 
     Raises:
         ValueError, FileNotFoundError: An option or file is invalid, or ``out`` exists and this
@@ -92,7 +93,7 @@ def run(
     severity = check_severity(severity)
     Key(seed, "0")  # raises ValueError for an invalid seed
     check_options(split, "[MASK]" if mask_token is None else mask_token, tagger)
-    _check_target(source, out)
+    _check_target(Path(source), Path(out))
     extras = read_extras(source)
     words = tokenizer_for(tokenizer, extras) if tokenizer else None
     mask = mask_token if mask_token is not None else (words and words.mask_token) or "[MASK]"
@@ -110,7 +111,7 @@ def run(
     episodes = tqdm(read_episodes(source, hidden_goals=True), unit="episode", disable=None)
     other_words = words is not None and tokenizer != VOCABULARY
     write_episodes(out, _changed(episodes, corrupted, words, counts, other_words), extras)
-    settings = {
+    summary = {
         "source": str(source),
         "corruption": corruption,
         "severity": severity,
@@ -118,67 +119,6 @@ def run(
         "suite": SUITE_VERSION,
         "tokenizer": tokenizer,
         **{name: options[name] for name in USES.get(corruption, ())},
-    }
-    return _summarised(settings, counts, out)
-
-
-def check_for_file(corruption: str) -> None:
-    """Raise ValueError unless ``corruption`` is one of ``NAMES``."""
-    if corruption == "white_box":
-        raise ValueError(
-            "corruption=white_box is not applicable to a file: it corrupts the system prompt of an "
-            "agent, which no episode holds. Evaluate an agent that has one, or use "
-            "corruption=black_box."
-        )
-    check_name(corruption, NAMES)
-
-
-def _check_target(source: Path | str, out: Path | str) -> None:
-    if Path(out).resolve() == Path(source).resolve():
-        raise ValueError(f"{out} is the file that is read: give the corrupted one another name.")
-    if Path(out).is_dir():
-        raise ValueError(f"{out} is a folder: name the file to write in it.")
-    summary = Path(f"{out}{SUMMARY}")
-    if summary.resolve() == Path(source).resolve():
-        raise ValueError(f"{summary} is the file that is read, and the summary's name: rename it.")
-    if summary.exists() and not Path(out).exists():
-        raise ValueError(f"{summary} is there already, without {out}: move it away first.")
-    if Path(out).exists():
-        _check_own(Path(out), summary)
-
-
-def _check_own(out: Path, summary: Path) -> None:
-    """Raise ValueError unless :func:`run` wrote ``out`` and it has not changed since."""
-    move = "Give another name, or move the file away first."
-    if not summary.is_file():
-        raise ValueError(
-            f"{out} is there already and no file of corrupt_episodes: {summary} is not beside it. "
-            f"{move}"
-        )
-    try:
-        earlier = json.loads(read_regular(summary))
-        episodes, recorded = int(earlier["episodes"]), earlier.get("sha256")
-        earlier["corruption"], earlier["severity"], earlier["seed"], earlier["suite"]
-    except (ValueError, KeyError, TypeError, AttributeError, RecursionError):
-        raise ValueError(
-            f"{out} is there already and no file of corrupt_episodes: {summary} beside it holds "
-            f"other things. {move}"
-        ) from None
-    if recorded is None:  # summaries of earlier versions have no checksum
-        try:
-            same = sum(1 for _ in read_episodes(out, hidden_goals=True)) == episodes
-        except (ValueError, OSError):
-            same = False
-    else:
-        same = recorded == sha256(out)
-    if not same:
-        raise ValueError(f"{out} was changed after corrupt_episodes wrote it. {move}")
-
-
-def _summarised(settings: dict[str, Any], counts: Counts, out: Path | str) -> dict[str, Any]:
-    """Write the summary beside ``out`` and return it."""
-    summary = {
-        **settings,
         "episodes": counts.episodes,
         "changed": counts.changed,
         "blank": counts.blank,
@@ -186,12 +126,49 @@ def _summarised(settings: dict[str, Any], counts: Counts, out: Path | str) -> di
         "tokens": dict(counts.tokens),
         "sha256": sha256(out),
     }
-    if settings["corruption"] in MANNERS:
+    if corruption in MANNERS:
         summary["gate"] = _rates(counts.gate)
     with atomic_text(f"{out}{SUMMARY}") as file:
         json.dump(summary, file, indent=2, ensure_ascii=False)
         file.write("\n")
     return summary
+
+
+def check_for_file(corruption: str) -> None:
+    """Raise ValueError unless ``corruption`` is one of ``NAMES``."""
+    if corruption == "white_box":
+        raise ValueError(
+            "corruption=white_box is not applicable to a file, because it corrupts the system "
+            "prompt of an agent. Evaluate an agent with a system prompt, or use "
+            "corruption=black_box."
+        )
+    check_name(corruption, NAMES)
+
+
+def _check_target(source: Path, out: Path) -> None:
+    """Raise ValueError unless ``out`` is new, or unchanged since :func:`run` wrote it."""
+    fix = "Give another name, or move the file away first."
+    summary = Path(f"{out}{SUMMARY}")
+    if source.resolve() in (out.resolve(), summary.resolve()):
+        raise ValueError(f"OUT and its summary {summary} must not be the file IN. {fix}")
+    if out.is_dir():
+        raise ValueError(f"OUT must be a file, got the folder {out}. Name a file in it.")
+    if (out.exists() or summary.exists()) and not _is_unchanged(out, summary):
+        raise ValueError(
+            f"{out} or {summary} was not written by corrupt_episodes, or has changed since. {fix}"
+        )
+
+
+def _is_unchanged(out: Path, summary: Path) -> bool:
+    """Return whether ``out`` has the content that its summary describes."""
+    try:
+        earlier = json.loads(read_regular(summary))
+        if "sha256" in earlier:
+            return earlier["sha256"] == sha256(out)
+        # summaries of earlier versions have no checksum
+        return earlier["episodes"] == sum(1 for _ in read_episodes(out, hidden_goals=True))
+    except (OSError, ValueError, KeyError, TypeError, RecursionError):
+        return False
 
 
 def _changed(
@@ -206,40 +183,28 @@ def _changed(
     With ``every``, unchanged instructions also get tokens of ``words``, because its vocabulary is
     not that of the file.
     """
-
-    def unchanged(episode: Episode) -> Episode:
-        if not every:
-            return episode
-        original = episode.instruction
-        tokens = _tokens(original.text, original.tokens, words, counts.tokens)
-        return replace(episode, instruction=replace(original, tokens=tokens))
-
     for episode in episodes:
         counts.episodes += 1
-        instruction = episode.instruction
-        if not is_english(instruction.language):
-            counts.skipped_languages[instruction.language] += 1
-            yield unchanged(episode)
-            continue
-        if not has_word(instruction.text):
+        clean = episode.instruction
+        text, tokens, extra = clean.text, clean.tokens, clean.extra
+        if not is_english(clean.language):
+            counts.skipped_languages[clean.language] += 1
+        elif not has_word(text):
             counts.blank += 1
-            yield unchanged(episode)
-            continue
-        try:
-            text = corrupted(episode)
-        except ValueError as error:
-            raise ValueError(f"Episode {episode.episode_id}: {error}") from error
-        if text == instruction.text:
-            yield unchanged(episode)
-            continue
-        counts.changed += 1
-        tokens = _tokens(text, instruction.tokens, words, counts.tokens)
-        extra = {key: value for key, value in instruction.extra.items() if key not in STALE}
-        counts.tokens["timed_instruction_removed"] += len(instruction.extra) - len(extra)
-        extra.setdefault(ORIGINAL, instruction.text)
-        yield replace(
-            episode, instruction=replace(instruction, text=text, tokens=tokens, extra=extra)
-        )
+        else:
+            try:
+                text = corrupted(episode)
+            except ValueError as error:
+                raise ValueError(f"Episode {episode.episode_id}: {error}") from error
+        if every or text != clean.text:
+            tokens = _tokens(text, tokens, words, counts.tokens)
+        if text != clean.text:
+            counts.changed += 1
+            extra = {key: value for key, value in extra.items() if key not in STALE}
+            counts.tokens["timed_instruction_removed"] += len(clean.extra) - len(extra)
+            extra.setdefault(ORIGINAL, clean.text)
+        instruction = replace(clean, text=text, tokens=tokens, extra=extra)
+        yield replace(episode, instruction=instruction)
 
 
 def _tokens(
@@ -282,42 +247,33 @@ def _rates(gate: Counter) -> dict[str, Any]:
 
 
 ALIAS = "family"  # former name of the option corruption=
-OPTIONS: dict[str, Callable[[str], Any]] = {
-    "corruption": str,
-    ALIAS: str,
-    "severity": float,
-    "seed": int,
-    "split": str,
-    "tokenizer": str,
-    "mask_token": str,
-    "tagger": str,
-}
+OPTIONS = ("corruption", ALIAS, "severity", "seed", "split", "tokenizer", "mask_token", "tagger")
 
 
-def _options(given: Mapping[str, str]) -> dict[str, Any]:
+def _options(words: Mapping[str, str]) -> dict[str, Any]:
     """Parse the options; raise ValueError for invalid ones and those without effect."""
-    if ALIAS in given and "corruption" in given:
-        raise ValueError(f"{ALIAS}= is another word for corruption=: give one of the two.")
-    options: dict[str, Any] = {}
-    for key, value in given.items():
-        try:
-            options["corruption" if key == ALIAS else key] = OPTIONS[key](value)
-        except ValueError as error:
-            kind = "a whole number" if OPTIONS[key] is int else "a number"
-            raise ValueError(f"{key} must be {kind}, but {value!r} was given.") from error
-    for key, example in (("corruption", "black_box"), ("severity", "0.5")):
-        if key not in options:
+    if ALIAS in words and "corruption" in words:
+        raise ValueError(f"{ALIAS}= means the same as corruption=. Give one of the two.")
+    options: dict[str, Any] = {("corruption" if k == ALIAS else k): v for k, v in words.items()}
+    for name, example in (("corruption", "black_box"), ("severity", "0.5")):
+        if name not in options:
             raise ValueError(
-                f"The option {key} is missing: add {key}={example}. Corruptions: "
+                f"The option {name} is missing. Add {name}={example}. Corruptions: "
                 f"{', '.join(NAMES)}."
             )
-    name = options["corruption"]
-    check_for_file(name)
-    for key in options:
-        users = [user for user, used in USES.items() if key in used]
-        if users and name not in users:
+    for name, kind, text in (("severity", float, "a number"), ("seed", int, "a whole number")):
+        try:
+            options[name] = kind(options.get(name, 0))
+        except ValueError as error:
+            raise ValueError(f"{name} must be {text}, got {options[name]!r}.") from error
+    corruption = options["corruption"]
+    check_for_file(corruption)
+    for name in options:
+        users = [user for user, used in USES.items() if name in used]
+        if users and corruption not in users:
             raise ValueError(
-                f"{key}= has no effect on {name}: it is for {' and '.join(users)}. Leave it out."
+                f"{name}= has no effect on {corruption}, only on {' and '.join(users)}. Leave it "
+                "out."
             )
     return options
 
@@ -326,25 +282,23 @@ def notices(summary: dict[str, Any]) -> list[str]:
     """Return the warnings and notices about a finished file."""
     lines = []
     if not summary["episodes"]:
-        lines.append("warning: the file holds no episode")
+        lines.append("warning: the file has no episodes")
     if summary["skipped_languages"]:
         lines.append(f"warning: {passed_through(summary['skipped_languages'])}")
     if summary["blank"]:
         lines.append(
-            f"warning: {summary['blank']} instructions hold no word and passed through unchanged"
+            f"warning: {summary['blank']} instructions have no word and were copied unchanged"
         )
     removed = summary["tokens"].get("removed", 0)
     if removed:
         lines.append(
             f"notice: instruction_tokens of {removed} changed instructions were removed, because "
-            "they are of the clean words; an agent that reads tokens needs tokenizer=vocabulary "
-            "(the file's own) or tokenizer=NAME (its own)"
+            "they encode the clean text. For an agent that reads tokens set tokenizer=vocabulary "
+            "(that of the file) or tokenizer=NAME (that of the agent)"
         )
     cut = summary["tokens"].get("cut_short", 0)
     if cut:
-        lines.append(
-            f"warning: {cut} instructions have more tokens than the file's rows; cut short"
-        )
+        lines.append(f"warning: {cut} instructions have more tokens than before and were cut short")
     return lines
 
 

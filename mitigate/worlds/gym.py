@@ -7,8 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from mitigate.core.observation import DEPTH, POSE, RGB, Observation
-from mitigate.worlds.episodes import Episode
+from mitigate.core.observation import DEPTH, POSE, RGB
 from mitigate.worlds.seeded import SeededWorld, Success
 
 WHOLE = ""  # the name of an observation that is a single frame
@@ -41,10 +40,10 @@ class GymWorld(SeededWorld):
         limit: int | None = None,
         rule: str | None = None,
     ) -> None:
-        space = env.action_space
-        if _attribute(space, "n") is None or _attribute(space, "shape", ()) != ():
+        actions = env.action_space
+        if _attribute(actions, "n") is None or _attribute(actions, "shape", ()) != ():
             raise ValueError(
-                f"The action space must be discrete, got {env.action_space}. Wrap the environment "
+                f"The action space must be discrete, got {actions}. Wrap the environment "
                 "in a gymnasium.ActionWrapper with a Discrete action_space, whose action() "
                 "converts each number."
             )
@@ -57,36 +56,19 @@ class GymWorld(SeededWorld):
             if space.shape is not None:  # text and Tuple have none
                 high = float(np.max(_attribute(space, "high", np.inf)))
                 arrays[name] = (space.shape, str(space.dtype), high)
-        super().__init__(arrays, entries or default, success, unit, limit, rule)
-        self.env = env
+        super().__init__(
+            env, int(actions.n), arrays, entries or default, success, unit, limit, rule
+        )
 
-    def reset(self, episode: Episode) -> Observation:
-        seed = self._begin(episode)
-        with self._calling(f"{type(self.env).__name__}.reset()"):
-            observation, self._info = self.env.reset(seed=seed)
-            parts = _by_name(observation)
-        return self._observation(parts)
+    def _reset_env(self, seed: int) -> dict[str, Any]:
+        observation, self._info = self.env.reset(seed=seed)
+        return _by_name(observation)
 
-    def step(self, action: int) -> Observation:
-        """Take an action.
-
-        Raises:
-            ValueError: The action does not exist, or ``info`` does not report success at the end of
-                the episode.
-        """
-        self._check_not_done()
-        space = self.env.action_space
-        if not 0 <= action < space.n:
-            raise ValueError(f"The action must be 0 to {space.n - 1}, got {action}.")
-        first = int(_attribute(space, "start", 0))
-        with self._calling(f"{type(self.env).__name__}.step()"):
-            observation, reward, terminated, truncated, info = self.env.step(action + first)
-            reward = float(reward)
-            over = bool(terminated or truncated)
-            parts = _by_name(observation)
-            self._info = dict(info)
-        self._end_step(reward, over)
-        return self._observation(parts)
+    def _step_env(self, action: int) -> tuple[dict[str, Any], float, bool]:
+        first = int(_attribute(self.env.action_space, "start", 0))
+        observation, reward, terminated, truncated, info = self.env.step(action + first)
+        self._info = dict(info)
+        return _by_name(observation), float(reward), bool(terminated or truncated)
 
     def _report(self) -> Mapping[str, Any]:
         return self._info

@@ -15,17 +15,16 @@ from collections.abc import Iterable
 import numpy as np
 
 from mitigate.core.observation import DEPTH, POSE, RGB, VIEW_STEP_DEGREES, VIEWS
-from mitigate.corruptions import registry
 from mitigate.corruptions.depth_sensor import DepthSensor
 from mitigate.corruptions.keying import Key
 from mitigate.corruptions.normalised import corrupt_normalised
 from mitigate.corruptions.suite import (
-    NAMES,
     SENSOR,
     Corruption,
     check_corruption,
     corrupt_observation,
 )
+from mitigate.worlds.modalities import check_available
 
 TURNS = ("left", "right")
 _CAMERA = re.compile(r"(rgb|depth)(?:_(\d+(?:\.\d+)?))?")
@@ -102,16 +101,8 @@ def check_cameras(entries: Iterable[str], names: Iterable[str]) -> None:
     """
     entries = list(entries)
     available = {camera[1] for camera in map(_CAMERA.fullmatch, entries) if camera}
-    for name in names:
-        modality = registry.modality(name)
-        if modality not in available:
-            usable = ", ".join(name for name in NAMES if registry.modality(name) in available)
-            raise ValueError(
-                f"{name!r} corrupts {modality}, but the observation has no camera named "
-                f"{modality}, {modality}_30, ... (its entries are {', '.join(entries) or 'none'}). "
-                f"{f'Draw only from names=[{usable}]' if usable else 'Rename the cameras'}, or add "
-                f"a {modality} camera with such a name."
-            )
+    lack = f"the observation has no camera named {{0}}, {{0}}_30, ... (its entries are {entries})"
+    check_available(names, available, lack, "add or rename a camera")
 
 
 def _views(obs: dict, modality: str, turn: str) -> dict[str, int]:

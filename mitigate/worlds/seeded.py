@@ -71,11 +71,12 @@ Success = str | Callable[[Ending], bool]  # an entry that the environment report
 class SeededWorld(World):
     """Base class of worlds in which an episode is a seed.
 
-    A subclass calls ``_begin`` in ``reset``, ``_check_not_done`` and ``_end_step`` in ``step``, and
-    the environment within ``_calling``, so that an error names the episode. Depth that is negative
-    or not finite becomes 0, no reading.
+    A subclass defines ``_reset_env``, ``_step_env`` and ``_report``. Depth that is negative or not
+    finite becomes 0, no reading.
 
     Args:
+        env: The environment.
+        actions: Number of actions.
         arrays: Shape, dtype and maximum of each entry of the environment's observations.
         entries: Entry of each sensor: "rgb", "depth", "pose", and any other name that the agent
             reads, such as "goal".
@@ -98,6 +99,8 @@ class SeededWorld(World):
 
     def __init__(
         self,
+        env: Any,
+        actions: int,
         arrays: Mapping[str, tuple[tuple[int, ...], str, float]],
         entries: Mapping[str, str],
         success: Success | None,
@@ -111,6 +114,8 @@ class SeededWorld(World):
                 "environment end its episodes."
             )
         _check_success(success, rule)
+        self.env = env
+        self.actions = actions
         self.entries = dict(entries)
         self.success: Success = "success" if success is None else success
         self.unit = 1.0 if unit is None else unit
@@ -142,10 +147,41 @@ class SeededWorld(World):
         for name in [name for name in (RGB, DEPTH) if name in self.sensors]:
             _check_shape(name, self.entries[name], self.sensors[name].shape)
 
-    def _check_not_done(self) -> None:
-        """Raise RuntimeError after the last step of an episode."""
+    def reset(self, episode: Episode) -> Observation:
+        """Start an episode from its seed: ``info["seed"]``, or one derived from the id."""
+        self.done = self._cut = False
+        self._name = episode.episode_id
+        self._reward = self._total = 0.0
+        self._steps = 0
+        seed = int(episode.info.get("seed", digest("episode", episode.episode_id))) % 2**31
+        with self._calling(f"{type(self.env).__name__}.reset()"):
+            parts = self._reset_env(seed)
+        return self._observation(parts)
+
+    def step(self, action: int) -> Observation:
+        """Take an action.
+
+        Raises:
+            RuntimeError: The episode is over.
+            ValueError: The action does not exist, the environment ended the episode without
+                reporting success, or the reward is NaN and a function decides on success.
+        """
         if self.done:
             raise RuntimeError("The episode is over. Call reset() before step().")
+        if not 0 <= action < self.actions:
+            raise ValueError(f"The action must be 0 to {self.actions - 1}, got {action}.")
+        with self._calling(f"{type(self.env).__name__}.step()"):
+            parts, reward, over = self._step_env(action)
+        self._end_step(reward, over)
+        return self._observation(parts)
+
+    def _reset_env(self, seed: int) -> Mapping[str, Any]:
+        """Reset the environment and return the entries of its observation."""
+        raise NotImplementedError(f"{type(self).__name__} defines no _reset_env()")
+
+    def _step_env(self, action: int) -> tuple[Mapping[str, Any], float, bool]:
+        """Step the environment; return its observation, the reward and whether it is over."""
+        raise NotImplementedError(f"{type(self).__name__} defines no _step_env()")
 
     def measures(self) -> dict[str, float]:
         """Return success, spl and steps; with a limit also ``cut`` and ``limit``.
@@ -158,22 +194,8 @@ class SeededWorld(World):
             return measures
         return measures | {"cut": int(self._cut), "limit": self.limit}
 
-    def _begin(self, episode: Episode) -> int:
-        """Restart all counts and return the seed: ``info["seed"]``, or one derived from the id."""
-        self.done = self._cut = False
-        self._name = episode.episode_id
-        self._reward = self._total = 0.0
-        self._steps = 0
-        seed = episode.info.get("seed", digest("episode", episode.episode_id))
-        return int(seed) % 2**31
-
     def _end_step(self, reward: float, over: bool) -> None:
-        """Count a step.
-
-        Raises:
-            ValueError: The environment ended the episode without reporting success, or the reward
-                is NaN and a function decides on success.
-        """
+        """Count a step and check what the environment reported."""
         if math.isnan(reward) and callable(self.success):
             raise ValueError(
                 f"The reward of step {self._steps + 1} of episode {self._name} must be a number, "

@@ -192,44 +192,29 @@ class EnvWorld(SeededWorld):
         specs = {_dotted(key): spec[key] for key in spec.keys(True, True)}
         default = {name: name for name in (RGB, DEPTH, POSE) if name in specs}
         arrays = {name: _describe(spec) for name, spec in specs.items()}
-        super().__init__(arrays, entries or default, success, unit, limit, rule)
-        self.env = env
+        count = int(actions[0].space.n)
+        super().__init__(env, count, arrays, entries or default, success, unit, limit, rule)
 
-    def reset(self, episode: Episode) -> Observation:
-        seed = self._begin(episode)
-        with self._calling(f"{type(self.env).__name__}.reset()"):
-            self.env.set_seed(seed)
-            self._now = self.env.reset()
-            parts = self._parts()
-        return self._observation(parts)
+    def _reset_env(self, seed: int) -> dict[str, Any]:
+        self.env.set_seed(seed)
+        self._now = self.env.reset()
+        return self._parts()
 
-    def step(self, action: int) -> Observation:
-        """Take an action.
-
-        Raises:
-            ValueError: The action does not exist, or the environment does not report success at the
-                end of the episode.
-        """
-        self._check_not_done()
+    def _step_env(self, action: int) -> tuple[dict[str, Any], float, bool]:
         spec = self.env.action_spec
-        if not 0 <= action < spec.space.n:
-            raise ValueError(f"The action must be 0 to {spec.space.n - 1}, got {action}.")
         chosen = torch.tensor(action)
         if isinstance(spec, OneHot):
             chosen = torch.nn.functional.one_hot(chosen, spec.space.n).to(spec.dtype)
         self._now.set(self.env.action_key, chosen.reshape(spec.shape))
-        with self._calling(f"{type(self.env).__name__}.step()"):
-            self._now = self.env.step(self._now)["next"]
-            reward = float(self._now.get(self.env.reward_key).sum())
-            over = any(bool(self._now[key].any()) for key in self.env.done_keys)
-            parts = self._parts()
-        self._end_step(reward, over)
-        return self._observation(parts)
+        self._now = self.env.step(self._now)["next"]
+        reward = float(self._now.get(self.env.reward_key).sum())
+        over = any(bool(self._now[key].any()) for key in self.env.done_keys)
+        return self._parts(), reward, over
 
     def _report(self) -> dict[str, Any]:
         return {_dotted(key): self._now[key] for key in self._now.keys(True, True)}
 
-    def _parts(self) -> dict[str, np.ndarray]:
+    def _parts(self) -> dict[str, Any]:
         keys = {_dotted(key): key for key in self._now.keys(True, True)}
         return {e: self._now[keys[e]].numpy(force=True) for e in self.entries.values()}
 

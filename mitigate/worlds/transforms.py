@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
-
 import numpy as np
 import torch
 from tensordict import NestedKey, TensorDictBase
@@ -18,9 +16,9 @@ from mitigate.corruptions import (
     Schedule,
     corrupt_normalised,
     corrupt_observation,
-    registry,
 )
 from mitigate.corruptions.schedule import drawn, names_of
+from mitigate.worlds.modalities import ENTRY_FIX, check_available
 
 
 class CorruptObservation(Transform):
@@ -97,7 +95,7 @@ class CorruptObservation(Transform):
             for name, value in stored.items()
             if value is not None
         }
-        self._check_entries(frames)
+        check_available(names_of(self.schedule), frames, "the data have no {0}", ENTRY_FIX)
         corrupted: dict[str, np.ndarray] = {}
         for row in range(len(drawn)) if rows is None else rows:
             corruption, key = drawn[row]
@@ -113,20 +111,6 @@ class CorruptObservation(Transform):
                 self.entries[name], torch.from_numpy(views).reshape(value.shape).to(value.device)
             )
         return data
-
-    def _check_entries(self, frames: Collection[str]) -> None:
-        """Raise ValueError if the schedule may corrupt an entry that the data lack."""
-        names = names_of(self.schedule)
-        missing = [name for name in names if registry.modality(name) not in frames]
-        if missing:
-            modality = registry.modality(missing[0])
-            usable = ", ".join(name for name in names if name not in missing)
-            raise ValueError(
-                f"The schedule may draw {missing[0]!r}, which corrupts {modality}, but the data "
-                f"have no entry {self.entries[modality]!r}. "
-                f"{f'Draw only from names=[{usable}]' if usable else 'Choose other names'}, or "
-                f"name the entry: CorruptObservation(..., {modality}=...)."
-            )
 
     def _draw(self, data: TensorDictBase) -> list[tuple[Corruption, Key]]:
         """Return the corruption and the key of every instant, in row-major order."""

@@ -16,7 +16,7 @@ import numpy as np
 
 from mitigate.core.contracts import take_over
 from mitigate.core.observation import DEPTH, Observation, Sensor
-from mitigate.corruptions import Corruption, DepthSensor, Key, Schedule, corrupt_observation
+from mitigate.corruptions import Corruption, DepthSensor, Schedule, corrupt_observation
 from mitigate.corruptions.schedule import drawn
 from mitigate.worlds.episodes import Episode
 
@@ -177,22 +177,11 @@ class WorldWrapper(World):
         self._inner = as_world(world)
 
     def __getattr__(self, name: str) -> Any:
+        """Return rule, sensors, done and other attributes of the world, such as point()."""
         # copy and pickle ask for these before __init__ has set them
         if name.startswith("__") or name in ("world", "_inner"):
             raise AttributeError(name)
-        return getattr(self.world, name)  # other attributes of the world, such as point() and put()
-
-    @property
-    def rule(self) -> str:  # type: ignore[override]
-        return self._inner.rule
-
-    @property
-    def sensors(self) -> Mapping[str, Sensor]:  # type: ignore[override]
-        return self._inner.sensors
-
-    @property
-    def done(self) -> bool:  # type: ignore[override]
-        return self._inner.done
+        return getattr(self.world, name)
 
     def reset(self, episode: Episode) -> Observation:
         return self._observe(self._inner.reset(episode))
@@ -226,28 +215,13 @@ class _WorldView(World):
 
     def __init__(self, world: Any) -> None:
         self._world = world
-        take_over(self, world, OPTIONAL)
+        take_over(self, world, ("reset", "step", "measures", *OPTIONAL))
 
-    @property
-    def rule(self) -> str:  # type: ignore[override]
-        return self._world.rule
-
-    @property
-    def sensors(self) -> Mapping[str, Sensor]:  # type: ignore[override]
-        return self._world.sensors
-
-    @property
-    def done(self) -> bool:  # type: ignore[override]
-        return self._world.done
-
-    def reset(self, episode: Episode) -> Observation:
-        return self._world.reset(episode)
-
-    def step(self, action: int) -> Observation:
-        return self._world.step(action)
-
-    def measures(self) -> dict[str, float]:
-        return self._world.measures()
+    def __getattr__(self, name: str) -> Any:
+        """Return rule, sensors and done, which change during an episode."""
+        if name.startswith("_"):
+            raise AttributeError(name)
+        return getattr(self._world, name)
 
 
 class Corrupted(WorldWrapper):
@@ -290,7 +264,8 @@ class Corrupted(WorldWrapper):
             )
 
         def corrupted() -> dict[str, np.ndarray]:
-            corruption, key = self._draw()
+            name = self.episode.episode_id if self.name is None else self.name
+            corruption, key = drawn(self.by, self.seed, name, self.frames_read)
             self.frames_read += 1
             sensor = depth_sensor(self.world.sensors)
             self.last = corrupt_observation(dict(clean), corruption, key, sensor)
@@ -298,20 +273,16 @@ class Corrupted(WorldWrapper):
 
         return Observation(clean.ready, corrupted, clean.frames, clean=clean)
 
-    def _draw(self) -> tuple[Corruption, Key]:
-        name = self.episode.episode_id if self.name is None else self.name
-        return drawn(self.by, self.seed, name, self.frames_read)
-
 
 def depth_sensor(sensors: Mapping[str, Sensor]) -> DepthSensor:
     """Return the depth range and the value for no reading of a world's depth sensor.
 
     An unlimited range is replaced by that of R2R-CE.
     """
-    depth = sensors.get(DEPTH)
     default = DepthSensor()
-    if depth is None:
+    if DEPTH not in sensors:
         return default
+    depth = sensors[DEPTH]
     z_max = depth.high if math.isfinite(depth.high) else default.z_max
     missing = default.missing if depth.missing is None else depth.missing
     return replace(default, z_max=z_max, missing=missing)

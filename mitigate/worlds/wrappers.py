@@ -5,6 +5,7 @@ Needs the extra ``gymnasium``.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -27,8 +28,10 @@ from mitigate.corruptions import (
     corrupt_observation,
 )
 from mitigate.corruptions.normalised import check_sensor
-from mitigate.corruptions.registry import modality
 from mitigate.corruptions.schedule import drawn, names_of
+from mitigate.worlds.modalities import ENTRY_FIX, check_available
+
+FORMATS = "uint8 [(V,) H, W, 3] for RGB, or float32 [H, W] or [(V,) H, W, 1] for depth"
 
 
 class CorruptObservation(gymnasium.ObservationWrapper):
@@ -87,10 +90,11 @@ class CorruptObservation(gymnasium.ObservationWrapper):
         self._frame = 0
         self._over = False
         self._corrupt = corrupt_normalised if normalised else corrupt_observation
-        space = env.observation_space
-        self._whole = _modality(space) if isinstance(space, gymnasium.spaces.Box) else None
+        self._whole = _modality(env.observation_space)  # of an observation that is one frame
         self._entries = {RGB: rgb, DEPTH: depth, **({} if pose is None else {POSE: pose})}
-        self._check(space, normalised)
+        if self._whole is not None:
+            self._entries = {self._whole: self._whole}
+        self._check(env.observation_space, normalised)
 
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
@@ -132,57 +136,33 @@ class CorruptObservation(gymnasium.ObservationWrapper):
     def observation(self, observation: Any) -> Any:
         """Return the corrupted observation of the current frame; the argument is not modified."""
         self.corruption, self.key = drawn(self.schedule, self.seed, self._episode, self._frame)
-        if self._whole is not None:
-            frames = {self._whole: observation}
-            return self._corrupt(frames, self.corruption, self.key, self.sensor)[self._whole]
-        frames = {
-            name: observation[entry]
-            for name, entry in self._entries.items()
-            if entry in observation
-        }
+        parts = observation if self._whole is None else {self._whole: observation}
+        frames = {name: parts[entry] for name, entry in self._entries.items() if entry in parts}
         corrupted = self._corrupt(frames, self.corruption, self.key, self.sensor)
-        return {
-            **observation,
-            **{
-                entry: corrupted[name] for name, entry in self._entries.items() if name in corrupted
-            },
-        }
+        if self._whole is not None:
+            return corrupted[self._whole]
+        return {**observation, **{self._entries[name]: frame for name, frame in corrupted.items()}}
 
     def _check(self, space: gymnasium.Space, normalised: bool) -> None:
-        if self._whole is not None:
-            boxes: dict[str, Any] = {self._whole: space}
-        elif isinstance(space, gymnasium.spaces.Dict):
-            boxes = {
-                name: space[self._entries[name]]
-                for name in (RGB, DEPTH)
-                if self._entries[name] in space.spaces
-            }
-            for name, box in boxes.items():
-                if not isinstance(box, gymnasium.spaces.Box) or _modality(box) != name:
-                    raise ValueError(_explain(name, self._entries[name], box))
-            if POSE in self._entries and self._entries[POSE] not in space.spaces:
-                raise ValueError(
-                    f"pose must be an entry of the observation ({', '.join(space.spaces)}), got "
-                    f"{self._entries[POSE]!r}. Name the entry with x, y and heading, or pass "
-                    "pose=None, which keeps the flare at its place in the image."
-                )
-        else:
-            boxes = {}
-        if not boxes:
+        named = isinstance(space, gymnasium.spaces.Dict)
+        spaces: Mapping[Any, Any] = space.spaces if named else {self._whole: space}
+        boxes = {name: spaces[entry] for name, entry in self._entries.items() if entry in spaces}
+        if POSE in self._entries and POSE not in boxes:
             raise ValueError(
-                "The observation space must be a Box of uint8 [H, W, 3] RGB or of float32 depth, "
-                f"or a Dict with such entries, got {space}. Name the entries with rgb= and depth= "
-                f"if they are not {self._entries[RGB]!r} and {self._entries[DEPTH]!r}, and wrap "
-                "before frames are transposed or converted to float."
+                f"pose must be an entry of the observation ({', '.join(spaces)}), got "
+                f"{self._entries[POSE]!r}. Name the entry with x, y and heading, or pass "
+                "pose=None, which keeps the flare at its place in the image."
             )
-        for name in names_of(self.schedule):
-            if modality(name) not in boxes:
-                raise ValueError(
-                    f"The schedule draws {name!r}, which corrupts {modality(name)}, but the "
-                    f"environment has only {', '.join(boxes)}. Use only {', '.join(boxes)} "
-                    "corruptions, such as names=mitigate.corruptions."
-                    f"{'RGB' if RGB in boxes else 'DEPTH'}."
-                )
+        boxes.pop(POSE, None)
+        if not boxes or any(_modality(box) != name for name, box in boxes.items()):
+            raise ValueError(
+                f"The observation must be a Box of {FORMATS}, or a Dict with such entries, got "
+                f"{space}. Name the entries with rgb= and depth= if they are not "
+                f"{self._entries.get(RGB)!r} and {self._entries.get(DEPTH)!r}, and wrap before "
+                "frames are transposed, stacked or converted to float."
+            )
+        names = names_of(self.schedule)
+        check_available(names, boxes, "the environment has no {0}", ENTRY_FIX)
         if DEPTH in boxes:
             self._check_range(boxes[DEPTH], normalised)
 
@@ -203,21 +183,14 @@ class CorruptObservation(gymnasium.ObservationWrapper):
             )
 
 
-def _modality(box: gymnasium.spaces.Box) -> str | None:
-    if box.dtype == np.uint8 and len(box.shape) in (3, 4) and box.shape[-1] == 3:
+def _modality(space: gymnasium.Space) -> str | None:
+    """Return the modality of a space of frames; None if it has another format."""
+    if not isinstance(space, gymnasium.spaces.Box):
+        return None
+    views = len(space.shape) in (3, 4)
+    if space.dtype == np.uint8 and views and space.shape[-1] == 3:
         return RGB
-    if box.dtype == np.float32 and (
-        len(box.shape) == 2 or (len(box.shape) in (3, 4) and box.shape[-1] == 1)
-    ):
+    flat = len(space.shape) == 2
+    if space.dtype == np.float32 and (flat or (views and space.shape[-1] == 1)):
         return DEPTH
     return None
-
-
-def _explain(name: str, entry: str, box: gymnasium.Space) -> str:
-    expected = "uint8 [H, W, 3] or [V, H, W, 3]"
-    if name == DEPTH:
-        expected = "float32 [H, W], [H, W, 1] or [V, H, W, 1] in metres or normalised"
-    return (
-        f"The entry {entry!r} must be a Box of {expected}, got {box}. Wrap before frames are "
-        "transposed, stacked or converted to float."
-    )

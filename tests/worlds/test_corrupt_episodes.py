@@ -168,14 +168,14 @@ def test_an_instruction_without_a_word_passes_through_and_is_counted(tmp_path):
         summary = run(source, tmp_path / "out.json.gz", name, 1.0)
         assert raw(tmp_path / "out.json.gz")[1:] == raw(source)[1:]
         assert (summary["blank"], summary["changed"]) == (2, 1)
-        assert "2 instructions hold no word" in episodes_command.notices(summary)[0]
+        assert "2 instructions have no word" in episodes_command.notices(summary)[0]
 
 
 def test_a_file_without_an_episode_is_told(tmp_path, capsys):
     source = made(tmp_path / "in.json.gz")
     line = [str(source), str(tmp_path / "o.json"), "corruption=mask", "severity=1"]
     assert episodes_command.main(line) == 0
-    assert "warning: the file holds no episode" in capsys.readouterr().err
+    assert "warning: the file has no episodes" in capsys.readouterr().err
 
 
 def test_the_summary_has_the_options_that_the_corruption_uses_and_no_others(tmp_path):
@@ -210,13 +210,13 @@ def test_family_is_another_word_for_corruption(tmp_path, capsys):
         assert episodes_command.main(line) == 0
     assert (tmp_path / "0.json").read_bytes() == (tmp_path / "1.json").read_bytes()
     line = [source, str(tmp_path / "2.json"), "family=mask", "corruption=mask", "severity=1"]
-    assert episodes_command.main(line) == 2 and "give one of the two" in capsys.readouterr().err
+    assert episodes_command.main(line) == 2 and "Give one of the two" in capsys.readouterr().err
 
 
 def test_a_file_of_others_is_not_written_over(tmp_path):
     source, out = made(tmp_path / "in.json.gz", episode(1)), tmp_path / "out.json"
     out.write_text("precious")
-    with pytest.raises(ValueError, match="there already and no file of corrupt_episodes.*move"):
+    with pytest.raises(ValueError, match="was not written by corrupt_episodes.*move"):
         run(source, out, "mask", 1.0)
     assert out.read_text() == "precious"
     out.unlink()
@@ -232,7 +232,7 @@ def test_corrupt_episodes_keeps_a_file_beside_a_summary_of_others(tmp_path, summ
     source, out = made(tmp_path / "in.json.gz", episode(1)), tmp_path / "out.json"
     out.write_text("precious")
     (tmp_path / "out.json.summary.json").write_text(summary, errors="surrogatepass")
-    with pytest.raises(ValueError, match="no file of corrupt_episodes.*move"):
+    with pytest.raises(ValueError, match="was not written by corrupt_episodes.*move"):
         run(source, out, "mask", 1.0)
     assert out.read_text() == "precious"
 
@@ -241,7 +241,7 @@ def test_corrupt_episodes_keeps_a_file_that_was_changed_since(tmp_path):
     source, out = made(tmp_path / "in.json.gz", episode(1)), tmp_path / "out.json"
     run(source, out, "mask", 1.0)
     out.write_text("precious")
-    with pytest.raises(ValueError, match="was changed after corrupt_episodes wrote it.*move"):
+    with pytest.raises(ValueError, match="has changed since.*move"):
         run(source, out, "mask", 1.0)
     assert out.read_text() == "precious"
 
@@ -312,7 +312,7 @@ def test_mistakes_on_the_command_line_are_explained(tmp_path, capsys):
         (["corruption=mask"], "option severity is missing"),
         (["severity=0.5"], "Corruptions: friendly"),
         (["corruption=mask", "severity=0.5", "split=test"], "split= has no effect on mask"),
-        (["corruption=black_box", "severity=0.5", "tagger=own"], "for mask and capitalize"),
+        (["corruption=black_box", "severity=0.5", "tagger=own"], "only on mask and capitalize"),
         (["corruption=mask", "severity=high"], "must be a number"),
         (["corruption=maks", "severity=0.5"], "Did you mean mask"),
         (["corruption=white_box", "severity=0.5"], "not applicable to a file"),
@@ -375,9 +375,9 @@ def test_a_summary_replaces_neither_the_source_nor_another_file(tmp_path, capsys
     source.write_text(json.dumps({"episodes": []}))
     options = ["corruption=mask", "severity=0.5"]
     assert episodes_command.main([str(source), str(tmp_path / "q.json"), *options]) == 2
-    assert "is the file that is read, and the summary's name" in capsys.readouterr().err
+    assert "its summary" in capsys.readouterr().err
     other = tmp_path / "new.json.summary.json"
     other.write_text("of somebody else")
     assert episodes_command.main([str(source), str(tmp_path / "new.json"), *options]) == 2
-    assert "is there already, without" in capsys.readouterr().err
+    assert "was not written by corrupt_episodes" in capsys.readouterr().err
     assert source.read_text() == '{"episodes": []}' and other.read_text() == "of somebody else"

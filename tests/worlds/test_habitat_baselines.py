@@ -74,12 +74,12 @@ def test_the_observation_space_loses_the_key_alone():
     [
         (
             ("rgb", "rgb_30", "compass"),
-            ("camera named depth", "its entries are rgb, rgb_30, compass"),
+            ("camera named depth", "its entries are ['rgb', 'rgb_30', 'compass']"),
         ),
         (("rgb",), ("names=[motion_blur, low_light,", "foreign_object, black_out]")),
         (
             ("head_rgb", "head_depth"),
-            ("its entries are head_rgb, head_depth", "Rename the cameras"),
+            ("its entries are ['head_rgb', 'head_depth']", "add or rename a camera"),
         ),
     ],
     ids=str,

@@ -1,19 +1,25 @@
-"""Look at the world: ``python -m mitigate.worlds.apartments show seed=7`` writes a picture.
+"""Draw an apartment: ``python -m mitigate.worlds.apartments show seed=7`` writes a picture.
 
-``seed`` is the apartment's seed (0-99999 training, 100000- val_seen, 200000- val_unseen),
-``episode`` the number of the episode in it, ``task`` vln or ogn, ``size`` pixels of a view.
+seed     seed of the apartment (0-99999 train, 100000- val_seen, 200000- val_unseen; default 7)
+episode  index of the episode in it (default 0)
+task     vln (default) or ogn
+size     pixels of a view (default 192)
+out      the picture (default runs/show/<task>-<seed>-<episode>.png)
 """
 
 from __future__ import annotations
 
-import argparse
+import sys
 import textwrap
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
 
 from mitigate.core.files import write_figure
+from mitigate.core.names import unknown
 from mitigate.core.observation import DEPTH, RGB
+from mitigate.core.options import asks_help, paths_and_options
 from mitigate.core.pictures import draw_path, strip
 from mitigate.worlds.apartments.apartment import Apartment
 from mitigate.worlds.apartments.drawing import draw_plan
@@ -58,40 +64,34 @@ def show(seed: int, episode: int, task: str, size: int, out: Path) -> None:
     )
 
 
+DEFAULTS = {"seed": "7", "episode": "0", "task": "vln", "size": "192", "out": ""}
+
+
+def parse(arguments: Sequence[str]) -> tuple[int, int, str, int, Path]:
+    """Return the arguments of :func:`show`; raise ValueError for invalid options."""
+    _, options = paths_and_options(arguments, ("show",), DEFAULTS)
+    values = {**DEFAULTS, **options}
+    for name in ("seed", "episode", "size"):
+        if not values[name].isdecimal():
+            raise ValueError(f"{name} must be a whole number >= 0, got {values[name]!r}.")
+    task = values["task"]
+    if task not in TASKS:
+        raise ValueError(unknown("task", task, TASKS))
+    out = values["out"] or f"runs/show/{task}-{values['seed']}-{values['episode']}.png"
+    return int(values["seed"]), int(values["episode"]), task, int(values["size"]), Path(out)
+
+
 def main() -> None:
-    parser = argparse.ArgumentParser(
-        prog="python -m mitigate.worlds.apartments",
-        description=__doc__,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-    )
-    parser.add_argument("command", choices=["show"])
-    parser.add_argument(
-        "settings",
-        nargs="*",
-        metavar="key=value",
-        help="seed=7 episode=0 task=vln size=192 out=runs/show/vln-7-0.png",
-    )
-    args = parser.parse_args()
-    values = {"seed": "7", "episode": "0", "task": "vln", "size": "192", "out": ""}
-    for setting in args.settings:
-        key, _, value = setting.partition("=")
-        if key not in values or not value:
-            parser.error(
-                f"{setting!r} is not a setting; write key=value with a key of {', '.join(values)}"
-            )
-        values[key] = value
-    for key in ("seed", "episode", "size"):
-        if not values[key].removeprefix("-").isdecimal():
-            parser.error(f"{key}={values[key]} has the wrong type: it must be a whole number")
-    if values["task"] not in TASKS:
-        parser.error(f"task={values['task']} is unknown; choose one of {', '.join(TASKS)}")
-    out = Path(
-        values["out"] or f"runs/show/{values['task']}-{values['seed']}-{values['episode']}.png"
-    )
+    """Run from the command line."""
+    arguments = sys.argv[1:]
+    if asks_help(arguments):
+        print(__doc__)
+        sys.exit(0 if arguments else 2)
     try:
-        show(int(values["seed"]), int(values["episode"]), values["task"], int(values["size"]), out)
+        show(*parse(arguments))
     except ValueError as error:
-        parser.error(str(error))
+        print(f"apartments: {error}", file=sys.stderr)
+        sys.exit(2)
 
 
 if __name__ == "__main__":

@@ -29,11 +29,10 @@ from mitigate.worlds.recorded.messages import (
     read_stamp,
 )
 from mitigate.worlds.recorded.source import (
-    MAX_FRAME_GAP,
     MAX_INSTANTS,
     Lens,
-    find_nearest,
-    interpolate_poses,
+    Source,
+    match_times,
     read_instruction,
 )
 from mitigate.worlds.recorded.unpacking import bounded
@@ -55,8 +54,8 @@ MAX_POSES = 16 * MAX_INSTANTS  # of a drive: 500 Hz next to images at 30 Hz
 MAX_BUFFER_BYTES = 1 << 30  # images that wait for those of another topic
 
 
-class Bag:
-    """A drive in a bag, a :class:`~mitigate.worlds.recorded.source.Source`.
+class Bag(Source):
+    """A drive in a bag.
 
     Args:
         path: A file or a folder.
@@ -83,13 +82,13 @@ class Bag:
         if hfov is not None and all(kind in lenses for kind in self.kinds):
             raise ValueError(f"{path} contains the field of view of its cameras. Remove hfov=.")
         self._match(stamps, poses, yaw)
-        self.cameras: Mapping[str, Lens] = {
+        self.cameras = {
             kind: lenses[kind] if kind in lenses else self._lens_without_info(kind, hfov)
             for kind in self.kinds
         }
 
     def frames(self, chosen: Sequence[int]) -> Iterator[dict[str, np.ndarray]]:
-        indices = {kind: [int(self.matches[kind][i]) for i in chosen] for kind in self.kinds}
+        indices = {kind: [int(self._frames[kind][i]) for i in chosen] for kind in self.kinds}
         last_use = {kind: {n: at for at, n in enumerate(w)} for kind, w in indices.items()}
         buffer: dict[str, dict[int, np.ndarray]] = {kind: {} for kind in self.kinds}
         done = 0
@@ -100,21 +99,19 @@ class Bag:
                 counts[kind] += 1
                 if message is not None:
                     buffer[kind][counts[kind]] = read_image(message, kind, self.path)
-                    self._check_buffer(buffer)
+                    images = [image for waiting in buffer.values() for image in waiting.values()]
+                    if sum(image.nbytes for image in images) > MAX_BUFFER_BYTES:
+                        raise ValueError(
+                            f"{self.path}: images of the same time must be close together in the "
+                            f"bag, but over {MAX_BUFFER_BYTES >> 30} GiB of others lie between "
+                            "them. Write the bag again in the order of time, or leave one topic "
+                            "out (topics.depth=none)."
+                        )
                 while done < len(chosen) and all(indices[k][done] in buffer[k] for k in self.kinds):
                     yield {k: buffer[k][indices[k][done]] for k in self.kinds}
                     done += 1
                     for k in self.kinds:  # drop the images that no later instant uses
                         buffer[k] = {n: f for n, f in buffer[k].items() if last_use[k][n] >= done}
-
-    def _check_buffer(self, buffer: Mapping[str, dict[int, np.ndarray]]) -> None:
-        size = sum(frame.nbytes for images in buffer.values() for frame in images.values())
-        if size > MAX_BUFFER_BYTES:
-            raise ValueError(
-                f"{self.path}: images of the same time must be close together in the bag, but over "
-                f"{MAX_BUFFER_BYTES >> 30} GiB of others lie between them. Write the bag again in "
-                "the order of time, or leave one topic out (topics.depth=none)."
-            )
 
     # ----------------------------------------------------------------------------- reading
 
@@ -184,20 +181,18 @@ class Bag:
         for name, times, message in self._messages(reader, list(self.topics), images):
             if name in stamps:
                 stamps[name].append(times)
-            if name in self.kinds and len(stamps[name]) > MAX_INSTANTS:
-                raise ValueError(
-                    f"{self.path} must have at most {MAX_INSTANTS} images. Cut the recording."
-                )
+                limit = MAX_POSES if name == POSE else MAX_INSTANTS
+                if len(stamps[name]) > limit:
+                    raise ValueError(
+                        f"{self.path} must have at most {limit} messages on {self.topics[name]}. "
+                        "Cut the recording."
+                    )
             if name == POSE:
                 poses.append(read_pose(message))
-                if len(poses) > MAX_POSES:
-                    raise ValueError(
-                        f"{self.path} must have at most {MAX_POSES} poses. Cut the recording."
-                    )
             elif name not in self.kinds:
                 kind = name.removeprefix("info ")
-                unusable = hfov is not None and not _has_focal_length(message)
-                if kind not in lenses and not unusable:
+                usable = hfov is None or bool((camera_matrix(message)[:1] > 0).any())
+                if kind not in lenses and usable:
                     lenses[kind] = read_lens(kind, message, self.path)
         seconds = {name: _choose_clock(pairs) for name, pairs in stamps.items()}
         timed = zip(seconds.pop(POSE), poses, strict=True)
@@ -216,52 +211,32 @@ class Bag:
         self, stamps: Mapping[str, list[float]], table: Sequence[tuple[float, ...]], yaw: float
     ) -> None:
         """Set the times, the poses and the index of each camera's image for each instant."""
-        for kind, taken_at in stamps.items():
-            if not taken_at:
+        records: dict[str, Sequence] = {**stamps, **({POSE: table} if POSE in self.topics else {})}
+        for name, messages in records.items():
+            if not messages:
                 raise ValueError(
-                    f"{self.path} has no message on {self.topics[kind]}. Set topics.{kind}=none to "
+                    f"{self.path} has no message on {self.topics[name]}. Set topics.{name}=none to "
                     "leave it out."
                 )
-        if POSE in self.topics and not table:
-            raise ValueError(
-                f"{self.path} has no message on {self.topics[POSE]}. Set topics.pose=none to read "
-                "without poses."
-            )
-        order = {kind: np.argsort(taken_at, kind="stable") for kind, taken_at in stamps.items()}
-        times = np.sort(stamps[self.kinds[0]])
-        complete = np.ones(len(times), bool)
-        matches = {}
-        for kind, taken_at in stamps.items():
-            nearest, distance = find_nearest(times, np.sort(taken_at))
-            matches[kind] = order[kind][nearest]
-            complete &= distance <= MAX_FRAME_GAP
-        poses = None
-        if table:
-            poses, known = interpolate_poses(times, np.array(table))
-            poses[:, 2] -= math.radians(yaw)
-            complete &= known
-        if not complete.any():
+        instants = match_times(stamps, np.array(table) if table else None)
+        if not len(instants.times):
             raise ValueError(
                 f"{self.path}: no image has a message of each other topic near in time "
-                f"({len(times)} images, {len(table)} poses). Choose other topics: topics.rgb=, "
-                "topics.depth=, topics.pose=."
+                f"({instants.dropped} images, {len(table)} poses). Choose other topics: "
+                "topics.rgb=, topics.depth=, topics.pose=."
             )
-        self.times = times[complete]
-        self.poses = None if poses is None else poses[complete]
-        self.matches = {kind: index[complete] for kind, index in matches.items()}
-        self.dropped = int((~complete).sum())
+        self.times = instants.times
+        self.poses = instants.poses
+        if self.poses is not None:
+            self.poses[:, 2] -= math.radians(yaw)
+        self.dropped = instants.dropped
+        self._frames = instants.frames
 
 
 def _choose_clock(stamps: Sequence[tuple[float, float]]) -> list[float]:
     """Return the times of the headers if any header has one, otherwise the times of receipt."""
     has_header = any(header for header, _ in stamps)
     return [header if has_header else received for header, received in stamps]
-
-
-def _has_focal_length(message: Any) -> bool:
-    """Return whether a CameraInfo contains a focal length."""
-    matrix = camera_matrix(message)
-    return len(matrix) == 9 and bool(matrix[0] > 0)
 
 
 @dataclass(frozen=True)

@@ -14,7 +14,6 @@ The last two layouts may contain the instruction as ``instruction.txt``.
 
 from __future__ import annotations
 
-import io
 import math
 import warnings
 from collections.abc import Iterator, Mapping, Sequence
@@ -25,7 +24,7 @@ from typing import Any
 import numpy as np
 
 from mitigate.core.files import RECORDING
-from mitigate.core.json_files import parse_json, read_json
+from mitigate.core.json_files import parse_json, read_object
 from mitigate.core.names import short, unknown
 from mitigate.core.observation import DEPTH, RGB
 from mitigate.corruptions import frame_files
@@ -36,12 +35,11 @@ from mitigate.worlds.recorded.source import (
     MAX_INSTANTS,
     MAX_INSTRUCTION_BYTES,
     Lens,
-    find_nearest,
-    interpolate_poses,
+    Source,
+    match_times,
     plan_pose,
     read_instruction,
     read_text,
-    rotate,
 )
 
 # The layout of `mitigate run record=`.
@@ -57,27 +55,21 @@ TRAJECTORY = "groundtruth.txt"
 TUM_UNIT = 1 / 5000  # metres per count; TUM RGB-D benchmark, file formats
 TUM_HFOV = math.degrees(2 * math.atan(320 / 525))  # its default calibration: 640 pixels, focal 525
 
+FIX = "Copy it again, or leave this drive out."
 MAX_NUMBER = 1e6  # heuristic limit of a number in a recording (metres, degrees)
 MAX_HEADING = 50.0  # radians, heuristic: eight turns; larger headings are in degrees
 
 
-@dataclass(frozen=True)
-class Frames:
-    """A drive in files, a :class:`~mitigate.worlds.recorded.source.Source`.
+@dataclass
+class Frames(Source):
+    """A drive in files.
 
     Attributes:
         files: One file per instant, by camera.
         unit: Metres per count of 16-bit depth.
     """
 
-    name: str
-    instruction: str
-    cameras: Mapping[str, Lens]
     files: Mapping[str, Sequence[Path]]
-    times: np.ndarray
-    poses: np.ndarray | None
-    stepped: bool
-    dropped: int
     unit: float
 
     def frames(self, chosen: Sequence[int]) -> Iterator[dict[str, np.ndarray]]:
@@ -130,7 +122,7 @@ def open_folder(
             f"cameras= applies only to a recording by mitigate run, which {path} is not. Remove "
             "cameras=."
         )
-    if _has_lists(path):
+    if any((path / name).is_file() for name in LISTS):
         return [_read_tum(path, hfov, TUM_UNIT if unit is None else unit)]
     if (path / TRAJECTORY).is_file():
         raise ValueError(
@@ -151,9 +143,9 @@ def _read_recorded(
 
     An interrupted episode ends with its last complete step.
     """
-    episode = _read_object(folder / EPISODE)
+    episode = read_object(folder / EPISODE, FIX)
     steps = _read_lines(folder / STEPS)
-    described = _read_object(folder / CAMERAS) if (folder / CAMERAS).is_file() else {}
+    described = read_object(folder / CAMERAS, FIX) if (folder / CAMERAS).is_file() else {}
     names = sorted(p.name for p in folder.iterdir() if p.is_dir())
     for camera in chosen or ():
         if camera not in names:
@@ -163,31 +155,36 @@ def _read_recorded(
     if not steps or not files:
         return None
     cameras = {name: _read_lens(name, paths[0], described, hfov) for name, paths in files.items()}
-    name = folder.relative_to(recording).as_posix()
     counts = [len(steps), *map(len, files.values())]
     if max(counts) - min(counts) > 1:
         raise ValueError(
             f"{folder} is incomplete: its cameras have {min(counts)} to {max(counts)} frames for "
-            f"{len(steps)} steps. Copy it again, or leave this drive out."
+            f"{len(steps)} steps. {FIX}"
         )
     steps = steps[: min(counts)]
     _check_calls(steps, files)
-    poses = _recorded_poses(steps, folder / STEPS)
     instruction = episode.get("text") or episode.get("category") or ""
     if not isinstance(instruction, str):
         raise ValueError(
             f"{folder / EPISODE}: the instruction must be a text, got {short(instruction)}."
         )
-    instruction = instruction[:MAX_INSTRUCTION_BYTES]
-    unit = _number_or_none(_read_object(recording / RECORDING), "unit", recording / RECORDING)
-    unit = unit or 0.001
+    file = recording / RECORDING
+    unit = _number_or_none(read_object(file, FIX), "unit", file) or 0.001
     if not 0 < unit <= 1:
         raise ValueError(
-            f"{recording / RECORDING}: unit must be above 0 and at most 1 metre per count, got "
-            f"{unit:g}."
+            f"{file}: unit must be above 0 and at most 1 metre per count, got {unit:g}."
         )
-    times = np.arange(len(steps)) * 1.0
-    return Frames(name, instruction, cameras, files, times, poses, True, 0, unit)
+    return Frames(
+        name=folder.relative_to(recording).as_posix(),
+        instruction=instruction[:MAX_INSTRUCTION_BYTES],
+        cameras=cameras,
+        times=np.arange(len(steps)) * 1.0,
+        poses=_recorded_poses(steps, folder / STEPS),
+        stepped=True,
+        dropped=0,
+        files=files,
+        unit=unit,
+    )
 
 
 def _check_calls(steps: Sequence[Any], files: Mapping[str, Sequence[Path]]) -> None:
@@ -198,7 +195,7 @@ def _check_calls(steps: Sequence[Any], files: Mapping[str, Sequence[Path]]) -> N
             if type(call) is int and paths[index].stem != f"{call:06d}":
                 raise ValueError(
                     f"{paths[index].parent} is incomplete: it has no frame {call:06d}, which "
-                    f"{STEPS} names. Copy it again, or leave this drive out."
+                    f"{STEPS} names. {FIX}"
                 )
 
 
@@ -216,8 +213,7 @@ def _read_lens(name: str, frame: Path, described: Mapping[str, Any], hfov: float
         return Lens(frame_files.modality(frame), 90.0 if hfov is None else hfov)
     if not isinstance(camera, dict) or camera.get("kind") not in (RGB, DEPTH):
         raise ValueError(
-            f"{file}: kind of camera {name} must be {RGB} or {DEPTH}, got {short(camera)}. Copy "
-            "the file again, or leave this drive out."
+            f"{file}: kind of camera {name} must be {RGB} or {DEPTH}, got {short(camera)}. {FIX}"
         )
     recorded_hfov = _number_or_none(camera, "hfov", file)
     yaw = _number_or_none(camera, "yaw", file)
@@ -308,20 +304,10 @@ def _read_simple(path: Path, hfov: float | None, unit: float | None) -> Frames:
 
 def _read_poses(file: Path) -> np.ndarray:
     """Read lines "x,y,heading", with or without a header line, as float64 [N, 3]."""
-    lines = [
-        (n, [word.strip() for word in line.split(",")])
-        for n, line in enumerate(read_text(file).splitlines(), 1)
-        if line.strip()
-    ]
-    first = lines[0][1] if lines else []
-    if any(word.isalpha() and word.lower() != "nan" for word in first):
-        if first != ["x", "y", "heading"]:
-            raise ValueError(f"{file}: the columns must be x,y,heading, got {','.join(first)}.")
-        lines = lines[1:]
-    wrong = [n for n, line in lines if len(line) != 3]
-    if wrong:
-        raise ValueError(f"{file}, line {wrong[0]}, must have three values: x,y,heading.")
-    poses = np.array([[number(w, file, n) for w in line] for n, line in lines])
+    rows = list(_read_rows(file, 3, ","))
+    if rows and rows[0][1] == ["x", "y", "heading"]:
+        rows = rows[1:]
+    poses = np.array([[number(word, file, line) for word in row] for line, row in rows])
     return _check_radians(poses.reshape(-1, 3), file)
 
 
@@ -343,14 +329,6 @@ def _list_frames(folder: Path) -> list[Path]:
     return sorted(files, key=lambda file: natural(file.name))
 
 
-def _read_object(file: Path) -> dict[str, Any]:
-    """Read a JSON object."""
-    content = read_json(file, "Copy it again, or leave this drive out.")
-    if not isinstance(content, dict):
-        raise ValueError(f"{file} must be a JSON object. Copy it again, or leave this drive out.")
-    return content
-
-
 def _read_lines(file: Path) -> list[Any]:
     """Read the JSON lines of a file, without an incomplete last line."""
     records = []
@@ -367,11 +345,6 @@ def _read_lines(file: Path) -> list[Any]:
     return records
 
 
-def _has_lists(path: Path) -> bool:
-    """Return whether ``path`` has a list of images in the layout of TUM RGB-D."""
-    return any((path / name).is_file() for name in LISTS)
-
-
 def _read_tum(path: Path, hfov: float | None, unit: float) -> Frames:
     """Read a drive in the layout of TUM RGB-D.
 
@@ -385,37 +358,23 @@ def _read_tum(path: Path, hfov: float | None, unit: float) -> Frames:
     listed = {kind: lines for kind, lines in listed.items() if lines}
     if not listed:
         raise ValueError(f"{path}: its lists name no image. Add lines to {' or '.join(LISTS)}.")
-    leading = RGB if RGB in listed else DEPTH
-    times = np.array([time for time, _ in listed[leading]])
-    files: dict[str, list[Path]] = {leading: [file for _, file in listed[leading]]}
-    complete = np.ones(len(times), bool)
-    for kind, lines in listed.items():
-        if kind != leading:
-            nearest, distance = find_nearest(times, np.array([time for time, _ in lines]))
-            files[kind] = [lines[i][1] for i in nearest]
-            complete &= distance <= MAX_FRAME_GAP
-    poses = None
-    if (path / TRAJECTORY).is_file():
-        poses, known = interpolate_poses(times, _read_trajectory(path / TRAJECTORY))
-        complete &= known
-    if not complete.any():
+    stamps = {kind: [time for time, _ in lines] for kind, lines in listed.items()}
+    has_poses = (path / TRAJECTORY).is_file()
+    instants = match_times(stamps, _read_trajectory(path / TRAJECTORY) if has_poses else None)
+    if not len(instants.times):
         raise ValueError(
             f"{path}: the times of its lists must be within {MAX_FRAME_GAP} s of each other. Check "
             "that all use the same clock."
         )
-    files = {
-        kind: [file for file, keep in zip(paths, complete, strict=True) if keep]
-        for kind, paths in files.items()
-    }
     return Frames(
         name=path.name,
         instruction=read_instruction(path / INSTRUCTION),
-        cameras={kind: Lens(kind, TUM_HFOV if hfov is None else hfov) for kind in files},
-        files=files,
-        times=times[complete],
-        poses=None if poses is None else poses[complete],
+        cameras={kind: Lens(kind, TUM_HFOV if hfov is None else hfov) for kind in listed},
+        times=instants.times,
+        poses=instants.poses,
         stepped=False,
-        dropped=int((~complete).sum()),
+        dropped=instants.dropped,
+        files={kind: [listed[kind][i][1] for i in rows] for kind, rows in instants.frames.items()},
         unit=unit,
     )
 
@@ -423,7 +382,7 @@ def _read_tum(path: Path, hfov: float | None, unit: float) -> Frames:
 def _read_list(path: Path, name: str) -> list[tuple[float, Path]]:
     """Read the lines of a list of images as (time, file); raise ValueError for a file outside."""
     listed = []
-    for line, row in _read_rows(path / name, min_columns=2):
+    for line, row in _read_rows(path / name, 2):
         file = path / row[1]
         if "\0" in row[1] or path.resolve() not in file.resolve().parents:
             raise ValueError(f"{path / name}, line {line}, names a file outside of {path}.")
@@ -439,10 +398,10 @@ def _read_trajectory(file: Path) -> np.ndarray:
             are read as poses of an optical axis.
     """
     rows = []
-    for line, row in _read_rows(file, min_columns=8):
+    for line, row in _read_rows(file, 8):
         numbers = [number(word, file, line) for word in row[:8]]
-        forward = rotate(numbers[4:], (0.0, 0.0, 1.0))
-        rows.append((numbers[0], *plan_pose(numbers[1], numbers[2], forward)))
+        pose = plan_pose(numbers[1], numbers[2], numbers[4:], (0.0, 0.0, 1.0))
+        rows.append((numbers[0], *pose))
     if not rows:
         raise ValueError(f"{file} has no pose. Add poses, or delete it to read without poses.")
     invalid = sum(math.isnan(row[3]) for row in rows)
@@ -455,17 +414,22 @@ def _read_trajectory(file: Path) -> np.ndarray:
     return np.array(sorted(rows))
 
 
-def _read_rows(file: Path, min_columns: int) -> Iterator[tuple[int, list[str]]]:
-    """Yield the number and the words of each line that is not a comment."""
+def _read_rows(
+    file: Path, columns: int, separator: str | None = None
+) -> Iterator[tuple[int, list[str]]]:
+    """Yield the number and the words of each line that is not a comment.
+
+    Lines may have more than ``columns`` words, unless there is a ``separator``.
+    """
     if not file.is_file():
         return
-    for line_number, line in enumerate(io.StringIO(read_text(file)), 1):
-        row = line.split()
-        if not row or row[0].startswith("#"):
+    for line_number, line in enumerate(read_text(file).splitlines(), 1):
+        if not line.strip() or line.lstrip().startswith("#"):
             continue
-        if len(row) < min_columns:
+        row = [word.strip() for word in line.split(separator)]
+        if len(row) < columns or (separator and len(row) > columns):
             raise ValueError(
-                f"{file}, line {line_number}, must have {min_columns} words, got {len(row)}."
+                f"{file}, line {line_number}, must have {columns} words, got {len(row)}."
             )
         if line_number > MAX_INSTANTS:
             raise ValueError(f"{file} must have at most {MAX_INSTANTS} lines. Cut the recording.")

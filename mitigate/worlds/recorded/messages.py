@@ -13,7 +13,7 @@ import numpy as np
 from PIL import Image
 
 from mitigate.core.observation import DEPTH, RGB
-from mitigate.worlds.recorded.source import Lens, plan_pose, rotate
+from mitigate.worlds.recorded.source import Lens, plan_pose
 
 FISHEYE = ("equidistant", "fisheye")  # distortion models of ROS
 MAX_SIDE = 1 << 13  # pixels of an image, a heuristic limit
@@ -36,8 +36,8 @@ def read_pose(message: Any) -> tuple[float, float, float]:
         message = inner
     orientation = message.orientation
     quaternion = (orientation.x, orientation.y, orientation.z, orientation.w)
-    forward = rotate(quaternion, (1.0, 0.0, 0.0))
-    return plan_pose(float(message.position.x), float(message.position.y), forward)
+    position = message.position
+    return plan_pose(float(position.x), float(position.y), quaternion, (1.0, 0.0, 0.0))
 
 
 def _field(message: Any, *names: str) -> Any:

@@ -135,7 +135,7 @@ def load(source: Source, *, views: int, size: int, step: Step) -> Recording:
     times = source.times[chosen] - source.times[0]
     driven = None if poses is None else driver_actions(poses)
     if poses is not None and driven is not None:
-        _check_headings(source.name, *count_off_heading(poses, driven))
+        _check_headings(source.name, poses, driven)
     return Recording(source.name, source.instruction, frames, times, poses, driven)
 
 
@@ -243,8 +243,12 @@ def _resize(frame: np.ndarray, width: int, height: int, is_depth: bool) -> np.nd
     )
 
 
-def _check_headings(name: str, off_heading: int, moving: int) -> None:
-    """Warn if too many of the moving steps go another way than the heading."""
+def _check_headings(name: str, poses: np.ndarray, driven: Driven) -> None:
+    """Warn if too many of the steps that move go another way than the heading."""
+    moves = np.hypot(*np.diff(poses[:, :2], axis=0).T) >= MIN_MOVE
+    moves &= np.isin(driven.actions[:-1], (FORWARD, NO_ACTION))
+    off_heading = int((driven.actions[:-1][moves] == NO_ACTION).sum())
+    moving = int(moves.sum())
     if moving >= MIN_MOVING_STEPS and off_heading > MAX_OFF_HEADING * moving:
         warnings.warn(
             f"{name}: {off_heading} of {moving} steps that move go backwards or sideways. Check "
@@ -414,17 +418,6 @@ def driver_actions(poses: np.ndarray) -> Driven:
         else:
             actions[index] = FORWARD if ahead > sideways else NO_ACTION
     return Driven(actions, metres, radians)
-
-
-def count_off_heading(poses: np.ndarray, driven: Driven) -> tuple[int, int]:
-    """Count the moving steps between poses [T, 3] that go another way than the heading.
-
-    Returns:
-        Number of backward or sideways steps, and number of steps that move.
-    """
-    moves = np.hypot(*np.diff(poses[:, :2], axis=0).T) >= MIN_MOVE
-    moves &= np.isin(driven.actions[:-1], (FORWARD, NO_ACTION))
-    return int((driven.actions[:-1][moves] == NO_ACTION).sum()), int(moves.sum())
 
 
 def movements(actions: np.ndarray) -> Driven:

@@ -10,7 +10,6 @@ import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Protocol
 
 import numpy as np
 
@@ -54,27 +53,22 @@ class Lens:
     size: tuple[int, int] | None = None
 
     def __post_init__(self) -> None:
-        hfov = self.hfov
-        if self.focal is not None and self.size is not None:
-            hfov = math.degrees(2 * math.atan2(self.size[0] / 2, self.focal[0]))
-        if not MIN_HFOV <= hfov <= MAX_HFOV:
-            raise ValueError(
-                f"The horizontal field of view of a camera must be {MIN_HFOV:g} to {MAX_HFOV:g} "
-                f"degrees, got {hfov:.3g}."
-            )
+        hfov = vfov = self.hfov
+        offset = 0.0
         if self.focal is not None and self.size is not None and self.centre is not None:
-            vfov = math.degrees(2 * math.atan2(self.size[1] / 2, self.focal[1]))
-            if not MIN_VFOV <= vfov <= MAX_HFOV:
-                raise ValueError(
-                    f"The vertical field of view of a camera must be {MIN_VFOV:g} to "
-                    f"{MAX_HFOV:g} degrees, got {vfov:.3g}."
-                )
+            pairs = zip(self.size, self.focal, strict=True)
+            hfov, vfov = (math.degrees(2 * math.atan2(side / 2, f)) for side, f in pairs)
             offset = max(abs(c - s / 2) / s for c, s in zip(self.centre, self.size, strict=True))
-            if offset > MAX_CENTRE_OFFSET:
-                raise ValueError(
-                    "The principal point of a camera must be at most "
-                    f"{MAX_CENTRE_OFFSET:g} image sizes from the middle, got {offset:.3g}."
-                )
+        if not (MIN_HFOV <= hfov <= MAX_HFOV and MIN_VFOV <= vfov <= MAX_HFOV):
+            raise ValueError(
+                f"The field of view of a camera must be {MIN_HFOV:g} to {MAX_HFOV:g} degrees "
+                f"(vertically from {MIN_VFOV:g}), got {hfov:.3g} x {vfov:.3g}."
+            )
+        if offset > MAX_CENTRE_OFFSET:
+            raise ValueError(
+                "The principal point of a camera must be at most "
+                f"{MAX_CENTRE_OFFSET:g} image sizes from the middle, got {offset:.3g}."
+            )
 
     def intrinsics(self, height: int, width: int) -> tuple[float, float, float, float]:
         """Return (fx, fy, cx, cy) in pixels of an image of this size.
@@ -103,8 +97,9 @@ class Lens:
         return round(self.yaw / VIEW_STEP_DEGREES) % round(360 / VIEW_STEP_DEGREES)
 
 
-class Source(Protocol):
-    """An opened drive of N instants.
+@dataclass
+class Source:
+    """Base class of an opened drive of N instants.
 
     Attributes:
         name: Name of the drive.
@@ -118,26 +113,13 @@ class Source(Protocol):
             near in time.
     """
 
-    @property
-    def name(self) -> str: ...
-
-    @property
-    def instruction(self) -> str: ...
-
-    @property
-    def cameras(self) -> Mapping[str, Lens]: ...
-
-    @property
-    def times(self) -> np.ndarray: ...
-
-    @property
-    def poses(self) -> np.ndarray | None: ...
-
-    @property
-    def stepped(self) -> bool: ...
-
-    @property
-    def dropped(self) -> int: ...
+    name: str
+    instruction: str
+    cameras: Mapping[str, Lens]
+    times: np.ndarray
+    poses: np.ndarray | None
+    stepped: bool
+    dropped: int
 
     def frames(self, chosen: Sequence[int]) -> Iterator[dict[str, np.ndarray]]:
         """Yield the frame of each camera at each chosen instant, in order.
@@ -151,27 +133,34 @@ class Source(Protocol):
         Raises:
             ValueError: A frame is damaged.
         """
+        raise NotImplementedError(f"{type(self).__name__} defines no frames(chosen)")
 
 
-def plan_pose(x: float, y: float, forward: np.ndarray) -> tuple[float, float, float]:
-    """Return the plan pose (x, y, heading) of an agent at (x, y) that faces ``forward`` [3].
+def plan_pose(
+    x: float, y: float, quaternion: Sequence[float], axis: Sequence[float]
+) -> tuple[float, float, float]:
+    """Return the plan pose (x, y, heading) of an agent at (x, y); z points up.
 
-    z points up. The heading is NaN if ``forward`` points up or down.
+    Args:
+        x: Metres.
+        y: Metres.
+        quaternion: Rotation (x, y, z, w) of the agent or its camera.
+        axis: Direction [3] that faces forward before the rotation.
+
+    Returns:
+        The pose. The heading is NaN if the agent faces up or down, or if ``quaternion`` is not a
+        rotation.
     """
-    level = math.hypot(forward[0], forward[1]) >= MIN_LEVEL
-    return x, y, math.atan2(-forward[0], forward[1]) if level else math.nan
-
-
-def rotate(quaternion: Sequence[float], axis: Sequence[float]) -> np.ndarray:
-    """Rotate ``axis`` [3] by a quaternion (x, y, z, w); NaN if it is not a rotation."""
     values = np.asarray(quaternion, np.float64)
     length = float(np.linalg.norm(values))
     if not (values.shape == (4,) and np.isfinite(length) and length > 1e-6):
-        return np.full(3, np.nan)
-    x, y, z, w = values / length
-    u = np.array([x, y, z])
+        return x, y, math.nan
+    *imaginary, w = values / length
+    u = np.array(imaginary)
     v = np.asarray(axis, np.float64)
-    return v + 2 * np.cross(u, np.cross(u, v) + w * v)
+    forward = v + 2 * np.cross(u, np.cross(u, v) + w * v)
+    level = math.hypot(forward[0], forward[1]) >= MIN_LEVEL
+    return x, y, math.atan2(-forward[0], forward[1]) if level else math.nan
 
 
 def find_nearest(times: np.ndarray, others: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -210,13 +199,56 @@ def interpolate_poses(times: np.ndarray, table: np.ndarray) -> tuple[np.ndarray,
     headings = np.interp(times, pose_times, np.unwrap(poses[:, 2]))
     xy = [np.interp(times, pose_times, poses[:, column]) for column in (0, 1)]
     after = np.searchsorted(pose_times, times)
-    inside = (after > 0) & (after < len(pose_times))
-    gaps: Any = np.inf
-    if len(pose_times) > 1:
-        gaps = np.diff(pose_times)[np.clip(after - 1, 0, max(0, len(pose_times) - 2))]
+    gaps = np.concatenate([[np.inf], np.diff(pose_times), [np.inf]])[after]
     close = find_nearest(times, pose_times)[1] <= MAX_FRAME_GAP
-    known = (inside & (gaps <= MAX_POSE_GAP)) | close
-    return np.stack([*xy, headings], 1), known
+    return np.stack([*xy, headings], 1), (gaps <= MAX_POSE_GAP) | close
+
+
+@dataclass(frozen=True)
+class Instants:
+    """The instants at which all cameras have a frame and the pose is known.
+
+    Attributes:
+        times: float64 [N], seconds.
+        poses: float64 [N, 3], or None if unknown.
+        frames: Index of the frame of each camera at each instant, int [N], by camera.
+        dropped: Number of instants left out.
+    """
+
+    times: np.ndarray
+    poses: np.ndarray | None
+    frames: dict[str, np.ndarray]
+    dropped: int
+
+
+def match_times(stamps: Mapping[str, Sequence[float]], table: np.ndarray | None) -> Instants:
+    """Match the frames of several cameras and the poses by time.
+
+    Args:
+        stamps: Seconds of the frames of each camera; those of the first camera are the instants.
+        table: float64 [M, 4], (time, x, y, heading) of the known poses, or None.
+
+    Returns:
+        The instants that are complete; may be none.
+    """
+    times = np.sort(next(iter(stamps.values())))
+    complete = np.ones(len(times), bool)
+    frames = {}
+    for name, seconds in stamps.items():
+        order = np.argsort(seconds, kind="stable")
+        nearest, distance = find_nearest(times, np.sort(seconds))
+        frames[name] = order[nearest]
+        complete &= distance <= MAX_FRAME_GAP
+    poses = None
+    if table is not None:
+        poses, known = interpolate_poses(times, table)
+        complete &= known
+    return Instants(
+        times[complete],
+        None if poses is None else poses[complete],
+        {name: index[complete] for name, index in frames.items()},
+        int((~complete).sum()),
+    )
 
 
 def read_instruction(file: Path) -> str:

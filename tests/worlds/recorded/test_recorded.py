@@ -449,9 +449,12 @@ def test_open_recording_reads_a_folder_of_drives(tmp_path):
     ("damage", "message"),
     [
         (lambda f: (f / "poses.csv").write_text("x,y,heading\n0,0,0\n"), "as many of each"),
-        (lambda f: (f / "poses.csv").write_text("heading,x,y\n" + "90,0,0\n" * 6), "columns"),
+        (
+            lambda f: (f / "poses.csv").write_text("heading,x,y\n" + "90,0,0\n" * 6),
+            "line 1: .*heading",
+        ),
         (lambda f: (f / "poses.csv").write_text("0,0,90\n0,0,0\n" * 3), "radians"),
-        (lambda f: (f / "poses.csv").write_text("0,0\n" * 6), "line 1, must .*: x,y,heading"),
+        (lambda f: (f / "poses.csv").write_text("0,0\n" * 6), "line 1, must have 3 words"),
         (lambda f: (f / "poses.csv").write_text("x,y,heading\n\n0,0\n"), "line 3, must have"),
         (lambda f: (f / "poses.csv").write_text("x,y,heading\n0,0,a\n"), "line 2: .* got 'a'"),
         (lambda f: (f / "poses.csv").write_text("0,0,nan\n" * 6), "must be a finite number"),
