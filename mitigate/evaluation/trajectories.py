@@ -26,8 +26,9 @@ from mitigate.guards.guard import NO_GUARDS, Guards
 from mitigate.worlds.episodes import Episode, from_vlnce
 from mitigate.worlds.world import World, WorldWrapper, as_world, depth_sensor
 
-REFERENCE, CLEAN_WALK = "#8a8a8a", "#1f77b4"
-CORRUPTED_WALKS = ("#d62728", "#2ca02c", "#9467bd", "#ff7f0e")  # one per agent, in order
+# colours of Okabe and Ito, readable without colour vision; corrupted: one per agent, in order
+REFERENCE, CLEAN_WALK = "#8a8a8a", "#0072b2"
+CORRUPTED_WALKS = ("#d55e00", "#009e73", "#cc79a7", "#8c564b")
 INCHES, DPI = (9.0, 10.5), 80
 PICTURES = 4  # episodes drawn after a training (heuristic)
 
@@ -87,6 +88,14 @@ def draw_trajectories(
         guards: guards by the name of their agent.
     """
     walks = list(run_agents(agents, world, episode, corruption, seed, guards))
+    figure = draw_episode(walks, world, episode, corruption, seed)
+    return write_figure(out, figure, dpi=DPI, facecolor="white")
+
+
+def draw_episode(
+    walks: Sequence[Walk], world: World, episode: Episode, corruption: Corruption, seed: int
+) -> Figure:
+    """Draw the start panorama (clean and corrupted), the plan, the reference path and ``walks``."""
     entry, sight = first_sight(world, episode, corruption, seed)
     figure = Figure(figsize=INCHES, layout="constrained")
     *above, plan = figure.subplots(3, 1, height_ratios=(1, 1, 3.4))
@@ -104,7 +113,7 @@ def draw_trajectories(
         plan.axis("off")
     _draw_walks(plan, world.reset(episode)[POSE], episode, walks)
     figure.suptitle("\n".join(textwrap.wrap(episode.instruction.text, 100)), fontsize=11)
-    return write_figure(out, figure, dpi=DPI, facecolor="white")
+    return figure
 
 
 def first_sight(
