@@ -17,7 +17,7 @@ from mitigate.core.progress import Progress
 
 OUT = Path("runs/report.html")
 ROWS = "docs/results"
-MOST_WALKS = 200  # largest number per page (heuristic): each has two pictures of about 40 KB
+MOST_WALKS = 200  # largest number per page (heuristic): each has a picture of about 100 KB
 
 
 def run(
