@@ -49,9 +49,9 @@ def __getattr__(name: str) -> Any:
         try:
             return vars(import_module(_MODULES[name]))[name]
         except ModuleNotFoundError as error:
-            from mitigate.core.errors import lacking
+            from mitigate.core.errors import missing_package_message
 
-            message = lacking(f"mitigate.{name}", error)
+            message = missing_package_message(f"mitigate.{name}", error)
             if not message:
                 raise
             raise ImportError(message) from error

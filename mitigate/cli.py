@@ -12,7 +12,7 @@ from collections.abc import Sequence
 from importlib import import_module
 from typing import NamedTuple
 
-from mitigate.core.errors import lacking
+from mitigate.core.errors import missing_package_message
 from mitigate.core.names import unknown
 
 
@@ -139,7 +139,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
         status = import_module(COMMANDS[name].module).main()
         sys.stdout.flush()
     except ModuleNotFoundError as error:
-        message = lacking(f"mitigate {name}", error, COMMANDS[name].extra)
+        message = missing_package_message(f"mitigate {name}", error, COMMANDS[name].extra)
         if not message:
             raise
         sys.exit(message)

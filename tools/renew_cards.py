@@ -17,7 +17,7 @@ from pathlib import Path
 
 from mitigate.agents import loading
 from mitigate.core import folders, older_folders
-from mitigate.core.errors import said
+from mitigate.core.errors import error_message
 from mitigate.core.files import put_folder
 from mitigate.evaluation.rows import Row, gather
 from mitigate.shipping.card import readme, rows_agent
@@ -60,7 +60,7 @@ def main() -> None:
             renew(folder.resolve(), rows)
             print(f"wrote {folder / loading.README}")
     except (OSError, ValueError) as error:
-        sys.exit(f"error: {said(error)}")
+        sys.exit(f"error: {error_message(error)}")
 
 
 if __name__ == "__main__":

@@ -21,7 +21,7 @@ import torch
 from torch import Tensor, nn
 
 from mitigate.agents.adapters import remove_adapters
-from mitigate.core.contracts import lacking, read, take_over
+from mitigate.core.contracts import missing_members, read, take_over
 
 if TYPE_CHECKING:
     from mitigate.worlds.episodes import Episode
@@ -114,7 +114,9 @@ class Agent:
 
     def as_teacher(self) -> Any:
         """Return a copy without its adapters, which were added for robustness."""
-        return _without_adapters(self)
+        teacher = copy.deepcopy(self)
+        remove_adapters(teacher)  # type: ignore[arg-type]
+        return teacher
 
 
 class SideBySide(Agent):
@@ -151,11 +153,8 @@ def check_started(started: bool) -> None:
 
 
 # members that :func:`as_agent` copies once; ``system_prompt`` and ``aim`` may change later
-OPTIONAL = (
-    *("views", "sensors", "tasks", "together", "encoders", "labels", "loss_weights", "frozen"),
-    *("plain_walks", "own_config_only", "begin", "act_all", "taken", "remembering", "precompute"),
-    "as_teacher",
-)
+_READ_LATER = ("reset", "act", "system_prompt", "aim")
+OPTIONAL = [name for name in vars(Agent) if not name.startswith("_") and name not in _READ_LATER]
 
 
 def as_agent(agent: Any) -> Agent:
@@ -172,7 +171,7 @@ class _AgentView(Agent):
     def __init__(self, agent: Any) -> None:
         self._agent = agent
         take_over(self, agent, OPTIONAL)
-        if lacking(agent, ("begin", "act_all")):
+        if missing_members(agent, ("begin", "act_all")):
             self.together = 1
 
     @property
@@ -194,19 +193,13 @@ class _AgentView(Agent):
         return self._agent.act(observation)
 
     def as_teacher(self) -> Any:
-        return _without_adapters(self._agent)
+        return Agent.as_teacher(self._agent)
 
 
 def stated_settings(agent: Any) -> dict[str, Any] | None:
     """Return the ``settings`` of ``agent``, a method or a mapping; None if it has none."""
     settings = read(agent, "settings")
     return None if settings is None else dict(settings() if callable(settings) else settings)
-
-
-def _without_adapters(agent: Any) -> Any:
-    copied = copy.deepcopy(agent)
-    remove_adapters(copied)
-    return copied
 
 
 @dataclass

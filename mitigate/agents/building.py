@@ -16,7 +16,7 @@ from torch import nn
 from mitigate.agents import loading, schema
 from mitigate.agents.agent import stated_settings
 from mitigate.core import checkpoint, seeding, settings
-from mitigate.core.build import build, located, plain
+from mitigate.core.build import build, locate, plain
 from mitigate.core.contracts import read
 from mitigate.core.files import find
 from mitigate.core.names import unknown
@@ -108,14 +108,14 @@ def stored_settings(node: Mapping[str, Any], weights: str) -> dict[str, Any]:
             a value that the agent does not accept.
     """
     place = find(weights)
-    if (place / LORA).is_file() and hasattr(located(node["_target_"]), "load"):
+    if (place / LORA).is_file() and hasattr(locate(node["_target_"]), "load"):
         return {}  # only language models have load(), which checks the LoRA adapter
     file = loading.config_of(place)
     if not file.is_file():
         return {}
     if loading.is_ours(node["_target_"]):
         return loading.agent_settings(file, node["_target_"])
-    constructor = located(node["_target_"])
+    constructor = locate(node["_target_"])
     names = {*signature(constructor).parameters, *map(str, node)} - {"_target_"}
     names -= {*read(constructor, "own_config_only", default=())}
     return settings.read_agent(file, node["_target_"], names)

@@ -30,7 +30,7 @@ from mitigate.agents import adapters
 from mitigate.agents.agent import Agent, check_logits
 from mitigate.agents.sites import first
 from mitigate.core import checkpoint
-from mitigate.core.contracts import lacking, read
+from mitigate.core.contracts import missing_members, read
 from mitigate.core.spaces import ActionSpace, Box, Composite, Discrete, MultiDiscrete
 
 # One distribution per part of the action, or the actions (or values of actions) [B, ...] themselves
@@ -302,7 +302,7 @@ class ModulePolicy(Policy):
 def is_policy(thing: Any) -> bool:
     """Return whether ``thing`` is a policy of another library, and not an agent."""
     network = thing if isinstance(thing, nn.Module) else read(thing, "policy")
-    return isinstance(network, nn.Module) and bool(lacking(thing, ("act",)))
+    return isinstance(network, nn.Module) and bool(missing_members(thing, ("act",)))
 
 
 def as_policy(

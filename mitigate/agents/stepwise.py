@@ -52,9 +52,8 @@ class StepDecisions:
 
     def to(self, device: Any) -> StepDecisions:
         """Return the steps on ``device``."""
-        frames, clean = (
-            Frames({n: t.to(device) for n, t in f.items()}) for f in (self.frames, self.clean)
-        )
+        frames = Frames({name: tensor.to(device) for name, tensor in self.frames.items()})
+        clean = Frames({name: tensor.to(device) for name, tensor in self.clean.items()})
         target, weight = self.target.to(device), self.weight.to(device)
         return replace(self, frames=frames, clean=clean, target=target, weight=weight)
 
@@ -105,9 +104,8 @@ class StepwiseAgent(Agent, nn.Module):
     @torch.inference_mode()
     def act(self, observation: Mapping[str, np.ndarray]) -> int:
         """Return the likeliest action. Raises ValueError for invalid logits."""
-        frames = {name: np.asarray(observation[name])[None] for name in self.needs}
-        logits = self(self._tensors(frames), [self.instruction])[0][0]
-        return int(check_logits(logits, self).argmax())
+        frames = {name: observation[name] for name in self.needs}
+        return int(check_logits(self._logits(frames, self.instruction), self).argmax())
 
     @torch.no_grad()
     def collect(
@@ -176,17 +174,19 @@ class StepwiseAgent(Agent, nn.Module):
         }
 
     def _sample(self, step: dict[str, Any], rng: np.random.Generator, number: int) -> int:
-        frames = {name: frame[None] for name, frame in step["frames"].items()}
-        logits = self(self._tensors(frames), [step["text"]])[0][0]
         try:
-            check_logits(logits, self)
+            logits = check_logits(self._logits(step["frames"], step["text"]), self)
         except ValueError as error:
             raise ValueError(f"Episode {step['episode_id']}, step {number}: {error}") from None
         total = np.cumsum(logits.double().softmax(-1).cpu().numpy())
         return int(min(np.searchsorted(total, rng.random() * total[-1]), len(total) - 1))
 
-    def _tensors(self, frames: Mapping[str, np.ndarray]) -> Frames:
-        return Frames({n: torch.from_numpy(np.array(f)).to(self.device) for n, f in frames.items()})
+    def _logits(self, frames: Mapping[str, np.ndarray], text: str) -> Tensor:
+        """Return the logits [actions] of one step."""
+        tensors = {
+            n: torch.from_numpy(np.array(f)[None]).to(self.device) for n, f in frames.items()
+        }
+        return self(Frames(tensors), [text])[0][0]
 
 
 def _stacked(frames: Sequence[Mapping[str, np.ndarray]]) -> Frames:

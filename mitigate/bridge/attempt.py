@@ -23,7 +23,7 @@ from mitigate.core import output
 from mitigate.core.files import make_folder
 from mitigate.core.names import counted
 from mitigate.core.output import open_output
-from mitigate.core.signals import unbroken
+from mitigate.core.signals import uninterrupted
 
 DISCONNECT_TIME = 5.0  # seconds in which connections of an ended command close (heuristic)
 MAX_SILENCE = 10  # times patience: a command that lost an episode counts as hanging (heuristic)
@@ -63,7 +63,7 @@ class Attempt:
         Raises:
             ValueError: Another run uses the folder, or the command cannot be started.
         """
-        with unbroken():  # otherwise an interrupt could hide a started process from ``kill``
+        with uninterrupted():  # otherwise an interrupt could hide a started process from ``kill``
             self._start()
 
     def _start(self) -> None:

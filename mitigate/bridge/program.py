@@ -59,8 +59,8 @@ class Command:
     ) -> None:
         self.marker = marker.encode()
         self._status: int | None = None
-        self._text = b""
-        self._pipe, writer = os.pipe()
+        reader, writer = os.pipe()
+        self._pipe = open(reader, "rb")  # noqa: SIM115 - closed by ``end``
         supervisor = [sys.executable, "-I", "-S", __file__, str(os.getpid()), str(writer)]
         try:
             self.process = subprocess.Popen(
@@ -78,7 +78,7 @@ class Command:
         if "pid" not in started:
             self.end(lambda: False)
             raise OSError(0, started.get("error") or "its supervisor was killed")
-        os.set_blocking(self._pipe, False)
+        os.set_blocking(reader, False)
 
     def status(self) -> int | None:
         """Return the exit status of the command, None while it runs; below 0 for a signal.
@@ -129,25 +129,15 @@ class Command:
             self.process.kill()
             self.process.wait()
         self.status()
-        if self._pipe >= 0:
-            os.close(self._pipe)
-            self._pipe = -1
+        self._pipe.close()
 
     def _next(self) -> dict[str, Any]:
-        """Return the next line of the supervisor, empty if there is none (yet)."""
-        while self._pipe >= 0 and b"\n" not in self._text:
-            try:
-                data = os.read(self._pipe, 4096)
-            except BlockingIOError:
-                break
-            if not data:
-                break
-            self._text += data
-        line, line_break, rest = self._text.partition(b"\n")
-        if not line_break:
-            return {}
-        self._text = rest
-        message: dict[str, Any] = json.loads(line)
+        """Return the next line of the supervisor, empty if there is none (yet).
+
+        The supervisor writes each line at once, so that no part of a line is read.
+        """
+        line = b"" if self._pipe.closed else self._pipe.readline()
+        message: dict[str, Any] = json.loads(line) if line else {}
         return message
 
 
@@ -174,8 +164,6 @@ def _describe(pid: int) -> str:
 
 def processes() -> dict[int, tuple[int, bool]]:
     """Return {pid: (parent, whether it runs)} of all processes; a zombie does not run."""
-    if not os.path.isdir("/proc/self"):
-        return _list_with_ps()
     states = {}
     for name in os.listdir("/proc"):
         if name.isdigit():
@@ -188,17 +176,6 @@ def processes() -> dict[int, tuple[int, bool]]:
                 # with more threads the process runs, though its main thread ended
                 zombie = fields[0] in (b"Z", b"X") and int(fields[17]) <= 1
                 states[int(name)] = (int(fields[1]), not zombie)
-    return states
-
-
-def _list_with_ps() -> dict[int, tuple[int, bool]]:
-    """Return the same as :func:`processes` on systems without /proc."""
-    states = {}
-    process = subprocess.run(["ps", "-A", "-o", "pid=,ppid=,stat="], stdout=subprocess.PIPE)
-    for line in process.stdout.split(b"\n"):
-        fields = line.split()
-        if len(fields) == 3:
-            states[int(fields[0])] = (int(fields[1]), not fields[2].startswith(b"Z"))
     return states
 
 

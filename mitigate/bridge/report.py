@@ -71,30 +71,19 @@ def _write_rows(file: Path, new_rows: Sequence[Row], left_out: Sequence[str]) ->
     """
     before = rows.read(file) if file.exists() else []
     now = {_condition_and_episode(row) for row in new_rows}
-    labels = {_label(row) for row in new_rows}
-    lost = [row for row in before if _condition_and_episode(row) not in now]
-    foreign = [
-        row for row in before if _label(row) not in labels and _condition_and_episode(row) in now
-    ]
-    names = Counter(_folder_name(row) for row in lost)
-    unexplained = [name for name in names if name not in left_out]
+    lost = Counter(_folder_name(row) for row in before if _condition_and_episode(row) not in now)
+    unexplained = [name for name in lost if name not in left_out]
     if unexplained:
         raise ValueError(
-            f"{file} holds {counted(len(before), 'row')}, and {len(lost)} of them belong to "
+            f"{file} holds {counted(len(before), 'row')}, and {lost.total()} of them belong to "
             f"episodes that are in no finished condition any more ({', '.join(unexplained)}). The "
             "file was not changed. Run these conditions again, or move the file to another folder "
             "and run the same command again."
         )
-    removed = list(names)
-    if foreign:
-        new_values = zip(*labels, strict=True)
-        old_values = zip(*(_label(row) for row in foreign), strict=True)
-        changed = [
-            name
-            for name, new, old in zip(LABELS, new_values, old_values, strict=True)
-            if not {*old} <= {*new}
-        ]
-        removed += [f"another {name}" for name in changed]
+    labels = {name: {row[name] for row in new_rows} for name in LABELS}
+    same_episodes = [row for row in before if _condition_and_episode(row) in now]
+    changed = [n for n in LABELS if any(row[n] not in labels[n] for row in same_episodes)]
+    removed = [*lost, *(f"another {name}" for name in changed)]
     if removed:
         copy = _unused(file.with_name(f"{file.name}.before"))
         write_bytes(copy, file.read_bytes())
@@ -105,11 +94,6 @@ def _write_rows(file: Path, new_rows: Sequence[Row], left_out: Sequence[str]) ->
 def _condition_and_episode(row: Row) -> tuple[str, float, str]:
     """Return condition and episode of a row, which do not depend on the success rule."""
     return str(row["corruption"]), float(row["severity"]), str(row["episode_id"])
-
-
-def _label(row: Row) -> tuple[object, ...]:
-    """Return agent, seed and split of a row, which distinguish runs."""
-    return tuple(row[name] for name in LABELS)
 
 
 def _folder_name(row: Row) -> str:

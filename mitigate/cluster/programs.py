@@ -149,7 +149,7 @@ def run(
         WorkersDied: A chain was lost with its worker too often.
     """
     if launcher.name == "local":
-        return _run_here(list(enumerate(chains)), jobs, ended)
+        return _run_here(list(enumerate(chains)), jobs, progress, ended)
     groups = [[chain] for chain in chains]
     for item in launchers.results(launcher, ChainTask(), groups, jobs, progress):
         if item is not None:
@@ -158,7 +158,10 @@ def run(
 
 
 def _run_here(
-    waiting: list[tuple[int, Chain]], jobs: int, ended: Callable[[int, Outcome], None]
+    waiting: list[tuple[int, Chain]],
+    jobs: int,
+    progress: Progress,
+    ended: Callable[[int, Outcome], None],
 ) -> None:
     running: dict[int, Running] = {}
     try:
@@ -171,6 +174,7 @@ def _run_here(
                 if outcome is not None:
                     del running[number]
                     ended(number, outcome)
+            progress.advance(0)
             time.sleep(PAUSE)
     finally:
         for one in running.values():  # signal all of them first, so that they save in parallel

@@ -149,6 +149,7 @@ class _Crew:
             if not self.busy and time.monotonic() - heard > STUCK:
                 heard = time.monotonic()
                 self.progress.say(f"No worker runs: the cluster has no room for {self._reserved}.")
+            self.progress.advance(0)
             yield None
 
     def _start(self) -> None:

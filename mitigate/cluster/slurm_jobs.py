@@ -102,6 +102,7 @@ def results(
                         _submit(executor, folder, launcher, groups_left, again, submitted)
                     )
                     submitted += 1
+            progress.advance(0)
             yield None
             time.sleep(SECOND / 4)
         _end(running, folder)

@@ -107,7 +107,7 @@ def plain(node: Any) -> dict[str, Any]:
     return {str(name): value for name, value in data.items()}
 
 
-def located(target: str) -> Any:
+def locate(target: str) -> Any:
     """Return the object that ``target`` names (``module.Name``).
 
     Raises:

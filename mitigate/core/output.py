@@ -11,18 +11,11 @@ import os
 import shutil
 import stat
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import IO, Any
 
-# Flags of each mode, without those for reading and writing. Files are truncated after the check.
-_FLAGS = {
-    "w": os.O_CREAT,
-    "a": os.O_CREAT | os.O_APPEND,
-    "x": os.O_CREAT | os.O_EXCL,
-    "r": 0,
-}
 _KINDS = (
     (stat.S_ISLNK, "a symbolic link"),
     (stat.S_ISFIFO, "a FIFO"),
@@ -278,48 +271,28 @@ def open_output(path: Path | str, mode: str = "w", **options: Any) -> IO[Any]:
         OSError: If it cannot be opened.
     """
     check(path)
-    _check_kind(path)
-    kind = mode.replace("b", "").replace("t", "")
-    access = os.O_RDWR if "+" in kind else os.O_WRONLY
-    flags = access | _FLAGS[kind.replace("+", "")] | os.O_NOFOLLOW | os.O_NONBLOCK | os.O_CLOEXEC
-    descriptor = os.open(path, flags, 0o666)
-    try:
-        status = os.fstat(descriptor)
+    _check_file(path)
+
+    def no_link(name: str, flags: int) -> int:
+        return os.open(name, flags | os.O_NOFOLLOW, 0o666)
+
+    return open(path, mode, opener=no_link, **options)
+
+
+def _check_file(path: Path | str) -> None:
+    """Raise UnsafePathError unless ``path`` is a regular file with one name, or does not exist."""
+    with suppress(FileNotFoundError):
+        status = os.lstat(path)
         if not stat.S_ISREG(status.st_mode):
             raise _unsafe(path, _kind(status.st_mode))
         if status.st_nlink > 1:
             raise _unsafe(path, "a hard link to a file with another name")
-        if kind[0] == "w":
-            os.ftruncate(descriptor, 0)
-        os.set_blocking(descriptor, True)
-    except BaseException:
-        os.close(descriptor)
-        raise
-    return open(path, mode.replace("x", "w"), opener=lambda *_: descriptor, **options)
-
-
-def _check_kind(path: Path | str) -> None:
-    """Raise UnsafePathError unless ``path`` is a regular file or does not exist.
-
-    Call it before opening: opening a device may change its state.
-    """
-    try:
-        mode = os.lstat(path).st_mode
-    except FileNotFoundError:
-        return
-    if stat.S_ISDIR(mode):
-        raise UnsafePathError(
-            f"{path} must be a regular file, got a folder. Delete it or move it away, and run the "
-            "command again."
-        )
-    if not stat.S_ISREG(mode):
-        raise _unsafe(path, _kind(mode))
 
 
 def _unsafe(path: Path | str, kind: str) -> UnsafePathError:
     return UnsafePathError(
-        f"{path} must be a regular file, got {kind}. Writing to it would change something "
-        "outside this folder. Delete it, or name another folder, and run the command again."
+        f"{path} must be a regular file, got {kind}. Writing to it could change something outside "
+        "this folder. Delete it or move it away, or name another folder, and run the command again."
     )
 
 

@@ -1,17 +1,9 @@
-"""Report the progress of a long job: a tqdm bar in a terminal, plain lines elsewhere.
-
-While a :class:`Progress` is open, a daemon thread (the clock) prints the progress of the innermost
-one when nothing was printed for ``EVERY`` seconds, even if the job does not advance. tqdm alone
-prints only when the job advances. The clock cannot print while a single call holds the interpreter
-lock; torch, numpy, sleeps and subprocesses release it.
-"""
+"""Report the progress of a long job: a tqdm bar in a terminal, plain lines elsewhere."""
 
 from __future__ import annotations
 
 import math
-import os
 import sys
-import threading
 import time
 from typing import Any
 
@@ -19,14 +11,10 @@ from tqdm import tqdm
 
 from mitigate.core.names import counted
 
-EVERY = 10.0  # seconds without a line after which the clock prints one
-REDRAW = 1.0  # seconds between redraws of a bar
+EVERY = 10.0  # least seconds between two plain lines of progress
 
-_lock = threading.RLock()  # guards the variables below and standard output
-_changed = threading.Condition(_lock)  # wakes the clock
-_open: list[Progress] = []  # outermost first
+_open_bars: list[tqdm] = []
 _last_line = 0.0  # time.monotonic() of the last plain line
-_thread: threading.Thread | None = None  # the clock while it runs
 
 
 class Progress:
@@ -52,44 +40,44 @@ class Progress:
 
     def __enter__(self) -> Progress:
         self._began = time.monotonic()
-        with _lock:
-            if sys.stdout.isatty():
-                self._bar = tqdm(
-                    total=self.total,
-                    initial=self.start,
-                    desc=self.title,
-                    unit=self.unit,
-                    file=sys.stdout,
-                    dynamic_ncols=True,
-                    leave=None,  # nested bars disappear
-                )
-            else:
-                before = f", {self.start} already done" if self.start else ""
-                say(f"{self.title}: {counted(self.total, self.unit)}{before}")
-            _open.append(self)
-            _start_clock()
+        if sys.stdout.isatty():
+            self._bar = tqdm(
+                total=self.total,
+                initial=self.start,
+                desc=self.title,
+                unit=self.unit,
+                file=sys.stdout,
+                dynamic_ncols=True,
+                leave=None,  # nested bars disappear
+            )
+            _open_bars.append(self._bar)
+        else:
+            before = f", {self.start} already done" if self.start else ""
+            say(f"{self.title}: {counted(self.total, self.unit)}{before}")
         return self
 
     def __exit__(self, kind: type[BaseException] | None, *_: Any) -> None:
-        with _lock:
-            if self in _open:  # a forked child has emptied the list
-                _open.remove(self)
-            _changed.notify_all()
-            if self._bar is not None:
-                self._bar.close()
-            else:
-                end = "done in" if kind is None else "stopped after"
-                say(self._line(f"{end} {duration(time.monotonic() - self._began)}"))
+        if self._bar is not None:
+            _open_bars.remove(self._bar)
+            self._bar.close()
+        else:
+            end = "done in" if kind is None else "stopped after"
+            say(self._line(f"{end} {duration(time.monotonic() - self._began)}"))
 
     def advance(self, count: int = 1, note: str = "") -> None:
-        """Count ``count`` units as done (may be 0); an empty ``note`` keeps the previous one."""
-        with _lock:
-            self.done += count
-            self.note = note or self.note
-            if self._bar is not None:
-                if note:
-                    self._bar.set_postfix_str(note, refresh=False)
-                self._bar.update(count)
+        """Count ``count`` units as done; an empty ``note`` keeps the previous one.
+
+        A job that waits calls it with 0, which prints a line if the last one is ``EVERY`` seconds
+        old.
+        """
+        self.done += count
+        self.note = note or self.note
+        if self._bar is not None:
+            if note:
+                self._bar.set_postfix_str(note, refresh=False)
+            self._bar.update(count)
+        elif time.monotonic() - _last_line >= EVERY:
+            say(self.line())
 
     def say(self, text: str) -> None:
         """Print one line without breaking the bar."""
@@ -118,13 +106,12 @@ class Progress:
 def say(text: str) -> None:
     """Print one line immediately, above any bars."""
     global _last_line
-    with _lock:
-        if any(progress._bar is not None for progress in _open):
-            tqdm.write(text, file=sys.stdout)
-            sys.stdout.flush()
-        else:
-            print(text, flush=True)
-        _last_line = time.monotonic()
+    if _open_bars:
+        tqdm.write(text, file=sys.stdout)
+        sys.stdout.flush()
+    else:
+        print(text, flush=True)
+    _last_line = time.monotonic()
 
 
 def duration(seconds: float) -> str:
@@ -145,51 +132,3 @@ def _rate(per_second: float, unit: str) -> str:
         took = f"{each:.3g} s" if each < 60 else duration(each)
         return f"{took} per {unit}"
     return f"{per_second:.3g} {unit}s/s"
-
-
-def _start_clock() -> None:
-    global _thread
-    if _thread is None:
-        _thread = threading.Thread(target=_clock, name="progress", daemon=True)
-        _thread.start()
-
-
-def _clock() -> None:
-    """Print lines or refresh bars while any progress is open."""
-    global _thread
-    with _changed:
-        try:
-            while _open:
-                _changed.wait(_report())
-        except (OSError, ValueError):  # standard output is closed; the job itself continues
-            pass
-        finally:
-            _thread = None
-
-
-def _report() -> float:
-    """Redraw the bars, or print a line if it is due; return the seconds until the next call."""
-    bars = [progress._bar for progress in _open if progress._bar is not None]
-    if bars:
-        for bar in bars:
-            bar.refresh()
-        return REDRAW
-    left = _last_line + EVERY - time.monotonic()
-    if left > 0:
-        return left
-    say(_open[-1].line())
-    return EVERY
-
-
-def _after_fork_in_child() -> None:
-    """Drop the jobs of the parent process: a forked child has no clock."""
-    global _thread
-    _open.clear()
-    _thread = None
-    _lock.release()
-
-
-# No fork while another thread holds the lock: the child could never take it.
-os.register_at_fork(
-    before=_lock.acquire, after_in_parent=_lock.release, after_in_child=_after_fork_in_child
-)

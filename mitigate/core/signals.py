@@ -29,7 +29,7 @@ def raise_ended(number: int, frame: FrameType | None) -> None:
     raise Ended(number)
 
 
-class Held:
+class SignalDelay:
     """The signal handler of a block that delays signals.
 
     Attributes:
@@ -45,7 +45,7 @@ class Held:
 
     def __call__(self, number: int, frame: FrameType | None) -> None:
         outer = self.outer[signal.Signals(number)]
-        if isinstance(outer, Held):
+        if isinstance(outer, SignalDelay):
             outer(number, frame)
         if self.number is not None:
             self.again = True
@@ -60,11 +60,11 @@ class Held:
     @property
     def nested(self) -> bool:
         """Whether an outer block delays signals too."""
-        return any(isinstance(handler, Held) for handler in self.outer.values())
+        return any(isinstance(handler, SignalDelay) for handler in self.outer.values())
 
 
 @contextmanager
-def held(on: bool = True) -> Iterator[Held]:
+def delay_signals(on: bool = True) -> Iterator[SignalDelay]:
     """Delay the first signal during the block, so that current work can be finished and saved.
 
     The signal sets ``number``, here and in each outer block of this kind. A second signal ends the
@@ -73,7 +73,7 @@ def held(on: bool = True) -> Iterator[Held]:
     Args:
         on: False delays nothing.
     """
-    handler = Held()
+    handler = SignalDelay()
     if not on or threading.current_thread() is not threading.main_thread():
         yield handler
         return
@@ -87,13 +87,13 @@ def held(on: bool = True) -> Iterator[Held]:
 
 
 @contextmanager
-def unbroken() -> Iterator[None]:
+def uninterrupted() -> Iterator[None]:
     """Do not interrupt the block, for native code and for writes that must be complete.
 
     A signal raises :class:`Ended` at the end of the block, unless an outer block delays signals. A
     second signal raises it immediately.
     """
-    with held() as ending:
+    with delay_signals() as ending:
         yield
     if not ending.nested:
         ending.check()

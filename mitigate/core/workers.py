@@ -22,9 +22,9 @@ from multiprocessing.connection import Connection, wait
 from multiprocessing.reduction import ForkingPickler
 from typing import Any, ClassVar, Protocol
 
-from mitigate.core.errors import said
+from mitigate.core.errors import error_message
 from mitigate.core.progress import Progress, duration
-from mitigate.core.signals import held, leave_to_parent, start_worker
+from mitigate.core.signals import delay_signals, leave_to_parent, start_worker
 
 SECOND = 1.0  # seconds to wait for messages before silent workers are checked
 STUCK = 60.0  # seconds with one job between two reports of a worker
@@ -113,7 +113,7 @@ def results(
             for group in work:
                 outputs = task.work([job for _, job in group])
                 for number, _ in group:
-                    with held() as ending:  # finish a job that has started
+                    with delay_signals() as ending:  # finish a job that has started
                         result = next(outputs)
                     yield number, result
                     ending.check()
@@ -185,7 +185,7 @@ class _Crew:
             for _ in range(self.size):
                 self.crew.append(_Worker(self.context, self.copy))
             while self.done < self.total:
-                with held() as ending:  # yield results that have arrived before ending
+                with delay_signals() as ending:  # yield results that have arrived before ending
                     for worker in self.crew:
                         if not worker.left and self.waiting:
                             worker.give(self.waiting.popleft())
@@ -193,6 +193,7 @@ class _Crew:
                 for worker in [worker for worker in self.crew if worker.pipe in readable]:
                     yield from self._hear(worker)
                 self._report_stuck()
+                self.progress.advance(0)
                 yield None
                 ending.check()
         finally:
@@ -324,7 +325,7 @@ def portable(error: Exception) -> tuple[Exception, Exception]:
     RuntimeError with the same text.
     """
     cause = RuntimeError(f"in a worker process:\n{traceback.format_exc()}")
-    error = ValueError(said(error)) if type(error) is ValueError else error
+    error = ValueError(error_message(error)) if type(error) is ValueError else error
     try:
         pickle.loads(pickle.dumps(error))
     except Exception:

@@ -234,63 +234,24 @@ RECORDS = (
     _record(
         gaussian_noise,
         severity="sd s (0.02 + 0.02 z^2) metres",
-        place=8,
-        fails="noise that grows with distance",
-        formula=f"z + s ({NOISE_BASE:g} + {NOISE_SQUARE:g} z^2) N(0, 1)",
-        sources="D435: RMS grows with z^2; s = 0.1 is about a Kinect, 0.5 the D435's limit",
         source="D435 error model",
         frame="noise",
-        bars=(0.39, 0.065),
     ),
     _record(
         missing_data,
         severity="loses 0.5 s of the pixels, a quarter reads far",
-        place=9,
-        fails="holes",
-        formula=(
-            f"the top {HOLE_SHARE:g} s of a random field, correlation "
-            f"{HOLE_CORRELATION:g} side; its top {100 * FAR_SHARE:g} % reads z_max, the rest 0"
-        ),
-        sources="Zhang & Funkhouser 2018: often over half is missing indoors",
         source="NavTrust, Zhang & Funkhouser 2018",
         episode="field",
         frame="offset, every 5 frames",
-        bars=(0.09, 0.008),
-        reason=(
-            "A dozen instructions per pixel for validity, range and kind of hole; the target is "
-            "about two plain copies."
-        ),
     ),
     _record(
         multipath,
         severity="strength 0.9 s of the echo beside edges",
-        place=10,
-        fails="over-estimation beside edges",
-        formula=(
-            f"far = largest depth within {ECHO_REACH:g} side (a square); gap = far - z, "
-            f"at most {ECHO_GAP:g} metres; z + c/(4 pi f) atan2(b sin p, 1 + b cos p), "
-            f"p = 4 pi f gap/c, b = {ECHO_STRENGTH:g} s, f = {ECHO_HERTZ / 1e6:g} MHz"
-        ),
-        sources=(
-            "phasor sum of two paths (Fuchs 2010, Jimenez 2014); f, b, reach and gap are heuristic"
-        ),
         source="Fuchs 2010, Jimenez 2014",
-        bars=(0.65, 0.09),
-        reason="Four maxima per value along rows, four along columns, then a polynomial.",
     ),
     _record(
         quantization,
         severity="steps of 0.5 s metres",
-        place=11,
-        fails="depth in coarse steps",
-        formula=f"rint(z/step) step, step = {STEP:g} s metres",
-        sources="Ideses 2007, Wei 2013; the step is heuristic",
         source="NavTrust, Ideses 2007, Wei 2013",
-        slip=0.005,
-        bars=(0.056, 0.006),
-        reason=(
-            "One division per pixel. Multiplying by 1 / step would be faster, but would round "
-            "some pixels differently."
-        ),
     ),
 )

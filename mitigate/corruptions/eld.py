@@ -13,38 +13,26 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from functools import lru_cache, partial
+from functools import lru_cache
 
 import numpy as np
 from numba import njit
 
 from mitigate.corruptions.keying import Key, digest, mix, normal_table, unit_normals, view_streams
 from mitigate.corruptions.masks import low_light_mask
-from mitigate.corruptions.record import Record
 
 WHITE = 15583.0  # sensor units at full scale: 14 bits less the black level (Sony A7S2)
 DARKEST = 300.0  # exposure ratio at s = 1 (ELD trains on 100-300)
 GAMMA = 2.2
+# Calibration of the camera in the paper: range of the gain K, and (a, b) of ln sigma = a ln K + b.
+GAINS = (0.0939, 6.011)
+READ = (0.4621, 0.5657)
+ROW = (0.5275, -0.5917)
 LEVELS = 4 * 255 + 1  # signal levels of the photon table: quarters of a grey level
 PHOTON_BITS = 8
 READ_BITS = 12
 
 _U = np.uint64
-
-
-@dataclass(frozen=True)
-class Camera:
-    """A camera calibrated in the paper: gain range, and (a, b) of ln sigma = a ln K + b."""
-
-    name: str
-    gain: tuple[float, float]
-    read: tuple[float, float]
-    row: tuple[float, float]
-
-
-SONY_A7S2 = Camera("Sony A7S2", (0.0939, 6.011), (0.4621, 0.5657), (0.5275, -0.5917))
-NIKON_D850 = Camera("Nikon D850", (0.415, 26.56), (0.4774, -0.0904), (0.4483, -1.798))
-CANON_5D4 = Camera("Canon 5D4", (0.218, 13.96), (0.6559, 1.0927), (0.4713, -0.8079))
 
 
 @dataclass(frozen=True)
@@ -58,11 +46,11 @@ class Noise:
     row: float
 
 
-def noise_at(severity: float, camera: Camera = SONY_A7S2) -> Noise:
+def noise_at(severity: float) -> Noise:
     """Return the noise parameters at ``severity``; sigmas are in sensor units."""
-    low, high = camera.gain
+    low, high = GAINS
     gain = low * (high / low) ** severity
-    read, row = (math.exp(a * math.log(gain) + b) for a, b in (camera.read, camera.row))
+    read, row = (math.exp(a * math.log(gain) + b) for a, b in (READ, ROW))
     return Noise(DARKEST**severity, gain, 0.13 - 0.27 * severity, read, row)
 
 
@@ -114,9 +102,9 @@ class Tables:
 
 
 @lru_cache(maxsize=16)
-def tables(severity: float, camera: Camera = SONY_A7S2) -> Tables:
+def tables(severity: float) -> Tables:
     """Return the look-up tables of one severity; building them takes about 3 ms."""
-    noise = noise_at(severity, camera)
+    noise = noise_at(severity)
     signal = (np.arange(LEVELS) / (LEVELS - 1)) ** GAMMA * WHITE / noise.ratio
     points = (np.arange(1 << PHOTON_BITS) + 0.5) / (1 << PHOTON_BITS)
     counts = np.empty((LEVELS, points.size))
@@ -165,16 +153,14 @@ def _sample(views, opacity, streams, row_streams, photons, read, row, decode, of
                     target[i] = decode[_U(np.uint32(d) >> np.uint32(8))]
 
 
-def low_light_noise(
-    views: np.ndarray, severity: float, key: Key, heading=None, camera: Camera = SONY_A7S2
-) -> np.ndarray:
+def low_light_noise(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
     """Apply ``low_light`` and add sensor noise; uint8 [V, H, W, 3].
 
     The mask is the same. Up to s = 0.6 the mean is the same within 1 %. Above that, clipping noise
     at 0 brightens the frame: s = 1 is not darker than s = 0.8.
     """
     count, height, width, _ = views.shape
-    t = tables(severity, camera)
+    t = tables(severity)
     mask = low_light_mask(digest(key, "low_light"), severity, height, width)
     streams = view_streams(key, "low_light_noise", count)
     row_streams = view_streams(key, "row_noise", count)
@@ -182,21 +168,3 @@ def low_light_noise(
     parts = t.photons, t.read, t.row, t.decode, t.offset
     _sample(views, mask, streams, row_streams, *parts, out)
     return out
-
-
-_record = partial(Record.of, "rgb")
-RECORDS = (
-    _record(
-        low_light_noise,
-        severity="low_light, then light / 300^s and gain",
-        place=2,
-        label="L-L w/ noise",
-        fails="little light, with sensor noise",
-        formula="`low_light`, then the ELD model below",
-        sources="Wei et al., TPAMI 2021 (ELD), Sony A7S2",
-        source="ELD, TPAMI 2021",
-        episode="gradient",
-        frame="noise",
-        bars=(1.6, 0.26),
-    ),
-)

@@ -16,60 +16,31 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache, wraps
 from hashlib import blake2b
-from operator import index, itemgetter
+from operator import index
 from statistics import NormalDist
-from typing import Any, ParamSpec, TypeVar
+from typing import ParamSpec, TypeVar
 
 import numpy as np
 from numba import njit
 
-# Heuristic limits of the cache of a process.
-MAX_CACHE_BYTES = 256 << 20  # 20 masks of 1080p
-MAX_CACHE_ENTRIES = 256
+from mitigate.core.memory import Memory
+
+MAX_CACHE_BYTES = 256 << 20  # of a process (heuristic): 20 masks of 1080p
 
 P = ParamSpec("P")
 T = TypeVar("T")
-# by function and arguments: result and bytes, the least recently used first
-_cache: dict[tuple, tuple[Any, int]] = {}
+_memory = Memory(MAX_CACHE_BYTES)
 
 
 def cached(function: Callable[P, T]) -> Callable[P, T]:
-    """Cache the results of a pure function of hashable arguments.
-
-    The results are arrays or tuples of arrays. The least recently used are dropped beyond
-    ``MAX_CACHE_BYTES`` and ``MAX_CACHE_ENTRIES``. There is no lock, so that a process may fork at
-    any time; simultaneous threads may compute a result twice.
-    """
+    """Cache the results of a pure function of hashable arguments: arrays or tuples of arrays."""
 
     @wraps(function)
     def lookup(*args: P.args, **kwargs: P.kwargs) -> T:
         key = (function, args, *kwargs.items())
-        entry = _cache.pop(key, None)
-        if entry is not None:
-            _cache[key] = entry
-            return entry[0]
-        result = function(*args, **kwargs)
-        _cache[key] = result, _bytes(result)
-        _evict()
-        return result
+        return _memory.recall(key, lambda: function(*args, **kwargs))
 
     return lookup
-
-
-def _evict() -> None:
-    """Drop the least recently used results beyond the limits, but never the newest."""
-    sizes = [*map(itemgetter(1), _cache.values())]  # runs at every miss, so without a Python loop
-    size = sum(sizes)
-    count = len(sizes)
-    while count > 1 and (size > MAX_CACHE_BYTES or count > MAX_CACHE_ENTRIES):
-        _, dropped = _cache.pop(next(iter(_cache), ()), (None, 0))
-        size -= dropped
-        count -= 1
-
-
-def _bytes(result: Any) -> int:
-    parts = result if isinstance(result, tuple) else (result,)
-    return sum(part.nbytes for part in parts if isinstance(part, np.ndarray))
 
 
 GOLDEN = 0x9E3779B97F4A7C15  # splitmix64 increment

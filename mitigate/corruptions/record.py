@@ -1,7 +1,7 @@
-"""The record of a corruption: its function and everything that tables, pages and suites print.
+"""The record of a corruption: its function and what tables and suites print about it.
 
 A package can add a corruption by a record in the entry point group ``mitigate.corruptions``
-(``docs/bring-your-own.md``). The records of this project are at the end of ``rgb.py``, ``eld.py``,
+(``docs/bring-your-own.md``). The records of this project are at the end of ``rgb.py``,
 ``depth.py``, ``registry.py``, ``broad/__init__.py`` and the files of ``unseen``.
 """
 
@@ -29,17 +29,10 @@ class Record:
             severity, key, DepthSensor) -> new array of the same shape. None for instructions, which
             ``corrupt_instruction`` changes.
         severity: What the severity s controls, in a few words.
-        place: Position in tables, ascending.
         label: Title in tables; by default the name in words.
-        fails: The failure in the world that it models.
-        formula: Markdown with the constants of the code.
-        sources: Sources of the constants.
-        source: The sources in a word or two.
+        source: Sources of the constants, in a word or two.
         episode: What is drawn once per episode.
         frame: What is drawn for each frame.
-        slip: How much the effect may shrink from one of 100 severities to the next (SSIM, metres).
-        bars: Time limits in milliseconds at 480x640 and at 224x224.
-        reason: What takes the time.
         version: Version of a corruption outside the suite; rows of another version are not reused.
             Those of the suite have the version of the suite.
         half: Of an unseen corruption, ``VALIDATION`` or ``TEST``. Methods may be chosen on the
@@ -53,17 +46,10 @@ class Record:
     modality: str
     apply: Callable[..., np.ndarray] | None
     severity: str
-    place: int = 1000
     label: str = ""
-    fails: str = ""
-    formula: str = ""
-    sources: str = ""
     source: str = ""
     episode: str = "-"
     frame: str = "-"
-    slip: float = 0.0
-    bars: tuple[float, float] | None = None
-    reason: str = ""
     version: str = ""
     half: str = ""
 

@@ -9,39 +9,29 @@ draws as alone.
 from __future__ import annotations
 
 import warnings
-from functools import lru_cache
+from functools import lru_cache, partial
 from importlib.metadata import entry_points
 
 from mitigate.core.names import unknown
-from mitigate.corruptions import broad, depth, eld, rgb, unseen
+from mitigate.corruptions import broad, depth, rgb, unseen
 from mitigate.corruptions.record import MODALITIES, TEST, VALIDATION, Record
 
-
-def _record(name: str, place: int, severity: str, label: str = "") -> Record:
-    return Record(
-        name, "instruction", None, severity, place, label, episode="all draws", source="NavTrust"
-    )
-
-
+_record = partial(
+    Record, modality="instruction", apply=None, episode="all draws", source="NavTrust"
+)
 INSTRUCTIONS = (  # applied by instruction.py
-    _record("friendly", 20, "probability that it is told in a friendly manner"),
-    _record("novice", 21, "probability that it is told as by a novice"),
-    _record("professional", 22, "probability that it is told as by a professional"),
-    _record("formal", 23, "probability that it is told in a formal manner"),
-    _record("capitalize", 24, "share of words that are stressed by capitals", "Capitalizing"),
-    _record("mask", 25, "share of words that are hidden", "Masking"),
-    _record("black_box", 26, "share of the bank of misleading prefixes", "Black-box prompt"),
-    _record("white_box", 27, "the same, in the system prompt", "White-box prompt"),
+    _record("friendly", severity="probability that it is told in a friendly manner"),
+    _record("novice", severity="probability that it is told as by a novice"),
+    _record("professional", severity="probability that it is told as by a professional"),
+    _record("formal", severity="probability that it is told in a formal manner"),
+    _record("capitalize", severity="share of words in capitals", label="Capitalizing"),
+    _record("mask", severity="share of words that are hidden", label="Masking"),
+    _record("black_box", severity="share of misleading prefixes", label="Black-box prompt"),
+    _record("white_box", severity="the same, in the system prompt", label="White-box prompt"),
 )
 
-
 GROUP = "mitigate.corruptions"  # entry point group: name = "package.module:RECORD"
-SUITE = {
-    record.name: record
-    for record in sorted(
-        (*rgb.RECORDS, *eld.RECORDS, *depth.RECORDS, *INSTRUCTIONS), key=lambda r: r.place
-    )
-}
+SUITE = {record.name: record for record in (*rgb.RECORDS, *depth.RECORDS, *INSTRUCTIONS)}
 HALVES = (VALIDATION, TEST)
 UNSEEN = {
     record.name: record

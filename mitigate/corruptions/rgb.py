@@ -13,6 +13,7 @@ from functools import lru_cache, partial
 import numpy as np
 
 from mitigate.corruptions import blur, masks
+from mitigate.corruptions.eld import low_light_noise
 from mitigate.corruptions.keying import Key, digest, scramble, uniform
 from mitigate.corruptions.record import Record
 
@@ -151,115 +152,52 @@ RECORDS = (
     _record(
         motion_blur,
         severity="line of 0.10 s of the width, blended 0.5 + 0.5 s",
-        place=0,
-        fails="the camera turned during the exposure",
-        formula=(
-            "(1 - a) x + a blur(x), a = 0.5 + 0.5 s; line of length L = "
-            f"{BLUR_LENGTH:g} s W at U(-{BLUR_ANGLE:g}, {BLUR_ANGLE:g}) degrees; L < 1 "
-            f"px changes nothing; from {LONG_BLUR:g} px every second column, after "
-            "smoothing by (1 2 1)/4"
-        ),
-        sources=(
-            "kernels of ImageNet-C are 3-14 % of W; yaw turns dominate; a is the paper's "
-            "blend with the original"
-        ),
         source="ImageNet-C, NavTrust",
         episode="direction",
-        slip=0.03,
-        bars=(1.1, 0.10),
-        reason="16 taps of 16-bit integers per colour value, and a padded copy of the frame.",
     ),
     _record(
         low_light,
         severity="loses s (0.60 to 0.97) of the light",
-        place=1,
         label="L-L w/o noise",
-        fails="little light, falling off",
-        formula=(
-            f"x (1 - s ({masks.DARK_BASE:g} + {masks.DARK_RAMP:g} t)); t in [0, 1] a linear "
-            "ramp, or the distance to one light"
-        ),
-        sources="between RobustNav, which leaves 0.57-0.31 of the mean, and 3DCC (0.24-0.12)",
         source="NavTrust, RobustNav, 3DCC",
         episode="gradient",
-        bars=(0.10, 0.010),
-        reason="The kernel takes under three cycles for 16 colour values; the rest is the call.",
+    ),
+    _record(
+        low_light_noise,
+        severity="low_light, then light / 300^s and gain",
+        label="L-L w/ noise",
+        source="ELD, TPAMI 2021",
+        episode="gradient",
+        frame="noise",
     ),
     _record(
         spatter,
         severity="covers 0.45 s of the frame, opacity 0.5 + 0.5 s",
-        place=3,
-        fails="mud or water on the lens",
-        formula=(
-            f"the top {masks.SPATTER_COVER:g} s of a random field, correlation "
-            f"{masks.SPATTER_CORRELATION:g} side; soft edge of {masks.SPATTER_EDGE:g} sd; "
-            f"opacity 0.5 + 0.5 s; mud {masks.SPATTER_COLOURS[0]} or water "
-            f"{masks.SPATTER_COLOURS[1]}"
-        ),
-        sources="colours and cover of ImageNet-C (0.04-0.57); correlation and edge are heuristic",
         source="ImageNet-C",
         episode="mask, mud or water",
-        bars=(0.15, 0.010),
-        reason="As low_light: the same kernel with another mask.",
     ),
     _record(
         flare,
         severity="brightness of the glow",
-        place=4,
-        fails="a light shines into the lens",
-        formula=(
-            f"x + (255 - x) g; g = s ({masks.FLARE_CORE:g} "
-            f"exp(-(r/{masks.FLARE_CORE_WIDTH:g})^2/2) + {masks.FLARE_HALO:g} "
-            f"exp(-r/{masks.FLARE_HALO_WIDTH:g})) times {masks.FLARE_TINT}, at most 1; "
-            "r over the diagonal; centre U(0.1, 0.9) W, U(0, 0.5) H"
-        ),
-        sources="radial gradient of the paper; constants are heuristic",
         source="NavTrust",
         episode="place, at a world yaw",
-        bars=(0.10, 0.010),
-        reason="As low_light, and one kernel call per view, because each view has its own mask.",
     ),
     _record(
         defocus,
         severity="Gaussian, sigma 5 s px at 224 px",
-        place=5,
-        fails="out of focus",
-        formula=(
-            f"Gaussian, sigma = 5 s u side/224, u ~ U({1 - DEFOCUS_SPREAD:g}, "
-            f"{1 + DEFOCUS_SPREAD:g}); sigma < {DEFOCUS_LEAST:g} px changes nothing"
-        ),
-        sources="disks of ImageNet-C have radii of 3-10 px at 224; randomised as in the paper",
         source="NavTrust, ImageNet-C",
         episode="width, +- 20 %",
-        bars=(1.2, 0.10),
-        reason=(
-            "The target assumes a sigma of 2.5 px (s = 0.5). At s = 0.6 sigma is 3.0 px, up to "
-            "20 % more or less per episode, and needs more taps; padding adds a sixth of the "
-            "pixels at 224 x 224."
-        ),
     ),
     _record(
         foreign_object,
         severity="disk of radius 0.5 s of the short side",
-        place=6,
-        fails="an object covers the middle of the lens",
-        formula=f"black disk at the centre, radius {masks.DISK_RADIUS:g} s side",
-        sources="the paper; the radius is heuristic",
         source="NavTrust",
-        bars=(0.042, 0.010),
-        reason="A copy of the frame, then the black disk.",
     ),
     _record(
         black_out,
         severity="probability that a view is black",
-        place=7,
         label="Black-out",
-        fails="a view is lost",
-        formula="black where U(0, 1) < s",
-        sources='the paper\'s "fixed probability"; p = s is ours',
         source="NavTrust",
         frame="which views",
-        bars=(0.017, 0.004),
-        reason="A copy of the frame unless the view is dropped, and a new hash per frame.",
     ),
 )

@@ -20,7 +20,7 @@ from mitigate.agents.observation import check_fits
 from mitigate.agents.policies import as_policy, is_policy
 from mitigate.cluster.launcher import count
 from mitigate.core import conf, seeding
-from mitigate.core.build import located, maker
+from mitigate.core.build import locate, maker
 from mitigate.core.locks import FolderLock
 from mitigate.core.names import counted
 from mitigate.core.observation import sensor_lines
@@ -253,7 +253,7 @@ def _is_own(world: World, config: EvaluateConfig) -> bool:
     The lists of episodes of the config are then meaningless.
     """
     node = config.env.world
-    target = located(node["_target_"])
+    target = locate(node["_target_"])
     kind = target if isinstance(target, type) else type(maker(node)())  # the target is a function
     return not isinstance(world, kind)
 

@@ -10,9 +10,8 @@ from __future__ import annotations
 
 import re
 import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -22,14 +21,13 @@ from mitigate.core.locks import FolderLock
 from mitigate.core.names import counted
 from mitigate.core.observation import FORWARD, LEFT, RIGHT, STOP
 from mitigate.core.options import check_dashes, without_config_folder
-from mitigate.core.progress import Progress
 from mitigate.core.seeding import generator
 from mitigate.corruptions import CLEAN, SUITE_VERSION
-from mitigate.evaluation import rows
+from mitigate.evaluation import provenance, rows
 from mitigate.evaluation.bootstrap import share
 from mitigate.evaluation.config import EvaluateConfig, read
 from mitigate.evaluation.episode_lists import episodes
-from mitigate.worlds.episodes import Episode
+from mitigate.evaluation.evaluator import EpisodeTask, Job, run_missing
 from mitigate.worlds.world import World, expert_of
 
 OUT = "runs/controls"
@@ -67,51 +65,42 @@ class RandomAgent:
         return int(self.rng.choice([FORWARD, FORWARD, LEFT, RIGHT]))
 
 
+class ControlTask(EpisodeTask):
+    """Runs episodes of a control, one per group; the random agent is keyed by the episode."""
+
+    def work(self, jobs: Sequence[Job]) -> Iterator[rows.Row]:
+        if isinstance(self.agent, RandomAgent):
+            self.agent.episode = jobs[0][0].episode_id
+        return super().work(jobs)
+
+
 def run(config: EvaluateConfig, out: Path) -> list[rows.Row]:
     """Run both on the episodes of ``config`` and return their rows.
 
     The rows are also in the folder ``out``; rows that are there already are reused.
     """
-    from mitigate.evaluation import provenance
-
     env, split = config.env, config.split
     chosen = episodes(env, split, config.episodes)
+    make_world = maker(env.world)
+    results: list[rows.Row] = []
     with FolderLock(out) as lock:
-        world, made_by = provenance.first_world(maker(env.world))
+        world, made_by = provenance.first_world(make_world)
         provenance.keep(out, world, made_by, split, chosen, env.episodes[split])
         lock.expect(out / rows.ROWS, *provenance.notes(out, split))
-        return _run_missing(world, split, chosen, out / rows.ROWS)
-
-
-def _run_missing(world: World, split: str, chosen: Sequence[Episode], out: Path) -> list[rows.Row]:
-    from mitigate.evaluation.episode import run_episode
-
-    random_agent = RandomAgent()
-    controls: dict[str, Any] = {"oracle": OracleAgent(world), "random": random_agent}
-    earlier = rows.unique(rows.read(out) if out.exists() else ())
-    known = {rows.identity(row): row for row in earlier}
-    results = []
-    for name, agent in controls.items():
-        label = {
-            "agent": name,
-            "name": name,
-            "corruption": "clean",
-            "severity": 0.0,
-            "split": split,
-            "seed": 0,
-            "suite": SUITE_VERSION,
-            "rule": world.rule,
-        }
-        jobs = [(episode, {**label, **rows.of_episode(episode)}) for episode in chosen]
-        todo = [job for job in jobs if rows.identity(job[1]) not in known]
-        with Progress(name, len(jobs), unit="episode", start=len(jobs) - len(todo)) as progress:
-            for episode, entries in todo:
-                random_agent.episode = episode.episode_id
-                row = entries | run_episode(agent, world, episode, CLEAN, 0)
-                known[rows.identity(row)] = row
-                rows.append(out, [row])
-                progress.advance()
-        results += [known[rows.identity(entries)] for _, entries in jobs]
+        for name, agent in {"oracle": OracleAgent(world), "random": RandomAgent()}.items():
+            label = {
+                "agent": name,
+                "name": name,
+                "corruption": "clean",
+                "severity": 0.0,
+                "split": split,
+                "seed": 0,
+                "suite": SUITE_VERSION,
+                "rule": world.rule,
+            }
+            jobs = [(episode, CLEAN, {**label, **rows.of_episode(episode)}) for episode in chosen]
+            task = ControlTask(agent, make_world, world=world)
+            results += run_missing(task, world, jobs, out / rows.ROWS, name)
     return results
 
 
@@ -128,7 +117,7 @@ def main() -> int:
         out = Path(config.out or OUT)
         results = run(config, out)
     except (OSError, ValueError) as error:
-        print(f"controls: {conf.said(error)}", file=sys.stderr)
+        print(f"controls: {conf.error_message(error)}", file=sys.stderr)
         return 2
     for name in dict.fromkeys(row["name"] for row in results):
         selected = [row for row in results if row["name"] == name]

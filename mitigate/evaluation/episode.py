@@ -9,8 +9,8 @@ from contextlib import contextmanager
 from typing import Any
 
 from mitigate.agents.agent import Agent, as_agent
-from mitigate.core.contracts import lacking
-from mitigate.core.errors import own_place, said
+from mitigate.core.contracts import missing_members
+from mitigate.core.errors import error_message, own_place
 from mitigate.core.spaces import ActionSpace
 from mitigate.corruptions import (
     Corruption,
@@ -84,7 +84,7 @@ def action_of(answer: Any, agent: Any, space: ActionSpace | None = None) -> Any:
         try:
             return space.check(answer)
         except ValueError as error:
-            raise ValueError(f"act() of {type(agent).__name__}: {said(error)}") from None
+            raise ValueError(f"act() of {type(agent).__name__}: {error_message(error)}") from None
     try:
         return operator.index(answer)
     except TypeError:
@@ -172,13 +172,14 @@ class _Rollout:
 
     def failed(self, error: ValueError) -> ValueError:
         """Return ``error`` with the episode, the condition and the step in its message."""
-        return ValueError(f"{self.name}, step {self.steps + 1}: {said(error)}")
+        return ValueError(f"{self.name}, step {self.steps + 1}: {error_message(error)}")
 
     def measures(self) -> dict[str, Any]:
         """Return the measures as plain numbers, in the order of ``MEASURES``."""
         frames_read = self.corrupted.frames_read
         values: dict[str, Any] = {**self.corrupted.measures(), "decisions": frames_read}
-        plain = {n: v if lacking(v, ("item",)) else v.item() for n, v in values.items()}  # arrays
+        # NumPy scalars and arrays of one number have ``item``.
+        plain = {n: v if missing_members(v, ("item",)) else v.item() for n, v in values.items()}
         values = {n: int(v) if isinstance(v, bool) else v for n, v in plain.items()}
         return {name: values.pop(name) for name in MEASURES if name in values} | values
 

@@ -17,7 +17,7 @@ from omegaconf import DictConfig
 
 from mitigate.cluster import launcher
 from mitigate.core import conf
-from mitigate.core.contracts import lacking
+from mitigate.core.contracts import missing_members
 from mitigate.core.locks import FolderLock
 from mitigate.core.names import counted, name_of
 from mitigate.evaluation import config as options
@@ -111,7 +111,7 @@ def check_walks(agent: Any) -> None:
     """Raise ValueError unless ``agent`` is an object with ``reset`` and ``act``."""
     if isinstance(agent, type):
         raise ValueError(f"agent must be an object, got the class {agent.__name__}.")
-    absent = [f"{name}()" for name in lacking(agent, ("reset", "act"))]
+    absent = [f"{name}()" for name in missing_members(agent, ("reset", "act"))]
     if absent:
         raise ValueError(
             f"A {type(agent).__name__} cannot run episodes: it has no {' and no '.join(absent)}. "
@@ -138,7 +138,7 @@ def load(
 
     settings = node if weights is None else building.settings_of(node, weights, overrides)
     agent = building.build_agent(settings, weights=weights, seed=seed)
-    if lacking(agent, ("state_dict",)):
+    if missing_members(agent, ("state_dict",)):
         return agent
     if weights is None:
         raise ValueError(

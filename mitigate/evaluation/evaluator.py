@@ -191,25 +191,28 @@ def evaluate(
     task = EpisodeTask(agent, world, guards, classes=known.classes)
     jobs = _jobs(episodes, conditions, label)
     with known:
-        _run_missing(task, first, jobs, out, workers, launcher, f"{name}, {split}")
-    results = _in_order(out, [rows.identity(job[2]) for job in jobs])
+        results = run_missing(task, first, jobs, out, f"{name}, {split}", workers, launcher)
     if cut := rows.cuts(results):
         print(f"{name}: {cut}", flush=True)
     return results
 
 
-def _run_missing(
+def run_missing(
     task: EpisodeTask,
     world: World,
     jobs: list[Job],
     out: Path,
-    workers: int | None,
-    launcher: LauncherConfig,
     title: str,
-) -> None:
-    """Run the jobs without a row in ``out``, each group in one process, and append their rows."""
+    workers: int | None = 1,
+    launcher: LauncherConfig = LOCAL,
+) -> list[dict[str, Any]]:
+    """Run the jobs without a row in ``out`` and append their rows; return the rows of all jobs.
+
+    Each group of jobs runs in one process. Raises as :func:`evaluate`.
+    """
+    identities = [rows.identity(job[2]) for job in jobs]
     finished = {rows.identity(row) for row in rows.read(out)} if out.exists() else set()
-    todo = [job for job in jobs if rows.identity(job[2]) not in finished]
+    todo = [job for job, identity in zip(jobs, identities, strict=True) if identity not in finished]
     _warn_of_languages(todo)
     if task.guards:
         task.guards = task.guards.prepared(
@@ -217,7 +220,7 @@ def _run_missing(
         )
     if not todo:
         print(f"{title}: {counted(len(jobs), 'walk')}, all already done, in {out}", flush=True)
-        return
+        return _in_order(out, identities)
     at_once = _together(task.agent, world)
     groups = _groups(todo, 4 * at_once if at_once > 1 else 1)
     started = min(count(launcher, workers, len(todo), WORTH), len(groups))
@@ -230,6 +233,7 @@ def _run_missing(
             raise processes.WorkersDied(
                 f"{error} The finished rows are in {out}. Run the same command again to continue."
             ) from None
+    return _in_order(out, identities)
 
 
 def _jobs(

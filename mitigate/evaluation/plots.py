@@ -11,19 +11,17 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from mitigate.core.files import write_figure
-from mitigate.evaluation import bootstrap
+from mitigate.evaluation.curves import curves
 from mitigate.evaluation.grid import Grid
 from mitigate.evaluation.sections import Section, label
 
 COLOURS = mpl.colormaps["viridis"]  # readable without colour vision; bright is good
 LINES = [mpl.colormaps["tab10"](index) for index in range(10)]
-WIDTH, MARKER = 1.2, 3.0  # points: width of a line and size of its markers, without overlap
-RIM = 1.8  # points by which a line is wider than a line on top of it
-CLOSE = 0.5  # points of SR; a smaller difference is less than the width of a line
+DASHES = ("-", "--", "-.", ":")
+WIDTH, MARKER = 1.2, 3.0  # points: width of a line and size of its markers
+RIM = 2.0  # points by which a marker is larger than that of the next column
 DPI = 150
 STACKED = 5  # number of columns from which the panels of a heatmap are stacked vertically
-
-Curve = list[tuple[float, bootstrap.Estimate]]  # ascending severities, and SR in [0, 1]
 
 
 def heatmap(section: Section, path: Path | str) -> Path:
@@ -56,7 +54,7 @@ def heatmap(section: Section, path: Path | str) -> Path:
 def severity_curves(grid: Grid, path: Path | str) -> Path:
     """Draw SR (%) against severity, one panel per corruption, with 95 % bootstrap bands.
 
-    Where lines coincide, earlier ones are wider, so that they are visible on both sides.
+    Where lines coincide, all are visible: later ones have dashes and smaller markers.
     """
     names = grid.corruptions
     across = min(4, len(names))
@@ -64,7 +62,7 @@ def severity_curves(grid: Grid, path: Path | str) -> Path:
     figure = Figure(figsize=(2.6 * across + 0.6, 2.0 * down + 1.2), layout="constrained")
     axes = figure.subplots(down, across, sharex=True, sharey=True, squeeze=False).ravel()
     for axis, name in zip(axes, names, strict=False):
-        _curves(axis, {column: _curve(grid, column, name) for column in grid.columns})
+        _draw_curves(axis, grid, name)
         axis.set_title(label(name), fontsize=9)
         axis.set(xlim=(-0.03, 1.03), ylim=(-3, 103))
         axis.tick_params(labelsize=8)
@@ -109,9 +107,8 @@ def _panel(axis: Axes, section: Section, block: str, names: tuple[str, ...]) -> 
                 texts[i, j] = f"{100 * rate:.0f} / {spl:.2f}" + "*" * section.partial(column, name)
     axis.imshow(colours, cmap=COLOURS, vmin=0, vmax=1, aspect="auto")
     for (i, j), text in np.ndenumerate(texts):
-        axis.text(
-            *(j, i, text), ha="center", va="center", fontsize=8, color=text_colour(colours[i, j])
-        )
+        colour = text_colour(colours[i, j])
+        axis.text(j, i, text, ha="center", va="center", fontsize=8, color=colour)
     axis.axhline(1.5, color="black", linewidth=1.5)
     axis.set_xticks(
         range(shape[1]), map(plain, section.columns), rotation=25, ha="right", fontsize=8
@@ -120,52 +117,25 @@ def _panel(axis: Axes, section: Section, block: str, names: tuple[str, ...]) -> 
     axis.set_title(block, fontsize=9)
 
 
-def _curve(grid: Grid, column: str, name: str) -> Curve:
-    """Return the curve of one column under one corruption, with the clean cell at 0."""
-    points: Curve = []
-    measured = any(
-        (column, name, severity, "success") in grid.cells for severity in grid.severities
-    )
-    for severity in (0.0, *grid.severities) if measured else ():
-        cell = grid.cell(column, "clean" if severity == 0 else name, severity, "success")
-        mask = ~np.isnan(cell)
-        if mask.any():
-            estimate = bootstrap.share(cell[mask], units=grid.units[mask], resamples=1000)
-            points.append((severity, estimate))
-    return points
-
-
-def _curves(axis: Axes, curves: dict[str, Curve]) -> None:
-    """Draw the curves of one panel; pieces under later curves are wider."""
-    for index, (column, curve) in enumerate(curves.items()):
-        colour, later = LINES[index % len(LINES)], list(curves.values())[index + 1 :]
-        _line(axis, curve, colour, label=plain(column))
-        for piece in [curve[i : i + 2] for i in range(len(curve) - 1)] or [curve]:
-            wider = RIM * sum(_lies_on(other, piece) for other in later)
-            if wider:
-                _line(axis, piece, colour, wider)
-        at, low, high = (
-            [severity for severity, _ in curve],
-            [100 * estimate.low for _, estimate in curve],
-            [100 * estimate.high for _, estimate in curve],
+def _draw_curves(axis: Axes, grid: Grid, name: str) -> None:
+    """Draw the curves of one panel; coinciding curves have other dashes and smaller markers."""
+    columns = list(grid.columns)
+    for curve in curves(grid, name):
+        index = columns.index(curve.column)
+        colour = LINES[index % len(LINES)]
+        axis.plot(
+            curve.severities,
+            [100 * estimate.value for estimate in curve.points],
+            color=colour,
+            label=plain(curve.column),
+            linestyle=DASHES[index % len(DASHES)],
+            linewidth=WIDTH,
+            marker="o",
+            markersize=MARKER + RIM * (len(columns) - 1 - index),
         )
-        axis.fill_between(at, low, high, color=colour, alpha=0.15, linewidth=0)
-
-
-def _line(axis: Axes, curve: Curve, colour: tuple, wider: float = 0.0, label: str = "") -> None:
-    at = [severity for severity, _ in curve]
-    values = [100 * estimate.value for _, estimate in curve]
-    wide, marker = WIDTH + wider, MARKER + wider
-    line = axis.plot(at, values, "o-", color=colour, label=label, linewidth=wide, markersize=marker)
-    line[0].set_solid_capstyle("butt")
-
-
-def _lies_on(other: Curve, piece: Curve) -> bool:
-    """Return whether a curve passes through all points of ``piece``, which is not empty."""
-    values = {severity: estimate.value for severity, estimate in other}
-    return bool(piece) and all(
-        at in values and abs(100 * (estimate.value - values[at])) <= CLOSE for at, estimate in piece
-    )
+        low = [100 * estimate.low for estimate in curve.points]
+        high = [100 * estimate.high for estimate in curve.points]
+        axis.fill_between(curve.severities, low, high, color=colour, alpha=0.15, linewidth=0)
 
 
 def plain(name: str) -> str:

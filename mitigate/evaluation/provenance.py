@@ -215,19 +215,12 @@ def _read(note: Path) -> dict[str, dict[str, Any]]:
     again = f"Copy the file back, or move {note.parent} aside and evaluate again."
     known = read_object(note, again)
     for split, entry in known.items():
-        if not _is_entry(entry):
+        parts = entry if isinstance(entry, dict) else {"worlds": None}
+        worlds, sums = parts.get("worlds", {}), parts.get("sums", {})
+        objects = [worlds, sums, *(worlds.values() if isinstance(worlds, dict) else ())]
+        if not all(isinstance(part, dict) for part in objects):
             raise ValueError(f"{note}: the entry {short(split)} is damaged. {again}")
     return known
-
-
-def _is_entry(entry: Any) -> bool:
-    """Return whether a note's entry of a split has the structure that :func:`keep` writes."""
-    if not isinstance(entry, dict):
-        return False
-    worlds, sums = entry.get("worlds", {}), entry.get("sums", {})
-    if not isinstance(worlds, dict) or not isinstance(sums, dict):
-        return False
-    return all(isinstance(world, dict) for world in worlds.values())
 
 
 def _described(world: World) -> dict[str, str]:
@@ -256,7 +249,7 @@ def _layers(world: World) -> Iterator[Any]:
         if layer is None:
             return
         yield layer
-        layer = _environment(layer)
+        layer = _member(layer, "env")
 
 
 def name_of(world: World) -> str:
@@ -264,7 +257,7 @@ def name_of(world: World) -> str:
 
     For a world of this project around an environment it is the class of the environment.
     """
-    env = _environment(world)
+    env = _member(world, "env")
     shipped = type(world).__module__.startswith("mitigate.")
     inner = _member(env, "unwrapped") or env if shipped and env is not None else world
     return type(inner).__name__
@@ -315,7 +308,7 @@ def _spec(world: World) -> str:
 
     Worlds of one class may differ only in these.
     """
-    spec = _member(_environment(world), "spec")
+    spec = _member(_member(world, "env"), "spec")
     entries: Mapping[str, Any] = {}
     with suppress(TypeError):  # None, or an object with slots
         entries = vars(spec)
@@ -324,11 +317,6 @@ def _spec(world: World) -> str:
     kwargs = entries.get("kwargs", {})
     arguments = json.dumps(kwargs, sort_keys=True, default=lambda x: str(type(x)))
     return f"{entries['id']} {arguments}"
-
-
-def _environment(layer: Any) -> Any:
-    """Return the environment inside a world or a wrapper, or None."""
-    return _member(layer, "env")
 
 
 def _member(owner: Any, name: str) -> Any:

@@ -18,8 +18,9 @@ from mitigate.evaluation.bootstrap import LEVEL, NO_INTERVAL, NO_WIDTH, RESAMPLE
 from mitigate.evaluation.grid import DRAWN, METRICS, PROMPT_ONLY, Grid, expected_corruptions
 from mitigate.evaluation.metrics import FLOOR
 from mitigate.evaluation.rows import Row
-from mitigate.evaluation.sections import Retained, Section, label, sections
+from mitigate.evaluation.sections import Difference, Retained, Section, label, sections
 
+NO_DIFFERENCE = Difference(None, None, {})
 FEW = 10  # with fewer episodes no difference is in bold (heuristic)
 
 
@@ -113,7 +114,7 @@ def _table(section: Section) -> str:
         lines.append([f"Clean {metric}", *cells])
     lines += _by_seed(section, "clean", "Clean SR", lambda value: f"{100 * value:.1f}")
     if len(section.columns) > 1:
-        cells = [_moved(section, section.moved.get(c)) for c in section.columns]
+        cells = [_moved(section, change.clean) for change in _changes(section)]
         lines.append([f"Clean SR against {markdown_of(section.reference)}", *cells])
     if section.corrupted:
         lines += _mean_sr(section)
@@ -124,7 +125,8 @@ def _table(section: Section) -> str:
         lines += _by_seed(section, block, "PRS-SR", _rounded_prs)
         if len(section.columns) > 1:
             for metric in METRICS:
-                cells = [_change(section, (c, block, metric)) for c in section.columns]
+                changes = [change.retained.get((block, metric)) for change in _changes(section)]
+                cells = [_change(section, change, block) for change in changes]
                 lines.append([f"PRS-{metric} against {markdown_of(section.reference)}", *cells])
         for half in section.halves.get(block, {}):
             lines.append(
@@ -137,21 +139,25 @@ def _table(section: Section) -> str:
     return markdown_table(["Corruption", *map(markdown_of, section.columns)], lines)
 
 
+def _changes(section: Section) -> list[Difference]:
+    """Return the difference of each column to the reference; nothing for the reference itself."""
+    return [section.differences.get(c, NO_DIFFERENCE) for c in section.columns]
+
+
 def _mean_sr(section: Section) -> list[list[str]]:
     """Return the lines of the mean SR over all corruptions, and of its differences."""
 
-    def cells(values: dict[str, Retained], text: Callable[[Estimate], str]) -> list[str]:
-        by_column = [values.get(column) for column in section.columns]
-        return [
-            "–" if r is None else text(r.estimate) + _escaped(section.marks(r, *section.blocks))
-            for r in by_column
-        ]
+    def cell(value: Retained | None, text: Callable[[Estimate], str]) -> str:
+        marks = "" if value is None else _escaped(section.marks(value, *section.blocks))
+        return "–" if value is None else text(value.estimate) + marks
 
     count = sum(map(section.whole, section.blocks))
-    title = f"Mean SR of {count} corruptions"
-    lines = [[title, *cells(section.corrupted, lambda estimate: _interval(estimate, "SR"))]]
+    means = [section.corrupted.get(column) for column in section.columns]
+    means_text = [cell(mean, lambda estimate: _interval(estimate, "SR")) for mean in means]
+    lines = [[f"Mean SR of {count} corruptions", *means_text]]
     if len(section.columns) > 1:
-        moved = cells(section.raised, lambda change: _moved(section, change))
+        changes = [change.corrupted for change in _changes(section)]
+        moved = [cell(change, lambda estimate: _moved(section, estimate)) for change in changes]
         lines.append([f"Mean SR against {markdown_of(section.reference)}", *moved])
     return lines
 
@@ -175,7 +181,7 @@ def _notes(section: Section) -> str:
             "little."
         )
     retained = section.retained.items()
-    if any(len(r.corruptions) < section.whole(block) for (_, block, _), r in retained):
+    if any(len(r.corruptions) < section.whole(part) for (_, part, _), r in retained):
         notes.append("† over k of the K corruptions: the others are not measured or not complete.")
     absent = [
         n
@@ -190,16 +196,14 @@ def _notes(section: Section) -> str:
             f"n/a: {label(PROMPT_ONLY)} changes an agent's system prompt; no agent here has one, "
             "so it is not applicable and not part of the PRS."
         )
-    if section.gained or section.moved:
+    if any(change.clean or change.retained for change in _changes(section)):
         notes.append(
             f"With fewer than {FEW} episodes an interval says little: no difference is in bold."
             if _is_few(section)
             else "Differences in bold have intervals that exclude zero."
         )
-    others = [c for c in section.columns if c != section.reference]
-    unpaired = [
-        c for c in others if not section.grid.common((c, section.reference), section.severity)
-    ]
+    pairs = [(column, section.reference) for column in section.columns[1:]]
+    unpaired = [pair[0] for pair in pairs if not section.grid.common(pair, section.severity)]
     if unpaired:
         notes.append(
             f"No seed in common with {markdown_of(section.reference)}, and so no difference: "
@@ -279,11 +283,10 @@ def _is_few(section: Section) -> bool:
     return len(section.grid.episodes) < FEW
 
 
-def _change(section: Section, place: tuple[str, str, str]) -> str:
-    value = section.gained.get(place)
+def _change(section: Section, value: Retained | None, block: str) -> str:
     if value is None or math.isnan(value.estimate.value):
         return "–"
-    change, marks = value.estimate, _escaped(section.marks(value, place[1]))
+    change, marks = value.estimate, _escaped(section.marks(value, block))
     text = _bold_if_sure(section, f"{change.value:+.2f}", change)
     return f"{text} {change.interval('+.2f')}{marks}"
 

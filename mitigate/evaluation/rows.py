@@ -107,20 +107,16 @@ def read(path: Path | str) -> list[Row]:
     try:
         with open_text(path) as file:
             file.reconfigure(errors="surrogateescape")
-            number = 0
-            while line := file.readline(LONGEST_LINE + 1):
-                number += 1
-                row, text = _parse(line), _is_text(line)
+            lines = iter(lambda: file.readline(LONGEST_LINE + 1), "")
+            for number, line in enumerate(lines, 1):
+                row = _parse(line)
                 cut = row is None and len(line) <= LONGEST_LINE and not line.endswith("\n")
-                if cut and text and not _gzipped(path):
+                if cut and not _gzipped(path):
                     break
-                problem = _problem(row) if text else "is not UTF-8"
-                if problem:
-                    advice = (
-                        "Delete the line and evaluate again."
-                        if rows
-                        else "Check that this is a file of result rows."
-                    )
+                if problem := _problem(row):
+                    advice = "Delete the line and evaluate again."
+                    if not rows:
+                        advice = "Check that this is a file of result rows."
                     raise ValueError(
                         f"{path}, line {number} {problem}. A result row must be one JSON object "
                         f"per line with {', '.join(REQUIRED)}. {advice}"
@@ -258,17 +254,10 @@ def _holds_rows(path: Path) -> bool:
     return isinstance(first, dict) and IDENTITY.keys() <= first.keys()
 
 
-def _is_text(line: str) -> bool:
-    """Return whether the bytes of a line were UTF-8; invalid bytes were read as surrogates."""
-    try:
-        line.encode()
-    except UnicodeEncodeError:
-        return False
-    return True
-
-
 def _parse(line: str) -> Any:
+    """Return the value of a line; None if it is damaged or too long."""
     try:
+        line.encode()  # bytes that are not UTF-8 were read as surrogates, which raise ValueError
         return parse_json(line.removeprefix(_MARK)) if len(line) <= LONGEST_LINE else None
     except (ValueError, RecursionError):
         return None
@@ -276,7 +265,8 @@ def _parse(line: str) -> Any:
 
 def _problem(row: Any) -> str:
     if not isinstance(row, dict):
-        return f"is not a JSON object of finite numbers and at most {LONGEST_LINE} characters"
+        limits = f"finite numbers, UTF-8 and at most {LONGEST_LINE} characters"
+        return f"is not a JSON object of {limits}"
     required = IDENTITY | {RETURN: (int, float)} if row.get("rule") == RETURN else REQUIRED
     lacking = [key for key in required if key not in row]
     if lacking:

@@ -6,6 +6,7 @@ import math
 from collections import defaultdict
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -30,6 +31,8 @@ from mitigate.evaluation.rows import RETURN, Row
 
 REFERENCES = ("base", "before")  # columns with these names come first and are the reference
 
+label = title  # name of a corruption in the paper's table
+
 
 @dataclass(frozen=True)
 class Retained:
@@ -45,46 +48,145 @@ class Retained:
 
 
 @dataclass(frozen=True)
-class Section:
-    """One table: a grid at one severity (0 if there are only clean cells).
+class Difference:
+    """Paired differences of one column to another, over the seeds that both have.
 
-    Metrics are "SR" and "SPL". Differences are paired differences to the ``reference`` column, over
-    the seeds that both columns have.
+    Without a common seed nothing is measured, because corruptions of other seeds have other keys.
+
+    Attributes:
+        clean: difference of clean SR; None if not measured.
+        corrupted: difference of the mean SR under corruption; None if not measured.
+        retained: difference of PRS by (block or half, metric).
+    """
+
+    clean: Estimate | None
+    corrupted: Retained | None
+    retained: dict[tuple[str, str], Retained]
+
+
+@dataclass(frozen=True)
+class Section:
+    """One table: a grid at one severity (0 if there are only clean cells). Metrics: "SR", "SPL".
 
     Attributes:
         grid: the results.
         kind: the corruptions of the table; empty for the suite.
         severity: of the corruptions.
-        columns: labels of the columns, the reference first.
-        blocks: corruptions by block.
-        halves: parts of a block with a separate PRS, by block and heading.
-        reference: the column that the others are compared with.
-        clean: clean values by (column, metric).
-        moved: difference of clean SR by column.
-        retained: PRS by (column, block or half, metric).
-        gained: difference of PRS by (column, block or half, metric).
-        corrupted: mean SR over all corruptions by column.
-        raised: difference of that mean SR by column.
-        gaps: cells with missing episodes.
-        by_seed: values of each seed for columns with several seeds: clean SR by (column, "clean"),
-            PRS-SR by (column, block).
+        columns: labels of the columns; the first one is the reference of differences.
     """
 
     grid: Grid
     kind: str
     severity: float
     columns: tuple[str, ...]
-    blocks: dict[str, tuple[str, ...]]
-    halves: dict[str, dict[str, tuple[str, ...]]]
-    reference: str
-    clean: dict[tuple[str, str], Estimate]
-    moved: dict[str, Estimate]
-    retained: dict[tuple[str, str, str], Retained]
-    gained: dict[tuple[str, str, str], Retained]
-    corrupted: dict[str, Retained]
-    raised: dict[str, Retained]
-    gaps: list[Gap]
-    by_seed: dict[tuple[str, str], dict[int, float]]
+
+    @property
+    def reference(self) -> str:
+        """The column that the others are compared with."""
+        return self.columns[0]
+
+    @cached_property
+    def blocks(self) -> dict[str, tuple[str, ...]]:
+        """Measured corruptions by block."""
+        return self.grid.blocks_at(self.severity)
+
+    @cached_property
+    def halves(self) -> dict[str, dict[str, tuple[str, ...]]]:
+        """Parts of a block with a separate PRS, by block and heading."""
+        return halves(self.blocks)
+
+    @cached_property
+    def parts(self) -> dict[str, tuple[str, ...]]:
+        """Corruptions of everything that has a PRS: the blocks, then their halves."""
+        parts = self.halves.values()
+        return self.blocks | {half: names for part in parts for half, names in part.items()}
+
+    @cached_property
+    def corruptions(self) -> tuple[str, ...]:
+        """All measured corruptions, block by block."""
+        return tuple(name for names in self.blocks.values() for name in names)
+
+    @cached_property
+    def gaps(self) -> list[Gap]:
+        """Cells with missing episodes."""
+        return self.grid.gaps(self.severity)
+
+    @cached_property
+    def clean(self) -> dict[tuple[str, str], Estimate]:
+        """Clean values by (column, metric)."""
+        values = {}
+        for column in self.columns:
+            for metric, key in METRICS.items():
+                mask = self.grid.measured(column, self.severity, key)
+                if mask.any():
+                    cell = self.grid.cell(column, "clean", self.severity, key)[mask]
+                    values[column, metric] = bootstrap.share(cell, units=self.grid.units[mask])
+        return values
+
+    @cached_property
+    def corrupted(self) -> dict[str, Retained]:
+        """Mean SR over all corruptions by column."""
+        by_column = {column: self.mean_sr(column, self.corruptions) for column in self.columns}
+        return {column: value for column, value in by_column.items() if value is not None}
+
+    @cached_property
+    def retained(self) -> dict[tuple[str, str, str], Retained]:
+        """PRS by (column, block or half, metric)."""
+        return {
+            (column, part, metric): _retained(retention)
+            for column in self.columns
+            for metric, key in METRICS.items()
+            for part, names in self.parts.items()
+            if (retention := self.grid.retention([column], names, self.severity, key))
+        }
+
+    @cached_property
+    def differences(self) -> dict[str, Difference]:
+        """Differences of the other columns to the reference."""
+        return {column: self.compare(column, self.reference) for column in self.columns[1:]}
+
+    @cached_property
+    def by_seed(self) -> dict[tuple[str, str], dict[int, float]]:
+        """Clean SR by (column, "clean") and PRS-SR by (column, block), for each pooled seed.
+
+        Only of columns with several seeds.
+        """
+        values: dict[tuple[str, str], dict[int, float]] = defaultdict(dict)
+        for column in self.columns:
+            seeds = self.grid.seeds[column, self.severity]
+            for seed in seeds if len(seeds) > 1 else ():
+                run = self.grid.over([column], [seed], self.severity)
+                clean = run.cell(column, "clean", self.severity, METRICS["SR"])
+                values[column, "clean"][seed] = _mean(clean)
+                for block, names in self.blocks.items():
+                    retention = run.retention([column], names, self.severity, METRICS["SR"])
+                    for part in retention or ():
+                        values[column, block][seed] = part.prs
+        return dict(values)
+
+    def mean_sr(self, column: str, names: Sequence[str]) -> Retained | None:
+        """Return the mean SR of a column over corruptions; None if nothing was measured."""
+        retention = self.grid.retention([column], names, self.severity, METRICS["SR"])
+        return _mean_sr(retention) if retention else None
+
+    def compare(self, column: str, reference: str) -> Difference:
+        """Return the difference of ``column`` to ``reference``, any two columns."""
+        pair, severity = (column, reference), self.severity
+        if not self.grid.common(pair, severity):
+            return Difference(None, None, {})
+        both = self.grid.paired(pair, severity)
+        first, second = (both.cell(name, "clean", severity, METRICS["SR"]) for name in pair)
+        change = first - second
+        mask = ~np.isnan(change)
+        clean = bootstrap.mean(change[mask], units=both.units[mask]) if mask.any() else None
+        retention = both.retention(pair, self.corruptions, severity, METRICS["SR"])
+        retained = {
+            (part, metric): _retained(parts)
+            for metric, key in METRICS.items()
+            for part, names in self.parts.items()
+            if (parts := both.retention(pair, names, severity, key))
+        }
+        return Difference(clean, _mean_sr(retention) if retention else None, retained)
 
     def value(self, column: str, corruption: str, metric: str = "SR") -> float:
         """Return the mean of a cell over its episodes; NaN if it is empty."""
@@ -94,39 +196,16 @@ class Section:
         """Return whether a cell has missing episodes."""
         return any((gap.column, gap.corruption) == (column, corruption) for gap in self.gaps)
 
-    def whole(self, block: str) -> int:
-        """Return how many corruptions a complete PRS over ``block``, or a half of it, covers."""
-        half = next((parts[block] for parts in self.halves.values() if block in parts), None)
-        if half is not None:
-            name = block.rpartition(",")[0]
-            return len(expected_corruptions(name, half))
-        return len(expected_corruptions(block, self.blocks[block]))
+    def whole(self, part: str) -> int:
+        """Return how many corruptions a complete PRS over a block, or a half of it, covers."""
+        block = part if part in self.blocks else part.rpartition(",")[0]
+        return len(expected_corruptions(block, self.parts[part]))
 
-    def marks(self, value: Retained, *blocks: str) -> str:
+    def marks(self, value: Retained, *parts: str) -> str:
         """Return the marks of a value: missing episodes (*) or corruptions (†), near floor (‡)."""
-        measured, expected = len(value.corruptions), sum(map(self.whole, blocks))
+        measured, expected = len(value.corruptions), sum(map(self.whole, parts))
         fewer = "*" * (value.episodes < len(self.grid.episodes))
         return fewer + f" † {measured}/{expected}" * (measured < expected) + " ‡" * value.near_floor
-
-
-@dataclass(frozen=True)
-class Compared:
-    """Paired differences of one column to another, over the seeds that both have.
-
-    Attributes:
-        moved: difference of clean SR; None if not measured.
-        raised: difference of the mean SR under corruption; None if not measured.
-        gained: difference of PRS by (block or half, metric).
-    """
-
-    moved: Estimate | None
-    raised: Retained | None
-    gained: dict[tuple[str, str], Retained]
-
-
-def compare(section: Section, column: str, reference: str) -> Compared:
-    """Return how ``column`` differs from ``reference``, any two columns of ``section``."""
-    return _compared(section.grid, section.severity, (column, reference), section.blocks)
 
 
 def sections(
@@ -154,114 +233,18 @@ def sections(
     if against is not None and against not in names:
         raise ValueError(unknown("column", against, names))
     first = REFERENCES if against is None else (against,)
+    rank = {name: place for place, name in enumerate(first)}
     results = []
     for kind, table_rows in (by_kind(rows) or {SUITE: []}).items():
         for grid in grids(table_rows, drawn):
             corrupted = {label for label, _, severity, _ in grid.cells if severity > 0}
             clean_only = [] if corrupted == grid.columns.keys() else [0.0]
-            results += [
-                _section(grid, kind, severity, first) for severity in clean_only + grid.severities
-            ]
+            for severity in clean_only + grid.severities:
+                columns = sorted(
+                    grid.columns_at(severity), key=lambda x: rank.get(grid.columns[x][0], len(rank))
+                )
+                results.append(Section(grid, kind, severity, tuple(columns)))
     return results
-
-
-label = title  # name of a corruption in the paper's table
-
-
-def _section(grid: Grid, kind: str, severity: float, first: Sequence[str]) -> Section:
-    rank = {name: place for place, name in enumerate(first)}
-    columns = sorted(
-        grid.columns_at(severity), key=lambda label: rank.get(grid.columns[label][0], len(rank))
-    )
-    blocks, reference = grid.blocks_at(severity), columns[0]
-    parted = halves(blocks)
-    measured = _measured(blocks)
-    clean, retained, corrupted = {}, {}, {}
-    gained: dict[tuple[str, str, str], Retained] = {}
-    moved: dict[str, Estimate] = {}
-    raised: dict[str, Retained] = {}
-    every = tuple(name for names in blocks.values() for name in names)
-    for column in columns:
-        if parts := grid.retention([column], every, severity, METRICS["SR"]):
-            corrupted[column] = mean_sr(parts)
-        if column != reference:
-            compared = _compared(grid, severity, (column, reference), blocks)
-            gained |= {(column, *place): value for place, value in compared.gained.items()}
-            moved |= {column: compared.moved} if compared.moved else {}
-            raised |= {column: compared.raised} if compared.raised else {}
-        for metric, key in METRICS.items():
-            mask = grid.measured(column, severity, key)
-            if mask.any():
-                values = grid.cell(column, "clean", severity, key)[mask]
-                clean[column, metric] = bootstrap.share(values, units=grid.units[mask])
-            for block, names in measured.items():
-                place = (column, block, metric)
-                if parts := grid.retention([column], names, severity, key):
-                    retained[place] = _retained(parts)
-    return Section(
-        grid,
-        kind,
-        severity,
-        tuple(columns),
-        blocks,
-        parted,
-        reference,
-        clean,
-        moved,
-        retained,
-        gained,
-        corrupted,
-        raised,
-        grid.gaps(severity),
-        _by_seed(grid, severity, blocks),
-    )
-
-
-def _measured(blocks: dict[str, tuple[str, ...]]) -> dict[str, tuple[str, ...]]:
-    """Return the blocks and, if both were measured, their halves."""
-    parted = halves(blocks).values()
-    return blocks | {half: names for parts in parted for half, names in parts.items()}
-
-
-def _compared(
-    grid: Grid, severity: float, pair: tuple[str, str], blocks: dict[str, tuple[str, ...]]
-) -> Compared:
-    """Return the differences of the first of ``pair`` to the second.
-
-    There are none without a common seed, because corruptions of other seeds have other keys.
-    """
-    if not grid.common(pair, severity):
-        return Compared(None, None, {})
-    both = grid.paired(pair, severity)
-    first, second = (both.cell(label, "clean", severity, METRICS["SR"]) for label in pair)
-    change = first - second
-    mask = ~np.isnan(change)
-    every = tuple(name for names in blocks.values() for name in names)
-    parts = both.retention(pair, every, severity, METRICS["SR"])
-    gained: dict[tuple[str, str], Retained] = {}
-    for metric, key in METRICS.items():
-        for block, names in _measured(blocks).items():
-            if retention := both.retention(pair, names, severity, key):
-                gained[block, metric] = _retained(retention)
-    moved = bootstrap.mean(change[mask], units=grid.units[mask]) if mask.any() else None
-    return Compared(moved, mean_sr(parts) if parts else None, gained)
-
-
-def _by_seed(
-    grid: Grid, severity: float, blocks: dict[str, tuple[str, ...]]
-) -> dict[tuple[str, str], dict[int, float]]:
-    """Return the clean SR and the PRS-SR of every block for each pooled seed."""
-    values: dict[tuple[str, str], dict[int, float]] = defaultdict(dict)
-    for column in grid.columns:
-        seeds = grid.seeds.get((column, severity), ())
-        for seed in seeds if len(seeds) > 1 else ():
-            run = grid.over([column], [seed], severity)
-            clean = run.cell(column, "clean", severity, METRICS["SR"])
-            values[column, "clean"][seed] = _mean(clean)
-            for block, names in blocks.items():
-                for part in run.retention([column], names, severity, METRICS["SR"]) or ():
-                    values[column, block][seed] = part.prs
-    return dict(values)
 
 
 def _retained(parts: list[Retention]) -> Retained:
@@ -276,7 +259,7 @@ def _retained(parts: list[Retention]) -> Retained:
     return Retained(estimate, parts[0].corruptions, len(parts[0].clean), bool(near_floor))
 
 
-def mean_sr(parts: list[Retention]) -> Retained:
+def _mean_sr(parts: list[Retention]) -> Retained:
     """Return the mean SR under corruption of one part, or the first's minus the second's."""
     means, units = [part.corrupted.mean(axis=0) for part in parts], parts[0].units
     estimate = (

@@ -79,9 +79,9 @@ def main(argv: Sequence[str] | None = None) -> int:
         check_paths(options.rows, "--out DIR")
         written = run(options.rows, options.out, options.seed, options.against, options.draw)
     except (OSError, ValueError) as error:
-        from mitigate.core.errors import said
+        from mitigate.core.errors import error_message
 
-        print(f"table: {said(error)}", file=sys.stderr)
+        print(f"table: {error_message(error)}", file=sys.stderr)
         return 2
     print(written[0].read_text(encoding="utf-8"))
     print("\n".join(f"wrote {path}" for path in written))

@@ -6,16 +6,16 @@ import re
 import textwrap
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import cycle
 from pathlib import Path
 from typing import Any
 
-import cv2
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from mitigate.agents.agent import Agent
-from mitigate.core.files import write_bytes, write_figure
+from mitigate.core.files import write_figure
 from mitigate.core.observation import DEPTH, POSE, RGB, VIEWS, Observation
 from mitigate.core.pictures import depth_picture, draw_path, strip
 from mitigate.corruptions import CLEAN, Corruption, Key, corrupt_observation
@@ -26,8 +26,9 @@ from mitigate.guards.guard import NO_GUARDS, Guards
 from mitigate.worlds.episodes import Episode, from_vlnce
 from mitigate.worlds.world import World, WorldWrapper, as_world, depth_sensor
 
-REFERENCE, CLEAN_WALK = "#8a8a8a", "#1f77b4"
-CORRUPTED_WALKS = ("#d62728", "#2ca02c", "#9467bd", "#ff7f0e")  # one per agent, in order
+# colours of Okabe and Ito, readable without colour vision; corrupted: one per agent, in order
+REFERENCE, CLEAN_WALK = "#8a8a8a", "#0072b2"
+CORRUPTED_WALKS = ("#d55e00", "#009e73", "#cc79a7", "#8c564b")
 INCHES, DPI = (9.0, 10.5), 80
 PICTURES = 4  # episodes drawn after a training (heuristic)
 
@@ -87,20 +88,32 @@ def draw_trajectories(
         guards: guards by the name of their agent.
     """
     walks = list(run_agents(agents, world, episode, corruption, seed, guards))
+    figure = draw_episode(walks, world, episode, corruption, seed)
+    return write_figure(out, figure, dpi=DPI, facecolor="white")
+
+
+def draw_episode(
+    walks: Sequence[Walk], world: World, episode: Episode, corruption: Corruption, seed: int
+) -> Figure:
+    """Draw the start panorama (clean and corrupted), the plan, the reference path and ``walks``."""
     entry, sight = first_sight(world, episode, corruption, seed)
     figure = Figure(figsize=INCHES, layout="constrained")
-    above, below, plan = figure.subplots(3, 1, height_ratios=(1, 1, 3.4))
+    *above, plan = figure.subplots(3, 1, height_ratios=(1, 1, 3.4))
     clean = f"start, straight ahead in the middle: {entry}, clean"
     met = f"{label(corruption.name)}, severity {corruption.severity:g}"
-    for axes, picture, title in zip((above, below), sight, (clean, met), strict=False):
+    for axes in above:
+        axes.axis("off")
+    for axes, picture, title in zip(above, sight, (clean, met), strict=False):
         axes.imshow(picture)
         axes.set_title(title, fontsize=9)
-    above.axis("off")
-    below.axis("off")
-    (as_world(world).draw or _blank)(plan)
+    if draw := as_world(world).draw:
+        draw(plan)
+    else:
+        plan.set_aspect("equal")
+        plan.axis("off")
     _draw_walks(plan, world.reset(episode)[POSE], episode, walks)
     figure.suptitle("\n".join(textwrap.wrap(episode.instruction.text, 100)), fontsize=11)
-    return write_figure(out, figure, dpi=DPI, facecolor="white")
+    return figure
 
 
 def first_sight(
@@ -151,7 +164,7 @@ def write_pictures(
     seed: int = 0,
     guards: Mapping[str, Guards] | None = None,
 ) -> list[Path]:
-    """Draw the first ``PICTURES`` episodes that training won back, and ``sheet.png`` with all.
+    """Draw the first ``PICTURES`` episodes that the last agent solves and the first one fails.
 
     If none was won back (:func:`won_back`), or there is only one agent, the first corrupted row is
     drawn. A world without poses gives no pictures.
@@ -181,23 +194,7 @@ def write_pictures(
         out = Path(folder) / f"{safe}-{corruption.name}.png"
         episode = known[episode_id]
         paths.append(draw_trajectories(agents, world, episode, corruption, out, seed, guards))
-    return [*paths, contact_sheet(paths, Path(folder) / "sheet.png")] if paths else []
-
-
-def contact_sheet(pictures: Sequence[Path], out: Path, across: int = 2) -> Path:
-    """Write ``pictures`` of equal size as a grid, ``across`` per row, at half their size."""
-    halves = [_half(path) for path in pictures]
-    blank = np.full_like(halves[0], 255)
-    halves += [blank] * (-len(halves) % across)
-    lines = [np.hstack(halves[i : i + across]) for i in range(0, len(halves), across)]
-    write_bytes(out, cv2.imencode(".png", np.vstack(lines))[1].tobytes())
-    return out
-
-
-def _half(path: Path) -> np.ndarray:
-    picture = cv2.imread(str(path))
-    assert picture is not None, f"{path} was just written"
-    return cv2.resize(picture, None, fx=0.5, fy=0.5, interpolation=cv2.INTER_AREA)
+    return paths
 
 
 def _first_corrupted(rows: Sequence[Row]) -> list[tuple[str, Corruption]]:
@@ -217,19 +214,19 @@ def run_agents(
 
     Keys and measures are those of an evaluation with ``seed``. ``guards`` are by name of the agent.
     """
-    plans: list[tuple[str, str, Corruption, str]] = []
-    for index, name in enumerate(agents):
-        if index == 0:
-            plans.append((f"{name}, clean", name, CLEAN, CLEAN_WALK))
-        colour = CORRUPTED_WALKS[index % len(CORRUPTED_WALKS)]
-        plans.append((f"{name}, {label(corruption.name)}", name, corruption, colour))
+    first = next(iter(agents))
+    plans = [(f"{first}, clean", first, CLEAN, CLEAN_WALK)]
+    plans += [
+        (f"{name}, {label(corruption.name)}", name, corruption, colour)
+        for name, colour in zip(agents, cycle(CORRUPTED_WALKS), strict=False)
+    ]
     for title, name, met, colour in plans:
         traced = Traced(world)
-        before = (guards or {}).get(name, NO_GUARDS)
-        measures: dict[str, Any] = run_episode(agents[name], traced, episode, met, seed, before)
+        guard = (guards or {}).get(name, NO_GUARDS)
+        measures = run_episode(agents[name], traced, episode, met, seed, guard)
         left = measures.get("distance_to_goal", np.nan)
-        path, won = np.array(traced.path), bool(measures["success"])
-        yield Walk(title, path, won, left, colour, name, met, measures)
+        path, success = np.array(traced.path), bool(measures["success"])
+        yield Walk(title, path, success, left, colour, name, met, measures)
 
 
 class Traced(WorldWrapper):
@@ -248,11 +245,6 @@ class Traced(WorldWrapper):
         if not self.path or not np.array_equal(here, self.path[-1]):
             self.path.append(here)
         return met
-
-
-def _blank(axes: Axes) -> None:
-    axes.set_aspect("equal")
-    axes.axis("off")
 
 
 def _draw_walks(axes: Axes, start: np.ndarray, episode: Episode, walks: Sequence[Walk]) -> None:

@@ -70,7 +70,7 @@ def main() -> None:
         try:
             print(f"wrote {add_programs(parsed['run'])}")
         except (ValueError, OSError) as error:
-            sys.exit(f"error: {conf.said(error)}")
+            sys.exit(f"error: {conf.error_message(error)}")
         return
     overrides = parsed.pop("overrides")
     configs = parsed.pop("config_dir")
@@ -83,7 +83,7 @@ def main() -> None:
             parsed["walks"] = _walks_of(parsed["run"], words, configs)
         folder = export(parsed.pop("run"), parsed.pop("name"), **parsed)
     except (ValueError, OSError) as error:
-        sys.exit(f"error: {conf.said(error)}")
+        sys.exit(f"error: {conf.error_message(error)}")
     card = loading.read_card(folder)
     if card["latency_ms"]:
         print(f"latency in ms: {json.dumps(card['latency_ms'])}")

@@ -17,8 +17,8 @@ import numpy as np
 import torch
 from torch import Tensor, nn
 
-from mitigate.core.build import arguments_of, located
-from mitigate.core.contracts import lacking
+from mitigate.core.build import arguments_of, locate
+from mitigate.core.contracts import missing_members
 from mitigate.core.names import unknown
 from mitigate.core.precision import computing
 from mitigate.training.config import in_range, number_text
@@ -58,7 +58,7 @@ class Objective(nn.Module):
 
         The plan of a run calls this before the first stage.
         """
-        absent = lacking(agent, cls.needs)
+        absent = missing_members(agent, cls.needs)
         return f"it has no {', '.join(absent)}. {cls.otherwise}" if absent else ""
 
     def train(self, mode: bool = True) -> Any:
@@ -256,7 +256,7 @@ class ObjectiveSpec:
                 takes no agent.
         """
         target = str(recipe["_target_"])
-        kind = located(target)
+        kind = locate(target)
         check_kind(kind, target)
         arguments = {name: value for name, value in recipe.items() if name != "_target_"}
         parameter = _source_of(kind, arguments)
@@ -271,7 +271,7 @@ class ObjectiveSpec:
         """
         for parameter in agent.parameters():
             parameter.requires_grad_(parameter.is_floating_point())  # 8-bit weights never train
-        kind = located(self.target)
+        kind = locate(self.target)
         modules: dict[str, Any] = {"agent": agent}
         if self.source is not None:
             make_source = kind.sources[self.parameter]

@@ -13,7 +13,7 @@ from mitigate.agents.adapters import WEIGHTS as ADAPTERS_FILE
 from mitigate.agents.adapters import adapter_parameters, adapters_of
 from mitigate.agents.agent import Trainable, as_agent
 from mitigate.core import checkpoint
-from mitigate.core.contracts import lacking
+from mitigate.core.contracts import missing_members
 from mitigate.core.files import find
 from mitigate.core.names import unknown
 
@@ -45,7 +45,7 @@ def train_only(agent: nn.Module, parts: Iterable[str] | str | None) -> None:
             (which episodes cannot train), or the agent is not trainable.
     """
     if not isinstance(agent, Trainable):
-        absent = lacking(agent, TRAINABLE)
+        absent = missing_members(agent, TRAINABLE)
         raise ValueError(
             f"{type(agent).__name__} cannot be trained on episodes: it has no "
             f"{', '.join(absent)} (mitigate/agents/agent.py, docs/bring-your-own.md)."

@@ -27,9 +27,9 @@ from torch import nn
 from mitigate.agents.agent import as_agent
 from mitigate.agents.building import build_agent, inherit_settings
 from mitigate.agents.observation import check_fits
-from mitigate.core.build import build, located, maker
+from mitigate.core.build import build, locate, maker
 from mitigate.core.conf import CONF
-from mitigate.core.contracts import lacking
+from mitigate.core.contracts import missing_members
 from mitigate.core.json_files import read_object
 from mitigate.core.observation import DEPTH, RGB
 from mitigate.core.progress import say
@@ -220,7 +220,7 @@ def nothing_to_train(recipe: Mapping[str, Any], agent: nn.Module) -> str | None:
     encoders = as_agent(agent).encoders
     if sensor and encoders and sensor not in encoders:
         return f"{kind} has no {sensor} encoder"
-    if recipe.get("variants") and lacking(agent, ["store"]):
+    if recipe.get("variants") and missing_members(agent, ["store"]):
         return f"{kind} stores no features"
     if recipe.get("train_parts") == POLICY and encoders and not policy_parts(agent):
         return f"{kind} can only train encoders"
@@ -232,13 +232,13 @@ def _leave_out_views(config: TrainConfig, agent: nn.Module) -> None:
 
     They stay if no other stage can train the agent; :func:`check_fit` then rejects them.
     """
-    kinds = {name: located(_target_of(stage)) for name, stage in config.active_stages.items()}
+    kinds = {name: locate(_target_of(stage)) for name, stage in config.active_stages.items()}
     views = [name for name, kind in kinds.items() if is_objective(kind) and kind.needs == SEEING]
     others = [kind for name, kind in kinds.items() if name not in views]
     if all(_misfit(kind, agent) for kind in others):
         return
     for name in views:
-        absent = lacking(agent, SEEING)
+        absent = missing_members(agent, SEEING)
         cause = f"{type(agent).__name__} has no {', '.join(absent)}" if absent else ""
         if not cause:
             world = maker(config.active_stages[name].recipe["world"])()
@@ -312,7 +312,7 @@ def plan_stages(config: TrainConfig, agent: nn.Module, folder: Path) -> list[Sta
     stages = []
     for name, stage in config.active_stages.items():
         objective = ObjectiveSpec.of(stage.recipe)
-        misfit = _misfit(located(objective.target), agent)
+        misfit = _misfit(locate(objective.target), agent)
         if misfit:
             raise ValueError(
                 f"{type(agent).__name__} cannot be trained by the stage {name} of recipe="
@@ -332,7 +332,7 @@ def _identity(node: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:
 
 def _check_settings(node: Mapping[str, Any], agent: nn.Module) -> None:
     """Raise ValueError for settings of an agent that its constructor does not take."""
-    known = {*signature(located(node["_target_"])).parameters, *map(str, node)}
+    known = {*signature(locate(node["_target_"])).parameters, *map(str, node)}
     wrong = sorted(name for name in _settings_of(agent) if name not in known)
     if wrong:
         raise ValueError(

@@ -22,7 +22,7 @@ from mitigate.core import checkpoint, seeding
 from mitigate.core.memory import give_back
 from mitigate.core.precision import choose, computing, device_of, to_device
 from mitigate.core.progress import say
-from mitigate.core.signals import Ended, Held, held
+from mitigate.core.signals import Ended, SignalDelay, delay_signals
 from mitigate.training import optimization, states
 from mitigate.training.batches import Batches
 from mitigate.training.config import check_limits
@@ -138,12 +138,12 @@ class Trainer:
             with computing(self.precision, self.device):
                 self.objective.start()
             self.objective.train()
-            with held(self.ranks.count == 1) as ending:  # torchrun ends its ranks
+            with delay_signals(self.ranks.count == 1) as ending:  # torchrun ends its ranks
                 self._train(start, journal, ending)
                 self._finish(journal, ending)
         return self.objective
 
-    def _train(self, start: int, journal: Journal, ending: Held) -> None:
+    def _train(self, start: int, journal: Journal, ending: SignalDelay) -> None:
         """Train from step ``start``; the last checkpoint is saved as not finished."""
         batches = Batches(
             self.objective,
@@ -171,7 +171,7 @@ class Trainer:
                 ending.check()
 
     @contextmanager
-    def _kept(self, done: int, ending: Held) -> Iterator[None]:
+    def _kept(self, done: int, ending: SignalDelay) -> Iterator[None]:
         """Save ``done`` steps if a signal interrupts the block, which must not change weights.
 
         A second signal ends the run without saving.
@@ -186,7 +186,7 @@ class Trainer:
                     say(f"{self.name}: saved at step {self._saved} in {self.folder}")
             raise
 
-    def _finish(self, journal: Journal, ending: Held) -> None:
+    def _finish(self, journal: Journal, ending: SignalDelay) -> None:
         """Call ``finish`` of the objective, and save the weights as finished."""
         with self._kept(self.steps, ending):
             seeding.seed_everything(self.seed, "finish")
@@ -238,7 +238,7 @@ class Trainer:
             "trainer.precision=fp32, or check those episodes."
         )
 
-    def _evaluate_due(self, done: int, journal: Journal, ending: Held) -> None:
+    def _evaluate_due(self, done: int, journal: Journal, ending: SignalDelay) -> None:
         """Evaluate and log figures if due after ``done`` steps, unless a signal was received."""
         if ending.number is None and self._due(self.eval_every, done):
             self._evaluate(done, journal)

@@ -11,7 +11,7 @@ from torch import nn
 from mitigate.agents.agent import Agent, as_agent
 from mitigate.agents.fingerprint import contents
 from mitigate.agents.stepwise import StepwiseAgent
-from mitigate.core.contracts import lacking
+from mitigate.core.contracts import missing_members
 from mitigate.core.observation import Observation
 from mitigate.worlds.world import Corrupted, Expert, World, as_world, expert_of
 
@@ -80,7 +80,8 @@ def test_lacking_counts_defaults_as_absent():
     class Blind(StepwiseAgent):
         pass
 
-    assert lacking(Blind(), ("parts", "encoders", "labels", "see")) == ["encoders", "labels", "see"]
+    missing = missing_members(Blind(), ("parts", "encoders", "labels", "see"))
+    assert missing == ["encoders", "labels", "see"]
 
 
 def test_teacher_is_by_default_a_copy_without_adapters():

@@ -57,9 +57,9 @@ def test_an_entry_that_is_marked_not_partial_is_made():
 
 @pytest.mark.parametrize("target", [f"{__name__}.Cart", "no_such_module.Car"])
 def test_build_names_unimportable_targets(target):
-    for make in (lambda: build.build(OmegaConf.create({"_target_": target})), build.located):
+    for make in (lambda: build.build(OmegaConf.create({"_target_": target})), build.locate):
         with pytest.raises(ValueError, match=f"{target}.* in the current folder, or on PYTH"):
-            make(target) if make is build.located else make()
+            make(target) if make is build.locate else make()
 
 
 class Gained(torch.nn.Module):

@@ -29,7 +29,7 @@ def test_what_was_not_used_longest_goes_first_when_the_bytes_are_used_up():
     memory, log = Memory(24), []
     for key in "abcad":
         made(memory, key, log)
-    assert len(memory) == 3 and memory.held == 24
+    assert len(memory) == 3 and memory.bytes == 24
     for key in "acdb":
         made(memory, key, log)
     assert "".join(log) == "abcdb"
@@ -39,7 +39,7 @@ def test_a_result_larger_than_the_limit_is_kept_alone():
     memory, log = Memory(4), []
     made(memory, "a", log)
     made(memory, "b", log)
-    assert len(memory) == 1 and memory.held == 8
+    assert len(memory) == 1 and memory.bytes == 8
 
 
 @pytest.mark.skipif("glibc" not in platform.libc_ver(), reason="of glibc alone")

@@ -16,7 +16,7 @@ from threading import Timer
 import pytest
 
 from mitigate.core import workers
-from mitigate.core.signals import Ended, held
+from mitigate.core.signals import Ended, delay_signals
 from mitigate.core.workers import WorkersDied, results
 from tests.deaths import die_in_a_message
 
@@ -154,9 +154,9 @@ def stopped_by(how, folder):
 GROUP = """
 import os, signal
 from pathlib import Path
-from mitigate.core.signals import held
+from mitigate.core.signals import delay_signals
 from tests.core.test_workers import Lines, Squares, groups, results
-with held() as ending:
+with delay_signals() as ending:
     for item in results(Squares(Path({folder!r})), groups("wait", "wait"), 2, Lines()):
         if item and not ending.number:
             os.killpg(0, signal.SIGTERM)
@@ -207,7 +207,7 @@ def test_a_signal_ends_many_jobs_at_once_within_a_training(tmp_path):
     (tmp_path / "long").touch()
     began = time.monotonic()
     Timer(0.5, os.kill, (os.getpid(), signal.SIGTERM)).start()
-    with pytest.raises(Ended) as ended, held():
+    with pytest.raises(Ended) as ended, delay_signals():
         run(Squares(tmp_path), groups("tell", "tell"))
     assert ended.value.status == 143 and time.monotonic() - began < 10
 

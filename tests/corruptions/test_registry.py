@@ -15,6 +15,7 @@ import pytest
 from mitigate.core import conf
 from mitigate.corruptions import INSTRUCTION, NAMES, Record, Schedule, registry
 from mitigate.evaluation import evaluate
+from tools.pages.descriptions import DESCRIPTIONS
 
 ROOT = Path(__file__).parents[2]
 PAGE = (ROOT / "docs/bring-your-own.md").read_text(encoding="utf-8")
@@ -34,9 +35,9 @@ def test_the_suites_hold_what_the_records_say():
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_a_record_of_ours_says_all_that_the_pages_print(name):
+def test_record_is_described_in_the_docs(name):
     record = registry.record(name)
-    assert all((record.severity, record.fails, record.formula, record.sources, record.bars))
+    assert record.severity and all(DESCRIPTIONS[name])
     assert record.name == name and name in registry.table()
 
 

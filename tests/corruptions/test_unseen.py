@@ -11,7 +11,8 @@ from mitigate.core import build, conf
 from mitigate.corruptions import NAMES, Corruption, DepthSensor, Key, Record, Schedule, corrupt
 from mitigate.corruptions.record import TEST, VALIDATION
 from mitigate.corruptions.registry import record, table, unseen_names, version
-from tools.pages.curves import curves
+from tools.pages.curves import SLIPS, curves
+from tools.pages.descriptions import DESCRIPTIONS
 
 KEY = Key(3, "episode-7", 4)
 RGB, DEPTH = unseen_names("rgb"), unseen_names("depth")
@@ -42,9 +43,9 @@ def test_there_are_two_halves_of_each_modality_and_none_is_of_the_suite():
 
 
 @pytest.mark.parametrize("name", UNSEEN_NAMES)
-def test_a_record_says_all_that_the_pages_print(name):
+def test_record_is_described_in_the_docs(name):
     found = record(name)
-    assert all((found.severity, found.fails, found.formula, found.sources, found.source))
+    assert found.severity and found.source and all(DESCRIPTIONS[name])
     assert found.version and version(name) == {"version": found.version}
     (line,) = (line for line in table().splitlines() if line.split()[0] == name)
     assert line.endswith({VALIDATION: "unseen_val", TEST: "unseen_test"}[found.half])
@@ -142,7 +143,7 @@ def test_psnr_never_rises_and_ssim_by_no_more_than_stated(name, scene):
         signal = [min(200.0, scene.psnr(frame, x)) for x in seen]
         assert np.diff(signal).max() <= 1e-9 and signal[-1] < 26.0, signal
         likeness = [scene.ssim(frame, x) for x in seen]
-        assert np.diff(likeness).max() <= 10 * record(name).slip + 1e-6, likeness
+        assert np.diff(likeness).max() <= 10 * SLIPS.get(name, 0.0) + 1e-6, likeness
 
 
 @pytest.mark.parametrize("name", DEPTH)
@@ -151,7 +152,7 @@ def test_mean_absolute_depth_error_never_falls(name, scene):
     for episode in "ab":
         seen = [corrupt(frame, name, s, key=Key(0, episode)) for s in TENTHS]
         errors = [np.abs(x - frame).mean() for x in seen]
-        assert np.diff(errors).min() >= -10 * record(name).slip and errors[-1] > 0.03, errors
+        assert np.diff(errors).min() >= -10 * SLIPS.get(name, 0.0) and errors[-1] > 0.03, errors
 
 
 def test_on_a_finer_grid_strength_slips_by_no_more_than_stated(scene):
@@ -159,7 +160,7 @@ def test_on_a_finer_grid_strength_slips_by_no_more_than_stated(scene):
     grid = np.linspace(0.5, 0.7, 21)
     found = curves(rgb[None], depth[None, ..., None], grid, UNSEEN_NAMES)
     for name, curve in found.items():
-        assert curve.slip <= max(record(name).slip, 1e-6), (name, curve.slip)
+        assert curve.slip <= max(SLIPS.get(name, 0.0), 1e-6), (name, curve.slip)
 
 
 @pytest.mark.parametrize("name", DEPTH)

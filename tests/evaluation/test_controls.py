@@ -53,7 +53,7 @@ def walked(monkeypatch):
         ids.append(episode.episode_id)
         return {"success": 1, "spl": 1.0}
 
-    monkeypatch.setattr("mitigate.evaluation.episode.run_episode", walk)
+    monkeypatch.setattr("mitigate.evaluation.evaluator.run_episode", walk)
     return ids
 
 
@@ -86,10 +86,10 @@ def test_controls_warns_of_conflicting_rows_and_notices_lost_ones(
         file.unlink(missing_ok=True)
         return {"success": 1, "spl": 1.0}
 
-    monkeypatch.setattr("mitigate.evaluation.episode.run_episode", walk)
+    monkeypatch.setattr("mitigate.evaluation.evaluator.run_episode", walk)
     monkeypatch.setattr(rows, "append", lambda *_: None)
     assert called(monkeypatch, *given[:2], "episodes=2") == 2
-    assert "rows.jsonl was removed or replaced" in capsys.readouterr().err
+    assert "another program removed or replaced the file" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(

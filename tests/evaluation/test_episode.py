@@ -11,7 +11,7 @@ import torch
 from torch import nn
 
 from mitigate.agents.stepwise import StepwiseAgent
-from mitigate.core.errors import said
+from mitigate.core.errors import error_message
 from mitigate.core.observation import Observation
 from mitigate.core.workers import portable
 from mitigate.corruptions import CLEAN
@@ -147,13 +147,13 @@ def test_an_error_in_ones_own_code_names_its_line_and_the_episode():
     with pytest.raises(ValueError, match="matmul") as caught:
         broken()
     error, _ = portable(caught.value)  # as a worker process gives it back
-    assert said(pickle.loads(pickle.dumps(error))).endswith("broken())")
+    assert error_message(pickle.loads(pickle.dumps(error))).endswith("broken())")
 
 
 def test_a_mistake_that_this_project_tells_is_told_as_it_is():
     with pytest.raises(ValueError) as caught:
         run_episode(Answers(None), Cell(), EPISODE, CLEAN, 0)
-    assert "raised in" not in said(caught.value)
+    assert "raised in" not in error_message(caught.value)
 
 
 def leave():

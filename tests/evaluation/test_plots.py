@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from mitigate.evaluation import plots
+from mitigate.evaluation.curves import curves
 from mitigate.evaluation.report import sections
 from tests.evaluation.made_rows import cell, column
 
@@ -32,31 +33,14 @@ def seen(picture: np.ndarray, index: int) -> int:
 
 
 @pytest.mark.parametrize("falls", [(8, 8), (6, 3)])
-def test_columns_that_are_the_same_are_all_seen(tmp_path, falls):
+def test_severity_curves_show_coinciding_columns(tmp_path, falls):
     picture = cv2.imread(str(plots.severity_curves(grid(*[falls] * 3), tmp_path / "curves.png")))
-    found = [seen(picture, index) for index in range(3)]
     alone = cv2.imread(str(plots.severity_curves(grid(falls), tmp_path / "alone.png")))
-    assert min(found) > 0.6 * seen(alone, 0) > 100
+    assert min(seen(picture, index) for index in range(3)) > 0.1 * seen(alone, 0) > 10
 
 
-def wide(grid, monkeypatch) -> list[tuple[list[float], float]]:
-    """Severities and width of what is drawn wider than a line is."""
-    monkeypatch.setattr(plots, "_save", lambda figure, _: figure)
-    lines = plots.severity_curves(grid, "").axes[0].get_lines()
-    return [
-        (list(line.get_xdata()), line.get_linewidth())
-        for line in lines
-        if line.get_linewidth() > plots.WIDTH
-    ]
-
-
-def test_only_the_piece_that_coincides_is_wider(monkeypatch):
-    assert wide(grid((6, 3), (5, 2)), monkeypatch) == []
-    found = wide(grid((6, 3), (6, 1)), monkeypatch)
-    assert found == [([0.0, 0.3], plots.WIDTH + plots.RIM)]
-
-
-def test_each_of_three_is_wider_than_what_lies_on_it(monkeypatch):
-    found = wide(grid((6, 3), (6, 3), (6, 3)), monkeypatch)
-    widths = [width for _, width in found]
-    assert widths == [plots.WIDTH + k * plots.RIM for k in (2, 2, 1, 1)]
+def test_curve_points_share_seeds_and_episodes():
+    rows = column(8, {"missing_data": 6}, 0.3) + cell(3, 4, corruption="missing_data", severity=0.6)
+    (curve,) = curves(sections(rows)[0].grid, "missing_data")
+    assert curve.count == 4 and curve.severities == [0.0, 0.3, 0.6]
+    assert [estimate.value for estimate in curve.points] == [1.0, 1.0, 0.75]

@@ -14,6 +14,7 @@ from mitigate.corruptions import DEPTH, INSTRUCTION, NAMES, RGB
 from mitigate.corruptions.registry import unseen_names
 from mitigate.evaluation import rows, table
 from mitigate.evaluation.report import markdown, sections, write
+from mitigate.evaluation.sections import Difference
 from tests.evaluation.made_rows import cell, column, row
 
 ALL = dict.fromkeys(NAMES, 4)
@@ -81,11 +82,11 @@ def test_prs_differences_are_paired_and_against_base():
     made = column(5, ALL, **HARD) + column(8, ALL)
     (section,) = sections(made)
     assert (section.reference, section.columns[0]) == ("base", "base")
-    change = section.gained["da_per_episode", "RGB", "SR"].estimate
+    change = section.differences["da_per_episode"].retained["RGB", "SR"].estimate
     assert change.value == pytest.approx(4 / 5 - 4 / 8)
     same = column(8, ALL) + column(8, ALL, **HARD)
     (section,) = sections(same)
-    nothing = section.gained["da_per_episode", "Depth", "SPL"].estimate
+    nothing = section.differences["da_per_episode"].retained["Depth", "SPL"].estimate
     assert (nothing.low, nothing.high) == (0.0, 0.0)
 
 
@@ -116,7 +117,7 @@ def test_clean_differences_are_paired_and_against_base():
     first, second = found["Clean SR against base"]
     assert first == "–" and second.strip("*").startswith("-30.0")
     (section,) = sections(column(8, ALL) + column(8, ALL, **HARD))
-    same = section.moved["da_per_episode"]
+    same = section.differences["da_per_episode"].clean
     assert (same.low, same.high) == (0, 0)
 
 
@@ -155,7 +156,7 @@ def test_an_unfinished_episode_costs_that_episode_only():
 def test_columns_with_other_episodes_are_compared_on_those_they_share():
     few = [r for r in column(8, ALL, **HARD) if int(r["episode_id"]) < 5]
     (section,) = sections(column(8, ALL) + few)
-    gained = section.gained["da_per_episode", "RGB", "SR"]
+    gained = section.differences["da_per_episode"].retained["RGB", "SR"]
     assert (gained.episodes, gained.estimate.value) == (5, 0.0)
     assert section.retained["base", "RGB", "SR"].episodes == 10
 
@@ -226,10 +227,10 @@ def test_columns_are_compared_over_the_seeds_that_both_have():
     base = column(8, ALL) + column(2, dict.fromkeys(NAMES, 1), seed=1)
     found = sections(base + column(6, ALL, **HARD))[0]
     alone = sections(column(8, ALL) + column(6, ALL, **HARD))[0]
-    assert found.moved["da_per_episode"].value == pytest.approx(-0.2)
-    assert found.gained == alone.gained and found.raised == alone.raised
+    assert found.differences["da_per_episode"].clean.value == pytest.approx(-0.2)
+    assert found.differences == alone.differences
     apart = sections(base + column(6, ALL, seed=7, **HARD))[0]
-    assert not (apart.moved or apart.raised or apart.gained)
+    assert apart.differences["da_per_episode"] == Difference(None, None, {})
     assert markdown([apart]).count("in common") == 1
 
 
@@ -427,7 +428,9 @@ def test_agents_of_another_list_of_episodes_stand_in_a_table_of_their_own():
     )
     made = sections(first + second)
     assert [part.columns for part in made] == [("base", "da_per_episode")] * 2
-    assert [part.moved["da_per_episode"].value for part in made] == pytest.approx([-0.3, 0.1])
+    assert [part.differences["da_per_episode"].clean.value for part in made] == pytest.approx(
+        [-0.3, 0.1]
+    )
     assert not any(part.gaps for part in made)
     text = markdown(made)
     assert "## val_unseen from 0, severity 0.6" in text

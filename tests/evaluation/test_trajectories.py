@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import cv2
-import numpy as np
 import pytest
 
 from mitigate.core.observation import DEPTH, POSE, RGB, Observation
@@ -83,13 +82,13 @@ def test_at_the_start_what_the_world_shows_is_seen(only, entry):
     assert found == entry and [p.shape for p in pictures] == [(16, 16, 3)] * 2 * bool(entry)
 
 
-def test_pictures_and_a_sheet_of_the_episodes_won_back(tmp_path):
+def test_write_pictures_draws_the_episodes_won_back(tmp_path):
     episodes = load_episodes("val_seen")[:3]
     ids = [episode.episode_id for episode in episodes]
     rows = cell("before", "flare", "100", ids) + cell("x", "flare", "111", ids)
     agents = {"before": Straight(1), "x": Straight(2)}
     written = write_pictures(agents, ApartmentsWorld(64), episodes, rows, tmp_path)
-    assert [p.name for p in written] == [f"{ids[1]}-flare.png", "sheet.png"]
+    assert [p.name for p in written] == [f"{ids[1]}-flare.png"]
 
 
 def test_one_agent_alone_gets_a_picture_too_and_clean_rows_get_none(tmp_path):
@@ -97,13 +96,4 @@ def test_one_agent_alone_gets_a_picture_too_and_clean_rows_get_none(tmp_path):
     rows = cell("x", "clean", "1", [episode.episode_id])
     assert write_pictures({"x": Straight(1)}, world, [episode], rows, tmp_path) == []
     rows += cell("x", "black_out", "1", [episode.episode_id])
-    assert len(write_pictures({"x": Straight(1)}, world, [episode], rows, tmp_path)) == 2
-
-
-def test_a_sheet_that_cannot_be_written_is_told(tmp_path):
-    (picture := tmp_path / "a.png").write_bytes(
-        cv2.imencode(".png", np.zeros((8, 8, 3), np.uint8))[1].tobytes()
-    )
-    (tmp_path / "sheet.png").mkdir()
-    with pytest.raises(OSError, match=r"sheet\.png"):
-        trajectories.contact_sheet([picture], tmp_path / "sheet.png")
+    assert len(write_pictures({"x": Straight(1)}, world, [episode], rows, tmp_path)) == 1

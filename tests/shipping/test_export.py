@@ -451,7 +451,7 @@ def test_the_folder_agent_of_a_run_is_answered_with_the_run(place, tmp_path):
 )
 @pytest.mark.parametrize("named", ["run", "run/agent"])
 def test_what_ships_as_it_is_needs_no_export(tmp_path, target, page, named):
-    assert (ROOT / page).is_file() and build.located(target)
+    assert (ROOT / page).is_file() and build.locate(target)
     (tmp_path / "run/agent").mkdir(parents=True)
     for config in ("run/config.yaml", "run/agent/config.yaml"):
         (tmp_path / config).write_text(yaml.safe_dump({"agent": {"_target_": target}}))

@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 import torch
 
-from mitigate.core.signals import Ended, held, unbroken
+from mitigate.core.signals import Ended, delay_signals, uninterrupted
 from mitigate.training import states
 from mitigate.training.objective import Objective
 from mitigate.training.ranks import Ranks
@@ -73,7 +73,7 @@ class Calibrated(Slow):
 
 def end_within_another_block():
     """As a signal does that comes while workers measure something for a training."""
-    with held():
+    with delay_signals():
         os.kill(os.getpid(), signal.SIGTERM)
         time.sleep(0.01)
     raise Ended(signal.SIGTERM)
@@ -184,22 +184,22 @@ def test_what_ends_an_evaluation_loses_no_step(tmp_path):
 
 
 def test_a_signal_in_an_inner_block_is_told_to_the_outer_one(tmp_path):
-    with held() as outer:
-        with unbroken():
+    with delay_signals() as outer:
+        with uninterrupted():
             os.kill(os.getpid(), signal.SIGTERM)
             time.sleep(0.01)
         assert outer.number == signal.SIGTERM and not outer.again  # and it goes on
-        with pytest.raises(Ended), held():
+        with pytest.raises(Ended), delay_signals():
             os.kill(os.getpid(), signal.SIGINT)
             time.sleep(1)
         assert outer.again
-    with pytest.raises(Ended), unbroken():
+    with pytest.raises(Ended), uninterrupted():
         os.kill(os.getpid(), signal.SIGTERM)
         time.sleep(0.01)
 
 
 def test_a_second_signal_ends_it_at_once(tmp_path):
-    with pytest.raises(Ended) as ended, held() as first:
+    with pytest.raises(Ended) as ended, delay_signals() as first:
         os.kill(os.getpid(), signal.SIGTERM)
         time.sleep(0.01)
         assert first.number == signal.SIGTERM

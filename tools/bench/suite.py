@@ -14,13 +14,13 @@ import numpy as np
 from mitigate.corruptions import NAMES, Key, corrupt
 from mitigate.corruptions.registry import record, unseen_names
 from tools.bench.peers import peers
+from tools.bench.targets import BARS
 from tools.bench.timing import fresh, steady
 from tools.pages.gallery import rendered_frame
 
 SEVERITY = 0.6  # as in the paper for R2R
 SEED = 7  # of the rendered apartment and of the keys
 SIZES = {"480x640": (1, 480, 640), "224x224": (1, 224, 224), "12x64x64": (12, 64, 64)}
-NONE = (None, None)
 PANORAMA, PANORAMA_BAR = (12, 224, 224), 4.2  # the worst pair: low_light_noise, then multipath
 EPISODES = 4  # the steady state is the mean over these episodes
 TINY = 4  # pixels of a side: the time of such a call does not depend on the frame
@@ -37,7 +37,7 @@ class Cost:
         call: The steady state of a frame of 4 x 4 pixels.
         copy: A plain copy of the frame.
         peers: Other libraries, by name.
-        bar: The target in its record; None if it has none.
+        bar: The target (``targets.py``); None if it has none.
     """
 
     steady: float
@@ -87,7 +87,7 @@ def measure(seconds: float) -> dict[str, dict[str, Cost]]:
                 rgb if record(name).modality == "rgb" else depth,
                 seconds,
                 others[name],
-                (record(name).bars or NONE)[column] if column < 2 else None,
+                BARS[name][column] if column < 2 else None,
             )
             for name in names
         }

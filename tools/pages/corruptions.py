@@ -9,7 +9,8 @@ from mitigate.core.markdown import markdown_table
 from mitigate.corruptions import eld, keying
 from mitigate.corruptions.registry import record
 from mitigate.corruptions.suite import DEPTH, NAMES, RGB, SUITE_VERSION
-from tools.pages.curves import EPISODES, GRID, Curve
+from tools.pages.curves import EPISODES, GRID, SLIPS, Curve
+from tools.pages.descriptions import DESCRIPTIONS
 
 HEAD = """# The corruption suite
 
@@ -145,8 +146,8 @@ def page(found: dict[str, Curve], seed: int) -> str:
         steps=len(GRID),
         table=_strengths(found),
         suites=suites(),
-        blur_most=record("motion_blur").slip,
-        step_most=record("quantization").slip,
+        blur_most=SLIPS["motion_blur"],
+        step_most=SLIPS["quantization"],
         blur_slip=f"{found['motion_blur'].slip:.1g}",
         step_slip=f"{found['quantization'].slip:.1g}",
     )
@@ -170,7 +171,7 @@ def formulas(names: tuple[str, ...] = NAMES) -> str:
 def _cells(name: str) -> tuple[str, ...]:
     entry = record(name)
     scopes = (scope if scope != "-" else "" for scope in (entry.episode, entry.frame))
-    return (f"`{name}`", entry.fails, entry.formula, entry.sources, *scopes)
+    return (f"`{name}`", *DESCRIPTIONS[name], *scopes)
 
 
 def _strengths(found: dict[str, Curve]) -> str:

@@ -17,6 +17,19 @@ GRID = np.linspace(0.0, 1.0, 101)
 EPISODES = 3  # random draws that a curve averages over
 OFF = 0.05  # of the depth: what counts as changed (ours)
 SSIM_WINDOW, SSIM_SIGMA = 11, 1.5  # pixels (Wang et al. 2004)
+# Largest decrease of an effect from one severity of the grid to the next (SSIM, or metres of depth)
+SLIPS = {
+    "motion_blur": 0.03,
+    "quantization": 0.005,
+    "white_balance": 0.001,
+    "hue_shift": 0.001,
+    "refraction": 0.01,
+    "scratches": 0.001,
+    "rolling_shutter": 0.01,
+    "impulse_noise": 0.002,
+    "lost_slices": 0.01,
+    "misalignment": 0.01,
+}
 SSIM_C1, SSIM_C2 = (0.01 * 255) ** 2, (0.03 * 255) ** 2  # the same
 
 

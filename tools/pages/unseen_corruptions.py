@@ -12,7 +12,7 @@ from mitigate.corruptions import registry
 from mitigate.corruptions.record import TEST, VALIDATION
 from mitigate.corruptions.suite import DEPTH, RGB
 from tools.pages.corruptions import formulas
-from tools.pages.curves import EPISODES, OFF, Curve
+from tools.pages.curves import EPISODES, OFF, SLIPS, Curve
 
 SEVERITY = 0.6  # at which the page compares them with the suite
 PICTURES = {VALIDATION: "pictures/unseen-validation.jpg", TEST: "pictures/unseen-test.jpg"}
@@ -129,7 +129,7 @@ def page(
         ranges=_ranges(suite, found, int(np.abs(grid - SEVERITY).argmin())),
         strengths=_strengths({**suite, **found}, int(np.abs(grid - SEVERITY).argmin())),
         hfov=HFOV_DEGREES,
-        slip=registry.record("rolling_shutter").slip,
+        slip=SLIPS["rolling_shutter"],
     )
 
 

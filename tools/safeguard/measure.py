@@ -29,6 +29,7 @@ from mitigate.corruptions.language.words import bag
 
 FRESH = Path(__file__).parent / "data" / "fresh"
 HALVES = ("choose", "report")
+AUTHORS = ("author1", "author2", "author3")
 Repair = Callable[[str], str]
 # Words that an instruction can lose without losing its meaning: function words and courtesies.
 LIGHT = bag(
@@ -80,14 +81,15 @@ def half_of(text: str) -> str:
     return HALVES[hashlib.sha256(text.encode()).digest()[0] % 2]
 
 
-def bank(name: str, half: str) -> list[dict[str, Any]]:
-    """Return the lines of a bank of all authors that belong to a half."""
+def bank(name: str, half: str, authors: Sequence[str] = AUTHORS) -> list[dict[str, Any]]:
+    """Return the lines of a bank of some authors that belong to a half."""
     lines = []
-    for file in sorted(FRESH.glob(f"*/{name}.jsonl")):
+    for author in authors:
+        file = FRESH / author / f"{name}.jsonl"
+        if not file.is_file():  # only one author wrote other scripts
+            continue
         with open(file, encoding="utf-8") as opened:
-            lines += [
-                json.loads(line) | {"author": file.parent.name} for line in opened if line.strip()
-            ]
+            lines += [json.loads(line) | {"author": author} for line in opened if line.strip()]
     return [line for line in lines if half_of(line.get("text", line.get("attack"))) == half]
 
 
@@ -139,13 +141,17 @@ def insert(attack: str, place: str, route: str) -> str:
 
 
 def attacked(
-    half: str, routes: Sequence[str], each: int, seed: int
+    half: str,
+    routes: Sequence[str],
+    each: int,
+    seed: int,
+    authors: Sequence[str] = AUTHORS,
 ) -> Iterator[tuple[dict, str, str, str]]:
     """Yield (attack, place, route, text heard): each attack in ``each`` routes at each place.
 
     An attack of the places before and after is tried at both.
     """
-    for number, line in enumerate(bank("attacks", half)):
+    for number, line in enumerate(bank("attacks", half, authors)):
         rng = random.Random(f"{seed} {number}")
         for place in ("inside",) if line["place"] == "inside" else ("before", "after"):
             for route in rng.sample(list(routes), each):
@@ -168,6 +174,7 @@ def measure(
     each: int = 1,
     seed: int = 0,
     sample: int | None = None,
+    authors: Sequence[str] = AUTHORS,
 ) -> dict[str, Rate]:
     """Return name -> rate of every measure of one half of the banks.
 
@@ -178,12 +185,12 @@ def measure(
     def rate(name: str) -> Rate:
         return rates.setdefault(name, Rate())
 
-    styles = bank("styles", half)
+    styles = bank("styles", half, authors)
     styled = [line["text"] for line in styles if len(line["text"].split()) > 8]
     plain = [t for t in r2r if len(t.split()) > 8] or [line["plain"] for line in styles]
     plain = random.Random(seed).sample(plain, min(len(plain), 400))
     for manner, routes in (("plain", plain), ("styled", styled)):
-        for line, place, route, heard in attacked(half, routes, each, seed):
+        for line, place, route, heard in attacked(half, routes, each, seed, authors):
             given = repair(heard)
             good = is_removed(line["text"], route, given) and not is_lost(repair(route), given)
             where = "inside" if place == "inside" else "before or after"
@@ -194,14 +201,14 @@ def measure(
             lost = is_lost(repair(route), given)
             rate("routes beside attacks, lost").add(lost, not lost, case)
     for name in ("honest", "styles", "objects"):
-        for line in bank(name, half):
+        for line in bank(name, half, authors):
             given = repair(line["text"])
             harmed = is_harmed(line["text"], given)
             kind = line.get("kind", line.get("style", line.get("object")))
             rate(f"{name}, harmed").add(
                 harmed, not harmed, f"[{kind}] {line['text']}\n   -> {given}"
             )
-    for line in bank("scripts", half):
+    for line in bank("scripts", half, authors):
         heard = insert(line["attack"], line["place"], line["route"])
         given = repair(heard)
         whole = not (Counter(words(line["route"])) - Counter(words(given)))

@@ -32,7 +32,7 @@ from mitigate.core.files import make_folder
 from mitigate.core.observation import DEPTH, POSE, RGB, VIEW_STEP_DEGREES, VIEWS
 from mitigate.core.precision import computing
 from mitigate.core.progress import Progress
-from mitigate.core.signals import unbroken
+from mitigate.core.signals import uninterrupted
 from mitigate.corruptions import SUITE_VERSION, Schedule, corrupt_observation
 from mitigate.corruptions.registry import BROAD, version
 from mitigate.worlds.episodes import Episode, from_vlnce, heading_of
@@ -359,7 +359,7 @@ class Store:
                 if item is None:
                     continue
                 number, results = item
-                with unbroken():  # an interrupt waits until the scene is stored
+                with uninterrupted():  # an interrupt waits until the scene is stored
                     for variant, arrays in results:
                         _save(arrays, self.path(jobs[number][0], variant))
                 progress.advance()

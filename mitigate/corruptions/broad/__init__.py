@@ -49,11 +49,6 @@ RECORDS = (
         version="2",
         label="Broad RGB",
         severity="strongest primitive",
-        fails="any failure; used in training only",
-        formula="one to three of the primitives in docs/broad-augmentation.md",
-        sources=(
-            "PRIME (Modas et al. 2022), AugMix (Hendrycks et al. 2020); strengths are heuristic"
-        ),
         source="PRIME, AugMix",
         episode=STATE,
         frame="noise, views, or maps",
@@ -65,9 +60,6 @@ RECORDS = (
         version="1",
         label="Broad depth",
         severity="strongest primitive",
-        fails="any failure; used in training only",
-        formula="one to three of the primitives in docs/broad-augmentation.md",
-        sources="after PRIME (Modas et al. 2022); primitives and strengths are heuristic",
         source="after PRIME",
         episode=STATE,
         frame="noise, views, or maps",

@@ -78,12 +78,6 @@ RECORDS = (
         scale_error,
         half=VALIDATION,
         severity="all depth off by 0.25 s to 0.4 s",
-        fails="the baseline or focal length is miscalibrated",
-        formula=f"z (1 +- s k), k ~ U({SCALE_LEAST:g}, {SCALE_MOST:g})",
-        sources=(
-            "scale errors of depth cameras (Khoshelham & Elberink 2012) and, larger, of monocular "
-            "depth; the range is heuristic"
-        ),
         source="Khoshelham & Elberink 2012",
         episode="sign and size",
     ),
@@ -91,12 +85,6 @@ RECORDS = (
         wiggling,
         half=VALIDATION,
         severity="0.3 s metres too near and too far by turns",
-        fails="the harmonics of a time-of-flight camera's light",
-        formula=(
-            f"z + {WIGGLE:g} s sin(2 pi (z/P + p)), P = c/(8 f) = {WIGGLE_PERIOD:.2f} metres, f = "
-            f"{WIGGLE_HERTZ / 1e6:g} MHz"
-        ),
-        sources="wiggling error (Lindner & Kolb 2006; Foix 2011); the amplitude is heuristic",
         source="Lindner & Kolb 2006",
         episode="phase p",
     ),
@@ -104,16 +92,7 @@ RECORDS = (
         misalignment,
         half=TEST,
         severity="moved by 0.12 s of the width against RGB",
-        fails="the mount of the depth camera has moved",
-        formula=(
-            f"z at p + d, d = +-{ASIDE:g} s W (1, U(-{ASIDE_DOWN:g}, {ASIDE_DOWN:g})); an invalid "
-            "one there changes nothing"
-        ),
-        sources=(
-            "registration errors of RGB-D cameras (Khoshelham & Elberink 2012); d is heuristic"
-        ),
         source="Khoshelham & Elberink 2012",
         episode="direction",
-        slip=0.01,
     ),
 )

@@ -143,30 +143,13 @@ RECORDS = (
         compression,
         half=VALIDATION,
         severity="patterns of amplitude under 0.4 s are lost",
-        fails="too little bandwidth for the camera's stream",
-        formula=(
-            "DCT of square blocks in grey, red - blue and green against both; coefficients under "
-            f"{DEAD_ZONE:g} s 255 b/2 (colours: {CHROMA:g} times that) become 0, except the mean; "
-            f"b of {', '.join(map(str, BLOCKS))} px, the nearest to side/{BLOCKS_ACROSS}"
-        ),
-        sources=(
-            "JPEG of ImageNet-C, H.265 of 3DCC; dead zone and block sides of H.264 and H.265; the "
-            "width of the zone is heuristic"
-        ),
         source="ImageNet-C, H.264, H.265",
     ),
     _record(
         lost_slices,
         half=TEST,
         severity="0.8 s of the slices are lost",
-        fails="packets of the camera's stream are lost",
-        formula=(
-            f"of {SLICES} slices each view loses each with probability {LOST:g} s, from column "
-            f"U(0, 1) W to the end: grey {NOTHING}"
-        ),
-        sources="H.264 over IP (Wenger 2003), bit error of 3DCC; shares are heuristic",
         source="Wenger 2003",
         frame="which, from where",
-        slip=0.01,
     ),
 )

@@ -127,28 +127,12 @@ RECORDS = (
         fattening,
         half=VALIDATION,
         severity="near surfaces grow by 0.08 s side",
-        fails="the window of a stereo matcher crosses edges",
-        formula=(
-            f"the least depth within r = {FATTENING:g} s side (a square), linear between whole "
-            "pixels"
-        ),
-        sources=(
-            "edge fattening of stereo (Kanade & Okutomi 1994; Scharstein 2002); r is heuristic"
-        ),
         source="Kanade & Okutomi 1994",
     ),
     _record(
         edge_shadow,
         half=VALIDATION,
         severity="the projector is 0.5 s metres aside",
-        fails="objects block the projector's light",
-        formula=(
-            f"no reading where x + f b/z does not exceed that of all before it in the row; b = "
-            f"{BASELINE:g} s metres, f = W/(2 tan({HFOV_DEGREES:g}/2 degrees))"
-        ),
-        sources=(
-            "shadows of structured light (Khoshelham & Elberink 2012: b = 0.075); b is heuristic"
-        ),
         source="Khoshelham & Elberink 2012",
         episode="side",
     ),
@@ -156,12 +140,6 @@ RECORDS = (
         flying_pixels,
         half=TEST,
         severity="the share s of the pixels beside edges",
-        fails="a pixel sees two surfaces at once",
-        formula=(
-            f"the share s of the pixels reads near + U(0, 1) (far - near), of the nearest and the "
-            f"farthest within {FOOTPRINT:g} side (a square)"
-        ),
-        sources="flying pixels of time of flight (Foix 2011; Reynolds et al., CVPR 2011)",
         source="Reynolds et al. 2011",
         frame="which, and their depth",
     ),

@@ -115,35 +115,13 @@ RECORDS = (
         white_balance,
         half=VALIDATION,
         severity="2 s stops between red and blue",
-        fails="the camera corrects for the wrong light",
-        formula=(
-            f"255 min(1, (x/255) 2^(s g/{GAMMA:g})); stops g of red, green, blue = {0.5 * CAST:g} "
-            f"(cos a, 0, -cos a) + {0.5 * CAST * TINT:g} (-sin a, sin a, -sin a), a ~ U(0, 360) "
-            "degrees"
-        ),
-        sources=(
-            "Afifi & Brown, ICCV 2019: errors of white balance from 2850 to 7500 K; the range is "
-            "heuristic"
-        ),
         source="Afifi & Brown 2019",
         episode="direction",
-        slip=0.001,
     ),
     _record(
         haze,
         half=VALIDATION,
         severity=f"optical depth {HAZE_DEPTH:g} s",
-        fails="smoke, steam or dust in the room",
-        formula=(
-            f"x t + A (1 - t), t = exp(-{HAZE_DEPTH:g} s d), A = {HAZE_COLOUR}; d = 1 + "
-            f"{HAZE_UNEVEN:g} F in [{HAZE_THIN:g}, {HAZE_THICK:g}], F the sum of random fields of "
-            f"correlation {', '.join(f'{c:g}' for c, _ in HAZE_OCTAVES)} side and weight "
-            f"{', '.join(f'{w:g}' for _, w in HAZE_OCTAVES)}, sd 1"
-        ),
-        sources=(
-            "Koschmieder's law, as 3DCC; fractal as ImageNet-C's fog; without depth, since RGB is "
-            "corrupted alone; constants are heuristic"
-        ),
         source="3DCC, ImageNet-C",
         episode="field, place by view",
     ),
@@ -151,12 +129,6 @@ RECORDS = (
         overexposure,
         half=TEST,
         severity="2 s stops too much light",
-        fails="the exposure is set for a dark place",
-        formula=(
-            f"min(255, x 2^({STOPS:g} s u/{GAMMA:g})), u ~ U({1 - STOPS_SPREAD:g}, "
-            f"{1 + STOPS_SPREAD:g})"
-        ),
-        sources="brightness of ImageNet-C; stops of light instead of grey levels are heuristic",
         source="ImageNet-C, 3DCC",
         episode="stops, +- 20 %",
     ),
@@ -164,13 +136,7 @@ RECORDS = (
         hue_shift,
         half=TEST,
         severity="hues turned by 180 s degrees",
-        fails="wrong Bayer order or colour matrix",
-        formula=(
-            f"colours turned about the grey axis by +-{HUE_DEGREES:g} s degrees, clipped to 0-255"
-        ),
-        sources="a wrong order of channels moves hues by 120 degrees; the range is heuristic",
         source="after ImageNet-C's saturate",
         episode="sense",
-        slip=0.001,
     ),
 )

@@ -124,12 +124,6 @@ RECORDS = (
         ghosting,
         half=VALIDATION,
         severity="a second picture of opacity 0.5 s",
-        fails="a pane or dome in front of the lens reflects",
-        formula=(
-            f"(1 - a) x + a x', a = {GHOST:g} s; x' moved by +-U({GHOST_NEAR:g}, {GHOST_FAR:g}) W "
-            f"and U(-{GHOST_DOWN:g}, {GHOST_DOWN:g}) H"
-        ),
-        sources="double reflection of glass (Shih et al., CVPR 2015); constants are heuristic",
         source="Shih et al. 2015",
         episode="displacement",
     ),
@@ -137,29 +131,14 @@ RECORDS = (
         refraction,
         half=TEST,
         severity="displaced by 0.045 s side, rms",
-        fails="water or grease on the lens bends the light",
-        formula=(
-            f"x at p + {BEND:g} s side grad h(p); h a random field of correlation {DROPS:g} side, "
-            "its slope of rms 1; bilinear"
-        ),
-        sources="caustic refraction of ImageNet-C-bar, elastic transform of ImageNet-C",
         source="ImageNet-C-bar",
         episode="surface",
-        slip=0.01,
     ),
     _record(
         scratches,
         half=TEST,
         severity=f"the first {SCRATCHES} s scratches",
-        fails="the lens is scratched or cracked",
-        formula=(
-            f"{SCRATCHES} s lines of length U({SCRATCH_LONG[0]:g}, {SCRATCH_LONG[1]:g}) side and "
-            f"colour {SCRATCH_COLOUR}; opacity {SCRATCH_OPACITY:g} exp(-(d/{SCRATCH_CORE:g})^2/2) "
-            f"and {GLOW_OPACITY:g} exp(-(d/{SCRATCH_GLOW:g})^2/2), d over the side"
-        ),
-        sources="camera crack of RobustNav, frost of ImageNet-C; constants are heuristic",
         source="RobustNav",
         episode="where they are",
-        slip=0.001,
     ),
 )

@@ -113,15 +113,6 @@ RECORDS = (
         ripple,
         half=VALIDATION,
         severity="waves of sd 0.06 s z^2 metres",
-        fails="neighbouring errors of a stereo camera are correlated",
-        formula=(
-            f"z + {RIPPLE:g} s z^2 F; F a random field of correlation {RIPPLE_CORRELATION:g} side, "
-            "sd 1"
-        ),
-        sources=(
-            "stereo errors grow with z^2 and are correlated over the matching window (Keselman et "
-            "al. 2017); constants are heuristic"
-        ),
         source="Keselman et al. 2017",
         episode="field",
         frame="offset, by view",
@@ -130,21 +121,12 @@ RECORDS = (
         range_limit,
         half=TEST,
         severity="no reading beyond z_max 0.1^s",
-        fails="too little signal from dark surfaces or in sunlight",
-        formula=f"no reading where z > z_max {RANGE_LEFT:g}^s",
-        sources="range of active cameras in sunlight (Fankhauser et al. 2015); 0.1 is heuristic",
         source="Fankhauser et al. 2015",
     ),
     _record(
         mismatches,
         half=TEST,
         severity="0.3 s of the readings are anywhere",
-        fails="a stereo matcher confuses two places",
-        formula=(
-            f"U(0, 1) z_max in the share {WRONG:g} s of square cells of {SPECKLE:g} side, at least "
-            "1 px"
-        ),
-        sources="bad pixels and speckles of stereo (Scharstein 2002, Hirschmueller 2008)",
         source="Scharstein 2002",
         frame="which, and their depth",
     ),
@@ -152,16 +134,6 @@ RECORDS = (
         glossy_floor,
         half=TEST,
         severity="the share s of the floor",
-        fails="a polished floor reflects the room",
-        formula=(
-            f"min({UPSIDE_DOWN:g} z, the largest z of the column) in the top s of a random field, "
-            f"correlation {GLOSS_CORRELATION:g} side, where z (y - H/2) is at least {FLOOR:g} of "
-            "its largest in the view: on the floor before a level camera"
-        ),
-        sources=(
-            "mirror errors of RGB-D cameras (Mirror3D, CVPR 2021); the geometry of a ceiling twice "
-            "as high as the camera is heuristic"
-        ),
         source="Mirror3D 2021",
         episode="field, place by view",
     ),

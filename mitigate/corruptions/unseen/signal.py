@@ -81,31 +81,14 @@ RECORDS = (
         rolling_shutter,
         half=VALIDATION,
         severity="rows moved by 0.05 s of the width",
-        fails="the camera shakes while its rows are read",
-        formula=(
-            f"row y moved by {WOBBLE:g} s W sin(2 pi (f y/H + p)), f ~ U({WOBBLE_WAVES[0]:g}, "
-            f"{WOBBLE_WAVES[1]:g}), p ~ U(0, 1); bilinear, edges replicated"
-        ),
-        sources=(
-            "rolling-shutter geometry (Liang et al., TIP 2008); amplitude and f are heuristic"
-        ),
         source="Liang et al. 2008",
         episode="frequency f",
         frame="phase p",
-        slip=0.01,
     ),
     _record(
         flicker_bands,
         half=VALIDATION,
         severity="bands of 1 +- 0.8 s of the light",
-        fails="lamps flicker faster than the rows are read",
-        formula=(
-            f"min(255, x (1 + {FLICKER:g} s cos(2 pi (f y/H + p)))), f ~ U({BANDS[0]:g}, "
-            f"{BANDS[1]:g}), p ~ U(0, 1) for each view"
-        ),
-        sources=(
-            "lamps on mains under a rolling shutter (Sheinin et al., CVPR 2017); f is heuristic"
-        ),
         source="Sheinin et al. 2017",
         episode="frequency f",
         frame="phase p, by view",
@@ -114,11 +97,7 @@ RECORDS = (
         impulse_noise,
         half=TEST,
         severity="0.3 s of the pixels black or white",
-        fails="bit errors between sensor and computer",
-        formula=f"each colour 0 or 255 in {IMPULSES:g} s of the pixels",
-        sources="impulse noise of ImageNet-C (0.03-0.27)",
         source="ImageNet-C",
         frame="which pixels",
-        slip=0.002,
     ),
 )

@@ -144,7 +144,7 @@ def check(paths: Sequence[Path | str] = ()) -> list[str]:
             rows = rows_of(entry)
             problems, omitted = differences(entry, rows), left_out(entry, rows)
         except (OSError, ValueError) as error:
-            problems = [conf.said(error)]
+            problems = [conf.error_message(error)]
         print(f"{name}, {verdict if problems else 'as its rows say'}", flush=True)
         if omitted:
             print(f"{name}, WARNING: its rows also hold {omitted:.1000}", flush=True)

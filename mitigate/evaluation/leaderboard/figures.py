@@ -11,12 +11,11 @@ from typing import Any
 from mitigate.core.names import unknown
 from mitigate.corruptions.registry import UNSEEN
 from mitigate.evaluation import bootstrap
-from mitigate.evaluation.bootstrap import Estimate
 from mitigate.evaluation.grid import FRAMES, METRICS, SUITE, label_columns
 from mitigate.evaluation.leaderboard.entry import LeaderboardEntry
 from mitigate.evaluation.page.model import CLEAN, Numbers, numbers
 from mitigate.evaluation.rows import Row, identity
-from mitigate.evaluation.sections import Section, mean_sr, sections
+from mitigate.evaluation.sections import Section, sections
 
 
 def entry_of(
@@ -118,7 +117,7 @@ def _chosen(rows: Iterable[Row], name: str, severity: float, split: str | None) 
 
 def _check_whole(name: str, rows: Sequence[Row], part: Section) -> None:
     """Raise ValueError for a training seed that lacks rows of a table."""
-    conditions = [CLEAN, *(condition for block in part.blocks.values() for condition in block)]
+    conditions = [CLEAN, *part.corruptions]
     cells = Counter((row["seed"], row["corruption"]) for row in rows)
     episodes = len(part.grid.episodes)
     for seed in sorted({row["seed"] for row in rows}):
@@ -139,14 +138,14 @@ def _figures(parts: Sequence[Section]) -> dict[str, dict[str, Numbers]]:
     scores = figures["scores"]
     for part in parts:
         (column,) = part.columns
-        names = [CLEAN, *(name for block in part.blocks.values() for name in block)]
+        names = [CLEAN, *part.corruptions]
         for metric, key in METRICS.items():
             scores.setdefault(f"Clean {metric}", numbers(part.clean.get((column, metric))))
             cells = [part.grid.cell(column, name, part.severity, key) for name in names]
             for name, estimate in zip(names, bootstrap.means(cells, shares=True), strict=True):
                 figures[metric].setdefault(name, numbers(estimate))
         if part.kind == SUITE and column in part.corrupted:
-            scores["Mean SR"] = numbers(_mean_sr(part, column))
+            scores["Mean SR"] = _mean_sr(part, column)
         for (_, block, metric), retained in part.retained.items():
             halves = {UNSEEN[name].half for name in retained.corruptions if name in UNSEEN}
             half = f", {halves.pop()}" if len(halves) == 1 and "," not in block else ""
@@ -154,15 +153,13 @@ def _figures(parts: Sequence[Section]) -> dict[str, dict[str, Numbers]]:
     return figures
 
 
-def _mean_sr(part: Section, column: str) -> Estimate:
+def _mean_sr(part: Section, column: str) -> Numbers:
     """Return the mean SR over the measured corruptions of frames in the suite.
 
     Instructions are left out, so that entries with and without corrupted instructions can be
     compared. If no frames were corrupted, the mean is over all measured corruptions.
     """
-    measured = {name for names in part.blocks.values() for name in names}
-    if measured & FRAMES and measured - FRAMES:
-        frames = sorted(measured & FRAMES)
-        if retention := part.grid.retention([column], frames, part.severity, METRICS["SR"]):
-            return mean_sr(retention).estimate
-    return part.corrupted[column].estimate
+    frames = sorted(FRAMES.intersection(part.corruptions))
+    mixed = 0 < len(frames) < len(part.corruptions)
+    mean = part.mean_sr(column, frames) if mixed else None
+    return numbers((mean or part.corrupted[column]).estimate)

@@ -17,7 +17,7 @@ from mitigate.core.progress import Progress
 
 OUT = Path("runs/report.html")
 ROWS = "docs/results"
-MOST_WALKS = 200  # largest number per page (heuristic): each has two pictures of about 40 KB
+MOST_WALKS = 200  # largest number per page (heuristic): each has a picture of about 100 KB
 
 
 def run(
@@ -165,7 +165,7 @@ def run_command(name: str, work: Callable[[], Path | None]) -> int:
     try:
         path = work()
     except (OSError, ValueError) as error:
-        print(f"{name}: {conf.said(error)}", file=sys.stderr)
+        print(f"{name}: {conf.error_message(error)}", file=sys.stderr)
         return 2
     except (HydraException, OmegaConfBaseException) as error:
         print(f"{name}: {conf.explain(error, 'evaluate')}", file=sys.stderr)

@@ -18,7 +18,7 @@ from typing import Any
 from mitigate.core.files import atomic_text
 from mitigate.core.names import counted
 from mitigate.corruptions import SUITE_VERSION
-from mitigate.evaluation.page.model import MOST_EPISODES, Packed, curves, section_data
+from mitigate.evaluation.page.model import MOST_EPISODES, Packed, curve_figures, section_data
 from mitigate.evaluation.rows import Row
 from mitigate.evaluation.sections import sections
 
@@ -116,7 +116,7 @@ def report(
         "title": title,
         "about": f"{len(rows):,} rows: {_listed({row['name'] for row in rows})}.",
         "sections": tables,
-        "curves": curves(parts),
+        "curves": curve_figures(parts),
         "grids": packed.grids,
         "walks": list(walks),
         "notes": notes,

@@ -17,9 +17,10 @@ import numpy as np
 
 from mitigate.evaluation import bootstrap
 from mitigate.evaluation.bootstrap import LEVEL, NO_WIDTH, RESAMPLES, ROUNDING, Estimate
+from mitigate.evaluation.curves import Curve, curves
 from mitigate.evaluation.grid import METRICS, Grid
 from mitigate.evaluation.rows import Row
-from mitigate.evaluation.sections import Retained, Section, compare, label
+from mitigate.evaluation.sections import Retained, Section, label
 
 BASELINES = 12  # number of first columns that others can be compared with (heuristic)
 DIGITS = 6
@@ -38,8 +39,8 @@ def section_data(section: Section) -> dict[str, Any]:
     """
     grid = section.grid
     values = [_values(section, column) for column in section.columns]
-    names = [CLEAN, *(name for held in section.blocks.values() for name in held)]
-    blocks = ["", *(block for block, held in section.blocks.items() for _ in held)]
+    names = [CLEAN, *section.corruptions]
+    blocks = ["", *(block for block, members in section.blocks.items() for _ in members)]
     pairs = _pairs(section, names)
     return {
         "title": _title(section),
@@ -197,12 +198,12 @@ def _pair(section: Section, first: str, second: str, names: Sequence[str]) -> di
         for metric, key in METRICS.items()
     }
     cells = {m: [*map(numbers, bootstrap.means(change))] for m, change in changes.items()}
-    compared = compare(section, first, second)
+    compared = section.compare(first, second)
     measures = [cells["SR"][0], cells["SPL"][0]]
     if section.corrupted:
-        measures.append(_marked(section, compared.raised, *section.blocks))
+        measures.append(_marked(section, compared.corrupted, *section.blocks))
     for part, metric in _prs_places(section):
-        measures.append(_marked(section, compared.gained.get((part, metric)), part))
+        measures.append(_marked(section, compared.retained.get((part, metric)), part))
     return {"measures": measures, "SR": cells["SR"], "SPL": cells["SPL"]}
 
 
@@ -235,68 +236,30 @@ def _notes(section: Section, values: list[list[Numbers]], pairs: Mapping[str, An
     return notes
 
 
-CURVE_RESAMPLES = 2000  # resamples of a point's interval (heuristic)
-
-
-def curves(parts: Sequence[Section]) -> list[dict[str, Any]]:
+def curve_figures(parts: Sequence[Section]) -> list[dict[str, Any]]:
     """Return a figure for each grid of ``parts`` with a corruption at two or more severities.
 
-    ``panels[p]["lines"]`` have "column", "count" and "points" [severity, SR, low, high]. All points
-    of a line, including the clean one at 0, are over the same seeds and the same ``count``
-    episodes.
+    ``panels[p]["lines"]`` have "column", "count" and "points" [severity, SR, low, high].
     """
     figures: list[dict[str, Any]] = []
-    done: list[Grid] = []
-    for section in parts:
-        if any(section.grid is grid for grid in done):
-            continue
-        done.append(section.grid)
-        panels = _panels(section.grid)
+    for grid, kind in {id(part.grid): (part.grid, part.kind) for part in parts}.values():
+        panels: list[dict[str, Any]] = [
+            {"name": name, "title": label(name), "lines": [_line(curve) for curve in lines]}
+            for name in grid.corruptions
+            if (lines := curves(grid, name, least=2))
+        ]
         if panels:
-            grid = section.grid
-            title = f"{grid.heading}, suite {grid.suite}"
-            columns = [x for x in grid.columns if any(_has(panel, x) for panel in panels)]
-            title += f", {section.kind}" if section.kind else ""
+            title = f"{grid.heading}, suite {grid.suite}" + (f", {kind}" if kind else "")
+            drawn = {line["column"] for panel in panels for line in panel["lines"]}
+            columns = [column for column in grid.columns if column in drawn]
             figures.append({"title": title, "columns": columns, "panels": panels})
     return figures
 
 
-def _has(panel: dict[str, Any], column: str) -> bool:
-    return any(line["column"] == column for line in panel["lines"])
-
-
-def _panels(grid: Grid) -> list[dict[str, Any]]:
-    panels = []
-    for name in grid.corruptions:
-        lines = [_line(grid, column, name) for column in grid.columns]
-        kept = [line for line in lines if line is not None]
-        if kept:
-            panels.append({"name": name, "title": label(name), "lines": kept})
-    return panels
-
-
-def _line(grid: Grid, column: str, name: str) -> dict[str, Any] | None:
-    key = METRICS["SR"]
-    measured = [at for at in grid.severities if (column, name, at, key) in grid.cells]
-    measured = [at for at in measured if not np.isnan(grid.cell(column, name, at, key)).all()]
-    if len(measured) < 2:
-        return None
-    seeds = set.intersection(*(set(grid.seeds[column, at]) for at in measured))
-    if not seeds:
-        return None
-    pooled = [grid.over([column], sorted(seeds), at) for at in measured]
-    cells = [one.cell(column, name, at, key) for one, at in zip(pooled, measured, strict=True)]
-    clean = pooled[0].cell(column, "clean", measured[0], key)
-    severities = measured
-    if not np.isnan(clean).all():
-        cells, severities = [clean, *cells], [0.0, *measured]
-    values = np.stack(cells)
-    common = ~np.isnan(values).any(axis=0)
-    if not common.any():
-        return None
-    found = bootstrap.means(values[:, common], shares=True, resamples=CURVE_RESAMPLES)
-    points = [[at, *(numbers(e) or [])] for at, e in zip(severities, found, strict=True)]
-    return {"column": column, "count": int(common.sum()), "points": points}
+def _line(curve: Curve) -> dict[str, Any]:
+    points = zip(curve.severities, map(numbers, curve.points), strict=True)
+    points_data = [[severity, *(values or [])] for severity, values in points]
+    return {"column": curve.column, "count": curve.count, "points": points_data}
 
 
 MOST_EPISODES = 500_000  # episodes of cells in one page (heuristic): 4 MB
@@ -336,10 +299,10 @@ class Packed:
             self._steps = _steps(grid, rows)
         number = next(n for n, known in enumerate(self._known) if known is grid)
         columns = {column: n for n, column in enumerate(grid.columns)}
-        names = ["clean", *(name for names in section.blocks.values() for name in names)]
+        names = [CLEAN, *section.corruptions]
         for column in section.columns:
             for name in names:
-                at = 0.0 if name == "clean" else float(section.severity)
+                at = 0.0 if name == CLEAN else float(section.severity)
                 seeds = grid.seeds[column, section.severity]
                 places = [(column, name, at, seed) for seed in seeds]
                 self._add(number, f"{columns[column]}|{name}|{at}", grid, places)

@@ -14,6 +14,7 @@ from itertools import count, islice
 from typing import Any
 
 import numpy as np
+from matplotlib.figure import Figure
 
 from mitigate.agents.agent import Agent
 from mitigate.agents.fingerprint import fingerprint
@@ -23,8 +24,8 @@ from mitigate.evaluation.episode import instruction
 from mitigate.evaluation.episode_lists import GOLDEN
 from mitigate.evaluation.rows import Row
 from mitigate.evaluation.sections import label
-from mitigate.evaluation.trajectories import Walk, first_sight, run_agents
-from mitigate.worlds.episodes import Episode, from_vlnce
+from mitigate.evaluation.trajectories import DPI, Walk, draw_episode, run_agents
+from mitigate.worlds.episodes import Episode
 from mitigate.worlds.world import World, as_world
 
 KINDS = {  # names of outcomes, by success of the first and the last agent
@@ -101,8 +102,7 @@ def _distinct_episodes(sources: Sequence[Iterator[Any]]) -> Iterator[tuple[str, 
 
 AGREED = ("success", "spl", "steps")  # measures that are compared with the rows
 CLOSE = 1e-6  # tolerance: rows round measures to six digits
-PLAN_INCHES, PLAN_DPI, PLAN_COLOURS = 6.0, 110, 64  # longer side of a plan (heuristic)
-QUALITY = 80  # JPEG quality of the first view
+COLOURS = 64  # of a picture, which keeps the page small (heuristic)
 
 
 def walk_again(
@@ -147,11 +147,21 @@ def walk_again(
         with as_world(world).remembering():
             episode = known[episode_id]
             walks = list(run_agents(agents, world, episode, corruption, seed))
-            views = [_jpeg(sight) for sight in first_sight(world, episode, corruption, seed)[1]]
-            data = _episode_data(episode, corruption, walks, index, hashes)
-            data |= {key: selected[0][key] for key in ("split", "rule", "seed")}
-            data |= {"views": views, "heard": instruction(episode, corruption, seed)}
-            yield data | _plan(world)
+            figure = draw_episode(walks, world, episode, corruption, seed)
+            yield {
+                **{key: selected[0][key] for key in ("split", "rule", "seed")},
+                "episode": episode_id,
+                "instruction": episode.instruction.text,
+                "heard": instruction(episode, corruption, seed),
+                "corruption": corruption.name,
+                "title": label(corruption.name),
+                "severity": corruption.severity,
+                "kind": outcome([walk.won for walk in walks[1:]]),
+                "walks": [
+                    {**_walk(walk, episode, index), "hash": hashes[walk.agent]} for walk in walks
+                ],
+                "picture": _png(figure),
+            }
 
 
 def _rows_of(rows: Sequence[Row], hashes: Mapping[str, str]) -> list[Row]:
@@ -172,27 +182,6 @@ def _rows_of(rows: Sequence[Row], hashes: Mapping[str, str]) -> list[Row]:
     return [row for row in rows if hashes.get(row["name"]) == row["agent"]]
 
 
-def _episode_data(
-    episode: Episode,
-    corruption: Corruption,
-    walks: Sequence[Walk],
-    index: Mapping[tuple, Row],
-    hashes: Mapping[str, str],
-) -> dict[str, Any]:
-    reference = [from_vlnce(point) for point in episode.reference_path or ()]
-    return {
-        "episode": episode.episode_id,
-        "instruction": episode.instruction.text,
-        "corruption": corruption.name,
-        "title": label(corruption.name),
-        "severity": corruption.severity,
-        "kind": outcome([walk.won for walk in walks[1:]]),
-        "reference": _points(reference),
-        "goals": _points([from_vlnce(goal.position) for goal in episode.goals]),
-        "walks": [_walk(walk, episode, index) | {"hash": hashes[walk.agent]} for walk in walks],
-    }
-
-
 def _walk(walk: Walk, episode: Episode, index: Mapping[tuple, Row]) -> dict[str, Any]:
     met = walk.corruption
     row = index.get((walk.agent, episode.episode_id, met.name, met.severity))
@@ -206,48 +195,14 @@ def _walk(walk: Walk, episode: Episode, index: Mapping[tuple, Row]) -> dict[str,
         "left": round(left, 1) if np.isfinite(left) else None,
         "steps": walk.measures.get("steps"),
         "agrees": all(same) if same else None,
-        "points": _points(walk.path),
     }
 
 
-def _points(path: Any) -> list[list[float]]:
-    return [[round(float(x), 2), round(float(y), 2)] for x, y in path]
-
-
-def _plan(world: World) -> dict[str, Any]:
-    """Return the world's plan as a PNG, if any, and its corners [x0, y0, x1, y1] in metres."""
-    draw = as_world(world).draw
-    if draw is None:
-        return {"plan": None, "corners": None}
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=(PLAN_INCHES, PLAN_INCHES))
-    axes = figure.add_axes((0.0, 0.0, 1.0, 1.0))
-    draw(axes)
-    (x0, x1), (y0, y1) = axes.get_xlim(), axes.get_ylim()
-    longer = max(x1 - x0, y1 - y0)
-    figure.set_size_inches(PLAN_INCHES * (x1 - x0) / longer, PLAN_INCHES * (y1 - y0) / longer)
-    drawn = io.BytesIO()
-    figure.savefig(drawn, dpi=PLAN_DPI, facecolor="white", format="png")
-    corners = [round(float(x), 3) for x in (x0, y0, x1, y1)]
-    return {"plan": _address("png", _fewer_colours(drawn)), "corners": corners}
-
-
-def _fewer_colours(png: io.BytesIO) -> bytes:
+def _png(figure: Figure) -> str:
+    """Return a figure as the address of a PNG with few colours."""
     from PIL import Image
 
-    out = io.BytesIO()
-    Image.open(png).convert("RGB").quantize(PLAN_COLOURS).save(out, "PNG", optimize=True)
-    return out.getvalue()
-
-
-def _jpeg(picture: np.ndarray) -> str:
-    from PIL import Image
-
-    out = io.BytesIO()
-    Image.fromarray(np.ascontiguousarray(picture)).save(out, "JPEG", quality=QUALITY)
-    return _address("jpeg", out.getvalue())
-
-
-def _address(kind: str, data: bytes) -> str:
-    return f"data:image/{kind};base64,{base64.b64encode(data).decode()}"
+    drawn, out = io.BytesIO(), io.BytesIO()
+    figure.savefig(drawn, dpi=DPI, facecolor="white", format="png")
+    Image.open(drawn).convert("RGB").quantize(COLOURS).save(out, "PNG", optimize=True)
+    return f"data:image/png;base64,{base64.b64encode(out.getvalue()).decode()}"

@@ -277,4 +277,4 @@ if __name__ == "__main__":
     try:
         main()
     except (ValueError, OSError) as error:
-        sys.exit(f"error: {conf.said(error)}")
+        sys.exit(f"error: {conf.error_message(error)}")

@@ -17,7 +17,7 @@ import numpy as np
 from numba import njit
 
 from mitigate.core.observation import HFOV_DEGREES, VIEW_STEP_DEGREES, VIEWS
-from mitigate.core.signals import unbroken
+from mitigate.core.signals import uninterrupted
 from mitigate.worlds.apartments.apartment import Apartment
 from mitigate.worlds.apartments.faces import Faces
 from mitigate.worlds.apartments.palette import PATTERNS, TEXTURE_PIXELS, texture
@@ -32,7 +32,7 @@ _NEAR = 0.1  # metres; a wall at the agent's radius is at least 0.127 m deep in 
 
 
 def _panda() -> Any:
-    with unbroken():  # an error in its first import would end the process (panda3d 1.10.16)
+    with uninterrupted():  # an error in its first import would end the process (panda3d 1.10.16)
         from panda3d import core
 
     settings = "\n".join(

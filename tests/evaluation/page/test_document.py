@@ -15,7 +15,7 @@ from mitigate.evaluation import table
 from mitigate.evaluation.episode import run_episode
 from mitigate.evaluation.page import command
 from mitigate.evaluation.page.document import report
-from mitigate.evaluation.page.model import curves, shortened
+from mitigate.evaluation.page.model import curve_figures, shortened
 from mitigate.evaluation.page.walks import KINDS, choose, walk_again
 from mitigate.evaluation.rows import write
 from mitigate.evaluation.sections import sections
@@ -48,7 +48,8 @@ def test_values_and_differences_are_those_of_the_table(rows):
     clean = part.clean["hard", "SR"]
     got = shown["values"][1][titles.index("Clean SR")]
     assert got[:3] == pytest.approx([clean.value, clean.low, clean.high], abs=1e-4)
-    moved, raised = part.moved["hard"], part.raised["hard"].estimate
+    difference = part.differences["hard"]
+    moved, raised = difference.clean, difference.corrupted.estimate
     pair = shown["pairs"]["1-0"]["measures"]
     assert pair[titles.index("Clean SR")] == pytest.approx(
         [moved.value, moved.low, moved.high], abs=1e-4
@@ -140,14 +141,14 @@ def test_several_seeds_and_kinds_of_corruption_have_their_own_cells(rows):
 def test_all_points_of_a_curve_are_over_the_same_episodes():
     rows = cell(10) + cell(6, corruption="spatter", severity=0.4)
     rows += cell(0, 4, corruption="spatter", severity=0.8)
-    ((figure,), (panel,)) = (found := curves(sections(rows))), found[0]["panels"]
+    ((figure,), (panel,)) = (found := curve_figures(sections(rows))), found[0]["panels"]
     (line,) = panel["lines"]
     assert figure["columns"] == ["base"] and line["count"] == 4
     assert [point[:2] for point in line["points"]] == [[0.0, 1.0], [0.4, 1.0], [0.8, 0.0]]
 
 
 def test_one_severity_makes_no_curve(rows):
-    assert curves(sections(rows)) == []
+    assert curve_figures(sections(rows)) == []
 
 
 def test_text_of_rows_ends_no_element_and_the_page_names_no_address(rows):
@@ -194,8 +195,7 @@ def test_a_walk_is_compared_with_its_row():
     made[-1]["steps"] += 1  # a row that says otherwise
     (drawn,) = walk_again(agents, world, [episode], made, most=3, seed=0)
     assert [walk["agrees"] for walk in drawn["walks"]] == [True, True, False]
-    assert [len(walk["points"]) for walk in drawn["walks"]] == [2, 2, 4]
-    assert drawn["plan"].startswith("data:image/png;base64,") and len(drawn["views"]) == 2
+    assert drawn["picture"].startswith("data:image/png;base64,")
     assert drawn["kind"] == "lost by both" and drawn["title"] == "L-L w/o noise"
 
 
