@@ -11,6 +11,7 @@ from __future__ import annotations
 import copy
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -212,7 +213,9 @@ class TorchrlPolicy(Policy):
     """
 
     def __init__(self, network: Any, native: Any, space: ActionSpace) -> None:
-        super().__init__(network, native, space)
+        read_keys = {_dotted(key) for key in network.in_keys}
+        entries = {name: entry for name, entry in native.entries.items() if entry in read_keys}
+        super().__init__(network, replace(native, entries=entries or native.entries), space)
         outputs = {_dotted(key) for key in network.out_keys}
         self._fed_back = [
             key for key in network.in_keys if f"next.{_dotted(key)}" in outputs
@@ -327,8 +330,7 @@ def as_policy(
     if isinstance(world.action_space, Composite):
         raise ValueError(
             "A policy with a dictionary of actions must be an agent of its own: a class with "
-            "reset and "
-            "act (docs/bring-your-own.md)."
+            "reset and act (docs/bring-your-own.md)."
         )
     if world.action_space is None or world.native is None:
         raise ValueError(

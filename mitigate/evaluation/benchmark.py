@@ -30,6 +30,7 @@ from mitigate.core.workers import packed
 from mitigate.corruptions import CLEAN, Corruption
 from mitigate.evaluation import evaluate as evaluation
 from mitigate.evaluation import provenance
+from mitigate.evaluation.comparison import RANDOM, Comparison, RandomPolicy, compare
 from mitigate.evaluation.config import EvaluateConfig, read
 from mitigate.evaluation.episode import run_episode
 from mitigate.evaluation.episode_lists import check_count, check_episodes, spread
@@ -37,7 +38,6 @@ from mitigate.evaluation.evaluator import LOCAL, WORTH, evaluate
 from mitigate.evaluation.leaderboard.entry import LeaderboardEntry, check_texts
 from mitigate.evaluation.leaderboard.figures import entry_of
 from mitigate.evaluation.provenance import Known
-from mitigate.evaluation.returns import RANDOM, RandomPolicy, ReturnReport, returns
 from mitigate.evaluation.rows import RETURN, ROWS, Row
 from mitigate.guards.opening import labels, open_guards
 from mitigate.worlds.episodes import Episode, read_episodes
@@ -68,7 +68,7 @@ def benchmark(
     training_data: str = "",
     link: str = "",
     out: Path | str | None = None,
-) -> LeaderboardEntry | ReturnReport:
+) -> LeaderboardEntry | Comparison:
     """Evaluate ``agent`` clean and under a suite of corruptions, and return its entry.
 
     It first prints how long the evaluation takes. The rows are in ``out``; the same call continues
@@ -100,7 +100,7 @@ def benchmark(
         out: folder of the rows; None: a folder in runs/benchmark.
 
     Returns:
-        The entry; for a world with score "return" a table of the return, with its retention.
+        The entry; for a world with score "return" the returns with their retention.
 
     Raises:
         ValueError: The agent, an option or a text of the entry is invalid, or ``out`` holds rows of
@@ -131,7 +131,7 @@ def benchmark(
                 agent, make_world, chosen, met, out=file, workers=workers, guards=guards, **label
             )
             if first.rule == RETURN:
-                return returns([*rows, *_random(first, make_world, chosen, file, split, seed)])
+                return compare([*rows, *_random(first, make_world, chosen, file, split, seed)])
     texts["file"] = "" if file.is_absolute() else file.as_posix()
     sensors = sensor_lines(first.sensors, as_agent(agent).sensors)
     return entry_of(rows, name, severity=severity, sensors=sensors, **texts)

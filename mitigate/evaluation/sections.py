@@ -227,7 +227,7 @@ def sections(
     if any(row["rule"] == RETURN for row in rows):
         raise ValueError(
             "These rows hold the return of a task without a success, so that SR is undefined. Use "
-            "mitigate.evaluation.returns.returns(rows), as mitigate.benchmark does."
+            "mitigate.evaluation.comparison.compare(rows), as mitigate.benchmark does."
         )
     names = sorted({row["name"] for row in rows})
     if against is not None and against not in names:

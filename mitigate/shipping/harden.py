@@ -32,12 +32,10 @@ from mitigate.core.observation import DEPTH, RGB
 from mitigate.core.progress import duration, say
 from mitigate.corruptions import CLEAN, Corruption, Schedule
 from mitigate.corruptions.registry import modality
-from mitigate.evaluation import report
+from mitigate.evaluation.comparison import RANDOM, Comparison, RandomPolicy, compare
 from mitigate.evaluation.episode import run_episode
 from mitigate.evaluation.evaluator import evaluate
-from mitigate.evaluation.returns import RANDOM, RandomPolicy, returns
 from mitigate.evaluation.rows import RETURN, ROWS, Row
-from mitigate.evaluation.sections import sections
 from mitigate.recipes.self_distil import SelfDistil, last_convolution
 from mitigate.training.trainer import Trainer
 from mitigate.worlds.episodes import Episode
@@ -57,14 +55,14 @@ class Hardened:
     Attributes:
         policy: a copy of the given policy with hardened weights, of the same class.
         agent: the same as an agent, for ``mitigate.benchmark``.
-        report: SR and PRS (or return and retention) before and after, as Markdown.
+        report: success, return and retention before and after; its text is a Markdown table.
         rows: the result rows of both, named "before" and "after".
         folder: the weights are in its folder ``agent`` (``mitigate.load_policy``).
     """
 
     policy: Any
     agent: Policy
-    report: str
+    report: Comparison
     rows: list[Row]
     folder: Path
 
@@ -141,7 +139,7 @@ def harden(
         if first.rule == RETURN:
             random = RandomPolicy(before.space, seed)
             rows += _evaluate(random, RANDOM, world, compared, [CLEAN], folder, seed, workers)
-            returns(rows)  # an error before the training, if the policy is no better than random
+            compare(rows)  # an error before the training, if the policy is no better than random
         objective = SelfDistil(
             after,
             world,
@@ -175,14 +173,7 @@ def harden(
         after.requires_grad_(True)
         _write(after.network, folder / "agent", tune)
         rows += _evaluate(after, "after", world, compared, conditions, folder, seed, workers)
-    return Hardened(_like(policy, after), after, describe(rows), rows, folder)
-
-
-def describe(rows: Sequence[Row]) -> str:
-    """Return the tables of the rows of a hardening, as Markdown."""
-    if any(row["rule"] == RETURN for row in rows):
-        return str(returns(rows))
-    return report.markdown(sections(rows, "before"))
+    return Hardened(_like(policy, after), after, compare(rows), rows, folder)
 
 
 class _Training:

@@ -140,7 +140,7 @@ class SeededWorld(World):
         rule: The success rule in words, for rows and tables; None: the name of the entry. Required
             for a function.
         score: "success", or "return" for a task without a success: rows then hold the sum of the
-            rewards, and tables show its retention (``evaluation/returns.py``).
+            rewards, and tables show its retention (``evaluation/comparison.py``).
         extra: More entries that the environment reports at the end of an episode, as measures.
 
     Attributes:

@@ -93,7 +93,9 @@ def test_harden_returns_a_hardened_copy_and_a_report(tmp_path):
     assert type(result.policy) is Net
     assert checkpoint.weights_sha(result.policy) != before
     assert {row["name"] for row in result.rows} == {"before", "after"}
-    assert "**PRS-SR (RGB)**" in result.report
+    line = result.report.line("**SR (%), mean of 2 corruptions**")
+    assert line.values["before"].value == 100.0
+    assert "| change |" in str(result)
 
 
 def test_harden_writes_weights_that_load_policy_restores(tmp_path):
@@ -138,7 +140,8 @@ def test_harden_with_adapters_leaves_the_policy_frozen(tmp_path):
 
 def test_harden_continuous_policy_reports_the_return(tmp_path):
     result = mitigate.harden(trained(True), continuous_world, listed=FEW, out=tmp_path, **SHORT)
-    assert "Retention, mean" in result.report
+    assert result.report.line("Return, clean").values["before"].value == 5.0
+    assert result.report.line("Retention, spatter").values["after"].value == pytest.approx(1.0)
     loaded = as_policy(mitigate.load_policy(Net(1), tmp_path / "agent"), continuous_world())
     observation = continuous_world().reset(FEW[0])
     np.testing.assert_array_equal(loaded.act(observation), result.agent.act(observation))
@@ -214,5 +217,5 @@ def test_benchmark_reports_the_return_and_reuses_rows(tmp_path, capsys):
         report = mitigate.benchmark(
             trained(True), world=continuous_world, listed=FEW, suite=["spatter"], out=tmp_path
         )
-        assert report.means["Net", "clean"].value == 5.0
+        assert report.line("Return, clean").values["Net"].value == 5.0
     assert "all already done" in capsys.readouterr().out

@@ -1,0 +1,260 @@
+"""Compare a few agents over the same episodes: success, return and retention, with paired
+intervals.
+
+This is the report of ``mitigate.harden``, and of ``mitigate.benchmark`` for tasks without a
+success. The tables of recipes are in ``report.py``.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from mitigate.agents.agent import Agent
+from mitigate.core.markdown import markdown_of, markdown_table
+from mitigate.core.names import counted
+from mitigate.core.seeding import generator
+from mitigate.core.spaces import ActionSpace
+from mitigate.corruptions.registry import title
+from mitigate.evaluation.bootstrap import LEVEL, RESAMPLES, Estimate, mean, resampled_means, share
+from mitigate.evaluation.rows import RETURN, Row
+
+CLEAN = "clean"
+RANDOM = "random"  # name of the rows of random actions
+_BOUNDS = ((1 - LEVEL) / 2, (1 + LEVEL) / 2)
+
+
+class RandomPolicy(Agent):
+    """An agent with uniformly random actions, keyed by a seed and the first observation.
+
+    Args:
+        space: actions of the world.
+        seed: seed.
+    """
+
+    def __init__(self, space: ActionSpace, seed: int = 0) -> None:
+        self.space = space
+        self.seed = seed
+        self._rng: np.random.Generator | None = None
+
+    def settings(self) -> dict[str, Any]:
+        """Return what determines its actions."""
+        return {"space": str(self.space), "seed": self.seed}
+
+    def reset(self, instruction: str) -> None:
+        """Start an episode."""
+        self._rng = None
+
+    def act(self, observation: Mapping[str, Any]) -> Any:
+        """Return a random action."""
+        if self._rng is None:
+            first = b"".join(np.asarray(value).tobytes() for value in observation.values())
+            self._rng = generator(self.seed, "random policy", first)
+        return self.space.sample(self._rng)
+
+
+@dataclass(frozen=True)
+class Line:
+    """A line of a comparison.
+
+    Attributes:
+        title: what was measured, such as "SR (%), clean".
+        values: the value of each agent, by name.
+        changes: the paired difference of each agent but the first to the first one, by name.
+        digits: decimal places.
+    """
+
+    title: str
+    values: Mapping[str, Estimate]
+    changes: Mapping[str, Estimate]
+    digits: int = 1
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """A comparison of agents; its text is a Markdown table.
+
+    Attributes:
+        lines: the lines.
+        agents: names of the agents.
+        about: how it was measured.
+    """
+
+    lines: tuple[Line, ...]
+    agents: tuple[str, ...]
+    about: str
+
+    def line(self, title: str) -> Line:
+        """Return the line with a title; raise KeyError if there is none."""
+        for line in self.lines:
+            if line.title == title:
+                return line
+        raise KeyError(f"{title!r} must be one of {', '.join(line.title for line in self.lines)}.")
+
+    def __str__(self) -> str:
+        first, *others = self.agents
+        heads = ["", first, *(head for name in others for head in (name, "change"))]
+        rows = []
+        for line in self.lines:
+            form = f".{line.digits}f"
+            cells = [_cell(line.values[first], form)]
+            for name in others:
+                cells += [_cell(line.values[name], form), _change(line.changes[name], f"+{form}")]
+            rows.append([line.title, *cells])
+        table = markdown_table([markdown_of(head) for head in heads], rows)
+        return f"{table}\n\n{self.about}"
+
+
+def compare(rows: Iterable[Row]) -> Comparison:
+    """Return the comparison of the agents in ``rows``, of one list, severity and success rule.
+
+    Rows with the name ``RANDOM`` are not an agent: the retention of returns is measured against
+    them, (R_corrupted - R_random) / (R_clean - R_random).
+
+    Raises:
+        ValueError: Agents share no episodes, or a clean agent returns no more than random actions.
+    """
+    rows = list(rows)
+    cells: dict[tuple[str, str], dict[str, Row]] = defaultdict(dict)
+    for row in rows:
+        cells[row["name"], row["corruption"]][row["episode_id"]] = row
+    episodes = sorted(set.intersection(*(set(by_episode) for by_episode in cells.values())))
+    if not episodes:
+        raise ValueError("The agents must share episodes. Evaluate all of them on the same list.")
+    agents = tuple(dict.fromkeys(name for name, _ in cells if name != RANDOM))
+    names = [name for name in dict.fromkeys(name for _, name in cells) if name != CLEAN]
+    scores = _Scores(cells, episodes, agents)
+    lines: list[Line] = []
+    if rows[0]["rule"] != RETURN:
+        lines += scores.lines("success", "SR (%)", names, 100.0)
+    if all(RETURN in row for row in rows):
+        lines += scores.lines(RETURN, "Return", names, 1.0)
+    if (RANDOM, CLEAN) in cells:
+        lines += scores.retention(names)
+    severities = sorted({row["severity"] for row in rows if row["corruption"] != CLEAN})
+    rule = "" if rows[0]["rule"] == RETURN else f" Success: {markdown_of(rows[0]['rule'])}."
+    random = ""
+    if (RANDOM, CLEAN) in cells:
+        random = (
+            f" Random actions return {_cell(mean(scores.values(RANDOM, CLEAN, RETURN)), '.1f')}. "
+            "Retention = (R - R_random) / (R_clean - R_random)."
+        )
+    about = (
+        f"{counted(len(episodes), 'episode')}, seed {rows[0]['seed']}, severity "
+        f"{', '.join(f'{s:g}' for s in severities)}.{rule}{random} Brackets: {100 * LEVEL:.0f} % "
+        f"paired bootstrap over episodes, {RESAMPLES:,} resamples. Changes in bold exclude zero."
+    )
+    return Comparison(tuple(lines), agents, about)
+
+
+class _Scores:
+    """The measures of agents by (agent, corruption), over the same episodes."""
+
+    def __init__(
+        self,
+        cells: Mapping[tuple[str, str], Mapping[str, Row]],
+        episodes: Sequence[str],
+        agents: Sequence[str],
+    ) -> None:
+        self.cells = cells
+        self.episodes = episodes
+        self.agents = agents
+
+    def values(self, agent: str, corruption: str, measure: str) -> np.ndarray:
+        """Return the values [N] of the episodes."""
+        return np.array([float(self.cells[agent, corruption][e][measure]) for e in self.episodes])
+
+    def lines(self, measure: str, label: str, names: Sequence[str], scale: float) -> list[Line]:
+        """Return the lines of a measure: mean over corruptions, clean, and each corruption."""
+        by_condition = {
+            name: {agent: scale * self.values(agent, name, measure) for agent in self.agents}
+            for name in (CLEAN, *names)
+        }
+        lines = []
+        if len(names) > 1:
+            averaged = {
+                agent: np.mean([by_condition[name][agent] for name in names], axis=0)
+                for agent in self.agents
+            }
+            lines.append(self._line(f"**{label}, mean of {len(names)} corruptions**", averaged, 0))
+        for name, values in by_condition.items():
+            lines.append(self._line(f"{label}, {title(name).lower()}", values, scale * (scale > 1)))
+        return lines
+
+    def _line(self, heading: str, values: Mapping[str, np.ndarray], most: float) -> Line:
+        """Return a line; ``most`` is the value of a success, for Wilson's interval, or 0."""
+        first, *others = self.agents
+        estimates = {agent: _mean(values[agent], most) for agent in self.agents}
+        changes = {agent: mean(values[agent] - values[first]) for agent in others}
+        return Line(heading, estimates, changes)
+
+    def retention(self, names: Sequence[str]) -> list[Line]:
+        """Return the lines of the retention of returns."""
+        resampled: dict[str, dict[str, tuple[float, np.ndarray]]] = {name: {} for name in names}
+        random = self.values(RANDOM, CLEAN, RETURN)
+        for agent in self.agents:
+            clean = self.values(agent, CLEAN, RETURN) - random
+            if clean.mean() <= 0:
+                raise ValueError(
+                    f"{agent} returns {clean.mean() + random.mean():.1f} on clean episodes, no "
+                    f"more than random actions ({random.mean():.1f}), so that retention is "
+                    "undefined. Train it further, or check its observations."
+                )
+            for name in names:
+                gained = self.values(agent, name, RETURN) - random
+                draws = resampled_means(np.stack([gained, clean]))
+                samples = draws[:, 0] / draws[:, 1]
+                resampled[name][agent] = float(gained.mean() / clean.mean()), samples
+        if len(names) > 1:
+            average = {
+                agent: (
+                    float(np.mean([resampled[name][agent][0] for name in names])),
+                    np.mean([resampled[name][agent][1] for name in names], axis=0),
+                )
+                for agent in self.agents
+            }
+            resampled = {"mean": average, **resampled}
+        first, *others = self.agents
+        lines = []
+        for name, by_agent in resampled.items():
+            heading = f"**Retention, mean of {len(names)} corruptions**"
+            lines.append(
+                Line(
+                    heading if name == "mean" else f"Retention, {title(name).lower()}",
+                    {agent: _estimate(*by_agent[agent]) for agent in self.agents},
+                    {
+                        agent: _estimate(
+                            by_agent[agent][0] - by_agent[first][0],
+                            by_agent[agent][1] - by_agent[first][1],
+                        )
+                        for agent in others
+                    },
+                    digits=2,
+                )
+            )
+        return lines
+
+
+def _mean(values: np.ndarray, most: float) -> Estimate:
+    if not most:
+        return mean(values)
+    part = share(values / most)
+    return Estimate(most * part.value, most * part.low, most * part.high)
+
+
+def _estimate(value: float, samples: np.ndarray) -> Estimate:
+    low, high = np.quantile(samples, _BOUNDS)
+    return Estimate(value, float(low), float(high))
+
+
+def _cell(estimate: Estimate, form: str) -> str:
+    return f"{estimate.value:{form}} {estimate.interval(form)}"
+
+
+def _change(estimate: Estimate, form: str) -> str:
+    text = f"{estimate.value:{form}}"
+    return f"{f'**{text}**' if estimate.excludes_zero else text} {estimate.interval(form)}"

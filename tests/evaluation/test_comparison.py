@@ -1,0 +1,100 @@
+"""Comparisons: the formula of retention, paired intervals, and errors."""
+
+import numpy as np
+import pytest
+
+from mitigate.core.spaces import Box, Discrete
+from mitigate.evaluation.comparison import RANDOM, RandomPolicy, compare
+
+
+def rows_of(name, corruption, values, measure="return"):
+    severity = 0.0 if corruption == "clean" else 0.6
+    common = {"name": name, "corruption": corruption, "seed": 0, "severity": severity}
+    rule = "return" if measure == "return" else "goal reached"
+    return [
+        {**common, "rule": rule, "episode_id": str(i), measure: value}
+        for i, value in enumerate(values)
+    ]
+
+
+def example(clean=(10.0, 12.0), random=(2.0, 0.0)):
+    return [
+        *rows_of("before", "clean", clean),
+        *rows_of("before", "flare", [6.0, 6.0]),
+        *rows_of("before", "spatter", [1.0, 1.0]),
+        *rows_of("after", "clean", clean),
+        *rows_of("after", "flare", [10.0, 11.0]),
+        *rows_of("after", "spatter", [1.0, 1.0]),
+        *rows_of(RANDOM, "clean", random),
+    ]
+
+
+def test_compare_computes_retention_against_random():
+    comparison = compare(example())
+    flare = comparison.line("Retention, flare")
+    assert flare.values["before"].value == pytest.approx((6 - 1) / (11 - 1))
+    assert flare.values["after"].value == pytest.approx((10.5 - 1) / 10)
+    mean = comparison.line("**Retention, mean of 2 corruptions**")
+    assert mean.values["after"].value == pytest.approx(0.95 / 2)
+    assert mean.changes["after"].value == pytest.approx(0.45 / 2)
+    assert "Random actions return 1.0" in str(comparison)
+
+
+def test_compare_pairs_episodes():
+    difficulty = np.random.default_rng(0).normal(0, 50, 100)
+    rows = [
+        *rows_of("before", "clean", difficulty + 100),
+        *rows_of("before", "flare", difficulty + 50),
+        *rows_of("after", "clean", difficulty + 100),
+        *rows_of("after", "flare", difficulty + 60),
+        *rows_of(RANDOM, "clean", difficulty),
+    ]
+    retention = compare(rows).line("Retention, flare")
+    for estimate, value in ((retention.values["before"], 0.5), (retention.changes["after"], 0.1)):
+        assert (estimate.low, estimate.high) == pytest.approx((value, value))
+
+
+def test_compare_shows_success_in_percent():
+    rows = [
+        *rows_of("before", "clean", [1, 1, 1, 1], "success"),
+        *rows_of("before", "flare", [0, 0, 1, 1], "success"),
+        *rows_of("after", "clean", [1, 1, 1, 1], "success"),
+        *rows_of("after", "flare", [1, 1, 1, 1], "success"),
+    ]
+    comparison = compare(rows)
+    flare = comparison.line("SR (%), flare")
+    assert flare.values["before"].value == 50.0
+    assert flare.changes["after"].value == 50.0
+    assert comparison.line("SR (%), clean").values["before"].low == pytest.approx(51.0, abs=0.1)
+
+
+def test_compare_rejects_an_agent_no_better_than_random():
+    with pytest.raises(ValueError, match="no more than random"):
+        compare(example(clean=(1.0, 1.0)))
+
+
+def test_compare_rejects_agents_without_common_episodes():
+    rows = [*rows_of("before", "clean", [1.0]), *rows_of("after", "clean", [1.0])]
+    rows[1]["episode_id"] = "9"
+    with pytest.raises(ValueError, match="must share episodes"):
+        compare(rows)
+
+
+def test_compare_names_known_lines_for_an_unknown_one():
+    with pytest.raises(KeyError, match="Return, clean"):
+        compare(example()).line("SR")
+
+
+def test_random_policy_depends_on_seed_and_first_observation():
+    box = Box(-np.ones(2, np.float32), np.ones(2, np.float32))
+
+    def draws(seed, value):
+        policy = RandomPolicy(box, seed)
+        policy.reset("Reach the goal.")
+        return np.stack([policy.act({"rgb": np.full(3, value)}) for _ in range(3)])
+
+    np.testing.assert_array_equal(draws(3, 1), draws(3, 1))
+    assert not np.array_equal(draws(3, 1), draws(4, 1))
+    assert not np.array_equal(draws(3, 1), draws(3, 2))
+    space = Discrete(5, start=1)
+    assert {space.sample(np.random.default_rng(seed)) for seed in range(40)} == {1, 2, 3, 4, 5}
