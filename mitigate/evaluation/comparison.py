@@ -131,7 +131,7 @@ def compare(rows: Iterable[Row]) -> Comparison:
     lines: list[Line] = []
     if rows[0]["rule"] != RETURN:
         lines += scores.lines("success", "SR (%)", names, 100.0)
-    if all(RETURN in row for row in rows):
+    if all(RETURN in row for row in rows) and any(row[RETURN] for row in rows):
         lines += scores.lines(RETURN, "Return", names, 1.0)
     if (RANDOM, CLEAN) in cells:
         lines += scores.retention(names)
