@@ -7,6 +7,7 @@ success. The tables of recipes are in ``report.py``.
 
 from __future__ import annotations
 
+import hashlib
 from collections import defaultdict
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
@@ -52,8 +53,10 @@ class RandomPolicy(Agent):
     def act(self, observation: Mapping[str, Any]) -> Any:
         """Return a random action."""
         if self._rng is None:
-            first = b"".join(np.asarray(value).tobytes() for value in observation.values())
-            self._rng = generator(self.seed, "random policy", first)
+            first = hashlib.sha256()
+            for value in observation.values():
+                first.update(np.asarray(value).tobytes())
+            self._rng = generator(self.seed, "random policy", first.hexdigest())
         return self.space.sample(self._rng)
 
 
