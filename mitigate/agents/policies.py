@@ -162,8 +162,8 @@ class Policy(Agent, nn.Module):
 class StableBaselinesPolicy(Policy):
     """A policy of stable-baselines3 or sb3-contrib.
 
-    On-policy algorithms (PPO, A2C, RecurrentPPO) give the distribution of actions, SAC and TQC that
-    of their actor, DDPG and TD3 the action, DQN the values of the actions.
+    PPO, A2C, RecurrentPPO, SAC and TQC give the distribution of actions, DDPG and TD3 the action,
+    DQN the values of the actions.
     """
 
     def __init__(self, network: Any, native: Any, space: ActionSpace) -> None:
@@ -329,7 +329,7 @@ def as_policy(
         return policy
     if isinstance(world.action_space, Composite):
         raise ValueError(
-            "A policy with a dictionary of actions must be an agent of its own: a class with "
+            "A policy with a dictionary of actions must be wrapped in an agent: a class with "
             "reset and act (docs/bring-your-own.md)."
         )
     if world.action_space is None or world.native is None:
@@ -369,7 +369,7 @@ def load_policy(policy: Any, folder: str | Path) -> Any:
     """Load the weights that ``mitigate.harden`` wrote into ``policy``, in place, and return it.
 
     Args:
-        policy: the policy before hardening, or another one with the same architecture.
+        policy: a policy with the architecture of the hardened one, such as the original.
         folder: the folder ``agent`` of the run.
 
     Raises:

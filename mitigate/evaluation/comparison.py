@@ -92,7 +92,7 @@ class Comparison:
     about: str
 
     def line(self, title: str) -> Line:
-        """Return the line with a title; raise KeyError if there is none."""
+        """Return the line with a title; raise KeyError for an unknown title."""
         for line in self.lines:
             if line.title == title:
                 return line
