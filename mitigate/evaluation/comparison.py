@@ -115,6 +115,8 @@ class Comparison:
 def compare(rows: Iterable[Row]) -> Comparison:
     """Return the comparison of the agents in ``rows``, of one list, severity and success rule.
 
+    An episode under several seeds counts as the mean over the seeds.
+
     Rows with the name ``RANDOM`` are not an agent: the retention of returns is measured against
     them, (R_corrupted - R_random) / (R_clean - R_random).
 
@@ -122,9 +124,9 @@ def compare(rows: Iterable[Row]) -> Comparison:
         ValueError: Agents share no episodes, or a clean agent returns no more than random actions.
     """
     rows = list(rows)
-    cells: dict[tuple[str, str], dict[str, Row]] = defaultdict(dict)
+    cells: dict[tuple[str, str], dict[str, list[Row]]] = defaultdict(lambda: defaultdict(list))
     for row in rows:
-        cells[row["name"], row["corruption"]][row["episode_id"]] = row
+        cells[row["name"], row["corruption"]][row["episode_id"]].append(row)
     episodes = sorted(set.intersection(*(set(by_episode) for by_episode in cells.values())))
     if not episodes:
         raise ValueError("The agents must share episodes. Evaluate all of them on the same list.")
@@ -146,8 +148,10 @@ def compare(rows: Iterable[Row]) -> Comparison:
             f" Random actions return {_cell(mean(scores.values(RANDOM, CLEAN, RETURN)), '.1f')}. "
             "Retention = (R - R_random) / (R_clean - R_random)."
         )
+    seeds = sorted({row["seed"] for row in rows})
+    listed_seeds = f"seed{'s' * (len(seeds) > 1)} {', '.join(map(str, seeds))}"
     about = (
-        f"{counted(len(episodes), 'episode')}, seed {rows[0]['seed']}, severity "
+        f"{counted(len(episodes), 'episode')}, {listed_seeds}, severity "
         f"{', '.join(f'{s:g}' for s in severities)}.{rule}{random} Brackets: {100 * LEVEL:.0f} % "
         f"paired bootstrap over episodes, {RESAMPLES:,} resamples. Changes in bold exclude zero."
     )
@@ -159,7 +163,7 @@ class _Scores:
 
     def __init__(
         self,
-        cells: Mapping[tuple[str, str], Mapping[str, Row]],
+        cells: Mapping[tuple[str, str], Mapping[str, Sequence[Row]]],
         episodes: Sequence[str],
         agents: Sequence[str],
     ) -> None:
@@ -168,8 +172,9 @@ class _Scores:
         self.agents = agents
 
     def values(self, agent: str, corruption: str, measure: str) -> np.ndarray:
-        """Return the values [N] of the episodes."""
-        return np.array([float(self.cells[agent, corruption][e][measure]) for e in self.episodes])
+        """Return the values [N] of the episodes, each the mean over its seeds."""
+        by_episode = self.cells[agent, corruption]
+        return np.array([np.mean([row[measure] for row in by_episode[e]]) for e in self.episodes])
 
     def lines(self, measure: str, label: str, names: Sequence[str], scale: float) -> list[Line]:
         """Return the lines of a measure: mean over corruptions, clean, and each corruption."""

@@ -68,6 +68,21 @@ def test_compare_shows_success_in_percent():
     assert comparison.line("SR (%), clean").values["before"].low == pytest.approx(51.0, abs=0.1)
 
 
+def test_compare_averages_the_seeds_of_an_episode():
+    rows = [
+        {**row, "seed": seed}
+        for seed, success in ((0, 0), (1, 1))
+        for name in ("before", "after")
+        for row in (
+            *rows_of(name, "clean", [1, 1], "success"),
+            *rows_of(name, "flare", [success, 1], "success"),
+        )
+    ]
+    comparison = compare(rows)
+    assert comparison.line("SR (%), flare").values["after"].value == 75.0
+    assert "seeds 0, 1" in comparison.about
+
+
 def test_compare_rejects_an_agent_no_better_than_random():
     with pytest.raises(ValueError, match="no more than random"):
         compare(example(clean=(1.0, 1.0)))
