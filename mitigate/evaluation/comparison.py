@@ -20,12 +20,13 @@ from mitigate.core.markdown import markdown_of, markdown_table
 from mitigate.core.names import counted
 from mitigate.core.seeding import generator
 from mitigate.core.spaces import ActionSpace
-from mitigate.corruptions.registry import title
+from mitigate.corruptions.registry import modality, title
 from mitigate.evaluation.bootstrap import LEVEL, RESAMPLES, Estimate, mean, resampled_means, share
 from mitigate.evaluation.rows import RETURN, Row
 
 CLEAN = "clean"
 RANDOM = "random"  # name of the rows of random actions
+LABELS = {"rgb": "RGB", "depth": "Depth", "instruction": "Instruction"}
 _BOUNDS = ((1 - LEVEL) / 2, (1 + LEVEL) / 2)
 
 
@@ -136,6 +137,7 @@ def compare(rows: Iterable[Row]) -> Comparison:
     lines: list[Line] = []
     if rows[0]["rule"] != RETURN:
         lines += scores.lines("success", "SR (%)", names, 100.0)
+        lines += scores.prs(names)
     if all(RETURN in row for row in rows) and any(row[RETURN] for row in rows):
         lines += scores.lines(RETURN, "Return", names, 1.0)
     if (RANDOM, CLEAN) in cells:
@@ -201,50 +203,45 @@ class _Scores:
         return Line(heading, estimates, changes)
 
     def retention(self, names: Sequence[str]) -> list[Line]:
-        """Return the lines of the retention of returns."""
-        resampled: dict[str, dict[str, tuple[float, np.ndarray]]] = {name: {} for name in names}
+        """Return the lines of the retention of returns, for all corruptions and for each one."""
         random = self.values(RANDOM, CLEAN, RETURN)
         for agent in self.agents:
-            clean = self.values(agent, CLEAN, RETURN) - random
-            if clean.mean() <= 0:
+            clean = self.values(agent, CLEAN, RETURN)
+            if clean.mean() <= random.mean():
                 raise ValueError(
-                    f"{agent} returns {clean.mean() + random.mean():.1f} on clean episodes, no "
-                    f"more than random actions ({random.mean():.1f}), so that retention is "
-                    "undefined. Train it further, or check its observations."
+                    f"{agent} returns {clean.mean():.1f} on clean episodes, no more than random "
+                    f"actions ({random.mean():.1f}), so that retention is undefined. Train it "
+                    "further, or check its observations."
                 )
-            for name in names:
-                gained = self.values(agent, name, RETURN) - random
-                draws = resampled_means(np.stack([gained, clean]))
-                samples = draws[:, 0] / draws[:, 1]
-                resampled[name][agent] = float(gained.mean() / clean.mean()), samples
-        if len(names) > 1:
-            average = {
-                agent: (
-                    float(np.mean([resampled[name][agent][0] for name in names])),
-                    np.mean([resampled[name][agent][1] for name in names], axis=0),
-                )
-                for agent in self.agents
-            }
-            resampled = {"mean": average, **resampled}
+        groups = (
+            {f"**Retention, mean of {len(names)} corruptions**": names} if len(names) > 1 else {}
+        )
+        groups |= {f"Retention, {title(name).lower()}": [name] for name in names}
+        return [self._ratio(heading, RETURN, group, random) for heading, group in groups.items()]
+
+    def prs(self, names: Sequence[str]) -> list[Line]:
+        """Return the lines of PRS-SR by sensor; none if an agent never succeeds on clean frames."""
+        if not all(self.values(agent, CLEAN, "success").any() for agent in self.agents):
+            return []
+        groups: dict[str, list[str]] = {}
+        for name in names:
+            kind = modality(name)
+            groups.setdefault(f"PRS-SR ({LABELS.get(kind, kind)})", []).append(name)
+        zero = np.zeros(len(self.episodes))
+        return [self._ratio(heading, "success", group, zero) for heading, group in groups.items()]
+
+    def _ratio(self, heading: str, measure: str, names: Sequence[str], base: np.ndarray) -> Line:
+        """Return the mean over ``names`` of (corrupted - base) / (clean - base)."""
+        values: dict[str, tuple[float, np.ndarray]] = {}
+        for agent in self.agents:
+            clean = self.values(agent, CLEAN, measure) - base
+            gained = np.mean([self.values(agent, name, measure) for name in names], axis=0) - base
+            draws = resampled_means(np.stack([gained, clean]))
+            values[agent] = float(gained.mean() / clean.mean()), draws[:, 0] / draws[:, 1]
         first, *others = self.agents
-        lines = []
-        for name, by_agent in resampled.items():
-            heading = f"**Retention, mean of {len(names)} corruptions**"
-            lines.append(
-                Line(
-                    heading if name == "mean" else f"Retention, {title(name).lower()}",
-                    {agent: _estimate(*by_agent[agent]) for agent in self.agents},
-                    {
-                        agent: _estimate(
-                            by_agent[agent][0] - by_agent[first][0],
-                            by_agent[agent][1] - by_agent[first][1],
-                        )
-                        for agent in others
-                    },
-                    digits=2,
-                )
-            )
-        return lines
+        (value, samples) = values[first]
+        changes = {n: _estimate(values[n][0] - value, values[n][1] - samples) for n in others}
+        return Line(heading, {n: _estimate(*values[n]) for n in self.agents}, changes, digits=2)
 
 
 def _mean(values: np.ndarray, most: float) -> Estimate:
@@ -255,7 +252,8 @@ def _mean(values: np.ndarray, most: float) -> Estimate:
 
 
 def _estimate(value: float, samples: np.ndarray) -> Estimate:
-    low, high = np.quantile(samples, _BOUNDS)
+    known = samples[np.isfinite(samples)]  # a resample may hold no clean success
+    low, high = np.quantile(known, _BOUNDS) if len(known) else (np.nan, np.nan)
     return Estimate(value, float(low), float(high))
 
 

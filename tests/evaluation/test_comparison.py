@@ -65,6 +65,7 @@ def test_compare_shows_success_in_percent():
     flare = comparison.line("SR (%), flare")
     assert flare.values["before"].value == 50.0
     assert flare.changes["after"].value == 50.0
+    assert comparison.line("PRS-SR (RGB)").values["before"].value == 0.5
     assert comparison.line("SR (%), clean").values["before"].low == pytest.approx(51.0, abs=0.1)
 
 
