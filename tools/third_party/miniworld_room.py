@@ -38,4 +38,4 @@ def act(policy: PPO, observation) -> int:
 
 
 if __name__ == "__main__":
-    train_ppo(make, PATH, 100_000, "CnnPolicy", n_steps=128, batch_size=256, ent_coef=0.01)
+    train_ppo(make, PATH, steps=60_000, policy="CnnPolicy")

@@ -38,13 +38,4 @@ def act(policy: PPO, observation: dict) -> int:
 
 
 if __name__ == "__main__":
-    train_ppo(
-        make,
-        PATH,
-        steps=50_000,
-        n_steps=128,
-        batch_size=256,
-        n_epochs=3,
-        ent_coef=0.01,
-        learning_rate=5e-4,
-    )
+    train_ppo(make, PATH, steps=50_000)

@@ -59,13 +59,4 @@ def load_policy() -> PPO:
 
 
 if __name__ == "__main__":
-    train_ppo(
-        lambda: HealthReward(make()),
-        PATH,
-        steps=60_000,
-        n_steps=128,
-        batch_size=256,
-        n_epochs=3,
-        ent_coef=0.01,
-        learning_rate=5e-4,
-    )
+    train_ppo(lambda: HealthReward(make()), PATH, steps=60_000)
