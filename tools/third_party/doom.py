@@ -17,7 +17,7 @@ from stable_baselines3.common.vec_env import VecNormalize
 WEIGHTS = Path(__file__).parent / "weights"
 HEIGHT, WIDTH = 48, 64
 METRES = 7.35 / 32  # per level of the depth buffer: 7.35 map units (measured), 32 of them per metre
-NETWORK = {"features_extractor_kwargs": {"cnn_output_dim": 64}}
+FEATURES = {"MultiInputPolicy": {"cnn_output_dim": 64}, "CnnPolicy": {"features_dim": 128}}
 
 
 class SmallFrames(gymnasium.ObservationWrapper):
@@ -67,7 +67,7 @@ def train_ppo(make, path: Path, steps: int, policy: str = "MultiInputPolicy") ->
         batch_size=256,
         n_epochs=3,
         ent_coef=0.01,
-        policy_kwargs=NETWORK,
+        policy_kwargs={"features_extractor_kwargs": FEATURES[policy]},
         seed=0,
         verbose=1,
         device="cpu",
