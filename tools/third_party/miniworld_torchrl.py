@@ -1,0 +1,112 @@
+"""MiniWorld's ``OneRoomS6Fast`` with an actor of torchrl: ClipPPOLoss and its collector."""
+
+from __future__ import annotations
+
+import time
+
+import numpy as np
+import torch
+from tensordict import TensorDict
+from tensordict.nn import TensorDictModule
+from torch import nn
+from torch.distributions import Categorical
+from torchrl.collectors import Collector
+from torchrl.envs import GymWrapper, RewardSum, SerialEnv, TransformedEnv
+from torchrl.envs.utils import ExplorationType, set_exploration_type
+from torchrl.modules import ConvNet, ProbabilisticActor, ValueOperator
+from torchrl.objectives import ClipPPOLoss
+from torchrl.objectives.value import GAE
+
+from tools.third_party.doom import WEIGHTS
+from tools.third_party.miniworld_room import make, make_world  # noqa: F401 - the same world
+
+PATH = WEIGHTS / "miniworld_torchrl.pt"
+ACTIONS = 3
+ENVS, FRAMES, BATCH, EPOCHS = 8, 1024, 256, 3
+
+
+class Scale(nn.Module):
+    """Convert frames uint8 [..., H, W, 3] to float32 [..., 3, H, W] in 0-1."""
+
+    def forward(self, frames):
+        return frames.movedim(-1, -3).float() / 255
+
+
+def features() -> nn.Sequential:
+    convolutions = ConvNet(
+        in_features=3,
+        num_cells=[16, 32, 32],
+        kernel_sizes=[8, 4, 3],
+        strides=[4, 2, 1],
+        activation_class=nn.ReLU,
+    )
+    return nn.Sequential(Scale(), convolutions, nn.LazyLinear(128), nn.ReLU())
+
+
+def make_actor() -> ProbabilisticActor:
+    """Return an actor that reads "pixels" and writes "action"."""
+    network = nn.Sequential(features(), nn.Linear(128, ACTIONS))
+    network(torch.zeros(1, 48, 64, 3, dtype=torch.uint8))  # sets the size of the lazy layer
+    return ProbabilisticActor(
+        TensorDictModule(network, in_keys=["pixels"], out_keys=["logits"]),
+        in_keys=["logits"],
+        distribution_class=Categorical,
+        return_log_prob=True,
+    )
+
+
+def load_policy() -> ProbabilisticActor:
+    actor = make_actor()
+    actor.load_state_dict(torch.load(PATH, weights_only=True))
+    return actor.eval()
+
+
+@torch.no_grad()
+def act(policy: ProbabilisticActor, observation: np.ndarray) -> int:
+    data = TensorDict({"pixels": torch.from_numpy(observation)[None]}, [1])
+    with set_exploration_type(ExplorationType.DETERMINISTIC):
+        return int(policy(data)["action"])
+
+
+def make_torchrl_env() -> TransformedEnv:
+    env = GymWrapper(make(), pixels_only=True, categorical_action_encoding=True)
+    return TransformedEnv(env, RewardSum())
+
+
+def train(steps: int = 100_000) -> None:
+    torch.manual_seed(0)
+    env = SerialEnv(ENVS, make_torchrl_env)
+    env.set_seed(100_000)
+    actor = make_actor()
+    critic = ValueOperator(nn.Sequential(features(), nn.Linear(128, 1)), in_keys=["pixels"])
+    critic(env.reset())
+    loss_module = ClipPPOLoss(actor, critic, entropy_coeff=0.01)
+    advantage = GAE(gamma=0.99, lmbda=0.95, value_network=critic)
+    optimizer = torch.optim.Adam(loss_module.parameters(), lr=5e-4)
+    started = time.time()
+    collector = Collector(env, actor, frames_per_batch=FRAMES, total_frames=steps)
+    for index, data in enumerate(collector):
+        with torch.no_grad():
+            advantage(data)
+        flat = data.reshape(-1)
+        for _ in range(EPOCHS):
+            for rows in torch.randperm(len(flat)).split(BATCH):
+                losses = loss_module(flat[rows])
+                loss = sum(value for key, value in losses.items() if key.startswith("loss_"))
+                optimizer.zero_grad()
+                loss.backward()
+                nn.utils.clip_grad_norm_(loss_module.parameters(), 0.5)
+                optimizer.step()
+        ended = data["next", "episode_reward"][data["next", "done"]]
+        if index % 5 == 0:
+            print(
+                f"{(index + 1) * FRAMES} steps, {time.time() - started:.0f} s: "
+                f"return {ended.mean():.2f}",
+                flush=True,
+            )
+    collector.shutdown()
+    torch.save(actor.state_dict(), PATH)
+
+
+if __name__ == "__main__":
+    train()

@@ -1,0 +1,41 @@
+"""ViZDoom's ``VizdoomBasic-v1``: shoot the monster. PPO of stable-baselines3 on RGB and depth."""
+
+from __future__ import annotations
+
+from stable_baselines3 import PPO
+
+from mitigate.worlds.gym import GymWorld
+from mitigate.worlds.seeded import Ending
+from tools.third_party.doom import METRES, WEIGHTS, SmallFrames, make_env, train_ppo
+
+PATH = WEIGHTS / "vizdoom_basic.zip"
+
+
+def make() -> SmallFrames:
+    return make_env("VizdoomBasic-v1", frame_skip=4)
+
+
+def killed(end: Ending) -> bool:
+    return end.reward > 50  # a kill is worth 106; time and shots cost
+
+
+def make_world() -> GymWorld:
+    return GymWorld(
+        make(),
+        entries={"rgb": "screen", "depth": "depth"},
+        unit=METRES,
+        success=killed,
+        rule="monster killed",
+    )
+
+
+def load_policy() -> PPO:
+    return PPO.load(PATH, device="cpu")
+
+
+def act(policy: PPO, observation: dict) -> int:
+    return int(policy.predict(observation, deterministic=True)[0])
+
+
+if __name__ == "__main__":
+    train_ppo(make, PATH, steps=50_000)
