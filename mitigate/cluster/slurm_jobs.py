@@ -83,9 +83,8 @@ def results(
         submitted = len(running)
         while done < total:
             for current in list(running):
-                over = (
-                    current.job.done()
-                )  # asked before its lines are read, so that no line is missed
+                # read the state before the lines, so that no line is missed
+                over = current.job.done()
                 for number, result in _fresh(current):
                     done += 1
                     yield number, result

@@ -32,13 +32,13 @@ ENTRIES: dict[str, tuple[type, ...]] = {
 _AGAIN = "Fetch the folder again, or train it again with `make train RECIPE=encoder`."
 _LINES = {
     "adapters": """\
-from plain_adapters import attach  # mitigate/encoders/plain_adapters.py, copied beside your code
+from plain_adapters import attach  # mitigate/encoders/plain_adapters.py, copied into your project
 
 encoder.eval()  # with the weights that the adapters were trained for
 encoder = attach(encoder, "{folder}")
 """,
     "all": """\
-from plain_adapters import parse  # mitigate/encoders/plain_adapters.py, copied beside your code
+from plain_adapters import parse  # mitigate/encoders/plain_adapters.py, copied into your project
 
 encoder.load_state_dict(parse(open("{folder}/model.safetensors", "rb").read()))
 """,

@@ -153,7 +153,7 @@ def _scripted(path: Path) -> nn.Module:
         loaded = torch.jit.load(path, map_location="cpu")
     except RuntimeError as error:
         raise ValueError(
-            f"{path} must be a TorchScript file ({str(error).splitlines()[0]}). Write one with "
+            f"{path} must be a TorchScript file ({str(error).splitlines()[0]}). Write it with "
             "torch.jit.trace(model, frames).save(path). If it holds a state dict, name it as "
             "agent.weights. Pickled models are not loaded: save their state_dict()."
         ) from error
@@ -165,7 +165,7 @@ def _exported(path: Path) -> nn.Module:
         program = torch.export.load(path)
     except Exception as error:  # the type depends on the content of the file
         raise ValueError(
-            f"{path} must be an exported program ({str(error).splitlines()[0]}). Write one with "
+            f"{path} must be an exported program ({str(error).splitlines()[0]}). Write it with "
             "torch.export.save(torch.export.export(model, (frames,), dynamic_shapes=...), path)."
         ) from error
     model = torch.export.unflatten(program)
@@ -303,7 +303,7 @@ def _load(path: Path) -> Any:
     Objects of classes that torch does not allow, such as a config, are replaced by
     :class:`PassedOver`, so that none of their code runs.
     """
-    problem = "its parts are compressed, unlike those of torch" if _is_compressed(path) else ""
+    problem = "its parts are compressed, which torch never does" if _is_compressed(path) else ""
     named = [] if problem else _named(path)
     for _ in range(0 if problem else STAND_INS):
         allowed: list[Any] = [(PLAIN.get(name, PassedOver), name) for name in named]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Mapping, Sequence
-from inspect import signature
+from dataclasses import dataclass, fields
 from numbers import Real
 from pathlib import Path
 from typing import Any
@@ -29,6 +29,7 @@ FROM_UINT8 = 255.0  # largest value of RGB frames
 MOST = 4096  # pixels of a side (heuristic)
 
 
+@dataclass
 class Transform:
     """Convert uint8 ``[n, H, W, 3]`` or metres ``[n, H, W, 1]`` to ``[n, c, size, size]`` floats.
 
@@ -50,26 +51,27 @@ class Transform:
         ValueError: An argument is invalid; names the option.
     """
 
-    def __init__(
-        self,
-        size: int,
-        resize: str = "bilinear",
-        crop: bool = False,
-        mean: Sequence[float] = (0.0,),
-        std: Sequence[float] = (1.0,),
-        scale: float = FROM_UINT8,
-        bgr: bool = False,
-        near: float = 0.0,
-        far: float | None = None,
-    ) -> None:
-        _check(locals())
-        self.size, self.resize, self.crop, self.bgr = size, resize, crop, bgr
-        self.mean, self.std = [float(x) for x in mean], [float(x) for x in std]
-        self.scale, self.near, self.far = float(scale), float(near), far
+    size: int
+    resize: str = "bilinear"
+    crop: bool = False
+    bgr: bool = False
+    mean: Sequence[float] = (0.0,)
+    std: Sequence[float] = (1.0,)
+    scale: float = FROM_UINT8
+    near: float = 0.0
+    far: float | None = None
+
+    def __post_init__(self) -> None:
+        _check(vars(self))
+        self.mean = [float(value) for value in self.mean]
+        self.std = [float(value) for value in self.std]
+        self.scale = float(self.scale)
+        self.near = float(self.near)
+        self.far = None if self.far is None else float(self.far)
 
     def settings(self) -> dict:
         """Return the arguments, as plain data."""
-        return dict(self.__dict__)
+        return dict(vars(self))
 
     def __call__(self, frames: Tensor) -> Tensor:
         x = frames.permute(0, 3, 1, 2)
@@ -104,7 +106,7 @@ def transform_of(options: Mapping[str, Any]) -> Transform:
     Raises:
         ValueError: An argument is unknown or invalid.
     """
-    known = [*signature(Transform).parameters]
+    known = [field.name for field in fields(Transform)]
     for name in options:
         if name not in known:
             raise ValueError(unknown("setting of agent.transform", name, known))
@@ -163,7 +165,7 @@ class Encoder(nn.Module):
         model: as for :func:`mitigate.encoders.loading.load_model`.
         transform: arguments of :class:`Transform`.
         kwargs: arguments of ``model``.
-        weights: as for :func:`mitigate.encoders.loading.load_weights`; None: those of the model.
+        weights: as for :func:`mitigate.encoders.loading.load_weights`; None: the model's weights.
         prefix: as for :func:`mitigate.encoders.loading.load_weights`.
         sensor: "rgb" or "depth".
         output: the target features. None: the output of the model; a number or a name: that item
@@ -209,7 +211,8 @@ class Encoder(nn.Module):
         self.given = {"model": model, "kwargs": kwargs, "weights": weights, "prefix": prefix}
         self.sensor, self.output, self.pool, self.tune = sensor, output, pool, tune
         self.transform = transform_of(transform)
-        means, channels = len(self.transform.mean), SENSORS[sensor]
+        means = len(self.transform.mean)
+        channels = SENSORS[sensor]
         if means not in (1, channels):
             raise ValueError(
                 f"agent.transform.mean and std have {means} values, but {sensor} has {channels} "
@@ -238,7 +241,7 @@ class Encoder(nn.Module):
         return isinstance(self.model, loading.Wrapped)
 
     def settings(self) -> dict[str, Any]:
-        """Return no settings in addition to those of its config."""
+        """Return no settings, because the config contains all."""
         return {}
 
     def choose_trained(self) -> None:

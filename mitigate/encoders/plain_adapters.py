@@ -35,7 +35,7 @@ def attach(model, folder, check=True):
     Args:
         model: the encoder.
         folder: the folder of the adapters.
-        check: whether the weights of ``model`` must equal those of the training, bit for bit.
+        check: whether ``model`` must have exactly the weights that the adapters were trained with.
             Disable it if ``model`` was converted to half precision first.
 
     Returns:

@@ -97,7 +97,7 @@ def cosine(corrupted: np.ndarray, clean: np.ndarray, centre: np.ndarray) -> np.n
     """Return the cosine [N] of corrupted and clean features [N, C].
 
     ``centre`` [C] is subtracted from both: most encoders' features have a large common mean, with
-    which all frames look alike.
+    which all frames seem alike.
     """
     a, b = _unit(corrupted - centre), _unit(clean - centre)
     return (a * b).sum(1)
@@ -122,10 +122,10 @@ class LinearProbe:
 
     def __init__(self, clean: np.ndarray, labels: np.ndarray, scene: np.ndarray) -> None:
         self.mean, self.scale = clean.mean(0), clean.std(0) + 1e-6
-        self.used = shown_enough(labels)
+        self.used = frequent_labels(labels)
         x, y = self._scaled(clean), labels[:, self.used].astype(np.float64)
         validation = np.isin(scene, np.unique(scene)[:: round(1 / PROBE_SHARE)])
-        usable = shown_enough(y[validation])
+        usable = frequent_labels(y[validation])
         scores = []
         for ridge in RIDGES if not validation.all() else ():  # one scene has no validation part
             weights = _ridge(x[~validation], y[~validation], ridge)
@@ -143,7 +143,7 @@ class LinearProbe:
     def score(self, features: np.ndarray, labels: np.ndarray, resamples: Resamples) -> Score:
         """Return the mean average precision over the labels with enough of these frames."""
         guess, labels = self._scaled(features) @ self.weights, labels[:, self.used]
-        usable = shown_enough(labels)
+        usable = frequent_labels(labels)
         ones = np.ones((1, len(features)), np.float32)
         weights = np.concatenate([ones, resamples.weights])
         each = [average_precision(guess[:, i], labels[:, i], weights) for i in usable]
@@ -151,10 +151,10 @@ class LinearProbe:
         return Score(float(means[0]), means[1:])
 
 
-def shown_enough(labels: np.ndarray) -> np.ndarray:
+def frequent_labels(labels: np.ndarray) -> np.ndarray:
     """Return the columns of labels [N, L] with enough positive and negative frames."""
-    shown = labels.sum(0)
-    return np.flatnonzero((shown >= FEWEST) & (len(labels) - shown >= FEWEST))
+    positive = labels.sum(0)
+    return np.flatnonzero((positive >= FEWEST) & (len(labels) - positive >= FEWEST))
 
 
 def _ridge(x: np.ndarray, y: np.ndarray, ridge: float) -> np.ndarray:
@@ -204,14 +204,15 @@ def measure(
     probe = None
     if train.labels is not None and unseen.labels is not None:
         probe = LinearProbe(train_clean, train.labels, train.scene)
-        probe = probe if len(shown_enough(unseen.labels[:, probe.used])) else None
+        probe = probe if len(frequent_labels(unseen.labels[:, probe.used])) else None
     scores: dict[tuple[str, str, str], Score] = {}
-    for (name, met), values in measured.items():
-        scores[name, met, "cosine"] = resamples.mean(cosine(values, unseen_clean, centre))
-        scores[name, met, "retrieval"] = resamples.mean(retrieval(values, unseen_clean, centre))
+    for (name, condition), values in measured.items():
+        for title, compare in (("cosine", cosine), ("retrieval", retrieval)):
+            similar = compare(values, unseen_clean, centre)
+            scores[name, condition, title] = resamples.mean(similar)
         if probe is not None:
             assert unseen.labels is not None
-            scores[name, met, "probe"] = probe.score(values, unseen.labels, resamples)
+            scores[name, condition, "probe"] = probe.score(values, unseen.labels, resamples)
     return scores
 
 

@@ -249,17 +249,17 @@ class FolderFrames:
 def _check(size: int | None, held_out: float, block: int, unit: float) -> None:
     """Raise ValueError for the first invalid option."""
     for name, value, valid, words in (
-        ("size", size, size is None or _is_whole(size, LARGEST), f"1 to {LARGEST} pixels or null"),
+        ("size", size, size is None or _is_count(size, LARGEST), f"1 to {LARGEST} pixels or null"),
         ("unit", unit, _is_between(unit, np.inf), "metres per count, such as 0.001 (mm)"),
         ("world.held_out", held_out, _is_between(held_out, 1), "a share above 0 and below 1"),
-        ("world.block", block, _is_whole(block, sys.maxsize), "a number of frames >= 1"),
+        ("world.block", block, _is_count(block, sys.maxsize), "a number of frames >= 1"),
     ):
         if not valid:
             raise ValueError(f"env.{name} must be {words}, got {short(value)}.")
 
 
-def _is_whole(value: object, most: int) -> bool:
-    return type(value) is int and 1 <= value <= most
+def _is_count(value: object, largest: int) -> bool:
+    return type(value) is int and 1 <= value <= largest
 
 
 def _is_between(value: object, below: float) -> bool:
@@ -273,18 +273,15 @@ def _metres(depth: np.ndarray) -> np.ndarray:
     """
     metres = np.where(np.isfinite(depth) & (depth > 0), depth, 0)
     known = metres[metres > 0]
-    if len(known) and np.quantile(known, NEAR) > FARTHEST:
-        raise ValueError(
-            f"must hold depth in metres, but most of it is farther than {FARTHEST:g} (median "
-            f"{np.median(known):g}). Divide NPY by 1000 if it is millimetres; for PNG set env.unit "
-            "to the metres per count"
-        )
-    if len(known) and np.quantile(known, 1 - NEAR) < NEAREST:
-        raise ValueError(
-            f"must hold depth in metres, but most of it is nearer than {NEAREST:g} (median "
-            f"{np.median(known):g}). For PNG set env.unit to the metres per count, 0.001 for "
-            "millimetres"
-        )
+    if len(known):
+        low, high = np.quantile(known, (NEAR, 1 - NEAR))
+        if low > FARTHEST or high < NEAREST:
+            side = f"farther than {FARTHEST:g}" if low > FARTHEST else f"nearer than {NEAREST:g}"
+            raise ValueError(
+                f"must hold depth in metres, but most of it is {side} (median "
+                f"{np.median(known):g}). For PNG set env.unit to the metres per count (0.001 for "
+                "millimetres), convert NPY to metres"
+            )
     return metres
 
 
@@ -381,10 +378,9 @@ def collect(source: Source, split: str, count: int, seed: int) -> Frames:
     scene: list[int] = []
     with Progress(f"{split} frames", len(used), unit="scene") as progress:
         for index, number in zip(used, each, strict=True):
-            new = list(source.shots(scenes[index], number, seed))
-            _check_sizes(new, shots, count)
-            shots += new
-            scene += [int(index)] * len(new)
+            shots += source.shots(scenes[index], number, seed)
+            _check_sizes(shots, count)
+            scene += [int(index)] * (len(shots) - len(scene))
             progress.advance()
     if not any(shot.frame.any() for shot in shots):
         raise ValueError(
@@ -401,17 +397,17 @@ def collect(source: Source, split: str, count: int, seed: int) -> Frames:
     )
 
 
-def _check_sizes(new: list[Shot], shots: list[Shot], count: int) -> None:
+def _check_sizes(shots: list[Shot], count: int) -> None:
     """Raise ValueError for frames of several sizes, or too many for the memory."""
-    sizes = {shot.frame.shape for shot in (*shots[:1], *new)}
+    sizes = {shot.frame.shape for shot in shots}
     if len(sizes) > 1:
         raise ValueError(
             f"The frames have several sizes ({', '.join(map(str, sorted(sizes)[:3]))}). Set "
             "env.size=PIXELS to resize all frames."
         )
-    if new and new[0].frame.nbytes * count > MOST_BYTES:
+    if shots and shots[0].frame.nbytes * count > MOST_BYTES:
         raise ValueError(
-            f"{count} frames of {new[0].frame.shape} need more than {MOST_BYTES >> 30} GB of "
+            f"{count} frames of {shots[0].frame.shape} need more than {MOST_BYTES >> 30} GB of "
             "memory. Set env.size=PIXELS, or use fewer frames "
             "(stages.encoder.recipe.frames=...)."
         )

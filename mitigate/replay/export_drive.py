@@ -146,9 +146,6 @@ def write_bag(path: Path, steps: Sequence[dict[str, np.ndarray]], form: str) -> 
     """Write a drive as a bag and return its path.
 
     Each step lasts one second. Odometry uses the axes of REP 103.
-
-    Raises:
-        ValueError: The bag already exists.
     """
     from rosbags.rosbag1 import Writer as Writer1
     from rosbags.rosbag2 import StoragePlugin
@@ -156,8 +153,6 @@ def write_bag(path: Path, steps: Sequence[dict[str, np.ndarray]], form: str) -> 
     from rosbags.typesys import Stores, get_typestore
 
     path = path.with_suffix(".bag") if form == "bag" else path
-    if path.exists():
-        raise ValueError(f"{path} already exists. Name another folder, or delete it.")
     make_folder(path.parent)
     ros1 = form == "bag"
     store = get_typestore(Stores.ROS1_NOETIC if ros1 else Stores.ROS2_HUMBLE)

@@ -1,6 +1,6 @@
 """Run agents on recorded drives: ``mitigate replay DRIVE agents=[checkpoints/recurrent/base]``.
 
-DRIVE is a folder of frames or a bag of ROS 1, ROS 2 or MCAP; several may be given. Each agent gets
+DRIVE is a folder of frames or a bag of ROS 1, ROS 2 or MCAP; several are allowed. Each agent gets
 the clean drive and the drive under each corruption, and decides at each step what it would do. The
 output is every decision (``decisions.jsonl``), the share that each corruption changes
 (``table.md``, ``changes.png``), and pictures of some changed decisions.
@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import json
 import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
 from functools import partial
 from itertools import product
@@ -192,7 +192,7 @@ def load_recordings(
 
 
 def _name(paths: Sequence[str]) -> str:
-    """Return a name for the drives: that of the first, and the number of others."""
+    """Return a name for the drives: the name of the first, and the number of others."""
     first = Path(paths[0])
     more = f"+{len(paths) - 1}" if len(paths) > 1 else ""
     return (first.stem if first.is_file() else first.name) + more
@@ -273,30 +273,28 @@ def replay(
                     progress.advance(len(drives))
                     progress.say(f"{name}, {corruption.name}: not applicable, {reason}")
                     continue
+                labels = {
+                    "agent": name,
+                    "condition": corruption.name,
+                    "severity": corruption.severity,
+                    "seed": seed,
+                }
                 corrupted = answers.setdefault(corruption.name, {})
                 for drive in drives:
                     clean = answers["clean"].get(drive.name)
-                    corrupted[drive.name] = walk(
-                        agent, drive, corruption, seed, clean=clean, guards=guards
-                    )
-                    labels = {
-                        "agent": name,
-                        "condition": corruption.name,
-                        "severity": corruption.severity,
-                        "seed": seed,
-                    }
-                    lines = decision_lines(
-                        labels, drive, answers["clean"][drive.name], corrupted[drive.name]
-                    )
+                    answer = walk(agent, drive, corruption, seed, clean=clean, guards=guards)
+                    corrupted[drive.name] = answer
+                    lines = decision_lines(labels, drive, answers["clean"][drive.name], answer)
                     file.writelines(json.dumps(line) + "\n" for line in lines)
                     progress.advance(note=f"{name}, {corruption.name}")
-            clean_answers = answers["clean"]
-            changes[name] = {n: compare(drives, clean_answers, a) for n, a in answers.items()}
-            pictures += _draw_worst(
-                name, agent, drives, corruptions, changes[name], answers, seed, out, guards
-            )
-    text = report.table(changes, severity, sum(steps), len(steps), guards)
+            changes[name] = {n: compare(drives, answers["clean"], a) for n, a in answers.items()}
+            worst = _worst(corruptions, changes[name])
+            if worst is not None:
+                draw = partial(walk, agent, corruption=worst, seed=seed, guards=guards)
+                path = _picture_file(out, name, worst.name)
+                pictures += _draw(drives, worst, answers, draw, path)
     with atomic_text(out / TABLE) as table:
+        text = report.table(changes, severity, sum(steps), len(steps), guards)
         table.write(text)
     print(text.partition("\nFalse stops")[0])
     pictures.insert(0, report.heatmap(changes, severity, out / "changes.png"))
@@ -322,37 +320,30 @@ def inapplicable(corruption: Any, agent: Any, drives: Sequence[Any]) -> str:
     return ""
 
 
-def _draw_worst(
-    name: str,
-    agent: Any,
-    drives: Sequence[Any],
-    corruptions: Sequence[Any],
-    changes: Mapping[str, Any],
-    answers: Mapping[str, Mapping[str, Any]],
-    seed: int,
-    out: Path,
-    guards: Guards,
-) -> list[Path]:
-    """Draw decisions that the worst corruption of frames changed, if it changed any."""
-    from mitigate.replay import report
-    from mitigate.replay.walk import walk
+def _worst(corruptions: Sequence[Any], changes: Mapping[str, Any]) -> Any:
+    """Return the corruption of frames that changed most decisions, or None."""
+    of_frames = [c for c in corruptions if c.name in changes and {"rgb", "depth"} & {*c.modalities}]
+    return max(of_frames, key=lambda c: changes[c.name].changed.value, default=None)
 
-    visible = [c for c in corruptions if c.name in changes and {"rgb", "depth"} & {*c.modalities}]
-    if not visible:
-        return []
-    worst = max(visible, key=lambda c: changes[c.name].changed.value)
-    differs = {
-        drive.name: answers["clean"][drive.name].actions != answers[worst.name][drive.name].actions
-        for drive in drives
-    }
+
+def _draw(
+    drives: Sequence[Any],
+    corruption: Any,
+    answers: Mapping[str, Mapping[str, Any]],
+    rerun: Callable[..., Any],
+    path: Path,
+) -> list[Path]:
+    """Draw decisions that a corruption changed in the drive with most of them, if there are any."""
+    from mitigate.replay import report
+
+    clean, corrupted = answers["clean"], answers[corruption.name]
+    differs = {name: clean[name].actions != corrupted[name].actions for name in clean}
     drive = max(drives, key=lambda d: int(differs[d.name].sum()))
     steps = report.spread([int(i) for i in differs[drive.name].nonzero()[0]])
     if not steps:
         return []
-    clean = answers["clean"][drive.name]
-    corrupted = walk(agent, drive, worst, seed, keep=steps, clean=clean, guards=guards)
-    path = _picture_file(out, name, worst.name)
-    return [report.picture(drive, worst, clean, corrupted, path)]
+    answer = rerun(drive, keep=steps, clean=clean[drive.name])
+    return [report.picture(drive, corruption, clean[drive.name], answer, path)]
 
 
 def _picture_file(out: Path, name: str, condition: str) -> Path:

@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-import cv2
 import numpy as np
 from matplotlib.figure import Figure
 
-from mitigate.core.files import write_bytes, write_figure
+from mitigate.core.files import write_figure
 from mitigate.core.markdown import markdown_of, markdown_table
-from mitigate.core.observation import DEPTH, RGB, VIEWS
+from mitigate.core.observation import DEPTH
 from mitigate.core.pictures import depth_picture, strip
 from mitigate.corruptions import Corruption
 from mitigate.evaluation.bootstrap import Estimate
@@ -23,8 +23,6 @@ from mitigate.worlds.recorded import Recording
 
 AgentChanges = Mapping[str, Mapping[str, Changes]]  # agent -> condition -> changes
 MAX_CELLS = 6  # decisions in a picture
-MAX_CELL_WIDTH = 800  # pixels; wider cells get a row of their own
-VIEW_HEIGHT = 160  # pixels of a view in a picture
 
 
 def table(
@@ -131,49 +129,33 @@ def picture(
     recording: Recording, corruption: Corruption, clean: Answers, corrupted: Answers, path: Path
 ) -> Path:
     """Draw the steps in ``corrupted.seen``: clean frame, corrupted frame, and both decisions."""
-    modality = RGB if RGB in recording.frames else DEPTH
     corrupted_frames = [part for part in corruption.modalities if part in recording.frames]
-    modality = corrupted_frames[0] if corrupted_frames else modality
-    cells = []
-    for step, frames in sorted(corrupted.seen.items()):
-        before = recording.frames[modality][step]
-        after = frames[modality]
-        views = np.concatenate([_view(before, before), _gap(), _view(after, before)], 1)
+    modality = (*corrupted_frames, *recording.frames)[0]
+    frames = recording.frames[modality]
+    columns = 3 if frames.ndim == 4 else 1
+    rows = math.ceil(len(corrupted.seen) / columns)
+    figure = Figure(figsize=(10, 0.7 + (2.0 if columns == 3 else 1.2) * rows), layout="constrained")
+    axes = figure.subplots(rows, columns, squeeze=False).ravel()
+    for axis in axes:
+        axis.axis("off")
+    for axis, (step, seen) in zip(axes, sorted(corrupted.seen.items()), strict=False):
+        before = _view(frames[step], frames[step])
+        gap = np.full((len(before), max(1, len(before) // 40), 3), 255, np.uint8)
+        views = (before, gap, _view(seen[modality], frames[step]))
+        axis.imshow(np.concatenate(views, 1), interpolation="nearest")
         old, new = (ACTIONS.get(int(a.actions[step]), "?") for a in (clean, corrupted))
         text = f"step {step}, {recording.times[step]:.1f} s: {old} -> {new}"
-        cell = np.concatenate([_title(text, views.shape[1]), views])
-        cells.append(np.pad(cell, ((0, 0), (0, 16), (0, 0)), constant_values=255))
-    columns = 1 if cells[0].shape[1] > MAX_CELL_WIDTH else 3
-    cells += [np.full_like(cells[0], 255)] * (-len(cells) % columns)
-    rows = [np.concatenate(cells[i : i + columns], 1) for i in range(0, len(cells), columns)]
+        axis.set_title(text, fontsize=8)
     legend = "; white: no reading" if modality == DEPTH else ""
     title = f"{recording.name}: {modality} clean, and under {corruption.name}{legend}"
-    image = np.concatenate([_title(title, rows[0].shape[1]), *rows])
-    write_bytes(path, cv2.imencode(".png", image[..., ::-1])[1].tobytes())
-    return path
-
-
-def _title(text: str, width: int) -> np.ndarray:
-    """Draw a line of text, uint8 [26, width, 3]."""
-    line = np.full((26, width, 3), 255, np.uint8)
-    cv2.putText(line, text, (4, 18), cv2.FONT_HERSHEY_SIMPLEX, 0.45, (0, 0, 0), 1, cv2.LINE_AA)
-    return line
+    figure.suptitle(plain(title), fontsize=10)
+    return write_figure(path, figure, dpi=DPI, facecolor="white")
 
 
 def _view(frame: np.ndarray, clean: np.ndarray) -> np.ndarray:
-    """Draw a frame, or a panorama as the middle of each view, as uint8 [VIEW_HEIGHT, W, 3].
+    """Draw a frame, or a panorama as the middle of each view, as uint8 [H, W, 3].
 
     Depth is coloured over the range of the clean frame.
     """
-    if frame.shape[-1] == 1:
-        far = max(1e-3, float(clean.max()))
-        views = frame if frame.ndim == 4 else frame[None]
-        coloured = np.stack([depth_picture(view[..., 0], far) for view in views])
-        frame = coloured if frame.ndim == 4 else coloured[0]
-    flat = strip(frame) if len(frame) == VIEWS and frame.ndim == 4 else frame
-    width = round(flat.shape[1] * VIEW_HEIGHT / flat.shape[0])
-    return cv2.resize(flat, (width, VIEW_HEIGHT), interpolation=cv2.INTER_NEAREST)
-
-
-def _gap() -> np.ndarray:
-    return np.full((VIEW_HEIGHT, 4, 3), 255, np.uint8)
+    flat = strip(frame) if frame.ndim == 4 else frame
+    return flat if flat.shape[-1] == 3 else depth_picture(flat[..., 0], max(1e-3, clean.max()))

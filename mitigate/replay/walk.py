@@ -56,7 +56,7 @@ def walk(
     """Run ``agent`` on a drive under ``corruption`` and return its decisions.
 
     After each step the agent is informed of the driver's movement (``Agent.taken``). If the
-    movement is unknown, it is informed of its own decision on clean frames instead, so that only
+    movement is unknown, it is informed of its decision on clean frames instead, so that only
     frames and instructions differ between the runs.
 
     Args:
@@ -157,7 +157,7 @@ class Changes:
 def compare(
     recordings: Sequence[Recording], clean: Mapping[str, Answers], corrupted: Mapping[str, Answers]
 ) -> Changes:
-    """Compare decisions with those on clean frames; both are given by the name of the drive."""
+    """Compare decisions with those on clean frames; both are dicts by the name of the drive."""
     pairs = [(clean[r.name], corrupted[r.name]) for r in recordings]
     changed = [a.actions != b.actions for a, b in pairs]
     stops = sum(int(((b.actions == STOP) & (a.actions != STOP)).sum()) for a, b in pairs)

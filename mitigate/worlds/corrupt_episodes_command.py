@@ -68,7 +68,7 @@ def run(
     tagger: str = "own",
     rewrite: Rewrite | None = None,
 ) -> dict[str, Any]:
-    """Corrupt the file ``source`` into ``out`` and return the summary that is written beside it.
+    """Corrupt the file ``source`` into ``out`` and return the summary, which is written next to it.
 
     The summary records the options that the corruption uses (``USES``).
 
@@ -181,7 +181,7 @@ def _changed(
     """Yield the episodes with their instructions corrupted, one at a time.
 
     With ``every``, unchanged instructions also get tokens of ``words``, because its vocabulary is
-    not that of the file.
+    not the one of the file.
     """
     for episode in episodes:
         counts.episodes += 1
@@ -294,7 +294,7 @@ def notices(summary: dict[str, Any]) -> list[str]:
         lines.append(
             f"notice: instruction_tokens of {removed} changed instructions were removed, because "
             "they encode the clean text. For an agent that reads tokens set tokenizer=vocabulary "
-            "(that of the file) or tokenizer=NAME (that of the agent)"
+            "(of the file) or tokenizer=NAME (of the agent)"
         )
     cut = summary["tokens"].get("cut_short", 0)
     if cut:

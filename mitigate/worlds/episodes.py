@@ -82,21 +82,22 @@ class Record:
 
     def vectors(self, key: str, size: int) -> tuple[Vector, ...]:
         """Return ``key`` as a non-empty list of vectors."""
-        values = self.get(key, list)
-        if not values:
-            self.fail(f"has an empty {key!r}")
-        return tuple(self._vector(key, value, size) for value in values)
+        return tuple(self._vector(key, value, size) for value in self._items(key))
 
     def records(self, key: str) -> list[Record]:
         """Return the objects of the non-empty list ``key``."""
-        values = self.get(key, list)
-        if not values:
-            self.fail(f"has an empty {key!r}")
-        return [Record(v, self.path, f"{self.where}, {key}[{i}],") for i, v in enumerate(values)]
+        items = enumerate(self._items(key))
+        return [Record(item, self.path, f"{self.where}, {key}[{i}],") for i, item in items]
 
     def rest(self, *known: str) -> dict[str, Any]:
         """Return the keys that are not ``known``."""
         return {key: value for key, value in self.raw.items() if key not in known}
+
+    def _items(self, key: str) -> list[Any]:
+        items = self.get(key, list)
+        if not items:
+            self.fail(f"has an empty {key!r}")
+        return items
 
     def _vector(self, key: str, value: Any, size: int) -> Vector:
         if not isinstance(value, list) or len(value) != size or not all(map(_finite, value)):

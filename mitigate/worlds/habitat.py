@@ -88,7 +88,7 @@ def corrupt_habitat(
 
 
 def is_camera(entry: str) -> bool:
-    """Return whether the name of an entry is that of an RGB or depth camera."""
+    """Return whether an entry of an observation is an RGB or depth camera."""
     return _CAMERA.fullmatch(entry) is not None
 
 

@@ -1,4 +1,4 @@
-"""Camera configs of a panorama for habitat-lab 0.3, whose own camera configs have no name.
+"""Camera configs of a panorama for habitat-lab 0.3, whose camera configs have no names.
 
     from habitat.config import read_write
     from mitigate.worlds.habitat_lab import panorama

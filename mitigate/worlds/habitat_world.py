@@ -1,9 +1,9 @@
 """Habitat as a world (``worlds/world.py``): any scene of habitat-sim with episodes of VLN-CE.
 
 habitat-sim 0.3 is not on the package index; ``docs/habitat.md`` explains how to get it and scenes.
-habitat-lab is not needed. Cameras, actions and measures are those of VLN-CE, and the measures equal
-those of habitat-lab for the same path. Only nDTW differs: it uses the reference path of an episode,
-while VLN-CE uses the denser locations of ``*_gt.json``.
+habitat-lab is not needed. Cameras, actions and measures are as in VLN-CE. For the same path, the
+measures equal the values of habitat-lab, except nDTW: it uses the reference path of an episode, but
+VLN-CE uses the denser locations of ``*_gt.json``.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ from mitigate.core.observation import (
 )
 from mitigate.worlds import measures
 from mitigate.worlds.episodes import Episode, from_vlnce
-from mitigate.worlds.world import Expert, World
+from mitigate.worlds.world import Expert, World, greedy_action
 
 CAMERA_HEIGHT = 1.25  # metres, as in VLN-CE
 RADIUS = 0.18  # metres, of the agent
@@ -75,14 +75,9 @@ class HabitatWorld(World):
         gpu: int = -1,
     ) -> None:
         rules = {"apartments": measures.Rule("vln", 2.0), **measures.RULES}
-        allowed = [name for name, known in rules.items() if not known.view_points]
-        if rule in rules and rule not in allowed:
-            raise ValueError(
-                f"rule={rule} needs view points, which this world does not have. Choose one of: "
-                f"{', '.join(allowed)}."
-            )
-        if rule not in allowed:
-            raise ValueError(unknown("success rule", rule, allowed))
+        rules = {name: known for name, known in rules.items() if not known.view_points}
+        if rule not in rules:
+            raise ValueError(unknown("success rule without view points", rule, rules))
         if views not in (1, VIEWS):
             raise ValueError(f"views must be {VIEWS} (panorama) or 1 (forward), got {views}.")
         self._arguments = {
@@ -105,7 +100,7 @@ class HabitatWorld(World):
         self._scene = ""
 
     def __getstate__(self) -> dict[str, Any]:
-        # a simulator cannot be pickled; the copy opens its own
+        # a simulator cannot be pickled; the copy opens a new one
         return self._arguments
 
     def __setstate__(self, state: dict[str, Any]) -> None:
@@ -199,10 +194,7 @@ class HabitatWorld(World):
         return NavmeshExpert(self)
 
     def _observation(self) -> Observation:
-        state = self._sim.get_agent(0).get_state()
-        rotation = state.rotation
-        heading = 2 * math.atan2(float(rotation.imag[1]), float(rotation.real))
-        pose = np.array([*from_vlnce(state.position), heading], np.float32)
+        pose = np.array([*from_vlnce(tuple(self._position())), self._heading()], np.float32)
         return Observation({POSE: pose}, self._frames, (RGB, DEPTH))
 
     def _frames(self) -> dict[str, np.ndarray]:
@@ -224,7 +216,7 @@ class HabitatWorld(World):
         if not file.is_file():
             raise FileNotFoundError(
                 f"There is no scene {file}. Set env.scenes= to the folder with the scenes of the "
-                "episodes (mitigate export-scene writes those of the apartments)."
+                "episodes (mitigate export-scene writes the scenes of the apartments)."
             )
         settings = self._settings(file)
         self._scene = ""  # in case loading fails
@@ -252,21 +244,19 @@ class HabitatWorld(World):
             self._camera(kind, k) for kind in (RGB, DEPTH) for k in range(self.views)
         ]
         amounts = {FORWARD: FORWARD_METRES, LEFT: TURN_DEGREES, RIGHT: TURN_DEGREES}
-        agent.action_space = {
-            name: habitat_sim.agent.ActionSpec(
-                name, habitat_sim.agent.ActuationSpec(amount=amounts[action])
-            )
-            for action, name in MOVES.items()
-        }
+        agent.action_space = {}
+        for action, name in MOVES.items():
+            amount = habitat_sim.agent.ActuationSpec(amount=amounts[action])
+            agent.action_space[name] = habitat_sim.agent.ActionSpec(name, amount)
         return habitat_sim.Configuration(backend, [agent])
 
     def _camera(self, kind: str, view: int) -> Any:
         """Return the camera of a view, 30 degrees to the right per view; Habitat's yaw is left."""
         habitat_sim = _habitat_sim()
+        types = habitat_sim.SensorType
         spec = habitat_sim.CameraSensorSpec()
-        kinds = {RGB: habitat_sim.SensorType.COLOR, DEPTH: habitat_sim.SensorType.DEPTH}
         spec.uuid = f"{kind}{view}"
-        spec.sensor_type = kinds[kind]
+        spec.sensor_type = types.COLOR if kind == RGB else types.DEPTH
         spec.resolution = [self.size, self.size]
         spec.hfov = HFOV_DEGREES
         spec.position = [0.0, CAMERA_HEIGHT, 0.0]
@@ -309,6 +299,10 @@ class HabitatWorld(World):
     def _position(self) -> np.ndarray:
         return np.array(self._sim.get_agent(0).get_state().position, np.float32)
 
+    def _heading(self) -> float:
+        rotation = self._sim.get_agent(0).get_state().rotation
+        return 2 * math.atan2(float(rotation.imag[1]), float(rotation.real))
+
     def close(self) -> None:
         """Free the simulator."""
         if self._sim is not None:
@@ -341,18 +335,13 @@ class NavmeshExpert(Expert):
         if world.distance_to_goal() < world._rule.stop_within:
             return STOP
         position = world._position()
-        finder = world._sim.pathfinder
-        rotation = world._sim.get_agent(0).get_state().rotation
-        heading = 2 * math.atan2(float(rotation.imag[1]), float(rotation.real))
-        turns = sorted(range(-12, 13), key=abs)
-        distances = []
-        for turn in turns:
-            angle = heading + math.radians(TURN_DEGREES) * turn
-            step = np.array([-math.sin(angle), 0.0, -math.cos(angle)]) * FORWARD_METRES
-            end = np.array(finder.try_step(position, position + step))
-            distances.append(world.distance_to_goal(end))
-        best = turns[int(np.argmin(distances))]
-        return FORWARD if best == 0 else LEFT if best > 0 else RIGHT
+
+        def distance_after(heading: float) -> float:
+            step = np.array([-math.sin(heading), 0.0, -math.cos(heading)]) * FORWARD_METRES
+            end = world._sim.pathfinder.try_step(position, position + step)
+            return world.distance_to_goal(np.array(end))
+
+        return greedy_action(world._heading(), distance_after)
 
 
 def _habitat_sim() -> Any:

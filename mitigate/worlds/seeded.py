@@ -28,11 +28,11 @@ def seeded_episodes(seeds: Iterable[int], instruction: str = "Reach the goal.") 
         ValueError: A seed is not a whole number from 0 to 2147483647.
     """
     seeds = [int(seed) if isinstance(seed, np.integer) else seed for seed in seeds]
-    invalid = [seed for seed in seeds if not is_seed(seed)]
-    if invalid:
-        raise ValueError(
-            f"The seed must be a whole number from 0 to 2147483647, got {invalid[0]!r:.80}."
-        )
+    for seed in seeds:
+        if not is_seed(seed):
+            raise ValueError(
+                f"The seed must be a whole number from 0 to 2147483647, got {seed!r:.80}."
+            )
     return [
         Episode(
             episode_id=str(seed),
@@ -178,6 +178,13 @@ class SeededWorld(World):
                 "environment end its episodes."
             )
         _check_success(success, rule)
+        missing = [entry or name for name, entry in entries.items() if entry not in arrays]
+        if missing or not entries:
+            raise ValueError(
+                f"The observation has no array {', '.join(missing) or 'rgb or depth'}; it has "
+                f"{', '.join(map(str, arrays)) or 'none'}. Name its frames: "
+                "entries={'rgb': 'image'}."
+            )
         self.env = env
         self.action_space = action_space
         self.entries = dict(entries)
@@ -186,31 +193,16 @@ class SeededWorld(World):
         self.limit = limit
         self.rule = RETURN if score == RETURN else rule or f"{self.success} at the end"
         self.extra = tuple(extra)
-        missing = [
-            repr(entry) if entry else name
-            for name, entry in self.entries.items()
-            if entry not in arrays
-        ]
-        if missing or not self.entries:
-            raise ValueError(
-                f"The observation has no array {', '.join(missing) or 'rgb or depth'}; it has "
-                f"{', '.join(map(str, arrays)) or 'none'}. Name its frames: "
-                "entries={'rgb': 'image'}."
-            )
         self.sensors: dict[str, Sensor] = {}
-        for name, entry in self.entries.items():
+        for name, entry in entries.items():
             shape, dtype, high = arrays[entry]
+            if name in (RGB, DEPTH):
+                _check_format(name, entry, tuple(shape), dtype)
             if name == DEPTH:
                 _check_unit(entry, dtype, high, unit)
-            depth_range = {"unit": "m", "high": high * self.unit} if name == DEPTH else {}
-            self.sensors[name] = Sensor(name, tuple(shape), dtype, **depth_range)  # type: ignore[arg-type]
-        if RGB in self.sensors and self.sensors[RGB].dtype != "uint8":
-            raise ValueError(
-                f"RGB must be uint8 in 0-255, got {self.sensors[RGB].dtype}. Remove wrappers that "
-                "scale or transpose frames."
-            )
-        for name in [name for name in (RGB, DEPTH) if name in self.sensors]:
-            _check_shape(name, self.entries[name], self.sensors[name].shape)
+                self.sensors[name] = Sensor(name, tuple(shape), dtype, "m", high=high * self.unit)
+            else:
+                self.sensors[name] = Sensor(name, tuple(shape), dtype)
 
         self.native = NativeFormat(
             dict(self.entries),
@@ -335,21 +327,17 @@ class SeededWorld(World):
         """Return an observation with copies, because an environment may reuse its buffers."""
         frames = {name: np.array(values[entry]) for name, entry in self.entries.items()}
         for name in {RGB, DEPTH}.intersection(frames):
-            self._check_frame(name, frames[name])
+            frame, sensor = frames[name], self.sensors[name]
+            if frame.shape != sensor.shape or (name == RGB and frame.dtype != np.uint8):
+                raise ValueError(
+                    f"The {name} frame after step {self._steps} of episode {self._name} must be "
+                    f"{sensor.dtype} {list(sensor.shape)}, as in the environment's space, got "
+                    f"{frame.dtype} {list(frame.shape)}."
+                )
         if DEPTH in frames:
             frames[DEPTH] = self._metres(frames[DEPTH])
         pose = {POSE: frames.pop(POSE)} if POSE in frames else {}
         return Observation(pose, lambda: frames, tuple(frames))
-
-    def _check_frame(self, name: str, frame: np.ndarray) -> None:
-        """Raise ValueError for a frame that differs from the environment's space."""
-        sensor = self.sensors[name]
-        if frame.shape != sensor.shape or (name == RGB and frame.dtype != np.uint8):
-            raise ValueError(
-                f"The {name} frame after step {self._steps} of episode {self._name} must be "
-                f"{sensor.dtype} {list(sensor.shape)}, as in the environment's space, got "
-                f"{frame.dtype} {list(frame.shape)}."
-            )
 
     def _metres(self, depth: np.ndarray) -> np.ndarray:
         """Convert depth to float32 metres; the first frame of an episode is checked."""
@@ -384,30 +372,35 @@ def _as_bool(value: Any, source: str, episode: str) -> bool:
 
 def _check_success(success: Any, rule: str | None) -> None:
     """Raise ValueError for an invalid ``success`` argument, or a function without a rule."""
-    if callable(success) and not rule:
-        raise ValueError(
-            "A success function needs rule=, the success rule in words for rows and tables, such "
-            'as rule="return > 0".'
-        )
-    if not (success is None or callable(success) or (isinstance(success, str) and success)):
+    if callable(success):
+        if not rule:
+            raise ValueError(
+                "A success function needs rule=, the success rule in words for rows and tables, "
+                'such as rule="return > 0".'
+            )
+    elif success is not None and not (isinstance(success, str) and success):
         raise ValueError(
             f"success must be the name of an entry or a function, got {success!r:.80}. Set "
             'success="is_success", or success=lambda end: end.total > 0 with rule="return > 0".'
         )
 
 
-def _check_shape(name: str, entry: str, shape: tuple[int, ...]) -> None:
-    """Raise ValueError for a frame shape that ``corruptions/suite.py`` does not support."""
+def _check_format(name: str, entry: str, shape: tuple[int, ...], dtype: str) -> None:
+    """Raise ValueError for frames that ``corruptions/suite.py`` does not support."""
+    if name == RGB and dtype != "uint8":
+        raise ValueError(
+            f"RGB must be uint8 in 0-255, got {dtype}. Remove wrappers that scale or transpose "
+            "frames."
+        )
+    channels = 3 if name == RGB else 1
     flat = name == DEPTH and len(shape) == 2
-    if flat or (len(shape) in (3, 4) and shape[-1] == (3 if name == RGB else 1)):
-        return
-    channels = "3" if name == RGB else "1"
-    raise ValueError(
-        f"The shape of the {name} frames{f' {entry!r}' if entry else ''} must be "
-        f"[H, W, {channels}], or [views, H, W, {channels}] for a panorama (channels last, no "
-        f"alpha, no grey, no stack), got {list(shape)}. Wrap the environment "
-        "(gymnasium.wrappers.TransformObservation)."
-    )
+    if not flat and (len(shape) not in (3, 4) or shape[-1] != channels):
+        raise ValueError(
+            f"The shape of the {name} frames{f' {entry!r}' if entry else ''} must be "
+            f"[H, W, {channels}], or [views, H, W, {channels}] for a panorama (channels last, no "
+            f"alpha, no grey, no stack), got {list(shape)}. Wrap the environment "
+            "(gymnasium.wrappers.TransformObservation)."
+        )
 
 
 def _check_unit(entry: str, dtype: str, high: float, unit: float | None) -> None:
@@ -421,7 +414,6 @@ def _check_unit(entry: str, dtype: str, high: float, unit: float | None) -> None
         )
     if unit is None and high <= 1:
         raise ValueError(
-            f"The depth {entry!r} ends at {high:g}, so it may be normalised to [0, 1], as in "
-            "habitat. Set unit= to the metres of 1 (10 for a sensor of 0 to 10 m), or unit=1.0 if "
-            "it is in metres."
+            f"The depth {entry!r} ends at {high:g}, so it may be normalised to [0, 1]. Set unit= "
+            "to the metres of 1 (10 for a sensor of 0 to 10 m), or unit=1.0 if it is in metres."
         )

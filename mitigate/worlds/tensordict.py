@@ -253,7 +253,7 @@ def _dotted(key: str | tuple[str, ...]) -> str:
 
 
 def _list_episodes(episodes: Any) -> list[Episode]:
-    """Return the episodes of a file or an iterable; raise ValueError if there are none."""
+    """Return the episodes of a file or an iterable; raise ValueError if it is empty."""
     is_file = isinstance(episodes, (Path, str))
     listed = list(read_episodes(episodes)) if is_file else list(episodes)
     if not listed:

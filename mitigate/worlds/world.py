@@ -15,7 +15,15 @@ from typing import Any, Protocol, runtime_checkable
 import numpy as np
 
 from mitigate.core.contracts import take_over
-from mitigate.core.observation import DEPTH, Observation, Sensor
+from mitigate.core.observation import (
+    DEPTH,
+    FORWARD,
+    LEFT,
+    RIGHT,
+    TURN_DEGREES,
+    Observation,
+    Sensor,
+)
 from mitigate.core.spaces import ActionSpace
 from mitigate.corruptions import Corruption, DepthSensor, Schedule, corrupt_observation
 from mitigate.corruptions.schedule import drawn
@@ -290,7 +298,7 @@ class Corrupted(WorldWrapper):
 def depth_sensor(sensors: Mapping[str, Sensor]) -> DepthSensor:
     """Return the depth range and the value for no reading of a world's depth sensor.
 
-    An unlimited range is replaced by that of R2R-CE.
+    An unlimited range is replaced by the range of R2R-CE.
     """
     default = DepthSensor()
     if DEPTH not in sensors:
@@ -315,6 +323,19 @@ def expert_of(world: World) -> Expert:
             "the actions to take or the distances to the goal (docs/bring-your-own.md)."
         )
     return expert if isinstance(expert, Expert) else _ExpertView(expert)
+
+
+def greedy_action(heading: float, distance_after: Callable[[float], float]) -> int:
+    """Return FORWARD, or the turn towards the heading whose next step ends nearest to the goal.
+
+    Args:
+        heading: Heading of the agent in radians.
+        distance_after: Returns the distance to the goal after a step along a heading.
+    """
+    turns = sorted(range(-12, 13), key=abs)
+    headings = [heading + math.radians(TURN_DEGREES) * turn for turn in turns]
+    best = turns[int(np.argmin([distance_after(each) for each in headings]))]
+    return FORWARD if best == 0 else LEFT if best > 0 else RIGHT
 
 
 class _ExpertView(Expert):

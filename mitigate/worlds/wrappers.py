@@ -55,7 +55,7 @@ class CorruptObservation(gymnasium.ObservationWrapper):
         rgb: Name of the RGB entry of a ``Dict``.
         depth: Name of the depth entry of a ``Dict``.
         pose: Name of an entry float [3] = (x, y, heading in radians, counter-clockwise), which
-            keeps a flare at its place in the world; None if there is none.
+            keeps a flare at its place in the world; None without a pose.
         sensor: Depth range and value for no reading.
         normalised: Whether depth is in [0, 1] over the sensor's range instead of in metres.
 
@@ -144,8 +144,9 @@ class CorruptObservation(gymnasium.ObservationWrapper):
         return {**observation, **{self._entries[name]: frame for name, frame in corrupted.items()}}
 
     def _check(self, space: gymnasium.Space, normalised: bool) -> None:
-        named = isinstance(space, gymnasium.spaces.Dict)
-        spaces: Mapping[Any, Any] = space.spaces if named else {self._whole: space}
+        spaces: Mapping[Any, Any] = {self._whole: space}
+        if isinstance(space, gymnasium.spaces.Dict):
+            spaces = space.spaces
         boxes = {name: spaces[entry] for name, entry in self._entries.items() if entry in spaces}
         if POSE in self._entries and POSE not in boxes:
             raise ValueError(

@@ -57,7 +57,7 @@ WRONG = {
         ("+agent.adapters.target_modules=['(.*)*(.*)*x']", "patterns without groups"),
         ("env.size=10000000", "8 to 2048 pixels"),
         ("env.size=-4", "8 to 2048 pixels"),
-        ("env.views=5", "views=5"),
+        ("env.views=5", "views must be 12"),
         ("workers=100000", "got 100000"),
         ("workers=-1", "got -1"),
         (f"rollouts={HUGE}", "rollouts="),

@@ -26,12 +26,12 @@ def cluster():
 
     path = os.environ.get("PYTHONPATH")
     os.environ["PYTHONPATH"] = os.pathsep.join([str(Path(__file__).parents[2]), path or ""])
-    made = Cluster(initialize_head=True, head_node_args=HEAD)
-    made.nodes = [made.add_node(num_cpus=1) for _ in range(2)]
-    ray.init(address=made.address, log_to_driver=False)
-    yield made
+    built = Cluster(initialize_head=True, head_node_args=HEAD)
+    built.nodes = [built.add_node(num_cpus=1) for _ in range(2)]
+    ray.init(address=built.address, log_to_driver=False)
+    yield built
     ray.shutdown()
-    made.shutdown()
+    built.shutdown()
 
 
 @pytest.fixture

@@ -33,9 +33,7 @@ for name in "ab":
 """
 
 
-def test_a_condition_that_lost_its_worker_is_run_anew_and_a_finished_one_is_kept(
-    ray_launcher, tmp_path, capsys
-):
+def test_lost_condition_runs_again(ray_launcher, tmp_path, capsys):
     program, out = tmp_path / "agent.py", tmp_path / "o"
     program.write_text(AGENT)
     command = [sys.executable, str(program), str(tmp_path / "died"), "{condition}"]
@@ -45,7 +43,7 @@ def test_a_condition_that_lost_its_worker_is_run_anew_and_a_finished_one_is_kept
     spatter = make_cells(plan)[1]
     assert run_on_launcher(plan, [spatter]) == []
     assert (tmp_path / "died").exists() and "again on another" in capsys.readouterr().out
-    found = [(row["episode_id"], row["rule"]) for row in spatter.rows()]
-    assert {episode for episode, _ in found} == {"a", "b"} and len(found) == len({*found})
+    results = [(row["episode_id"], row["rule"]) for row in spatter.rows()]
+    assert {episode for episode, _ in results} == {"a", "b"} and len(results) == len({*results})
     assert run_on_launcher(plan, [spatter]) == []
     assert "spatter-s0.6: done before" in capsys.readouterr().out

@@ -55,72 +55,72 @@ pytestmark = pytest.mark.xdist_group("launchers")  # one cluster is enough
 
 def run(launcher, task, workers=2):
     """Results by number, each once, and the processes that worked."""
-    found = {}
+    output = {}
     with Progress("jobs", 18, unit="job") as progress:
         for item in results(launcher, task, GROUPS, workers, progress):
             if item is not None:
-                assert item[0] not in found
-                found[item[0]] = item[1]
-    values = {number: value for number, (value, _) in found.items()}
-    return values, {process for _, process in found.values()}
+                assert item[0] not in output
+                output[item[0]] = item[1]
+    values = {number: value for number, (value, _) in output.items()}
+    return values, {process for _, process in output.values()}
 
 
 EXPECTED = {3 * g + i: 10 * g + i for g in range(6) for i in range(3)}
 
 
-def test_ray_gives_every_result_once_from_processes_of_its_own(ray_launcher, tmp_path):
+def test_ray_yields_every_result_once(ray_launcher, tmp_path):
     values, processes = run(ray_launcher, Squares(tmp_path, seconds=0.05))
     assert values == EXPECTED
     assert 1 <= len(processes) <= 2 and os.getpid() not in processes
 
 
-def test_ray_gives_the_jobs_of_a_killed_worker_to_another(ray_launcher, tmp_path):
+def test_ray_reruns_the_jobs_of_a_killed_worker(ray_launcher, tmp_path):
     values, _ = run(ray_launcher, Squares(tmp_path, deadly=[(1, 1), (4, 0)]))
     assert values == EXPECTED
     assert sorted(p.name for p in tmp_path.glob("died-*")) == ["died-1-1", "died-4-0"]
 
 
-def test_ray_says_which_job_no_worker_survives(ray_launcher, tmp_path):
+def test_ray_names_a_job_that_kills_workers(ray_launcher, tmp_path):
     with pytest.raises(WorkersDied, match=r"job \(2, 2\).*3 times"):
         run(ray_launcher, Squares(tmp_path, always=[(2, 2)]))
 
 
-def test_what_a_job_raises_is_raised_here(ray_launcher, tmp_path):
+def test_results_raise_errors_of_jobs(ray_launcher, tmp_path):
     with pytest.raises(ValueError, match="makes no sense"):
         run(ray_launcher, Squares(tmp_path, wrong=[(3, 1)]))
 
 
-def test_a_node_that_dies_loses_no_result_and_doubles_none(cluster, ray_launcher, tmp_path):
-    task, found = Squares(tmp_path, seconds=0.15), {}
+def test_ray_survives_a_lost_node(cluster, ray_launcher, tmp_path):
+    task, output = Squares(tmp_path, seconds=0.15), {}
     with Progress("jobs", 18, unit="job") as progress:
         for item in results(ray_launcher, task, GROUPS, 3, progress):
             if item is None:
                 continue
-            assert item[0] not in found
-            found[item[0]] = item[1][0]
-            if len(found) == 4:
+            assert item[0] not in output
+            output[item[0]] = item[1][0]
+            if len(output) == 4:
                 cluster.remove_node(cluster.nodes.pop(), allow_graceful=False)
-    assert found == EXPECTED
+    assert output == EXPECTED
 
 
-def test_ray_is_asked_how_many_workers_it_has_room_for(ray_launcher):
+def test_ray_count_depends_on_the_cluster(ray_launcher):
     assert 1 <= count(ray_launcher, None, 1000, 40) <= 3
     assert count(ray_launcher, 5, 1000, 40) == 5
 
 
-def test_slurm_jobs_give_every_result_once(slurm_launcher, tmp_path):
+def test_slurm_yields_every_result_once(slurm_launcher, tmp_path):
     values, processes = run(slurm_launcher(), Squares(tmp_path))
     assert values == EXPECTED
     assert len(processes) == 2
     assert not list((tmp_path / "slurm").iterdir())  # nothing is left behind
 
 
-def test_the_rest_of_a_killed_slurm_job_is_submitted_again(slurm_launcher, tmp_path):
+def test_slurm_resubmits_after_a_killed_job(slurm_launcher, tmp_path):
     values, _ = run(slurm_launcher(), Squares(tmp_path, deadly=[(2, 1)]))
     assert values == EXPECTED
 
 
-def test_a_wrong_job_is_told_at_once_and_not_tried_on_other_nodes(slurm_launcher, tmp_path):
+def test_slurm_raises_a_value_error_at_once(slurm_launcher, tmp_path):
     with pytest.raises(ValueError, match="makes no sense"):
         run(slurm_launcher(attempts=2), Squares(tmp_path, wrong=[(0, 1)]), workers=1)
     left = [path.name for path in (tmp_path / "slurm").rglob("*")]
@@ -129,7 +129,7 @@ def test_a_wrong_job_is_told_at_once_and_not_tried_on_other_nodes(slurm_launcher
 
 def test_slurm_resubmits_the_rest_of_a_share(tmp_path, monkeypatch):
     """A group is what a process takes: as one group the rest would be one process's."""
-    given, cancelled = [], []
+    options, cancelled = [], []
 
     class Job:
         job_id = 1
@@ -138,12 +138,12 @@ def test_slurm_resubmits_the_rest_of_a_share(tmp_path, monkeypatch):
             self.lines, self.groups = lines, groups
 
         def done(self):
-            if len(given) == 1:  # the first ends early, with one result
+            if len(options) == 1:  # the first ends early, with one result
                 self.lines.write_text('{"job": 0, "result": [0, 0]}\n')
             else:
-                found = [n for group in self.groups for n, _ in group]
-                made = [json.dumps({"job": n, "result": [n, 0]}) for n in found]
-                self.lines.write_text("\n".join(made) + "\n")
+                output = [n for group in self.groups for n, _ in group]
+                built = [json.dumps({"job": n, "result": [n, 0]}) for n in output]
+                self.lines.write_text("\n".join(built) + "\n")
             return True
 
         def exception(self):
@@ -156,17 +156,17 @@ def test_slurm_resubmits_the_rest_of_a_share(tmp_path, monkeypatch):
         most = 9
 
         def submit(self, serve, task, groups, processes, lines):
-            if len(given) == self.most:
+            if len(options) == self.most:
                 raise OSError("submit limit")
-            given.append([[number for number, _ in group] for group in groups])
+            options.append([[number for number, _ in group] for group in groups])
             return Job(groups, lines)
 
     monkeypatch.setattr(slurm_jobs, "check", lambda launcher: None)
     monkeypatch.setattr(slurm_jobs, "_executor", lambda launcher, folder: Executor())
     launcher = SlurmConfig(folder=str(tmp_path / "slurm"))
     run(launcher, Squares(tmp_path), workers=1)
-    assert given[0][0] == [0, *given[1][0]] and given[1][1:] == given[0][1:] != []
-    given.clear()
+    assert options[0][0] == [0, *options[1][0]] and options[1][1:] == options[0][1:] != []
+    options.clear()
     monkeypatch.setattr(Executor, "most", 1)
     with pytest.raises(OSError, match="submit limit"):
         run(launcher, Squares(tmp_path), workers=2)
@@ -185,7 +185,7 @@ def test_launcher_rejects_invalid_numbers(number):
         chosen(kind(**number))
 
 
-def test_without_slurm_it_says_what_to_do(tmp_path, monkeypatch):
+def test_slurm_explains_a_missing_sbatch(tmp_path, monkeypatch):
     pytest.importorskip("submitit")
     monkeypatch.setenv("PATH", "")
     launcher = SlurmConfig(folder=str(tmp_path))
@@ -204,26 +204,26 @@ def test_without_slurm_it_says_what_to_do(tmp_path, monkeypatch):
     ],
     ids=lambda value: str(value)[:40],
 )
-def test_a_launcher_that_is_none_is_told_when_it_is_chosen(launcher, package, says):
+def test_launcher_rejects_an_unknown_name(launcher, package, says):
     pytest.importorskip(package)
     with pytest.raises(ValueError, match=says):
         chosen(launcher)
 
 
 @pytest.mark.parametrize("address", [None, "auto", "10.0.0.1:6379", "ray://head:10001"])
-def test_an_address_is_of_a_form_that_ray_knows(address):
+def test_ray_rejects_an_invalid_address(address):
     pytest.importorskip("ray")
     assert chosen(RayConfig(address=address)).address == address
 
 
-def test_what_is_not_installed_is_told_when_it_is_chosen(monkeypatch):
+def test_launcher_names_a_missing_package(monkeypatch):
     for module, launcher in ((slurm_jobs, SlurmConfig()), (ray_actors, RayConfig())):
         monkeypatch.setattr(module, "find_spec", lambda name: None)
         with pytest.raises(ValueError, match=r"pip install -e '.\[cluster\]'"):
             chosen(launcher)
 
 
-def test_local_is_what_it_was(tmp_path):
+def test_local_launcher_runs_here(tmp_path):
     values, _ = run(LauncherConfig(), Squares(tmp_path))
     assert values == EXPECTED
 

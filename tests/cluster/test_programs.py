@@ -55,23 +55,23 @@ def chain(folder: Path, name: str, deadly: bool = False, code: str = ROWS) -> pr
 
 def run(chains, launcher, jobs=2) -> dict[int, programs.Outcome]:
     """The outcome of each chain, each told once."""
-    found: dict[int, programs.Outcome] = {}
+    results: dict[int, programs.Outcome] = {}
 
     def told(number, outcome):
-        assert number not in found
-        found[number] = outcome
+        assert number not in results
+        results[number] = outcome
 
     with Progress("cells", len(chains), unit="cell") as progress:
         programs.run(chains, jobs, launcher, progress, told)
-    return found
+    return results
 
 
 def test_run_reports_cpu_seconds_of_each_chain(tmp_path):
-    made = [chain(tmp_path, name) for name in ("one", "two", "three")]
-    found = run(made, LauncherConfig())
-    assert sorted(found) == [0, 1, 2]
-    for number, one in enumerate(made):
-        assert found[number].problem == "" and {*found[number].seconds} == {"train", "evaluate"}
+    result = [chain(tmp_path, name) for name in ("one", "two", "three")]
+    results = run(result, LauncherConfig())
+    assert sorted(results) == [0, 1, 2]
+    for number, one in enumerate(result):
+        assert results[number].problem == "" and {*results[number].seconds} == {"train", "evaluate"}
         assert (tmp_path / one.name).read_text().split() == [*"abcd"]
         assert one.log.read_text() == "1\n"
 
@@ -79,19 +79,19 @@ def test_run_reports_cpu_seconds_of_each_chain(tmp_path):
 @pytest.mark.parametrize("kind", [pytest.param("ray", marks=pytest.mark.slow), "slurm"])
 def test_chain_resumes_after_its_worker_is_killed(kind, request, tmp_path):
     launcher = request.getfixturevalue(f"{kind}_launcher")
-    made = [chain(tmp_path, "one", deadly=True), chain(tmp_path, "two")]
-    found = run(made, launcher() if kind == "slurm" else launcher)
-    assert [found[n].problem for n in (0, 1)] == ["", ""]
-    assert all({*found[n].seconds} == {"train", "evaluate"} for n in (0, 1))
+    result = [chain(tmp_path, "one", deadly=True), chain(tmp_path, "two")]
+    results = run(result, launcher() if kind == "slurm" else launcher)
+    assert [results[n].problem for n in (0, 1)] == ["", ""]
+    assert all({*results[n].seconds} == {"train", "evaluate"} for n in (0, 1))
     assert (tmp_path / "died").exists()
     assert (tmp_path / "one").read_text().split() == [*"abcd"]  # the first program is gone, too
 
 
 def test_failed_program_ends_only_its_chain(tmp_path):
     wrong = chain(tmp_path, "wrong", code="import sys; print('well'); sys.exit('no such recipe')")
-    found = run([wrong, chain(tmp_path, "right")], LauncherConfig())
-    assert found[0].problem == "train ended with 1 (no such recipe)"
-    assert "evaluate" not in found[0].seconds and found[1].problem == ""
+    results = run([wrong, chain(tmp_path, "right")], LauncherConfig())
+    assert results[0].problem == "train ended with 1 (no such recipe)"
+    assert "evaluate" not in results[0].seconds and results[1].problem == ""
 
 
 SAVES = """
@@ -105,11 +105,11 @@ time.sleep(30)
 """
 
 
-def test_whoever_is_stopped_lets_its_programs_save_first(tmp_path):
-    made = [chain(tmp_path, name, code=SAVES) for name in ("one", "two", "never begun")]
+def test_stopped_chain_lets_its_programs_save(tmp_path):
+    result = [chain(tmp_path, name, code=SAVES) for name in ("one", "two", "never begun")]
 
     def stop():
-        while not all(c.log.is_file() and "ready" in c.log.read_text() for c in made[:2]):
+        while not all(c.log.is_file() and "ready" in c.log.read_text() for c in result[:2]):
             time.sleep(0.05)
         os.kill(os.getpid(), signal.SIGTERM)
 
@@ -118,9 +118,9 @@ def test_whoever_is_stopped_lets_its_programs_save_first(tmp_path):
     stopping.start()
     try:
         with pytest.raises(Ended):
-            run(made, LauncherConfig())
+            run(result, LauncherConfig())
     finally:
         stopping.join()
         signal.signal(signal.SIGTERM, before)
     assert (tmp_path / "one").read_text() == (tmp_path / "two").read_text() == "saved"
-    assert not made[2].log.exists()
+    assert not result[2].log.exists()

@@ -32,7 +32,7 @@ def write(folder, name: str, seed: int, size: int = 12) -> None:
     Image.fromarray(pixels).save(folder / name)
 
 
-def test_a_worlds_frames_are_the_same_each_time_and_carry_labels(world):
+def test_world_frames_are_reproducible_with_labels(world):
     one, two = (collect(world, TRAIN, 10, 0) for _ in range(2))
     assert np.array_equal(one.frames, two.frames) and one.headings == two.headings
     assert one.frames.shape == (10, 24, 24, 3) and set(one.scene) == {0, 1, 2}
@@ -40,24 +40,24 @@ def test_a_worlds_frames_are_the_same_each_time_and_carry_labels(world):
     assert not np.array_equal(collect(world, TRAIN, 10, 1).frames, one.frames)
 
 
-def test_unseen_frames_come_from_the_scenes_of_the_list(world):
+def test_world_frames_take_unseen_scenes_from_the_list(world):
     assert not set(world.scenes(TRAIN)) & set(world.scenes(UNSEEN))
     assert all("/val_unseen/" in name for name in world.scenes(UNSEEN))
-    made = ApartmentsWorld(24, layouts=1)
-    made.__class__ = type("Both", (ApartmentsWorld,), {"scenes": property(lambda s: [seen])})
+    result = ApartmentsWorld(24, layouts=1)
+    result.__class__ = type("Both", (ApartmentsWorld,), {"scenes": property(lambda s: [seen])})
     seen = world.scenes(UNSEEN)[0]
     with pytest.raises(ValueError, match="the report needs unseen scenes"):
-        WorldFrames(made, "rgb", LIST)
+        WorldFrames(result, "rgb", LIST)
 
 
-def test_a_worlds_depth_is_in_metres():
+def test_world_frames_give_metres():
     source = source_of(lambda: ApartmentsWorld(24, layouts=1), "depth", {"a": LIST}, "a", None)
     frames = collect(source, TRAIN, 4, 0)
     assert frames.frames.shape == (4, 24, 24, 1) and frames.frames.dtype == np.float32
     assert 0.1 < frames.frames.max() < 30 and frames.labels is None
 
 
-def test_a_frame_is_corrupted_as_an_instant_of_its_own(world):
+def test_corrupted_treats_a_frame_as_an_observation(world):
     frames = collect(world, TRAIN, 6, 0)
     key = Key(0, "a")
     for index in (0, 5):
@@ -67,7 +67,7 @@ def test_a_frame_is_corrupted_as_an_instant_of_its_own(world):
         )
 
 
-def test_folders_are_scenes_and_the_last_are_unseen(tmp_path):
+def test_folder_frames_hold_out_the_last_scenes(tmp_path):
     for scene in range(5):
         for number in range(3):
             write(tmp_path, f"house{scene}/{number}.png", 10 * scene + number)
@@ -77,14 +77,14 @@ def test_folders_are_scenes_and_the_last_are_unseen(tmp_path):
     assert len(frames) == 8 and frames.labels is None and frames.headings[0] is None
 
 
-def test_folders_called_val_are_the_unseen_ones(tmp_path):
+def test_folder_frames_hold_out_val_folders(tmp_path):
     for scene in ("train/a", "train/b", "val/c"):
         write(tmp_path, f"{scene}/0.png", 0)
     source = FolderFrames(str(tmp_path))
     assert list(source.scenes(UNSEEN)) == ["val/c"]
 
 
-def test_a_single_folder_is_cut_into_blocks(tmp_path):
+def test_folder_frames_split_a_single_folder(tmp_path):
     for number in range(100):
         write(tmp_path, f"{number}.png", number, 2)
     source = FolderFrames(str(tmp_path), block=3)
@@ -95,7 +95,7 @@ def test_a_single_folder_is_cut_into_blocks(tmp_path):
     assert len(few.scenes(TRAIN)) == 20 and len(few.scenes(UNSEEN)) == 5
 
 
-def test_frames_of_several_sizes_are_refused_unless_resized(tmp_path):
+def test_collect_requires_one_size(tmp_path):
     for number in range(4):
         write(tmp_path, f"a{number}/0.png", number, 12 + number % 2)
     with pytest.raises(ValueError, match=r"env.size=PIXELS"):
@@ -104,7 +104,7 @@ def test_frames_of_several_sizes_are_refused_unless_resized(tmp_path):
     assert frames.frames.shape == (3, 8, 8, 3)
 
 
-def test_a_file_of_another_size_is_named_also_where_it_is_of_the_other_split(tmp_path):
+def test_folder_frames_name_a_file_of_another_size(tmp_path):
     for number in range(4):
         write(tmp_path, f"a{number}/0.png", number, 13 if number == 3 else 12)
     source = FolderFrames(str(tmp_path))
@@ -122,13 +122,13 @@ def test_a_file_of_another_size_is_named_also_where_it_is_of_the_other_split(tmp
         ("block", [0, -1, 2.5]),
     ],
 )
-def test_a_number_that_reads_no_folder_is_told_by_its_option(tmp_path, name, values):
+def test_folder_frames_reject_invalid_options(tmp_path, name, values):
     for value in values:
         with pytest.raises(ValueError, match=rf"env\.(world\.)?{name} must be "):
             FolderFrames(str(tmp_path), **{name: value})
 
 
-def test_a_unit_that_makes_all_depth_too_near_is_told(tmp_path):
+def test_folder_frames_reject_too_small_units(tmp_path):
     for number in range(2):
         (tmp_path / f"s{number}").mkdir()
         Image.fromarray(np.full((6, 6), 1500, np.uint16)).save(tmp_path / f"s{number}/0.png")
@@ -138,7 +138,7 @@ def test_a_unit_that_makes_all_depth_too_near_is_told(tmp_path):
     assert collect(near, TRAIN, 1, 0).frames.max() == np.float32(0.15)  # a wall at 15 cm
 
 
-def test_depth_files_become_metres(tmp_path):
+def test_folder_frames_read_depth_in_metres(tmp_path):
     for number in range(2):
         (tmp_path / f"s{number}").mkdir()
         Image.fromarray(np.full((6, 6), 1500, np.uint16)).save(tmp_path / f"s{number}/0.png")
@@ -150,7 +150,7 @@ def test_depth_files_become_metres(tmp_path):
 HOLES = np.array([[np.nan, np.inf, -np.inf], [-1, 0, 2.5]], np.float32)
 
 
-def test_pixels_without_depth_become_0(tmp_path):
+def test_folder_frames_replace_invalid_depth(tmp_path):
     for number in range(2):
         (tmp_path / f"s{number}").mkdir()
         np.save(tmp_path / f"s{number}/0.npy", HOLES)
@@ -169,7 +169,7 @@ def test_pixels_without_depth_become_0(tmp_path):
         (np.ones((6, 6), np.uint16), "holds uint16"),
     ],
 )
-def test_a_file_that_is_no_depth_is_named(tmp_path, depth, says):
+def test_folder_frames_name_a_file_without_depth(tmp_path, depth, says):
     for number in range(2):
         (tmp_path / f"s{number}").mkdir()
         np.save(tmp_path / f"s{number}/0.npy", depth)
@@ -177,7 +177,7 @@ def test_a_file_that_is_no_depth_is_named(tmp_path, depth, says):
         collect(FolderFrames(str(tmp_path), "depth", size=4), TRAIN, 1, 0)
 
 
-def test_frames_that_show_nothing_are_refused(tmp_path):
+def test_collect_rejects_black_frames(tmp_path):
     for number in range(2):
         (tmp_path / f"s{number}").mkdir()
         np.save(tmp_path / f"s{number}/0.npy", np.full((6, 6), 1e300))
@@ -185,15 +185,15 @@ def test_frames_that_show_nothing_are_refused(tmp_path):
         collect(FolderFrames(str(tmp_path), "depth"), TRAIN, 1, 0)
 
 
-def test_files_that_are_left_out_are_told_with_their_reasons(tmp_path, capsys):
+def test_folder_frames_report_ignored_files(tmp_path, capsys):
     for number in range(5):
         write(tmp_path, f"s{number}/a.png", number)
         Image.new("RGBA", (12, 12)).save(tmp_path / f"s{number}/b.png")
     (tmp_path / "s0/c.png").write_bytes(b"x")
     FolderFrames(str(tmp_path))
-    said = " ".join(capsys.readouterr().out.split())
-    assert "6 left out (5 as s0/b.png, which is a 8-bit RGB with alpha PNG" in said
-    assert "1 as s0/c.png, which is not a PNG file" in said
+    message = " ".join(capsys.readouterr().out.split())
+    assert "6 left out (5 as s0/b.png, which is a 8-bit RGB with alpha PNG" in message
+    assert "1 as s0/c.png, which is not a PNG file" in message
     for file in tmp_path.glob("s*/a.png"):
         file.unlink()
     with pytest.raises(FileNotFoundError, match=r"6 left out \(5 as s0/b.png"):
@@ -204,7 +204,7 @@ def test_files_that_are_left_out_are_told_with_their_reasons(tmp_path, capsys):
 
 
 @pytest.mark.parametrize("spoil", ["grey", "cut"])
-def test_a_picture_that_cannot_be_read_is_named(tmp_path, spoil):
+def test_folder_frames_name_an_unreadable_picture(tmp_path, spoil):
     for number in range(2):
         write(tmp_path, f"s{number}/0.jpg", number)
     file = tmp_path / "s0/0.jpg"
@@ -217,7 +217,7 @@ def test_a_picture_that_cannot_be_read_is_named(tmp_path, spoil):
         collect(FolderFrames(str(tmp_path)), TRAIN, 1, 0)
 
 
-def test_fewer_frames_are_some_of_more(tmp_path):
+def test_collect_selects_a_subset(tmp_path):
     for scene in range(7):
         for number in range(1 + scene % 3):
             write(tmp_path, f"s{scene}/{number}.png", 10 * scene + number)
@@ -227,7 +227,7 @@ def test_fewer_frames_are_some_of_more(tmp_path):
         assert {frame.tobytes() for frame in collect(source, TRAIN, count, 0).frames} <= more
 
 
-def test_what_a_folder_lacks_is_said(tmp_path):
+def test_folder_frames_explain_an_empty_folder(tmp_path):
     with pytest.raises(FileNotFoundError, match="There is no folder"):
         FolderFrames(str(tmp_path / "none"))
     (tmp_path / "notes.txt").write_text("x")
@@ -238,6 +238,6 @@ def test_what_a_folder_lacks_is_said(tmp_path):
         FolderFrames(str(tmp_path)).scenes(TRAIN)
 
 
-def test_a_world_that_cannot_look_from_anywhere_is_named():
+def test_source_of_requires_a_placeable_world():
     with pytest.raises(ValueError, match="Save its frames as PNG and use env=frames"):
         source_of(object, "rgb", {"a": LIST}, "a", None)

@@ -24,9 +24,9 @@ TINY = "tests.encoders.shapes:tiny"
 FRAMES = torch.randint(0, 256, (3, 32, 32, 3), dtype=torch.uint8)
 
 
-def encoder(**given) -> Encoder:
-    given = {"model": TINY, "transform": {"size": 32}, "output": "pool", **given}
-    return Encoder(**given).eval()
+def encoder(**options) -> Encoder:
+    options = {"model": TINY, "transform": {"size": 32}, "output": "pool", **options}
+    return Encoder(**options).eval()
 
 
 def numbered() -> torch.nn.Module:
@@ -34,7 +34,7 @@ def numbered() -> torch.nn.Module:
     return torch.nn.Sequential(torch.nn.Conv2d(3, 4, 3, 2, 1), torch.nn.ReLU(), torch.nn.Flatten())
 
 
-def test_an_import_path_is_called_with_its_arguments():
+def test_load_model_calls_an_import_path():
     assert load_model(TINY, {"width": 12}).fc.in_features == 12
 
 
@@ -50,7 +50,7 @@ def test_an_import_path_is_called_with_its_arguments():
         ("efficientnet_lite_pytorch:EfficientNet.from_name", None, "extra 'encoders'"),
     ],
 )
-def test_a_wrong_model_is_explained(model, kwargs, says, monkeypatch):
+def test_load_model_explains_an_invalid_model(model, kwargs, says, monkeypatch):
     monkeypatch.setitem(sys.modules, "efficientnet_lite_pytorch", None)
     with pytest.raises((ValueError, FileNotFoundError), match=says):
         load_model(model, kwargs)
@@ -58,12 +58,12 @@ def test_a_wrong_model_is_explained(model, kwargs, says, monkeypatch):
 
 def drawn(width: int = 8) -> torch.nn.Module:
     """An encoder whose weights are others each time, but for its classifier."""
-    made = TinyNet(width=width)
-    torch.nn.init.zeros_(made.fc.weight)
-    return made
+    result = TinyNet(width=width)
+    torch.nn.init.zeros_(result.fc.weight)
+    return result
 
 
-def test_weights_that_the_callable_draws_get_no_adapters(tmp_path):
+def test_encoder_rejects_random_weights_with_adapters(tmp_path):
     """They would be lost with the process, and no adapters fit other ones."""
     path, state = f"{__name__}:drawn", torch.random.get_rng_state()
     with pytest.raises(
@@ -99,7 +99,7 @@ def test_weights_that_the_callable_draws_get_no_adapters(tmp_path):
         ("sise", [32]),
     ],
 )
-def test_a_transform_that_is_none_is_told_by_its_option(name, values):
+def test_transform_rejects_invalid_options(name, values):
     for value in values:
         with pytest.raises(ValueError, match=rf"agent\.transform.*{name}"):
             encoder(transform={"size": 32, name: value})
@@ -119,7 +119,7 @@ class Centred(TinyNet):
         return super().forward(x / x.std((1, 2, 3), keepdim=True))
 
 
-def test_features_must_be_finite_for_frames_that_vary(monkeypatch):
+def test_encoder_requires_finite_features(monkeypatch):
     monkeypatch.setattr("mitigate.encoders.model._check_fixed", lambda *_: None)
     assert encoder(model=f"{__name__}:Centred")
     with pytest.raises(ValueError, match=r"float32 \(2, 5\) with NaN or infinity"):
@@ -145,7 +145,7 @@ BROKEN = {
         ("key", r"failed when it was called with {} \(KeyError: 'x', in .*key.py, line 2\)"),
     ],
 )
-def test_what_breaks_in_somebodys_code_is_told_with_its_place(tmp_path, monkeypatch, name, says):
+def test_load_model_locates_errors_of_user_code(tmp_path, monkeypatch, name, says):
     (tmp_path / f"{name}.py").write_text(BROKEN[name])
     monkeypatch.syspath_prepend(tmp_path)
     with pytest.raises(ValueError, match=says):
@@ -161,8 +161,8 @@ class Gives(TinyNet):
 
     def forward(self, x):
         y = super().forward(x)
-        made = {"number": y.sum(), "counts": y.long(), "nothing": None, "deep": {"a": {"b": y}}}
-        return made[self.kind]
+        result = {"number": y.sum(), "counts": y.long(), "nothing": None, "deep": {"a": {"b": y}}}
+        return result[self.kind]
 
 
 @pytest.mark.parametrize(
@@ -177,7 +177,7 @@ class Gives(TinyNet):
         ("missing", None, r"take rgb frames .*\(KeyError: 'missing', in .*, line [0-9]+\)"),
     ],
 )
-def test_an_output_that_is_no_target_is_explained(kind, output, says):
+def test_encoder_explains_an_invalid_output(kind, output, says):
     with pytest.raises(ValueError, match=says):
         encoder(model=f"{__name__}:Gives", kwargs={"kind": kind}, output=output)
 
@@ -189,75 +189,75 @@ def test_an_output_that_is_no_target_is_explained(kind, output, says):
         (lambda v: v.to_sparse(), r"stem.weight is float32 \(8, 3, 3, 3\) sparse_coo, not float32"),
     ],
 )
-def test_weights_of_another_form_are_named(tmp_path, change, says):
+def test_load_weights_names_differences(tmp_path, change, says):
     state = {k: change(v) if v.is_floating_point() else v for k, v in tiny().state_dict().items()}
     torch.save(state, tmp_path / "w.pth")
     with pytest.raises(ValueError, match=says):
         load_weights(tiny(), str(tmp_path / "w.pth"))
 
 
-def test_weights_in_half_precision_are_read(tmp_path):
+def test_load_weights_reads_half_precision(tmp_path):
     torch.save({k: v.half() for k, v in tiny().state_dict().items()}, tmp_path / "w.pth")
-    made = tiny()
-    load_weights(made, str(tmp_path / "w.pth"))
-    assert made.stem.weight.dtype == torch.float32
+    result = tiny()
+    load_weights(result, str(tmp_path / "w.pth"))
+    assert result.stem.weight.dtype == torch.float32
 
 
-def test_a_torchscript_takes_adapters_before_and_behind(tmp_path):
+def test_torchscript_gets_outer_adapters(tmp_path):
     torch.jit.trace(tiny().eval(), torch.randn(2, 3, 32, 32)).save(str(tmp_path / "net.ts"))
-    made = encoder(model=str(tmp_path / "net.ts"), output=None, adapters={"middle": 8})
-    assert isinstance(made.model, Wrapped)
-    wanted = tiny().eval()(made.transform(FRAMES))
-    torch.testing.assert_close(made(FRAMES), wanted)
+    result = encoder(model=str(tmp_path / "net.ts"), output=None, adapters={"middle": 8})
+    assert isinstance(result.model, Wrapped)
+    expected = tiny().eval()(result.transform(FRAMES))
+    torch.testing.assert_close(result(FRAMES), expected)
 
 
-def test_a_torchscript_can_be_trained_whole(tmp_path):
+def test_torchscript_trains_with_tune_all(tmp_path):
     torch.jit.trace(tiny().eval(), torch.randn(2, 3, 32, 32)).save(str(tmp_path / "net.pt"))
-    made = encoder(model=str(tmp_path / "net.pt"), output=None, tune="all")
-    made(FRAMES).sum().backward()
-    assert any(p.grad is not None for p in made.model.parameters())
+    result = encoder(model=str(tmp_path / "net.pt"), output=None, tune="all")
+    result(FRAMES).sum().backward()
+    assert any(p.grad is not None for p in result.model.parameters())
 
 
-def test_an_exported_program_is_hooked_inside(tmp_path):
+def test_exported_program_gets_inner_adapters(tmp_path):
     size = {0: torch.export.Dim("n")}
     program = torch.export.export(
         tiny().eval(), (torch.randn(2, 3, 32, 32),), dynamic_shapes=(size,)
     )
     torch.export.save(program, tmp_path / "net.pt2")
-    made = encoder(model=str(tmp_path / "net.pt2"), adapters={"targets": [r"blocks\.\d"]})
-    wanted = encoder()(FRAMES)
-    torch.testing.assert_close(made(FRAMES), wanted)
-    assert {"blocks.0", "blocks.3"} <= set(loading_adapted(made))
+    result = encoder(model=str(tmp_path / "net.pt2"), adapters={"targets": [r"blocks\.\d"]})
+    expected = encoder()(FRAMES)
+    torch.testing.assert_close(result(FRAMES), expected)
+    assert {"blocks.0", "blocks.3"} <= set(loading_adapted(result))
 
 
-def loading_adapted(made: Encoder) -> list[str]:
+def loading_adapted(result: Encoder) -> list[str]:
     from mitigate.agents.adapters import adapted
 
-    return adapted(made.model)
+    return adapted(result.model)
 
 
 @pytest.mark.parametrize("kind", ["plain", "nested", "safetensors"])
-def test_weights_are_found_by_their_prefix(tmp_path, kind):
-    wanted = TinyNet()
-    state = {f"net.rgb_encoder.model.{k}": v for k, v in wanted.state_dict().items()}
+def test_load_weights_uses_the_prefix(tmp_path, kind):
+    expected = TinyNet()
+    state = {f"net.rgb_encoder.model.{k}": v for k, v in expected.state_dict().items()}
     state["net.other.weight"] = torch.zeros(2)
     path = tmp_path / ("w.safetensors" if kind == "safetensors" else "w.pth")
     if kind == "safetensors":
         save_file(state, path)
     else:
         torch.save({"state_dict": state, "iteration": 7} if kind == "nested" else state, path)
-    made = tiny()
-    load_weights(made, str(path), "net.rgb_encoder.model.")
-    assert torch.equal(made.stem.weight, wanted.stem.weight)
+    result = tiny()
+    load_weights(result, str(path), "net.rgb_encoder.model.")
+    assert torch.equal(result.stem.weight, expected.stem.weight)
     with pytest.raises(ValueError, match=r"Their names begin with net; agent.prefix is ''"):
-        load_weights(made, str(path))
+        load_weights(result, str(path))
 
 
 class Config(dict):
     """As yacs has it: pickled beside the weights of many navigation agents."""
 
 
-def test_a_config_beside_the_weights_is_left_out_and_runs_nothing(tmp_path, monkeypatch):
+def test_load_weights_ignores_a_pickled_config(tmp_path, monkeypatch):
     module = types.ModuleType("somebodys_config")
     Config.__module__, Config.__qualname__ = "somebodys_config", "Config"
     module.Config = Config
@@ -270,17 +270,17 @@ def test_a_config_beside_the_weights_is_left_out_and_runs_nothing(tmp_path, monk
     assert "somebodys_config" not in sys.modules
 
 
-def test_a_config_of_many_classes_as_habitat_baselines_pickles_it_is_left_out(tmp_path):
+def test_load_weights_ignores_a_habitat_config(tmp_path):
     kinds = [make_dataclass(f"Kind{n}", [("value", int, n)]) for n in range(40)]
     schema = {kind.__name__: OmegaConf.structured(kind) for kind in kinds}
     for kind in kinds:
         globals()[kind.__name__] = kind
         kind.__module__ = __name__
-    held = {"state_dict": tiny().state_dict(), "config": OmegaConf.create(schema)}
-    held["extra_state"] = {"step": defaultdict(list, a=[1])}
-    torch.save(held, tmp_path / "w.pth")
+    content = {"state_dict": tiny().state_dict(), "config": OmegaConf.create(schema)}
+    content["extra_state"] = {"step": defaultdict(list, a=[1])}
+    torch.save(content, tmp_path / "w.pth")
     load_weights(tiny(), str(tmp_path / "w.pth"))
-    torch.save(held, tmp_path / "old.pth", _use_new_zipfile_serialization=False)
+    torch.save(content, tmp_path / "old.pth", _use_new_zipfile_serialization=False)
     with pytest.raises(ValueError, match=r"torch.save\(model.state_dict\(\), path\)"):
         load_weights(tiny(), str(tmp_path / "old.pth"))
 
@@ -292,7 +292,7 @@ class Runs:
         return (print, ("this ran",))
 
 
-def test_nothing_is_unpickled(tmp_path, capsys):
+def test_load_weights_unpickles_nothing(tmp_path, capsys):
     (tmp_path / "w.pth").write_bytes(pickle.dumps({"a": Runs()}))
     with pytest.raises(ValueError, match="cannot be read without running code|holds no tensors"):
         load_weights(tiny(), str(tmp_path / "w.pth"))
@@ -309,19 +309,19 @@ class Commands:
         return (os.system, ("exit",))
 
 
-def test_nobody_is_told_to_read_a_hostile_file_with_less_care(tmp_path):
+def test_load_weights_never_suggests_unsafe_loading(tmp_path):
     torch.save({**tiny().state_dict(), "a": Commands()}, tmp_path / "w.pth")
     with pytest.raises(ValueError, match=r"\(.*\.system .*\)\. If you trust the file") as caught:
         load_weights(tiny(), str(tmp_path / "w.pth"))
     assert "weights_only" not in str(caught.value)
 
 
-def test_a_missing_package_of_weights_names_the_extra():
+def test_find_weights_names_the_missing_extra():
     with pytest.raises(FileNotFoundError, match="is not installed|cannot be imported"):
         loading.find_weights("pkg://no_such_package/w.pth")
 
 
-def test_the_output_is_an_item_a_module_or_an_error_that_lists_them():
+def test_encoder_output_names_an_item_or_module():
     assert encoder().output == "pool" and encoder()(FRAMES).shape == (3, 8, 1, 1)
     assert encoder(output=None)(FRAMES).shape == (3, 5)
     with pytest.raises(
@@ -330,14 +330,14 @@ def test_the_output_is_an_item_a_module_or_an_error_that_lists_them():
         encoder(output="pol")
 
 
-def test_a_module_whose_name_is_a_number_is_an_output():
+def test_encoder_output_accepts_a_numbered_module():
     numbered = {"model": f"{__name__}:numbered", "tune": "all"}
     assert encoder(**numbered, output=1)(FRAMES).shape == (3, 4, 16, 16)
     with pytest.raises(ValueError, match="agent.output must name an item .* got 7"):
         encoder(**numbered, output=7)
 
 
-def test_an_item_of_what_the_model_returns_is_named():
+def test_encoder_output_explains_an_unknown_item():
     clip = {"hidden_size": 24, "intermediate_size": 48, "num_hidden_layers": 4}
     clip |= {"num_attention_heads": 4, "image_size": 32, "patch_size": 8}
     model = {"model": "tests.encoders.shapes:clip_vit_b32", "kwargs": clip}
@@ -347,7 +347,7 @@ def test_an_item_of_what_the_model_returns_is_named():
     assert torch.equal(tokens.pooled(tokens(FRAMES)), tokens(FRAMES)[:, 0])
 
 
-def test_frames_that_the_encoder_does_not_take_are_named():
+def test_encoder_rejects_unsupported_frames():
     with pytest.raises(ValueError, match=r"does not take depth frames \[2, 1, 32, 32\]"):
         encoder(sensor="depth")
     with pytest.raises(ValueError, match="have 3 values, but depth has 1 channels"):
@@ -358,14 +358,14 @@ def test_frames_that_the_encoder_does_not_take_are_named():
         encoder(tune="adapter")
 
 
-def test_the_encoder_stays_in_eval_mode_in_training():
-    made = encoder(tune="all").train()
-    before = {k: v.clone() for k, v in made.model.named_buffers()}
-    made(FRAMES)
-    assert all(torch.equal(v, before[k]) for k, v in made.model.named_buffers())
+def test_encoder_stays_in_eval_mode():
+    result = encoder(tune="all").train()
+    before = {k: v.clone() for k, v in result.model.named_buffers()}
+    result(FRAMES)
+    assert all(torch.equal(v, before[k]) for k, v in result.model.named_buffers())
 
 
-def test_the_transform_normalises_crops_and_clips():
+def test_transform_normalises_crops_and_clips():
     shape = (1, 20, 40, 3)
     frames = torch.full(shape, 255, dtype=torch.uint8)
     x = Transform(10, mean=[0.5] * 3, std=[0.5] * 3, crop=True)(frames)
@@ -381,12 +381,12 @@ def test_the_transform_normalises_crops_and_clips():
         Transform(2, near=3, far=2)
 
 
-def test_a_transform_takes_numbers_of_numpy():
-    made = Transform(
+def test_transform_accepts_numpy_numbers():
+    result = Transform(
         size=np.int64(8), scale=np.float32(255), mean=np.array([0.5] * 3), std=[np.float32(0.5)] * 3
     )
     frames = torch.full((1, 16, 16, 3), 255, dtype=torch.uint8)
-    assert torch.allclose(made(frames), torch.ones(1, 3, 8, 8))
+    assert torch.allclose(result(frames), torch.ones(1, 3, 8, 8))
     with pytest.raises(
         ValueError, match=r"agent.transform.size must be a whole number .* got True"
     ):

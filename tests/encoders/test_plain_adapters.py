@@ -26,7 +26,7 @@ FILE = Path(plain_adapters.__file__)
 
 @pytest.mark.parametrize("gate", [False, True])
 @pytest.mark.parametrize("name", sorted(ENCODERS))
-def test_it_gives_the_same_bits_as_our_own_loader(name, gate, tmp_path):
+def test_attach_equals_load_adapters(name, gate, tmp_path):
     make, shape, target, *_ = ENCODERS[name]
     torch.manual_seed(0)
     model, frames = make().eval(), torch.randn(5, *shape)
@@ -42,7 +42,7 @@ def test_it_gives_the_same_bits_as_our_own_loader(name, gate, tmp_path):
     assert list(other.state_dict()) == list(state)
 
 
-def test_a_torchscript_is_wrapped(tmp_path):
+def test_attach_wraps_a_torchscript(tmp_path):
     frames = torch.randn(5, 3, 32, 32)
     script = torch.jit.trace(nn.Sequential(nn.Conv2d(3, 8, 3, 2), nn.ReLU()).eval(), frames)
     model = Wrapped(script)
@@ -64,7 +64,7 @@ def saved(folder: Path, gate: bool = False) -> nn.Module:
     return make().eval()
 
 
-def test_a_changed_file_is_refused(tmp_path):
+def test_attach_rejects_a_changed_file(tmp_path):
     model, file = saved(tmp_path), tmp_path / plain_adapters.WEIGHTS
     data = bytearray(file.read_bytes())
     data[-1] ^= 1
@@ -92,7 +92,7 @@ def wrong(folder: Path, name: str, value: torch.Tensor) -> None:
         ("extra", lambda v: v),
     ],
 )
-def test_tensors_that_no_adapter_has_are_refused_by_both_readers(tmp_path, name, change):
+def test_both_readers_reject_surplus_tensors(tmp_path, name, change):
     model = saved(tmp_path)
     tensors = plain_adapters.parse((tmp_path / plain_adapters.WEIGHTS).read_bytes())
     wrong(tmp_path, name, change(tensors["blocks/0.up.bias"].clone()))
@@ -102,7 +102,7 @@ def test_tensors_that_no_adapter_has_are_refused_by_both_readers(tmp_path, name,
     assert not any(m._forward_hooks for m in model.modules())
 
 
-def test_another_encoder_is_refused_unless_told(tmp_path):
+def test_attach_rejects_another_encoder(tmp_path):
     model = saved(tmp_path)
     nn.init.zeros_(model.stem.weight)
     with pytest.raises(ValueError, match="Load those weights first"):
@@ -123,7 +123,7 @@ def test_another_encoder_is_refused_unless_told(tmp_path):
         "conv",
     ],
 )
-def test_settings_of_any_other_form_are_refused(tmp_path, shape):
+def test_attach_rejects_invalid_settings(tmp_path, shape):
     model, file = saved(tmp_path), tmp_path / plain_adapters.SETTINGS
     settings = json.loads(file.read_text())
     settings["adapters"]["blocks.0"] = shape
@@ -134,7 +134,7 @@ def test_settings_of_any_other_form_are_refused(tmp_path, shape):
         plain_adapters.attach(model, tmp_path)
 
 
-def test_adapters_come_in_once(tmp_path):
+def test_attach_rejects_a_second_call(tmp_path):
     model = plain_adapters.attach(saved(tmp_path), tmp_path)
     with pytest.raises(ValueError, match="has adapters already"):
         plain_adapters.attach(model, tmp_path)
@@ -148,7 +148,7 @@ def test_adapters_come_in_once(tmp_path):
 
 
 @pytest.mark.parametrize(("name", "value"), [("kind", "x"), ("gate", 1)])
-def test_our_own_loader_refuses_the_same_settings(tmp_path, name, value):
+def test_load_adapters_rejects_the_same_settings(tmp_path, name, value):
     model, file = saved(tmp_path, gate=True), tmp_path / plain_adapters.SETTINGS
     settings = json.loads(file.read_text())
     settings["adapters"]["blocks.0"][name] = value
@@ -159,20 +159,20 @@ def test_our_own_loader_refuses_the_same_settings(tmp_path, name, value):
 
 
 @pytest.mark.parametrize("cut", [4, 40, -8])
-def test_a_cut_file_is_refused(tmp_path, cut):
+def test_parse_rejects_a_cut_file(tmp_path, cut):
     saved(tmp_path)
     with pytest.raises(ValueError, match="damaged"):
         plain_adapters.parse((tmp_path / plain_adapters.WEIGHTS).read_bytes()[:cut])
 
 
-def test_it_imports_the_standard_library_numpy_and_torch_alone():
+def test_module_imports_only_numpy_and_torch():
     tree = ast.parse(FILE.read_text(encoding="utf-8"), feature_version=(3, 6))
     names = {a.name for n in ast.walk(tree) if isinstance(n, ast.Import) for a in n.names}
     assert names <= {"hashlib", "json", "os", "re", "numpy", "torch", "torch.nn.functional"}
     assert not [n for n in ast.walk(tree) if isinstance(n, ast.ImportFrom)]
 
 
-def test_it_works_as_a_copied_file(tmp_path):
+def test_module_works_as_a_copy(tmp_path):
     """In another process that cannot import this project."""
     saved(tmp_path)
     (tmp_path / "plain_adapters.py").write_text(FILE.read_text(encoding="utf-8"))
@@ -195,7 +195,7 @@ class Policy:
         self.encoder = encoder
 
 
-def test_attach_changes_the_fingerprint_of_the_agent_by_target_and_weights(tmp_path):
+def test_attach_changes_the_fingerprint(tmp_path):
     def encoder() -> nn.Module:
         torch.manual_seed(0)
         return nn.Sequential(nn.Conv2d(3, 8, 3), nn.Conv2d(8, 8, 3)).eval()

@@ -18,7 +18,7 @@ from mitigate.encoders.probe import (
 from mitigate.training.reports import encoder as report
 
 
-def test_average_precision_of_a_list_worked_by_hand():
+def test_average_precision_of_a_known_list():
     guess = np.array([0.9, 0.8, 0.7, 0.6])
     label = np.array([1, 0, 1, 0])
     one = np.ones((1, 4), np.float32)
@@ -27,7 +27,7 @@ def test_average_precision_of_a_list_worked_by_hand():
     assert np.isclose(average_precision(guess, label, twice)[0], 1.0)
 
 
-def test_the_cosine_is_of_what_differs_from_the_mean():
+def test_cosine_subtracts_the_mean():
     rng = np.random.default_rng(0)
     clean = 100 + rng.standard_normal((50, 8))
     other = 100 + rng.standard_normal((50, 8))
@@ -38,28 +38,28 @@ def test_the_cosine_is_of_what_differs_from_the_mean():
     assert retrieval(clean, clean, centre).all() and retrieval(other, clean, centre).mean() < 0.2
 
 
-def test_intervals_are_over_scenes_not_frames():
+def test_resamples_draw_scenes():
     scene = np.repeat(np.arange(10), 20)
     values = np.repeat(np.random.default_rng(0).standard_normal(10), 20)
     score = Resamples(scene).mean(values)
     assert np.isclose(score.value, values.mean())
-    wanted = values[::20].std() / np.sqrt(10)
-    assert np.isclose(score.samples.std(), wanted, rtol=0.15)
+    expected = values[::20].std() / np.sqrt(10)
+    assert np.isclose(score.samples.std(), expected, rtol=0.15)
 
 
-def test_one_scene_gives_no_interval():
+def test_resamples_of_one_scene_are_empty():
     values = np.random.default_rng(0).standard_normal(80)
     resamples = Resamples(np.zeros(80, int))
     score = resamples.mean(values)
     assert np.isclose(score.estimate.value, values.mean())
-    for found in (score.estimate, score.minus(score), average([score, score]).estimate):
-        assert np.isnan([found.low, found.high]).all()
+    for results in (score.estimate, score.minus(score), average([score, score]).estimate):
+        assert np.isnan([results.low, results.high]).all()
     x, labels = values[:, None], values[:, None] > 0
-    found = LinearProbe(x, labels, np.arange(80) % 4).score(x, labels, resamples).estimate
-    assert found.value == 1 and np.isnan(found.low)
+    results = LinearProbe(x, labels, np.arange(80) % 4).score(x, labels, resamples).estimate
+    assert results.value == 1 and np.isnan(results.low)
 
 
-def test_the_probe_finds_a_linear_label_and_not_a_random_one():
+def test_probe_learns_only_a_linear_label():
     rng = np.random.default_rng(0)
     x = rng.standard_normal((400, 6)).astype(np.float32)
     scene = np.repeat(np.arange(20), 20)
@@ -70,7 +70,7 @@ def test_the_probe_finds_a_linear_label_and_not_a_random_one():
         assert low <= score.value <= high and score.samples.shape == (1000,)
 
 
-def test_the_table_pairs_before_and_after(tmp_path, capsys):
+def test_report_pairs_before_and_after(tmp_path, capsys):
     rng = np.random.default_rng(0)
     noise = rng.normal(0, 0.1, 1000)
     scores = {

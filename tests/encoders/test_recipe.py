@@ -45,7 +45,7 @@ def pictures(tmp_path_factory):
     return path
 
 
-def made(**given) -> Encoder:
+def result(**given) -> Encoder:
     given = {"model": "tests.encoders.shapes:tiny", "output": "pool", **given}
     torch.manual_seed(0)
     return Encoder(transform={"size": 32, "mean": [0.5] * 3, "std": [0.25] * 3}, **given)
@@ -67,8 +67,8 @@ def config(tmp_path, pictures, *options: str):
 
 
 @pytest.mark.parametrize("gate", [False, True])
-def test_training_brings_corrupted_features_nearer_to_the_clean_ones(tmp_path, pictures, gate):
-    encoder = made(adapters={"targets": [r"blocks\.\d"], "reduction": 1, "gate": gate})
+def test_training_reduces_the_distance_to_clean_features(tmp_path, pictures, gate):
+    encoder = result(adapters={"targets": [r"blocks\.\d"], "reduction": 1, "gate": gate})
     recipe = recipe_of(encoder, pictures)
     recipe.start()
     first = float(recipe.eval()(recipe.batch(1000))["feat"])
@@ -80,30 +80,30 @@ def test_training_brings_corrupted_features_nearer_to_the_clean_ones(tmp_path, p
     assert recipe.evaluate(0) == {"backbone_unchanged": 1.0}
 
 
-def test_only_corruptions_of_the_encoders_sensor_are_drawn(pictures):
-    recipe = recipe_of(made(), pictures)
+def test_schedule_draws_only_the_modality_of_the_sensor(pictures):
+    recipe = recipe_of(result(), pictures)
     assert "missing_data" not in recipe.schedule.names and "spatter" in recipe.schedule.names
     with pytest.raises(ValueError, match="must contain a corruption of rgb"):
         source = {"world": lambda: FolderFrames(str(pictures))}
         assemble(
             HardenEncoder,
-            made(),
+            result(),
             **source,
             schedule=Schedule("per_frame", 0.6, names=("missing_data",)),
         )
 
 
-def test_micro_batches_add_up_to_the_step(pictures):
+def test_micro_batches_equal_one_batch(pictures):
     values = []
     for micro in (12, 5):
-        recipe = recipe_of(made(), pictures, micro_batch=micro, w_gate=0.0)
+        recipe = recipe_of(result(), pictures, micro_batch=micro, w_gate=0.0)
         recipe.start()
         parts = [recipe(part) for part in recipe.micro_batches(recipe.batch(0))]
         values.append(float(sum(part["cosine"] for part in parts)))
     assert values[0] == pytest.approx(values[1], abs=1e-5)
 
 
-def test_a_folder_of_png_to_a_folder_that_plain_torch_loads(tmp_path, pictures, capsys):
+def test_training_writes_a_folder_for_plain_torch(tmp_path, pictures, capsys):
     cfg = config(tmp_path, pictures, *TINY)
     out = train.run(cfg)
     shown = capsys.readouterr().out
@@ -123,7 +123,7 @@ def test_a_folder_of_png_to_a_folder_that_plain_torch_loads(tmp_path, pictures, 
     assert sum(p.abs().sum() for p in adapter_parameters(again.model)) > 0
 
 
-def test_a_torchscript_file(tmp_path, pictures):
+def test_training_of_a_torchscript_file(tmp_path, pictures):
     torch.jit.trace(tiny().eval(), torch.randn(2, 3, 32, 32)).save(str(tmp_path / "net.ts"))
     own = ["agent=encoder", f"agent.model={tmp_path / 'net.ts'}", "agent.adapters.middle=8"]
     cfg = config(tmp_path, pictures, *own, "evaluation.enabled=false")
@@ -149,19 +149,19 @@ def saved_network(kind: str, path) -> str:
 
 
 @pytest.mark.parametrize(("kind", "tune"), [("ts", "all"), ("pt2", "all"), ("pt2", "adapters")])
-def test_a_network_in_a_file_trains(tmp_path, pictures, kind, tune):
+def test_training_of_a_file_with_a_network(tmp_path, pictures, kind, tune):
     adapters = {"targets": [r"blocks\.\d"]} if tune == "adapters" else None
     net = saved_network(kind, tmp_path)
-    encoder = made(model=net, tune=tune, adapters=adapters, output=None)
+    encoder = result(model=net, tune=tune, adapters=adapters, output=None)
     before = {name: value.clone() for name, value in encoder.state_dict().items()}
     recipe = recipe_of(encoder, pictures)
     Trainer(recipe, steps=1, folder=tmp_path, lr=1e-2, precision="fp32").fit()
     assert any(not torch.equal(v, before[k]) for k, v in encoder.state_dict().items())
     frames = torch.randint(0, 256, (3, 32, 32, 3), dtype=torch.uint8)
-    assert torch.equal(recipe.teacher(frames), made(model=net, tune="all", output=None)(frames))
+    assert torch.equal(recipe.teacher(frames), result(model=net, tune="all", output=None)(frames))
 
 
-def test_before_is_the_encoder_that_the_training_began_with(tmp_path, pictures):
+def test_report_compares_with_the_initial_encoder(tmp_path, pictures):
     own = ["agent=encoder", "agent.model=tests.encoders.shapes:TinyNet", "agent.output=pool"]
     own += ["agent.tune=all", "trainer.lr=1e-9"]  # weights drawn anew, and hardly trained
     out = train.run(config(tmp_path, pictures, *own))
@@ -174,7 +174,7 @@ def test_before_is_the_encoder_that_the_training_began_with(tmp_path, pictures):
     assert "[–] |" in (out / "features.md").read_text()
 
 
-def test_there_is_no_before_of_an_encoder_that_changed(tmp_path, pictures, monkeypatch):
+def test_report_rejects_changed_initial_weights(tmp_path, pictures, monkeypatch):
     cfg = config(tmp_path, pictures, *TINY, "agent.tune=all", "evaluation.enabled=false")
     out, trained = train.run(cfg), build(cfg.agent)
     monkeypatch.setattr("tests.encoders.shapes.tiny", lambda **_: TinyNet())
@@ -182,7 +182,7 @@ def test_there_is_no_before_of_an_encoder_that_changed(tmp_path, pictures, monke
         before_after(read(cfg), None, trained, out)
 
 
-def test_a_run_goes_on_with_the_same_frames_alone(tmp_path, pictures):
+def test_resume_requires_the_same_frames(tmp_path, pictures):
     own = tmp_path / "own"
     shutil.copytree(pictures, own)
     cfg = config(tmp_path, own, *TINY, "evaluation.enabled=false")
@@ -194,7 +194,7 @@ def test_a_run_goes_on_with_the_same_frames_alone(tmp_path, pictures):
         train.run(cfg)
 
 
-def test_a_broken_unseen_frame_shows_before_the_training(tmp_path, pictures):
+def test_training_checks_unseen_frames_first(tmp_path, pictures):
     own = tmp_path / "own"
     shutil.copytree(pictures, own)
     last = own / "s5" / "0.png"
@@ -204,7 +204,7 @@ def test_a_broken_unseen_frame_shows_before_the_training(tmp_path, pictures):
     assert not list(tmp_path.glob("*/encoder/step-*.pt"))
 
 
-def test_all_weights_can_be_tuned(tmp_path, pictures):
+def test_training_tunes_all_weights(tmp_path, pictures):
     cfg = config(tmp_path, pictures, *TINY, "agent.tune=all")
     out = train.run(cfg)
     again = build(cfg.agent)
@@ -212,12 +212,12 @@ def test_all_weights_can_be_tuned(tmp_path, pictures):
     again.load(out / "agent")
     assert not torch.equal(again.model.stem.weight, before)
     plain = tiny()
-    held = plain_adapters.parse((out / "agent/model.safetensors").read_bytes())
-    plain.load_state_dict(held)
+    content = plain_adapters.parse((out / "agent/model.safetensors").read_bytes())
+    plain.load_state_dict(content)
     assert torch.equal(plain.stem.weight, again.model.stem.weight)
 
 
-def test_a_depth_encoder_in_a_world(tmp_path):
+def test_training_of_a_depth_encoder(tmp_path):
     own = ["recipe=encoder", "debug=smoke", *TINY, "+agent.kwargs.channels=1", "agent.sensor=depth"]
     own += ["agent.transform.mean=[0.0]", "agent.transform.std=[1.0]", "agent.transform.far=10"]
     own += ["env.size=32", "stages.encoder.recipe.frames=40", f"runs={tmp_path}", "workers=0"]
@@ -225,26 +225,26 @@ def test_a_depth_encoder_in_a_world(tmp_path):
     assert "Missing data" in (out / "features.md").read_text()
 
 
-def test_the_folder_of_another_encoder_is_refused(tmp_path):
-    made().save(tmp_path)
+def test_load_rejects_the_folder_of_another_encoder(tmp_path):
+    result().save(tmp_path)
     with pytest.raises(ValueError, match="is of an encoder with pool='mean'"):
-        made(pool="flatten").load(tmp_path)
+        result(pool="flatten").load(tmp_path)
     (tmp_path / folders.CARD).write_text('{"format": 1, "sensor": ["rgb"]}')
     with pytest.raises(ValueError, match="does not have the sha256"):
-        made().load(tmp_path)
+        result().load(tmp_path)
     (tmp_path / MANIFEST).unlink()  # as earlier versions wrote it
     with pytest.raises(ValueError, match="sensor must not be"):
-        made().load(tmp_path)
+        result().load(tmp_path)
 
 
-def test_the_card_names_nothing_that_could_be_run(tmp_path):
-    made().save(tmp_path)
+def test_card_contains_no_import_path(tmp_path):
+    result().save(tmp_path)
     text = (tmp_path / folders.CARD).read_text()
     assert "tests.encoders" not in text and "model" not in folders.card(tmp_path)
     OmegaConf.create(folders.card(tmp_path))
 
 
-def test_no_import_path_comes_from_a_folder(tmp_path, pictures):
+def test_load_takes_no_import_path_from_a_folder(tmp_path, pictures):
     """Neither is one written, nor is one read that somebody wrote into it."""
     cfg = config(tmp_path, pictures, *TINY, "evaluation.enabled=false", "agent.tune=all")
     out = train.run(cfg) / "agent"
@@ -257,7 +257,7 @@ def test_no_import_path_comes_from_a_folder(tmp_path, pictures):
         stored_settings(cfg.agent, str(out))
 
 
-def test_the_unit_of_the_loss_is_what_differs_between_frames():
+def test_loss_is_scaled_by_the_variation_of_frames():
     base = torch.randn(1, 3, 4, 4) * 100  # the same for all frames
     frames = base + torch.randn(500, 3, 4, 4) * torch.tensor([1.0, 2.0, 0.0])[:, None, None]
     each = variance(frames, per_channel=True)
@@ -268,12 +268,12 @@ def test_the_unit_of_the_loss_is_what_differs_between_frames():
     assert variance(torch.randn(9, 7), True).shape == (7,)
 
 
-def test_a_resumed_training_gives_the_same_bits(tmp_path, pictures):
+def test_resume_gives_the_same_bits(tmp_path, pictures):
     class Stop(Exception):
         pass
 
     def trained(folder, stop: int | None = None) -> Encoder:
-        recipe = recipe_of(made(), pictures)
+        recipe = recipe_of(result(), pictures)
         made_batch = recipe.batch
 
         def batch(step: int) -> dict:

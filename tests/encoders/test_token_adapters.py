@@ -63,19 +63,19 @@ def shaken(model: nn.Module) -> nn.Module:
 
 
 @pytest.mark.parametrize("gate", [False, True])
-def test_the_adapter_fits_what_the_block_returns_and_changes_nothing_yet(encoder, gate):
+def test_new_adapter_changes_nothing(encoder, gate):
     model, frames, target, kind, batch = encoder
-    wanted = answer(model, frames)
+    expected = answer(model, frames)
     names = insert_adapters(model, [target], run=lambda n: model(frames[:n]), gate=gate)
     for name in names:
         adapter = model.get_submodule(name).adapter
         assert type(adapter) is kind and (batch is None or adapter.batch == batch)
-    assert torch.equal(answer(model, frames), wanted)
-    assert not torch.equal(answer(shaken(model), frames), wanted)
+    assert torch.equal(answer(model, frames), expected)
+    assert not torch.equal(answer(shaken(model), frames), expected)
 
 
 @pytest.mark.parametrize("gate", [False, True])
-def test_each_frame_is_corrected_by_itself(encoder, gate):
+def test_adapter_corrects_each_frame_separately(encoder, gate):
     """Also where the frames are not the first axis."""
     model, frames, target, _, _ = encoder
     insert_adapters(model, [target], run=lambda n: model(frames[:n]), gate=gate)
@@ -84,7 +84,7 @@ def test_each_frame_is_corrected_by_itself(encoder, gate):
     torch.testing.assert_close(whole[3:4], alone, rtol=1e-3, atol=1e-4)
 
 
-def test_a_folder_brings_them_back(encoder, tmp_path):
+def test_load_adapters_restores_token_adapters(encoder, tmp_path):
     model, frames, target, _, _ = encoder
     other = copy.deepcopy(model)
     insert_adapters(model, [target], run=lambda n: model(frames[:n]), gate=True)
@@ -93,26 +93,26 @@ def test_a_folder_brings_them_back(encoder, tmp_path):
     assert torch.equal(answer(other, frames), answer(model, frames))
 
 
-def test_a_gate_that_is_shut_leaves_the_frame_alone():
+def test_closed_gate_changes_nothing():
     model, frames = TinyNet().eval(), torch.randn(3, 3, 16, 16)
-    wanted = model(frames)
+    expected = model(frames)
     insert_adapters(model, [r"blocks\.1"], run=lambda n: model(frames[:n]), gate=True)
     gate = model.get_submodule("blocks.1").adapter.gate
     nn.init.normal_(model.get_submodule("blocks.1").adapter.up.weight)
     nn.init.zeros_(gate.read.weight)
     nn.init.constant_(gate.read.bias, -1e4)
-    assert torch.equal(model(frames), wanted)
+    assert torch.equal(model(frames), expected)
 
 
 @pytest.mark.parametrize("name", ["cnn", "hf-resnet", "hf-clip", "openai-clip"])
-def test_blocks_are_chosen_evenly_from_what_there_is(name):
+def test_choose_spreads_blocks_evenly(name):
     make, shape, *_ = ENCODERS[name]
     model, frames = make().eval(), torch.randn(3, *shape)
-    found = choose(find_sites(model, lambda n: model(frames[:n])), model, 3)
-    assert len(found) == 3 and found[0].endswith(".0") and found[-1].endswith(".3")
+    results = choose(find_sites(model, lambda n: model(frames[:n])), model, 3)
+    assert len(results) == 3 and results[0].endswith(".0") and results[-1].endswith(".3")
 
 
-def test_a_target_that_no_adapter_fits_is_named_with_what_it_returns():
+def test_insert_adapters_names_an_unsupported_target():
     model, frames = TinyNet().eval(), torch.randn(3, 3, 16, 16)
     model.spare = nn.Conv2d(1, 1, 1)
     with pytest.raises(ValueError, match="spare: the encoder does not call it"):
@@ -120,7 +120,7 @@ def test_a_target_that_no_adapter_fits_is_named_with_what_it_returns():
     assert not adapters.adapted(model)
 
 
-def test_the_shapes_at_full_size_are_those_of_the_agents():
+def test_full_size_shapes_match_the_agents():
     """ResNet-50 with GroupNorm, base 32: 1x256x256 depth to 128x4x4."""
     model = shapes.ddppo().eval()
     with torch.no_grad():
@@ -129,6 +129,6 @@ def test_the_shapes_at_full_size_are_those_of_the_agents():
 
 @pytest.mark.parametrize("kind", [ConvAdapter, TokenAdapter])
 @pytest.mark.parametrize("middle", [0, -1])
-def test_a_bottleneck_has_channels(kind, middle):
+def test_bottleneck_has_at_least_one_channel(kind, middle):
     with pytest.raises(ValueError, match=rf"must be >= 1, got 8, 8 and {middle}"):
         kind(8, middle=middle)

@@ -65,12 +65,12 @@ class Room(gymnasium.Env):
 @pytest.mark.parametrize(
     "world", [ApartmentsWorld(SIZE), Corrupted(ApartmentsWorld(SIZE), Corruption("flare", 0.5), 0)]
 )
-def test_any_world_is_an_environment_of_torchrl(world):
+def test_world_env_passes_the_spec_check(world):
     check_env_specs(WorldEnv(world, load_episodes("val_seen")[:2]))
     check_env_specs(WorldEnv(world, DrawnEpisodes(2)), seed=3)
 
 
-def test_the_environment_shows_what_the_world_shows_and_pays_success_at_the_end():
+def test_world_env_returns_frames_and_final_success():
     world, listed = ApartmentsWorld(SIZE), load_episodes("val_seen")[:1]
     env = WorldEnv(ApartmentsWorld(SIZE), listed)
     data, seen = env.reset(), world.reset(listed[0])
@@ -84,7 +84,7 @@ def test_the_environment_shows_what_the_world_shows_and_pays_success_at_the_end(
 
 
 @pytest.mark.parametrize("entry", [None, "camera"])
-def test_a_gymnasium_environment_is_a_world(entry):
+def test_gym_world_runs_an_environment(entry):
     from mitigate.worlds.gym import GymWorld
 
     named = BY_REWARD if entry is None else {"entries": {"rgb": entry}, "success": "won"}
@@ -100,7 +100,7 @@ def test_a_gymnasium_environment_is_a_world(entry):
         world.step(5)
 
 
-def test_a_success_that_info_never_says_is_told_at_the_end():
+def test_gym_world_requires_a_reported_success():
     from mitigate.worlds.gym import GymWorld
 
     world = GymWorld(Room(), success="is_success")
@@ -130,14 +130,14 @@ def test_gym_world_lets_the_environment_end_an_episode():
 
 
 @pytest.mark.parametrize(("limit", "cut"), [(500, 1), (525, 0), (600, 0)])
-def test_gym_world_measures_whether_its_limit_cut_the_episode(limit, cut):
+def test_gym_world_measures_the_limit(limit, cut):
     from mitigate.worlds.gym import GymWorld
 
     measures = run_episode(Brightness(), GymWorld(Long(), limit=limit), episode(3), CLEAN, 0)
     assert (measures["cut"], measures["limit"], measures["success"]) == (cut, limit, 1 - cut)
 
 
-def test_env_world_measures_whether_its_limit_cut_the_episode():
+def test_env_world_measures_the_limit():
     from mitigate.worlds.gym import GymWorld
 
     for limit, cut in ((2, 1), (9, 0)):
@@ -155,7 +155,7 @@ def test_run_episode_reports_a_world_that_never_ends(monkeypatch):
         run_episode(Brightness(), GymWorld(Room(), **BY_REWARD), episode(99), CLEAN, 0)
 
 
-def test_gym_world_asks_a_success_function_about_the_whole_episode():
+def test_gym_world_passes_the_ending_to_success():
     from mitigate.worlds.gym import GymWorld
 
     ends = []
@@ -169,7 +169,7 @@ NO_TRUTH = [float("nan"), "False", {"s": False}, 0.3, -1, "no", [0, 2], [[1], [0
 
 
 @pytest.mark.parametrize("told", NO_TRUTH, ids=str)
-def test_gym_world_rejects_a_success_that_is_no_truth_value(told):
+def test_gym_world_rejects_invalid_success_values(told):
     from mitigate.worlds.gym import GymWorld
 
     world = GymWorld(Room(), success=lambda end: told, rule="anything")
@@ -187,7 +187,7 @@ def test_gym_world_rejects_a_success_that_is_no_truth_value(told):
     ],
     ids=str,
 )
-def test_gym_world_takes_truth_values_and_0_or_1_for_success(told, won):
+def test_gym_world_accepts_truth_values(told, won):
     from mitigate.worlds.gym import GymWorld
 
     world = GymWorld(Room(), success=lambda end: told, rule="anything")
@@ -195,7 +195,7 @@ def test_gym_world_takes_truth_values_and_0_or_1_for_success(told, won):
 
 
 @pytest.mark.parametrize("success", [3, "", ["won"]])
-def test_gym_world_rejects_invalid_success(success):
+def test_gym_world_rejects_invalid_success_arguments(success):
     from mitigate.worlds.gym import GymWorld
 
     with pytest.raises(ValueError, match="success must be the name of an entry or a function"):
@@ -220,7 +220,7 @@ class Within(Room):
         }
 
 
-def test_entries_within_entries_and_other_sensors_are_named_with_dots():
+def test_gym_world_names_nested_entries_with_dots():
     from mitigate.worlds.gym import GymWorld
 
     world = GymWorld(Within(), {"rgb": "camera.rgb", "goal": "goal.polar"})
@@ -230,7 +230,7 @@ def test_entries_within_entries_and_other_sensors_are_named_with_dots():
         GymWorld(Within(), {"rgb": "camera"})
 
 
-def test_spaces_that_are_no_arrays_are_told():
+def test_gym_world_rejects_spaces_without_arrays():
     from mitigate.worlds.gym import GymWorld
 
     room, spaces = Room("rgb"), gymnasium.spaces
@@ -238,7 +238,7 @@ def test_spaces_that_are_no_arrays_are_told():
         {"rgb": room.observation_space["rgb"], "mission": spaces.Text(9)}
     )
     GymWorld(room)
-    with pytest.raises(ValueError, match=r"no array 'mission'; it has rgb"):
+    with pytest.raises(ValueError, match=r"no array mission; it has rgb"):
         GymWorld(room, {"rgb": "rgb", "words": "mission"})
     room.observation_space = spaces.Tuple([spaces.Discrete(2)])
     with pytest.raises(ValueError, match="no array rgb; it has none"):
@@ -249,7 +249,7 @@ def test_spaces_that_are_no_arrays_are_told():
 
 
 @pytest.mark.parametrize("seed", [-1, 1.5, 1 << 40, True, "7"])
-def test_a_seed_is_a_whole_number_of_31_bits(seed):
+def test_seeded_episodes_rejects_invalid_seeds(seed):
     from mitigate.worlds.seeded import seeded_episodes
 
     with pytest.raises(ValueError, match="must be a whole number from 0 to 2147483647"):
@@ -257,7 +257,7 @@ def test_a_seed_is_a_whole_number_of_31_bits(seed):
 
 
 @pytest.mark.parametrize("shape", [(SIZE, SIZE, 4), (3, SIZE, SIZE), (SIZE, SIZE), (SIZE, SIZE, 1)])
-def test_frames_that_the_suite_does_not_take_are_refused_before_any_walk(shape):
+def test_gym_world_rejects_unsupported_frame_shapes(shape):
     from mitigate.worlds.gym import GymWorld
 
     room = Room()
@@ -279,7 +279,7 @@ class Deep(Room):
         return {**super()._look(), "depth": np.full((SIZE, SIZE, 1), self.depth)}
 
 
-def test_depth_in_whole_numbers_needs_its_unit():
+def test_gym_world_requires_the_unit_of_integer_depth():
     from mitigate.worlds.gym import GymWorld
 
     with pytest.raises(ValueError, match=r"'depth' is unknown, .*uint16.*unit=.*millimetres"):
@@ -294,7 +294,7 @@ def test_depth_in_whole_numbers_needs_its_unit():
             GymWorld(Deep(np.float32(2)), unit=unit)
 
 
-def test_depth_that_ends_at_one_needs_its_unit():
+def test_gym_world_requires_the_unit_of_normalised_depth():
     from mitigate.worlds.gym import GymWorld
 
     near = Deep(np.float32(0.25), most=1.0)
@@ -307,7 +307,7 @@ def test_depth_that_ends_at_one_needs_its_unit():
 
 
 @pytest.mark.parametrize(("most", "far"), [(np.inf, np.inf), (8.0, 8.0)])
-def test_depth_is_as_far_in_torchrl_as_it_is_in_the_world(most, far):
+def test_env_world_keeps_the_maximum_of_depth(most, far):
     """torchrl writes down an end that there is not as the greatest number of the dtype."""
     from torchrl.envs import GymWrapper
 
@@ -321,7 +321,7 @@ def test_depth_is_as_far_in_torchrl_as_it_is_in_the_world(most, far):
     assert missing.max() <= 10
 
 
-def test_a_success_that_torchrl_never_says_is_told_at_the_end():
+def test_env_world_requires_a_reported_success():
     from mitigate.worlds.gym import GymWorld
 
     env = WorldEnv(GymWorld(Room("rgb"), success="won"), [episode(1)])
@@ -330,21 +330,21 @@ def test_a_success_that_torchrl_never_says_is_told_at_the_end():
 
 
 @pytest.mark.parametrize("value", [np.nan, np.inf, -1.0])
-def test_depth_that_is_none_is_no_reading(value):
+def test_gym_world_replaces_invalid_depth(value):
     from mitigate.worlds.gym import GymWorld
 
     assert not GymWorld(Deep(np.float32(value))).reset(episode(3))["depth"].any()
 
 
 @pytest.mark.parametrize("limit", [0, -3, 1.5, "3", True])
-def test_an_episode_without_a_step_is_refused(limit):
+def test_gym_world_rejects_invalid_limits(limit):
     from mitigate.worlds.gym import GymWorld
 
     with pytest.raises(ValueError, match="limit must be a whole number of steps >= 1 or None"):
         GymWorld(Room(), limit=limit)
 
 
-def test_nothing_can_be_done_in_an_environment_whose_episode_is_over():
+def test_gym_world_rejects_steps_after_the_end():
     from mitigate.worlds.gym import GymWorld
 
     world = GymWorld(Room(), limit=1)
@@ -354,7 +354,7 @@ def test_nothing_can_be_done_in_an_environment_whose_episode_is_over():
         world.step(1)
 
 
-def test_a_gymnasium_environment_without_frames_is_refused_with_what_it_has():
+def test_gym_world_requires_frames():
     from mitigate.worlds.gym import GymWorld
 
     with pytest.raises(ValueError, match="it has camera"):
@@ -363,7 +363,7 @@ def test_a_gymnasium_environment_without_frames_is_refused_with_what_it_has():
         GymWorld(gymnasium.make("CartPole-v1"))
 
 
-def test_an_environment_of_torchrl_is_a_world():
+def test_env_world_runs_an_environment():
     """There and back: the apartments as an environment, and that as a world again."""
     listed = load_episodes("val_seen")[:1]
     world = EnvWorld(WorldEnv(ApartmentsWorld(SIZE), listed), **BY_REWARD)
@@ -382,8 +382,8 @@ def test_an_environment_of_torchrl_is_a_world():
     assert np.array_equal(agent.seen[0], clean[RGB]) and isinstance(clean, Observation)
 
 
-def test_an_environment_without_the_named_frames_is_refused():
-    with pytest.raises(ValueError, match="no array 'pixels'"):
+def test_env_world_requires_the_named_frames():
+    with pytest.raises(ValueError, match="no array pixels"):
         EnvWorld(WorldEnv(ApartmentsWorld(SIZE), load_episodes("val_seen")[:1]), {"rgb": "pixels"})
 
 
@@ -408,7 +408,7 @@ class Failing(Room):
 @pytest.mark.parametrize("torchrl", [False, True])
 @pytest.mark.parametrize("call", ["reset", "step"])
 @pytest.mark.parametrize("error", [RuntimeError("no\nconnection"), KeyError("pose")], ids=repr)
-def test_worlds_name_the_episode_of_an_error_of_the_environment(torchrl, call, error):
+def test_worlds_name_the_episode_of_an_error(torchrl, call, error):
     from torchrl.envs import GymWrapper
 
     from mitigate.worlds.gym import GymWorld
@@ -463,7 +463,7 @@ class Changing(Room):
     ],
     ids=str,
 )
-def test_gym_world_rejects_odd_answers_of_a_step(place, value, part):
+def test_gym_world_rejects_invalid_step_results(place, value, part):
     from mitigate.worlds.gym import GymWorld
 
     with pytest.raises(ValueError, match=part):
@@ -472,7 +472,7 @@ def test_gym_world_rejects_odd_answers_of_a_step(place, value, part):
         )
 
 
-def test_env_world_rejects_actions_that_are_not_one_discrete_number():
+def test_env_world_rejects_other_action_spaces():
     from torchrl.data import Binary, Bounded, MultiCategorical, MultiOneHot
 
     env = WorldEnv(ApartmentsWorld(SIZE), load_episodes("val_seen")[:1])
@@ -488,7 +488,7 @@ def test_env_world_rejects_actions_that_are_not_one_discrete_number():
 
 
 @pytest.mark.parametrize("shape", [(), (1,)])
-def test_env_world_takes_categorical_actions_of_one_number(shape):
+def test_env_world_accepts_categorical_actions(shape):
     from torchrl.data import Categorical
 
     listed = load_episodes("val_seen")[:1]

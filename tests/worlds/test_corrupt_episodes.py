@@ -46,7 +46,7 @@ def episode(index: int, **instruction) -> dict:
     }
 
 
-def made(path, *episodes, **extras):
+def write(path, *episodes, **extras):
     with gzip.open(path, "wt") as file:
         json.dump({"episodes": list(episodes), "instruction_vocab": VOCABULARY} | extras, file)
     return path
@@ -57,13 +57,13 @@ def raw(path) -> list[dict]:
         return json.load(file)["episodes"]
 
 
-def test_only_the_instruction_changes_and_the_old_text_is_kept(tmp_path):
-    source = made(tmp_path / "in.json.gz", *(episode(i) for i in range(6)))
+def test_run_changes_only_the_instruction(tmp_path):
+    source = write(tmp_path / "in.json.gz", *(episode(i) for i in range(6)))
     summary = run(source, tmp_path / "out.json.gz", "black_box", 0.5, seed=4)
     for old, new in zip(raw(source), raw(tmp_path / "out.json.gz"), strict=True):
         key = Key(4, str(old["episode_id"]))
-        wanted = corrupt_instruction(TEXT, "black_box", 0.5, key)
-        assert new["instruction"] == {"instruction_text": wanted, ORIGINAL: TEXT}
+        expected = corrupt_instruction(TEXT, "black_box", 0.5, key)
+        assert new["instruction"] == {"instruction_text": expected, ORIGINAL: TEXT}
         assert {k: v for k, v in new.items() if k != "instruction"} == {
             k: v for k, v in old.items() if k != "instruction"
         }
@@ -75,23 +75,23 @@ def test_only_the_instruction_changes_and_the_old_text_is_kept(tmp_path):
 
 
 @pytest.mark.parametrize("family", ["formal", "mask", "black_box"])
-def test_severity_zero_gives_the_same_episodes(tmp_path, family):
-    source = made(tmp_path / "in.json.gz", *(episode(i) for i in range(3)))
+def test_run_with_severity_zero_changes_nothing(tmp_path, family):
+    source = write(tmp_path / "in.json.gz", *(episode(i) for i in range(3)))
     summary = run(source, tmp_path / "out.json.gz", family, 0.0)
     assert raw(tmp_path / "out.json.gz") == raw(source) and summary["changed"] == 0
 
 
-def test_tokens_are_made_again_by_the_files_own_vocabulary(tmp_path):
-    source = made(tmp_path / "in.json.gz", episode(1))
+def test_run_tokenizes_with_the_vocabulary_of_the_file(tmp_path):
+    source = write(tmp_path / "in.json.gz", episode(1))
     summary = run(source, tmp_path / "out.json.gz", "mask", 1.0, tokenizer="vocabulary")
     (got,) = raw(tmp_path / "out.json.gz")
-    said = (
+    message = (
         got["instruction"]["instruction_text"].lower().replace(",", "").replace(".", " .").split()
     )
     index = VOCABULARY["word2idx_dict"]
-    wanted = [index.get(word, 1) for word in said]
-    assert got["instruction"]["instruction_tokens"] == wanted + [0] * (40 - len(wanted))
-    assert summary["tokens"]["remade"] == 1 and "[mask]" in said
+    expected = [index.get(word, 1) for word in message]
+    assert got["instruction"]["instruction_tokens"] == expected + [0] * (40 - len(expected))
+    assert summary["tokens"]["remade"] == 1 and "[mask]" in message
     run(source, tmp_path / "long.json.gz", "black_box", 1.0, tokenizer="vocabulary")
     summary = json.loads((tmp_path / "long.json.gz.summary.json").read_text())
     (got,) = raw(tmp_path / "long.json.gz")
@@ -100,20 +100,20 @@ def test_tokens_are_made_again_by_the_files_own_vocabulary(tmp_path):
     assert "cut short" in episodes_command.notices(summary)[0]
 
 
-def test_a_named_tokenizer_gives_its_tokens_and_its_mask(tmp_path):
+def test_run_uses_a_named_tokenizer(tmp_path):
     transformers = pytest.importorskip("transformers")
     letters = ["[PAD]", "[UNK]", "[CLS]", "[SEP]", "<hole>", "walk", "past", "left", "turn"]
     (tmp_path / "vocab.txt").write_text("\n".join(letters))
     tokenizer = transformers.BertTokenizer(str(tmp_path / "vocab.txt"), mask_token="<hole>")
     tokenizer.save_pretrained(tmp_path / "named")
-    source = made(tmp_path / "in.json.gz", episode(1))
+    source = write(tmp_path / "in.json.gz", episode(1))
     run(source, tmp_path / "out.json.gz", "mask", 1.0, tokenizer=str(tmp_path / "named"))
     (got,) = raw(tmp_path / "out.json.gz")
     text, tokens = (got["instruction"][f"instruction_{kind}"] for kind in ("text", "tokens"))
     assert "<hole>" in text and len(tokens) == 40
     assert tokens[: len(tokenizer(text)["input_ids"])] == tokenizer(text)["input_ids"]
     spoken = {"instruction_text": "Gehe links.", "language": "de-DE"}
-    source = made(tmp_path / "in.json.gz", *(episode(i) for i in range(8)), episode(8, **spoken))
+    source = write(tmp_path / "in.json.gz", *(episode(i) for i in range(8)), episode(8, **spoken))
     for severity in (0.0, 0.5):  # what the draw leaves as it is has the agent's tokens, too
         run(source, tmp_path / "o.json", "formal", severity, tokenizer=str(tmp_path / "named"))
         for got in json.loads((tmp_path / "o.json").read_text())["episodes"]:
@@ -122,9 +122,9 @@ def test_a_named_tokenizer_gives_its_tokens_and_its_mask(tmp_path):
             assert tokens == (cut + [0] * 40)[:40] and 3 in tokens  # the end mark stays
 
 
-def test_other_languages_pass_through_and_are_counted(tmp_path):
+def test_run_counts_other_languages(tmp_path):
     rxr = {"timed_instruction": [{"word": "Walk", "start_time": 0.1}]}
-    source = made(
+    source = write(
         tmp_path / "in.json.gz",
         episode(1, language="hi-IN", instruction_text="आगे बढ़ें"),
         episode(2, language="te-IN", instruction_text="ముందుకు"),
@@ -139,17 +139,17 @@ def test_other_languages_pass_through_and_are_counted(tmp_path):
     assert "2 in hi-IN, 1 in te-IN" in episodes_command.notices(summary)[0]
 
 
-def test_the_gate_of_a_style_is_reported(tmp_path):
-    source = made(tmp_path / "in.json.gz", *(episode(i) for i in range(40)))
+def test_run_reports_the_gate_of_a_style(tmp_path):
+    source = write(tmp_path / "in.json.gz", *(episode(i) for i in range(40)))
     gate = run(source, tmp_path / "out.json.gz", "formal", 0.5)["gate"]
     assert 10 < gate["rewrites"] < 30 and gate["pass_rate"] == 1.0
     assert gate["clauses"] == 3 * gate["rewrites"] and gate["kept_original"] == 0
 
 
-def test_memory_does_not_grow_with_the_file(tmp_path):
+def test_run_memory_does_not_grow_with_the_file(tmp_path):
     peaks = []
     for count in (150, 1200):
-        source = made(
+        source = write(
             tmp_path / f"{count}.json.gz", *(episode(i, note="x" * 10_000) for i in range(count))
         )
         tracemalloc.start()
@@ -159,8 +159,8 @@ def test_memory_does_not_grow_with_the_file(tmp_path):
     assert peaks[1] < peaks[0] + 1_000_000, peaks  # the larger file holds 10 MB more
 
 
-def test_an_instruction_without_a_word_passes_through_and_is_counted(tmp_path):
-    source = made(
+def test_run_counts_instructions_without_words(tmp_path):
+    source = write(
         tmp_path / "in.json.gz", episode(1), *(episode(i + 2, instruction_text=t) for i, t in
         enumerate(("  ", "...")))
     )  # fmt: skip
@@ -171,15 +171,15 @@ def test_an_instruction_without_a_word_passes_through_and_is_counted(tmp_path):
         assert "2 instructions have no word" in episodes_command.notices(summary)[0]
 
 
-def test_a_file_without_an_episode_is_told(tmp_path, capsys):
-    source = made(tmp_path / "in.json.gz")
+def test_main_warns_about_an_empty_file(tmp_path, capsys):
+    source = write(tmp_path / "in.json.gz")
     line = [str(source), str(tmp_path / "o.json"), "corruption=mask", "severity=1"]
     assert episodes_command.main(line) == 0
     assert "warning: the file has no episodes" in capsys.readouterr().err
 
 
-def test_the_summary_has_the_options_that_the_corruption_uses_and_no_others(tmp_path):
-    source = made(tmp_path / "in.json.gz", episode(1))
+def test_summary_has_only_the_used_options(tmp_path):
+    source = write(tmp_path / "in.json.gz", episode(1))
     options = {"split", "mask_token", "tagger"}
     for name, used in (
         ("formal", {}),
@@ -196,15 +196,15 @@ def test_the_summary_has_the_options_that_the_corruption_uses_and_no_others(tmp_
 @pytest.mark.parametrize(
     "option", [{"split": "tset"}, {"tagger": "best"}, {"mask_token": " "}, {"seed": 0.5}], ids=str
 )
-def test_a_wrong_option_is_refused_whatever_reads_it_and_before_an_episode(tmp_path, name, option):
-    source = made(tmp_path / "in.json.gz", episode(1))
+def test_run_rejects_invalid_options_first(tmp_path, name, option):
+    source = write(tmp_path / "in.json.gz", episode(1))
     with pytest.raises(ValueError) as error:
         run(source, tmp_path / "out.json.gz", name, 0.5, **option)
     assert "Episode" not in str(error.value)
 
 
-def test_family_is_another_word_for_corruption(tmp_path, capsys):
-    source = str(made(tmp_path / "in.json.gz", episode(1)))
+def test_main_accepts_family_for_corruption(tmp_path, capsys):
+    source = str(write(tmp_path / "in.json.gz", episode(1)))
     for number, option in enumerate(("corruption=mask", "family=mask")):
         line = [source, str(tmp_path / f"{number}.json"), option, "severity=1"]
         assert episodes_command.main(line) == 0
@@ -213,8 +213,8 @@ def test_family_is_another_word_for_corruption(tmp_path, capsys):
     assert episodes_command.main(line) == 2 and "Give one of the two" in capsys.readouterr().err
 
 
-def test_a_file_of_others_is_not_written_over(tmp_path):
-    source, out = made(tmp_path / "in.json.gz", episode(1)), tmp_path / "out.json"
+def test_run_does_not_overwrite_other_files(tmp_path):
+    source, out = write(tmp_path / "in.json.gz", episode(1)), tmp_path / "out.json"
     out.write_text("precious")
     with pytest.raises(ValueError, match="was not written by corrupt_episodes.*move"):
         run(source, out, "mask", 1.0)
@@ -228,8 +228,8 @@ def test_a_file_of_others_is_not_written_over(tmp_path):
     ["{}", "[]", "null", '{"corruption": "mask"}', "not JSON", "\ud800"],
     ids=str,
 )
-def test_corrupt_episodes_keeps_a_file_beside_a_summary_of_others(tmp_path, summary):
-    source, out = made(tmp_path / "in.json.gz", episode(1)), tmp_path / "out.json"
+def test_run_keeps_a_file_with_a_foreign_summary(tmp_path, summary):
+    source, out = write(tmp_path / "in.json.gz", episode(1)), tmp_path / "out.json"
     out.write_text("precious")
     (tmp_path / "out.json.summary.json").write_text(summary, errors="surrogatepass")
     with pytest.raises(ValueError, match="was not written by corrupt_episodes.*move"):
@@ -237,8 +237,8 @@ def test_corrupt_episodes_keeps_a_file_beside_a_summary_of_others(tmp_path, summ
     assert out.read_text() == "precious"
 
 
-def test_corrupt_episodes_keeps_a_file_that_was_changed_since(tmp_path):
-    source, out = made(tmp_path / "in.json.gz", episode(1)), tmp_path / "out.json"
+def test_run_keeps_a_changed_file(tmp_path):
+    source, out = write(tmp_path / "in.json.gz", episode(1)), tmp_path / "out.json"
     run(source, out, "mask", 1.0)
     out.write_text("precious")
     with pytest.raises(ValueError, match="has changed since.*move"):
@@ -247,8 +247,8 @@ def test_corrupt_episodes_keeps_a_file_that_was_changed_since(tmp_path):
 
 
 @pytest.mark.parametrize("changed", [False, True])
-def test_corrupt_episodes_reads_summaries_without_a_checksum(tmp_path, changed):
-    source, out = made(tmp_path / "in.json.gz", episode(1)), tmp_path / "out.json"
+def test_run_reads_summaries_without_a_checksum(tmp_path, changed):
+    source, out = write(tmp_path / "in.json.gz", episode(1)), tmp_path / "out.json"
     beside = tmp_path / "out.json.summary.json"
     summary = run(source, out, "mask", 1.0)
     del summary["sha256"]
@@ -263,11 +263,11 @@ def test_corrupt_episodes_reads_summaries_without_a_checksum(tmp_path, changed):
         assert out.read_text() == content
 
 
-def test_an_interrupt_ends_with_a_line_and_no_file(tmp_path, monkeypatch, capsys):
-    def interrupted(*given, **options):
+def test_main_writes_nothing_after_an_interrupt(tmp_path, monkeypatch, capsys):
+    def interrupted(*settings, **options):
         raise KeyboardInterrupt
 
-    source = made(tmp_path / "in.json.gz", episode(1))
+    source = write(tmp_path / "in.json.gz", episode(1))
     monkeypatch.setattr(episodes_command, "corrupt_instruction", interrupted)
     line = [str(source), str(tmp_path / "o.json"), "corruption=mask", "severity=1"]
     assert episodes_command.main(line) == 130
@@ -286,28 +286,28 @@ def test_an_interrupt_ends_with_a_line_and_no_file(tmp_path, monkeypatch, capsys
     ],
     ids=str,
 )
-def test_a_vocabulary_of_other_types_is_refused(tmp_path, wrong):
-    source = made(tmp_path / "in.json.gz", episode(1), instruction_vocab=VOCABULARY | wrong)
+def test_run_rejects_an_invalid_vocabulary(tmp_path, wrong):
+    source = write(tmp_path / "in.json.gz", episode(1), instruction_vocab=VOCABULARY | wrong)
     with pytest.raises(ValueError, match="needs the key instruction_vocab.*whole numbers"):
         run(source, tmp_path / "o.json", "mask", 1.0, tokenizer="vocabulary")
 
 
-def test_a_named_tokenizer_without_transformers_says_what_to_install(tmp_path, monkeypatch):
+def test_run_names_the_missing_package(tmp_path, monkeypatch):
     monkeypatch.setitem(sys.modules, "transformers", None)
-    source = made(tmp_path / "in.json.gz", episode(1))
+    source = write(tmp_path / "in.json.gz", episode(1))
     with pytest.raises(ValueError, match="needs transformers.*pip install transformers"):
         run(source, tmp_path / "o.json", "mask", 1.0, tokenizer="bert")
 
 
-def test_a_broken_file_leaves_no_output(tmp_path):
-    source = made(tmp_path / "in.json.gz", episode(1), episode(2) | {"start_position": "here"})
+def test_run_leaves_no_output_for_a_damaged_file(tmp_path):
+    source = write(tmp_path / "in.json.gz", episode(1), episode(2) | {"start_position": "here"})
     with pytest.raises(ValueError, match="start_position"):
         run(source, tmp_path / "out.json.gz", "mask", 0.5)
     assert [path.name for path in tmp_path.iterdir()] == ["in.json.gz"]
 
 
-def test_mistakes_on_the_command_line_are_explained(tmp_path, capsys):
-    source, out = str(made(tmp_path / "in.json.gz", episode(1))), str(tmp_path / "out.json.gz")
+def test_main_explains_invalid_arguments(tmp_path, capsys):
+    source, out = str(write(tmp_path / "in.json.gz", episode(1))), str(tmp_path / "out.json.gz")
     for options, part in (
         (["corruption=mask"], "option severity is missing"),
         (["severity=0.5"], "Corruptions: friendly"),
@@ -331,8 +331,8 @@ def test_mistakes_on_the_command_line_are_explained(tmp_path, capsys):
     assert episodes_command.main([source[:-3], out, "corruption=mask", "severity=0.5"]) == 2
 
 
-def test_as_a_program(tmp_path):
-    source = made(tmp_path / "in.json.gz", episode(1))
+def test_module_runs_as_a_program(tmp_path):
+    source = write(tmp_path / "in.json.gz", episode(1))
     told = subprocess.run(
         [
             *(
@@ -353,7 +353,7 @@ def test_as_a_program(tmp_path):
 
 @needs_r2r_ce
 @pytest.mark.parametrize("family", [*MANNERS, "capitalize", "mask", "black_box"])
-def test_real_r2r_ce_episodes(tmp_path, family):
+def test_run_corrupts_real_r2r_ce_episodes(tmp_path, family):
     source, out = FOLDER / "val_seen.json.gz", tmp_path / "out.json.gz"
     summary = run(source, out, family, 0.5, tokenizer="vocabulary")
     assert summary["episodes"] == 778 and summary["tokens"]["remade"] == summary["changed"] > 300
@@ -370,7 +370,7 @@ def test_real_r2r_ce_episodes(tmp_path, family):
             assert check(old.instruction.text, new.instruction.text) == []
 
 
-def test_a_summary_replaces_neither_the_source_nor_another_file(tmp_path, capsys):
+def test_run_does_not_overwrite_with_its_summary(tmp_path, capsys):
     source = tmp_path / "q.json.summary.json"
     source.write_text(json.dumps({"episodes": []}))
     options = ["corruption=mask", "severity=0.5"]

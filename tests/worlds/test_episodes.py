@@ -67,7 +67,7 @@ def episode_file(path: Path, **changes: object) -> Path:
     return write_json(path / "bad.json.gz", {"episodes": [R2R, RXR, third]})
 
 
-def test_r2r_and_rxr_episodes_are_read(tmp_path):
+def test_read_episodes_reads_r2r_and_rxr(tmp_path):
     path = write_json(tmp_path / "two.json", {"episodes": [R2R, RXR], "instruction_vocab": {}})
     r2r, rxr = read_episodes(path)
     assert (r2r.episode_id, r2r.trajectory_id, rxr.episode_id) == ("7", "4", "0041")
@@ -83,7 +83,7 @@ def test_r2r_and_rxr_episodes_are_read(tmp_path):
 
 
 @pytest.mark.parametrize("suffix", [".json", ".json.gz"])
-def test_every_key_and_the_type_of_ids_survive_a_round_trip(tmp_path, suffix):
+def test_write_episodes_preserves_keys_and_id_types(tmp_path, suffix):
     original = {"instruction_vocab": {"num_vocab": 2504}, "episodes": [R2R, RXR], "tag": [1, None]}
     source = write_json(tmp_path / f"a{suffix}", original)
     copy = tmp_path / f"b{suffix}"
@@ -93,7 +93,7 @@ def test_every_key_and_the_type_of_ids_survive_a_round_trip(tmp_path, suffix):
     assert list(read_episodes(copy)) == list(read_episodes(source))
 
 
-def test_a_replaced_id_is_the_one_written(tmp_path):
+def test_write_episodes_writes_a_replaced_id(tmp_path):
     source = write_json(tmp_path / "a.json", {"episodes": [R2R]})
     renamed = (dataclasses.replace(e, episode_id="7/mask") for e in read_episodes(source))
     write_episodes(tmp_path / "b.json.gz", renamed)
@@ -101,14 +101,14 @@ def test_a_replaced_id_is_the_one_written(tmp_path):
     assert (written["episode_id"], written["trajectory_id"]) == ("7/mask", 4)
 
 
-def test_equal_episodes_give_equal_bytes(tmp_path):
+def test_write_episodes_is_deterministic(tmp_path):
     source = write_json(tmp_path / "a.json", {"episodes": [R2R, RXR]})
     first = write_episodes(tmp_path / "b.json.gz", read_episodes(source)).read_bytes()
     second = write_episodes(tmp_path / "c.json.gz", read_episodes(source)).read_bytes()
     assert first == second
 
 
-def test_a_failed_write_leaves_the_old_file_alone(tmp_path):
+def test_failed_write_keeps_the_old_file(tmp_path):
     path = write_json(tmp_path / "a.json", {"episodes": [R2R]})
     before = path.read_bytes()
     bad = [dataclasses.replace(e, geodesic_distance=float("nan")) for e in read_episodes(path)]
@@ -118,7 +118,7 @@ def test_a_failed_write_leaves_the_old_file_alone(tmp_path):
     assert [p.name for p in tmp_path.iterdir()] == ["a.json"]
 
 
-def test_values_split_by_the_reading_buffer_are_whole(tmp_path):
+def test_read_episodes_joins_values_across_buffers(tmp_path):
     numbers = list(range(10**5, 10**5 + 40_000))  # 320 kB: many buffers
     many = [R2R | {"episode_id": i, "blob": '\u00e9\\"]}' * (i % 50)} for i in range(700)]
     path = write_json(tmp_path / "a.json", {"x": 12345, "episodes": many, "vocab": numbers})
@@ -127,19 +127,19 @@ def test_values_split_by_the_reading_buffer_are_whole(tmp_path):
 
 
 @pytest.mark.parametrize("size", [1, 2, 5])
-def test_values_are_whole_wherever_the_buffer_ends(tmp_path, monkeypatch, size):
+def test_read_episodes_works_for_every_buffer_size(tmp_path, monkeypatch, size):
     monkeypatch.setattr(json_files, "CHUNK", size)
     path = write_json(tmp_path / "a.json", {"x": 12345, "episodes": [R2R, RXR], "y": -1.5e3})
     assert [e.episode_id for e in read_episodes(path)] == ["7", "0041"]
     assert read_extras(path) == {"x": 12345, "y": -1500.0}
 
 
-def test_no_episodes_are_no_error(tmp_path):
+def test_read_episodes_accepts_an_empty_list(tmp_path):
     path = write_json(tmp_path / "a.json", {"episodes": []})
     assert list(read_episodes(path)) == []
 
 
-def test_test_splits_hide_their_goals(tmp_path):
+def test_read_episodes_accepts_hidden_goals(tmp_path):
     hidden = {k: v for k, v in R2R.items() if k not in ("goals", "reference_path")}
     path = write_json(tmp_path / "a.json", {"episodes": [hidden]})
     with pytest.raises(ValueError, match=r"lacks the key 'goals'.*hidden_goals=True"):
@@ -157,7 +157,7 @@ def test_test_splits_hide_their_goals(tmp_path):
         *("goals", "instruction", "reference_path"),
     ],
 )
-def test_a_missing_key_is_named_with_file_and_episode(tmp_path, key):
+def test_read_episodes_names_a_missing_key(tmp_path, key):
     path = episode_file(tmp_path, **{key: ...})
     with pytest.raises(ValueError) as error:
         list(read_episodes(path))
@@ -191,17 +191,17 @@ def test_a_missing_key_is_named_with_file_and_episode(tmp_path, key):
         ({"info": {"geodesic_distance": -1.5}}, "it must be metres >= 0, got -1.5"),
     ],
 )
-def test_a_wrong_value_is_named(tmp_path, changes, message):
+def test_read_episodes_names_an_invalid_value(tmp_path, changes, message):
     with pytest.raises(ValueError, match=message):
         list(read_episodes(episode_file(tmp_path, **changes)))
 
 
-def test_good_episodes_come_before_the_error(tmp_path):
+def test_read_episodes_yields_episodes_before_an_error(tmp_path):
     episodes = read_episodes(episode_file(tmp_path, scene_id=...))
     assert [next(episodes).episode_id, next(episodes).episode_id] == ["7", "0041"]
 
 
-def test_broken_files_are_refused(tmp_path):
+def test_read_episodes_rejects_damaged_files(tmp_path):
     whole = gzip.compress(json.dumps({"episodes": [R2R] * 500}).encode())
     cases = {
         "cut.json.gz": whole[: len(whole) // 2],
@@ -219,19 +219,19 @@ def test_broken_files_are_refused(tmp_path):
             list(read_episodes(tmp_path / name))
 
 
-@pytest.mark.parametrize("held", [None, {}, "none", 3])
-def test_episodes_that_are_no_list_are_refused(tmp_path, held):
-    path = write_json(tmp_path / "a.json", {"episodes": held})
+@pytest.mark.parametrize("document", [None, {}, "none", 3])
+def test_read_episodes_requires_a_list(tmp_path, document):
+    path = write_json(tmp_path / "a.json", {"episodes": document})
     with pytest.raises(ValueError, match=r"a\.json: 'episodes' must be a list, got"):
         list(read_episodes(path))
 
 
-def test_a_rotation_of_few_digits_is_one(tmp_path):
+def test_read_episodes_accepts_rounded_rotations(tmp_path):
     path = episode_file(tmp_path, start_rotation=[0.01, -0.38, -0.02, 0.92])
     assert list(read_episodes(path))[2].start_rotation == (0.01, -0.38, -0.02, 0.92)
 
 
-def test_other_kinds_of_file_are_told_apart(tmp_path):
+def test_read_episodes_explains_other_files(tmp_path):
     truth = write_json(tmp_path / "val_gt.json", {"7": {"locations": [[0, 0, 0]], "actions": [0]}})
     episodes = write_json(tmp_path / "val.json", {"episodes": [R2R]})
     with pytest.raises(ValueError, match="read_ground_truth"):
@@ -242,13 +242,13 @@ def test_other_kinds_of_file_are_told_apart(tmp_path):
         read_ground_truth(write_json(tmp_path / "bad_gt.json", {"7": {"actions": [0]}}))
 
 
-def test_a_missing_file_names_the_nearest(tmp_path):
+def test_read_episodes_suggests_a_file_name(tmp_path):
     write_json(tmp_path / "val_seen.json.gz", {"episodes": []})
     with pytest.raises(FileNotFoundError, match=r"nearest names there are val_seen\.json\.gz"):
         list(read_episodes(tmp_path / "val_sen.json.gz"))
 
 
-def test_memory_does_not_grow_with_the_file(tmp_path):
+def test_read_episodes_memory_does_not_grow(tmp_path):
     def peak(count: int) -> int:
         path = tmp_path / f"{count}.json.gz"
         sample = R2R | {"blob": "x" * 8000}
@@ -274,7 +274,7 @@ print(count, resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before)
 
 @needs_r2r_ce
 @pytest.mark.parametrize(("name", "count"), [("train", 10_819), ("val_seen", 778)])
-def test_real_episodes_are_read_in_bounded_memory(name, count):
+def test_real_episodes_need_little_memory(name, count):
     file = str(FOLDER / f"{name}.json.gz")
     command = [sys.executable, "-c", PEAK, file]
     done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True)
@@ -284,14 +284,14 @@ def test_real_episodes_are_read_in_bounded_memory(name, count):
 
 
 @needs_r2r_ce
-def test_a_real_file_survives_a_round_trip(tmp_path):
+def test_real_file_survives_a_round_trip(tmp_path):
     source = FOLDER / "val_seen.json.gz"
     write_episodes(tmp_path / "copy.json.gz", read_episodes(source), read_extras(source))
     assert load(tmp_path / "copy.json.gz") == load(source)
 
 
 @needs_r2r_ce
-def test_real_ground_truth_belongs_to_its_episodes():
+def test_real_ground_truth_matches_its_episodes():
     truths = read_ground_truth(FOLDER / "val_seen_gt.json.gz")
     episodes = {e.episode_id: e for e in read_episodes(FOLDER / "val_seen.json.gz")}
     assert truths.keys() == episodes.keys()
@@ -302,12 +302,12 @@ def test_real_ground_truth_belongs_to_its_episodes():
         assert np.allclose(truth.locations[0], episodes[key].start_position, atol=1e-3)
 
 
-def test_of_an_episode_that_is_a_seed_an_id_and_an_instruction_will_do(tmp_path):
+def test_read_episodes_accepts_seeded_episodes(tmp_path):
     listed = seeded_episodes(range(3), "Find the lamp.")
     written = write_episodes(tmp_path / "val.json", listed)
     assert list(read_episodes(written)) == [
-        dataclasses.replace(one, extra=found.extra)
-        for one, found in zip(listed, read_episodes(written), strict=True)
+        dataclasses.replace(one, extra=results.extra)
+        for one, results in zip(listed, read_episodes(written), strict=True)
     ]
     least = {"episode_id": "a", "info": {"seed": 7}, "instruction": {"instruction_text": "Go."}}
     (one,) = read_episodes(write_json(tmp_path / "least.json", {"episodes": [least]}))

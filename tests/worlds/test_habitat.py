@@ -9,17 +9,17 @@ from mitigate.worlds.habitat import corrupt_habitat
 KEY = Key(2, "71", 4)
 
 
-def test_the_cameras_are_the_panorama_of_the_suite(obs, panorama):
+def test_corrupt_habitat_equals_the_panorama(obs, panorama):
     for name in RGB:
         out = corrupt_habitat(obs, Corruption(name, 0.9), KEY, heading=0.4)
-        wanted = corrupt(panorama[0], name, 0.9, key=KEY, heading=0.4)
-        assert np.array_equal(out["rgb"], wanted[0])
+        expected = corrupt(panorama[0], name, 0.9, key=KEY, heading=0.4)
+        assert np.array_equal(out["rgb"], expected[0])
         for step in range(1, 12):
-            assert np.array_equal(out[f"rgb_{30 * step}"], wanted[-step])
+            assert np.array_equal(out[f"rgb_{30 * step}"], expected[-step])
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_entries_order_dtype_shape_and_range_stay(obs, name):
+def test_corrupt_habitat_preserves_the_format(obs, name):
     before = {k: v.tobytes() for k, v in obs.items() if isinstance(v, np.ndarray)}
     out = corrupt_habitat(obs, Corruption(name, 1.0), KEY, DepthSensor(0.5, 5.0))
     hurt = "rgb" if name in RGB else "depth"
@@ -40,7 +40,7 @@ def test_entries_order_dtype_shape_and_range_stay(obs, name):
     assert (depth[clean == 0] == 0).all()  # holes stay holes
 
 
-def test_the_turning_sense_decides_which_cameras_see_a_flare(obs):
+def test_corrupt_habitat_uses_the_turn(obs):
     flare = Corruption("flare", 1.0)
 
     def lit(turn):
@@ -54,7 +54,7 @@ def test_the_turning_sense_decides_which_cameras_see_a_flare(obs):
 RGB_CAMERAS = ["rgb", *(f"rgb_{30 * step}" for step in range(1, 12))]
 
 
-def test_a_camera_turned_left_sees_a_light_that_the_agent_sees_after_a_left_turn(panorama):
+def test_corrupt_habitat_flare_matches_a_left_turn(panorama):
     frame = panorama[0][0]
     flare = Corruption("flare", 1.0)
     for episode in range(6):
@@ -64,7 +64,7 @@ def test_a_camera_turned_left_sees_a_light_that_the_agent_sees_after_a_left_turn
         assert np.array_equal(ahead, left)
 
 
-def test_a_few_cameras_get_what_the_whole_panorama_gives_them(obs):
+def test_corrupt_habitat_accepts_a_part_of_the_cameras(obs):
     some = {entry: obs[entry] for entry in ("rgb", "rgb_90", "depth_270", "depth_30")}
     for name in NAMES:
         hurt = Corruption(name, 0.8)
@@ -72,10 +72,10 @@ def test_a_few_cameras_get_what_the_whole_panorama_gives_them(obs):
         assert all(np.array_equal(few[entry], all_of_them[entry]) for entry in some)
 
 
-def test_wrong_observations_are_explained(obs):
+def test_corrupt_habitat_explains_invalid_observations(obs):
     hurt = Corruption("spatter", 0.5)
     small = {**obs, "rgb_60": obs["rgb_60"][:4]}
-    for given, part in (
+    for options, part in (
         ({"rgb": obs["rgb"], "rgb_0": obs["rgb"]}, "'rgb' and 'rgb_0' face the same way"),
         (
             {"rgb": obs["rgb"], "rgb_45": obs["rgb"]},
@@ -88,7 +88,7 @@ def test_wrong_observations_are_explained(obs):
         ({"rgb": obs["rgb"] / np.float32(255)}, "RGB frames must be uint8"),
     ):
         with pytest.raises(ValueError, match=part):
-            corrupt_habitat(given, hurt, KEY)
+            corrupt_habitat(options, hurt, KEY)
     with pytest.raises(ValueError, match="turn must be 'left' or 'right'"):
         corrupt_habitat(obs, hurt, KEY, turn="clockwise")
     with pytest.raises(ValueError, match="got 4"):

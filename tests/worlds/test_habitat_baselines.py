@@ -46,7 +46,7 @@ def batch(obs):
     )
 
 
-def test_the_transformer_does_to_each_row_what_the_function_does(batch):
+def test_transformer_equals_corrupt_habitat_per_row(batch):
     before = {entry: tensor.clone() for entry, tensor in batch.items()}
     schedule = Schedule("per_frame", 0.9, clean_share=0.0)
     transformer = habitat_baselines.CorruptObservation(schedule, 6, turn="right")
@@ -56,13 +56,13 @@ def test_the_transformer_does_to_each_row_what_the_function_does(batch):
     for row, (episode, frame) in enumerate(batch["corruption_key"].tolist()):
         corruption, key = schedule.draw(6, str(episode), frame)
         instant = {k: v[row].numpy() for k, v in batch.items() if k[0] in "rd"}
-        wanted = corrupt_habitat(instant, corruption, key, heading=0.5 * row, turn="right")
+        expected = corrupt_habitat(instant, corruption, key, heading=0.5 * row, turn="right")
         for entry in instant:
-            assert np.array_equal(out[entry][row].numpy(), wanted[entry])
+            assert np.array_equal(out[entry][row].numpy(), expected[entry])
     assert any(not torch.equal(out[e], batch[e]) for e in out)
 
 
-def test_the_observation_space_loses_the_key_alone():
+def test_transform_observation_space_removes_only_the_key():
     space = Space({"rgb": "box", "corruption_key": "box", "depth": "box"})
     transformer = habitat_baselines.CorruptObservation(Schedule.always("flare", 0.5))
     assert list(transformer.transform_observation_space(space).spaces) == ["rgb", "depth"]
@@ -84,7 +84,7 @@ def test_the_observation_space_loses_the_key_alone():
     ],
     ids=str,
 )
-def test_a_robot_without_a_camera_that_the_schedule_hurts_is_refused_at_once(entries, parts):
+def test_transformer_requires_the_corrupted_cameras(entries, parts):
     transformer = habitat_baselines.CorruptObservation.from_config({})
     batch = dict.fromkeys(entries, torch.zeros(2, 4, 4, 3, dtype=torch.uint8))
     batch["corruption_key"] = torch.zeros(2, 2, dtype=torch.int64)
@@ -99,16 +99,16 @@ def test_a_robot_without_a_camera_that_the_schedule_hurts_is_refused_at_once(ent
     assert list(clean(batch)) == list(entries)
 
 
-def test_it_is_built_from_its_config():
-    made = habitat_baselines.CorruptObservation.from_config(
+def test_transformer_is_built_from_its_config():
+    result = habitat_baselines.CorruptObservation.from_config(
         {"type": "CorruptObservation", "names": ["multipath"], "severity": 0.5, "depth_min": 0.5}
     )
-    assert made.schedule.names == ("multipath",) and made.schedule.severity == 0.5
-    assert made.sensor == DepthSensor(0.5, 10.0) and made.turn == "left"
-    made = habitat_baselines.CorruptObservation.from_config(
+    assert result.schedule.names == ("multipath",) and result.schedule.severity == 0.5
+    assert result.sensor == DepthSensor(0.5, 10.0) and result.turn == "left"
+    result = habitat_baselines.CorruptObservation.from_config(
         habitat_baselines.CorruptObservationConfig(seed=3)
     )
-    assert made.seed == 3 and made.schedule.names == NAMES
+    assert result.seed == 3 and result.schedule.names == NAMES
     for config, part in (
         ({"severty": 0.5}, "Did you mean severity"),
         ({"severity": 1.5}, "from 0 .clean. to 1"),
@@ -120,7 +120,7 @@ def test_it_is_built_from_its_config():
             habitat_baselines.CorruptObservation.from_config(config)
 
 
-def test_a_batch_without_keys_is_explained(batch):
+def test_transformer_explains_missing_keys(batch):
     transformer = habitat_baselines.CorruptObservation(Schedule.always("flare", 0.5))
     for wrong in (
         {k: v for k, v in batch.items() if k != "corruption_key"},
@@ -130,7 +130,7 @@ def test_a_batch_without_keys_is_explained(batch):
             transformer(wrong)
 
 
-def test_the_key_names_scene_episode_and_step_and_counts_from_each_reset():
+def test_key_depends_on_scene_episode_and_step():
     episode = SimpleNamespace(scene_id="data/mp3d/x/x.glb", episode_id="7")
     steps = habitat_baselines.EpisodeSteps()
     seen = [steps.key(episode), steps.key(episode, action=1), steps.key(episode, action=1)]
@@ -163,9 +163,9 @@ def stand_in(monkeypatch):
     class TypedConfig:
         type: str = "?"
 
-    def register(made, *, name):
-        known[name] = made
-        return made
+    def register(result, *, name):
+        known[name] = result
+        return result
 
     contents = {
         "habitat_baselines.common.baseline_registry": {
@@ -181,7 +181,7 @@ def stand_in(monkeypatch):
             "Sensor": Sensor,
             "SensorTypes": SimpleNamespace(TENSOR="tensor"),
         },
-        "gym": {"spaces": SimpleNamespace(Box=lambda *given: given)},
+        "gym": {"spaces": SimpleNamespace(Box=lambda *options: options)},
     }
     for path, names in contents.items():
         parts = path.split(".")
@@ -195,15 +195,15 @@ def stand_in(monkeypatch):
     importlib.reload(habitat_baselines)
 
 
-def test_transformer_and_sensor_are_registered_where_habitat_is_installed(stand_in, batch):
+def test_import_registers_transformer_and_sensor(stand_in, batch):
     from hydra.core.config_store import ConfigStore
 
     known, base = stand_in
     module = importlib.reload(habitat_baselines)
     assert known["CorruptObservation"] is module.CorruptObservation
     assert issubclass(module.CorruptObservation, base)
-    made = known["CorruptObservation"].from_config(module.CorruptObservationConfig(severity=1.0))
-    assert "corruption_key" not in made(batch)
+    result = known["CorruptObservation"].from_config(module.CorruptObservationConfig(severity=1.0))
+    assert "corruption_key" not in result(batch)
     sensor = known["CorruptionKeySensor"](sim=None, config=None)
     assert sensor.uuid == "corruption_key" and sensor.observation_space[2] == (2,)
     episode = SimpleNamespace(scene_id="x.glb", episode_id="7")

@@ -21,15 +21,15 @@ def world(*options):
     return maker(cfg.env.world)()
 
 
-def test_the_config_makes_a_world_that_processes_can_be_sent(tmp_path):
-    made = world(f"env.scenes={tmp_path}", "env.size=32", "env.rule=etpnav", "env.views=1")
-    sent = pickle.loads(pickle.dumps(made))
-    for each in (made, sent):
+def test_config_makes_a_world_that_pickles(tmp_path):
+    habitat = world(f"env.scenes={tmp_path}", "env.size=32", "env.rule=etpnav", "env.views=1")
+    sent = pickle.loads(pickle.dumps(habitat))
+    for each in (habitat, sent):
         assert each.sensors[RGB].shape == (32, 32, 3) and each.sensors[DEPTH].unit == "m"
         assert each.rule == "etpnav: geodesic <= 3.0 m, STOP or not"
 
 
-def test_a_navmesh_is_the_named_one_or_lies_beside_the_scenes(tmp_path):
+def test_navmesh_settings_have_a_default_file(tmp_path):
     assert HabitatWorld(str(tmp_path / "scenes")).navmesh == NAVMESH
     (tmp_path / "navmesh.json").write_text(json.dumps({"agent_radius": 0.2, "camera_height": 1.0}))
     assert HabitatWorld(str(tmp_path / "scenes")).navmesh == {**NAVMESH, "agent_radius": 0.2}
@@ -47,7 +47,7 @@ def test_a_navmesh_is_the_named_one_or_lies_beside_the_scenes(tmp_path):
         ({"views": 4}, r"must be 12 \(panorama\) or 1"),
     ],
 )
-def test_what_it_cannot_do_is_refused_before_the_simulator_starts(given, words):
+def test_habitat_world_rejects_invalid_arguments_first(given, words):
     with pytest.raises(ValueError, match=words):
         HabitatWorld("scenes", **given)
 
@@ -68,51 +68,51 @@ class Simulator:
         return self.walkable
 
 
-def test_a_scene_that_does_not_load_is_not_taken_for_the_one_before(tmp_path, monkeypatch):
+def test_failed_scene_is_loaded_again(tmp_path, monkeypatch):
     for name in "ab":
         (tmp_path / f"{name}.glb").touch()
-    made = HabitatWorld(str(tmp_path))
+    habitat = HabitatWorld(str(tmp_path))
     settings = type(
         "S", (), {"set_defaults": lambda self: None, "agent_radius": 0, "agent_height": 0}
     )
     library = type("habitat_sim", (), {"Simulator": Simulator, "NavMeshSettings": settings})
     monkeypatch.setattr(habitat_world, "_habitat_sim", lambda: library)
-    monkeypatch.setattr(made, "_settings", str)
-    made._load_scene("a.glb")
+    monkeypatch.setattr(habitat, "_settings", str)
+    habitat._load_scene("a.glb")
     monkeypatch.setattr(Simulator, "walkable", False)
     with pytest.raises(ValueError, match=r"an empty navmesh for .*b\.glb"):
-        made._load_scene("b.glb")
+        habitat._load_scene("b.glb")
     monkeypatch.setattr(Simulator, "walkable", True)
-    made._load_scene("a.glb")
-    assert made._sim.loaded == str(tmp_path / "a.glb")
+    habitat._load_scene("a.glb")
+    assert habitat._sim.loaded == str(tmp_path / "a.glb")
 
 
-def begun(rule, monkeypatch):
+def started(rule, monkeypatch):
     """A world as it stands at the start of an episode, without a simulator."""
     told = SimpleNamespace(reference_path=[(0.0, 0.0, 0.0), (0.0, 0.0, -2.0)])
-    made = HabitatWorld("scenes", rule=rule)
-    vars(made).update(episode=told, path=[np.zeros(3)], start_distance=2.0)
-    vars(made).update(stopped=False, steps=0, collisions=0)
-    monkeypatch.setattr(made, "distance_to_goal", lambda: 2.0)
-    monkeypatch.setattr(made, "_observation", lambda: None)
-    return made
+    habitat = HabitatWorld("scenes", rule=rule)
+    vars(habitat).update(episode=told, path=[np.zeros(3)], start_distance=2.0)
+    vars(habitat).update(stopped=False, steps=0, collisions=0)
+    monkeypatch.setattr(habitat, "distance_to_goal", lambda: 2.0)
+    monkeypatch.setattr(habitat, "_observation", lambda: None)
+    return habitat
 
 
 @pytest.mark.parametrize("rule, metres", [("apartments", 2.0), ("vln_ce", 3.0)])
-def test_the_threshold_of_ndtw_is_the_metres_of_the_rule(rule, metres, monkeypatch):
-    found = begun(rule, monkeypatch).measures()["ndtw"]
-    assert found == pytest.approx(math.exp(-2.0 / (2 * metres)), abs=1e-5)
+def test_ndtw_uses_the_metres_of_the_rule(rule, metres, monkeypatch):
+    ndtw = started(rule, monkeypatch).measures()["ndtw"]
+    assert ndtw == pytest.approx(math.exp(-2.0 / (2 * metres)), abs=1e-5)
 
 
-def test_after_stop_nothing_can_be_done(monkeypatch):
-    made = begun("vln_ce", monkeypatch)
-    made.step(STOP)
+def test_step_raises_after_stop(monkeypatch):
+    habitat = started("vln_ce", monkeypatch)
+    habitat.step(STOP)
     with pytest.raises(RuntimeError, match="over. Call reset"):
-        made.step(FORWARD)
-    assert made.done and made.steps == 1
+        habitat.step(FORWARD)
+    assert habitat.done and habitat.steps == 1
 
 
-def test_an_oracle_stops_where_the_rule_counts_it():
+def test_expert_stops_within_the_rule():
     assert measures.RULES["habitat_vln"].stop_within <= 0.2
     assert measures.RULES["vln_ce"].stop_within == measures.RULES["wmnav"].stop_within == 1.0
     assert measures.RULES["objectnav"].stop_within == 0.1

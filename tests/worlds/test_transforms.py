@@ -78,12 +78,12 @@ def seen(data: TensorDict) -> dict[tuple[int, int], tuple[torch.Tensor, torch.Te
     }
 
 
-def test_specs():
+def test_transforms_pass_the_spec_check():
     check_env_specs(hurt_env())
     check_env_specs(hurt_env(1))
 
 
-def test_a_reset_mask_moves_on_only_its_rows():
+def test_episode_counter_advances_only_reset_rows():
     data = hurt_env().rollout(9, break_when_any_done=False)
     assert data["episode"][0, :, 0].tolist() == [0, 0, 3, 3, 6, 6, 9, 9, 12]
     assert data["frame"][0, :, 0].tolist() == [0, 1, 0, 1, 0, 1, 0, 1, 0]
@@ -91,7 +91,7 @@ def test_a_reset_mask_moves_on_only_its_rows():
     assert data["next", "frame"][2, :, 0].tolist() == [1, 2, 3, 4, 1, 2, 3, 4, 1]
 
 
-def test_every_row_of_a_batch_gets_what_the_suite_gives():
+def test_corrupt_observation_equals_the_suite_per_row():
     clean = Corridor().rollout(9, break_when_any_done=False)
     data = hurt_env().rollout(9, break_when_any_done=False)
     changed = 0
@@ -101,23 +101,23 @@ def test_every_row_of_a_batch_gets_what_the_suite_gives():
             episode, frame = str(int(after["episode"])), int(after["frame"])
             drawn, key = HURT.draw(4, episode, frame)
             assert key == Key(4, episode, frame)
-            wanted = {name: before[name].numpy() for name in ("rgb", "depth")}
+            expected = {name: before[name].numpy() for name in ("rgb", "depth")}
             if drawn.modality != "none":
-                frames = wanted[drawn.modality]
-                wanted[drawn.modality] = corrupt(frames, drawn.name, drawn.severity, key=key)
+                frames = expected[drawn.modality]
+                expected[drawn.modality] = corrupt(frames, drawn.name, drawn.severity, key=key)
             for name in ("rgb", "depth"):
-                assert np.array_equal(after[name].numpy(), wanted[name])
+                assert np.array_equal(after[name].numpy(), expected[name])
                 changed += not torch.equal(after[name], before[name])
     assert changed > 20
 
 
-def test_a_pair_changes_both_entries():
+def test_corrupt_observation_applies_pairs():
     pair = Corruption("low_light+missing_data", 0.8)
     clean, hurt = Corridor().reset(), hurt_env(schedule=pair).reset()
     assert all((hurt[name] != clean[name]).any() for name in ("rgb", "depth"))
 
 
-def test_pixels_do_not_depend_on_the_split_into_workers():
+def test_pixels_do_not_depend_on_workers():
     together = seen(hurt_env(4).rollout(12, break_when_any_done=False))
     for worker in (0, 1):
         alone = seen(hurt_env(2, worker=worker, workers=2).rollout(12, break_when_any_done=False))
@@ -131,10 +131,10 @@ def test_pixels_do_not_depend_on_the_split_into_workers():
 
 
 @pytest.mark.parametrize("storage", [LazyTensorStorage, LazyMemmapStorage])
-def test_a_replay_buffer_gives_what_the_environment_gave(storage, tmp_path):
+def test_replay_buffer_gives_the_same_frames(storage, tmp_path):
     env = TransformedEnv(Corridor(), EpisodeCounter())
     clean = env.rollout(7, break_when_any_done=False).reshape(-1)
-    wanted = hurt_env().rollout(7, break_when_any_done=False).reshape(-1)
+    expected = hurt_env().rollout(7, break_when_any_done=False).reshape(-1)
     options = {"scratch_dir": tmp_path} if storage is LazyMemmapStorage else {}
     buffer = ReplayBuffer(storage=storage(len(clean), **options), batch_size=8)
     buffer.append_transform(CorruptObservation(HURT, seed=4))
@@ -142,12 +142,12 @@ def test_a_replay_buffer_gives_what_the_environment_gave(storage, tmp_path):
     for _ in range(2):  # what is stored stays clean
         drawn = buffer[:]
         for name in ("rgb", "depth", ("next", "rgb"), ("next", "depth")):
-            assert torch.equal(drawn[name], wanted[name])
+            assert torch.equal(drawn[name], expected[name])
     sample, index = buffer.sample(return_info=True)
-    assert torch.equal(sample["rgb"], wanted["rgb"][index["index"]])
+    assert torch.equal(sample["rgb"], expected["rgb"][index["index"]])
 
 
-def test_an_environment_with_other_names_and_normalised_depth():
+def test_corrupt_observation_accepts_names_and_normalised_depth():
     sensor = DepthSensor(0.5, 5.0)
     schedule = Schedule("per_episode", 1.0, clean_share=0.0)
     transform = CorruptObservation(schedule, rgb="pixels", sensor=sensor, normalised=True)
@@ -157,12 +157,12 @@ def test_an_environment_with_other_names_and_normalised_depth():
     for row in range(6):
         corruption, key = schedule.draw(0, str(int(data["episode"][row])), 0)
         frames = {"rgb": clean["pixels"][row].numpy(), "depth": clean["depth"][row].numpy()}
-        wanted = corrupt_normalised(frames, corruption, key, sensor)
-        assert np.array_equal(data["pixels"][row].numpy(), wanted["rgb"])
-        assert np.array_equal(data["depth"][row].numpy(), wanted["depth"])
+        expected = corrupt_normalised(frames, corruption, key, sensor)
+        assert np.array_equal(data["pixels"][row].numpy(), expected["rgb"])
+        assert np.array_equal(data["depth"][row].numpy(), expected["depth"])
 
 
-def test_rgb_alone_will_do_and_a_missing_modality_is_explained():
+def test_corrupt_observation_explains_a_missing_modality():
     data = TensorDict(
         {
             "rgb": torch.full((2, 3, 8, 8, 3), 90, dtype=torch.uint8),
@@ -187,14 +187,14 @@ def test_rgb_alone_will_do_and_a_missing_modality_is_explained():
 
 
 @pytest.mark.skipif(not torch.cuda.is_available(), reason="needs a GPU")
-def test_frames_come_back_to_their_device():
+def test_corrupt_observation_keeps_the_device():
     data = hurt_env().rollout(3, break_when_any_done=False).exclude("next")
     stored = TransformedEnv(Corridor(), EpisodeCounter()).rollout(3, break_when_any_done=False)
     moved = CorruptObservation(HURT, seed=4)(stored.exclude("next").to("cuda"))
     assert moved["rgb"].device.type == "cuda" and torch.equal(moved["rgb"].cpu(), data["rgb"])
 
 
-def test_wrong_use_is_explained():
+def test_transforms_explain_invalid_use():
     with pytest.raises(ValueError, match="put an EpisodeCounter"):
         TransformedEnv(Corridor(), CorruptObservation(HURT)).reset()
     with pytest.raises(ValueError, match="worker must be 0 to 1"):

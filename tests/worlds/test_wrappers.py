@@ -57,7 +57,7 @@ def episode(env, seed=None):
     return frames
 
 
-def test_a_corruption_in_place_of_a_schedule_meets_every_frame_and_a_pair_both_entries():
+def test_wrapper_accepts_a_corruption_or_a_pair():
     space = spaces.Dict({"depth": METRES, "rgb": FRAME})
     alone, always = (
         episode(CorruptObservation(Room(space), by, 5), 3)
@@ -84,7 +84,7 @@ def test_a_corruption_in_place_of_a_schedule_meets_every_frame_and_a_pair_both_e
     [FRAME, METRES, spaces.Dict({"depth": METRES, "rgb": FRAME})],
     ids=lambda s: s.__class__,
 )
-def test_it_keeps_the_contract_of_gymnasium(space):
+def test_wrapper_passes_the_gymnasium_check(space):
     names = RGB if space is FRAME else DEPTH if space is METRES else RGB + DEPTH
     env = CorruptObservation(Room(space), Schedule("per_frame", 1.0, names=names))
     assert env.observation_space == space
@@ -93,31 +93,31 @@ def test_it_keeps_the_contract_of_gymnasium(space):
         assert space.contains(frame)
 
 
-def test_the_key_is_the_seed_the_reset_and_the_step():
+def test_key_depends_on_seed_reset_and_step():
     env, clean = CorruptObservation(Room(FRAME), Schedule.always("spatter", 0.7), 5), Room(FRAME)
     assert env.reset()[0] is not None and env.key == Key(5, "unseeded-0", 0)
     for name, seed in (("9-0", 9), ("9-1", None), ("7-0", 7)):
-        for number, (seen, given) in enumerate(
+        for number, (seen, settings) in enumerate(
             zip(episode(env, seed), episode(clean), strict=True)
         ):
             key = Key(5, name, number)
-            assert np.array_equal(seen, corrupt(given, "spatter", 0.7, key=key))
+            assert np.array_equal(seen, corrupt(settings, "spatter", 0.7, key=key))
         assert env.key == Key(5, name, 3) and env.corruption.name == "spatter"
 
 
-def test_an_environment_that_resets_itself_begins_an_episode_as_a_reset_does():
+def test_wrapper_counts_automatic_resets():
     inside = CorruptObservation(gymnasium.wrappers.Autoreset(Room(FRAME)), HURT_RGB)
     outside = gymnasium.wrappers.Autoreset(CorruptObservation(Room(FRAME), HURT_RGB))
     inside.reset(seed=4), outside.reset(seed=4)
     for number in range(1, 10):  # the room ends after 3 steps, and the next step resets it
-        seen, wanted = inside.step(0)[0], outside.step(0)[0]
+        seen, expected = inside.step(0)[0], outside.step(0)[0]
         assert inside.key == outside.env.key == Key(0, f"4-{number // 4}", number % 4)
-        assert np.array_equal(seen, wanted)
+        assert np.array_equal(seen, expected)
     inside.reset()
     assert inside.key == Key(0, "4-3", 0) and inside.step(0) and inside.key == Key(0, "4-3", 1)
 
 
-def test_a_step_before_the_first_reset_is_explained():
+def test_step_requires_a_reset():
     room = Room(FRAME)
     room.time = 0
     with pytest.raises(gymnasium.error.ResetNeeded, match=r"called before step\(\)"):
@@ -127,7 +127,7 @@ def test_a_step_before_the_first_reset_is_explained():
         CorruptObservation(ordered, HURT_RGB).step(0)
 
 
-def test_equal_seeds_give_equal_pixels_and_others_do_not():
+def test_pixels_depend_on_the_seeds():
     def pixels(reset, seed=0):
         schedule = Schedule("per_frame", 0.9, clean_share=0.0, names=("spatter", "low_light_noise"))
         env = CorruptObservation(Room(FRAME), schedule, seed)
@@ -138,7 +138,7 @@ def test_equal_seeds_give_equal_pixels_and_others_do_not():
     assert not np.array_equal(pixels(1), pixels(1, seed=1))
 
 
-def test_dictionaries_keep_order_and_other_entries():
+def test_wrapper_keeps_other_entries_and_their_order():
     space = spaces.Dict([("goal", spaces.Box(0, 1, (2,))), ("camera", FRAME), ("range", METRES)])
     env = CorruptObservation(
         Room(space), Schedule.always("multipath", 1.0), rgb="camera", depth="range"
@@ -147,29 +147,29 @@ def test_dictionaries_keep_order_and_other_entries():
     assert list(seen) == list(clean) == ["goal", "camera", "range"]
     assert np.array_equal(seen["camera"], clean["camera"])
     assert np.array_equal(seen["goal"], clean["goal"])
-    wanted = corrupt(clean["range"], "multipath", 1.0, key=env.key)
-    assert np.array_equal(seen["range"], wanted) and not np.array_equal(wanted, clean["range"])
+    expected = corrupt(clean["range"], "multipath", 1.0, key=env.key)
+    assert np.array_equal(seen["range"], expected) and not np.array_equal(expected, clean["range"])
 
 
-def test_normalised_depth_goes_through_the_sensor():
+def test_wrapper_corrupts_normalised_depth():
     space = spaces.Dict({"depth": spaces.Box(0.0, 1.0, (24, 32, 1), np.float32)})
     sensor = DepthSensor(0.5, 5.0)
     schedule = Schedule.always("quantization", 0.8)
     env = CorruptObservation(Room(space), schedule, sensor=sensor, normalised=True)
     seen, clean = env.reset(seed=1)[0], Room(space).reset()[0]
-    wanted = corrupt_normalised(clean, env.corruption, env.key, sensor)
-    assert np.array_equal(seen["depth"], wanted["depth"]) and space.contains(seen)
+    expected = corrupt_normalised(clean, env.corruption, env.key, sensor)
+    assert np.array_equal(seen["depth"], expected["depth"]) and space.contains(seen)
     assert not np.array_equal(seen["depth"], clean["depth"])
 
 
-def test_the_pose_keeps_a_flare_at_its_place_in_the_world():
+def test_pose_keeps_a_flare_in_place():
     space = spaces.Dict({"rgb": FRAME, "where": spaces.Box(-9, 9, (3,), np.float32)})
     env = CorruptObservation(Room(space), Schedule.always("flare", 1.0), pose="where")
     seen, clean = env.reset(seed=1)[0], Room(space).reset()[0]
     heading = float(clean["where"][2])
-    wanted = corrupt(clean["rgb"], "flare", 1.0, key=env.key, heading=heading)
-    assert np.array_equal(seen["rgb"], wanted)
-    assert not np.array_equal(wanted, corrupt(clean["rgb"], "flare", 1.0, key=env.key))
+    expected = corrupt(clean["rgb"], "flare", 1.0, key=env.key, heading=heading)
+    assert np.array_equal(seen["rgb"], expected)
+    assert not np.array_equal(expected, corrupt(clean["rgb"], "flare", 1.0, key=env.key))
     with pytest.raises(ValueError, match="pose must be an entry .*rgb, where.*'were'"):
         CorruptObservation(Room(space), Schedule.always("flare", 1.0), pose="were")
 
@@ -188,20 +188,20 @@ def test_the_pose_keeps_a_flare_at_its_place_in_the_world():
     ],
     ids=str,
 )
-def test_wrong_spaces_are_explained(space, options, part):
+def test_wrapper_explains_unsupported_spaces(space, options, part):
     names = options.get("names", RGB)
     with pytest.raises(ValueError, match=part) as error:
         CorruptObservation(Room(space), Schedule("per_episode", 0.5, names=names))
     assert "\n" not in str(error.value)
 
 
-def test_metres_in_a_normalised_wrapper_are_refused():
+def test_wrapper_rejects_metres_as_normalised_depth():
     schedule = Schedule.always("multipath", 0.5)
     with pytest.raises(ValueError, match="must end at 1 if normalised=True"):
         CorruptObservation(Room(METRES), schedule, normalised=True)
 
 
-def test_without_gymnasium_the_extra_is_named(monkeypatch):
+def test_import_names_the_missing_extra(monkeypatch):
     monkeypatch.setitem(sys.modules, "gymnasium", None)
     monkeypatch.delitem(sys.modules, "mitigate.worlds.wrappers")
     with pytest.raises(ImportError, match=r"pip install -e '\.\[gymnasium\]'"):

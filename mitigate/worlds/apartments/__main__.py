@@ -69,7 +69,9 @@ DEFAULTS = {"seed": "7", "episode": "0", "task": "vln", "size": "192", "out": ""
 
 def parse(arguments: Sequence[str]) -> tuple[int, int, str, int, Path]:
     """Return the arguments of :func:`show`; raise ValueError for invalid options."""
-    _, options = paths_and_options(arguments, ("show",), DEFAULTS)
+    (command,), options = paths_and_options(arguments, ("show",), DEFAULTS)
+    if command != "show":
+        raise ValueError(unknown("command", command, ["show"]))
     values = {**DEFAULTS, **options}
     for name in ("seed", "episode", "size"):
         if not values[name].isdecimal():

@@ -2,16 +2,16 @@
 
   OUT      folder for scenes, episodes and configs
   split    train, val_seen or val_unseen (default)
-  scenes   how many of its apartments (null: all of the shipped episode list; of train: 100)
+  scenes   number of apartments (null: all of the shipped episode list; 100 for train)
   task     vln, ogn or both (default)
 
 OUT/scenes/apartments/<split>/<seed>.glb      the apartments, z up, unlit
-OUT/datasets/vln/<split>.json.gz              the shipped episodes as habitat-lab's R2RVLN-v1 and
-                                              VLN-CE read them: words of the file's own vocabulary
-OUT/datasets/objectnav/<split>/...            as ObjectNav-v1 reads them, with view points
-OUT/navmesh.json                              the agent's size, for Simulator.recompute_navmesh
+OUT/datasets/vln/<split>.json.gz              the shipped episodes in the format R2RVLN-v1 of
+                                              habitat-lab and VLN-CE, with tokens
+OUT/datasets/objectnav/<split>/...            the format ObjectNav-v1, with view points
+OUT/navmesh.json                              the size of the agent, for recompute_navmesh
 
-The same command again writes the same bytes. How to use it: docs/habitat.md.
+The same command always writes the same bytes. docs/habitat.md explains how to use the files.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ from mitigate.core.names import unknown
 from mitigate.core.options import asks_help, paths_and_options
 from mitigate.core.output import output_folder
 from mitigate.worlds.apartments.apartment import apartment_of
-from mitigate.worlds.apartments.faces import Faces
+from mitigate.worlds.apartments.faces import Faces, texture_coordinates
 from mitigate.worlds.apartments.layout import CATEGORIES
 from mitigate.worlds.apartments.navigation import RADIUS
 from mitigate.worlds.apartments.palette import PATTERNS, SPLITS, texture
@@ -66,28 +66,20 @@ ALLOWED = {"split": SPLITS, "task": ("vln", "ogn", "both")}
 
 def export(out: Path, split: str, scenes: int | None, tasks: Sequence[str]) -> list[Path]:
     """Write apartments and their episodes to ``out``; return the paths of the episode lists."""
-    listed: dict[str, list[Episode]] = {task: _episodes(split, task, scenes) for task in tasks}
+    episodes = {task: _episodes(split, task, scenes) for task in tasks}
+    places = sorted({episode.scene_id for listed in episodes.values() for episode in listed})
     with output_folder(out):
-        return _write(out, split, listed)
-
-
-def _write(out: Path, split: str, listed: dict[str, list[Episode]]) -> list[Path]:
-    places = sorted({e.scene_id for episodes in listed.values() for e in episodes})
-    for number, scene in enumerate(places):
-        write_bytes(out / "scenes" / f"{scene}.glb", glb(apartment_of(scene).faces))
-        print(f"scene {number + 1}/{len(places)}: {scene}", flush=True)
-    with atomic_text(out / "navmesh.json") as file:
-        json.dump(NAVMESH, file, indent=1)
-    written = []
-    if "vln" in listed:
-        written.append(write_vln(out, split, listed["vln"]))
-    if "ogn" in listed:
-        written.append(write_objectnav(out, split, listed["ogn"]))
-    return written
+        for number, scene in enumerate(places):
+            write_bytes(out / "scenes" / f"{scene}.glb", glb(apartment_of(scene).faces))
+            print(f"scene {number + 1}/{len(places)}: {scene}", flush=True)
+        with atomic_text(out / "navmesh.json") as file:
+            json.dump(NAVMESH, file, indent=1)
+        writers = {"vln": write_vln, "ogn": write_objectnav}
+        return [writers[task](out, split, listed) for task, listed in episodes.items()]
 
 
 def _episodes(split: str, task: str, scenes: int | None) -> list[Episode]:
-    """Return the shipped episodes of the first ``scenes`` apartments; generate those of train."""
+    """Return the shipped episodes of the first ``scenes`` apartments, or generate them (train)."""
     if split == "train":
         return list(fixed_episodes(split, task, PER_APARTMENT * (scenes or TRAIN)))
     episodes = load_episodes(split, task)
@@ -132,7 +124,7 @@ def _words(text: str) -> list[str]:
 def write_objectnav(out: Path, split: str, episodes: Sequence[Episode]) -> Path:
     """Write episodes in HM3D's ObjectNav format: one file per scene and an empty list."""
     ids = {category: number for number, category in enumerate(CATEGORIES)}
-    known = {
+    category_ids = {
         "category_to_task_category_id": ids,
         "category_to_scene_annotation_category_id": ids,
     }
@@ -141,25 +133,22 @@ def write_objectnav(out: Path, split: str, episodes: Sequence[Episode]) -> Path:
         by_scene[episode.scene_id].append(episode)
     folder = out / "datasets" / "objectnav" / split
     for scene, scene_episodes in by_scene.items():
-        name = f"{scene}.glb"
-        goals = {
-            f"{Path(name).name}_{episode.info['category']}": _goals(episode)
-            for episode in scene_episodes
-        }
-        entries = [_objectnav(episode, name) for episode in scene_episodes]
-        with atomic_text(folder / "content" / f"{Path(scene).name}.json.gz") as file:
-            json.dump({"episodes": entries, "goals_by_category": goals, **known}, file)
+        name = Path(scene).name
+        goals = {f"{name}.glb_{e.info['category']}": _goals(e) for e in scene_episodes}
+        entries = [_objectnav(episode) for episode in scene_episodes]
+        with atomic_text(folder / "content" / f"{name}.json.gz") as file:
+            json.dump({"episodes": entries, "goals_by_category": goals, **category_ids}, file)
     path = folder / f"{split}.json.gz"
     with atomic_text(path) as file:
-        json.dump({"episodes": [], **known}, file)
+        json.dump({"episodes": [], **category_ids}, file)
     return path
 
 
-def _objectnav(episode: Episode, scene: str) -> dict[str, Any]:
+def _objectnav(episode: Episode) -> dict[str, Any]:
     entry = to_json(episode)
     return {
         **{name: entry[name] for name in ("episode_id", "start_position", "start_rotation")},
-        "scene_id": scene,
+        "scene_id": f"{episode.scene_id}.glb",
         "info": {"geodesic_distance": episode.geodesic_distance},
         "goals": [],
         "object_category": episode.info["category"],
@@ -167,36 +156,34 @@ def _objectnav(episode: Episode, scene: str) -> dict[str, Any]:
 
 
 def _goals(episode: Episode) -> list[dict[str, Any]]:
-    """Return all objects of the category, with the free cells beside each as view points."""
-    apartment, goals = apartment_of(episode.scene_id), []
+    """Return all objects of the category, with the free cells next to each as view points."""
+    apartment = apartment_of(episode.scene_id)
+    goals = []
     for thing in landmarks(episode):
         piece = apartment.furniture[thing]
-        x0, y0, x1, y1 = piece.rect
-        views = [
-            {"agent_state": {"position": to_vlnce(xy), "rotation": [0.0, 0.0, 0.0, 1.0]}}
-            for xy in map(apartment.space.centre, view_cells(apartment, thing))
-        ]
+        cells = map(apartment.space.centre, view_cells(apartment, thing))
+        states = [{"position": to_vlnce(xy), "rotation": [0.0, 0.0, 0.0, 1.0]} for xy in cells]
         goals.append(
             {
-                "position": to_vlnce(((x0 + x1) / 2, (y0 + y1) / 2)),
+                "position": to_vlnce(piece.centre),
                 "object_id": thing,
                 "object_name": f"{piece.category}_{thing}",
                 "object_category": piece.category,
-                "view_points": [{**view, "iou": 1.0} for view in views],
+                "view_points": [{"agent_state": state, "iou": 1.0} for state in states],
             }
         )
     return goals
 
 
 def parse(arguments: Sequence[str]) -> tuple[Path, str, int | None, tuple[str, ...]]:
-    """Return OUT, split, scenes and tasks. Raises ValueError for invalid arguments."""
+    """Return OUT, split, scenes and tasks; raise ValueError for invalid arguments."""
     (out,), overrides = paths_and_options(arguments, ("OUT",), DEFAULTS)
     options = {**DEFAULTS, **overrides}
     for name, allowed in ALLOWED.items():
         if options[name] not in allowed:
             raise ValueError(unknown(name, options[name], allowed))
     if options["scenes"] != "null" and not options["scenes"].isdecimal():
-        raise ValueError(f"scenes={options['scenes']} must be a whole number, or null for all.")
+        raise ValueError(f"scenes must be a whole number or null, got {options['scenes']!r}.")
     scenes = None if options["scenes"] == "null" else max(1, int(options["scenes"]))
     tasks = ("vln", "ogn") if options["task"] == "both" else (options["task"],)
     return Path(out), options["split"], scenes, tasks
@@ -209,24 +196,24 @@ def main(argv: Sequence[str] | None = None) -> int:
         print(__doc__)
         return 0 if arguments else 2
     try:
-        written = export(*parse(arguments))
+        paths = export(*parse(arguments))
     except (OSError, ValueError) as error:
         print(f"export-scene: {error}", file=sys.stderr)
         return 2
-    print("\n".join(f"wrote {path}" for path in written))
+    print("\n".join(f"wrote {path}" for path in paths))
     return 0
 
 
 MAGIC, VERSION = b"glTF", 2
 FLOAT, BYTE, INT = 5126, 5121, 5125  # component types
 VERTICES, INDICES = 34962, 34963  # buffer view targets
-NEAREST, REPEAT = 9728, 10497  # of samplers
-_CORNERS = np.array([(0, 0), (1, 0), (1, 1), (0, 1)], np.float32)
+# the nearest pixel, and repeated textures
+SAMPLER = {"magFilter": 9728, "minFilter": 9728, "wrapS": 10497, "wrapT": 10497}
 _TRIANGLES = np.array([0, 1, 2, 0, 2, 3], np.uint32)
 
 
 class _Buffer:
-    """Collects binary parts, aligned to 4 bytes, and their views and accessors."""
+    """Collect binary parts, aligned to 4 bytes, with their views and accessors."""
 
     def __init__(self) -> None:
         self.data = bytearray()
@@ -236,9 +223,8 @@ class _Buffer:
     def view(self, data: bytes, target: int | None = None) -> int:
         """Add bytes; return the number of their view."""
         self.data += b"\0" * (-len(self.data) % 4)
-        self.views.append({"buffer": 0, "byteOffset": len(self.data), "byteLength": len(data)})
-        if target is not None:
-            self.views[-1]["target"] = target
+        view = {"buffer": 0, "byteOffset": len(self.data), "byteLength": len(data)}
+        self.views.append(view if target is None else {**view, "target": target})
         self.data += data
         return len(self.views) - 1
 
@@ -246,10 +232,8 @@ class _Buffer:
         """Add an array [n, ...]; return the number of its accessor."""
         target = INDICES if kind == "SCALAR" else VERTICES
         view = self.view(np.ascontiguousarray(array).tobytes(), target)
-        self.accessors.append(
-            {"bufferView": view, "componentType": component, "count": len(array), "type": kind}
-        )
-        self.accessors[-1] |= more
+        entry = {"bufferView": view, "componentType": component, "count": len(array), "type": kind}
+        self.accessors.append({**entry, **more})
         return len(self.accessors) - 1
 
 
@@ -258,14 +242,14 @@ def glb(faces: Faces) -> bytes:
 
     Coordinates are the plan's, with z up. Habitat expects this of a stage file without a config,
     and converts them to VLN-CE's frame. Materials are unlit (KHR_materials_unlit) and textures are
-    not filtered, so that other renderers show the same colours as ours.
+    not filtered, so that other renderers show the same colours.
     """
-    buffer, primitives = _Buffer(), []
+    buffer = _Buffer()
     used = [k for k in range(len(PATTERNS)) if (faces.pattern == k).any()]
-    for number, pattern in enumerate(used):
-        primitives.append(
-            {**_primitive(buffer, faces, faces.pattern == pattern), "material": number}
-        )
+    primitives = [
+        {**_primitive(buffer, faces, faces.pattern == pattern), "material": number}
+        for number, pattern in enumerate(used)
+    ]
     pictures = [cv2.imencode(".png", texture(PATTERNS[k], 0))[1].tobytes() for k in used]
     document = {
         "asset": {"version": "2.0", "generator": "mitigate"},
@@ -276,9 +260,7 @@ def glb(faces: Faces) -> bytes:
         "meshes": [{"primitives": primitives}],
         "materials": [_material(PATTERNS[k], number) for number, k in enumerate(used)],
         "textures": [{"sampler": 0, "source": number} for number in range(len(used))],
-        "samplers": [
-            {"magFilter": NEAREST, "minFilter": NEAREST, "wrapS": REPEAT, "wrapT": REPEAT}
-        ],
+        "samplers": [SAMPLER],
         "images": [{"bufferView": buffer.view(p), "mimeType": "image/png"} for p in pictures],
     }
     document |= {"accessors": buffer.accessors, "bufferViews": buffer.views}
@@ -311,15 +293,15 @@ def _primitive(buffer: _Buffer, faces: Faces, chosen: np.ndarray) -> dict[str, A
     count = int(chosen.sum())
     colours = np.full((4 * count, 4), 255, np.uint8)
     colours[:, :3] = np.rint(faces.colour[chosen].reshape(-1, 3) * 255)
-    spots = (_CORNERS[None] * faces.repeat[chosen][:, None]).reshape(-1, 2).astype(np.float32)
-    spots[:, 1] = 1 - spots[:, 1]  # glTF's textures begin at the top
+    uv = texture_coordinates(faces, np.flatnonzero(chosen))
+    uv[:, 1] = 1 - uv[:, 1]  # textures begin at the top in glTF
     triangles = (4 * np.arange(count, dtype=np.uint32)[:, None] + _TRIANGLES).reshape(-1)
     limits = {"min": corners.min(0).tolist(), "max": corners.max(0).tolist()}
     return {
         "attributes": {
             "POSITION": buffer.accessor(corners, "VEC3", FLOAT, **limits),
             "COLOR_0": buffer.accessor(colours, "VEC4", BYTE, normalized=True),
-            "TEXCOORD_0": buffer.accessor(spots, "VEC2", FLOAT),
+            "TEXCOORD_0": buffer.accessor(uv, "VEC2", FLOAT),
         },
         "indices": buffer.accessor(triangles, "SCALAR", INT),
     }

@@ -118,17 +118,13 @@ class FaceBuilder:
     def _room(self, index: int) -> None:
         room, rng, paint = self.apartment.rooms[index], self.rng, self.paint
         x0, y0, x1, y1 = room.rect
-        walls, floors = (
-            paint.walls[rng.integers(len(paint.walls))],
-            paint.floors[rng.integers(len(paint.floors))],
-        )
+        walls = paint.walls[rng.integers(len(paint.walls))]
+        floors = paint.floors[rng.integers(len(paint.floors))]
         wet = room.kind in ("bathroom", "kitchen")
-        wall_pattern = PATTERNS.index(
-            str(rng.choice(["tiles", "plain"] if wet else ["plain", "noise", "stripes"]))
-        )
-        floor_pattern = PATTERNS.index(
-            str(rng.choice(["tiles", "checks"] if wet else ["planks", "noise", "speckle"]))
-        )
+        wall_choice = ["tiles", "plain"] if wet else ["plain", "noise", "stripes"]
+        wall_pattern = PATTERNS.index(str(rng.choice(wall_choice)))
+        floor_choice = ["tiles", "checks"] if wet else ["planks", "noise", "speckle"]
+        floor_pattern = PATTERNS.index(str(rng.choice(floor_choice)))
         self._add(2, 1, 0.0, (x0, y0), (x1, y1), floors, floor_pattern, index)
         self._add(2, -1, HEIGHT, (x0, y0), (x1, y1), np.ones(3), PATTERNS.index("plain"), index)
         inset = WALL / 2
@@ -152,38 +148,21 @@ class FaceBuilder:
         return [((d.x, d.y)[1 - axis] - DOOR / 2, (d.x, d.y)[1 - axis] + DOOR / 2) for d in near]
 
     def _frame(self, door: Door) -> None:
-        wood, plain = np.array((0.50, 0.36, 0.24)), PATTERNS.index("plain")
-        centre, along = (door.x, door.y)[door.axis], (door.x, door.y)[1 - door.axis]
-        thick = (centre - WALL / 2, centre + WALL / 2)
-        for sign, at in ((1, along - DOOR / 2), (-1, along + DOOR / 2)):
-            self._add(
-                1 - door.axis,
-                sign,
-                at,
-                (thick[0], 0.0),
-                (thick[1], LINTEL),
-                wood,
-                plain,
-                door.rooms[0],
-            )
-        low, high = [thick[0], along - DOOR / 2], [thick[1], along + DOOR / 2]
-        order = (0, 1) if door.axis == 0 else (1, 0)
-        self._add(
-            2,
-            -1,
-            LINTEL,
-            (low[order[0]], low[order[1]]),
-            (high[order[0]], high[order[1]]),
-            wood,
-            plain,
-            door.rooms[0],
-        )
+        """Add the two sides and the top of a door frame."""
+        style = (np.array((0.50, 0.36, 0.24)), PATTERNS.index("plain"), door.rooms[0])
+        axis, along = door.axis, 1 - door.axis
+        centre, middle = (door.x, door.y)[axis], (door.x, door.y)[along]
+        low = {axis: centre - WALL / 2, along: middle - DOOR / 2}
+        high = {axis: centre + WALL / 2, along: middle + DOOR / 2}
+        for sign, at in ((1, low[along]), (-1, high[along])):
+            self._add(along, sign, at, (low[axis], 0.0), (high[axis], LINTEL), *style)
+        self._add(2, -1, LINTEL, (low[0], low[1]), (high[0], high[1]), *style)
 
     def _piece(self, instance: int, piece: Furniture) -> None:
         category = CATALOGUE[piece.category]
         label = CATEGORIES.index(piece.category)
         variants = self.paint.colours[piece.colour] if piece.colour else None
-        main = variants[self.rng.integers(len(variants))] if variants is not None else np.ones(3)
+        main = np.ones(3) if variants is None else variants[self.rng.integers(len(variants))]
         pattern = PATTERNS.index("noise" if self.rng.random() < 0.5 else "plain")
         for part in category.parts:
             low, high = _turned(part, piece)
@@ -195,6 +174,12 @@ class FaceBuilder:
                     if axis == 2 and sign < 0 and low[2] < 0.3:
                         continue
                     self._add(axis, sign, at, *span, colour, pattern, piece.room, label, instance)
+
+
+def texture_coordinates(faces: Faces, chosen: np.ndarray) -> np.ndarray:
+    """Return the texture coordinates of the corners of the chosen faces, float32 [4 n, 2]."""
+    corners = np.array([(0, 0), (1, 0), (1, 1), (0, 1)], np.float32)
+    return (corners[None] * faces.repeat[chosen][:, None]).reshape(-1, 2)
 
 
 def _corners(
@@ -220,12 +205,10 @@ def _turned(part: tuple, piece: Furniture) -> tuple[tuple, tuple]:
     """Return the box of a part in plan coordinates, as two corners (see :class:`Furniture`)."""
     px0, px1, py0, py1, z0, z1, _ = part
     x0, y0, x1, y1 = piece.rect
-    if piece.turn == 0:
-        box = (x0 + px0, y0 + py0, x0 + px1, y0 + py1)
-    elif piece.turn == 2:
-        box = (x1 - px1, y1 - py1, x1 - px0, y1 - py0)
-    elif piece.turn == 1:
-        box = (x1 - py1, y0 + px0, x1 - py0, y0 + px1)
-    else:
-        box = (x0 + py0, y1 - px1, x0 + py1, y1 - px0)
-    return (box[0], box[1], z0), (box[2], box[3], z1)
+    low_x, low_y, high_x, high_y = (
+        (x0 + px0, y0 + py0, x0 + px1, y0 + py1),
+        (x1 - py1, y0 + px0, x1 - py0, y0 + px1),
+        (x1 - px1, y1 - py1, x1 - px0, y1 - py0),
+        (x0 + py0, y1 - px1, x0 + py1, y1 - px0),
+    )[piece.turn]
+    return (low_x, low_y, z0), (high_x, high_y, z1)

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mitigate.worlds.apartments.layout import CATALOGUE
+from mitigate.worlds.apartments.layout import CATALOGUE, gap_to
 
 if TYPE_CHECKING:  # this module also serves code without the simulator
     from mitigate.worlds.apartments.apartment import Apartment
@@ -46,9 +46,8 @@ def describe(
     apartment: Apartment, path: np.ndarray, heading: float, target: int, rng: np.random.Generator
 ) -> str:
     """Return an instruction for a path (float [n, 2], metres) that ends at piece ``target``."""
-    clauses = [
-        _clause(apartment, event, rng) for event in _events(apartment, path, heading, target, rng)
-    ]
+    events = _events(apartment, path, heading, target, rng)
+    clauses = [_clause(apartment, event, rng) for event in events]
     words = TEMPLATES[apartment.split]
     final = "stop_room" if rng.random() < 0.6 else "stop"
     room = apartment.rooms[apartment.furniture[target].room].kind
@@ -77,14 +76,13 @@ def _sentence(clauses: list[str], joins: Sequence[str], rng: np.random.Generator
 
 def _clause(apartment: Apartment, event: Event, rng: np.random.Generator) -> str:
     words = TEMPLATES[apartment.split]
+    text = _pick(words[event.kind], rng)
     if event.kind in ("ahead", "left", "right", "around"):
-        return _pick(words[event.kind], rng)
+        return text
     if event.kind in ("door", "enter"):
-        here = apartment.rooms[event.thing].kind
-        return _pick(words[event.kind], rng).format(
-            room=apartment.rooms[event.room].kind, here=here
-        )
-    return _pick(words[event.kind], rng).format(thing=name_of(apartment, event.thing))
+        rooms = apartment.rooms
+        return text.format(room=rooms[event.room].kind, here=rooms[event.thing].kind)
+    return text.format(thing=name_of(apartment, event.thing))
 
 
 def _events(
@@ -160,23 +158,13 @@ def _landmarks(
     for instance, piece in enumerate(apartment.furniture):
         if instance == target:
             continue
-        x0, y0, x1, y1 = piece.rect
-        gap = np.hypot(
-            np.maximum(np.maximum(x0 - path[:, 0], path[:, 0] - x1), 0),
-            np.maximum(np.maximum(y0 - path[:, 1], path[:, 1] - y1), 0),
-        )
+        gap = gap_to(piece.rect, path)
         i = int(gap.argmin())
         same_room = apartment.room_at(path[i]) == piece.room
         if gap[i] < _NEAR_PATH and same_room and 0.8 < along[i] < along[-1] - 1.5:
-            events.append(
-                Event(
-                    float(along[i]),
-                    _side(path, i, piece.centre, rng)
-                    if CATALOGUE[piece.category].solid
-                    else "past",
-                    thing=instance,
-                )
-            )
+            solid = CATALOGUE[piece.category].solid
+            kind = _side(path, i, piece.centre, rng) if solid else "past"
+            events.append(Event(float(along[i]), kind, thing=instance))
     selected = rng.permutation(len(events))[: int(rng.integers(0, 3))]
     return [events[k] for k in selected]
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from functools import lru_cache
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 from numba import njit
@@ -20,12 +21,8 @@ from mitigate.worlds.apartments.navigation import FreeSpace
 from mitigate.worlds.apartments.palette import COLOUR_NAMES
 
 # visible things, things nearer than 2 m, colours of coloured things, kinds of the rooms seen
-CONCEPTS = (
-    *CATEGORIES,
-    *(f"near {name}" for name in CATEGORIES),
-    *COLOUR_NAMES,
-    *ROOM_KINDS,
-)
+NEAR = tuple(f"near {name}" for name in CATEGORIES)
+CONCEPTS = (*CATEGORIES, *NEAR, *COLOUR_NAMES, *ROOM_KINDS)
 _HALF_ANGLE = np.radians(18.0)
 ANGLES, DISTANCES, STEP = 120, 12, 0.25  # of free directions: bins, bins, metres per bin
 COLUMNS = 4  # of a view, of equal width in pixels
@@ -86,33 +83,20 @@ def _within(
     apartment: Apartment, ids: np.ndarray, depth: np.ndarray, low: int, high: int
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return the labels of the pixel columns from ``low`` to ``high``."""
-    instance, room, category, colour, kind = _tables(apartment)
-    return _label(
-        ids,
-        depth[..., 0],
-        low,
-        high,
-        instance,
-        room,
-        category,
-        colour,
-        kind,
-        len(CATEGORIES),
-        len(COLOUR_NAMES),
-        len(CONCEPTS),
-    )
+    sizes = (len(CATEGORIES), len(COLOUR_NAMES), len(CONCEPTS))
+    arguments: Any = (ids, depth[..., 0], low, high, *_tables(apartment), *sizes)
+    return _label(*arguments)
 
 
-@lru_cache(maxsize=64)  # each holds its apartment
+@lru_cache(maxsize=64)  # each entry references its apartment
 def _tables(apartment: Apartment) -> tuple[np.ndarray, ...]:
     furniture = apartment.furniture
-    category = np.array([CATEGORIES.index(p.category) for p in furniture], np.int64)
-    colour = np.array(
-        [COLOUR_NAMES.index(p.colour) if p.colour else -1 for p in furniture], np.int64
-    )
-    kind = np.array([ROOM_KINDS.index(r.kind) for r in apartment.rooms], np.int64)
+    category = [CATEGORIES.index(p.category) for p in furniture]
+    colours = [COLOUR_NAMES.index(p.colour) if p.colour else -1 for p in furniture]
+    kind = [ROOM_KINDS.index(r.kind) for r in apartment.rooms]
     faces = apartment.faces
-    return faces.instance.astype(np.int64), faces.room.astype(np.int64), category, colour, kind
+    arrays = (faces.instance, faces.room, category, colours, kind)
+    return tuple(np.asarray(array, np.int64) for array in arrays)
 
 
 @njit(cache=True)

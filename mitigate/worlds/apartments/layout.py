@@ -2,7 +2,7 @@
 
 Each category of furniture is a few axis-aligned boxes, recognisable by its shape.
 ``furniture.json`` holds sizes in metres. A part is ``(x0, x1, y0, y1, z0, z1, paint)`` in the
-object's own frame: x along the wall, y away from it (the back of the object is y = 0), z up.
+frame of the object: x along the wall, y away from it (the back of the object is y = 0), z up.
 ``paint`` is "main" (the object's colour), a name of ``paints``, or an RGB triple in [0, 1].
 """
 
@@ -31,21 +31,21 @@ class Category:
     solid: bool = True
 
 
-def _part(held: list[Any]) -> Part:
-    *box, paint = held
+def _part(part: list[Any]) -> Part:
+    *box, paint = part
     paint = _DATA["paints"].get(paint, paint) if isinstance(paint, str) else paint
     return (*box, tuple(paint) if isinstance(paint, list) else paint)
 
 
 CATALOGUE = {
-    name: Category(name, **{**held, "parts": tuple(map(_part, held["parts"]))})
-    for name, held in _DATA["categories"].items()
+    name: Category(name, **{**entry, "parts": tuple(map(_part, entry["parts"]))})
+    for name, entry in _DATA["categories"].items()
 }
 CATEGORIES = tuple(CATALOGUE)
 
 # room kind -> (always present, chosen from); at most one of a category in a room except chairs
 ROOMS: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
-    kind: (tuple(held["always"]), tuple(held["choice"])) for kind, held in _DATA["rooms"].items()
+    kind: (tuple(entry["always"]), tuple(entry["choice"])) for kind, entry in _DATA["rooms"].items()
 }
 ROOM_KINDS = tuple(ROOMS)
 
@@ -168,14 +168,14 @@ def furnish(
     for index, room in enumerate(rooms):
         always, choice = ROOMS[room.kind]
         extra = [str(c) for c in rng.permutation(choice)[: int(rng.integers(2, 5))]]
-        taken = [_door_clearance(door) for door in doors if index in door.rooms]
+        occupied = [_door_clearance(door) for door in doors if index in door.rooms]
         for name in [*always, *extra]:
-            piece = _place(CATALOGUE[name], room, index, taken, colours, rng)
+            piece = _place(CATALOGUE[name], room, index, occupied, colours, rng)
             if piece is None:
                 continue
             placed.append(piece)
             if CATALOGUE[name].solid:
-                taken.append(grow(piece.rect, 0.05))
+                occupied.append(grow(piece.rect, 0.05))
     return placed
 
 
@@ -183,34 +183,27 @@ def _place(
     category: Category,
     room: Room,
     index: int,
-    taken: list[Rect],
+    occupied: list[Rect],
     colours: tuple[str, ...],
     rng: np.random.Generator,
 ) -> Furniture | None:
     colour = str(rng.choice(colours)) if category.coloured else None
-    x0, y0, x1, y1 = (
-        room.rect[0] + WALL / 2,
-        room.rect[1] + WALL / 2,
-        room.rect[2] - WALL / 2,
-        room.rect[3] - WALL / 2,
-    )
+    x0, y0, x1, y1 = grow(room.rect, -WALL / 2)
     for _ in range(24):
         turn = int(rng.integers(4))
-        w, d = (
-            (category.width, category.depth) if turn % 2 == 0 else (category.depth, category.width)
-        )
+        w, d = category.width, category.depth
+        if turn % 2:
+            w, d = d, w
         if w > x1 - x0 - 0.1 or d > y1 - y0 - 0.1:
             continue
         if category.name in ("rug", "table"):
-            x, y = (
-                (x0 + x1 - w) / 2 + rng.uniform(-0.3, 0.3),
-                (y0 + y1 - d) / 2 + rng.uniform(-0.3, 0.3),
-            )
+            x = (x0 + x1 - w) / 2 + rng.uniform(-0.3, 0.3)
+            y = (y0 + y1 - d) / 2 + rng.uniform(-0.3, 0.3)
         else:
             along_x, along_y = rng.uniform(x0, x1 - w), rng.uniform(y0, y1 - d)
             x, y = [(along_x, y0), (x1 - w, along_y), (along_x, y1 - d), (x0, along_y)][turn]
         rect = (float(x), float(y), float(x + w), float(y + d))
-        if not any(_overlap(rect, other) for other in (taken if category.name != "rug" else [])):
+        if category.name == "rug" or not any(_overlap(rect, other) for other in occupied):
             return Furniture(category.name, colour, rect, turn, index)
     return None
 
@@ -222,6 +215,15 @@ def _door_clearance(door: Door) -> Rect:
 
 def grow(rect: Rect, by: float) -> Rect:
     return rect[0] - by, rect[1] - by, rect[2] + by, rect[3] + by
+
+
+def gap_to(rect: Rect, xy: np.ndarray) -> np.ndarray:
+    """Return the metres from points [n, 2] to a rectangle, 0 inside it."""
+    x0, y0, x1, y1 = rect
+    return np.hypot(
+        np.maximum(np.maximum(x0 - xy[:, 0], xy[:, 0] - x1), 0),
+        np.maximum(np.maximum(y0 - xy[:, 1], xy[:, 1] - y1), 0),
+    )
 
 
 def _overlap(a: Rect, b: Rect) -> bool:

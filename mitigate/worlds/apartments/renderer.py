@@ -19,7 +19,7 @@ from numba import njit
 from mitigate.core.observation import HFOV_DEGREES, VIEW_STEP_DEGREES, VIEWS
 from mitigate.core.signals import uninterrupted
 from mitigate.worlds.apartments.apartment import Apartment
-from mitigate.worlds.apartments.faces import Faces
+from mitigate.worlds.apartments.faces import Faces, texture_coordinates
 from mitigate.worlds.apartments.palette import PATTERNS, TEXTURE_PIXELS, texture
 
 EYE = 1.25  # camera height, metres (VLN-CE)
@@ -27,6 +27,16 @@ FARTHEST = 17.0  # metres; longer than any line through an apartment
 LEAST = 4  # smallest view in pixels, heuristic
 SCENES = 128  # cached per shared renderer, heuristic: 0.35 MB each; building one takes 6 ms
 PIPE = "p3tinydisplay"
+SETTINGS = f"""
+window-type offscreen
+notify-level error
+notify-level-x11display fatal
+notify-level-display fatal
+textures-power-2 none
+audio-library-name null
+framebuffer-srgb 0
+load-display {PIPE}
+"""
 _COLUMNS, _ROWS = 4, 3  # the 12 views tile the buffer
 _NEAR = 0.1  # metres; a wall at the agent's radius is at least 0.127 m deep in a 90 degree view
 
@@ -35,19 +45,7 @@ def _panda() -> Any:
     with uninterrupted():  # an error in its first import would end the process (panda3d 1.10.16)
         from panda3d import core
 
-    settings = "\n".join(
-        [
-            "window-type offscreen",
-            "notify-level error",
-            "notify-level-x11display fatal",
-            "notify-level-display fatal",
-            "textures-power-2 none",
-            "audio-library-name null",
-            "framebuffer-srgb 0",
-            f"load-display {PIPE}",
-        ]
-    )
-    core.load_prc_file_data("mitigate", settings)
+    core.load_prc_file_data("mitigate", SETTINGS)
     return core
 
 
@@ -59,7 +57,7 @@ class Renderer:
 
     def __init__(self, size: int = 64, scenes: int = 48) -> None:
         if size < LEAST:
-            raise ValueError(f"A view of size={size} shows nothing: give {LEAST} pixels or more.")
+            raise ValueError(f"size must be at least {LEAST} pixels, got {size}.")
         self.size, self.core = size, _panda()
         core = self.core
         self.engine = core.GraphicsEngine.get_global_ptr()
@@ -148,9 +146,8 @@ class Renderer:
             camera.set_h(-VIEW_STEP_DEGREES * k)
             column, row = k % _COLUMNS, layer * _ROWS + k // _COLUMNS
             left, bottom = column / _COLUMNS, row / (2 * _ROWS)
-            region = self.buffer.make_display_region(
-                left, left + 1 / _COLUMNS, bottom, bottom + 0.5 / _ROWS
-            )
+            right, top = left + 1 / _COLUMNS, bottom + 0.5 / _ROWS
+            region = self.buffer.make_display_region(left, right, bottom, top)
             region.set_camera(camera)
             region.set_clear_depth_active(True)
             regions.append(region)
@@ -190,27 +187,22 @@ class Renderer:
         n = len(chosen)
         packed = np.zeros((n * 4, 6), np.float32)
         packed[:, :3] = faces.corners[chosen].reshape(-1, 3)
-        packed[:, 4:] = (
-            np.array([(0, 0), (1, 0), (1, 1), (0, 1)], np.float32)[None]
-            * faces.repeat[chosen][:, None]
-        ).reshape(-1, 2)
+        packed[:, 4:] = texture_coordinates(faces, chosen)
         bytes_ = np.zeros((n * 4, 4), np.uint8)
         bytes_[:, :3] = np.rint(colour.reshape(-1, 3) * 255)
         bytes_[:, 3] = 255
         packed[:, 3] = np.ascontiguousarray(bytes_).view(np.float32)[:, 0]
         layout = core.GeomVertexArrayFormat()
-        layout.add_column(
-            core.InternalName.get_vertex(), 3, core.Geom.NT_float32, core.Geom.C_point
-        )
-        layout.add_column(core.InternalName.get_color(), 4, core.Geom.NT_uint8, core.Geom.C_color)
-        layout.add_column(
-            core.InternalName.get_texcoord(), 2, core.Geom.NT_float32, core.Geom.C_texcoord
-        )
+        for column, count, kind, content in (
+            (core.InternalName.get_vertex(), 3, core.Geom.NT_float32, core.Geom.C_point),
+            (core.InternalName.get_color(), 4, core.Geom.NT_uint8, core.Geom.C_color),
+            (core.InternalName.get_texcoord(), 2, core.Geom.NT_float32, core.Geom.C_texcoord),
+        ):
+            layout.add_column(column, count, kind, content)
         form = core.GeomVertexFormat()
         form.add_array(layout)
-        data = core.GeomVertexData(
-            "faces", core.GeomVertexFormat.register_format(form), core.Geom.UH_static
-        )
+        registered = core.GeomVertexFormat.register_format(form)
+        data = core.GeomVertexData("faces", registered, core.Geom.UH_static)
         data.unclean_set_num_rows(n * 4)
         data.modify_array_handle(0).copy_data_from(packed.tobytes())
         triangles = core.GeomTriangles(core.Geom.UH_static)
@@ -250,13 +242,13 @@ def _id_colours(ids: np.ndarray) -> np.ndarray:
 
 
 @njit(cache=True)
-def _split(frame, size, plane, x, y, z, heading, near, wanted, colours):
+def _split(frame, size, plane, x, y, z, heading, near, is_drawn, colours):
     """Split bottom-up BGRA tiles into views; ids are in the upper half; compute depth per ray."""
     rgb = np.zeros((12, size, size, 3), np.uint8)
     depth = np.zeros((12, size, size, 1), np.float32)
     ids = np.full((12, size, size), -1, np.int32)
     for k in range(12):
-        if not wanted[k]:
+        if not is_drawn[k]:
             continue
         angle = heading - k * np.pi / 6
         fx, fy, rx, ry = -np.sin(angle), np.cos(angle), np.cos(angle), np.sin(angle)
@@ -270,11 +262,8 @@ def _split(frame, size, plane, x, y, z, heading, near, wanted, colours):
                     for c in range(3):
                         rgb[k, i, j, c] = frame[r1, column0 + j, 2 - c]
                 r2, c2 = r1 + 3 * size, column0 + j
-                code = (
-                    (frame[r2, c2, 2] >> 3)
-                    + 32 * (frame[r2, c2, 1] >> 3)
-                    + 1024 * (frame[r2, c2, 0] >> 3)
-                )
+                blue, green, red = frame[r2, c2, 0], frame[r2, c2, 1], frame[r2, c2, 2]
+                code = (red >> 3) + 32 * (green >> 3) + 1024 * (blue >> 3)
                 face = np.int32(code) - 1
                 ids[k, i, j] = face
                 if face < 0 or face >= plane.shape[0]:

@@ -24,7 +24,7 @@ from mitigate.worlds.apartments.apartment import apartment_of
 from mitigate.worlds.apartments.renderer import Renderer
 from mitigate.worlds.episodes import Episode, Vector, from_vlnce, heading_of
 from mitigate.worlds.measures import Rule
-from mitigate.worlds.world import Expert
+from mitigate.worlds.world import Expert, greedy_action
 
 NEAR = 0.5  # metres from a start or goal to a free cell, heuristic: a goal may be furniture
 
@@ -105,7 +105,7 @@ class Simulator:
             ValueError: The action does not exist.
         """
         if self.done:
-            raise RuntimeError("The episode is over: reset first.")
+            raise RuntimeError("The episode is over. Call reset() before step().")
         if action == FORWARD:
             self.xy, collided = self.space.move(self.xy, self.heading, FORWARD_METRES)
             self.collisions += collided
@@ -116,7 +116,7 @@ class Simulator:
             self.stopped = True
         else:
             raise ValueError(
-                f"Unknown action {action}; allowed: 0 STOP, 1 FORWARD, 2 LEFT, 3 RIGHT."
+                f"The action must be 0 STOP, 1 FORWARD, 2 LEFT or 3 RIGHT, got {action}."
             )
         self.steps += 1
 
@@ -145,10 +145,9 @@ class GeodesicExpert(Expert):
         simulator = self.simulator
         if self.distance(simulator.xy) < self.rule.stop_within:
             return STOP
-        turns = sorted(range(-12, 13), key=abs)
-        headings = [simulator.heading + np.radians(TURN_DEGREES) * turn for turn in turns]
-        ends = [
-            simulator.space.move(simulator.xy, heading, FORWARD_METRES)[0] for heading in headings
-        ]
-        best = turns[int(np.argmin([self.distance(end) for end in ends]))]
-        return FORWARD if best == 0 else LEFT if best > 0 else RIGHT
+        space = simulator.space
+
+        def distance_after(heading: float) -> float:
+            return self.distance(space.move(simulator.xy, heading, FORWARD_METRES)[0])
+
+        return greedy_action(simulator.heading, distance_after)

@@ -18,6 +18,7 @@ import numpy as np
 
 from mitigate.worlds.apartments.apartment import Apartment, apartment_of
 from mitigate.worlds.apartments.instructions import describe, find
+from mitigate.worlds.apartments.layout import gap_to
 from mitigate.worlds.apartments.palette import SEED_RANGES, SPLITS
 from mitigate.worlds.episodes import (
     Episode,
@@ -73,18 +74,10 @@ def make_episode(apartment: Apartment, task: str, index: int, seed: int = 0) -> 
 
 def _draw_vln(apartment: Apartment, rng: np.random.Generator) -> tuple[list[int], int]:
     target = int(rng.integers(len(apartment.furniture)))
-    piece = apartment.furniture[target]
-    kind = apartment.rooms[piece.room].kind
-    twins = [
-        p
-        for p in apartment.furniture
-        if (p.category, p.colour) == (piece.category, piece.colour)
-        and apartment.rooms[p.room].kind == kind
-    ]
+    kinds = [(p.category, p.colour, apartment.rooms[p.room].kind) for p in apartment.furniture]
+    unique = kinds.count(kinds[target]) == 1
     cells = view_cells(apartment, target)
-    if len(twins) > 1 or not len(cells):
-        return [], target
-    return [int(rng.choice(cells))], target
+    return ([int(rng.choice(cells))] if unique and len(cells) else []), target
 
 
 def _draw_ogn(apartment: Apartment, rng: np.random.Generator) -> tuple[list[int], int]:
@@ -96,16 +89,11 @@ def _draw_ogn(apartment: Apartment, rng: np.random.Generator) -> tuple[list[int]
 
 def view_cells(apartment: Apartment, instance: int) -> np.ndarray:
     """Return the free cells of the same room within 0.8 m of a piece of furniture."""
-    space, piece = apartment.space, apartment.furniture[instance]
-    xy = (space.cells[:, ::-1] + 0.5) * 0.1
-    x0, y0, x1, y1 = piece.rect
-    gap = np.hypot(
-        np.maximum(np.maximum(x0 - xy[:, 0], xy[:, 0] - x1), 0),
-        np.maximum(np.maximum(y0 - xy[:, 1], xy[:, 1] - y1), 0),
-    )
-    rx0, ry0, rx1, ry1 = apartment.rooms[piece.room].rect
-    inside = (xy[:, 0] > rx0) & (xy[:, 0] < rx1) & (xy[:, 1] > ry0) & (xy[:, 1] < ry1)
-    return np.flatnonzero((gap < 0.8) & inside)
+    piece = apartment.furniture[instance]
+    xy = (apartment.space.cells[:, ::-1] + 0.5) * 0.1
+    x0, y0, x1, y1 = apartment.rooms[piece.room].rect
+    inside = (xy[:, 0] > x0) & (xy[:, 0] < x1) & (xy[:, 1] > y0) & (xy[:, 1] < y1)
+    return np.flatnonzero((gap_to(piece.rect, xy) < 0.8) & inside)
 
 
 def _episode(
@@ -121,17 +109,16 @@ def _episode(
 ) -> Episode:
     path = apartment.space.shortest_path(start, field)
     heading = float(np.radians(15.0 * rng.integers(24)))
-    piece = apartment.furniture[target]
-    text = (
-        describe(apartment, path, heading, target, rng)
-        if task == "vln"
-        else find(apartment, piece.category, rng)
-    )
+    category = apartment.furniture[target].category
+    if task == "vln":
+        text = describe(apartment, path, heading, target, rng)
+    else:
+        text = find(apartment, category, rng)
     thinned = np.concatenate([path[:-1:5], path[-1:]])
     info: dict[str, Any] = {
         "geodesic_distance": round(float(field[start]), 4),
         "task": task,
-        "category": piece.category,
+        "category": category,
         "landmark": target,
     }
     return Episode(
@@ -176,8 +163,8 @@ def landmarks(episode: Episode) -> list[int]:
         return [int(info["landmark"])]
     if info.get("task") != "ogn" or "category" not in info:
         raise ValueError(
-            f"The episode {episode.episode_id} does not say what marks its goal: its info needs "
-            'task "vln" and a landmark (the number of a thing), or task "ogn" and a category.'
+            f"The info of episode {episode.episode_id} must name what marks the goal: task "
+            '"vln" and a landmark (index of a piece of furniture), or task "ogn" and a category.'
         )
     return [i for i, piece in enumerate(furniture) if piece.category == episode.info["category"]]
 
@@ -185,7 +172,7 @@ def landmarks(episode: Episode) -> list[int]:
 def view_field(episode: Episode) -> np.ndarray:
     """Return the metres from every free cell to the nearest view point of the goal.
 
-    View points are the cells beside the goal, like those of VLN-CE's object goals.
+    View points are the cells next to the goal, as for the object goals of VLN-CE.
     """
     return _view_field(episode.scene_id, tuple(landmarks(episode)))
 
@@ -193,8 +180,8 @@ def view_field(episode: Episode) -> np.ndarray:
 @lru_cache(maxsize=64)
 def _view_field(scene_id: str, things: tuple[int, ...]) -> np.ndarray:
     apartment = apartment_of(scene_id)
-    beside = np.unique(np.concatenate([view_cells(apartment, thing) for thing in things]))
-    return apartment.space.distances(list(beside))
+    near = np.unique(np.concatenate([view_cells(apartment, thing) for thing in things]))
+    return apartment.space.distances(list(near))
 
 
 def fixed_episodes(split: str, task: str, count: int) -> Iterator[Episode]:
@@ -214,7 +201,7 @@ def _pooled(seed: int, task: str, index: int) -> bytes:
 def draw_training_episode(
     rng: np.random.Generator, apartments: int | range, ogn_share: float
 ) -> Episode:
-    """Draw a training episode with a newly written instruction.
+    """Draw a training episode with a newly generated instruction.
 
     It is a pure function of the generator's state and the arguments. Each apartment has ``_POOL``
     paths.
@@ -225,15 +212,15 @@ def draw_training_episode(
         ogn_share: share of object-goal episodes.
     """
     seeds = range(apartments) if isinstance(apartments, int) else apartments
-    seed, index = seeds[int(rng.integers(len(seeds)))], int(rng.integers(_POOL))
+    seed = seeds[int(rng.integers(len(seeds)))]
+    index = int(rng.integers(_POOL))
     task = "ogn" if rng.random() < ogn_share else "vln"
     episode: Episode = pickle.loads(_pooled(seed, task, index))
     if task == "vln":
         path = np.stack([from_vlnce(p) for p in episode.reference_path])
         heading = heading_of(episode.start_rotation)
-        text = describe(
-            apartment_of(episode.scene_id), path, heading, episode.info["landmark"], rng
-        )
+        apartment = apartment_of(episode.scene_id)
+        text = describe(apartment, path, heading, episode.info["landmark"], rng)
         episode = replace(episode, instruction=Instruction(text, None, "en-US", {}))
     return episode
 

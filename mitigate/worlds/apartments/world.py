@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
@@ -24,12 +25,7 @@ from mitigate.core.observation import (
 from mitigate.worlds import measures
 from mitigate.worlds.apartments.apartment import Apartment, apartment_of
 from mitigate.worlds.apartments.drawing import draw_plan
-from mitigate.worlds.apartments.labels import (
-    ahead,
-    column_labels,
-    free_directions,
-    view_labels,
-)
+from mitigate.worlds.apartments.labels import ahead, column_labels, free_directions, view_labels
 from mitigate.worlds.apartments.navigation import CELL
 from mitigate.worlds.apartments.renderer import shared_renderer
 from mitigate.worlds.apartments.simulator import GeodesicExpert, Simulator
@@ -37,9 +33,11 @@ from mitigate.worlds.apartments.tasks import SUCCESS_METRES, landmarks, view_fie
 from mitigate.worlds.episodes import Episode, from_vlnce
 from mitigate.worlds.world import World
 
-KEPT = 1 << 26  # bytes of rendered frames that ``remembering`` caches, heuristic
+MEMORY_BYTES = 1 << 26  # bytes of rendered frames that ``remembering`` caches, heuristic
 LARGEST = 2048  # pixels of a view, heuristic
-APART = 0.5  # metres between recorded and measured distance that cause a warning, heuristic
+MAX_DIFFERENCE = (
+    0.5  # metres between recorded and measured distance that cause a warning, heuristic
+)
 RULES = {"apartments": measures.Rule("vln", SUCCESS_METRES), **measures.RULES}
 
 
@@ -49,7 +47,7 @@ class ApartmentsWorld(World):
     Args:
         size: side of a square view in pixels.
         layouts: number of training layouts in ``scenes``.
-        views: 12 for a panorama, or 1 for a camera that looks ahead.
+        views: 12 for a panorama, or 1 for a camera that faces forward.
         rule: name of the success rule in ``RULES``.
 
     Raises:
@@ -62,11 +60,14 @@ class ApartmentsWorld(World):
         if rule not in RULES:
             raise ValueError(unknown("success rule", rule, RULES))
         if views not in (1, VIEWS):
-            raise ValueError(f"views={views}: an agent sees {VIEWS} views, or 1 ahead.")
+            raise ValueError(f"views must be {VIEWS} (panorama) or 1 (forward), got {views}.")
         if not 8 <= size <= LARGEST:
-            raise ValueError(f"size={size}: a view has from 8 to {LARGEST} pixels, as env.size=64.")
-        self.size, self.layouts, self.views = size, layouts, views
-        self._rule, self.rule = rule, str(RULES[rule])
+            raise ValueError(f"size must be 8 to {LARGEST} pixels, got {size}. The default is 64.")
+        self.size = size
+        self.layouts = layouts
+        self.views = views
+        self._rule = rule
+        self.rule = str(RULES[rule])
         if RULES[rule].view_points:  # older versions recorded distances to the goal
             self.rule += ", as are all distances"
         self.sensors: dict[str, Sensor] = cameras(size, views)
@@ -76,6 +77,7 @@ class ApartmentsWorld(World):
         self._warned = False
 
     def __getstate__(self) -> dict[str, Any]:
+        # a renderer cannot be pickled; the copy uses the renderer of its process
         return {"size": self.size, "layouts": self.layouts, "views": self.views, "rule": self._rule}
 
     def __setstate__(self, state: dict[str, Any]) -> None:
@@ -90,7 +92,7 @@ class ApartmentsWorld(World):
     @contextmanager
     def remembering(self) -> Iterator[None]:
         """Return a context in which repeated poses are not rendered again."""
-        before, self._memory = self._memory, Memory(KEPT)
+        before, self._memory = self._memory, Memory(MEMORY_BYTES)
         try:
             yield
         finally:
@@ -98,7 +100,7 @@ class ApartmentsWorld(World):
 
     def beside(self) -> ApartmentsWorld:
         """Return another world for a simultaneous episode; both share rendered frames."""
-        other = ApartmentsWorld(**self.__getstate__())
+        other = copy.copy(self)
         other._memory = self._memory
         return other
 
@@ -127,8 +129,10 @@ class ApartmentsWorld(World):
         path and uses the rule's ``path_metres``.
         """
         simulator, rule = self.simulator, RULES[self._rule]
-        positions, remaining = np.array(simulator.path), self._left()
-        length, success = measures.path_length(positions), rule.met(remaining, simulator.stopped)
+        positions = np.array(simulator.path)
+        length = measures.path_length(positions)
+        remaining = self._left()
+        success = rule.met(remaining, simulator.stopped)
         reference = np.stack([from_vlnce(p) for p in simulator.episode.reference_path])
         return {
             "success": int(success),
@@ -164,12 +168,12 @@ class ApartmentsWorld(World):
             return round(self._left(), 4)
         if not episode.goals:
             return recorded
-        if abs(recorded - measured) > APART and not self._warned:
+        if abs(recorded - measured) > MAX_DIFFERENCE and not self._warned:
             self._warned = True
             warnings.warn(
-                f"The episode {episode.episode_id} says a geodesic_distance of {recorded:g} m, but "
-                f"its goal is {measured:.1f} m from its start; SPL goes by what is measured. Was "
-                "the list made for these apartments, in metres? Others of it may be wrong, too.",
+                f"The file records a geodesic_distance of {recorded:g} m for episode "
+                f"{episode.episode_id}, but its goal is {measured:.1f} m from its start. SPL uses "
+                "the measured distance. Check that the list is for these apartments, in metres.",
                 stacklevel=3,
             )
         return round(self._left(), 4)
@@ -188,11 +192,9 @@ class ApartmentsWorld(World):
         """
         simulator = self.simulator
         _, depth, ids = self._frames()
+        marks = landmarks(simulator.episode)
         place = (simulator.xy, simulator.heading)
-        return self._labels(simulator.apartment, *place, ids, depth, landmarks(simulator.episode))
-
-    def _labels(self, *seen: Any) -> Labels:
-        return Labels(*seen) if self.views == VIEWS else CameraLabels(*seen)
+        return Labels(simulator.apartment, *place, ids, depth, marks)
 
     def landmarks(self, episode: Episode) -> list[int]:
         """Return the indices in the label "seen" that mark the goal of an episode."""
@@ -204,9 +206,9 @@ class ApartmentsWorld(World):
 
     def _observation(self) -> Observation:
         self._rendered = None
-        return Observation(self.simulator.odometry(), self._given, (RGB, DEPTH))
+        return Observation(self.simulator.odometry(), self._copied_frames, (RGB, DEPTH))
 
-    def _given(self) -> dict[str, np.ndarray]:
+    def _copied_frames(self) -> dict[str, np.ndarray]:
         """Return copies of the cached frames, because an agent may write into its observation."""
         rgb, depth, _ = self._frames()
         return self._shaped(rgb.copy(), depth.copy())
@@ -265,12 +267,21 @@ class ApartmentsWorld(World):
         rendered = renderer.render(float(xy[0]), float(xy[1]), heading, views=selected, rgb=rgb)
         frames, depth, ids = (part[: self.views] for part in rendered)
         pose = np.array([*xy, heading], np.float32)
-        truth = self._labels(apartment, xy, heading, ids, depth)
+        truth = Labels(apartment, xy, heading, ids, depth)
         return {**self._shaped(frames, depth), POSE: pose}, truth
 
 
 class Labels(Mapping[str, np.ndarray]):
-    """The labels of a pose, computed when they are read."""
+    """The labels of a pose, computed when they are read.
+
+    Args:
+        apartment: The apartment.
+        xy: Plan position [2] in metres.
+        heading: Radians.
+        ids: Face ids of the views.
+        depth: Depth of the views in metres.
+        marks: Furniture that marks the goal; None: no label "goal".
+    """
 
     def __init__(
         self,
@@ -281,20 +292,26 @@ class Labels(Mapping[str, np.ndarray]):
         depth: np.ndarray,
         marks: Sequence[int] | None = None,
     ) -> None:
-        shown = lru_cache(maxsize=1)(lambda: self.shown(apartment, ids, depth))
+        panorama = len(ids) == VIEWS
+
+        @lru_cache(maxsize=1)
+        def visible() -> tuple[np.ndarray, np.ndarray]:
+            if panorama:
+                return view_labels(apartment, ids, depth)
+            concepts, seen = column_labels(apartment, ids, depth)
+            return concepts[0], seen[0]
+
+        def free() -> np.ndarray:
+            directions = free_directions(apartment.space, xy, heading)
+            return directions if panorama else ahead(directions)
+
         self._make: dict[str, Callable[[], np.ndarray]] = {
-            "concepts": lambda: shown()[0],
-            "seen": lambda: shown()[1],
-            "free": lambda: self.free(free_directions(apartment.space, xy, heading)),
+            "concepts": lambda: visible()[0],
+            "seen": lambda: visible()[1],
+            "free": free,
         }
         if marks is not None:
-            self._make["goal"] = lambda: np.asarray(shown()[1][:, marks].any(1), np.float32)
-
-    shown = staticmethod(view_labels)
-
-    @staticmethod
-    def free(directions: np.ndarray) -> np.ndarray:
-        return directions
+            self._make["goal"] = lambda: np.asarray(visible()[1][:, marks].any(1), np.float32)
 
     def __getitem__(self, name: str) -> np.ndarray:
         return self._make[name]()
@@ -304,16 +321,3 @@ class Labels(Mapping[str, np.ndarray]):
 
     def __len__(self) -> int:
         return len(self._make)
-
-
-class CameraLabels(Labels):
-    """The labels of the columns of one camera's view."""
-
-    free = staticmethod(ahead)
-
-    @staticmethod
-    def shown(
-        apartment: Apartment, ids: np.ndarray, depth: np.ndarray
-    ) -> tuple[np.ndarray, np.ndarray]:
-        concepts, seen = column_labels(apartment, ids, depth)
-        return concepts[0], seen[0]

@@ -51,7 +51,7 @@ _OTHER_IMAGES = re.compile(r"infra|mask|(?:^|[/_])ir(?:$|[/_])")  # infrared ima
 KINDS = (RGB, DEPTH)
 # Heuristic limits.
 MAX_POSES = 16 * MAX_INSTANTS  # of a drive: 500 Hz next to images at 30 Hz
-MAX_BUFFER_BYTES = 1 << 30  # images that wait for those of another topic
+MAX_BUFFER_BYTES = 1 << 30  # images that wait for images of another topic
 
 
 class Bag(Source):
@@ -319,7 +319,7 @@ def _choose_topic(
     available: Mapping[str, str | None],
     kinds: Sequence[str],
 ) -> str | None:
-    """Return the topic that the user named, or the only candidate; None if there is none."""
+    """Return the topic that the user named, or the only candidate; None without candidates."""
     if named == OFF:
         return None
     if named is not None:

@@ -394,8 +394,8 @@ def _read_trajectory(file: Path) -> np.ndarray:
     """Read lines "time x y z qx qy qz qw" as float64 [N, 4], (time, x, y, heading).
 
     Raises:
-        ValueError: Most poses face up or down, as those of a robot frame (x forward) do when they
-            are read as poses of an optical axis.
+        ValueError: Most poses face up or down. This happens if the poses are of a robot frame
+            (x forward) instead of an optical axis.
     """
     rows = []
     for line, row in _read_rows(file, 8):
@@ -407,7 +407,7 @@ def _read_trajectory(file: Path) -> np.ndarray:
     invalid = sum(math.isnan(row[3]) for row in rows)
     if 2 * invalid > len(rows):
         raise ValueError(
-            f"{file}: {invalid} of {len(rows)} poses look up or down, or are not rotations. Poses "
+            f"{file}: {invalid} of {len(rows)} poses face up or down, or are not rotations. Poses "
             "must be of the camera's optical axis (z ahead, x right, y down), with z up in the "
             "room. Convert poses of a robot (x ahead), or delete the file to read without poses."
         )

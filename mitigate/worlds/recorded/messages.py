@@ -52,7 +52,7 @@ def read_stamp(raw: bytes, ros2: bool) -> float:
     """Return the seconds in the header of a serialised message; 0 if it has no header.
 
     A ROS 1 message starts with a counter and a time, little endian. A ROS 2 message (CDR) starts
-    with four bytes, the second of which is the byte order, followed by the time.
+    with four bytes (the second is the byte order), followed by the time.
     """
     if len(raw) < 12:
         return 0.0

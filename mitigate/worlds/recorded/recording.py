@@ -319,7 +319,7 @@ class RecordedWorld(World):
 
 @dataclass(frozen=True)
 class Step:
-    """Distance between two instants that an agent observes; by default one of its own steps.
+    """Distance between two instants that an agent observes; by default one step of the agent.
 
     Attributes:
         metres: Metres moved since the last instant.

@@ -225,7 +225,7 @@ def match_times(stamps: Mapping[str, Sequence[float]], table: np.ndarray | None)
     """Match the frames of several cameras and the poses by time.
 
     Args:
-        stamps: Seconds of the frames of each camera; those of the first camera are the instants.
+        stamps: Seconds of the frames of each camera. The first camera defines the instants.
         table: float64 [M, 4], (time, x, y, heading) of the known poses, or None.
 
     Returns:
@@ -270,7 +270,7 @@ def read_text(file: Path, max_bytes: int = MAX_TEXT_BYTES) -> str:
         ValueError: The file is larger than ``max_bytes``.
     """
     with open(file, "rb") as stream:
-        # read() allocates the size it is given, so give it no more than the file has
+        # read() allocates as much memory as it may read, so limit it to the size of the file
         raw = stream.read(min(max_bytes, file.stat().st_size) + 1)
     if len(raw) > max_bytes:
         raise ValueError(f"{file} must have at most {max_bytes} bytes. Cut the recording.")

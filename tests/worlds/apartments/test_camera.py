@@ -15,7 +15,7 @@ from mitigate.worlds.world import Corrupted
 EPISODE = load_episodes("val_seen")[0]
 
 
-def test_one_camera_sees_what_the_panorama_sees_ahead():
+def test_camera_equals_the_front_view():
     one, all_round = ApartmentsWorld(views=1), ApartmentsWorld()
     for world in (one, all_round):
         world.reset(EPISODE)
@@ -26,7 +26,7 @@ def test_one_camera_sees_what_the_panorama_sees_ahead():
     assert one.sensors[RGB].yaws == (0.0,)
 
 
-def test_its_labels_are_those_of_columns_and_of_directions_ahead():
+def test_camera_labels_describe_columns_and_directions():
     world = ApartmentsWorld(views=1)
     world.reset(EPISODE)
     truth = world.truth()
@@ -39,7 +39,7 @@ def test_its_labels_are_those_of_columns_and_of_directions_ahead():
     assert np.array_equal(truth["free"][0], left) and np.array_equal(truth["free"][-1], right)
 
 
-def test_a_thing_on_the_left_is_in_the_left_columns():
+def test_furniture_on_the_left_is_in_left_columns():
     """Turned to the right, what was in a column is in one farther left."""
     world = ApartmentsWorld(views=1)
     world.enter("apartments/train/000003")
@@ -57,12 +57,12 @@ def test_a_thing_on_the_left_is_in_the_left_columns():
     assert len(moved) > 20 and moved.mean() > 0.5 and (moved < -0.5).mean() < 0.1
 
 
-def test_a_corruption_meets_the_one_frame():
+def test_corrupted_world_changes_the_single_frame():
     world = Corrupted(ApartmentsWorld(views=1), Corruption("defocus", 0.6), 0)
     seen = world.reset(EPISODE)
     assert seen[RGB].shape == (64, 64, 3) and not np.array_equal(seen[RGB], seen.clean[RGB])
 
 
-def test_another_number_of_views_is_refused():
-    with pytest.raises(ValueError, match="views=3"):
+def test_world_rejects_other_numbers_of_views():
+    with pytest.raises(ValueError, match="views must be 12 .*got 3"):
         ApartmentsWorld(views=3)

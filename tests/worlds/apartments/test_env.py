@@ -50,28 +50,30 @@ def walk(env: ApartmentsEnv | TransformedEnv, steps: int) -> dict[tuple[str, int
 
 
 def four(**options) -> SerialEnv:
-    made = [lambda i=i: ApartmentsEnv(worker=i, workers=4, size=SIZE, **options) for i in range(4)]
-    return SerialEnv(4, made)
+    makers = [
+        lambda i=i: ApartmentsEnv(worker=i, workers=4, size=SIZE, **options) for i in range(4)
+    ]
+    return SerialEnv(4, makers)
 
 
-def test_specs_of_listed_and_of_drawn_episodes(episodes):
+def test_env_passes_the_spec_check(episodes):
     check_env_specs(ApartmentsEnv(episodes, size=SIZE))
     check_env_specs(ApartmentsEnv(size=SIZE, apartments=2), seed=3)
     check_env_specs(TransformedEnv(ApartmentsEnv(episodes, size=SIZE), CorruptObservation(HURT)))
 
 
-def test_a_file_of_episodes_is_run_in_order_and_over_again():
+def test_env_repeats_the_episodes_of_a_file():
     env = ApartmentsEnv(episode_file("val_seen"), size=SIZE)
-    wanted = load_episodes("val_seen")
+    expected = load_episodes("val_seen")
     first = env.reset()
-    assert first["instruction"] == wanted[0].instruction.text
-    assert [first["episode"], env.reset()["episode"]] == [e.episode_id for e in wanted[:2]]
-    env = ApartmentsEnv(wanted[:2], size=SIZE)
+    assert first["instruction"] == expected[0].instruction.text
+    assert [first["episode"], env.reset()["episode"]] == [e.episode_id for e in expected[:2]]
+    env = ApartmentsEnv(expected[:2], size=SIZE)
     names = [env.reset()["episode"] for _ in range(4)]
     assert names[2:] == [f"{name}@1" for name in names[:2]]  # a new run of the same episode
 
 
-def test_the_oracle_is_rewarded_once_at_stop_and_ends_the_episode(episodes):
+def test_env_rewards_the_expert_at_stop(episodes):
     env = ApartmentsEnv(episodes[:1], size=SIZE)
     data, rewards = env.reset(), []
     expert = env.world.expert()
@@ -83,13 +85,13 @@ def test_the_oracle_is_rewarded_once_at_stop_and_ends_the_episode(episodes):
     assert data["terminated"] and not data["truncated"] and int(data["frame"]) == len(rewards)
 
 
-def test_stopping_away_from_the_goal_earns_nothing(episodes):
+def test_env_gives_no_reward_far_from_the_goal(episodes):
     env = ApartmentsEnv(episodes[:1], size=SIZE)
     ended = env.step(env.reset().set("action", torch.tensor(0)))["next"]
     assert ended["reward"] == 0.0 and ended["terminated"] and ended["done"]
 
 
-def test_the_step_limit_truncates(episodes):
+def test_env_truncates_at_the_step_limit(episodes):
     env = ApartmentsEnv(episodes[:1], size=SIZE)
     data = env.reset()
     env.simulator.steps = MAX_STEPS - 1
@@ -97,7 +99,7 @@ def test_the_step_limit_truncates(episodes):
     assert ended["truncated"] and ended["done"] and not ended["terminated"]
 
 
-def test_drawn_episodes_are_a_function_of_the_seed():
+def test_drawn_episodes_depend_only_on_the_seed():
     def names(seed, **options):
         env = ApartmentsEnv(size=SIZE, apartments=2, **options)
         env.set_seed(seed)
@@ -108,7 +110,7 @@ def test_drawn_episodes_are_a_function_of_the_seed():
 
 
 @pytest.mark.parametrize("mode", ["per_episode", "per_frame"])
-def test_one_and_four_environments_see_the_same_corrupted_pixels(episodes, mode):
+def test_pixels_do_not_depend_on_parallel_environments(episodes, mode):
     schedule = Schedule(mode, 0.8, clean_share=0.2)
     one = walk(
         TransformedEnv(ApartmentsEnv(episodes, size=SIZE), CorruptObservation(schedule)), 120
@@ -123,7 +125,7 @@ def test_one_and_four_environments_see_the_same_corrupted_pixels(episodes, mode)
     assert sum(hurt) > 0.5 * len(hurt)
 
 
-def test_the_transform_does_what_the_suite_does(episodes):
+def test_transform_equals_the_suite(episodes):
     env = TransformedEnv(ApartmentsEnv(episodes, size=SIZE), CorruptObservation(HURT, seed=5))
     for _ in range(4):
         data = env.reset()
@@ -132,29 +134,29 @@ def test_the_transform_does_what_the_suite_does(episodes):
         }
         corruption, key = HURT.draw(5, data["episode"], 0)
         assert key == Key(5, data["episode"], 0)
-        wanted = corrupt_observation(frames, corruption, key)
-        assert torch.equal(data[RGB], torch.from_numpy(wanted[RGB]))
-        assert torch.equal(data[DEPTH], torch.from_numpy(wanted[DEPTH]))
+        expected = corrupt_observation(frames, corruption, key)
+        assert torch.equal(data[RGB], torch.from_numpy(expected[RGB]))
+        assert torch.equal(data[DEPTH], torch.from_numpy(expected[DEPTH]))
 
 
-def test_a_replay_buffer_of_clean_frames_gives_what_the_environment_gave(episodes):
+def test_replay_buffer_of_clean_frames_gives_the_same(episodes):
     steps = 6
     torch.manual_seed(0)
     clean = ApartmentsEnv(episodes, size=SIZE).rollout(steps, break_when_any_done=False)
     torch.manual_seed(0)
     env = TransformedEnv(ApartmentsEnv(episodes, size=SIZE), CorruptObservation(HURT))
-    wanted = env.rollout(steps, break_when_any_done=False)
+    expected = env.rollout(steps, break_when_any_done=False)
     buffer = ReplayBuffer(storage=LazyTensorStorage(steps), batch_size=steps)
     buffer.append_transform(CorruptObservation(HURT))
     buffer.extend(clean)
     drawn = buffer[:]
     assert not torch.equal(drawn[RGB], clean[RGB]) or not torch.equal(drawn[DEPTH], clean[DEPTH])
     for name in (RGB, DEPTH, ("next", RGB), ("next", DEPTH)):
-        assert torch.equal(drawn[name], wanted[name])
+        assert torch.equal(drawn[name], expected[name])
     assert torch.equal(buffer[:][RGB], drawn[RGB])  # what is stored stays clean
 
 
-def test_wrong_use_is_explained(episodes):
+def test_env_explains_invalid_use(episodes):
     with pytest.raises(ValueError, match="The list must contain at least one episode"):
         ApartmentsEnv([])
     with pytest.raises(ValueError, match="worker must be 0 to 1"):

@@ -32,7 +32,7 @@ def accessor(document, binary, number, dtype, width):
     return np.frombuffer(raw, dtype).reshape(told["count"], width)
 
 
-def test_a_glb_holds_every_face_with_its_colours():
+def test_glb_contains_every_face_with_colours():
     faces = Apartment(7).faces
     document, binary = chunks(glb(faces))
     corners, colours, triangles = [], [], 0
@@ -46,12 +46,12 @@ def test_a_glb_holds_every_face_with_its_colours():
         material = document["materials"][primitive["material"]]
         assert "KHR_materials_unlit" in material["extensions"]
     assert triangles == 2 * len(faces.corners)
-    found = np.concatenate(corners)
-    assert sorted(map(tuple, found)) == sorted(map(tuple, faces.corners.reshape(-1, 3)))
+    results = np.concatenate(corners)
+    assert sorted(map(tuple, results)) == sorted(map(tuple, faces.corners.reshape(-1, 3)))
     assert np.concatenate(colours)[:, 3].min() == 255
 
 
-def test_a_glb_is_the_same_bytes_each_time():
+def test_glb_is_deterministic():
     assert glb(Apartment(7).faces) == glb(Apartment(7).faces)
 
 
@@ -62,7 +62,7 @@ def exported(tmp_path_factory):
     return out
 
 
-def test_route_episodes_are_as_vln_ce_files_are(exported):
+def test_export_writes_vln_ce_episodes(exported):
     path = exported / "datasets" / "vln" / "val_unseen.json.gz"
     stored = json.loads(gzip.decompress(path.read_bytes()))
     assert len(stored["episodes"]) == 20
@@ -77,7 +77,7 @@ def test_route_episodes_are_as_vln_ce_files_are(exported):
         assert episode.start_position == ours[episode.episode_id].start_position
 
 
-def test_object_goals_have_view_points(exported):
+def test_export_writes_view_points(exported):
     folder = exported / "datasets" / "objectnav" / "val_unseen"
     assert (
         json.loads(gzip.decompress((folder / "val_unseen.json.gz").read_bytes()))["episodes"] == []
@@ -104,6 +104,6 @@ def test_object_goals_have_view_points(exported):
         (["a", "--all"], "no option --all"),
     ],
 )
-def test_wrong_arguments_are_explained(arguments, words):
+def test_parse_explains_invalid_arguments(arguments, words):
     with pytest.raises(ValueError, match=words):
         parse(arguments)

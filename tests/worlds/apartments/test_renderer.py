@@ -64,7 +64,7 @@ def inner(hit: np.ndarray) -> np.ndarray:
 
 
 @pytest.mark.parametrize("seed", SEEDS)
-def test_depth_and_faces_are_those_that_rays_meet(renderer, seed):
+def test_depth_and_ids_equal_ray_casting(renderer, seed):
     apartment = Apartment(seed)
     renderer.load(apartment)
     for number, view in enumerate((0, 4, 7)):
@@ -79,7 +79,7 @@ def test_depth_and_faces_are_those_that_rays_meet(renderer, seed):
         assert same[inner(hit)].mean() > 0.98
 
 
-def test_every_id_is_recovered_exactly(renderer):
+def test_renderer_recovers_every_id(renderer):
     apartment = Apartment(200_005)
     renderer.load(apartment)
     for number in range(4):
@@ -92,7 +92,7 @@ def test_every_id_is_recovered_exactly(renderer):
         assert (ids < 0).sum() == (~drawn).sum()
 
 
-def test_labels_name_the_furniture_in_view(renderer):
+def test_labels_name_visible_furniture(renderer):
     apartment = Apartment(3)
     renderer.load(apartment)
     faces = apartment.faces
@@ -101,7 +101,7 @@ def test_labels_name_the_furniture_in_view(renderer):
         assert categories == {CATEGORIES.index(piece.category)}
 
 
-def test_view_k_looks_30_k_degrees_to_the_right(renderer):
+def test_view_k_faces_30_k_degrees_right(renderer):
     apartment = Apartment(3)
     renderer.load(apartment)
     x, y, heading = pose(apartment, 0)
@@ -112,7 +112,7 @@ def test_view_k_looks_30_k_degrees_to_the_right(renderer):
             assert np.mean(np.roll(before, -k, axis=0) == after) > 0.99
 
 
-def test_what_is_30_degrees_to_the_right_in_a_view_is_in_the_middle_of_the_next(renderer):
+def test_views_overlap_by_30_degrees(renderer):
     apartment = Apartment(3)
     renderer.load(apartment)
     middle, offset = SIZE // 2, np.tan(np.radians(30)) * SIZE / 2
@@ -127,7 +127,7 @@ def test_what_is_30_degrees_to_the_right_in_a_view_is_in_the_middle_of_the_next(
     assert np.median(gaps["right"]) < 0.05 < 0.2 < np.median(gaps["left"])
 
 
-def test_the_agent_looks_along_its_heading(renderer):
+def test_first_view_faces_the_heading(renderer):
     """Facing a wall of its room, the middle of view 0 is as deep as the wall is far."""
     apartment = Apartment(200_001)
     renderer.load(apartment)
@@ -143,23 +143,23 @@ def test_the_agent_looks_along_its_heading(renderer):
                 assert depth[0, SIZE // 2 - 2, SIZE // 2, 0] == pytest.approx(expected, rel=0.05)
 
 
-def test_the_same_panorama_twice_and_after_other_scenes():
+def test_panorama_is_reproducible_after_other_scenes():
     renderer = Renderer(32, scenes=2)
     apartments = [Apartment(seed) for seed in SEEDS]
-    wanted = pose(apartments[0], 1)
+    target = pose(apartments[0], 1)
     renderer.load(apartments[0])
-    first = renderer.render(*wanted)
-    for again in zip(first, renderer.render(*wanted), strict=True):
+    first = renderer.render(*target)
+    for again in zip(first, renderer.render(*target), strict=True):
         assert np.array_equal(*again)
     for other in apartments[1:]:  # more scenes than are kept: the first is built anew
         renderer.load(other)
         assert not np.array_equal(renderer.render(*pose(other, 0))[0], first[0])
     renderer.load(apartments[0])
-    for again in zip(first, renderer.render(*wanted), strict=True):
+    for again in zip(first, renderer.render(*target), strict=True):
         assert np.array_equal(*again)
 
 
-def test_every_renderer_draws_the_same():
+def test_all_renderers_draw_the_same():
     """Also where two faces are equally far: the order of drawing must not follow memory."""
     apartments, first, alive = [Apartment(100_000), Apartment(100_001)], None, []
     for _ in range(6):
@@ -172,7 +172,7 @@ def test_every_renderer_draws_the_same():
         assert all(map(np.array_equal, first, drawn))
 
 
-def test_depth_is_absent_or_within_an_apartment(renderer):
+def test_depth_lies_within_an_apartment(renderer):
     apartment = Apartment(200_005)
     renderer.load(apartment)
     for number in range(12):
@@ -180,7 +180,7 @@ def test_depth_is_absent_or_within_an_apartment(renderer):
         assert depth.min() >= 0 and depth.max() <= FARTHEST and (depth > 0).mean() > 0.999
 
 
-def test_shapes_and_types(renderer):
+def test_render_returns_documented_shapes(renderer):
     apartment = Apartment(3)
     renderer.load(apartment)
     rgb, depth, ids = renderer.render(*pose(apartment, 2))
@@ -191,9 +191,13 @@ def test_shapes_and_types(renderer):
 
 @pytest.mark.parametrize(
     ("setting", "part"),
-    [("size=0", "size=0 shows nothing"), ("size=-3", "4 pixels"), ("seed=x", "a whole number")],
+    [
+        ("size=0", "at least 4 pixels"),
+        ("size=-3", "a whole number"),
+        ("seed=x", "a whole number"),
+    ],
 )
-def test_show_explains_a_wrong_setting(setting, part, monkeypatch, capsys):
+def test_show_explains_an_invalid_setting(setting, part, monkeypatch, capsys):
     monkeypatch.setattr("sys.argv", ["apartments", "show", setting])
     with pytest.raises(SystemExit):
         show.main()

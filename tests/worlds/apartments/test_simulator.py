@@ -27,9 +27,9 @@ def episodes():
 
 @pytest.fixture
 def simulator(episodes) -> Simulator:
-    made = Simulator(16)
-    made.reset(episodes[0])
-    return made
+    result = Simulator(16)
+    result.reset(episodes[0])
+    return result
 
 
 def free_at(space: FreeSpace, xy: np.ndarray) -> bool:
@@ -43,7 +43,7 @@ def box(width: int, depth: int) -> FreeSpace:
     return FreeSpace(blocked)
 
 
-def test_the_oracle_solves_ten_episodes(episodes):
+def test_expert_solves_ten_episodes(episodes):
     world = ApartmentsWorld(16)
     rows = [run_episode(OracleAgent(world), world, e, CLEAN, 0) for e in episodes]
     assert [row["success"] for row in rows] == [1] * 10
@@ -51,7 +51,7 @@ def test_the_oracle_solves_ten_episodes(episodes):
     assert [row["decisions"] for row in rows] == [0] * 10  # it reads no frame
 
 
-def test_geodesics_are_never_below_euclid_and_straight_in_an_empty_room():
+def test_geodesic_distance_is_at_least_euclidean():
     space = apartment_of("apartments/val_seen/100000").space
     goal = len(space.cells) // 3
     field = space.distances([goal])
@@ -62,7 +62,7 @@ def test_geodesics_are_never_below_euclid_and_straight_in_an_empty_room():
     assert field.max() < 1.09 * np.hypot(*(room.cells.max(0) - room.cells[0])) * CELL
 
 
-def test_a_shortest_path_walks_through_free_cells_down_to_the_goal():
+def test_shortest_path_descends_through_free_cells():
     space = apartment_of("apartments/val_seen/100001").space
     field = space.distances([5])
     path = space.shortest_path(len(space.cells) - 1, field)
@@ -72,7 +72,7 @@ def test_a_shortest_path_walks_through_free_cells_down_to_the_goal():
 
 
 @pytest.mark.parametrize("seed", range(4))
-def test_motion_never_enters_blocked_cells(simulator, seed):
+def test_move_never_enters_blocked_cells(simulator, seed):
     rng = np.random.default_rng(seed)
     for _ in range(400):
         simulator.step(int(rng.choice([FORWARD, FORWARD, FORWARD, LEFT, RIGHT])))
@@ -80,7 +80,7 @@ def test_motion_never_enters_blocked_cells(simulator, seed):
     assert simulator.collisions > 0
 
 
-def test_a_step_goes_a_quarter_metre_ahead_or_collides_and_slides():
+def test_forward_moves_or_slides():
     room = box(40, 40)
     xy, hit = room.move(np.array([2.0, 2.0]), 0.0, 0.25)
     assert np.allclose(xy, [2.0, 2.25]) and not hit
@@ -93,7 +93,7 @@ def test_a_step_goes_a_quarter_metre_ahead_or_collides_and_slides():
     assert hit and slid[0] > xy[0] + 0.1 and abs(slid[1] - xy[1]) < CELL
 
 
-def test_turns_are_15_degrees_and_left_is_counter_clockwise(simulator):
+def test_left_turns_15_degrees_counter_clockwise(simulator):
     before = simulator.heading
     simulator.step(LEFT)
     assert np.degrees(simulator.heading - before) == pytest.approx(15)
@@ -103,10 +103,10 @@ def test_turns_are_15_degrees_and_left_is_counter_clockwise(simulator):
     assert np.allclose(simulator.odometry()["pose"], [*simulator.xy, simulator.heading])
 
 
-def test_an_episode_ends_at_stop_and_at_the_step_limit(simulator, episodes):
+def test_episode_ends_at_stop_or_the_limit(simulator, episodes):
     simulator.step(STOP)
     assert simulator.done and simulator.stopped
-    with pytest.raises(RuntimeError, match="over: reset first"):
+    with pytest.raises(RuntimeError, match="The episode is over"):
         simulator.step(FORWARD)
     simulator.reset(episodes[1])
     for _ in range(MAX_STEPS):
@@ -115,7 +115,7 @@ def test_an_episode_ends_at_stop_and_at_the_step_limit(simulator, episodes):
     assert simulator.done and not simulator.stopped
 
 
-def test_the_distance_to_the_goal_is_the_episodes_and_zero_at_the_goal(simulator, episodes):
+def test_distance_to_goal_matches_the_episode(simulator, episodes):
     assert simulator.distance_to_goal() == pytest.approx(episodes[0].geodesic_distance, abs=0.01)
     goal = from_vlnce(episodes[0].goals[0].position)
     assert simulator.distance_to_goal(goal) == 0.0 and SUCCESS_METRES == 2.0
@@ -125,7 +125,7 @@ def start_at(episode, xy):
     return replace(episode, start_position=(float(xy[0]), 0.0, -float(xy[1])))
 
 
-def test_a_start_inside_of_something_is_beside_it_and_a_free_one_stays(simulator, episodes):
+def test_reset_moves_a_blocked_start(simulator, episodes):
     space = simulator.space
     blocked = (np.argwhere(~space.free)[:, ::-1] + 0.5) * CELL
     away = [np.hypot(*(space.centre(space.cell_of(xy)) - xy)) for xy in blocked]
@@ -142,7 +142,7 @@ def test_a_start_inside_of_something_is_beside_it_and_a_free_one_stays(simulator
     assert np.array_equal(simulator.xy, free)
 
 
-def test_the_shortest_way_is_measured_from_the_start_whatever_the_file_says(episodes):
+def test_world_measures_the_shortest_path(episodes):
     world, first = ApartmentsWorld(16), episodes[0]
     own = first.geodesic_distance
     elsewhere = (first.reference_path[-1], *first.reference_path[1:])
@@ -153,7 +153,7 @@ def test_the_shortest_way_is_measured_from_the_start_whatever_the_file_says(epis
             assert world.measures()["geodesic_distance"] == own
     for told in (0.0, 2 * own):
         other = ApartmentsWorld(16)
-        with pytest.warns(UserWarning, match=rf"{first.episode_id} says .* {told:g} m, but"):
+        with pytest.warns(UserWarning, match=rf" {told:g} m for episode {first.episode_id}, but"):
             other.reset(replace(first, geodesic_distance=told))
         assert other.measures()["geodesic_distance"] == own
         with warnings.catch_warnings():
@@ -161,8 +161,8 @@ def test_the_shortest_way_is_measured_from_the_start_whatever_the_file_says(epis
             other.reset(replace(episodes[1], geodesic_distance=told))
 
 
-def test_an_unknown_action_names_the_allowed_ones(simulator):
-    with pytest.raises(ValueError, match="Unknown action 4; allowed: 0 STOP, 1 FORWARD"):
+def test_step_names_the_allowed_actions(simulator):
+    with pytest.raises(ValueError, match="must be 0 STOP, 1 FORWARD.*got 4"):
         simulator.step(4)
 
 
@@ -174,12 +174,12 @@ def test_an_unknown_action_names_the_allowed_ones(simulator):
         ("apartments/train/150000", "allowed seeds: train 0-99999"),
     ],
 )
-def test_a_scene_that_is_not_there_is_explained(episodes, scene, words):
+def test_reset_explains_an_unknown_scene(episodes, scene, words):
     with pytest.raises(ValueError, match=words):
         Simulator(16).reset(replace(episodes[0], scene_id=scene))
 
 
-def test_an_episode_in_another_frame_is_refused_and_not_scored(episodes):
+def test_reset_rejects_positions_outside_free_space(episodes):
     """A sign error in z, or positions of another scene, would look like a bad agent."""
     first = episodes[0]
     x, y, z = first.start_position
@@ -192,7 +192,7 @@ def test_an_episode_in_another_frame_is_refused_and_not_scored(episodes):
 
 
 @pytest.mark.parametrize("seed", [0, 1, 100_000, 200_000])
-def test_every_room_and_door_can_be_reached(seed):
+def test_apartment_rooms_and_doors_are_reachable(seed):
     apartment = Apartment(seed)
     rooms = {
         apartment.room_at(apartment.space.centre(c)) for c in range(len(apartment.space.cells))
@@ -202,11 +202,11 @@ def test_every_room_and_door_can_be_reached(seed):
     assert all(free_at(apartment.space, np.array([door.x, door.y])) for door in apartment.doors)
 
 
-def test_no_step_follows_the_last_one():
+def test_step_raises_after_the_end():
     world = ApartmentsWorld(16)
     world.reset(load_episodes("val_seen")[0])
     world.simulator.steps = MAX_STEPS - 1
     world.step(LEFT)
     assert world.done
-    with pytest.raises(RuntimeError, match="over: reset first"):
+    with pytest.raises(RuntimeError, match="The episode is over"):
         world.step(LEFT)

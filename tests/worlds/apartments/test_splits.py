@@ -27,12 +27,12 @@ LISTS = list(itertools.product(("val_seen", "val_unseen"), TASKS))
 
 
 @pytest.mark.parametrize(("a", "b"), PAIRS)
-def test_seed_ranges_do_not_meet(a, b):
+def test_seed_ranges_do_not_overlap(a, b):
     (low_a, high_a), (low_b, high_b) = SEED_RANGES[a], SEED_RANGES[b]
     assert high_a <= low_b or high_b <= low_a
 
 
-def test_every_seed_belongs_to_the_split_of_its_range():
+def test_split_of_follows_the_seed_ranges():
     for split, (low, high) in SEED_RANGES.items():
         assert {split_of(low), split_of(high - 1), Apartment(low).split} == {split}
     with pytest.raises(ValueError, match="train 0-99999, val_seen 100000-109999"):
@@ -40,7 +40,7 @@ def test_every_seed_belongs_to_the_split_of_its_range():
 
 
 @pytest.mark.parametrize(("a", "b"), PAIRS)
-def test_layouts_differ(a, b):
+def test_layouts_differ_between_seeds(a, b):
     def plans(split):
         low = SEED_RANGES[split][0]
         return {tuple(r.rect for r in Apartment(seed).rooms) for seed in range(low, low + 12)}
@@ -49,7 +49,7 @@ def test_layouts_differ(a, b):
 
 
 @pytest.mark.parametrize(("a", "b"), PAIRS)
-def test_no_colour_variant_is_in_two_palettes(a, b):
+def test_palettes_share_no_colour(a, b):
     one, two = palette(a), palette(b)
     for name in one.colours:
         assert not rows(one.colours[name]) & rows(two.colours[name])
@@ -61,12 +61,12 @@ def rows(colours: np.ndarray) -> set[tuple]:
 
 
 @pytest.mark.parametrize(("a", "b"), PAIRS)
-def test_no_phrase_is_in_the_templates_of_two_splits(a, b):
+def test_templates_share_no_phrase(a, b):
     for event in TEMPLATES[a].keys() - {"join"}:
         assert not set(TEMPLATES[a][event]) & set(TEMPLATES[b][event])
 
 
-def test_validation_words_all_occur_in_training_phrases():
+def test_validation_words_occur_in_training():
     for split in ("val_seen", "val_unseen"):
         for phrase in itertools.chain(*TEMPLATES[split].values()):
             words = re.findall(r"[a-z]+", re.sub(r"\{.*?\}", " ", phrase))
@@ -74,7 +74,7 @@ def test_validation_words_all_occur_in_training_phrases():
 
 
 @pytest.mark.parametrize(("split", "task"), LISTS)
-def test_a_shipped_list_has_300_episodes_of_its_split_in_known_words(split, task):
+def test_shipped_list_has_300_episodes(split, task):
     episodes = load_episodes(split, task)
     low, high = SEED_RANGES[split]
     assert len({e.episode_id for e in episodes}) == len(episodes) == 300
@@ -86,13 +86,13 @@ def test_a_shipped_list_has_300_episodes_of_its_split_in_known_words(split, task
 
 
 @pytest.mark.parametrize(("split", "task"), LISTS)
-def test_a_shipped_list_is_what_the_code_draws(split, task):
+def test_shipped_list_equals_generated_episodes(split, task):
     shipped = load_episodes(split, task)
     drawn = fixed_episodes(split, task, 12)
     assert [to_json(e) for e in drawn] == [to_json(e) for e in shipped[:12]]
 
 
-def test_a_training_episode_is_a_function_of_the_generator():
+def test_training_episode_depends_only_on_the_generator():
     def draw(seed):
         return draw_training_episode(np.random.default_rng(seed), 3, 0.2)
 
