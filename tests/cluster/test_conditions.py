@@ -8,7 +8,7 @@ import pytest
 from omegaconf import OmegaConf
 
 from mitigate.bridge.plan import Plan, make_cells
-from mitigate.bridge.run import run_on_launcher
+from mitigate.bridge.run import run_all
 from mitigate.core.conf import load_config
 
 pytestmark = pytest.mark.xdist_group("launchers")  # as tests/cluster/test_launchers.py
@@ -43,9 +43,9 @@ def test_a_condition_that_lost_its_worker_is_run_anew_and_a_finished_one_is_kept
     config = OmegaConf.to_object(load_config("run", options))
     plan = Plan(config, tuple(command), "agent", out)
     spatter = make_cells(plan)[1]
-    assert run_on_launcher(plan, [spatter]) == []
+    assert run_all(plan, [spatter]) == []
     assert (tmp_path / "died").exists() and "again on another" in capsys.readouterr().out
     found = [(row["episode_id"], row["rule"]) for row in spatter.rows()]
     assert {episode for episode, _ in found} == {"a", "b"} and len(found) == len({*found})
-    assert run_on_launcher(plan, [spatter]) == []
+    assert run_all(plan, [spatter]) == []
     assert "spatter-s0.6: done before" in capsys.readouterr().out
