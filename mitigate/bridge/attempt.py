@@ -112,7 +112,7 @@ class Attempt:
         return words
 
     def poll(self) -> str | None:
-        """Return None while the command runs, then the problem, empty if there is none."""
+        """Return None while the command runs, then the problem, or an empty text."""
         try:
             return self._poll()
         except ValueError as error:  # its events are damaged
@@ -226,7 +226,7 @@ class Attempt:
         return None
 
     def _describe_problem(self, status: int) -> str:
-        """Return the problem of a command that ended with ``status``; empty if there is none."""
+        """Return the problem of a command that ended with ``status``, or an empty text."""
         reports = self.cell.reports()
         if reports.problems:
             return reports.problems[0]

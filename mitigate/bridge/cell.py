@@ -139,7 +139,7 @@ def _compare_events(folder: Path, entries: Mapping[str, Any]) -> None:
         if size != seal["bytes"]:
             raise damaged(folder, f"it has {size} bytes, and {DONE} records {seal['bytes']}")
         if sha256(events) != seal["sha256"]:
-            raise damaged(folder, f"its sha256 is not the one that {DONE} records")
+            raise damaged(folder, f"its sha256 differs from the one in {DONE}")
     if count not in {len(reports.ends), len(results.read(folder).ends)}:
         raise damaged(folder, f"{len(reports.ends)} episodes ended, and {DONE} records {count}")
 
@@ -197,7 +197,7 @@ class Cell:
     def entries(self) -> dict[str, Any] | None:
         """Return the entries of ``done.json``; None if the condition is not finished.
 
-        Raises ValueError for a damaged file, and if the events are not those of the entries.
+        Raises ValueError for a damaged file, and if the events differ from the entries.
         """
         return read_done(self.folder)
 
@@ -260,13 +260,9 @@ class Cell:
 
     def output_excerpt(self) -> str:
         """Return the end of the command's output for an error message."""
-        tail = self.tail()
-        return f"\nThe end of {self.log}:\n{tail}" if tail else " It printed nothing."
-
-    def tail(self) -> str:
-        """Return the last lines of the command's output."""
         lines = self.log.read_text("utf-8", "replace").splitlines() if self.log.is_file() else []
-        return "\n".join(f"  | {line}" for line in lines[-TAIL:])
+        tail = "\n".join(f"  | {line}" for line in lines[-TAIL:])
+        return f"\nThe end of {self.log}:\n{tail}" if tail else " It printed nothing."
 
     def reports(self) -> Reports:
         """Return what the processes of the command reported so far."""
@@ -308,7 +304,7 @@ class Cell:
         )
 
     def depth_warning(self) -> str:
-        """Return a warning about depth that may be normalised; empty if there is none."""
+        """Return a warning about depth that may be normalised, else an empty text."""
         names = maybe_normalised(self.reports())
         if not names:
             return ""

@@ -125,8 +125,8 @@ def _wait(attempt: Attempt, file: Path) -> None:
             raise ValueError(problem or "the command ended before its first frame.")
         if time.monotonic() - start > FIRST_FRAME_LIMIT:
             raise ValueError(
-                f"the command sent no frame within {FIRST_FRAME_LIMIT:g} s. Its output:\n"
-                f"{attempt.cell.tail()}"
+                f"the command sent no frame within {FIRST_FRAME_LIMIT:g} s."
+                f"{attempt.cell.output_excerpt()}"
             )
         if time.monotonic() - last_print > 10:
             last_print = time.monotonic()

@@ -132,7 +132,7 @@ class Command:
         self._pipe.close()
 
     def _next(self) -> dict[str, Any]:
-        """Return the next line of the supervisor, empty if there is none (yet).
+        """Return the next line of the supervisor; empty without a new line.
 
         The supervisor writes each line at once, so that no part of a line is read.
         """

@@ -80,7 +80,7 @@ def _measure(plan: Plan, cells: Sequence[Cell]) -> Path:
     )
     known = _warn_changed_files(cells, out)
     was_done = clean.is_done()
-    problems = _run_all(plan, [clean])
+    problems = run_all(plan, [clean])
     if problems:
         raise ValueError("\n".join(problems))
     _check_rule([clean])
@@ -99,7 +99,7 @@ def _measure(plan: Plan, cells: Sequence[Cell]) -> Path:
             "another folder (out=...), or remove this one.",
             flush=True,
         )
-    problems += _run_all(plan, applicable)
+    problems += run_all(plan, applicable)
     _warn_changed_files([clean, *applicable], out, known if all_done else ())
     problems += _describe_removed(applicable, problems)
     if not clean.is_done():  # another condition had episodes that clean lacks
@@ -188,11 +188,15 @@ def _warn_changed_files(cells: Sequence[Cell], out: Path, known: Sequence[str] =
     return list(changed)
 
 
-def _run_all(plan: Plan, cells: Sequence[Cell]) -> list[str]:
-    """Run cells, ``plan.config.jobs`` at a time, by the launcher; return the problems."""
+def run_all(plan: Plan, cells: Sequence[Cell]) -> list[str]:
+    """Run unfinished cells, ``plan.config.jobs`` at a time, by the launcher; return problems."""
+    waiting = [cell for cell in cells if not cell.is_done()]
+    for cell in cells:
+        if cell not in waiting:
+            print(f"{cell.name}: done before, {cell.summary()}", flush=True)
     if plan.config.launcher.name == "local":
-        return _run_here(cells, plan.config.jobs)
-    return run_on_launcher(plan, cells)
+        return _run_here(waiting, plan.config.jobs)
+    return _run_on_launcher(plan, waiting)
 
 
 def _run_here(cells: Sequence[Cell], jobs: int) -> list[str]:
@@ -204,15 +208,11 @@ def _run_here(cells: Sequence[Cell], jobs: int) -> list[str]:
     try:
         while waiting or running:
             while waiting and len(running) < jobs:
-                cell = waiting.pop(0)
-                if cell.is_done():
-                    print(f"{cell.name}: done before, {cell.summary()}", flush=True)
-                    continue
-                attempt = Attempt(cell)
+                attempt = Attempt(waiting.pop(0))
                 running.append(attempt)  # first, so that an interrupted start is cleaned up
                 if start_problem := _start(attempt):  # the others continue
                     running.remove(attempt)
-                    problems.append(f"{cell.name}: {start_problem}")
+                    problems.append(f"{attempt.cell.name}: {start_problem}")
             time.sleep(PAUSE)
             for attempt in list(running):
                 problem = attempt.poll()
@@ -261,7 +261,7 @@ def _describe_outcome(cell: Cell, problem: str, single: bool) -> str:
 class ConditionTask:
     """Runs conditions by name (``core/workers.py``) as jobs on other machines.
 
-    The result of a job is its problem, empty if there is none. The folder of the run is on a file
+    The result of a job is its problem, or an empty text. The folder of the run is on a file
     system that all machines share. Finished conditions are kept. If a machine dies, its condition
     is measured again on another one, because an unchanged program cannot be resumed.
 
@@ -305,27 +305,23 @@ class ConditionTask:
         return job
 
 
-def run_on_launcher(plan: Plan, cells: Sequence[Cell]) -> list[str]:
+def _run_on_launcher(plan: Plan, cells: Sequence[Cell]) -> list[str]:
     """Run cells on the machines of the launcher, ``jobs`` at a time; return the problems.
 
     Raises:
         WorkersDied: A condition ended several workers.
     """
-    waiting = [cell for cell in cells if not cell.is_done()]
-    for cell in cells:
-        if cell not in waiting:
-            print(f"{cell.name}: done before, {cell.summary()}", flush=True)
-    if not waiting:
+    if not cells:
         return []
     task = ConditionTask(replace(plan, out=plan.out.resolve()), Path.cwd())
-    groups = [[cell.name] for cell in waiting]
+    groups = [[cell.name] for cell in cells]
     launcher = chosen(plan.config.launcher)
     problems = []
-    with Progress("conditions", len(waiting), unit="condition") as progress:
+    with Progress("conditions", len(cells), unit="condition") as progress:
         for result in results(launcher, task, groups, plan.config.jobs, progress):
             if result is None:
                 continue
-            cell, problem = waiting[result[0]], str(result[1])
+            cell, problem = cells[result[0]], str(result[1])
             progress.say(f"{cell.name}: {_describe_outcome(cell, problem, len(cells) == 1)}")
             problems += [f"{cell.name}: {problem}"] if problem else []
             progress.advance()

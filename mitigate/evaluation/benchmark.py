@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-import sys
 import time
 from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
@@ -26,7 +25,7 @@ from mitigate.core.names import counted
 from mitigate.core.observation import sensor_lines
 from mitigate.core.options import without_config_folder
 from mitigate.core.progress import duration
-from mitigate.core.workers import packed
+from mitigate.core.workers import ALONE, packed
 from mitigate.corruptions import CLEAN, Corruption
 from mitigate.evaluation import evaluate as evaluation
 from mitigate.evaluation import provenance
@@ -45,7 +44,7 @@ from mitigate.worlds.world import Corrupted, World
 
 EPISODES = 20  # default number (heuristic): an SR then has an error of about 17 points
 OUT = Path("runs/benchmark")
-TIMED = 2  # clean episodes, of which the last one gives the time estimate (heuristic)
+TIMED = 2  # clean episodes; the last one gives the time estimate (heuristic)
 OPTION = re.compile(r"[+~]*(agent|env)[.=]|--config-dir\b")  # what options= may name
 
 
@@ -248,7 +247,7 @@ def _first_world(
 
 
 def _is_own(world: World, config: EvaluateConfig) -> bool:
-    """Return whether the world has another class than that of the config.
+    """Return whether the class of the world differs from the config.
 
     The lists of episodes of the config are then meaningless.
     """
@@ -270,7 +269,7 @@ def _episodes(
 
     Raises:
         ValueError: There are no episodes, or the user's (``custom``) world has another class than
-            that of the config and no list of episodes.
+            the config and no list of episodes.
     """
     other_class = custom and _is_own(world, config)
     split = split or (provenance.name_of(world) if other_class else config.split)
@@ -297,19 +296,6 @@ def _episodes(
     return split, spread(entries, None if count is ... else count)
 
 
-def _check_copies(*objects: Any) -> None:
-    """Raise ValueError for objects that cannot be sent to other processes."""
-    main = Path(vars(sys.modules["__main__"]).get("__file__") or "")
-    interactive = [one for one in objects if type(one).__module__ == "__main__"]
-    solution = "give workers=1, or define them at the head of a module"
-    if interactive and not main.is_file():
-        raise ValueError(
-            f"A {type(interactive[0]).__name__} was defined interactively, so other processes "
-            f"cannot import it: {solution}."
-        )
-    packed(objects, "The agent or its world", solution)
-
-
 def _print_estimate(
     agent: Any,
     make_world: Callable[[], World],
@@ -320,8 +306,8 @@ def _print_estimate(
     """Print the number of rollouts and an estimate of the time, measured on a few clean ones."""
     total = len(episodes) * len(conditions)
     processes = min(count(LOCAL, workers, total, WORTH), len(episodes))
-    if processes > 1:
-        _check_copies(agent, make_world)
+    if processes > 1:  # now, not after the episodes that are timed
+        packed((agent, make_world), "The agent or its world", ALONE)
     world = make_world()
     for condition in conditions:  # compiles the corruptions
         dict(Corrupted(world, condition, 0).reset(episodes[0]))

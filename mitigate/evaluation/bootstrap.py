@@ -120,7 +120,7 @@ def mean(values: ArrayLike, **options: Any) -> Estimate:
 def share(values: ArrayLike, **options: Any) -> Estimate:
     """Return the mean of ``values`` [N] in 0..1 (successes, SPLs) with its interval.
 
-    If all values are 0 or all are 1, all resamples are equal; the bound is then that of Wilson's
+    If all values are 0 or all are 1, all resamples are equal; the bound is then from Wilson's
     score interval.
     """
     estimate, known = mean(values, **options), np.asarray(values, float)
@@ -162,7 +162,7 @@ def prs(clean: ArrayLike, corrupted: ArrayLike, **options: Any) -> Estimate:
 
 
 def ratio(parts: ArrayLike, wholes: ArrayLike, **options: Any) -> Estimate:
-    """Return the sum of ``parts`` [N] over that of ``wholes`` [N], with its interval."""
+    """Return sum(``parts``) / sum(``wholes``), both [N], with its interval."""
     return prs(wholes, parts, **options)
 
 

@@ -56,7 +56,7 @@ def conditions(names: list[str], severity: float, severity_depth: float | None) 
     if not names:
         raise ValueError(
             "conditions must not be empty. Name some, such as [clean,spatter], or give null for "
-            "those of the suite."
+            "the conditions of the suite."
         )
     for part in (part for name in names for part in parts(name)):
         if part not in allowed:

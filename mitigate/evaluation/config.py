@@ -1,6 +1,6 @@
 """The options of ``conf/evaluate.yaml`` as dataclasses, and names that follow from options.
 
-Trainings share parts of these options. The names are those of columns and folders.
+Trainings share parts of these options. The names are names of columns and folders.
 """
 
 from __future__ import annotations

@@ -103,8 +103,8 @@ def run_side_by_side(
 ) -> Iterator[dict[str, Any]]:
     """Run (episode, corruption, seed) of each job, and yield their measures in order.
 
-    As many episodes run at once as there are worlds. Measures are those of :func:`run_episode`. No
-    guard may change the agent.
+    As many episodes run at once as there are worlds. Measures are the same as of
+    :func:`run_episode`. No guard may change the agent.
     """
     waiting, free = deque(enumerate(jobs)), list(worlds)
     running: dict[int, tuple[_Rollout, World, Any]] = {}

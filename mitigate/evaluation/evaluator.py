@@ -1,6 +1,6 @@
 """Closed-loop evaluation: all agents run the same episodes with the same random keys.
 
-The result of an episode does not depend on other episodes. Rows are written as they are computed,
+The result of an episode does not depend on other episodes. Each row is written once it is computed,
 and an interrupted evaluation continues where it stopped. All conditions of an episode run in one
 process, which caches renderings and features. Equal frames give equal features, so the cache does
 not change results. An agent with ``together`` > 1 (``agents/agent.py``) runs several episodes at

@@ -19,7 +19,7 @@ from mitigate.evaluation import metrics
 from mitigate.evaluation.episode_lists import by_list
 from mitigate.evaluation.rows import Row, cuts, scene_of, upsert
 
-BLOCKS = {  # corruptions of this project; those of other packages are in no block
+BLOCKS = {  # corruptions of this project; other packages have no block
     "RGB": names("rgb"),
     "Depth": names("depth"),
     "Instruction": names("instruction"),
@@ -119,6 +119,7 @@ def _unique_digits(agents: Iterable[str]) -> int:
 
 COVERAGE = 0.9  # share of the clean episodes that a corruption in a PRS must have (heuristic)
 METRICS = {"SR": "success", "SPL": "spl"}
+STEPS = "steps"  # also in the cells, for the HTML page
 DRAWN = ("episode", "scene")  # what the bootstrap may draw
 _Run = dict[tuple[str, float, str], np.ndarray]  # (corruption, severity, metric): values [N]
 
@@ -236,7 +237,7 @@ class Grid:
 
     @cached_property
     def corruptions(self) -> list[str]:
-        """The measured corruptions, those of the blocks first."""
+        """The measured corruptions, in the order of the blocks, then others."""
         measured = {name for _, name, _, _ in self.cells if name != "clean"}
         known = [name for block in BLOCKS.values() for name in block if name in measured]
         return known + sorted(measured.difference(known))
@@ -269,7 +270,7 @@ class Grid:
     def retention(
         self, labels: Sequence[str], names: Iterable[str], severity: float, metric: str
     ) -> list[Retention] | None:
-        """Return the values of each column's PRS over ``names``, or None if there are none.
+        """Return the values of each column's PRS over ``names``, or None without values.
 
         All columns have the same corruptions and episodes: the corruptions that every column
         measured on at least :data:`COVERAGE` of the episodes, and the episodes without a gap in
@@ -368,10 +369,10 @@ def _cells(rows: list[Row], place: dict[str, int]) -> _Run:
     """Return the cells of one seed; ``place`` is the index of each episode."""
     cells: _Run = {}
     for row in rows:
-        for metric in METRICS.values():
+        for metric in (*METRICS.values(), STEPS):
             cell = (row["corruption"], float(row["severity"]), metric)
             values = cells.setdefault(cell, np.full(len(place), np.nan))
-            values[place[row["episode_id"]]] = row[metric]
+            values[place[row["episode_id"]]] = row.get(metric)  # None becomes NaN
     return cells
 
 

@@ -19,7 +19,7 @@ COLOURS = mpl.colormaps["viridis"]  # readable without colour vision; bright is 
 LINES = [mpl.colormaps["tab10"](index) for index in range(10)]
 DASHES = ("-", "--", "-.", ":")
 WIDTH, MARKER = 1.2, 3.0  # points: width of a line and size of its markers
-RIM = 2.0  # points by which a marker is larger than that of the next column
+RIM = 2.0  # points by which markers shrink from column to column
 DPI = 150
 STACKED = 5  # number of columns from which the panels of a heatmap are stacked vertically
 

@@ -226,7 +226,7 @@ def _read(note: Path) -> dict[str, dict[str, Any]]:
 def _described(world: World) -> dict[str, str]:
     """Return a description of ``world`` by name: its class, its environment and a hash of the code.
 
-    The hash covers only the user's code, not that of this project or an installed package.
+    The hash covers only the user's code, not code of this project or of installed packages.
     """
     sources = [source for layer in _layers(world) for source in source_of(type(layer))]
     texts = {CLASS: kind_of(world), ENV: _spec(world), CODE: json_hash(sources) if sources else ""}
@@ -304,7 +304,7 @@ def _sum(episode: Episode) -> str:
 
 
 def _spec(world: World) -> str:
-    """Return the id and arguments of the environment inside a world; empty if there is none.
+    """Return the id and arguments of the environment inside a world, else an empty text.
 
     Worlds of one class may differ only in these.
     """
@@ -357,7 +357,7 @@ def first_world(
 
 
 def check_classes(agent: Any, world: World, expected: str) -> None:
-    """Raise ValueError if classes in a worker process differ from those of its parent process.
+    """Raise ValueError if classes in a worker process differ from its parent process.
 
     ``expected`` is ``Known.classes`` of the parent.
     """

@@ -29,10 +29,10 @@ def markdown(parts: Sequence[Section], pictures: Sequence[Sequence[str]] = ()) -
     texts = []
     for index, section in enumerate(parts):
         names = pictures[index] if index < len(pictures) else ()
-        shown = "\n".join(f"![{Path(name).stem}]({name})" for name in names)
+        images = "\n".join(f"![{Path(name).stem}]({name})" for name in names)
         table = _table(section)
         about = f"{NO_WIDTH}\n" * (NO_INTERVAL in table) + _notes(section)
-        texts.append(f"{_heading(section)}\n\n{table}\n\n{about}\n\n{shown}")
+        texts.append(f"{_heading(section)}\n\n{table}\n\n{about}\n\n{images}")
     return "\n\n".join(text.strip() for text in texts) + "\n"
 
 
@@ -215,15 +215,7 @@ def _notes(section: Section) -> str:
             "over the seeds that both have. Intervals are over episodes; the values seed by seed "
             "show the differences between trainings."
         )
-    for column in section.columns:
-        for seed, (have, want) in section.grid.unfinished[column, section.severity].items():
-            notes.append(
-                f"Seed {seed} of {markdown_of(column)} is not finished and left out: "
-                f"{have:,} of {want:,} rows."
-            )
-    for column in section.columns:
-        if column in section.grid.cut:
-            notes.append(f"{markdown_of(column)}: {section.grid.cut[column]}")
+    notes += section.notes(markdown_of)
     if section.gaps:
         notes.append("\\* over the available episodes. Missing cells:")
         notes += [

@@ -49,7 +49,7 @@ SUFFIXES = (".jsonl", ".jsonl.gz")
 LONGEST_LINE = 1 << 16  # characters (heuristic); a row has about 450
 LONGEST_TEXT = 200  # characters of an entry (heuristic)
 GREATEST = 1e9  # largest value of a measure, in metres or steps (heuristic)
-_NAME = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.+-]*")  # a corruption; + joins those of a pair
+_NAME = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.+-]*")  # a corruption; + joins a pair
 _HASH = re.compile(r"[A-Za-z0-9_.-]+")
 _TEXTS = (*(key for key, kind in IDENTITY.items() if kind is str), "version", "weights", SCENE)
 _OF_A_SCENE = re.compile(r"(\d+)-\w+-\d+|(.+)/[^/]+")  # episode ids of apartments; of the bridge
@@ -178,7 +178,7 @@ def upsert(*parts: Iterable[Row]) -> list[Row]:
 
 
 def cuts(rows: Iterable[Row]) -> str:
-    """Return a text on how many episodes a world's ``limit=`` cut; empty if there are none."""
+    """Return a text on how many episodes a world's ``limit=`` cut, else an empty text."""
     rows = list(rows)
     cut = [row for row in rows if row.get("cut")]
     if not cut:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import defaultdict
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -206,6 +206,20 @@ class Section:
         measured, expected = len(value.corruptions), sum(map(self.whole, parts))
         fewer = "*" * (value.episodes < len(self.grid.episodes))
         return fewer + f" † {measured}/{expected}" * (measured < expected) + " ‡" * value.near_floor
+
+    def notes(self, escape: Callable[[str], str] = str) -> list[str]:
+        """Return a line for each unfinished seed and for columns with cut episodes.
+
+        ``escape`` is applied to labels of columns.
+        """
+        unfinished = [
+            f"Seed {seed} of {escape(column)} is not finished and left out: {have:,} of {want:,} "
+            "rows."
+            for column in self.columns
+            for seed, (have, want) in self.grid.unfinished[column, self.severity].items()
+        ]
+        cut = self.grid.cut
+        return unfinished + [f"{escape(c)}: {cut[c]}" for c in self.columns if c in cut]
 
 
 def sections(

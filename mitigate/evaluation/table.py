@@ -46,8 +46,8 @@ def run(
     for seed in seeds or ():
         if seed not in available:
             raise ValueError(
-                f"seeds must be among {', '.join(map(str, available))}, got {seed}, of which there "
-                "are no rows."
+                f"seeds must be among {', '.join(map(str, available))}, got {seed}, which has "
+                "no rows."
             )
     selected = [row for row in all_rows if seeds is None or row["seed"] in seeds]
     return report.write(selected, out, against=against, drawn=drawn)
@@ -77,12 +77,12 @@ def main(argv: Sequence[str] | None = None) -> int:
     options = parser.parse_intermixed_args(argv)
     try:
         check_paths(options.rows, "--out DIR")
-        written = run(options.rows, options.out, options.seed, options.against, options.draw)
+        paths = run(options.rows, options.out, options.seed, options.against, options.draw)
     except (OSError, ValueError) as error:
         from mitigate.core.errors import error_message
 
         print(f"table: {error_message(error)}", file=sys.stderr)
         return 2
-    print(written[0].read_text(encoding="utf-8"))
-    print("\n".join(f"wrote {path}" for path in written))
+    print(paths[0].read_text(encoding="utf-8"))
+    print("\n".join(f"wrote {path}" for path in paths))
     return 0

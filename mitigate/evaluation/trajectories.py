@@ -135,14 +135,14 @@ def first_sight(
 
 def _picture(frames: np.ndarray, far: float) -> np.ndarray:
     views = frames if frames.ndim == 4 else frames[None]
-    shown = strip(views) if len(views) == VIEWS else np.concatenate(list(views), axis=1)
-    return depth_picture(shown[..., 0], far) if shown.shape[-1] == 1 else shown
+    joined = strip(views) if len(views) == VIEWS else np.concatenate(list(views), axis=1)
+    return depth_picture(joined[..., 0], far) if joined.shape[-1] == 1 else joined
 
 
 def won_back(rows: Sequence[Row], before: str, after: str) -> Iterator[tuple[str, Corruption]]:
     """Yield (episode id, corruption) where agent ``before`` fails and ``after`` succeeds.
 
-    The order is that of the rows; no episode and no corruption is repeated.
+    The order follows the rows; no episode and no corruption is repeated.
     """
     won = {(r["name"], r["episode_id"], r["corruption"], r["severity"]): r["success"] for r in rows}
     done: set[str] = set()
@@ -212,7 +212,8 @@ def run_agents(
 ) -> Iterator[Walk]:
     """Run ``episode`` and yield trajectories: the first agent's clean one, then all corrupted ones.
 
-    Keys and measures are those of an evaluation with ``seed``. ``guards`` are by name of the agent.
+    Keys and measures are the same as in an evaluation with ``seed``. ``guards`` are by name of the
+    agent.
     """
     first = next(iter(agents))
     plans = [(f"{first}, clean", first, CLEAN, CLEAN_WALK)]

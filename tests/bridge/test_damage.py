@@ -97,7 +97,7 @@ def test_run_rejects_events_in_which_a_result_changed(finished):
     assert text.count('"success": 0') > 0
     events.write_text(text.replace('"success": 0', '"success": 1', 1))
     result = again()
-    assert result.returncode == 1 and "its sha256 is not the one" in result.stderr
+    assert result.returncode == 1 and "its sha256 differs" in result.stderr
 
 
 def test_run_rejects_damage_in_another_condition(finished):

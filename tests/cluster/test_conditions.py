@@ -8,7 +8,7 @@ import pytest
 from omegaconf import OmegaConf
 
 from mitigate.bridge.plan import Plan, make_cells
-from mitigate.bridge.run import run_on_launcher
+from mitigate.bridge.run import run_all
 from mitigate.core.conf import load_config
 
 pytestmark = pytest.mark.xdist_group("launchers")  # as tests/cluster/test_launchers.py
@@ -41,9 +41,9 @@ def test_lost_condition_runs_again(ray_launcher, tmp_path, capsys):
     config = OmegaConf.to_object(load_config("run", options))
     plan = Plan(config, tuple(command), "agent", out)
     spatter = make_cells(plan)[1]
-    assert run_on_launcher(plan, [spatter]) == []
+    assert run_all(plan, [spatter]) == []
     assert (tmp_path / "died").exists() and "again on another" in capsys.readouterr().out
     results = [(row["episode_id"], row["rule"]) for row in spatter.rows()]
     assert {episode for episode, _ in results} == {"a", "b"} and len(results) == len({*results})
-    assert run_on_launcher(plan, [spatter]) == []
+    assert run_all(plan, [spatter]) == []
     assert "spatter-s0.6: done before" in capsys.readouterr().out

@@ -26,7 +26,7 @@ def results():
     return (hard < 0.65).astype(float), (hard < generator.normal(0.4, 0.03, (8, 1))).astype(float)
 
 
-def test_the_same_seed_gives_the_same_interval(results):
+def test_interval_is_deterministic(results):
     clean, corrupted = results
     assert prs(clean, corrupted) == prs(clean, corrupted)
     assert prs(clean, corrupted, seed=1) != prs(clean, corrupted)
@@ -39,7 +39,7 @@ def test_resamples_are_those_of_a_plain_loop(results):
     assert np.allclose(resampled_means(clean, resamples=50, seed=5)[:, 0], expected)
 
 
-def test_resamples_do_not_depend_on_the_size_of_the_chunks(results, monkeypatch):
+def test_resamples_do_not_depend_on_chunk_size(results, monkeypatch):
     clean, corrupted = results
     whole = resampled_means(corrupted, resamples=101)
     bootstrap._times_drawn.cache_clear()
@@ -65,7 +65,7 @@ def test_scenes_with_few_episodes_weigh_less():
     assert np.allclose(resampled_means(values, resamples=20, units=scenes)[:, 0], expected)
 
 
-def test_the_interval_of_a_rate_is_the_binomial_one():
+def test_interval_of_a_rate_is_binomial():
     wins = np.repeat([1.0, 0.0], [240, 160])
     found, half = mean(wins), 1.96 * math.sqrt(0.6 * 0.4 / 400)
     assert found.value == 0.6
@@ -81,7 +81,7 @@ def test_nine_equal_outcomes_are_no_certainty(value, low, high):
     assert share(varied) == mean(varied)
 
 
-def test_intervals_cover_the_truth_about_as_often_as_they_say():
+def test_intervals_have_nominal_coverage():
     generator = np.random.default_rng(0)
     inside = 0
     for _ in range(200):
@@ -92,7 +92,7 @@ def test_intervals_cover_the_truth_about_as_often_as_they_say():
     assert 180 <= inside <= 199
 
 
-def test_prs_is_the_mean_ratio_to_the_own_clean_value(results):
+def test_prs_is_the_mean_ratio_to_clean(results):
     clean, corrupted = results
     found = prs(clean, corrupted)
     assert found.value == pytest.approx(np.mean([row.mean() / clean.mean() for row in corrupted]))
@@ -130,7 +130,7 @@ def test_without_clean_success_there_is_no_prs():
 
 @pytest.mark.parametrize("wins", [1.0, 1 / 3])
 @pytest.mark.parametrize("episodes", [1, 7])
-def test_an_interval_without_a_width_says_nothing(episodes, wins):
+def test_interval_without_width_excludes_nothing(episodes, wins):
     clean, corrupted = np.ones(episodes), np.full((2, episodes), wins)
     for found in (prs(clean, corrupted), mean(corrupted[0])):
         assert found.value == pytest.approx(wins)

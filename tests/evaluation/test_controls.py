@@ -25,7 +25,7 @@ def at_random(world, episode):
     return run_episode(agent, world, episode, CLEAN, 0)
 
 
-def test_the_random_control_repeats_itself_and_rarely_succeeds():
+def test_random_agent_is_deterministic_and_rarely_succeeds():
     world, episodes = ApartmentsWorld(SIZE), load_episodes("val_unseen")[::30]
     rows = [at_random(world, e) for e in episodes]
     assert rows == [at_random(world, e) for e in episodes]
@@ -33,7 +33,7 @@ def test_the_random_control_repeats_itself_and_rarely_succeeds():
     assert sum(r["success"] for r in rows) <= 3 < 10 == sum(r["success"] for r in oracle)
 
 
-def test_episodes_of_one_text_are_walked_at_random_each_for_itself(monkeypatch, tmp_path):
+def test_random_agent_differs_between_episodes_of_one_text(monkeypatch, tmp_path):
     episodes = load_episodes("val_seen", "ogn")
     text = max(episodes, key=lambda e: sum(e.instruction == o.instruction for o in episodes))
     same = [e for e in episodes if e.instruction == text.instruction][:4]
@@ -62,7 +62,7 @@ def called(monkeypatch, *given):
     return controls.main()
 
 
-def test_the_same_command_only_walks_what_is_missing(monkeypatch, tmp_path, walked, capsys):
+def test_controls_run_only_missing_episodes(monkeypatch, tmp_path, walked, capsys):
     given = ["split=val_seen_ogn", f"out={tmp_path}"]
     assert called(monkeypatch, *given, "episodes=1") == 0
     assert called(monkeypatch, *given, "episodes=2") == 0
@@ -72,9 +72,7 @@ def test_the_same_command_only_walks_what_is_missing(monkeypatch, tmp_path, walk
     assert "oracle: SR 100.0 [34.2, 100.0] %, SPL 1.00, 2 episodes" in capsys.readouterr().out
 
 
-def test_controls_warns_of_conflicting_rows_and_notices_lost_ones(
-    monkeypatch, tmp_path, walked, capsys
-):
+def test_controls_warn_of_conflicts_and_report_lost_rows(monkeypatch, tmp_path, walked, capsys):
     given = ["split=val_seen_ogn", f"out={tmp_path}", "episodes=1"]
     file = tmp_path / "rows.jsonl"
     assert called(monkeypatch, *given) == 0
@@ -103,15 +101,13 @@ def test_controls_warns_of_conflicting_rows_and_notices_lost_ones(
         ("agent=recurrent", "agent=recurrent has no effect"),
     ],
 )
-def test_a_wrong_option_is_named(monkeypatch, tmp_path, capsys, option, words):
+def test_controls_reject_invalid_options(monkeypatch, tmp_path, capsys, option, words):
     assert called(monkeypatch, option, f"out={tmp_path}") == 2
     assert words in capsys.readouterr().err and not list(tmp_path.iterdir())
 
 
 @pytest.mark.parametrize("folder", [["--config-dir", "mine"], ["--config-dir=mine"]])
-def test_a_folder_of_configs_is_named_in_one_word_or_two(
-    monkeypatch, tmp_path, walked, capsys, folder
-):
+def test_controls_accept_a_config_folder(monkeypatch, tmp_path, walked, capsys, folder):
     monkeypatch.chdir(tmp_path)
     usual = find("conf/env/apartments.yaml").read_text()
     (tmp_path / "mine/env").mkdir(parents=True)
@@ -120,7 +116,7 @@ def test_a_folder_of_configs_is_named_in_one_word_or_two(
     assert len(walked) == 2
 
 
-def test_rows_of_another_list_of_the_split_are_not_counted(monkeypatch, tmp_path, walked, capsys):
+def test_controls_reject_rows_of_another_list(monkeypatch, tmp_path, walked, capsys):
     for name, split in (("a", "val_seen"), ("b", "val_unseen")):
         source = conf.load_config("evaluate").env.episodes[split]
         shutil.copy(find(source), tmp_path / f"{name}.json.gz")

@@ -79,12 +79,12 @@ class Logits(StepwiseAgent):
 
 
 @pytest.mark.parametrize("answer", [0, np.int64(0), torch.tensor(0), np.array(0)])
-def test_a_whole_number_is_an_action(answer):
+def test_action_of_accepts_integers(answer):
     assert run_episode(Answers(1, answer), Cell(), EPISODE, CLEAN, 0)["success"] == 1
 
 
 @pytest.mark.parametrize("answer", [1.7, None, np.zeros(4), "0", torch.zeros(4)])
-def test_what_is_no_whole_number_is_refused_with_the_agent_the_episode_and_the_step(answer):
+def test_run_episode_rejects_invalid_actions(answer):
     words = r"Episode e7, clean, step 2: act\(\) of Answers must return a whole number"
     with pytest.raises(ValueError, match=words):
         run_episode(Answers(1, answer), Cell(), EPISODE, CLEAN, 0)
@@ -101,7 +101,7 @@ def test_measures_may_be_numbers_of_numpy_or_torch(tmp_path):
 
 
 @pytest.mark.parametrize("shown", [{"rgb": np.zeros((4, 4, 3), np.uint8)}, (0, 1.0, False, {})])
-def test_what_is_no_observation_is_refused_with_the_world(shown):
+def test_run_episode_rejects_invalid_observations(shown):
     cell = Cell()
     cell.look = lambda: shown
     name = type(shown).__name__
@@ -109,7 +109,7 @@ def test_what_is_no_observation_is_refused_with_the_world(shown):
         run_episode(Answers(0), cell, EPISODE, CLEAN, 0)
 
 
-def test_a_frame_that_an_agent_reads_and_does_not_need_is_named():
+def test_run_episode_names_a_missing_frame():
     class Curious(Logits):
         def forward(self, frames, texts):
             return self.logits + frames["depth"].mean(), {}
@@ -132,7 +132,7 @@ def test_logits_that_are_no_numbers_are_no_stop(logits):
         Logits(*logits).collect([Cell()], [EPISODE], **walks)
 
 
-def test_what_may_not_be_chosen_is_not():
+def test_run_episode_masks_forbidden_actions():
     assert run_episode(Logits(0.0, -INF, -9.0, -INF), Cell(), EPISODE, CLEAN, 0)["success"] == 1
 
 
@@ -140,7 +140,7 @@ def broken():
     return int(np.ones(3) @ np.ones(4))
 
 
-def test_an_error_in_ones_own_code_names_its_line_and_the_episode():
+def test_run_episode_error_names_line_and_episode():
     own = rf"raised in {Path(__file__)}, line \d+, broken\(\)"
     with pytest.raises(ValueError, match=rf"Episode e7, clean, step 2: matmul.* \({own}\)"):
         run_episode(Answers(1, broken), Cell(), EPISODE, CLEAN, 0)
@@ -150,7 +150,7 @@ def test_an_error_in_ones_own_code_names_its_line_and_the_episode():
     assert error_message(pickle.loads(pickle.dumps(error))).endswith("broken())")
 
 
-def test_a_mistake_that_this_project_tells_is_told_as_it_is():
+def test_run_episode_keeps_messages_of_the_project():
     with pytest.raises(ValueError) as caught:
         run_episode(Answers(None), Cell(), EPISODE, CLEAN, 0)
     assert "raised in" not in error_message(caught.value)
@@ -161,7 +161,7 @@ def leave():
 
 
 @pytest.mark.parametrize("place", ["act", "reset", "step", "measures"])
-def test_an_exit_of_the_agent_or_the_world_is_an_error_that_names_the_episode(place):
+def test_run_episode_turns_exits_into_errors(place):
     agent, cell = Answers(leave if place == "act" else 0), Cell()
     if place != "act":
         setattr(cell, place, lambda *_: leave())

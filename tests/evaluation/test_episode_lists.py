@@ -10,7 +10,7 @@ from mitigate.evaluation.episode_lists import keep_list_hash
 from tests.evaluation.made_rows import cell
 
 
-def test_another_list_of_a_split_is_refused_and_another_split_is_not(tmp_path):
+def test_keep_list_hash_rejects_another_list(tmp_path):
     for name in ("a", "b"):
         (tmp_path / f"{name}.json").write_text(name)
     keep_list_hash(tmp_path, "mine", str(tmp_path / "a.json"))
@@ -20,7 +20,7 @@ def test_another_list_of_a_split_is_refused_and_another_split_is_not(tmp_path):
         keep_list_hash(tmp_path, "mine", str(tmp_path / "b.json"))
 
 
-def test_the_note_of_an_older_version_counts_where_there_is_no_newer_one(tmp_path):
+def test_keep_list_hash_reads_notes_of_older_versions(tmp_path):
     a, b = tmp_path / "a.json", tmp_path / "b.json"
     for listed in (a, b):
         listed.write_text(listed.name)

@@ -15,7 +15,7 @@ from tests.evaluation.made_rows import cell
 from tests.evaluation.straight import Straight
 
 
-def test_the_table_printed_is_of_what_was_asked_for_and_the_file_of_all(tmp_path, capsys):
+def test_evaluate_prints_the_requested_rows(tmp_path, capsys):
     """Three episodes lie there; two of them are asked for."""
 
     all_rows = cell(2, 3)
@@ -30,14 +30,14 @@ def test_the_table_printed_is_of_what_was_asked_for_and_the_file_of_all(tmp_path
     assert "N = 3 episodes" in told and "other row" not in told
 
 
-def test_a_safeguard_that_does_not_exist_leaves_no_folder(tmp_path):
+def test_evaluate_checks_the_safeguard_before_writing(tmp_path):
     cfg = conf.load_config("evaluate", ["safeguard=rule", f"runs={tmp_path}"])
     with pytest.raises(ValueError, match="no safeguard 'rule'"):
         evaluate.run(cfg)
     assert not list(tmp_path.iterdir())
 
 
-def test_another_severity_of_depth_or_a_world_of_ones_own_is_another_folder():
+def test_default_folder_depends_on_depth_severity_and_world():
     folders = [
         default_folder(conf.load_config("evaluate", options), "mine")
         for options in ([], ["severity_depth=0.9"], ["severity_depth=0.6"], ["env.name=maze"])
@@ -47,7 +47,7 @@ def test_another_severity_of_depth_or_a_world_of_ones_own_is_another_folder():
 
 
 @pytest.mark.parametrize("option", ["finetune.lr=9", "++cost.evaluation=4"])
-def test_an_option_of_trainings_is_refused(tmp_path, option):
+def test_evaluate_rejects_options_of_trainings(tmp_path, option):
     cfg = conf.load_config("evaluate", [option, f"runs={tmp_path}"])
     with pytest.raises(ValueError, match="is an option of trainings"):
         evaluate.run(cfg, [option])
@@ -70,7 +70,7 @@ def policies(tmp_path):
     return options
 
 
-def test_an_agent_without_weights_is_evaluated_also_behind_a_restorer(policies, tmp_path):
+def test_evaluate_accepts_an_agent_without_weights(policies, tmp_path):
     straight = "tests.evaluation.straight.Straight"
     cfg = policies(straight, "restore=checkpoints/restorer:rgb", settings=", steps: 2")
     found = rows.read(evaluate.run(cfg) / "rows.jsonl")
@@ -102,7 +102,7 @@ class Slots:
         return 0
 
 
-def test_an_agent_that_takes_no_settings_is_told_to_have_some(policies):
+def test_load_requires_settings_of_the_agent(policies):
     with pytest.raises(ValueError, match=r"Slots accepts no attribute .settings. .* settings\(\)"):
         evaluate.run(policies(f"{__name__}.Slots"))
 
@@ -129,7 +129,7 @@ class Net(nn.Linear):
         return int(self.bias.argmax())
 
 
-def test_weights_that_were_trained_elsewhere_are_read_from_safetensors_alone(policies, tmp_path):
+def test_load_accepts_foreign_safetensors(policies, tmp_path):
     net = Net()
     nn.init.constant_(net.bias, 0.0)
     net.bias.data[0] = 9.0

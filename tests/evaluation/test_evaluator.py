@@ -100,7 +100,7 @@ def test_rows_behind_a_restorer_are_of_another_agent(tmp_path):
     assert run(tmp_path, episodes=1, conditions=conditions, guards=Guards([restorer])) != behind
 
 
-def test_rows_behind_a_callable_do_not_depend_on_workers(tmp_path):
+def test_rows_with_a_callable_do_not_depend_on_workers(tmp_path):
     guards = open_guards("classifier", "tests.guards.filters:Brighter")
     conditions = [CLEAN, Corruption("low_light", 0.9), Corruption("black_box", 0.9)]
     one = run(tmp_path / "one", conditions=conditions, guards=guards)
@@ -110,7 +110,7 @@ def test_rows_behind_a_callable_do_not_depend_on_workers(tmp_path):
     assert {row["agent"] for row in alone}.isdisjoint(row["agent"] for row in one)
 
 
-def test_a_row_says_what_it_measured(finished):
+def test_row_identifies_its_measurement(finished):
     _, rows = finished
     assert len(rows) == 2 * len(CONDITIONS)
     assert {(r["corruption"], r["severity"]) for r in rows} == {
@@ -131,14 +131,14 @@ class Won(ApartmentsWorld):
         return super().measures() | {"success": True, "spl": 1.0}
 
 
-def test_a_world_may_say_success_by_true_and_its_row_says_1(tmp_path):
+def test_row_stores_boolean_success_as_number(tmp_path):
     episodes = load_episodes("val_seen")[:1]
     options = {"name": "test", "out": tmp_path / "rows.jsonl", "split": "val_seen"}
     (made,) = evaluate(Straight(1), partial(Won, SIZE), episodes, [CLEAN], **options)
     assert made["success"] == 1 and type(made["success"]) is int
 
 
-def test_progress_counts_walks_of_which_an_episode_has_one_a_condition(tmp_path, capsys):
+def test_progress_counts_one_rollout_per_condition(tmp_path, capsys):
     episodes, met = load_episodes("val_seen")[:1], [CLEAN, Corruption("flare", 0.6)]
     options = {"name": "test", "out": tmp_path / "rows.jsonl", "split": "val_seen"}
     evaluate(Straight(1), partial(Won, SIZE), episodes, met, **options)
@@ -155,9 +155,7 @@ def test_corruptions_change_what_the_agent_does(finished):
     assert any(path != clean[episode] for (episode, _), path in paths.items())
 
 
-def test_an_interrupted_evaluation_runs_what_is_missing_and_no_more(
-    finished, tmp_path, monkeypatch
-):
+def test_interrupted_evaluation_runs_only_missing_episodes(finished, tmp_path, monkeypatch):
     folder, rows = finished
     lines = (folder / "rows.jsonl").read_text().splitlines(keepends=True)
     (tmp_path / "rows.jsonl").write_text("".join(lines[:7]) + lines[7][:60])
@@ -173,13 +171,13 @@ def test_an_interrupted_evaluation_runs_what_is_missing_and_no_more(
     assert run(tmp_path) == rows and len(ran) == len(rows) - 7
 
 
-def test_a_result_does_not_depend_on_what_ran_before(finished, tmp_path):
+def test_result_does_not_depend_on_earlier_episodes(finished, tmp_path):
     _, rows = finished
     alone = run(tmp_path, conditions=CONDITIONS[-1:])
     assert alone == [row for row in rows if row["corruption"] == CONDITIONS[-1].name]
 
 
-def test_a_pair_is_a_condition_and_an_unseen_one_says_its_version(tmp_path):
+def test_row_of_a_pair_holds_its_version(tmp_path):
     names = ("low_light+missing_data", "spatter+mask", "haze", "ripple+flare")
     made = run(tmp_path, episodes=1, conditions=[CLEAN, *(Corruption(n, 0.6) for n in names)])
     versions = {row["corruption"]: row.get("version") for row in made}
@@ -187,7 +185,7 @@ def test_a_pair_is_a_condition_and_an_unseen_one_says_its_version(tmp_path):
     assert run(tmp_path, episodes=1, conditions=[Corruption("haze", 0.6)]) == made[3:4]
 
 
-def test_a_pair_meets_both_sensors_and_the_words():
+def test_pair_corrupts_sensors_and_instruction():
     episode, world, agent = load_episodes("val_seen")[5], ApartmentsWorld(SIZE), Watcher()
     looks = {}
     for name in ("low_light", "multipath", "low_light+multipath"):
@@ -232,7 +230,7 @@ class Watcher:
 @pytest.mark.parametrize(
     ("name", "hurt", "whole"), [("low_light", RGB, DEPTH), ("multipath", DEPTH, RGB)]
 )
-def test_a_corruption_hurts_its_sensor_at_every_look(name, hurt, whole):
+def test_corruption_changes_every_observation(name, hurt, whole):
     episode, world, agent = load_episodes("val_seen")[5], ApartmentsWorld(SIZE), Watcher()
     run_episode(agent, world, episode, CLEAN, 0)
     clean = agent.seen
@@ -259,7 +257,7 @@ class Listener:
 
 
 @pytest.mark.parametrize("name", [name for name in INSTRUCTION if name != "white_box"])
-def test_the_agent_hears_the_corrupted_instruction_of_its_episode(name):
+def test_agent_receives_the_corrupted_instruction(name):
     world, agent = ApartmentsWorld(SIZE), Listener()
     for episode in load_episodes("val_seen")[:3]:
         run_episode(agent, world, episode, Corruption(name, 1.0), 7)
@@ -267,7 +265,7 @@ def test_the_agent_hears_the_corrupted_instruction_of_its_episode(name):
         assert agent.told[-1][0] == corrupt_instruction(clean, name, 1.0, key) != clean
 
 
-def test_white_box_hurts_the_prompt_for_one_episode_and_never_runs_without_one():
+def test_white_box_changes_the_prompt_for_one_episode():
     episode, world, prompt = load_episodes("val_seen")[0], ApartmentsWorld(SIZE), "Do: {task}"
     agent = Listener(prompt)
     run_episode(agent, world, episode, Corruption("white_box", 0.5), 7)
@@ -277,7 +275,7 @@ def test_white_box_hurts_the_prompt_for_one_episode_and_never_runs_without_one()
         run_episode(Listener(), world, episode, Corruption("white_box", 0.5), 7)
 
 
-def test_instruction_rows_are_rows_like_others_and_white_box_is_left_out_with_a_warning(tmp_path):
+def test_evaluate_warns_about_white_box_without_prompt(tmp_path):
     conditions = [CLEAN, Corruption("black_box", 0.5), Corruption("white_box", 0.5)]
     with pytest.warns(UserWarning, match="white_box is not applicable to test"):
         rows = run(tmp_path, conditions=conditions)
@@ -288,7 +286,7 @@ def test_instruction_rows_are_rows_like_others_and_white_box_is_left_out_with_a_
     assert all(rows[0].keys() == row.keys() for row in rows)
 
 
-def test_words_in_another_language_than_english_stay_with_one_warning(tmp_path):
+def test_evaluate_warns_about_other_languages(tmp_path):
     hindi, english, untold = (
         replace(episode, instruction=replace(episode.instruction, language=language))
         for episode, language in zip(
@@ -351,12 +349,12 @@ class Around:
         return getattr(self.world, name)
 
 
-def test_side_by_side_no_episode_is_walked_in_another_world_than_ones_own():
+def test_side_by_side_uses_worlds_of_one_class():
     assert _together(Prompted(1), ApartmentsWorld(16)) == Prompted.together
     assert _together(Prompted(1), Own(0.7)) == _together(Prompted(1), Around()) == 1
 
 
-def test_a_corrupted_prompt_is_met_by_an_agent_that_walks_side_by_side():
+def test_corrupted_prompt_disables_side_by_side():
     agent, conditions = Prompted(1), [CLEAN, Corruption("white_box", 1.0)]
     episode = load_episodes("val_seen")[0]
     task = EpisodeTask(agent, partial(ApartmentsWorld, 16))

@@ -61,14 +61,14 @@ def test_success_is_stop_strictly_within_the_threshold(distance, stopped, expect
     assert success(distance, stopped) is expected
 
 
-def test_the_threshold_can_be_scaled_and_is_named():
+def test_ndtw_threshold_scales():
     assert not success(2.5, True, threshold=2.0)
     assert str(Rule("vln", 2)) == "vln: STOP and geodesic < 2.0 m"
     with pytest.raises(ValueError, match="got nan"):
         success(math.nan, True)
 
 
-def test_spl_divides_by_the_longer_of_the_two_lengths():
+def test_spl_divides_by_the_longer_length():
     assert spl(True, 10.0, 12.5) == pytest.approx(0.8)
     assert spl(True, 10.0, 9.0) == 1.0  # a lattice path may be shorter than the stored geodesic
     assert spl(False, 10.0, 10.0) == 0.0
@@ -83,7 +83,7 @@ def test_path_length_is_the_sum_of_its_steps():
     assert path_length([(1, 2, 3)]) == 0.0
 
 
-def test_dtw_of_a_shifted_line_is_the_shift_at_every_point():
+def test_dtw_of_a_shifted_line_is_the_shift():
     shifted = np.array(LINE) + (0.0, 0.5)
     assert dtw(shifted, LINE) == pytest.approx(4 * 0.5)
     assert ndtw(shifted, LINE) == pytest.approx(math.exp(-2.0 / (4 * 3.0)))
@@ -142,7 +142,7 @@ def test_prs_reproduces_the_papers_table(strategy):
     assert prs(CLEAN_SR, depth) == pytest.approx(prs_depth, abs=0.00501)
 
 
-def test_prs_is_not_clipped_and_undefined_without_clean_success():
+def test_prs_is_not_clipped():
     assert prs(0.5, [0.6, 0.6]) == pytest.approx(1.2)
     assert math.isnan(prs(0.0, [0.0, 0.0]))
     with pytest.raises(ValueError, match="one value per corruption"):
@@ -210,7 +210,7 @@ def test_perturbed_real_paths_score_what_vlnces_formulas_give(real_paths, kind):
 
 
 @needs_r2r_ce
-def test_real_paths_fall_in_ndtw_as_they_leave_the_route(real_paths):
+def test_ndtw_falls_with_distance_from_the_route(real_paths):
     for _, path in real_paths[::20]:
         scores = [ndtw(path + (0.0, 0.0, shift), path) for shift in (0.0, 0.5, 1.0, 2.0, 4.0)]
         assert scores[0] == 1.0

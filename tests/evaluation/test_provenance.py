@@ -116,9 +116,7 @@ class Builder:
         (lambda: Maze(), lambda: Other(), "its class was"),
     ],
 )
-def test_rows_of_another_world_are_refused_and_it_is_said_what_differs(
-    tmp_path, first, second, told
-):
+def test_keep_rejects_rows_of_another_world(tmp_path, first, second, told):
     for _ in range(2):
         keep(tmp_path, first)
     with pytest.raises(ValueError, match=re.escape(told)) as refused:
@@ -133,7 +131,7 @@ class Odd:
         raise RuntimeError(name)
 
 
-def test_what_a_function_uses_may_be_anything_and_may_change_as_it_is_called(tmp_path):
+def test_first_world_accepts_values_that_change(tmp_path):
     made, circle, numbers, odd = {}, {}, [*range(100_000)], Odd()
     circle["itself"] = circle
 
@@ -148,7 +146,7 @@ def test_what_a_function_uses_may_be_anything_and_may_change_as_it_is_called(tmp
     assert (tmp_path / provenance.NOTE).stat().st_size < 3000
 
 
-def test_two_paths_of_one_file_are_one_world(tmp_path, monkeypatch):
+def test_keep_accepts_two_paths_of_one_file(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     for name in ("scene.json", "other.json"):
         Path(name).write_text("{}")
@@ -158,7 +156,7 @@ def test_two_paths_of_one_file_are_one_world(tmp_path, monkeypatch):
         keep(tmp_path, of_config(cells="other.json"))
 
 
-def test_worlds_of_other_sensors_or_another_rule_stand_side_by_side(tmp_path):
+def test_keep_accepts_worlds_with_other_sensors_or_rules(tmp_path):
     """Their rows say so: a table of agents with one camera and with twelve is one folder."""
     for kind in ({}, {"size": 16}, {"rule": "near"}, {}):
         keep(tmp_path, of_config(**kind))
@@ -167,7 +165,7 @@ def test_worlds_of_other_sensors_or_another_rule_stand_side_by_side(tmp_path):
 
 
 @pytest.mark.parametrize("wrapped", [False, True])
-def test_an_edited_world_is_another_one(tmp_path, monkeypatch, wrapped):
+def test_keep_rejects_an_edited_world(tmp_path, monkeypatch, wrapped):
     """Also one inside an environment's wrappers."""
     monkeypatch.syspath_prepend(tmp_path)
     source = "class Edited:\n    rule, sensors = 'there', {}\n    won = True\n"
@@ -264,7 +262,7 @@ def test_keep_accepts_notes_of_before_class_attributes_counted(tmp_path):
     keep(tmp_path, Counted)
 
 
-def test_a_folder_of_before_is_taken_as_it_is_and_what_its_note_says_counts(tmp_path):
+def test_keep_reads_notes_of_older_versions(tmp_path):
     (tmp_path / "rows.jsonl").write_text("")
     keep(tmp_path, Maze)
     note = tmp_path / provenance.NOTE
@@ -275,7 +273,7 @@ def test_a_folder_of_before_is_taken_as_it_is_and_what_its_note_says_counts(tmp_
         keep(tmp_path, Maze)
 
 
-def test_another_list_is_refused_by_its_file_too(tmp_path):
+def test_keep_rejects_another_list(tmp_path):
     listed = tmp_path / "val.json"
     listed.write_text("{}")
     keep(tmp_path, Maze, str(listed))
@@ -284,7 +282,7 @@ def test_another_list_is_refused_by_its_file_too(tmp_path):
         keep(tmp_path, Maze, str(listed))
 
 
-def test_a_world_is_called_by_its_class_or_by_the_environment_in_one_of_ours():
+def test_name_of_returns_the_class_of_the_environment():
     from mitigate.worlds.seeded import SeededWorld
 
     ours = SeededWorld.__new__(SeededWorld)

@@ -32,7 +32,7 @@ def lines(made) -> dict[str, list[str]]:
     return found
 
 
-def test_the_table_has_the_papers_rows_and_their_numbers():
+def test_table_has_the_rows_of_the_paper():
     made = column(8, ALL | {"flare": 8}) + column(5, ALL, **HARD)
     found = lines(made)
     assert found["Corruption"] == ["base", "da_per_episode"]
@@ -49,7 +49,7 @@ def test_the_table_has_the_papers_rows_and_their_numbers():
     )  # head, rule, clean, mean, suite
 
 
-def test_the_conditions_of_the_result_are_printed():
+def test_heading_states_the_conditions():
     text = markdown(sections(column(8, ALL)))
     for said in ("val_unseen", "severity 0.6", "N = 10 episodes", "seed 0", "suite 1.0"):
         assert said in text
@@ -73,7 +73,7 @@ def test_intervals_may_be_of_scenes(says):
     assert "| 50.0 [0.0, 100.0] |" in text and "| 50.0 [20.0, 80.0] |" in plain
 
 
-def test_scenes_that_the_rows_do_not_say_are_not_drawn():
+def test_scene_bootstrap_requires_scenes_in_rows():
     with pytest.raises(ValueError, match="do not name the scene of episode '0'"):
         sections(column(8, ALL), drawn="scene")
 
@@ -90,7 +90,7 @@ def test_prs_differences_are_paired_and_against_base():
     assert (nothing.low, nothing.high) == (0.0, 0.0)
 
 
-def test_one_episode_gives_no_interval_and_nothing_in_bold():
+def test_one_episode_has_no_interval():
     def one(wins, **agent):
         return [row(0, wins, **agent), row(0, 1, **agent, corruption="spatter", severity=0.6)]
 
@@ -121,7 +121,7 @@ def test_clean_differences_are_paired_and_against_base():
     assert (same.low, same.high) == (0, 0)
 
 
-def test_the_mean_sr_under_corruption_is_over_all_blocks_and_paired():
+def test_mean_sr_covers_all_blocks():
     """PRS divides by an agent's own clean SR; this line does not."""
     found = lines(column(8, ALL) + column(5, dict.fromkeys(NAMES, 6), **HARD))
     assert [cell.split(" ")[0] for cell in found["Mean SR of 12 corruptions"]] == ["40.0", "60.0"]
@@ -130,7 +130,7 @@ def test_the_mean_sr_under_corruption_is_over_all_blocks_and_paired():
     assert part["Mean SR of 8 corruptions"][0].endswith("† 3/8")
 
 
-def test_partial_rows_give_a_partial_table_that_lists_its_gaps():
+def test_partial_table_lists_its_gaps():
     whole = column(8, dict.fromkeys(RGB, 4))
     cut = [r for r in whole if r["corruption"] != "flare"]
     cut = [r for r in cut if r["corruption"] != "spatter" or int(r["episode_id"]) < 3]
@@ -142,7 +142,7 @@ def test_partial_rows_give_a_partial_table_that_lists_its_gaps():
     assert "Depth" not in text
 
 
-def test_an_unfinished_episode_costs_that_episode_only():
+def test_unfinished_episode_is_left_out():
     """The evaluator goes by episode: the last one may lack some of its conditions."""
     made = column(8, ALL)
     cut = [r for r in made if r["episode_id"] != "9" or r["corruption"] in ("clean", "flare")]
@@ -153,7 +153,7 @@ def test_an_unfinished_episode_costs_that_episode_only():
     assert lines(cut)["**PRS-SR (RGB)**"][0].endswith("\\*")
 
 
-def test_columns_with_other_episodes_are_compared_on_those_they_share():
+def test_columns_are_compared_on_common_episodes():
     few = [r for r in column(8, ALL, **HARD) if int(r["episode_id"]) < 5]
     (section,) = sections(column(8, ALL) + few)
     gained = section.differences["da_per_episode"].retained["RGB", "SR"]
@@ -161,7 +161,7 @@ def test_columns_with_other_episodes_are_compared_on_those_they_share():
     assert section.retained["base", "RGB", "SR"].episodes == 10
 
 
-def test_a_prs_near_the_floor_is_flagged():
+def test_prs_near_the_floor_is_marked():
     made = column(1, dict.fromkeys(NAMES, 1), **HARD) + column(0, dict.fromkeys(NAMES, 0))
     found = lines(made)
     assert found["**PRS-SR (RGB)**"][1].endswith("]")  # 0.10 is not below the floor
@@ -177,7 +177,7 @@ def test_results_under_other_rules_are_not_mixed(key):
     assert {first.value("base", "clean"), second.value("base", "clean")} == {0.8, 0.2}
 
 
-def test_each_severity_has_its_table_and_shares_the_clean_cell():
+def test_each_severity_has_a_table():
     made = column(8, ALL, 0.3) + column(8, dict.fromkeys(NAMES, 2), 0.9)
     mild, strong = sections(made)
     assert (mild.severity, strong.severity) == (0.3, 0.9)
@@ -190,7 +190,7 @@ def test_two_agents_of_one_name_are_told_apart():
     assert lines(made)["Corruption"] == ["base (012345)", "base (ba9876)"]
 
 
-def test_agents_with_a_seed_each_of_their_own_are_one_column():
+def test_agents_with_distinct_seeds_share_a_column():
     """They are the training seeds of one recipe."""
     made = column(8, ALL) + column(4, ALL, agent="ba9876543210", seed=1)
     (section,) = sections(made)
@@ -211,7 +211,7 @@ def test_seeds_are_averaged_within_an_episode():
     assert [(gap.corruption, gap.have) for gap in section.gaps] == [("flare", 9)]
 
 
-def test_seeds_are_shown_one_by_one_where_there_are_several():
+def test_table_lists_values_seed_by_seed():
     made = column(8, ALL) + column(5, ALL, seed=1) + column(8, ALL, **HARD)
     found = lines(made)
     assert found["Clean SR, seed by seed"] == ["80.0 / 50.0", "–"]
@@ -222,7 +222,7 @@ def test_seeds_are_shown_one_by_one_where_there_are_several():
     assert "seed by seed" not in markdown(sections(column(8, ALL)))
 
 
-def test_columns_are_compared_over_the_seeds_that_both_have():
+def test_columns_are_compared_over_common_seeds():
     """Only these met corruptions of the same keys."""
     base = column(8, ALL) + column(2, dict.fromkeys(NAMES, 1), seed=1)
     found = sections(base + column(6, ALL, **HARD))[0]
@@ -234,7 +234,7 @@ def test_columns_are_compared_over_the_seeds_that_both_have():
     assert markdown([apart]).count("in common") == 1
 
 
-def test_an_unfinished_seed_is_left_out_and_told():
+def test_unfinished_seed_is_left_out_with_a_note():
     """What another seed has measured in full must not shrink to what a new one has so far."""
     part = [r for r in column(2, ALL, seed=1) if int(r["episode_id"]) < 2]
     (section,) = sections(column(8, ALL) + part)
@@ -243,7 +243,7 @@ def test_an_unfinished_seed_is_left_out_and_told():
     assert "Seed 1 of base is not finished and left out: 26 of 130 rows." in markdown([section])
 
 
-def test_a_seed_counts_only_at_the_severities_it_was_measured_at():
+def test_seed_counts_only_at_its_severities():
     made = column(8, ALL, 0.2) + column(8, ALL, 0.6) + column(4, ALL, 0.6, seed=1)
     mild, strong = sections(made)
     assert mild.value("base", "clean") == pytest.approx(0.8)  # seed 0 alone, as its corrupted cells
@@ -253,7 +253,7 @@ def test_a_seed_counts_only_at_the_severities_it_was_measured_at():
     assert "left out" not in markdown([mild, strong])
 
 
-def test_a_table_names_the_agents_that_its_numbers_come_from():
+def test_heading_names_the_agents():
     """Another training counts at the severities that it was measured at alone."""
     other = column(4, ALL, 0.6, seed=1, agent="eeee00000000")
     mild, strong = sections(column(8, ALL, 0.2) + column(8, ALL, 0.6) + other)
@@ -261,7 +261,7 @@ def test_a_table_names_the_agents_that_its_numbers_come_from():
     assert "Several seeds" not in markdown([mild]) and "Several seeds" in markdown([strong])
 
 
-def test_seeds_and_the_column_to_compare_with_may_be_chosen(tmp_path, capsys):
+def test_table_accepts_seeds_and_a_reference(tmp_path, capsys):
     made = column(8, ALL) + column(2, ALL, seed=1) + column(6, ALL, **HARD)
     (tmp_path / "rows.jsonl").write_text("".join(json.dumps(r) + "\n" for r in made))
     given = [str(tmp_path / "rows.jsonl"), "--out", str(tmp_path / "out")]
@@ -290,7 +290,7 @@ def test_corruptions_outside_the_suite_have_their_own_block():
     assert section.retained["base", "Other", "SR"].estimate.value == pytest.approx(0.5)
 
 
-def test_instruction_families_have_their_own_block_and_white_box_is_not_applicable():
+def test_white_box_is_not_applicable_without_prompt():
     spoken = dict.fromkeys((name for name in INSTRUCTION if name != "white_box"), 4)
     made = column(8, spoken)
     (section,) = sections(made)
@@ -317,7 +317,7 @@ def test_pictures_show_what_was_measured(tmp_path):
         assert f"({path.name})" in paths[0].read_text("utf-8")
 
 
-def test_the_command_joins_files_and_folders(tmp_path, capsys):
+def test_table_command_joins_files_and_folders(tmp_path, capsys):
     rows.append(tmp_path / "runs/base/rows.jsonl", column(8, ALL))
     rows.append(tmp_path / "hardened.jsonl.gz", column(7, ALL, **HARD))
     inputs = [str(tmp_path / "runs"), str(tmp_path / "hardened.jsonl.gz")]
@@ -328,7 +328,7 @@ def test_the_command_joins_files_and_folders(tmp_path, capsys):
     assert (tmp_path / "out/heatmap.png").stat().st_size > 10_000
 
 
-def test_the_command_says_what_is_wrong(tmp_path, capsys):
+def test_table_command_reports_mistakes(tmp_path, capsys):
     assert table.main([str(tmp_path)]) == 2
     assert "No result rows under" in capsys.readouterr().err
     (tmp_path / "rows.jsonl").write_text("")
@@ -336,7 +336,7 @@ def test_the_command_says_what_is_wrong(tmp_path, capsys):
     assert "no result rows to show" in capsys.readouterr().err
 
 
-def test_numbers_do_not_depend_on_the_order_of_the_rows():
+def test_sections_do_not_depend_on_row_order():
     made = column(8, ALL) + column(5, ALL, **HARD)
     mixed = [made[i] for i in np.random.default_rng(0).permutation(len(made))]
     assert sections(mixed)[0].retained == sections(made)[0].retained
@@ -362,7 +362,7 @@ def test_unseen_corruptions_have_a_table_of_their_own():
     assert f"Mean SR of {len(UNSEEN)} corruptions" in text and "†" not in text
 
 
-def test_the_suites_figures_do_not_depend_on_what_else_was_measured():
+def test_suite_figures_ignore_other_corruptions():
     """Other seeds, gaps and agents of the unseen rows included."""
     suite = column(8, ALL) + column(6, ALL, seed=1) + column(5, ALL, **HARD)
     other = column(8, dict.fromkeys(UNSEEN, 2)) + column(5, {"spatter+haze": 1}, **HARD)
@@ -375,7 +375,7 @@ def test_the_suites_figures_do_not_depend_on_what_else_was_measured():
     ]
 
 
-def test_each_half_of_the_unseen_ones_has_its_prs_where_both_are_measured():
+def test_halves_of_unseen_corruptions_have_a_prs():
     validation, test = (unseen_names("rgb", half=half) for half in ("validation", "test"))
     made = column(8, dict.fromkeys(validation, 8) | dict.fromkeys(test, 4))
     found = lines(made)
@@ -399,7 +399,7 @@ def test_pairs_have_a_table_of_their_own():
 HOSTILE = "a|b`c`<script>x</script>[y](http://z)![p](q)$\\frac$*#"
 
 
-def test_names_of_anybody_stay_names_in_tables_and_pictures(tmp_path):
+def test_names_are_escaped_in_tables_and_pictures(tmp_path):
     mine = {"name": HOSTILE, "agent": "ffff00000000", "rule": f"{HOSTILE} |", "split": HOSTILE}
     made = [r | {"split": HOSTILE, "rule": mine["rule"]} for r in column(8, ALL)]
     text = write([*made, *column(4, ALL, **mine)], tmp_path)[0].read_text()
@@ -410,7 +410,7 @@ def test_names_of_anybody_stay_names_in_tables_and_pictures(tmp_path):
     assert (tmp_path / "heatmap.png").is_file() and (tmp_path / "severity.png").is_file()
 
 
-def test_a_name_as_it_usually_is_stays_as_it_is():
+def test_plain_names_are_not_escaped():
     for name in ("da_per_episode", "frontier (0123ab)", "STOP and geodesic < 2.0 m", "base+rules"):
         assert markdown_of(name) == name
     assert markdown_of("a\n## b\r\n| c") == "a ## b \\| c"
@@ -421,7 +421,7 @@ def other_list(made, **changes):
     return [r | changes | {"episode_id": f"{r['episode_id']}-other"} for r in made]
 
 
-def test_agents_of_another_list_of_episodes_stand_in_a_table_of_their_own():
+def test_lists_of_episodes_have_separate_tables():
     first = column(8, ALL) + column(5, ALL, **HARD)
     second = other_list(column(6, ALL), agent="aaaa00000000", seed=1) + other_list(
         column(7, ALL, **HARD), agent="bbbb00000000", seed=1
@@ -438,7 +438,7 @@ def test_agents_of_another_list_of_episodes_stand_in_a_table_of_their_own():
     assert "from" not in markdown(sections(first)).splitlines()[0]
 
 
-def test_agents_that_meet_by_way_of_a_third_share_a_table():
+def test_lists_with_common_episodes_share_a_table():
     few = [r for r in column(5, ALL, **HARD) if r["episode_id"] in "01"]
     rest = [r for r in column(5, ALL) if r["episode_id"] in "89"]
     every = column(6, ALL, name="oracle", agent="aaaa00000000")
@@ -446,7 +446,7 @@ def test_agents_that_meet_by_way_of_a_third_share_a_table():
     assert len(sections(few + rest + every)) == 1
 
 
-def test_rows_at_severity_0_do_not_stand_for_those_at_another():
+def test_rows_at_severity_zero_are_not_clean_rows():
     """A corruption may be run at 0; which of the two was shown hung on the order of a set."""
     rows = column(8, {"flare": 0}) + [
         made | {"corruption": "flare", "severity": 0.0} for made in cell(8)
@@ -455,7 +455,7 @@ def test_rows_at_severity_0_do_not_stand_for_those_at_another():
     assert part.value("base", "flare") == 0.0 and part.value("base", "clean") == 0.8
 
 
-def test_agents_that_begin_alike_are_told_apart_in_the_columns():
+def test_columns_distinguish_hashes_with_equal_prefixes():
     rows = [*cell(8, agent="myagent-v1"), *cell(2, agent="myagent-v2")]
     (part,) = sections(rows)
     assert set(part.columns) == {"base (myagent-v1)", "base (myagent-v2)"}

@@ -28,7 +28,7 @@ def measured(agent, episode, world):
     return [run_episode(agent, world, episode, c, 0) for c in CONDITIONS]
 
 
-def test_measures_are_the_same_with_and_without_what_was_kept():
+def test_measures_do_not_depend_on_the_cache():
     agent, episode, world = wanderer(stop=0.0), load_episodes("val_seen")[0], ApartmentsWorld(SIZE)
     alone = measured(agent, episode, world)
     with agent.remembering(), world.remembering():
@@ -51,7 +51,7 @@ class Scribbler:
         return STOP
 
 
-def test_an_agent_cannot_write_into_the_frames_that_are_kept():
+def test_agent_cannot_change_cached_frames():
     agent, episode, world = Scribbler(), load_episodes("val_seen")[0], ApartmentsWorld(SIZE)
     looks = []
     with world.remembering():
@@ -69,7 +69,7 @@ def encoded(agent):
     return calls
 
 
-def test_equal_frames_are_encoded_once_while_remembering_and_never_in_training_mode():
+def test_cache_encodes_equal_frames_once():
     agent, episode, world = wanderer(stop=50.0), load_episodes("val_seen")[0], ApartmentsWorld(SIZE)
     calls = encoded(agent)
 
@@ -88,7 +88,7 @@ def test_equal_frames_are_encoded_once_while_remembering_and_never_in_training_m
     assert twice() == 2
 
 
-def test_changed_weights_meet_no_old_features():
+def test_cache_is_cleared_when_weights_change():
     agent, episode, world = wanderer(stop=50.0), load_episodes("val_seen")[0], ApartmentsWorld(SIZE)
     calls = encoded(agent)
     for _ in range(2):
@@ -132,14 +132,14 @@ def run(agent, out, count):
     )
 
 
-def test_a_killed_worker_changes_neither_rows_nor_file(tmp_path, capsys):
+def test_killed_worker_does_not_change_rows(tmp_path, capsys):
     alone = run(Mortal(tmp_path, deaths=0), tmp_path / "alone.jsonl", 1)
     assert run(Mortal(tmp_path), tmp_path / "killed.jsonl", 2) == alone
     assert (tmp_path / "killed.jsonl").read_bytes() == (tmp_path / "alone.jsonl").read_bytes()
     assert "again in a new" in capsys.readouterr().out
 
 
-def test_a_second_death_keeps_the_rows_and_says_how_to_go_on(tmp_path):
+def test_second_killed_worker_keeps_finished_rows(tmp_path):
     out = tmp_path / "rows.jsonl"
     with pytest.raises(
         workers.WorkersDied, match=r"finished rows are in .*rows.jsonl. Run the same"

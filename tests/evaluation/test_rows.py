@@ -22,7 +22,7 @@ def test_appended_rows_are_read_back_in_order(tmp_path, name):
 
 
 @pytest.mark.parametrize("cut", [1, 40, 200])
-def test_an_interrupted_write_is_read_up_to_it_and_mended(tmp_path, cut):
+def test_append_repairs_an_interrupted_write(tmp_path, cut):
     path = tmp_path / "rows.jsonl"
     rows.append(path, cell(2, 3))
     path.write_bytes(path.read_bytes() + json.dumps(row(3, True)).encode()[:cut])
@@ -31,7 +31,7 @@ def test_an_interrupted_write_is_read_up_to_it_and_mended(tmp_path, cut):
     assert rows.read(path) == cell(4, 4)[:2] + [row(2, False), row(3, True)]
 
 
-def test_an_interrupted_first_write_is_mended(tmp_path):
+def test_append_repairs_an_interrupted_first_write(tmp_path):
     path = tmp_path / "rows.jsonl"
     path.write_text('{"agent": "0123')
     assert rows.read(path) == []
@@ -39,7 +39,7 @@ def test_an_interrupted_first_write_is_mended(tmp_path):
     assert rows.read(path) == [row(0, True)]
 
 
-def test_a_whole_last_line_without_its_end_is_kept(tmp_path):
+def test_append_keeps_a_last_line_without_newline(tmp_path):
     path = tmp_path / "rows.jsonl"
     path.write_text(json.dumps(row(0, True) | {"note": "x" * 9000}))  # longer than one look back
     rows.append(path, [row(1, False)])
@@ -47,7 +47,7 @@ def test_a_whole_last_line_without_its_end_is_kept(tmp_path):
 
 
 @pytest.mark.parametrize("packed", [False, True])
-def test_the_byte_order_mark_of_an_editor_is_no_part_of_a_row(tmp_path, packed):
+def test_read_skips_byte_order_marks(tmp_path, packed):
     path = tmp_path / ("rows.jsonl.gz" if packed else "rows.jsonl")
     raw = "".join(f"\ufeff{json.dumps(row(n, True))}\n" for n in (0, 1))  # two files, joined
     raw = raw.rstrip("\n").encode()
@@ -66,14 +66,14 @@ def test_the_byte_order_mark_of_an_editor_is_no_part_of_a_row(tmp_path, packed):
         (json.dumps(row(0, True, severity="0.6")), "line 2 has a wrong severity: '0.6'"),
     ],
 )
-def test_a_wrong_line_is_named(tmp_path, line, message):
+def test_read_names_an_invalid_line(tmp_path, line, message):
     path = tmp_path / "rows.jsonl"
     path.write_text("\n".join([json.dumps(row(0, True)), line, json.dumps(row(1, True)), ""]))
     with pytest.raises(ValueError, match=message):
         rows.read(path)
 
 
-def test_a_cut_gzip_is_refused(tmp_path):
+def test_read_rejects_a_truncated_gzip(tmp_path):
     path = tmp_path / "rows.jsonl.gz"
     path.write_bytes(gzip.compress(b"".join(rows._line(r).encode() for r in cell(3)))[:-30])
     with pytest.raises(ValueError, match="is damaged"):
@@ -88,7 +88,7 @@ def test_rows_that_json_cannot_hold_are_not_written(tmp_path):
     assert not path.exists()
 
 
-def test_the_last_measurement_of_an_identity_counts():
+def test_upsert_keeps_the_last_row():
     old, new = cell(0, 3), [row(1, True), row(1, True, seed=1), row(1, True, suite="1.1")]
     joined = rows.upsert(old, new)
     assert joined == [row(0, 0), row(1, True), row(2, 0), *new[1:]]
@@ -105,7 +105,7 @@ def test_files_and_folders_are_gathered(tmp_path):
     assert {r["episode_id"]: r["success"] for r in found} == {"0": 0, "1": 0, "2": 1}
 
 
-def test_a_folder_or_file_without_rows_is_named(tmp_path):
+def test_gather_names_a_path_without_rows(tmp_path):
     (tmp_path / "chat.jsonl").write_text('{"messages": []}\n')
     with pytest.raises(FileNotFoundError, match="No result rows under"):
         rows.gather([tmp_path])
@@ -135,7 +135,7 @@ BAD_VALUES = [
 
 
 @pytest.mark.parametrize(("key", "value"), BAD_VALUES, ids=lambda v: repr(v)[:24])
-def test_a_value_out_of_its_range_is_refused_read_or_written(tmp_path, key, value):
+def test_read_and_write_reject_values_out_of_range(tmp_path, key, value):
     path = tmp_path / "rows.jsonl"
     bad = row(1, True) | {key: value}
     path.write_text(json.dumps(row(0, True)) + "\n" + json.dumps(bad) + "\n")
@@ -146,7 +146,7 @@ def test_a_value_out_of_its_range_is_refused_read_or_written(tmp_path, key, valu
         rows.append(path, [bad])
 
 
-def test_true_and_false_are_no_numbers_and_the_message_says_which_to_write(tmp_path):
+def test_read_rejects_booleans_as_numbers(tmp_path):
     (tmp_path / "rows.jsonl").write_text(json.dumps(row(0, True) | {"success": True}))
     with pytest.raises(ValueError, match=r"wrong 'success': True \(a number: 1 for true, 0 for f"):
         rows.read(tmp_path / "rows.jsonl")
@@ -168,7 +168,7 @@ BAD_LINES = {
 
 @pytest.mark.parametrize("line", BAD_LINES.values(), ids=BAD_LINES)
 @pytest.mark.parametrize("packed", [False, True])
-def test_a_line_that_is_no_row_is_named(tmp_path, line, packed):
+def test_read_names_a_line_without_row(tmp_path, line, packed):
     path = tmp_path / ("rows.jsonl.gz" if packed else "rows.jsonl")
     raw = f"{json.dumps(row(0, True))}\n{line}\n{json.dumps(row(2, True))}\n".encode()
     path.write_bytes(gzip.compress(raw) if packed else raw)
@@ -179,7 +179,7 @@ def test_a_line_that_is_no_row_is_named(tmp_path, line, packed):
 
 @pytest.mark.parametrize("packed", [False, True])
 @pytest.mark.parametrize("line", [b"\xff\xfe\n", b"\xed\xa0\x80\n"], ids=repr)
-def test_a_line_that_is_not_utf8_is_named(tmp_path, line, packed):
+def test_read_names_a_line_that_is_not_utf8(tmp_path, line, packed):
     path = tmp_path / ("rows.jsonl.gz" if packed else "rows.jsonl")
     bad = rows._line(row(1, True, note="caf")).encode().replace(b"caf", b"caf\xe9")
     good = rows._line(row(0, True)).encode()
@@ -201,7 +201,7 @@ def test_damaged_gzip_and_a_bomb_are_refused(tmp_path):
             rows.gather([tmp_path])
 
 
-def test_rows_that_contradict_one_before_are_told_and_repeated_ones_are_not(tmp_path, recwarn):
+def test_gather_warns_of_conflicting_rows(tmp_path, recwarn):
     first, second = cell(5), cell(7)
     rows.write(tmp_path / "a.jsonl", first)
     rows.write(tmp_path / "b.jsonl", second)
@@ -210,13 +210,13 @@ def test_rows_that_contradict_one_before_are_told_and_repeated_ones_are_not(tmp_
         assert rows.gather([tmp_path]) == second
 
 
-def test_a_folder_called_like_a_row_file_is_a_folder(tmp_path):
+def test_files_accepts_a_folder_named_like_rows(tmp_path):
     (tmp_path / "old.jsonl").mkdir()
     rows.write(tmp_path / "old.jsonl/rows.jsonl", cell(5))
     assert rows.gather([tmp_path]) == cell(5)
 
 
-def test_a_file_whose_first_line_is_damaged_is_not_passed_over(tmp_path):
+def test_gather_reads_files_with_a_damaged_first_line(tmp_path):
     rows.write(tmp_path / "a/rows.jsonl", cell(5))
     rows.write(tmp_path / "b/rows.jsonl", cell(5, name="hard"))
     file = tmp_path / "b/rows.jsonl"

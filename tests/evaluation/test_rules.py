@@ -14,7 +14,7 @@ from mitigate.worlds.apartments.world import ApartmentsWorld
 from mitigate.worlds.measures import RULES
 
 
-def test_etpnav_counts_the_edge_and_asks_for_no_stop():
+def test_etpnav_rule_includes_the_edge_without_stop():
     ours, theirs = RULES["vln_ce"], RULES["etpnav"]
     assert not ours.met(3.0, True) and ours.met(2.999, True) and not ours.met(2.0, False)
     assert theirs.met(3.0, False) and not theirs.met(3.001, True)
@@ -33,7 +33,7 @@ def test_rows_say_which_rule_it_was():
         ApartmentsWorld(rule="object_nav")
 
 
-def test_an_object_is_found_beside_it_not_at_one_goal_alone():
+def test_object_rule_accepts_any_view_point():
     episode = load_episodes("val_seen", "ogn")[0]
     world = ApartmentsWorld(rule="objectnav")
     world.reset(episode)
@@ -47,7 +47,7 @@ def test_an_object_is_found_beside_it_not_at_one_goal_alone():
     assert world.measures()["success"] == 1
 
 
-def test_where_no_stop_is_asked_for_standing_there_is_enough():
+def test_rule_without_stop_needs_only_distance():
     episode = load_episodes("val_seen")[0]
     for rule, won in (("apartments", 0), ("etpnav", 1)):
         world = ApartmentsWorld(rule=rule)
@@ -62,7 +62,7 @@ def test_where_no_stop_is_asked_for_standing_there_is_enough():
 
 @pytest.mark.parametrize("task", ["vln", "ogn"])
 @pytest.mark.parametrize("rule", ["apartments", "habitat_vln", "objectnav", "wmnav"])
-def test_the_expert_ends_where_the_rule_counts_it(rule, task):
+def test_expert_satisfies_the_rule(rule, task):
     world = ApartmentsWorld(rule=rule)
     for episode in load_episodes("val_unseen", task)[::60]:
         world.reset(episode)
@@ -73,7 +73,7 @@ def test_the_expert_ends_where_the_rule_counts_it(rule, task):
 
 
 @pytest.mark.parametrize("rule, within", [("apartments", 1.0), ("objectnav", 0.1)])
-def test_both_distances_of_an_episode_are_to_what_the_rule_counts_from(rule, within):
+def test_distances_follow_the_rule(rule, within):
     world = ApartmentsWorld(rule=rule)
     for episode in load_episodes("val_seen", "ogn")[:20:5]:
         world.reset(episode)
@@ -86,7 +86,7 @@ def test_both_distances_of_an_episode_are_to_what_the_rule_counts_from(rule, wit
         assert world.measures()["spl"] <= 1
 
 
-def test_the_threshold_of_ndtw_is_the_metres_of_the_rule():
+def test_ndtw_threshold_follows_the_rule():
     episode, found = load_episodes("val_seen")[0], {}
     for rule, metres in (("apartments", 2.0), ("vln_ce", 3.0), ("wmnav", 3.0), ("objectnav", 3.0)):
         world = ApartmentsWorld(rule=rule)
@@ -97,7 +97,7 @@ def test_the_threshold_of_ndtw_is_the_metres_of_the_rule():
         assert found[rule] == pytest.approx(found["apartments"], rel=1e-4)
 
 
-def test_the_expert_of_the_usual_rule_walks_as_it_did():
+def test_expert_of_the_default_rule_is_unchanged():
     """Shipped rows and weights are of these walks."""
     world, said = ApartmentsWorld(), []
     for episode in load_episodes("val_seen")[::60]:

@@ -28,7 +28,7 @@ def cell(name: str, corruption: str, wins: str, episodes=("a", "b", "c")) -> lis
     ]
 
 
-def test_won_back_is_failure_before_and_success_after_each_corruption_and_episode_once():
+def test_won_back_yields_each_episode_once():
     before = cell("before", "flare", "101") + cell("before", "spatter", "000")
     after = cell("x", "flare", "111") + cell("x", "spatter", "111")
     rows = sorted(before + after, key=lambda r: r["episode_id"])
@@ -38,14 +38,14 @@ def test_won_back_is_failure_before_and_success_after_each_corruption_and_episod
     ]
 
 
-def test_clean_rows_and_rows_of_one_agent_alone_are_no_gain():
+def test_won_back_ignores_clean_rows_and_single_agents():
     rows = cell("before", "clean", "000") + cell("x", "clean", "111")
     assert not list(won_back(rows, "before", "x"))
     assert not list(won_back(cell("before", "flare", "000"), "before", "x"))
 
 
 @pytest.mark.parametrize("name", ["low_light", "missing_data"])
-def test_a_picture_shows_the_first_agent_clean_and_all_corrupted(tmp_path, monkeypatch, name):
+def test_draw_trajectories_draws_clean_and_corrupted_runs(tmp_path, monkeypatch, name):
     drawn = []
     monkeypatch.setattr(
         trajectories, "draw_path", lambda axes, path, *rest: drawn.append((path, rest))
@@ -75,7 +75,7 @@ class Shows(ApartmentsWorld):
 
 
 @pytest.mark.parametrize(("only", "entry"), [((DEPTH,), DEPTH), ((RGB,), RGB), ((), "")])
-def test_at_the_start_what_the_world_shows_is_seen(only, entry):
+def test_first_sight_uses_available_frames(only, entry):
     world, episode = Shows(16, views=1), load_episodes("val_seen")[0]
     world.only = only
     found, pictures = first_sight(world, episode, Corruption("black_box", 1.0), 0)
@@ -91,7 +91,7 @@ def test_write_pictures_draws_the_episodes_won_back(tmp_path):
     assert [p.name for p in written] == [f"{ids[1]}-flare.png"]
 
 
-def test_one_agent_alone_gets_a_picture_too_and_clean_rows_get_none(tmp_path):
+def test_write_pictures_draws_a_single_agent(tmp_path):
     (episode,), world = load_episodes("val_seen")[:1], ApartmentsWorld(64)
     rows = cell("x", "clean", "1", [episode.episode_id])
     assert write_pictures({"x": Straight(1)}, world, [episode], rows, tmp_path) == []

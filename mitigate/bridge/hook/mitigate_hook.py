@@ -176,7 +176,7 @@ class Channel:
     def ask(self, kind, **fields):
         """Send a message and return the answer.
 
-        An interrupted message is the last one: its answer would be read as that of the next.
+        An interrupted message is the last one: its answer would be read as an answer to the next.
         """
         self.number += 1
         number = self.number

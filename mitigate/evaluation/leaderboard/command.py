@@ -34,7 +34,7 @@ CLOSE = 1e-5  # entries round figures to six digits
 
 
 def rows_of(entry: LeaderboardEntry) -> list[Row]:
-    """Return the rows in the file that ``entry`` names, also those of other agents.
+    """Return the rows in the file that ``entry`` names, also of other agents.
 
     Raises:
         FileNotFoundError: if the file is not available.
@@ -116,16 +116,18 @@ def _rows_behind(entry: LeaderboardEntry, rows: Iterable[Row]) -> list[Row]:
         ValueError: There are no rows of its agents.
     """
     agents = {(one["agent"], one["seed"]) for one in entry.agents}
-    own = [row for row in rows if (row["agent"], row["seed"]) in agents]
-    if not own:
+    matching = [row for row in rows if (row["agent"], row["seed"]) in agents]
+    if not matching:
         names = ", ".join(f"{agent} with seed {seed}" for agent, seed in sorted(agents))
         raise ValueError(f"The rows hold no results of {names:.300}.")
-    own = [row for row in own if (row["name"], row["split"]) == (entry.name, entry.split)]
-    return [r for r in own if r["corruption"] in entry.SR and r["severity"] in (0, entry.severity)]
+    matching = [row for row in matching if (row["name"], row["split"]) == (entry.name, entry.split)]
+    return [
+        r for r in matching if r["corruption"] in entry.SR and r["severity"] in (0, entry.severity)
+    ]
 
 
 def _files(paths: Sequence[Path | str]) -> list[Path]:
-    """Return the files of entries in ``paths``; without paths, those of ``docs/leaderboard``."""
+    """Return the files of entries in ``paths``; without paths, in ``docs/leaderboard``."""
     folders = [Path(path) for path in paths] or [find(FOLDER)]
     files = [f for p in folders for f in (sorted(p.glob("*.json")) if p.is_dir() else [p])]
     if not files:
@@ -203,19 +205,19 @@ def _parser() -> argparse.ArgumentParser:
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parts = parser.add_subparsers(dest="what", required=True, metavar="show | check | add")
-    shown = parts.add_parser("show", help="write the page of entries")
-    checked = parts.add_parser("check", help="compute entries again from their rows")
-    for part in (shown, checked):
+    page = parts.add_parser("show", help="write the page of entries")
+    checks = parts.add_parser("check", help="compute entries again from their rows")
+    for part in (page, checks):
         part.add_argument("paths", nargs="*", metavar="ENTRY", help=f"default: all in {FOLDER}")
-    shown.add_argument("--out", type=Path, default=OUT, help=f"file to write (default {OUT})")
-    added = parts.add_parser("add", help="write the entry of an agent's rows")
-    added.add_argument("paths", nargs="+", metavar="ROWS", help="row file or folder")
-    added.add_argument("--name", required=True, help="the agent's name in the rows")
-    added.add_argument("--severity", type=float, default=0.6, help="default 0.6")
-    added.add_argument("--split", help="needed if the rows have several splits")
-    added.add_argument("--training-data", default="", help="what the agent was trained on")
-    added.add_argument("--link", default="", help="where its weights or paper are")
-    added.add_argument("--sensors", nargs="+", default=(), help="one text per sensor of the agent")
-    added.add_argument("--folder", default=FOLDER, help=f"where to write (default {FOLDER})")
-    added.add_argument("--overwrite", action="store_true", help="replace an entry of that name")
+    page.add_argument("--out", type=Path, default=OUT, help=f"file to write (default {OUT})")
+    entry = parts.add_parser("add", help="write the entry of an agent's rows")
+    entry.add_argument("paths", nargs="+", metavar="ROWS", help="row file or folder")
+    entry.add_argument("--name", required=True, help="the agent's name in the rows")
+    entry.add_argument("--severity", type=float, default=0.6, help="default 0.6")
+    entry.add_argument("--split", help="needed if the rows have several splits")
+    entry.add_argument("--training-data", default="", help="what the agent was trained on")
+    entry.add_argument("--link", default="", help="where its weights or paper are")
+    entry.add_argument("--sensors", nargs="+", default=(), help="one text per sensor of the agent")
+    entry.add_argument("--folder", default=FOLDER, help=f"where to write (default {FOLDER})")
+    entry.add_argument("--overwrite", action="store_true", help="replace an entry of that name")
     return parser

@@ -145,7 +145,7 @@ class LeaderboardEntry:
         text = json.dumps(asdict(self), indent=1, allow_nan=False)
         _validated(_ADAPTER, text, f"{path}: ")
         with atomic_text(path) as file:  # each list of numbers on one line
-            file.write(_NUMBERS.sub(lambda found: f"[{' '.join(found[1].split())}]", text) + "\n")
+            file.write(_NUMBERS.sub(lambda match: f"[{' '.join(match[1].split())}]", text) + "\n")
         return Path(path)
 
     def __str__(self) -> str:
@@ -154,8 +154,8 @@ class LeaderboardEntry:
         lines = [f"{self.name}: {size}, severity {self.severity:g} ({self.rule})"]
         for title, numbers in self.scores.items():
             scale, digits, unit = (100, 1, " %") if title.endswith(" SR") else (1, 2, "")
-            shown = ["–" if x is None else f"{scale * x:.{digits}f}" for x in numbers or ()]
-            text = f"{shown[0]} [{shown[1]}, {shown[2]}]{unit}" if shown else "undefined"
+            texts = ["–" if x is None else f"{scale * x:.{digits}f}" for x in numbers or ()]
+            text = f"{texts[0]} [{texts[1]}, {texts[2]}]{unit}" if texts else "undefined"
             lines.append(f"  {title}: {text}")
         return "\n".join(lines)
 

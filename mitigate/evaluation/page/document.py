@@ -103,7 +103,7 @@ def report(
     """
     rows = list(rows)
     parts, packed = sections(rows), Packed(most)
-    tables = [{**section_data(part), "grid": packed.add(part, rows)} for part in parts]
+    tables = [{**section_data(part), "grid": packed.add(part)} for part in parts]
     largest = max(range(len(tables)), key=lambda n: _size(tables[n]))
     notes = list(notes)
     if packed.left_out:

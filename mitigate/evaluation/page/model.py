@@ -8,9 +8,7 @@ from __future__ import annotations
 
 import base64
 import math
-from collections import defaultdict
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -18,8 +16,7 @@ import numpy as np
 from mitigate.evaluation import bootstrap
 from mitigate.evaluation.bootstrap import LEVEL, NO_WIDTH, RESAMPLES, ROUNDING, Estimate
 from mitigate.evaluation.curves import Curve, curves
-from mitigate.evaluation.grid import METRICS, Grid
-from mitigate.evaluation.rows import Row
+from mitigate.evaluation.grid import METRICS, STEPS
 from mitigate.evaluation.sections import Retained, Section, label
 
 BASELINES = 12  # number of first columns that others can be compared with (heuristic)
@@ -32,10 +29,10 @@ def section_data(section: Section) -> dict[str, Any]:
     """Return the page's data of one section, except its episodes.
 
     ``columns`` are the agents and ``measures`` the columns of the table. ``values[c][m]`` are their
-    numbers, with marks as a fourth entry if needed. ``corruptions`` are those of the heatmap, clean
-    first. ``cells[c][k]`` is [SR, SPL, number of episodes, share of the column's clean SR, share of
-    its clean SPL]. ``pairs["i-j"]`` are the differences of column i to column j, for i > j and j
-    among the first ``baselines``; None without a common seed.
+    numbers, with marks as a fourth entry if needed. ``corruptions`` are the rows of the heatmap,
+    clean first. ``cells[c][k]`` is [SR, SPL, number of episodes, share of the column's clean SR,
+    share of its clean SPL]. ``pairs["i-j"]`` are the differences of column i to column j, for i > j
+    and j among the first ``baselines``; None without a common seed.
     """
     grid = section.grid
     values = [_values(section, column) for column in section.columns]
@@ -68,16 +65,19 @@ def section_data(section: Section) -> dict[str, Any]:
     }
 
 
-def numbers(found: Estimate | None) -> Numbers:
+def numbers(estimate: Estimate | None) -> Numbers:
     """Return an estimate as the page reads it."""
-    if found is None or math.isnan(found.value):
+    if estimate is None or math.isnan(estimate.value):
         return None
-    return [None if math.isnan(x) else shortened(x) for x in (found.value, found.low, found.high)]
+    return [
+        None if math.isnan(x) else shortened(x)
+        for x in (estimate.value, estimate.low, estimate.high)
+    ]
 
 
-def has_width(found: Sequence[Any]) -> bool:
+def has_width(values: Sequence[Any]) -> bool:
     """Return whether numbers have an interval with a width, or no interval at all."""
-    return None in found[1:3] or found[2] - found[1] > ROUNDING
+    return None in values[1:3] or values[2] - values[1] > ROUNDING
 
 
 def shortened(x: float) -> float:
@@ -141,38 +141,38 @@ def _whole(section: Section) -> int:
 
 
 def _values(section: Section, column: str) -> list[Numbers]:
-    found = [numbers(section.clean.get((column, metric))) for metric in METRICS]
+    values = [numbers(section.clean.get((column, metric))) for metric in METRICS]
     fewer = "*" * section.partial(column, CLEAN)
-    found = [value and [*value, fewer] for value in found]
+    values = [value and [*value, fewer] for value in values]
     if section.corrupted:
-        found.append(_marked(section, section.corrupted.get(column), *section.blocks))
+        values.append(_marked(section, section.corrupted.get(column), *section.blocks))
     for part, metric in _prs_places(section):
-        found.append(_marked(section, section.retained.get((column, part, metric)), part))
-    return found
+        values.append(_marked(section, section.retained.get((column, part, metric)), part))
+    return values
 
 
-def _marked(section: Section, found: Retained | None, *blocks: str) -> Numbers:
-    value = None if found is None else numbers(found.estimate)
-    if found is None or value is None:
+def _marked(section: Section, retained: Retained | None, *blocks: str) -> Numbers:
+    value = None if retained is None else numbers(retained.estimate)
+    if retained is None or value is None:
         return None
-    return [*value, section.marks(found, *blocks).strip()]
+    return [*value, section.marks(retained, *blocks).strip()]
 
 
 def _cells(section: Section, column: str, names: Sequence[str]) -> list[list[Any]]:
     grid, at = section.grid, section.severity
     tables = {m: [grid.cell(column, n, at, key) for n in names] for m, key in METRICS.items()}
-    found = {metric: bootstrap.means(table, shares=True) for metric, table in tables.items()}
+    estimates = {metric: bootstrap.means(table, shares=True) for metric, table in tables.items()}
     return [
         [
-            *(numbers(found[metric][k]) for metric in METRICS),
+            *(numbers(estimates[metric][k]) for metric in METRICS),
             int((~np.isnan(tables["SR"][k])).sum()),
-            *(_kept(section, column, name, metric) for metric in METRICS),
+            *(_single_prs(section, column, name, metric) for metric in METRICS),
         ]
         for k, name in enumerate(names)
     ]
 
 
-def _kept(section: Section, column: str, name: str, metric: str) -> float | None:
+def _single_prs(section: Section, column: str, name: str, metric: str) -> float | None:
     """Return the PRS of one corruption, or None if it has too few episodes for a PRS."""
     parts = section.grid.retention([column], [name], section.severity, METRICS[metric])
     return None if parts is None or math.isnan(parts[0].prs) else shortened(parts[0].prs)
@@ -183,12 +183,12 @@ def _pairs(section: Section, names: Sequence[str]) -> dict[str, Any]:
 
     They are paired over common seeds, whose corruptions have the same keys, and common episodes.
     """
-    found: dict[str, Any] = {}
+    pairs: dict[str, Any] = {}
     for j, second in enumerate(section.columns[:BASELINES]):
         for i, first in enumerate(section.columns[j + 1 :], start=j + 1):
             common = section.grid.common((first, second), section.severity)
-            found[f"{i}-{j}"] = _pair(section, first, second, names) if common else None
-    return found
+            pairs[f"{i}-{j}"] = _pair(section, first, second, names) if common else None
+    return pairs
 
 
 def _pair(section: Section, first: str, second: str, names: Sequence[str]) -> dict[str, Any]:
@@ -209,10 +209,10 @@ def _pair(section: Section, first: str, second: str, names: Sequence[str]) -> di
 
 def _notes(section: Section, values: list[list[Numbers]], pairs: Mapping[str, Any]) -> list[str]:
     notes = []
-    lines = [*values, *(pair["measures"] for pair in pairs.values() if pair)]
-    held = [value for line in lines for value in line if value]
-    marks = "".join(value[3] for value in held if len(value) > 3)
-    if not all(map(has_width, held)):
+    rows = [*values, *(pair["measures"] for pair in pairs.values() if pair)]
+    cells = [value for line in rows for value in line if value]
+    marks = "".join(value[3] for value in cells if len(value) > 3)
+    if not all(map(has_width, cells)):
         notes.append(NO_WIDTH)
     if "‡" in marks:
         notes.append("‡ The clean value is so low that a PRS says little.")
@@ -222,13 +222,7 @@ def _notes(section: Section, values: list[list[Numbers]], pairs: Mapping[str, An
         )
     if section.gaps:
         notes.append("* Over a part of the episodes: point at a cell to read how many it has.")
-    for column in section.columns:
-        for seed, (have, want) in section.grid.unfinished[column, section.severity].items():
-            notes.append(
-                f"Seed {seed} of {column} is not finished and left out: {have:,} of {want:,} rows."
-            )
-    cut = section.grid.cut
-    notes += [f"{column}: {cut[column]}" for column in section.columns if column in cut]
+    notes += section.notes()
     if None in pairs.values():
         notes.append("There is no difference of agents without a seed in common.")
     if len(section.columns) > BASELINES:
@@ -265,88 +259,58 @@ def _line(curve: Curve) -> dict[str, Any]:
 MOST_EPISODES = 500_000  # episodes of cells in one page (heuristic): 4 MB
 MISSING = 65_535
 SCALE = 1000  # factor of success and SPL
-_Place = tuple[str, str, float, int]  # column, corruption, severity, seed
 
 
-@dataclass
 class Packed:
     """Cells of any number of grids, packed for the page.
 
     Attributes:
         most: largest number of episodes of cells.
+        count: number of packed episodes.
         grids: per grid the ids of its episodes, and the offset of each cell in the data, by
             "column|corruption|severity|seed".
         left_out: cells that exceed ``most``, with all their seeds.
-        held: number of packed episodes.
     """
 
-    most: int = MOST_EPISODES
-    grids: list[dict[str, Any]] = field(default_factory=list)
-    left_out: set[tuple[int, str]] = field(default_factory=set)
-    held: int = 0
-    _parts: list[np.ndarray] = field(default_factory=list)
-    _known: list[Grid] = field(default_factory=list)
+    def __init__(self, most: int = MOST_EPISODES) -> None:
+        self.most = most
+        self.count = 0
+        self.grids: list[dict[str, Any]] = []
+        self.left_out: set[tuple[int, str]] = set()
+        self._numbers: dict[int, int] = {}  # numbers of grids by their id()
+        self._parts: list[np.ndarray] = []
 
-    def add(self, section: Section, rows: Iterable[Row]) -> int:
+    def add(self, section: Section) -> int:
         """Pack the cells of ``section`` that are not packed yet; return the number of its grid.
 
-        ``rows`` are all result rows, from which steps are read.
+        All seeds of a cell are packed, or none if they exceed the limit.
         """
         grid = section.grid
-        if not any(grid is known for known in self._known):
-            self._known.append(grid)
+        number = self._numbers.setdefault(id(grid), len(self.grids))
+        if number == len(self.grids):
             self.grids.append({"episodes": list(grid.episodes), "cells": {}})
-            self._steps = _steps(grid, rows)
-        number = next(n for n, known in enumerate(self._known) if known is grid)
-        columns = {column: n for n, column in enumerate(grid.columns)}
-        names = [CLEAN, *section.corruptions]
+        cells, size = self.grids[number]["cells"], len(grid.episodes)
         for column in section.columns:
-            for name in names:
+            runs = {seed: grid.runs[column][seed] for seed in grid.seeds[column, section.severity]}
+            for name in (CLEAN, *section.corruptions):
                 at = 0.0 if name == CLEAN else float(section.severity)
-                seeds = grid.seeds[column, section.severity]
-                places = [(column, name, at, seed) for seed in seeds]
-                self._add(number, f"{columns[column]}|{name}|{at}", grid, places)
+                if not all((name, at, STEPS) in run for run in runs.values()):
+                    continue
+                key = f"{list(grid.columns).index(column)}|{name}|{at}"
+                new = {f"{key}|{seed}": run for seed, run in runs.items()}
+                new = {cell: run for cell, run in new.items() if cell not in cells}
+                if self.count + len(new) * size > self.most:
+                    self.left_out.add((number, key))
+                    continue
+                for cell, run in new.items():
+                    cells[cell] = self.count
+                    self.count += size
+                    shares = [SCALE * run[name, at, metric] for metric in METRICS.values()]
+                    fields = np.stack([*shares, np.minimum(run[name, at, STEPS], MISSING - 1)])
+                    whole = np.rint(np.nan_to_num(fields, nan=MISSING))
+                    self._parts.append(whole.astype("<u2").ravel())
         return number
 
     def text(self) -> str:
         """Return the data in base64: little-endian uint16, [cell, field, episode]."""
-        flat = np.concatenate(self._parts) if self._parts else np.empty(0, np.uint16)
-        return base64.b64encode(flat.astype("<u2").tobytes()).decode()
-
-    def _add(self, number: int, key: str, grid: Grid, places: Sequence[_Place]) -> None:
-        """Pack all seeds of a cell that are not packed yet, or none if they exceed the limit."""
-        cells, count = self.grids[number]["cells"], len(grid.episodes)
-        if not all((name, at, METRICS["SR"]) in grid.runs[x][seed] for x, name, at, seed in places):
-            return
-        new = [place for place in places if f"{key}|{place[3]}" not in cells]
-        if self.held + len(new) * count > self.most:
-            self.left_out.add((number, key))
-            return
-        for place in new:
-            cells[f"{key}|{place[3]}"] = self.held
-            self.held += count
-            self._pack(grid, place)
-
-    def _pack(self, grid: Grid, place: _Place) -> None:
-        column, name, at, seed = place
-        count, run = len(grid.episodes), grid.runs[column][seed]
-        shares = [run[name, at, metric] for metric in METRICS.values()]
-        steps = self._steps.get(place, np.full(count, np.nan))
-        fields = [*(SCALE * values for values in shares), np.minimum(steps, MISSING - 1)]
-        whole = np.rint(np.nan_to_num(np.stack(fields), nan=MISSING))
-        self._parts.append(whole.astype(np.uint16).ravel())
-
-
-def _steps(grid: Grid, rows: Iterable[Row]) -> dict[_Place, np.ndarray]:
-    """Return the steps of each cell [N]; NaN where a row lacks them."""
-    index = {episode: n for n, episode in enumerate(grid.episodes)}
-    labels = {(name, agent): x for x, (name, own) in grid.columns.items() for agent in own}
-    found: dict[_Place, np.ndarray] = defaultdict(lambda: np.full(len(index), np.nan))
-    for row in rows:
-        column = labels.get((row["name"], row["agent"]))
-        same = (row["split"], row["suite"], row["rule"]) == (grid.split, grid.suite, grid.rule)
-        spot, steps = index.get(row["episode_id"]), row.get("steps")
-        if same and column is not None and spot is not None and isinstance(steps, (int, float)):
-            place = (column, row["corruption"], float(row["severity"]), row["seed"])
-            found[place][spot] = steps
-    return dict(found)
+        return base64.b64encode(b"".join(part.tobytes() for part in self._parts)).decode()

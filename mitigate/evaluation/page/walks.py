@@ -10,7 +10,7 @@ from __future__ import annotations
 import base64
 import io
 from collections.abc import Iterator, Mapping, Sequence
-from itertools import count, islice
+from itertools import chain, zip_longest
 from typing import Any
 
 import numpy as np
@@ -45,59 +45,33 @@ def outcome(won: Sequence[bool]) -> str:
 def choose(rows: Sequence[Row], agents: Sequence[str], most: int) -> list[tuple[str, Corruption]]:
     """Return at most ``most`` pairs (episode id, corruption) with rows of the first and last agent.
 
-    The choice alternates between the outcomes in :data:`KINDS`, and within an outcome between
-    corruptions, in the order of ``rows``. No episode is repeated. The choice is for display and not
-    a sample; frequencies are in the tables.
+    The outcomes in :data:`KINDS` take turns, and within an outcome the corruptions, in the order of
+    ``rows``, which have one seed. No episode is repeated. The choice is for display and not a
+    sample; frequencies are in the tables.
     """
-    first, last = _won(rows, agents[0]), _won(rows, agents[-1])
-    outcomes: dict[tuple[bool, bool], dict[tuple[str, float], list[str]]] = {k: {} for k in KINDS}
-    for place, won in first.items():
-        if place in last:
-            episode, corruption, severity = place
-            kind = (bool(won), bool(last[place]))
-            outcomes[kind].setdefault((corruption, severity), []).append(episode)
-    sources = [_alternate(group, offset) for offset, group in enumerate(outcomes.values())]
-    return list(islice(_distinct_episodes(sources), most))
-
-
-def _won(rows: Sequence[Row], name: str) -> dict[tuple[str, str, float], float]:
-    """Return the success of an agent under each corruption, for its lowest seed."""
-    corrupted = [row for row in rows if row["name"] == name and row["corruption"] != "clean"]
-    seed = min((row["seed"] for row in corrupted), default=0)
-    selected = [row for row in corrupted if row["seed"] == seed]
-    return {
-        (r["episode_id"], r["corruption"], float(r["severity"])): r["success"] for r in selected
-    }
-
-
-def _alternate(
-    episodes: Mapping[tuple[str, float], Sequence[str]], offset: int
-) -> Iterator[tuple[str, Corruption]]:
-    """Yield the first episode of each corruption, then the second of each, and so on.
-
-    ``offset``: index of the corruption to begin with.
-    """
-    names = [*episodes][offset:] + [*episodes][:offset]
-    for turn in count():
-        left = [at for at in names if len(episodes[at]) > turn]
-        if not left:
-            return
-        for at in left:
-            yield episodes[at][turn], Corruption(*at)
-
-
-def _distinct_episodes(sources: Sequence[Iterator[Any]]) -> Iterator[tuple[str, Corruption]]:
-    """Yield from the sources in turn, without repeating an episode."""
-    seen: set[str] = set()
-    waiting = list(sources)
-    while waiting:
-        for source in list(waiting):
-            pair = next((pair for pair in source if pair[0] not in seen), None)
-            if pair is None:
-                waiting.remove(source)
-            else:
-                seen.add(pair[0])
-                yield pair
+    first, last = (
+        {
+            (row["episode_id"], row["corruption"], float(row["severity"])): bool(row["success"])
+            for row in rows
+            if row["name"] == name and row["corruption"] != "clean"
+        }
+        for name in (agents[0], agents[-1])
+    )
+    outcomes: dict[tuple[bool, bool], dict[Corruption, list[str]]] = {kind: {} for kind in KINDS}
+    for place in (place for place in first if place in last):
+        episode, name, severity = place
+        by_corruption = outcomes[first[place], last[place]]
+        by_corruption.setdefault(Corruption(name, severity), []).append(episode)
+    turns: dict[tuple[int, int], list[tuple[str, Corruption]]] = {}
+    for number, by_corruption in enumerate(outcomes.values()):
+        for index, (corruption, episodes) in enumerate(by_corruption.items()):
+            turn = (index - number) % len(by_corruption)  # each outcome begins with another one
+            turns[turn, number] = [(episode, corruption) for episode in episodes]
+    chosen: dict[str, Corruption] = {}
+    for pair in chain(*zip_longest(*(turns[key] for key in sorted(turns)))):
+        if pair is not None:
+            chosen.setdefault(*pair)
+    return list(chosen.items())[:most]
 
 
 AGREED = ("success", "spl", "steps")  # measures that are compared with the rows
@@ -120,7 +94,7 @@ def walk_again(
         agents: agents by their names in ``rows``.
         world: the world.
         episodes: the episodes of the split.
-        rows: rows of one split and rule; those of other agents or seeds are ignored.
+        rows: rows of one split and rule; other agents and seeds are ignored.
         most: largest number of episodes.
         seed: corruption seed.
 
@@ -140,7 +114,7 @@ def walk_again(
     if not chosen:
         raise ValueError(
             f"There are no rows of {' and '.join(agents)} with seed {seed} under a corruption for "
-            "these episodes. The names must be those of the rows."
+            "these episodes. The names must be names in the rows."
         )
     index = {(r["name"], r["episode_id"], r["corruption"], r["severity"]): r for r in selected}
     for episode_id, corruption in chosen:

@@ -16,7 +16,7 @@ ROOT = Path(__file__).parents[3]
 
 
 @pytest.mark.parametrize("kind", ["topological_imagenet", "frontier", "recurrent", "recurrent_rgb"])
-def test_a_shipped_agent_has_the_hash_of_its_entry(kind):
+def test_entry_holds_the_hash_of_the_shipped_agent(kind):
     """Also one in which a network is of an installed package, whose code does not count."""
     if kind == "topological_imagenet":
         pytest.importorskip("efficientnet_lite_pytorch")

@@ -38,7 +38,7 @@ def rows() -> list[dict]:
     return column(8, {"spatter": 2, "missing_data": 7})
 
 
-def test_an_entry_has_the_figures_of_the_table_and_comes_back_from_its_file(rows, tmp_path):
+def test_entry_holds_the_figures_of_the_table(rows, tmp_path):
     entry = entry_of(rows, "base", severity=0.6, training_data="nothing", file="rows.jsonl")
     (part,) = sections(rows)
     prs = part.retained["base", "RGB", "SR"].estimate
@@ -50,12 +50,12 @@ def test_an_entry_has_the_figures_of_the_table_and_comes_back_from_its_file(rows
     assert "PRS-SR (RGB): 0.25 [" in str(entry) and "Clean SR: 80.0 [50.0, 100.0] %" in str(entry)
 
 
-def test_the_sum_of_rows_knows_no_order_but_every_value(rows):
+def test_rows_sha_ignores_order_and_covers_values(rows):
     assert rows_sha(rows) == rows_sha(rows[::-1])
     assert rows_sha(rows) != rows_sha([rows[0] | {"spl": 0.25}, *rows[1:]])
 
 
-def test_what_makes_no_entry_is_refused(rows):
+def test_entry_of_rejects_invalid_rows(rows):
     with pytest.raises(ValueError, match="Did you mean base"):
         entry_of(rows, "bass", severity=0.6)
     with pytest.raises(ValueError, match=r"no corruption at severity 0\.5"):
@@ -75,7 +75,7 @@ def test_what_makes_no_entry_is_refused(rows):
         entry_of(rows + elsewhere, "base", severity=0.6)
 
 
-def test_corrupted_words_do_not_change_the_mean_over_corrupted_frames():
+def test_mean_sr_leaves_out_corrupted_instructions():
     frames = dict.fromkeys([*BLOCKS["RGB"], *BLOCKS["Depth"]], 4)
     plain = entry_of(column(8, frames), "base", severity=0.6)
     more = entry_of(column(8, frames | {"mask": 0, "black_box": 0}), "base", severity=0.6)
@@ -83,7 +83,7 @@ def test_corrupted_words_do_not_change_the_mean_over_corrupted_frames():
     assert "PRS-SR (Instruction)" in more.scores
 
 
-def test_corrupted_words_do_not_change_the_mean_over_a_part_of_the_frames():
+def test_mean_sr_of_some_frames_leaves_out_instructions():
     rgb, words = dict.fromkeys(BLOCKS["RGB"], 4), {"mask": 0, "black_box": 0}
     plain, more, alone = (
         entry_of(column(8, met), "base", severity=0.6) for met in (rgb, rgb | words, words)
@@ -100,7 +100,7 @@ def test_half_of_the_unseen_corruptions_is_called_so():
     assert {"PRS-SR (unseen RGB)", "PRS-SR (unseen RGB, test)"} <= both.keys()
 
 
-def test_check_finds_a_figure_a_sum_or_rows_that_are_not_there(rows, tmp_path, monkeypatch, capsys):
+def test_check_reports_wrong_figures_hashes_and_missing_rows(rows, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     result_rows.write("rows.jsonl.gz", rows)
     add = ["add", "rows.jsonl.gz", "--name", "base", "--folder", "entries"]
@@ -120,7 +120,7 @@ def test_check_finds_a_figure_a_sum_or_rows_that_are_not_there(rows, tmp_path, m
     assert "not available" in capsys.readouterr().out
 
 
-def test_check_goes_on_behind_an_entry_that_is_broken(rows, tmp_path, monkeypatch, capsys):
+def test_check_continues_after_a_damaged_entry(rows, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     result_rows.write("rows.jsonl", rows)
     entry = entry_of(rows, "base", severity=0.6, file="rows.jsonl")
@@ -145,7 +145,7 @@ def test_check_goes_on_behind_an_entry_that_is_broken(rows, tmp_path, monkeypatc
     assert command.main(["check", "entries/whole.json"]) == 0
 
 
-def test_an_entry_names_one_file_of_rows_and_no_folder(rows, tmp_path, monkeypatch, capsys):
+def test_rows_of_rejects_a_folder(rows, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     result_rows.write("mine/rows.jsonl", rows)
     add = ["add", "mine", "--name", "base", "--folder", "entries"]
@@ -166,7 +166,7 @@ def test_an_entry_names_one_file_of_rows_and_no_folder(rows, tmp_path, monkeypat
     assert load("entries/base.json").rows["file"] == ""  # of several
 
 
-def test_agents_with_names_in_any_script_have_files_of_their_own(rows, tmp_path, monkeypatch):
+def test_add_writes_separate_files_for_unicode_names(rows, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     names = ["基準", "強化", "Größe +"]
     for name in names:
@@ -199,13 +199,13 @@ def test_show_ranks_entries_by_the_mean_sr_of_their_rows(tmp_path, monkeypatch, 
 
 
 @pytest.mark.parametrize("path", SHIPPED, ids=lambda path: path.stem)
-def test_a_shipped_entry_is_sound(path):
+def test_shipped_entry_loads(path):
     entry = load(path)
     assert entry.name.replace("+", "-") == path.stem and entry.episodes in (100, 300)
     assert (ROOT / entry.rows["file"]).is_file() and (ROOT / entry.link).exists()
 
 
-def test_a_shipped_entry_is_what_its_rows_say_and_walked_again_gives_them(tmp_path, monkeypatch):
+def test_shipped_entry_matches_its_rows_and_a_rerun(tmp_path, monkeypatch):
     """Two episodes, clean and without part of the depth, by the shipped weights."""
     entry = load(ROOT / "docs/leaderboard/base.json")
     said = command.rows_of(entry)
@@ -235,7 +235,7 @@ class Straight:
         return FORWARD if self.left >= 0 else STOP
 
 
-def test_benchmark_takes_any_agent_says_how_long_and_goes_on(tmp_path, monkeypatch, capsys):
+def test_benchmark_prints_an_estimate_and_resumes(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     options = {"episodes": 2, "suite": ["flare"], "workers": 1, "training_data": "none"}
     options["options"] = ["env.size=16"]
@@ -258,7 +258,7 @@ def test_benchmark_refuses_what_measures_nothing():
         mitigate.benchmark(Straight(), suite=["flair"])
 
 
-def test_an_entry_is_compared_with_its_own_rows_where_the_file_holds_more(rows):
+def test_check_compares_only_the_rows_of_the_entry(rows):
     entry = entry_of(rows, "base", severity=0.6)
     more = [r | {"seed": 1} for r in rows] + [r | {"corruption": "flare"} for r in rows[10:20]]
     assert command.differences(entry, [*rows, *more]) == []
@@ -266,7 +266,7 @@ def test_an_entry_is_compared_with_its_own_rows_where_the_file_holds_more(rows):
         command.differences(entry, [r | {"seed": 1} for r in rows])
 
 
-def test_check_says_what_of_its_rows_an_entry_leaves_out(rows, tmp_path, monkeypatch, capsys):
+def test_check_warns_of_rows_that_an_entry_omits(rows, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     more = [r | {"seed": 1, "agent": "cccccc"} for r in rows]
     other = [r | {"name": "other"} for r in more] + [r | {"split": "val_seen"} for r in more]
@@ -325,9 +325,7 @@ class Pupil(Straight):
         self.net.bias.data.zero_()
 
 
-def test_benchmark_knows_an_agent_by_the_networks_it_holds_and_says_what_it_cannot_know(
-    tmp_path, monkeypatch, capsys
-):
+def test_benchmark_hashes_networks_and_reports_unreadable_state(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     options = {"episodes": 1, "suite": ["flare"], "workers": 1, "options": ["env.size=16"]}
     first = mitigate.benchmark(Pupil(1), **options)
@@ -354,7 +352,7 @@ class Dark(ApartmentsWorld):
 
 
 @pytest.mark.slow
-def test_benchmark_runs_in_a_script_as_the_page_has_it(tmp_path):
+def test_benchmark_runs_the_script_of_the_page(tmp_path):
     """Without a guard around the call, of an agent that the script defines, or that is typed in."""
     script = (
         "import mitigate\n"
@@ -404,7 +402,7 @@ class OneCamera(Straight):
             "a function that makes a world, got a ApartmentsWorld",
         ),
         (Straight(), {"world": Dark, "suite": ["spatter"]}, "the world Dark has only"),
-        (Straight(), {"world": lambda: ApartmentsWorld(16), "workers": 2}, "give workers=1"),
+        (Straight(), {"world": lambda: ApartmentsWorld(16), "workers": 2}, "set workers=1"),
     ],
 )
 def test_benchmark_says_what_is_wrong_before_anything_walks(
@@ -416,13 +414,13 @@ def test_benchmark_says_what_is_wrong_before_anything_walks(
     assert not [*tmp_path.iterdir()]
 
 
-def test_a_seed_that_is_not_finished_makes_no_entry(rows):
+def test_entry_of_rejects_an_unfinished_seed(rows):
     half = [r | {"seed": 1, "agent": "cccccc"} for r in rows if r["episode_id"] < "5"]
     with pytest.raises(ValueError, match=r"Seed 1 of base is not finished \(15 of 30 rows\)"):
         entry_of(rows + half, "base", severity=0.6)
 
 
-def test_every_seed_of_an_entry_has_the_rows_of_each_table(rows):
+def test_entry_of_requires_all_rows_of_each_seed(rows):
     """Else its figures are of other seeds than it says."""
     second = [r | {"seed": 1, "agent": "cccccc"} for r in rows]
     assert len(entry_of(rows + second, "base", severity=0.6).agents) == 2
@@ -437,7 +435,7 @@ def test_every_seed_of_an_entry_has_the_rows_of_each_table(rows):
         entry_of(rows + other, "base", severity=0.6)
 
 
-def test_benchmark_reuses_rows_of_the_same_world_and_episodes_alone(tmp_path, monkeypatch):
+def test_benchmark_reuses_only_rows_of_one_world(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     options = {"suite": ["flare"], "workers": 1, "out": "rows", "options": ["env.size=16"]}
     mitigate.benchmark(Straight(), episodes=1, **options)

@@ -106,7 +106,7 @@ def walk(tmp_path, monkeypatch) -> Callable:
     return walk
 
 
-def test_an_own_world_needs_its_episodes_and_names_the_split(walk):
+def test_benchmark_requires_episodes_of_a_custom_world(walk):
     with pytest.raises(
         ValueError, match=r"cannot run in CorridorWorld. Give its episodes: listed="
     ):
@@ -117,12 +117,12 @@ def test_an_own_world_needs_its_episodes_and_names_the_split(walk):
     assert walk(Holder(weight(1)), split="mine", out="third").split == "mine"
 
 
-def test_the_episodes_may_be_a_file(walk):
+def test_benchmark_reads_episodes_from_a_file(walk):
     write_episodes("mine.json", EPISODES)
     assert walk(Holder(weight(1)), listed="mine.json").rows == walk(Holder(weight(1))).rows
 
 
-def test_the_page_about_a_policy_and_an_environment_holds(tmp_path):
+def test_documented_policy_and_environment_work(tmp_path):
     page = (Path(__file__).parents[3] / "docs/leaderboard.md").read_text(encoding="utf-8")
     code = re.search(r"on one screen\n.*?```python\n(.*?)```", page, re.DOTALL)[1]
     (tmp_path / "hall.py").write_text(code)
@@ -138,24 +138,24 @@ def test_the_page_about_a_policy_and_an_environment_holds(tmp_path):
     assert "Clean SR: 100.0" in done.stdout and float(depth[1]) < 0.9
 
 
-def test_episodes_of_seeds_are_as_many_and_each_its_own(walk):
+def test_benchmark_runs_each_seeded_episode(walk):
     entry = walk(Holder(weight(1)), listed=seeded_episodes(range(3)), suite=["spatter"])
     assert entry.episodes == 3 and entry.rows["count"] == 6
 
 
-def test_a_world_of_other_arguments_is_refused(walk):
+def test_benchmark_rejects_a_world_with_other_arguments(walk):
     assert walk(Holder(weight(1)), partial(CorridorWorld, 2)).SR["clean"][0] == 1
     with pytest.raises(ValueError, match=r"another world: .*argument\.0 was '2' and is '3'"):
         walk(Holder(weight(1)), partial(CorridorWorld, 3))
 
 
-def test_rows_of_other_weights_are_not_taken_up_wherever_the_network_is(walk):
+def test_benchmark_does_not_reuse_rows_of_other_weights(walk):
     first, second = walk(Holder(weight(1))), walk(Holder(weight(-1)))
     assert (first.SR["clean"][0], second.SR["clean"][0]) == (1, 0)
     assert first.agents != second.agents
 
 
-def test_rows_of_an_agent_that_nothing_tells_are_not_taken_up(walk):
+def test_benchmark_does_not_reuse_rows_of_unreadable_agents(walk):
     class Told(Hidden):
         settings = {"weights": "the first"}
 
@@ -206,7 +206,7 @@ def test_benchmark_does_not_reuse_rows_after_adapters_were_attached(walk, tmp_pa
     assert walk(agent).agents != first.agents
 
 
-def test_a_network_or_array_beside_does_not_tell_what_is_hidden(walk):
+def test_benchmark_requires_all_state_to_be_readable(walk):
     for number, beside in enumerate((weight(1), np.zeros(3))):
         first, other = Hidden(1), Hidden(2)
         first.mean = other.mean = beside
@@ -226,7 +226,7 @@ class Counting(Hidden):
         return 0
 
 
-def test_an_agent_is_what_it_was_before_it_walked(walk):
+def test_fingerprint_ignores_changes_by_episodes(walk):
     hashes = {one["agent"] for _ in range(2) for one in walk(Counting()).agents}
     assert len(hashes) == 1  # of two objects, neither of which had walked
     agent = Counting()
@@ -258,7 +258,7 @@ def leaky(slope: float) -> nn.Module:
         Near(1.0, leaky(0.1)),
     ],
 )
-def test_an_attribute_that_was_changed_makes_another_agent(walk, other, capsys):
+def test_fingerprint_covers_changed_attributes(walk, other, capsys):
     first = walk(Near(1.0))
     assert "another agent" not in capsys.readouterr().out
     assert walk(Near(1.0)).agents == first.agents != walk(other).agents
@@ -274,7 +274,7 @@ def test_an_attribute_that_was_changed_makes_another_agent(walk, other, capsys):
         (Near, Holder),
     ],
 )
-def test_what_an_agent_holds_tells_it_from_another_one(one, other):
+def test_fingerprint_covers_nested_attributes(one, other):
     made = [contents(Near(1.0, held)).parts for held in (one, one, other)]
     assert made[0] == made[1] != made[2]
 
@@ -293,7 +293,7 @@ class Counter:
         return STOP
 
 
-def test_an_agent_that_only_walks_changed_is_the_same_in_front_of_whatever_it_walks(walk, capsys):
+def test_fingerprint_ignores_changes_by_episodes_of_other_worlds(walk, capsys):
     agent = Counter()
     for _ in range(2):
         for guard in ("none", "rules"):
@@ -305,7 +305,7 @@ def test_an_agent_that_only_walks_changed_is_the_same_in_front_of_whatever_it_wa
     assert "another agent" in capsys.readouterr().out
 
 
-def test_a_call_that_is_stopped_before_its_walks_changes_no_agent(walk, monkeypatch, capsys):
+def test_interrupted_benchmark_keeps_the_fingerprint(walk, monkeypatch, capsys):
     agent, listed = Counter(), seeded_episodes(range(3))
     walk(agent, listed=listed)
 
@@ -320,7 +320,7 @@ def test_a_call_that_is_stopped_before_its_walks_changes_no_agent(walk, monkeypa
     assert "another agent" not in capsys.readouterr().out
 
 
-def test_a_restorer_and_a_safeguard_may_stand_in_front_of_any_agent(walk):
+def test_benchmark_accepts_a_restorer_and_a_safeguard(walk):
     alone, behind = walk(Holder(weight(1))), walk(Holder(weight(1)), safeguard="classifier")
     assert behind.name == "Holder+classifier" and behind.agents != alone.agents
     restored = walk(Holder(weight(1)), restore="checkpoints/restorer:rgb")
@@ -330,7 +330,7 @@ def test_a_restorer_and_a_safeguard_may_stand_in_front_of_any_agent(walk):
 
 
 @pytest.mark.parametrize("option", ["severity=0.3", "restore=x", "suite=quick", "workers=2"])
-def test_what_is_no_option_of_the_agent_or_the_world_is_refused(walk, option):
+def test_benchmark_rejects_other_options(walk, option):
     with pytest.raises(ValueError, match=f"{option} has no effect here"):
         walk(Holder(weight(1)), options=[option])
 
@@ -355,7 +355,7 @@ def test_episodes_may_be_some_of_those_listed(walk):
         walk(Holder(weight(1)), listed=[7])
 
 
-def test_a_gymnasium_environment_is_told_from_a_world(walk):
+def test_benchmark_rejects_a_bare_gymnasium_environment(walk):
     with pytest.raises(ValueError, match=r"Corridor is not a world: .*GymWorld\(Corridor\(...\)"):
         walk(Holder(weight(1)), Corridor)
 
@@ -371,7 +371,7 @@ class Moody(nn.Module):
         return self.norm(x) * 0 + float(self.training)
 
 
-def test_the_networks_that_an_agent_holds_are_walked_in_eval_mode_and_left_as_they_were(walk):
+def test_benchmark_restores_the_mode_of_networks(walk):
     net = Moody()
     net.norm.eval()
     before = {name: value.clone() for name, value in net.state_dict().items()}
@@ -389,7 +389,7 @@ episodes: {{CorridorWorld: nowhere.json}}
 """
 
 
-def test_an_entry_has_the_sensors_of_its_own_world(walk):
+def test_entry_holds_the_sensors_of_a_custom_world(walk):
     assert walk(Holder(weight(1))).sensors == ("rgb: 8 x 8 x 3 uint8",)
 
 
@@ -397,7 +397,7 @@ def make_corridor() -> CorridorWorld:
     return CorridorWorld()
 
 
-def test_a_configs_world_that_a_function_makes_has_the_configs_episodes(walk):
+def test_world_function_of_a_config_uses_its_episodes(walk):
     Path("mine/env").mkdir(parents=True)
     write_episodes("val.json", EPISODES)
     made = ENV.replace(".CorridorWorld", ".make_corridor").replace("nowhere.json", "val.json")

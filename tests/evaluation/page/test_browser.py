@@ -68,7 +68,7 @@ def lines(page: Page) -> list[list[str]]:
     return page.ask(f"{found}.map(r => [...r.children].map(c => c.textContent))")
 
 
-def test_headings_sort_the_agents_and_a_baseline_shows_differences(page, report):
+def test_table_sorts_and_shows_differences(page, report):
     page.open(report)
     assert agents(page) == ["base", "hard"] and page.errors == []
     page.click(".agents .sort", "Clean SR")
@@ -83,7 +83,7 @@ def test_headings_sort_the_agents_and_a_baseline_shows_differences(page, report)
     assert "baseline=0" in page.ask("location.hash")
 
 
-def test_a_difference_over_fewer_corruptions_says_so(page, tmp_path):
+def test_difference_over_fewer_corruptions_is_marked(page, tmp_path):
     rows = column(8, dict.fromkeys(FRAMES, 2)) + column(6, {"spatter": 6}, name="hard", agent="b")
     page.open(document.write(report_of(rows), tmp_path / "page.html"), "#section=0&baseline=1")
     line = "[...document.querySelectorAll('.agents tbody tr')][0]"
@@ -95,7 +95,7 @@ def test_a_difference_over_fewer_corruptions_says_so(page, tmp_path):
     assert not any("\u2020" in change for change in changes[:2])
 
 
-def test_an_interval_without_a_width_is_not_shown_and_not_bold(page, tmp_path):
+def test_interval_without_width_is_hidden(page, tmp_path):
     rows = [row(0, 1), row(0, 0, name="hard", agent="ba9876543210")]
     rows += [{**one, "corruption": "spatter", "severity": 0.6} for one in rows]
     page.open(document.write(report_of(rows), tmp_path / "page.html"), "#section=0&baseline=0")
@@ -114,7 +114,7 @@ def test_any_agent_can_be_the_baseline(page, report):
     assert page.ask(chosen)[0][0] == "-1"
 
 
-def test_a_cell_opens_its_episodes_and_filters_them(page, report):
+def test_cell_opens_and_filters_episodes(page, report):
     page.open(report, "#baseline=0")
     page.click('[data-at="1/1"]')
     assert len(lines(page)) == 10 and "SR 60.0 %" in page.ask(
@@ -141,7 +141,7 @@ def test_cells_open_at_any_severity(page, tmp_path, severity):
     assert len(lines(page)) == 10
 
 
-def test_a_cell_of_several_seeds_is_summed_up_by_its_whole_episodes(page, tmp_path):
+def test_cell_summary_averages_seeds_per_episode(page, tmp_path):
     """Seed 1 lacks the last episode, which seed 0 won, and so has no part in the grid's mean."""
     first = column(10, {"spatter": 10})
     second = column(10, {"spatter": 0}, seed=1)
@@ -165,7 +165,7 @@ def test_ties_are_rounded_as_the_table_rounds_them(page, tmp_path):
     assert [f"{100 * wins / 16:.1f}" for wins in (5, 3)] == shown
 
 
-def test_a_share_of_the_clean_value_is_over_the_episodes_of_both(page, tmp_path):
+def test_share_uses_common_episodes(page, tmp_path):
     rows = [r for r in column(9, {"spatter": 9}) if (r["episode_id"], r["severity"]) != ("9", 0.6)]
     page.open(document.write(report_of(rows), tmp_path / "page.html"))
     page.click(".chip", "share of own clean")
@@ -186,7 +186,7 @@ def test_episodes_are_searched_as_they_are_typed(page, tmp_path):
     assert page.ask("document.querySelector('dialog input').value") == "12"
 
 
-def test_an_address_opens_a_cell_and_keys_are_enough(page, report):
+def test_address_opens_a_cell(page, report):
     page.open(report, "#section=0&agent=0&corruption=spatter")
     assert "base" in page.ask("document.querySelector('dialog h2').textContent")
     page.press("Escape")
@@ -199,7 +199,7 @@ def test_an_address_opens_a_cell_and_keys_are_enough(page, report):
     assert "hard" in page.ask("document.querySelector('dialog h2').textContent")
 
 
-def test_an_address_leads_on_in_an_open_report(page, report):
+def test_address_change_opens_another_cell(page, report):
     page.open(report, "#section=0&agent=0&corruption=spatter")
     page.ask("location.hash = '#section=0&baseline=1&agent=1&corruption=clean'")
     page.until("document.querySelector('dialog h2').textContent === 'hard \u00b7 Clean'")
@@ -213,7 +213,7 @@ def test_an_address_leads_on_in_an_open_report(page, report):
     assert page.ask("document.querySelector('.base .agent').textContent") == "hard"
 
 
-def test_a_click_beside_a_dialog_closes_it_and_one_in_it_does_not(page, report):
+def test_click_outside_closes_the_dialog(page, report):
     page.open(report, "#agent=0&corruption=spatter")
     box = page.ask(
         "(b => [b.left, b.top])(document.querySelector('dialog').getBoundingClientRect())"
@@ -230,7 +230,7 @@ def test_a_click_beside_a_dialog_closes_it_and_one_in_it_does_not(page, report):
     page.until("!document.querySelector('dialog')")
 
 
-def test_a_line_is_hidden_in_all_curves(page, tmp_path):
+def test_chip_hides_a_line_in_all_curves(page, tmp_path):
     rows = column(8, {"spatter": 2}, 0.3) + column(8, {"spatter": 1})
     rows += [r | {"split": "val_seen"} for r in rows]
     page.open(document.write(report_of(rows), tmp_path / "page.html"))
@@ -253,7 +253,7 @@ def test_details_stay_open(page, report):
 
 
 @pytest.mark.parametrize("width", [400, 1300])
-def test_no_name_makes_the_page_scroll_sideways(page, tmp_path, width):
+def test_long_names_do_not_scroll_the_page(page, tmp_path, width):
     names = {"name": "n" * 190, "split": "s" * 190, "rule": "r" * 190}
     rows = [r | names for r in made_rows()] + made_rows()
     rows += [r | {"severity": 0.3} for r in rows if r["severity"]]
@@ -294,7 +294,7 @@ def test_see_leads_from_a_row_to_its_walk(page, report):
     [{"severity": 0.3}, {"seed": 1}, {"split": "val_seen"}, {"rule": "view points"}, {"hash": "c"}],
     ids=lambda other: [*other][0],
 )
-def test_see_is_offered_for_the_walks_of_the_row_alone(page, tmp_path, other):
+def test_see_links_only_walks_of_the_row(page, tmp_path, other):
     rows = made_rows()
     walk = made_walk(rows) | other
     walk["walks"] = [one | {"hash": other.get("hash", one["hash"])} for one in walk["walks"]]
@@ -323,7 +323,7 @@ def _addresses(page):
     return [url for url in page.requests.values() if not url.startswith("data:image")]
 
 
-def test_the_page_asks_for_nothing_and_its_policy_lets_nothing_in(page, report, tmp_path):
+def test_page_requests_nothing_and_its_policy_blocks_scripts(page, report, tmp_path):
     page.open(report)
     assert _addresses(page) == [report.as_uri()]
     text = report.read_text(encoding="utf-8")

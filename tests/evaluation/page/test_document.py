@@ -60,7 +60,7 @@ def test_values_and_differences_are_those_of_the_table(rows):
     assert [line["label"] for line in shown["columns"]] == ["base", "hard"]
 
 
-def test_an_interval_without_a_width_is_told_in_a_note():
+def test_interval_without_width_adds_a_note():
     varied = column(8, {"spatter": 2})
     alike = [row(0, 1), row(0, 1, corruption="spatter", severity=0.6)]
     for shown, told in ((varied, False), (alike, True)):
@@ -77,7 +77,7 @@ def test_agents_without_a_common_seed_have_no_difference(rows):
     assert alone["baselines"] == 0 and [*alone["pairs"].values()] == [None]
 
 
-def test_the_episodes_of_a_cell_come_back_as_they_were(rows):
+def test_packed_episodes_match_the_rows(rows):
     data, packed = held(report(rows))
     (grid,) = data["grids"]
     begin = grid["cells"]["0|spatter|0.6|0"]
@@ -87,7 +87,7 @@ def test_the_episodes_of_a_cell_come_back_as_they_were(rows):
     assert set(steps) == {41}
 
 
-def test_rows_that_are_missing_are_missing_in_the_page(rows):
+def test_packed_episodes_keep_gaps(rows):
     fewer = [r for r in rows if (r["episode_id"], r["corruption"]) != ("3", "spatter")]
     data, packed = held(report(fewer))
     begin = data["grids"][0]["cells"]["0|spatter|0.6|0"]
@@ -96,13 +96,13 @@ def test_rows_that_are_missing_are_missing_in_the_page(rows):
     assert any("part of the episodes" in note for note in data["sections"][0]["notes"])
 
 
-def test_a_page_is_bounded_and_says_what_it_leaves_out(rows):
+def test_page_is_bounded_and_reports_omissions(rows):
     data, packed = held(report(rows, most=25))
     assert len(packed) == 3 * 20 and len(data["grids"][0]["cells"]) == 2
     assert "4 cells are not in this file" in data["notes"][0]
 
 
-def test_a_cell_is_held_with_all_its_seeds_or_not_at_all(rows):
+def test_cell_is_packed_with_all_seeds_or_none(rows):
     two = [r | {"seed": seed} for seed in (0, 1) for r in rows if r["name"] == "base"]
     data, _ = held(report(two, most=50))
     begun = sorted(data["grids"][0]["cells"])
@@ -110,7 +110,7 @@ def test_a_cell_is_held_with_all_its_seeds_or_not_at_all(rows):
     assert "episodes of 1 cell are not" in data["notes"][0]
 
 
-def test_the_share_of_the_clean_value_is_over_the_episodes_of_both(rows):
+def test_page_share_uses_common_episodes(rows):
     """As a PRS is: sure kept all that it was measured to have."""
     sure = column(10, {"spatter": 10}, name="sure", agent="cccccccccccc", spl=0.4)
     lost = [r | {"success": 0, "spl": 0.1} if r["episode_id"] == "9" else r for r in sure]
@@ -125,20 +125,20 @@ def test_the_share_of_the_clean_value_is_over_the_episodes_of_both(rows):
 
 
 @pytest.mark.parametrize("x", [0.3125, 0.31250000001, 0.0049999999, 0.125, 1 / 3, 0.0, 37 / 900])
-def test_a_number_is_shortened_where_it_shows_the_same(x):
+def test_shortened_keeps_the_displayed_text(x):
     short = shortened(x)
     assert f"{short:.2f} {100 * short:.1f}" == f"{x:.2f} {100 * x:.1f}"
     assert len(repr(short)) <= 8 or short == x
 
 
-def test_several_seeds_and_kinds_of_corruption_have_their_own_cells(rows):
+def test_page_separates_seeds_and_kinds(rows):
     more = rows + column(5, {"spatter": 4, "haze": 3}, seed=1, agent="aaaaaaaaaaaa")
     data, _ = held(report(more))
     seeds = {key.rpartition("|")[2] for grid in data["grids"] for key in grid["cells"]}
     assert seeds >= {"0", "1"} and len(data["sections"]) == 2
 
 
-def test_all_points_of_a_curve_are_over_the_same_episodes():
+def test_curve_points_share_episodes():
     rows = cell(10) + cell(6, corruption="spatter", severity=0.4)
     rows += cell(0, 4, corruption="spatter", severity=0.8)
     ((figure,), (panel,)) = (found := curve_figures(sections(rows))), found[0]["panels"]
@@ -147,11 +147,11 @@ def test_all_points_of_a_curve_are_over_the_same_episodes():
     assert [point[:2] for point in line["points"]] == [[0.0, 1.0], [0.4, 1.0], [0.8, 0.0]]
 
 
-def test_one_severity_makes_no_curve(rows):
+def test_page_needs_two_severities_for_a_curve(rows):
     assert curve_figures(sections(rows)) == []
 
 
-def test_text_of_rows_ends_no_element_and_the_page_names_no_address(rows):
+def test_page_escapes_texts_and_names_no_address(rows):
     evil = "</script><script>alert(1)</script><!-- <script>"
     named = [r | {"name": evil, "episode_id": f"{evil}{r['episode_id']}"} for r in rows[:30]]
     text = report(named, title=evil)
@@ -161,7 +161,7 @@ def test_text_of_rows_ends_no_element_and_the_page_names_no_address(rows):
     assert addresses == {"http://www.w3.org/2000/svg"}  # a name, not an address that is asked
 
 
-def test_walks_are_chosen_by_turns_of_outcomes_and_corruptions():
+def test_choose_alternates_outcomes_and_corruptions():
     first = {"spatter": "0011", "flare": "0011"}
     last = {"spatter": "0101", "flare": "0101"}
     made = [
@@ -188,7 +188,7 @@ def walked_rows(agents: dict, world: ApartmentsWorld, episode: Episode) -> list[
     return made
 
 
-def test_a_walk_is_compared_with_its_row():
+def test_walk_again_compares_with_the_row():
     world, (episode,) = ApartmentsWorld(16), load_episodes("val_seen")[:1]
     agents = {"base": Straight(1), "hard": Straight(3)}
     made = walked_rows(agents, world, episode)
@@ -199,7 +199,7 @@ def test_a_walk_is_compared_with_its_row():
     assert drawn["kind"] == "lost by both" and drawn["title"] == "L-L w/o noise"
 
 
-def test_a_walk_is_compared_with_no_row_of_another_agent_of_its_name():
+def test_walk_again_ignores_rows_of_other_agents():
     world, (episode,) = ApartmentsWorld(16), load_episodes("val_seen")[:1]
     agents = {"base": Straight(1)}
     made = walked_rows(agents, world, episode)
@@ -213,7 +213,7 @@ def test_a_walk_is_compared_with_no_row_of_another_agent_of_its_name():
         next(walk_again(agents, world, [episode], others, most=3, seed=0))
 
 
-def test_an_agent_that_walks_alone_wins_or_loses():
+def test_walk_again_names_the_outcome_of_one_agent():
     world, (episode,) = ApartmentsWorld(16), load_episodes("val_seen")[:1]
     agents = {"base": Straight(1)}
     (drawn,) = walk_again(
@@ -223,7 +223,7 @@ def test_an_agent_that_walks_alone_wins_or_loses():
     assert [drawn[key] for key in ("split", "seed", "severity")] == ["val_unseen", 0, 0.6]
 
 
-def test_the_command_writes_one_file_and_names_what_is_wrong(tmp_path, capsys, rows):
+def test_report_command_writes_one_file(tmp_path, capsys, rows):
     write(tmp_path / "rows.jsonl", rows)
     out = tmp_path / "page.html"
     assert command.main([str(tmp_path / "rows.jsonl"), "--out", str(out)]) == 0
@@ -236,7 +236,7 @@ def test_the_command_writes_one_file_and_names_what_is_wrong(tmp_path, capsys, r
     assert "Did you mean base?" in capsys.readouterr().err
 
 
-def test_walks_may_be_of_an_agent_with_configs_of_ones_own(tmp_path, monkeypatch, rows):
+def test_report_command_accepts_a_config_folder(tmp_path, monkeypatch, rows):
     write(tmp_path / "rows.jsonl", rows)
     asked = []
     monkeypatch.setattr(command, "_walks", lambda *given: asked.append(given[-1]) or [])
@@ -245,7 +245,7 @@ def test_walks_may_be_of_an_agent_with_configs_of_ones_own(tmp_path, monkeypatch
     assert asked == [["--config-dir=mine", "env=own"]]
 
 
-def test_a_page_replaces_no_rows_and_a_place_that_cannot_be_is_told(tmp_path, capsys, rows):
+def test_report_command_rejects_invalid_outputs(tmp_path, capsys, rows):
     file = tmp_path / "rows.jsonl"
     write(file, rows)
     before = file.read_bytes()
@@ -261,14 +261,14 @@ def test_a_page_replaces_no_rows_and_a_place_that_cannot_be_is_told(tmp_path, ca
     assert file.read_bytes() == before and len([*tmp_path.iterdir()]) == 2
 
 
-def test_a_path_that_looks_like_an_option_is_not_passed_over(tmp_path, capsys):
+def test_report_command_accepts_a_path_with_equals_sign(tmp_path, capsys):
     out = str(tmp_path / "out.html")
     assert command.main(["runs/severity=0.3/rows.jsonl", "--out", out]) == 2
     assert "no file runs/severity=0.3/rows.jsonl" in capsys.readouterr().err
     assert not (tmp_path / "out.html").exists()
 
 
-def test_two_lists_of_a_split_are_two_sections_with_their_own_episodes(rows):
+def test_page_separates_lists_of_a_split(rows):
     other = [r | {"episode_id": f"{r['episode_id']}-b", "agent": "ccccccccccc"} for r in rows[:30]]
     data, _ = held(report(rows + other))
     assert [part["title"] for part in data["sections"]] == [
