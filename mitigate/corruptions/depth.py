@@ -118,7 +118,7 @@ def _echo(views, reach, polynomial, z_max, out):
 
 
 def multipath(views: np.ndarray, severity: float, key: Key, sensor: DepthSensor) -> np.ndarray:
-    """Over-estimate depth beside farther surfaces, like a second light path."""
+    """Over-estimate depth next to farther surfaces, like a second light path."""
     reach = max(1, round(ECHO_REACH * min(views.shape[1:])))
     out = np.empty_like(views)
     _echo(views, reach, echo_polynomial(severity), np.float32(sensor.z_max), out)

@@ -274,11 +274,7 @@ def _check_folders(source: Path, out: Path) -> None:
         raise ValueError(f"{out} is a file. Name a folder to write to.")
     real_source = source.resolve()
     real_out = out.resolve()
-    if (
-        real_source == real_out
-        or real_source in real_out.parents
-        or real_out in real_source.parents
-    ):
+    if real_out.is_relative_to(real_source) or real_source.is_relative_to(real_out):
         raise ValueError(
             f"{out} and {source} must not be the same folder nor one inside the other: results "
             "would be read as frames, or overwrite them. Name another folder."

@@ -1,4 +1,4 @@
-"""Unseen depth corruptions beside edges: fattening, flying pixels, shadows of the projector.
+"""Unseen depth corruptions next to edges: fattening, flying pixels, shadows of the projector.
 
 Functions have the arguments and results of those in ``corruptions/depth.py``, and treat invalid
 pixels in the same way.

@@ -2,8 +2,8 @@
 
 The callable may be a network for depth completion or denoising, or a filter. Needs no torch.
 
-The rule: a class is constructed once per process, without arguments; any other object is used as it
-is. If the result is a :class:`~mitigate.guards.guard.Guard`, it is the guard. Otherwise it is
+The rule: a class is constructed once per process, without arguments; any other object is used
+directly. If the result is a :class:`~mitigate.guards.guard.Guard`, it is the guard. Otherwise it is
 called with the frames of one instant. ``docs/restoration.md`` has an example.
 
 Importing the module runs its code, so the option comes from the user's own command line or config,

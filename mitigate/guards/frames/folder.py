@@ -27,7 +27,7 @@ _AGAIN = "Fetch the folder again, or train it again with `make train RECIPE=rest
 def write(restorer: Restorer, folder: str | Path, *, half: bool = False) -> Path:
     """Write ``restorer`` into ``folder`` and return the folder.
 
-    The card holds the hash of the weights as they are read back, so ``half`` rounds them first.
+    The card holds the hash of the weights after they are read back, so ``half`` rounds them first.
     """
     with folders.write_folder(folder, "restorer") as draft:
         checkpoint.write_tensors(restorer, draft / checkpoint.WEIGHTS, half=half)
@@ -112,6 +112,6 @@ def fill(restorer: Restorer, folder: str | Path) -> None:
     checkpoint.load_weights(restorer, folder)
     if restorer.hash != content["hash"]:
         raise ValueError(
-            f"The weights in {folder} are not those of its {CARD} ({restorer.hash}, not "
+            f"The weights in {folder} do not match its {CARD} ({restorer.hash}, not "
             f"{content['hash'][:20]}). {_AGAIN}"
         )

@@ -181,7 +181,7 @@ class SensorRestorer(nn.Module):
         if not near:
             warnings.warn(
                 f"More than {BEYOND:.0%} of the depth of a frame reads farther than {self.far:g} m,"
-                " the farthest that this restorer knows: such frames are left as they are. Train "
+                " the farthest that this restorer knows: such frames are not changed. Train "
                 "one on your frames (docs/restoration.md).",
                 stacklevel=3,
             )
