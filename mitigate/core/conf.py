@@ -80,7 +80,7 @@ def main(
     primary: str,
     check: Callable[[], None] | None = None,
     behind: Sequence[str] = (),
-    again: str = "To go on",
+    again: str = "To resume",
 ) -> None:
     """Run the Hydra program of a command and explain its errors.
 

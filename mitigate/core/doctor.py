@@ -9,7 +9,7 @@ import re
 import shutil
 import sys
 from collections import defaultdict
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from importlib.metadata import PackageNotFoundError, requires, version
 from pathlib import Path
 
@@ -19,13 +19,6 @@ LEVELS = {  # vector instructions of x86 processors, in ascending order: require
     "native bf16": {"avx512_bf16"},
     "bf16 matrices (AMX)": {"amx_bf16", "amx_tile"},
 }
-CAPS = {  # environment variable: {value: number of allowed levels}; other values allow all
-    "ONEDNN_MAX_CPU_ISA": {
-        "SSE41": 0, "AVX": 0, "AVX2": 1, "AVX2_VNNI": 1, "AVX2_VNNI_2": 1, "AVX512_CORE": 2,
-        "AVX512_CORE_VNNI": 2, "AVX512_CORE_BF16": 3, "AVX512_CORE_FP16": 3,
-    },
-    "ATEN_CPU_CAPABILITY": {"default": 0, "avx2": 1},
-}  # fmt: skip
 COMPILERS = ("c++", "g++", "clang++")
 OLDEST = (3, 10)  # oldest Python, as in pyproject.toml
 ROOM = 5.0  # GB of disk for the environment, runs and caches (heuristic)
@@ -50,7 +43,7 @@ def _machine() -> list[str]:
     _line("python", platform.python_version())
     _line("system", f"{platform.system()} {platform.machine()}")
     _line("cores", _cores())
-    _line("processor", processor(_flags(), os.environ))
+    _line("processor", processor(_flags()))
     _line("C++ compiler", compiler() or "missing (only torch.compile needs one)")
     free = shutil.disk_usage(".").free / 1e9
     _line("disk", f"{free:.0f} GB free")
@@ -77,24 +70,15 @@ def _flags() -> set[str]:
     return next((set(line.split(":")[1].split()) for line in lines if line[:5] == "flags"), set())
 
 
-def processor(flags: set[str], environment: Mapping[str, str]) -> str:
-    """Describe the levels of a processor with ``flags``, and those that ``environment`` forbids.
+def processor(flags: set[str]) -> str:
+    """Describe the levels of a processor with ``flags``.
 
     Without native bf16, torch emulates bf16, which is several times slower than fp32.
     """
     if not flags:
         return "unknown (no flags in /proc/cpuinfo)"
     has = [name for name, needed in LEVELS.items() if needed <= flags]
-    lacks = [name for name in list(LEVELS)[:3] if name not in has]
-    text = ", ".join([*has, *(f"no {name}" for name in lacks)])
-    for variable, values in CAPS.items():
-        value = environment.get(variable, "")
-        key = value.upper() if variable == "ONEDNN_MAX_CPU_ISA" else value
-        allowed = list(LEVELS)[: values.get(key, len(LEVELS))]
-        forbidden = [name for name in has if name not in allowed]
-        if forbidden:
-            text += f"; {variable}={value} forbids {', '.join(forbidden)}"
-    return text
+    return ", ".join([*has, *(f"no {name}" for name in list(LEVELS)[:3] if name not in has)])
 
 
 def compiler() -> str | None:
@@ -122,7 +106,7 @@ def _packages() -> list[str]:
 
 def _requirements() -> dict[str, list[str]]:
     """Return the packages of each extra of the installed mitigate; "" has those without extra."""
-    extras = defaultdict(list)
+    extras: defaultdict[str, list[str]] = defaultdict(list)
     for requirement in requires("mitigate") or ():
         name, _, marker = requirement.partition(";")
         extra = re.search(r"extra == [\"'](\w+)", marker)

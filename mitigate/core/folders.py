@@ -65,7 +65,7 @@ class Manifest(NamedTuple):
 
 @contextmanager
 def write_folder(folder: str | Path, kind: str) -> Iterator[Path]:
-    """Yield an empty draft whose files replace those of ``folder`` if the block ends without error.
+    """Yield an empty draft whose files replace the ones in ``folder`` if the block succeeds.
 
     Files of the earlier manifest that are not in the draft are deleted; files that no manifest
     lists stay.
@@ -225,7 +225,7 @@ def _check_names(file: Path, names: Iterable[str]) -> None:
 def check(
     folder: str | Path, *, optional: Iterable[str] = (), again: str = AGAIN
 ) -> Manifest | None:
-    """Compare every file of ``folder`` with its manifest; return it, or None if there is none.
+    """Compare every file of ``folder`` with its manifest; return it, or None without a manifest.
 
     Args:
         folder: the folder.

@@ -133,20 +133,20 @@ def delete_leftovers(folder: Path, within: Iterable[str] = ()) -> list[Path]:
     inside = [folder / name for name in within if not (folder / name / NAME).exists()]
     inside = [place for place in inside if not place.is_symlink()]
     drafts = [path for place in (folder, *inside) for path in place.glob(".*.tmp")]
-    return delete_abandoned(drafts, own=True)
+    return delete_abandoned(drafts, ours=True)
 
 
-def delete_abandoned(drafts: Iterable[Path], own: bool = False) -> list[Path]:
+def delete_abandoned(drafts: Iterable[Path], ours: bool = False) -> list[Path]:
     """Delete ``drafts`` whose process has ended, and return them.
 
     Args:
         drafts: Files and folders that may be unfinished files of ``mitigate/core/files.py``.
-        own: Whether those of this process are abandoned too.
+        ours: Also delete drafts of this process.
     """
     abandoned = []
     for path in drafts:
         name = _DRAFT.fullmatch(path.name)
-        if name and ((own and int(name[1]) == os.getpid()) or not is_alive(int(name[1]))):
+        if name and ((ours and int(name[1]) == os.getpid()) or not is_alive(int(name[1]))):
             abandoned.append(path)
     for path in abandoned:
         if path.is_dir() and not path.is_symlink():

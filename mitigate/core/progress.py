@@ -18,7 +18,13 @@ _last_line = 0.0  # time.monotonic() of the last plain line
 
 
 class Progress:
-    """Progress of a job of ``total`` units, of which ``start`` are done; a context manager.
+    """Context manager that reports the progress of a job.
+
+    Args:
+        title: name of the job.
+        total: number of units.
+        unit: name of a unit, in the singular.
+        start: number of units that are already done.
 
     Raises ValueError unless ``start`` is between 0 and ``total``.
     """

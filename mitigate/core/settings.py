@@ -74,11 +74,11 @@ def read_agent(file: Path, target: str, known: Collection[str]) -> dict[str, Any
             f"{file} must hold the settings of an agent (a mapping called agent), as `make train` "
             "writes it. Fetch the folder again, or train again."
         )
-    found_target = settings.pop("_target_", target)
-    if found_target != target:
+    actual = settings.pop("_target_", target)
+    if actual != target:
         raise ValueError(
-            f"{file} belongs to the agent {_short(found_target)}, but the agent here is {target}. "
-            f"Choose the agent of these weights (agent={named(found_target) or '...'}; in Python, "
+            f"{file} belongs to the agent {_short(actual)}, but the agent here is {target}. "
+            f"Choose the agent of these weights (agent={named(actual) or '...'}; in Python, "
             "mitigate.load(folder, agent=...) fills an agent that you built)."
         )
     for key, _ in _entries(settings):
@@ -94,7 +94,7 @@ def read_agent(file: Path, target: str, known: Collection[str]) -> dict[str, Any
 
 
 def named(target: object) -> str:
-    """Return the value of ``agent=`` for the class ``target``; empty if there is none."""
+    """Return the value of ``agent=`` for the class ``target``; empty without one."""
     files = sorted((PACKAGE / "conf" / "agent").glob("*.yaml"))
     for file in files:
         lines = file.read_text(encoding="utf-8").splitlines()

@@ -77,12 +77,12 @@ def count(requested: int | None, jobs: int, worth: int) -> int:
     """Return how many processes to start.
 
     Args:
-        wanted: the requested number; None uses one per core.
+        requested: number from the options; None uses one per core.
         jobs: number of jobs.
         worth: jobs per process below which its start takes longer than it saves.
 
     Raises:
-        ValueError: ``wanted`` is less than 1.
+        ValueError: ``requested`` is less than 1.
     """
     if requested is not None and requested < 1:
         raise ValueError(f"workers must be >= 1 or null (one per core), got {requested}.")

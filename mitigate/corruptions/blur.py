@@ -48,11 +48,11 @@ def _add_taps(total, a, b, c, d, wa, wb, wc, wd):
 
 
 @njit(cache=True)
-def _mix(total, blurred, source, kept, target):
-    """Set target = (total blurred + source kept) / 65536, rounded; reset total to zero."""
+def _mix(total, blurred, source, remainder, target):
+    """Set target = (total blurred + source remainder) / 65536, rounded; reset total to zero."""
     for i in range(target.size):
         mean = _I32(_I32(total[i]) * blurred)
-        target[i] = _I32(_I32(mean + _I32(_I32(source[i]) * kept)) + _I32(32768)) >> 16
+        target[i] = _I32(_I32(mean + _I32(_I32(source[i]) * remainder)) + _I32(32768)) >> 16
         total[i] = 0
 
 

@@ -76,10 +76,25 @@ def farthest_along(row, spare, reach):
 
 
 @njit(cache=True)
-def _keep_valid(source, target):
-    for x in range(source.size):
-        z = source[x]
-        target[x] = z if is_valid(z) else np.float32(0)
+def extremes(view, reach, sign, out):
+    """Set out [H, W] to the maximum of sign z in a square of 2 reach + 1; -inf if none is valid."""
+    height, width = view.shape
+    rows = height + 2 * reach
+    wide = np.full((rows, width + 2 * reach), np.float32(-np.inf), np.float32)
+    spare = np.empty(width + 2 * reach, np.float32)
+    for y in range(height):
+        for x in range(width):
+            z = view[y, x]
+            wide[y + reach, x + reach] = sign * z if is_valid(z) else np.float32(-np.inf)
+        farthest_along(wide[y + reach], spare, reach)
+    have, want = 1, 2 * reach + 1
+    while have < want:
+        step = min(have, want - have)
+        rows -= step
+        for y in range(rows):
+            larger(wide[y, :width], wide[y + step, :width])
+        have += step
+    out[:] = wide[:height, :width]
 
 
 @njit(cache=True)
@@ -95,31 +110,15 @@ def _add_echo(source, far, p, z_max, target):
 
 @njit(cache=True)
 def _echo(views, reach, polynomial, z_max, out):
-    count, height, width = views.shape
-    far = np.empty((height + 2 * reach, width + 2 * reach), np.float32)
-    spare = np.empty(width + 2 * reach, np.float32)
-    for v in range(count):
-        for y in range(height + 2 * reach):
-            row = far[y]
-            for x in range(row.size):
-                row[x] = np.float32(0)
-        for y in range(height):
-            row = far[y + reach]
-            _keep_valid(views[v, y], row[reach : reach + width])
-            farthest_along(row, spare, reach)
-        have, want, rows = 1, 2 * reach + 1, height + 2 * reach
-        while have < want:
-            step = min(have, want - have)
-            rows -= step
-            for y in range(rows):
-                larger(far[y, :width], far[y + step, :width])
-            have += step
-        for y in range(height):
-            _add_echo(views[v, y], far[y, :width], polynomial, z_max, out[v, y])
+    far = np.empty_like(views[0])
+    for v in range(views.shape[0]):
+        extremes(views[v], reach, np.float32(1), far)
+        for y in range(views.shape[1]):
+            _add_echo(views[v, y], far[y], polynomial, z_max, out[v, y])
 
 
 def multipath(views: np.ndarray, severity: float, key: Key, sensor: DepthSensor) -> np.ndarray:
-    """Over-estimate depth beside farther surfaces, like a second light path."""
+    """Over-estimate depth next to farther surfaces, like a second light path."""
     reach = max(1, round(ECHO_REACH * min(views.shape[1:])))
     out = np.empty_like(views)
     _echo(views, reach, echo_polynomial(severity), np.float32(sensor.z_max), out)

@@ -248,26 +248,7 @@ def _check_earlier(out: Path, settings: dict, episodes: dict[str, list[str]]) ->
                 "changed. Name another folder, or delete this one. (Frames may be added at the "
                 "end.)"
             )
-    counts = {name: count for name, (count, _) in digests.items()}
-    _check_added(out, str(settings["format"]), episodes, counts)
     return checksums
-
-
-def _check_added(
-    out: Path, form: str, episodes: dict[str, list[str]], counts: dict[str, int]
-) -> None:
-    """Raise ValueError for a new frame with the same name as the result of an earlier JPEG."""
-    sources: dict[str, str] = {}
-    for name, frames in episodes.items():
-        for frame in frames[: counts.get(name, 0)]:
-            sources.setdefault(_output(Path(frame), form).as_posix(), frame)
-    for name, frames in episodes.items():
-        for frame in frames[counts.get(name, 0) :]:
-            if frame in sources:
-                raise ValueError(
-                    f"{frame} was added after {out} was made, where {sources[frame]} has taken its "
-                    "name. Rename it, or name another folder with format=same."
-                )
 
 
 def _digest(names: list[str]) -> str:
@@ -293,11 +274,7 @@ def _check_folders(source: Path, out: Path) -> None:
         raise ValueError(f"{out} is a file. Name a folder to write to.")
     real_source = source.resolve()
     real_out = out.resolve()
-    if (
-        real_source == real_out
-        or real_source in real_out.parents
-        or real_out in real_source.parents
-    ):
+    if real_out.is_relative_to(real_source) or real_source.is_relative_to(real_out):
         raise ValueError(
             f"{out} and {source} must not be the same folder nor one inside the other: results "
             "would be read as frames, or overwrite them. Name another folder."

@@ -200,7 +200,7 @@ def make_plan(source: Path, out: Path | None, kind: str, episode: str) -> Plan:
     Args:
         source: The folder, searched recursively.
         out: Folder of the results, which is skipped even if a link leads there; None: none.
-        wanted: "rgb" or "depth".
+        kind: "rgb" or "depth".
         episode: "folder" (each folder is an episode) or "all" (one episode).
     """
     plan = Plan()

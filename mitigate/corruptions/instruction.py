@@ -74,7 +74,7 @@ def corrupt_instruction(
     check_options(split, mask_token, tagger)
     if name == "white_box":
         raise ValueError(
-            "'white_box' leaves the instruction as it is and corrupts the agent's system prompt: "
+            "'white_box' changes the agent's system prompt, not the instruction: "
             "call inject_system_prompt(prompt, severity, key). For an agent without a prompt it is "
             "not applicable; 'black_box' puts the same sentences in front of the instruction."
         )

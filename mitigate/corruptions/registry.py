@@ -1,7 +1,7 @@
-"""All corruptions: the standard suite, the unseen ones, and those of installed packages.
+"""All corruptions: the standard suite, unseen corruptions, and plugins (installed packages).
 
-Every result row contains the version of the suite. Unseen corruptions and those of installed
-packages have separate versions, and are used only where they are named. Two corruptions at once are
+Every result row contains the version of the suite. Unseen corruptions and plugins have
+separate versions, and are used only where they are named. Two corruptions at once are
 a pair, such as ``low_light+missing_data``: the first is applied first, and each makes the same
 draws as alone.
 """
@@ -20,10 +20,10 @@ _record = partial(
     Record, modality="instruction", apply=None, episode="all draws", source="NavTrust"
 )
 INSTRUCTIONS = (  # applied by instruction.py
-    _record("friendly", severity="probability that it is told in a friendly manner"),
-    _record("novice", severity="probability that it is told as by a novice"),
-    _record("professional", severity="probability that it is told as by a professional"),
-    _record("formal", severity="probability that it is told in a formal manner"),
+    _record("friendly", severity="probability of a rewrite in a friendly style"),
+    _record("novice", severity="probability of a rewrite in the style of a novice"),
+    _record("professional", severity="probability of a rewrite in a professional style"),
+    _record("formal", severity="probability of a rewrite in a formal style"),
     _record("capitalize", severity="share of words in capitals", label="Capitalizing"),
     _record("mask", severity="share of words that are hidden", label="Masking"),
     _record("black_box", severity="share of misleading prefixes", label="Black-box prompt"),
@@ -41,15 +41,7 @@ UNSEEN = {
 }
 BROAD = {record.name: record for record in broad.RECORDS}  # random compositions for training
 AND = "+"  # between the names of a pair
-HEAD = (
-    "name",
-    "corrupts",
-    "severity s",
-    "kept in an episode",
-    "drawn each frame",
-    "source",
-    "suite",
-)
+HEAD = ("name", "corrupts", "severity s", "per episode", "per frame", "source", "suite")
 
 
 @lru_cache(maxsize=1)

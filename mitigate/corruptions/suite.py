@@ -26,8 +26,7 @@ def rgb_views(frame: np.ndarray) -> np.ndarray:
         raise ValueError(
             f"RGB frames must be uint8 in 0-255, got {frame.dtype}. Convert them: "
             "np.rint(frame * 255).astype(np.uint8) if they are in 0-1, "
-            "np.rint(frame).astype(np.uint8) if they are in 0-255. Float frames are not supported, "
-            "because pipelines such as CLIP's divide by 255 only for uint8."
+            "np.rint(frame).astype(np.uint8) if they are in 0-255."
         )
     if frame.ndim not in (3, 4) or frame.shape[-1] != 3 or 0 in frame.shape:
         raise ValueError(
@@ -42,9 +41,9 @@ def depth_views(frame: np.ndarray, sensor: DepthSensor, name: str) -> np.ndarray
     """Return the frame as contiguous float32 [V, H, W]; ValueError for RGB and millimetres too."""
     if frame.ndim > 2 and frame.shape[-1] == 3:
         raise ValueError(
-            f"{name} needs a depth frame, got one that looks like RGB (the last axis of "
-            f"{frame.shape} is 3). Corruptions of RGB: {', '.join(registry.known('rgb'))}. For "
-            "depth with 3 columns, add a last axis of 1: frame[..., None]."
+            f"{name} needs a depth frame, but the last axis of {frame.shape} is 3, as in "
+            f"RGB. Corruptions of RGB: {', '.join(registry.known('rgb'))}. For depth with 3 "
+            "columns, add a last axis of 1: frame[..., None]."
         )
     if frame.dtype != np.float32:
         raise ValueError(
@@ -91,7 +90,7 @@ SENSOR = DepthSensor()
 def check_name(name: str, allowed: tuple[str, ...] | None = None) -> str:
     """Return ``name``, or raise ValueError with the nearest allowed name.
 
-    By default all corruptions of frames are allowed, with those of installed packages.
+    By default all corruptions of frames are allowed, including plugins.
     """
     if name in (NAMES if allowed is None else allowed):
         return name

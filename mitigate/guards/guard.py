@@ -1,4 +1,4 @@
-"""The contract of guards: what stands between inputs and an agent at run time.
+"""The contract of guards, which change the inputs of an agent at run time.
 
 A guard may change the instruction of an episode (``begin``), the frames of an observation
 (``observe``), or the agent itself while an episode runs (``attach``). Each has a default that

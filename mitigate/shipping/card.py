@@ -43,7 +43,7 @@ def facts(cfg: dict[str, Any], agent: Any) -> dict[str, Any]:
 
     Raises:
         FileNotFoundError: The base or a teacher of the run is missing.
-        ValueError: An entry of ``cfg`` is not one that a training writes.
+        ValueError: ``cfg`` has an entry that no training writes.
     """
     _check(cfg)
     teachers = sorted({path for path in _teachers(cfg.get("stages")) if path != "start"})
@@ -140,10 +140,10 @@ def _entry(section: Section) -> dict[str, Any]:
         "rule": grid.rule,
         "episodes": len(grid.episodes),
         "seeds": list(grid.seeds[column, section.severity]),
-        "clean": {metric: _interval(found) for (_, metric), found in section.clean.items()},
+        "clean": {metric: _interval(value) for (_, metric), value in section.clean.items()},
         "PRS": {
-            f"PRS-{metric} ({_heading(section, block, found)})": _interval(found.estimate)
-            for (_, block, metric), found in section.retained.items()
+            f"PRS-{metric} ({_heading(section, block, value)})": _interval(value.estimate)
+            for (_, block, metric), value in section.retained.items()
         },
         "SR": {
             name: _number(section.value(column, name))
@@ -211,8 +211,8 @@ def _span(severity: float | list[float]) -> str:
 
 
 def _table(entry: dict[str, Any]) -> str:
-    rows = [[f"Clean {name}", _cell(found)] for name, found in entry["clean"].items()]
-    rows += [[name, _cell(found)] for name, found in entry["PRS"].items()]
+    rows = [[f"Clean {name}", _cell(value)] for name, value in entry["clean"].items()]
+    rows += [[name, _cell(value)] for name, value in entry["PRS"].items()]
     rows += [[f"SR, {label(name)}", _cell([sr])] for name, sr in entry["SR"].items()]
     table = markdown_table(["measure", "value, 95 % interval"], rows)
     gaps = f"\n\nNot complete: {', '.join(entry['incomplete'])}." if entry["incomplete"] else ""
@@ -333,28 +333,16 @@ def front_matter(card: dict[str, Any]) -> str:
     results = [_result(entry) for entry in card["metrics"]]
     if results:
         fields["model-index"] = [{"name": card["name"], "results": results}]
-    text = yaml.dump(fields, Dumper=_Quoting, sort_keys=False, allow_unicode=True)
+    text = yaml.safe_dump(fields, sort_keys=False, allow_unicode=True)
     return f"---\n{text}---\n"
-
-
-class _Quoting(yaml.SafeDumper):
-    """Quote texts that are numbers in YAML 1.2 (the hub) but not in YAML 1.1 (PyYAML): 1e3, 08."""
-
-
-def _represent(dumper: yaml.SafeDumper, text: str) -> yaml.ScalarNode:
-    style = "'" if re.match(r"[-+.]*\d", text) else None
-    return dumper.represent_scalar("tag:yaml.org,2002:str", text, style)
-
-
-_Quoting.add_representer(str, _represent)
 
 
 def _result(entry: dict[str, Any]) -> dict[str, Any]:
     """Return one table of a card as a result of ``model-index``."""
     severity = f"severity {entry['severity']:g}"
-    found = [(f"Clean {metric}", value) for metric, value in entry["clean"].items()]
-    found += entry["PRS"].items()
-    metrics = [_metric(title, *value) for title, value in found if value[0] is not None]
+    intervals = [(f"Clean {metric}", value) for metric, value in entry["clean"].items()]
+    intervals += entry["PRS"].items()
+    metrics = [_metric(title, *value) for title, value in intervals if value[0] is not None]
     metrics += [
         _metric(f"SR, {label(name)}", value, None, None)
         for name, value in entry["SR"].items()

@@ -92,7 +92,7 @@ def export(
         run: folder of a finished run.
         name: name of the new folder.
         out: folder that contains it.
-        rows: row files or folders with the agent's evaluation; those of the run are found.
+        rows: row files or folders with the agent's evaluation, in addition to the run's.
         overwrite: replace ``out/name`` if that is a hardened folder.
         onnx: also write the two networks as ONNX files.
         walks: check of an agent of another class; its folder has no programs.
@@ -159,7 +159,7 @@ def add_programs(folder: Path) -> Path:
     """Write ``program.pt2`` of the hardened ``folder`` again and list it in the card.
 
     Returns:
-        The file. Its outputs on the probe were compared with those of the agent.
+        The file. Its outputs on the probe equal the outputs of the agent.
 
     Raises:
         FileNotFoundError: ``folder`` is not a complete hardened folder.
@@ -217,7 +217,7 @@ def check_outputs(folder: str, expected: str) -> None:
         folder: the hardened folder.
         expected: safetensors file of the outputs on the probe.
     """
-    expected_outputs = _open(load_file(expected))
+    expected_outputs = load_file(expected)
     agent = loading.load_hardened(folder)
     size = json.loads((Path(folder) / loading.INPUTS).read_text(encoding="utf-8"))["size"]
     program = programs.load_programs(Path(folder) / loading.PROGRAM)
@@ -339,20 +339,22 @@ def _only_adapters_trained(cfg: dict[str, Any], agent: Any) -> bool:
 
 
 def _rows(run: Path, rows: list[Path | str], agents: set[str]) -> list[Row]:
-    """The rows of the weights ``agents``: the run's own, and those given. Raises ValueError if none
-    of these are of them."""
+    """Return the rows of the weights ``agents``, from the run and from the files ``rows``.
+
+    Raises ValueError if ``rows`` holds none of them.
+    """
     try:
-        own = result_rows.gather([run])
+        run_rows = result_rows.gather([run])
     except FileNotFoundError:
-        own = []
-    given = result_rows.gather(rows) if rows else []
-    if rows and not any(weights_of(row) in agents for row in given):
+        run_rows = []
+    other_rows = result_rows.gather(rows) if rows else []
+    if rows and not any(weights_of(row) in agents for row in other_rows):
         raise ValueError(
-            f"The rows given are of {', '.join(sorted({weights_of(row) for row in given}))}, not "
-            f"of this agent ({', '.join(sorted(agents))}). Evaluate it: `make evaluate "
+            f"The rows belong to {', '.join(sorted({weights_of(row) for row in other_rows}))}, not "
+            f"to this agent ({', '.join(sorted(agents))}). Evaluate it: `make evaluate "
             f'ARGS="checkpoint={run}/agent"`.'
         )
-    return list(_of_one_agent(own, given, agents))
+    return list(_of_one_agent(run_rows, other_rows, agents))
 
 
 def _of_one_agent(run_rows: list[Row], other_rows: list[Row], weights: set[str]) -> Iterator[Row]:
@@ -379,7 +381,7 @@ def _reload(draft: Path, outputs: dict[str, Tensor]) -> None:
     """Run :func:`check_outputs` in a new process; raise ValueError if it fails."""
     with tempfile.TemporaryDirectory() as folder:
         expected = Path(folder) / "expected.safetensors"
-        save_file(_open(outputs), expected)
+        save_file({name: value.contiguous() for name, value in outputs.items()}, expected)
         _run_apart("check_outputs", "outputs", draft, expected)
 
 
@@ -400,14 +402,14 @@ def _run_apart(check: str, what: str, *paths: Path) -> None:
     the same ``what``.
     """
     root = str(Path(__file__).resolve().parents[2])
-    done = subprocess.run(
+    process = subprocess.run(
         [sys.executable, "-c", _RUN.format(check), *map(str, paths)],
         env={**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, (root, *sys.path)))},
         capture_output=True,
         text=True,
     )
-    if done.returncode:
-        last = (done.stderr.strip().splitlines() or ["no message"])[-1]
+    if process.returncode:
+        last = (process.stderr.strip().splitlines() or ["no message"])[-1]
         raise ValueError(
             f"The folder does not reload to the same {what} ({last}). Nothing was written."
         )
@@ -425,10 +427,6 @@ def check_walks(draft: str, check_file: str, expected: str) -> None:
     target = json.loads(Path(expected).read_text(encoding="utf-8"))
     if measures != target:
         raise ValueError(f"its episodes gave {measures}, expected {target}")
-
-
-def _open(tensors: dict[str, Tensor]) -> dict[str, Tensor]:
-    return {name: tensor.contiguous() for name, tensor in tensors.items()}
 
 
 def _write_json(file: Path, value: Any) -> None:

@@ -198,7 +198,7 @@ def probe(agent: TopologicalAgent, size: int, seed: int = 0) -> dict[str, Tensor
 def outputs(programs: dict[str, Any], probe_inputs: dict[str, Tensor]) -> dict[str, Tensor]:
     """Return the outputs of both networks, eager or exported, on a probe, by name.
 
-    ``decide`` gets the view tokens of ``perceive``, not those of the probe.
+    ``decide`` gets the view tokens of ``perceive``, not the ones in the probe.
     """
     results: dict[str, Tensor] = {}
     for name in (PERCEIVE, DECIDE):
@@ -326,8 +326,8 @@ def _free(shape: str) -> dict[int, Any]:
 def save_onnx(agent: TopologicalAgent, size: int, folder: Path, most: float) -> list[Path]:
     """Write ``perceive.onnx`` and ``decide.onnx`` to ``folder`` and return their paths.
 
-    Weights are float32; the free dimensions are those of ``export_programs``. Raises ValueError if
-    the extra is not installed, and as :func:`check_onnx`.
+    Weights are float32; the free dimensions are the same as in ``export_programs``. Raises
+    ValueError if the extra is not installed, and as :func:`check_onnx`.
     """
     try:
         import onnx  # noqa: F401
@@ -358,7 +358,7 @@ def save_onnx(agent: TopologicalAgent, size: int, folder: Path, most: float) -> 
 
 
 def check_onnx(folder: Path, agent: TopologicalAgent, size: int, most: float) -> None:
-    """Raise ValueError if outputs of the ONNX files in ``folder`` differ from those of the agent.
+    """Raise ValueError if outputs of the ONNX files in ``folder`` differ from the agent's.
 
     The probe is used with all of its decisions and with only its first one. Differences up to
     ``most`` are allowed.

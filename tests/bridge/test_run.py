@@ -350,7 +350,7 @@ def test_run_says_how_to_resume_after_a_signal(tmp_path):
             break
         except subprocess.TimeoutExpired:
             continue
-    assert process.returncode == 130 and "SIGINT: stopped. To go on: " in said
+    assert process.returncode == 130 and "SIGINT: stopped. To resume: " in said
     assert f"suite=clean -- {shlex.join(agent)}" in said
 
 

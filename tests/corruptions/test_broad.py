@@ -5,10 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from mitigate.corruptions import NAMES, DepthSensor, Key, Schedule, broad, corrupt
+from mitigate.corruptions import NAMES, DepthSensor, Key, Schedule, corrupt
 from mitigate.corruptions.broad import depth, rgb
 from mitigate.corruptions.broad.composition import stream
 from mitigate.corruptions.registry import BROAD, broad_name, modality, names, unseen_names, version
+from tools.pages.gallery import primitives
 
 KEYS = [Key(0, f"episode-{i}", 2) for i in range(60)]
 
@@ -82,7 +83,7 @@ def test_what_a_draw_is_told_to_do_is_what_it_does(name, panorama, monkeypatch):
     for key in KEYS[:20]:
         called.clear()
         corrupt(frame_for(name, panorama), name, 0.8, key=key)
-        assert called == broad.primitives(name, key) and called
+        assert called == primitives(name, key) and called
 
 
 @pytest.mark.parametrize("primitive", rgb.PRIMITIVES, ids=lambda p: p.__name__)

@@ -262,9 +262,9 @@ def test_fingerprint_of_a_callable_follows_source_and_version(tmp_path, monkeypa
     [
         ("not_a_dict", "returned a list, not a dict. Return a dict of the changed frames"),
         ("wrong_key", "returned an entry 'sound', but it was given rgb, depth"),
-        ("wrong_type", "returned rgb as a list, not a numpy array"),
-        ("wrong_shape", r"returned rgb of shape \[2, 2, 3\], not \[4, 4, 3\]"),
-        ("wrong_dtype", "returned rgb of dtype float32, not uint8"),
+        ("wrong_type", r"returned rgb as a list, not uint8 \[4, 4, 3\]"),
+        ("wrong_shape", r"returned rgb as uint8 \[2, 2, 3\], not uint8 \[4, 4, 3\]"),
+        ("wrong_dtype", r"returned rgb as float32 \[4, 4, 3\], not uint8"),
         ("not_a_number", "returned depth with NaN or infinity; 0 means no reading"),
         ("broken", f"restore={FILTERS}:broken failed with RuntimeError: out of memory"),
     ],

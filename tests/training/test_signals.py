@@ -104,7 +104,7 @@ def test_interrupted_training_saves_and_resumes_to_the_same_result(tmp_path, num
     ended = run(tmp_path, int(number))
     assert ended.returncode == status, ended.stderr
     assert "saved at step 4" in ended.stdout
-    assert "To go on:" in ended.stderr and "program.py" in ended.stderr
+    assert "To resume:" in ended.stderr and "program.py" in ended.stderr
     assert "Traceback" not in ended.stderr
     assert [path.name for path in (tmp_path / "run").glob("step-*.pt")] == ["step-00000004.pt"]
     found = train(tmp_path, 0)

@@ -98,7 +98,7 @@ class Training:
         problem = problem or self.check_resumed(command)
         if problem or command.process.returncode == 0 or number == signal.SIGKILL:
             return problem
-        if "To go on: " in command.output():
+        if "To resume: " in command.output():
             return ""
         return f"it does not say how to resume: {command.last_lines()}"
 

@@ -22,7 +22,10 @@ from mitigate.core.files import write_bytes
 from mitigate.core.observation import DEPTH, Z_MAX
 from mitigate.core.observation import RGB as RGB_ENTRY
 from mitigate.core.pictures import depth_picture
-from mitigate.corruptions import broad, registry
+from mitigate.corruptions import registry
+from mitigate.corruptions.broad import composition
+from mitigate.corruptions.broad import depth as broad_depth
+from mitigate.corruptions.broad import rgb as broad_rgb
 from mitigate.corruptions.keying import Key
 from mitigate.corruptions.record import TEST, VALIDATION
 from mitigate.corruptions.suite import NAMES, corrupt
@@ -104,7 +107,7 @@ def contact_sheet(
     for row, name in enumerate(names):
         top, again = TITLE + row * high, names[:row].count(name)
         drawn = replace(key, episode=f"{key.episode} {again}") if again else key
-        lines = [name, *broad.primitives(name, drawn)] if name in registry.BROAD else [name]
+        lines = [name, *primitives(name, drawn)] if name in registry.BROAD else [name]
         for place, line in enumerate(lines):
             _write(sheet, line, 6, top + high // 2 + LINE * place - LINE * (len(lines) - 1) // 2)
         for column, severity in enumerate(severities):
@@ -116,6 +119,13 @@ def contact_sheet(
     _, encoded = cv2.imencode(path.suffix.lower(), sheet[..., ::-1], quality)
     write_bytes(path, encoded.tobytes())
     return sheet
+
+
+def primitives(name: str, key: Key) -> list[str]:
+    """Return the primitives that ``broad_rgb`` or ``broad_depth`` applies in this episode."""
+    module = {"broad_rgb": broad_rgb, "broad_depth": broad_depth}[name]
+    chosen, _ = composition.drawn(key, name, module.PRIMITIVES)
+    return [primitive.__name__.replace("_", " ") for primitive in chosen]
 
 
 def rendered_frame(seed: int, size: int) -> tuple[np.ndarray, np.ndarray]:

@@ -32,15 +32,6 @@ def broad_depth(views: np.ndarray, severity: float, key: Key, sensor: DepthSenso
     return depth.compose(views, severity, key, sensor)
 
 
-def primitives(name: str, key: Key) -> list[str]:
-    """Return the primitives that ``broad_rgb`` or ``broad_depth`` applies in this episode."""
-    from mitigate.corruptions.broad import composition, depth, rgb
-
-    module = {"broad_rgb": rgb, "broad_depth": depth}[name]
-    chosen, _ = composition.drawn(key, name, module.PRIMITIVES)
-    return [primitive.__name__.replace("_", " ") for primitive in chosen]
-
-
 RECORDS = (
     Record(
         name="broad_rgb",

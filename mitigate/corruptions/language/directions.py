@@ -38,10 +38,10 @@ _AROUND = re.compile(
 )
 
 
-def about_turns(found: list[Token]) -> dict[int, int]:
+def about_turns(tokens: list[Token]) -> dict[int, int]:
     """Return {first index: last index} of every phrase that means turning around."""
     text, starts = "", {}
-    for index, token in enumerate(found):
+    for index, token in enumerate(tokens):
         starts[len(text)] = index
         text += token.lower + " "
     spans = {}
@@ -51,34 +51,34 @@ def about_turns(found: list[Token]) -> dict[int, int]:
     return spans
 
 
-def directions(found: list[Token], turned: dict[int, int]) -> list[str]:
+def directions(tokens: list[Token], turned: dict[int, int]) -> list[str]:
     """Return the directions in order, without repetitions that no movement separates.
 
     ``turned`` is the result of :func:`about_turns`.
     """
     names: list[str] = []
     last = skip = -1
-    for place, token in enumerate(found):
+    for place, token in enumerate(tokens):
         name = "around" if place in turned else None
         if name is None and place > skip and token.is_word:
-            name = _direction(found, place)
+            name = _direction(tokens, place)
         if name is None:
             continue
         skip = turned.get(place, skip)
-        if not (names and names[-1] == name and _repeats(name, found[last + 1 : place])):
+        if not (names and names[-1] == name and _repeats(name, tokens[last + 1 : place])):
             names.append(name)
         last = place
     return names
 
 
-def turns(found: list[Token], turned: dict[int, int]) -> int:
+def turns(tokens: list[Token], turned: dict[int, int]) -> int:
     """Count the turns, by a turning verb or by phrases such as "take a left"."""
     count = len(turned)
     inside = {place for first, last in turned.items() for place in range(first, last + 1)}
-    for place, token in enumerate(found):
+    for place, token in enumerate(tokens):
         if place in inside:
             continue
-        before = [t.lower for t in found[max(0, place - 4) : place]]
+        before = [t.lower for t in tokens[max(0, place - 4) : place]]
         if token.lower in TURN_VERBS and token.tag == "VERB":
             count += 1
         elif token.lower in ("left", "right") and token.tag != "ADJ":
@@ -94,8 +94,8 @@ def _repeats(name: str, between: list[Token]) -> bool:
     return name in ("stop", "straight") and not moved
 
 
-def _direction(found: list[Token], place: int) -> str | None:
-    word, before, after = found[place].lower, at(found, place - 1), at(found, place + 1)
+def _direction(tokens: list[Token], place: int) -> str | None:
+    word, before, after = tokens[place].lower, at(tokens, place - 1), at(tokens, place + 1)
     if word in _LEFT:
         is_past = before in ("have", "has", "you've") or (
             before == "you" and after in ("the", "your")
@@ -109,35 +109,35 @@ def _direction(found: list[Token], place: int) -> str | None:
     if word in _UP or word in _DOWN:
         return "up" if word in _UP else "down"
     if word in ("climb", "climbs", "climbing"):
-        return None if "down" in (after, at(found, place + 2)) else "up"
+        return None if "down" in (after, at(tokens, place + 2)) else "up"
     if word in ("up", "down"):
-        return _vertical(found, place, before)
-    return "stop" if _stops(found, place) else None
+        return _vertical(tokens, place, before)
+    return "stop" if _stops(tokens, place) else None
 
 
-def _vertical(found: list[Token], place: int, before: str) -> str | None:
+def _vertical(tokens: list[Token], place: int, before: str) -> str | None:
     """Return "up" or "down" if it changes the level; None if it means along or near."""
     if before in _NO_CLIMB:
         return None
-    for token in found[place + 1 : place + 7]:
+    for token in tokens[place + 1 : place + 7]:
         if token.lower in _LEVELS:
-            return found[place].lower
+            return tokens[place].lower
         if token.lower not in _FILLERS and token.tag != "ADJ":
             along = token.is_word and token.tag != "VERB" and token.lower not in ("and", "then")
-            return None if along else found[place].lower
-    return found[place].lower
+            return None if along else tokens[place].lower
+    return tokens[place].lower
 
 
-def _stops(found: list[Token], place: int) -> bool:
-    word, before = found[place].lower, [t.lower for t in found[max(0, place - 3) : place]]
+def _stops(tokens: list[Token], place: int) -> bool:
+    word, before = tokens[place].lower, [t.lower for t in tokens[max(0, place - 3) : place]]
     if word in ("done", "arrived", "finished"):
         return not bag("you you're you've are").isdisjoint(before)
     return word in STOPS or (word == "rest" and before[-2:] == ["come", "to"])
 
 
-def at(found: list[Token], place: int) -> str:
+def at(tokens: list[Token], place: int) -> str:
     """Return the word at an index in lower case, "" outside the text."""
-    return found[place].lower if 0 <= place < len(found) else ""
+    return tokens[place].lower if 0 <= place < len(tokens) else ""
 
 
 _COUNTED = ("two", "three", "four", "five", "six", "seven", "eight", "nine", "ten")
@@ -157,19 +157,19 @@ _UNIT: dict[str, str] = WORDS["units"]
 _LONE_UNITS = _UNITS - bag("step steps m cm ft foot feet yard yards")
 
 
-def quantities(found: list[Token], turned: dict[int, int]) -> list[str]:
+def quantities(tokens: list[Token], turned: dict[int, int]) -> list[str]:
     """Return the numbers, ordinals and distances in order: "two", "first", "two step", "meter".
 
     ``turned`` is the result of :func:`about_turns`, whose 180 degrees are not a quantity.
     """
     inside = {place for first, last in turned.items() for place in range(first, last + 1)}
     names = []
-    for place, token in enumerate(found):
-        word, before, after = token.lower, at(found, place - 1), at(found, place + 1)
+    for place, token in enumerate(tokens):
+        word, before, after = token.lower, at(tokens, place - 1), at(tokens, place + 1)
         if place in inside:
             continue
         if word in _ORDINALS:
-            if not _orders_sentences(found, place):
+            if not _orders_sentences(tokens, place):
                 names.append(_ORDINALS[word])
         elif word in _NUMBERS or word.isdecimal():
             unit = f" {_unit(after)}" if after in _UNITS else ""
@@ -183,9 +183,9 @@ def _unit(word: str) -> str:
     return _UNIT.get(word, word.removesuffix("s"))
 
 
-def _orders_sentences(found: list[Token], place: int) -> bool:
+def _orders_sentences(tokens: list[Token], place: int) -> bool:
     """Return whether "first" or "last" orders sentences ("first, turn left"; "at last")."""
-    before, after = at(found, place - 1), found[place + 1] if place + 1 < len(found) else None
+    before, after = at(tokens, place - 1), tokens[place + 1] if place + 1 < len(tokens) else None
     loose = after is None or not after.is_word or after.tag in ("VERB", "PRON", "ADV")
     begins = place == 0 or before in SENTENCE_ENDS or before in ("and", ",", "at")
     return begins and loose

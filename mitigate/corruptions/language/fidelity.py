@@ -66,7 +66,7 @@ def facts(text: str) -> Facts:
 
 
 def check(original: str, rewritten: str) -> list[str]:
-    """Return the changes of meaning from ``original`` to ``rewritten``; empty if there are none.
+    """Return the changes of meaning from ``original`` to ``rewritten``; empty without one.
 
     Every entry begins with its kind and a colon: "directions", "landmark lost", "landmark
     invented", "landmark order", "number lost", "number invented", "compass lost", "compass
@@ -76,16 +76,17 @@ def check(original: str, rewritten: str) -> list[str]:
     directions are. Landmarks may be reordered within a clause.
     """
     before, after = _read(original), _read(rewritten)
-    (old, known), (new, kept) = (before.facts, before.words), (after.facts, after.words)
+    old, old_words = before.facts, before.words
+    new, new_words = after.facts, after.words
     changes = []
     if old.directions != new.directions:
         changes.append(f"directions: {_listed(old.directions)} -> {_listed(new.directions)}")
-    changes += _changes("landmark", old.landmarks, new.landmarks, known, kept)
+    changes += _changes("landmark", old.landmarks, new.landmarks, old_words, new_words)
     clauses = [before.clause[name] for name in after.clause if name in before.clause]
     if clauses != sorted(clauses):
         changes.append(f"landmark order: {_listed(old.landmarks)} -> {_listed(new.landmarks)}")
     changes += _counted("number", old.numbers, new.numbers)
-    changes += _changes("compass", old.compass, new.compass, known, kept)
+    changes += _changes("compass", old.compass, new.compass, old_words, new_words)
     changes += _counted("attribute", old.attributes, new.attributes)
     changes += _changes("relation", old.relations, new.relations, old.relations, new.relations)
     if old.denials != new.denials:
@@ -97,12 +98,14 @@ def _changes(
     kind: str,
     old: Iterable[str],
     new: Iterable[str],
-    known: Iterable[str],
-    kept: Iterable[str],
+    old_words: Iterable[str],
+    new_words: Iterable[str],
 ) -> list[str]:
-    """List names of ``old`` that are not in ``kept``, and of ``new`` that are not in ``known``."""
-    lost = [f"{kind} lost: {name}" for name in dict.fromkeys(old) if name not in kept]
-    return lost + [f"{kind} invented: {name}" for name in dict.fromkeys(new) if name not in known]
+    """List names of ``old`` that ``new_words`` lacks, and of ``new`` that ``old_words`` lacks."""
+    lost = [f"{kind} lost: {name}" for name in dict.fromkeys(old) if name not in new_words]
+    return lost + [
+        f"{kind} invented: {name}" for name in dict.fromkeys(new) if name not in old_words
+    ]
 
 
 def _counted(kind: str, old: Sequence[str], new: Sequence[str]) -> list[str]:
@@ -140,27 +143,27 @@ def _read(text: str) -> _Reading:
     )
 
 
-def _clauses(found: list[Token]) -> list[int]:
+def _clauses(tokens: list[Token]) -> list[int]:
     """Return the clause number of every token; a clause is one command."""
     ends = [
         token.lower in SENTENCE_ENDS
         or token.lower == "then"
         or (
             token.lower in ("and", ",")
-            and index + 1 < len(found)
-            and found[index + 1].tag == "VERB"
+            and index + 1 < len(tokens)
+            and tokens[index + 1].tag == "VERB"
         )
-        for index, token in enumerate(found)
+        for index, token in enumerate(tokens)
     ]
-    return [0, *accumulate(ends)][: len(found)]
+    return [0, *accumulate(ends)][: len(tokens)]
 
 
-def _relations(found: list[Token]) -> list[str]:
+def _relations(tokens: list[Token]) -> list[str]:
     """Return the relations in order; "pass through" means "through", not "past"."""
     return [
         _RELATIONS[token.lower]
-        for place, token in enumerate(found)
-        if token.lower in _RELATIONS and at(found, place + 1) != "through"
+        for place, token in enumerate(tokens)
+        if token.lower in _RELATIONS and at(tokens, place + 1) != "through"
     ]
 
 
@@ -168,25 +171,25 @@ def _same(token: Token) -> str:
     return _SAME.get(token.lower, token.lower)
 
 
-def _names(found: list[Token]) -> list[tuple[int, str, bool]]:
+def _names(tokens: list[Token]) -> list[tuple[int, str, bool]]:
     """Return (index, canonical name, is a landmark) of every word or known phrase."""
     names: list[tuple[int, str, bool]] = []
     place = 0
-    while place < len(found):
-        phrase, length = _phrase(found, place)
+    while place < len(tokens):
+        phrase, length = _phrase(tokens, place)
         if phrase:
             names.append((place, phrase, True))
         else:
-            name = landmarks.normal(found[place].lower)
-            names.append((place, name, _is_landmark(found, place)))
+            name = landmarks.normal(tokens[place].lower)
+            names.append((place, name, _is_landmark(tokens, place)))
         place += length
     return names
 
 
-def _phrase(found: list[Token], place: int) -> tuple[str, int]:
+def _phrase(tokens: list[Token], place: int) -> tuple[str, int]:
     """Return the canonical name and the length of the longest known phrase at ``place``."""
-    for length in range(min(landmarks.LONGEST, len(found) - place), 1, -1):
-        words = [token.lower for token in found[place : place + length]]
+    for length in range(min(landmarks.LONGEST, len(tokens) - place), 1, -1):
+        words = [token.lower for token in tokens[place : place + length]]
         for last in (words[-1], words[-1].removesuffix("s")):
             name = landmarks.PHRASES.get((*words[:-1], last))
             if name:
@@ -194,14 +197,14 @@ def _phrase(found: list[Token], place: int) -> tuple[str, int]:
     return "", 1
 
 
-def _is_landmark(found: list[Token], place: int) -> bool:
-    token = found[place]
+def _is_landmark(tokens: list[Token], place: int) -> bool:
+    token = tokens[place]
     word = token.lower
     if token.tag not in ("NOUN", "PROPN") or word in landmarks.PLAIN or len(word) < 2:
         return False
     if word in ("step", "steps"):  # a distance, unless they are stairs
         return not any(
             t.tag == "NUM" or t.lower in ("a", "few", "couple", "more", "small")
-            for t in found[max(0, place - 3) : place]
+            for t in tokens[max(0, place - 3) : place]
         )
     return _same(token) not in ATTRIBUTES and not COMPASS.match(word)

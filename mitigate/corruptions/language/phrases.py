@@ -95,13 +95,13 @@ def swap_nouns(text: str, nouns: dict[str, str]) -> str:
     return re.sub(rf"\b({'|'.join(names)})\b", lambda m: nouns[m.group()], text)
 
 
-def _voice(held: dict[str, Any]) -> Voice:
+def _voice(entry: dict[str, Any]) -> Voice:
     """Build a voice from an entry of ``voices.json``, with lists as tuples."""
     frames, commands = (
-        {name: tuple(options) for name, options in held[part].items()}
+        {name: tuple(options) for name, options in entry[part].items()}
         for part in ("frames", "commands")
     )
-    return Voice(tuple(held["openers"]), frames, commands, tuple(held["closers"]), held["nouns"])
+    return Voice(tuple(entry["openers"]), frames, commands, tuple(entry["closers"]), entry["nouns"])
 
 
-VOICES = {name: _voice(held) for name, held in read_data("voices.json").items()}
+VOICES = {name: _voice(entry) for name, entry in read_data("voices.json").items()}

@@ -73,7 +73,7 @@ class Rewriter:
         key = _key(request)
         if key not in self._known:
             answer = self._ask(prompt, text)
-            if not _is_said(answer):
+            if not _is_valid(answer):
                 raise ValueError(
                     f"The model {self._model!r} answered {answer!r:.60} for {text!r:.60}: an "
                     "answer is a text that is not blank. It is not kept; ask again, or another "
@@ -91,11 +91,11 @@ class Rewriter:
             file.write((("" if whole else "\n") + json.dumps(line) + "\n").encode())
 
 
-def _key(asked: dict[str, object]) -> str:
-    return blake2b(json.dumps(asked, sort_keys=True).encode(), digest_size=16).hexdigest()
+def _key(request: dict[str, object]) -> str:
+    return blake2b(json.dumps(request, sort_keys=True).encode(), digest_size=16).hexdigest()
 
 
-def _is_said(answer: object) -> bool:
+def _is_valid(answer: object) -> bool:
     """Return whether ``answer`` is a text that is not blank and can be encoded."""
     return isinstance(answer, str) and bool(answer.strip()) and not _HALF.search(answer)
 
@@ -109,6 +109,6 @@ def _read(cache: Path) -> list[tuple[str, str]]:
             answer = entry.pop("answer")
         except (ValueError, KeyError, AttributeError, RecursionError):
             continue
-        if _is_said(answer):
+        if _is_valid(answer):
             answers.append((_key(entry), answer))
     return answers

@@ -127,12 +127,12 @@ def _lowered(text: str) -> str:
     return text[:1].lower() + text[1:]
 
 
-def _framed(frame: str, when: str, said: str) -> str:
+def _framed(frame: str, when: str, command: str) -> str:
     """Return one sentence; a frame applies only to a command that begins with a verb."""
-    if not re.match(phrases.BARE_VERB, said, re.IGNORECASE):
+    if not re.match(phrases.BARE_VERB, command, re.IGNORECASE):
         frame = "{}"
-    body = said if frame == "{}" else frame.format(_lowered(said))
+    body = command if frame == "{}" else frame.format(_lowered(command))
     if when:
         body = f"{when}, {body if body.startswith('I ') else _lowered(body)}"
-    body = body.rstrip(" ,") or said
+    body = body.rstrip(" ,") or command
     return body[0].upper() + body[1:] + ("" if body.endswith((".", "!", "?")) else ".")

@@ -90,10 +90,10 @@ def tokenizer_for(name: str, extras: Mapping[str, Any]) -> Tokenizer:
     return FileVocabulary(vocabulary)
 
 
-def _is_vocabulary(found: Any) -> TypeGuard[Mapping[str, Any]]:
-    if not isinstance(found, Mapping) or not isinstance(found.get("word2idx_dict"), Mapping):
+def _is_vocabulary(entry: Any) -> TypeGuard[Mapping[str, Any]]:
+    if not isinstance(entry, Mapping) or not isinstance(entry.get("word2idx_dict"), Mapping):
         return False
-    numbers = (*found["word2idx_dict"].values(), found.get("UNK_INDEX"), found.get("PAD_INDEX"))
+    numbers = (*entry["word2idx_dict"].values(), entry.get("UNK_INDEX"), entry.get("PAD_INDEX"))
     return all(type(number) is int for number in numbers)
 
 

@@ -29,8 +29,8 @@ def valid(views: np.ndarray) -> np.ndarray:
     return (views > 0) & (views < np.inf)
 
 
-def kept(views: np.ndarray, moved: np.ndarray, sensor: DepthSensor) -> np.ndarray:
-    """Return ``moved``, clipped to the sensor's range, where ``views`` is valid, else ``views``."""
+def clip_valid(views: np.ndarray, moved: np.ndarray, sensor: DepthSensor) -> np.ndarray:
+    """Return ``moved`` where ``views`` is valid, clipped to the sensor's range; else ``views``."""
     inside = np.clip(moved, NEAREST, np.float32(sensor.z_max))
     return np.where(valid(views), inside, views)
 
@@ -40,7 +40,7 @@ def scale_error(views: np.ndarray, severity: float, key: Key, sensor: DepthSenso
     value = digest(key, "scale_error")
     factor = SCALE_LEAST + (SCALE_MOST - SCALE_LEAST) * uniform(value, 0)
     factor = 1.0 + severity * factor * (1 if uniform(value, 1) < 0.5 else -1)
-    return kept(views, np.where(valid(views), views, 0) * np.float32(factor), sensor)
+    return clip_valid(views, np.where(valid(views), views, 0) * np.float32(factor), sensor)
 
 
 def misalignment(views: np.ndarray, severity: float, key: Key, sensor: DepthSensor) -> np.ndarray:
@@ -52,7 +52,7 @@ def misalignment(views: np.ndarray, severity: float, key: Key, sensor: DepthSens
     rows = np.clip(np.arange(height) + down, 0, height - 1)
     columns = np.clip(np.arange(width) + across, 0, width - 1)
     moved = np.take(np.take(views, rows, axis=1), columns, axis=2)
-    return kept(views, np.where(valid(moved), moved, views), sensor)
+    return clip_valid(views, np.where(valid(moved), moved, views), sensor)
 
 
 @lru_cache(maxsize=32)
@@ -69,7 +69,7 @@ def wiggling(views: np.ndarray, severity: float, key: Key, sensor: DepthSensor) 
     table = wiggle_table(phase, WIGGLE * severity, sensor.z_max)
     clean = np.clip(np.where(valid(views), views, 0), 0, np.float32(sensor.z_max))
     place = clean * np.float32(WIGGLE_CELLS / sensor.z_max) + np.float32(0.5)
-    return kept(views, clean + table[place.astype(np.int32)], sensor)
+    return clip_valid(views, clean + table[place.astype(np.int32)], sensor)
 
 
 _record = partial(Record.of, "depth", version="1")

@@ -17,7 +17,7 @@ from mitigate.corruptions.record import TEST, VALIDATION, Record
 BLOCKS = (4, 8, 16, 32)  # pixels: the transforms of H.264 and H.265
 BLOCKS_ACROSS = 28  # blocks per shorter side: 8 px at 224
 DEAD_ZONE = 0.40  # amplitude over white at s = 1
-CHROMA = 2.0  # dead zone of colours over that of grey
+CHROMA = 2.0  # dead zone of colours, relative to grey
 SLICES = 14  # per frame height: macroblocks of 16 px at 224
 LOST = 0.8  # of the slices at s = 1
 NOTHING = 128  # grey level that a decoder shows without an earlier picture

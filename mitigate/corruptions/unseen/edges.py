@@ -1,4 +1,4 @@
-"""Unseen depth corruptions beside edges: fattening, flying pixels, shadows of the projector.
+"""Unseen depth corruptions next to edges: fattening, flying pixels, shadows of the projector.
 
 Functions have the arguments and results of those in ``corruptions/depth.py``, and treat invalid
 pixels in the same way.
@@ -13,7 +13,7 @@ import numpy as np
 from numba import njit
 
 from mitigate.core.observation import HFOV_DEGREES
-from mitigate.corruptions.depth import farthest_along, larger
+from mitigate.corruptions.depth import extremes
 from mitigate.corruptions.depth_sensor import NEAREST, DepthSensor, is_valid
 from mitigate.corruptions.keying import Key, digest, mix, uniform, view_streams
 from mitigate.corruptions.record import TEST, VALIDATION, Record
@@ -23,28 +23,6 @@ FOOTPRINT = 0.03  # of the side: half the square over which a flying pixel mixes
 BASELINE = 0.50  # metres at s = 1; a Kinect has 0.075, a ZED 0.12
 
 _U = np.uint64
-
-
-@njit(cache=True)
-def extremes(view, reach, sign, out):
-    """Set out [H, W] to the maximum of sign z in a square of 2 reach + 1; -inf if none is valid."""
-    height, width = view.shape
-    rows = height + 2 * reach
-    wide = np.full((rows, width + 2 * reach), np.float32(-np.inf), np.float32)
-    spare = np.empty(width + 2 * reach, np.float32)
-    for y in range(height):
-        for x in range(width):
-            if is_valid(view[y, x]):
-                wide[y + reach, x + reach] = sign * view[y, x]
-        farthest_along(wide[y + reach], spare, reach)
-    have, want = 1, 2 * reach + 1
-    while have < want:
-        step = min(have, want - have)
-        rows -= step
-        for y in range(rows):
-            larger(wide[y, :width], wide[y + step, :width])
-        have += step
-    out[:] = wide[:height, :width]
 
 
 @njit(cache=True)

@@ -76,10 +76,8 @@ def haze(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarr
     """Blend x t + A (1 - t), like smoke or dust; each view has another part of the field."""
     count, height, width, _ = views.shape
     value, out = digest(key, "haze"), np.empty_like(views)
-    mask, grey = (
-        haze_mask(value, severity, height, width),
-        masks.colour_row(HAZE_COLOUR, width),
-    )
+    mask = haze_mask(value, severity, height, width)
+    grey = masks.colour_row(HAZE_COLOUR, width)
     for view in range(count):
         shift = int(uniform(scramble(value, view)) * width)
         shifted = np.roll(mask, 3 * shift, axis=1)

@@ -23,7 +23,7 @@ from mitigate.corruptions.keying import (
     view_streams,
 )
 from mitigate.corruptions.record import TEST, VALIDATION, Record
-from mitigate.corruptions.unseen.calibration import kept, valid
+from mitigate.corruptions.unseen.calibration import clip_valid, valid
 
 RIPPLE = 0.06  # per metre, at s = 1: sd of z is 0.06 z^2
 RIPPLE_CORRELATION = 0.04  # of the side
@@ -47,13 +47,13 @@ def ripple(views: np.ndarray, severity: float, key: Key, sensor: DepthSensor) ->
         down, right = (int(uniform(int(stream), i) * n) for i, n in enumerate((height, width)))
         shifted = np.roll(waves, (down, right), axis=(0, 1))
         moved[view] += strength * moved[view] * moved[view] * shifted
-    return kept(views, moved, sensor)
+    return clip_valid(views, moved, sensor)
 
 
 def range_limit(views: np.ndarray, severity: float, key: Key, sensor: DepthSensor) -> np.ndarray:
     """Remove readings beyond z_max 0.1^s, where too little light returns to the camera."""
     limit = np.float32(sensor.z_max * RANGE_LEFT**severity)
-    near = kept(views, views, sensor)
+    near = clip_valid(views, views, sensor)
     return np.where(valid(views) & (near > limit), np.float32(sensor.missing), near)
 
 
@@ -93,7 +93,7 @@ def glossy_floor(views: np.ndarray, severity: float, key: Key, sensor: DepthSens
     _, height, width = views.shape
     value, out, depth = (
         digest(key, "glossy_floor"),
-        kept(views, views, sensor),
+        clip_valid(views, views, sensor),
         below_camera(views),
     )
     smooth, cells = field(value, height, width, GLOSS_CORRELATION)

@@ -2,8 +2,8 @@
 
 The callable may be a network for depth completion or denoising, or a filter. Needs no torch.
 
-The rule: a class is constructed once per process, without arguments; any other object is used as it
-is. If the result is a :class:`~mitigate.guards.guard.Guard`, it is the guard. Otherwise it is
+The rule: a class is constructed once per process, without arguments; any other object is used
+directly. If the result is a :class:`~mitigate.guards.guard.Guard`, it is the guard. Otherwise it is
 called with the frames of one instant. ``docs/restoration.md`` has an example.
 
 Importing the module runs its code, so the option comes from the user's own command line or config,
@@ -88,22 +88,16 @@ class FramesCallable(Guard):
         changed = {n: f for n, f in results.items() if not np.array_equal(f, frames[n])}
         return {**observation, **changed} if changed else observation
 
-    def _check(self, made: Any, given: Mapping[str, np.ndarray]) -> None:
-        """Raise ValueError unless ``made`` holds frames of ``given`` with equal shape and dtype."""
-        if not isinstance(made, Mapping):
-            self._reject(f"returned a {type(made).__name__}, not a dict")
-        for name, frame in made.items():
-            if name not in given:
-                self._reject(f"returned an entry {name!r}, but it was given {', '.join(given)}")
-            if not isinstance(frame, np.ndarray):
-                self._reject(f"returned {name} as a {type(frame).__name__}, not a numpy array")
-            original = given[name]
-            if frame.shape != original.shape:
-                self._reject(
-                    f"returned {name} of shape {list(frame.shape)}, not {list(original.shape)}"
-                )
-            if frame.dtype != original.dtype:
-                self._reject(f"returned {name} of dtype {frame.dtype}, not {original.dtype}")
+    def _check(self, results: Any, frames: Mapping[str, np.ndarray]) -> None:
+        """Raise ValueError unless ``results`` holds some of ``frames``, with shape and dtype."""
+        if not isinstance(results, Mapping):
+            self._reject(f"returned a {type(results).__name__}, not a dict")
+        for name, frame in results.items():
+            if name not in frames:
+                self._reject(f"returned an entry {name!r}, but it was given {', '.join(frames)}")
+            original = frames[name]
+            if _form(frame) != _form(original):
+                self._reject(f"returned {name} as {_form(frame)}, not {_form(original)}")
             if frame.dtype.kind == "f" and not np.isfinite(frame[np.isfinite(original)]).all():
                 self._reject(f"returned {name} with NaN or infinity; 0 means no reading")
 
@@ -153,14 +147,20 @@ def _parts(choice: str) -> CallableChoice:
     return named
 
 
+def _form(frame: Any) -> str:
+    """Describe dtype and shape of an array, or the type of another object."""
+    if isinstance(frame, np.ndarray):
+        return f"{frame.dtype} {list(frame.shape)}"
+    return f"a {type(frame).__name__}"
+
+
 def _frames(frames: Any, choice: str) -> tuple[str, ...]:
-    named = (frames,) if isinstance(frames, str) else tuple(frames)
-    wrong = [name for name in named if name not in SENSORS]
-    if wrong or not named:
+    names = (frames,) if isinstance(frames, str) else tuple(frames)
+    if not names or not set(names) <= set(SENSORS):
         raise ValueError(
             f"restore={choice}: frames must name rgb, depth or both, got {frames!r:.80}."
         )
-    return named
+    return names
 
 
 def _source(module: ModuleType, version: str | None) -> str:

@@ -27,7 +27,7 @@ _AGAIN = "Fetch the folder again, or train it again with `make train RECIPE=rest
 def write(restorer: Restorer, folder: str | Path, *, half: bool = False) -> Path:
     """Write ``restorer`` into ``folder`` and return the folder.
 
-    The card holds the hash of the weights as they are read back, so ``half`` rounds them first.
+    The card holds the hash of the weights after they are read back, so ``half`` rounds them first.
     """
     with folders.write_folder(folder, "restorer") as draft:
         checkpoint.write_tensors(restorer, draft / checkpoint.WEIGHTS, half=half)
@@ -63,12 +63,12 @@ def card(folder: str | Path) -> dict[str, Any]:
     return content
 
 
-def _wrong(found: Any) -> str:
+def _wrong(content: Any) -> str:
     """Return a message about the first problem of a card; empty if it is valid."""
-    if not isinstance(found, dict) or found.get("format") != FORMAT:
+    if not isinstance(content, dict) or content.get("format") != FORMAT:
         return f"it must be an object of format {FORMAT}"
-    settings = found.get("settings")
-    if not isinstance(settings, dict) or not isinstance(found.get("hash"), str):
+    settings = content.get("settings")
+    if not isinstance(settings, dict) or not isinstance(content.get("hash"), str):
         return "it must have settings and a hash"
     if set(settings) != {"sensors", "far", *LIMITS}:
         return f"settings must be sensors, far, {', '.join(LIMITS)}"
@@ -98,19 +98,20 @@ def fill(restorer: Restorer, folder: str | Path) -> None:
     content, current = card(folder), restorer.settings()
     names = [name for name, value in current.items() if content["settings"][name] != value]
     if names:
+        name = names[0]
         raise ValueError(
-            f"{folder} is of a restorer with {names[0]}={content['settings'][names[0]]!r:.60}, not "
-            f"{current[names[0]]!r:.60}: set agent.{names[0]} to that, or start anew (init=null)."
+            f"The restorer in {folder} has {name}={content['settings'][name]!r:.60}, not "
+            f"{current[name]!r:.60}. Set agent.{name} to that, or train from scratch (init=null)."
         )
     file = Path(folder) / checkpoint.WEIGHTS
     if not folders.is_listed(file):
-        raise ValueError(f"{file} has no {folders.MANIFEST} beside it that lists it. {_AGAIN}")
+        raise ValueError(f"{file} is listed in no {folders.MANIFEST} of its folder. {_AGAIN}")
     wrong = folders.problem(file)
     if wrong:  # load_weights would advise to delete the checksum, but it is required here
         raise ValueError(f"{file} is cut short or damaged: it {wrong}. {_AGAIN}")
     checkpoint.load_weights(restorer, folder)
     if restorer.hash != content["hash"]:
         raise ValueError(
-            f"The weights in {folder} are not those of its {CARD} ({restorer.hash}, not "
+            f"The weights in {folder} do not match its {CARD} ({restorer.hash}, not "
             f"{content['hash'][:20]}). {_AGAIN}"
         )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -17,11 +17,11 @@ from mitigate.core.checksums import DIGITS
 from mitigate.core.files import find
 from mitigate.core.names import unknown
 from mitigate.core.observation import DEPTH, RGB, Z_MAX
-from mitigate.corruptions.depth_sensor import DepthSensor, check_unit
-from mitigate.corruptions.suite import MAX_VIEWS
+from mitigate.corruptions.depth_sensor import DepthSensor
+from mitigate.corruptions.suite import depth_views, rgb_views
 from mitigate.guards.frames import folder as folders
 from mitigate.guards.frames.choices import SENSORS
-from mitigate.guards.frames.sensor import CHANNELS, SensorRestorer
+from mitigate.guards.frames.sensor import SensorRestorer
 from mitigate.guards.guard import RESTORER, Guard
 
 
@@ -108,10 +108,6 @@ class Restorer(nn.Module, Guard):
         """Return :attr:`hash` with the prefix that rows have."""
         return RESTORER + self.hash
 
-    def observe(self, observation: Mapping[str, Any]) -> Mapping[str, Any]:
-        """Return :meth:`forward` of an observation."""
-        return self.forward(observation)
-
     def forward(self, observation: Mapping[str, Any]) -> dict[str, Any]:
         """Return ``observation`` with the frames restored that the gate judges to be corrupted.
 
@@ -126,6 +122,8 @@ class Restorer(nn.Module, Guard):
                 restored[sensor] = self.restore(sensor, restored[sensor])
         return restored
 
+    observe = forward
+
     def restore(self, sensor: str, frame: np.ndarray) -> np.ndarray:
         """Return the restored frame, a new array of the same shape and dtype.
 
@@ -134,8 +132,8 @@ class Restorer(nn.Module, Guard):
 
         Args:
             sensor: "rgb" or "depth".
-            frame: frames of one instant: uint8 [H, W, 3] or [V, H, W, 3]; or float32 metres [H, W],
-                [H, W, 1] or [V, H, W, 1].
+            frame: frames of one instant: uint8 [H, W, 3] or [V, H, W, 3]; or metres in floating
+                point, [H, W], [H, W, 1] or [V, H, W, 1].
 
         Raises:
             KeyError: The restorer has no network for ``sensor``.
@@ -146,24 +144,6 @@ class Restorer(nn.Module, Guard):
         changed, result = net.judged(torch.from_numpy(views))
         return result.numpy().reshape(frame.shape).astype(frame.dtype) if changed else frame
 
-    def check_shown(self, sensors: Iterable[str], where: str) -> None:
-        """Raise ValueError if it restores none of ``sensors``, the sensors of ``where``."""
-        present = [*sensors]
-        if not any(sensor in self.nets for sensor in present):
-            raise ValueError(
-                f"The restorer of restore= is for {', '.join(self.nets)}, but {where} shows "
-                f"{', '.join(present) or 'no frames'}: leave restore= out, or train one for these."
-            )
-
-    def doubt(self, sensor: str, frame: np.ndarray) -> float:
-        """Return the gate's logit minus its threshold.
-
-        Above 0 the frame is restored, unless that would move most of its depth far. The value is
-        -inf for depth without a reading, or with too many readings beyond ``far``.
-        """
-        net, views = self._net(sensor), self._views(sensor, frame)
-        return net.doubt(torch.from_numpy(views))
-
     def _net(self, sensor: str) -> SensorRestorer:
         if sensor not in self.nets:
             raise KeyError(f"This restorer is for {', '.join(self.nets)}, not for {sensor}.")
@@ -171,30 +151,19 @@ class Restorer(nn.Module, Guard):
 
     def _views(self, sensor: str, frame: np.ndarray) -> np.ndarray:
         """Return ``frame`` as a contiguous, writable [V, H, W, c]; raise for invalid frames."""
-        channels, kind = CHANNELS[sensor], np.uint8 if sensor == RGB else np.float32
         if not isinstance(frame, np.ndarray):
             raise TypeError(
                 f"A {sensor} frame must be a numpy array, not {type(frame).__name__}: give a torch "
                 "tensor as frame.numpy()."
             )
-        if sensor == RGB and frame.dtype != kind:
-            raise TypeError(f"rgb must be uint8 with values 0 to 255, not {frame.dtype}.")
-        if sensor == DEPTH and not np.issubdtype(frame.dtype, np.floating):
-            raise TypeError(f"depth must be float32 metres, not {frame.dtype}.")
-        shape = frame.shape
-        if sensor == DEPTH and frame.ndim == 2:
-            shape = (*shape, 1)
-        if len(shape) == 3:
-            shape = (1, *shape)
-        if len(shape) != 4 or shape[-1] != channels or 0 in shape or shape[0] > MAX_VIEWS:
-            raise ValueError(
-                f"A {sensor} frame is [H, W, {channels}], or up to {MAX_VIEWS} views of one "
-                f"instant [V, H, W, {channels}], but the shape is {list(frame.shape)}."
-            )
-        views = np.require(frame.reshape(shape), kind, ["C", "W"])
-        if sensor == DEPTH:
-            check_unit(views[..., 0], DepthSensor(z_max=self._net(sensor).far))
-        return views
+        if sensor == RGB:
+            views = rgb_views(frame)
+        else:
+            if np.issubdtype(frame.dtype, np.floating):
+                frame = frame.astype(np.float32, copy=False)
+            range_ = DepthSensor(z_max=self._net(sensor).far)
+            views = depth_views(frame, range_, "The restorer")[..., None]
+        return np.require(views, requirements=["C", "W"])
 
     def save(self, folder: str | Path, *, half: bool = False) -> None:
         """Write a folder for :func:`load_restorer`; ``half`` stores the weights in float16."""

@@ -12,7 +12,6 @@ enlarged. ``x`` and the other views keep their full size, so detail stays.
 
 from __future__ import annotations
 
-import math
 import warnings
 
 import torch
@@ -171,17 +170,6 @@ class SensorRestorer(nn.Module):
             return False, frames
         return True, self.unscaled(y)
 
-    @torch.inference_mode()
-    def doubt(self, frames: Tensor) -> float:
-        """Return the gate's logit for frames [V, H, W, c] of an instant minus its threshold.
-
-        The value is -inf for frames out of the known range.
-        """
-        x, valid = self.scaled(frames)
-        if not self.knows(frames, valid):
-            return -math.inf
-        return float(self.judge(*self.small(x, valid), len(frames))[2] - self.threshold)
-
     def knows(self, frames: Tensor, valid: Tensor) -> bool:
         """Return whether frames [V, H, W, c] have readings, most of them within ``far``.
 
@@ -193,7 +181,7 @@ class SensorRestorer(nn.Module):
         if not near:
             warnings.warn(
                 f"More than {BEYOND:.0%} of the depth of a frame reads farther than {self.far:g} m,"
-                " the farthest that this restorer knows: such frames are left as they are. Train "
+                " the farthest that this restorer knows: such frames are not changed. Train "
                 "one on your frames (docs/restoration.md).",
                 stacklevel=3,
             )
@@ -207,9 +195,9 @@ class SensorRestorer(nn.Module):
         return (out * self.range).clamp(min=1e-3)
 
 
-def _share(found: Tensor, valid: Tensor) -> float:
-    """Return the share of the readings ``valid`` [n, 1, H, W] for which ``found`` is true."""
-    return float((found * valid).sum() / (valid.sum() * found.shape[1]))
+def _share(mask: Tensor, valid: Tensor) -> float:
+    """Return the share of the readings ``valid`` [n, 1, H, W] for which ``mask`` is true."""
+    return float((mask * valid).sum() / (valid.sum() * mask.shape[1]))
 
 
 def _resized(x: Tensor, size: tuple[int, int] | torch.Size) -> Tensor:

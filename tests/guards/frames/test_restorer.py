@@ -82,16 +82,12 @@ def test_depth_that_is_mostly_too_far_is_left_with_a_warning(untrained):
     frame[:10] = 12.0
     with pytest.warns(UserWarning, match="farther than 10 m"):
         assert untrained.restore(DEPTH, frame) is frame
-    with pytest.warns(UserWarning, match="farther than 10 m"):
-        assert untrained.doubt(DEPTH, frame) == -np.inf
 
 
-def test_what_reads_nothing_is_in_no_doubt(untrained):
+def test_restorer_leaves_frames_without_a_reading(untrained):
     for nothing in (0.0, np.nan, np.inf):
         frame = np.full((40, 48), nothing, np.float32)
         assert untrained.restore(DEPTH, frame) is frame
-        assert untrained.doubt(DEPTH, frame) == -np.inf
-    assert untrained.doubt(RGB, frames(RGB, 40, 48)) > 0
 
 
 def test_depth_may_lack_its_last_axis_and_holds_no_hole_afterwards(untrained):
@@ -106,7 +102,7 @@ def test_depth_may_lack_its_last_axis_and_holds_no_hole_afterwards(untrained):
     ("sensor", "frame", "words"),
     [
         (RGB, np.zeros((8, 8, 3), np.float32), "uint8"),
-        (DEPTH, np.zeros((8, 8, 1), np.uint16), "float32 metres"),
+        (DEPTH, np.zeros((8, 8, 1), np.uint16), "float32 in metres"),
         (DEPTH, np.full((8, 8), 2500, np.float32), "in millimetres"),
         (RGB, torch.zeros(8, 8, 3, dtype=torch.uint8), r"not Tensor: .*numpy\(\)"),
         (DEPTH, [[1.0]], "must be a numpy array, not list"),
@@ -117,9 +113,8 @@ def test_depth_may_lack_its_last_axis_and_holds_no_hole_afterwards(untrained):
     ],
 )
 def test_frames_of_another_form_are_refused(untrained, sensor, frame, words):
-    for call in (untrained.restore, untrained.doubt):
-        with pytest.raises((TypeError, ValueError, KeyError), match=words):
-            call(sensor, frame)
+    with pytest.raises((TypeError, ValueError, KeyError), match=words):
+        untrained.restore(sensor, frame)
 
 
 def test_a_large_frame_keeps_its_detail_under_a_correction_computed_small():
@@ -266,8 +261,8 @@ def card_with(**changed):
     [
         (damaged_weights, "cut short or damaged"),
         (damaged_sum, "cannot be compared with its manifest .* Fetch the folder again"),
-        (no_sum, "no manifest.json"),
-        (card_with(hash="0" * 12), "not those of its card"),
+        (no_sum, "listed in no manifest.json"),
+        (card_with(hash="0" * 12), "do not match its card"),
         (card_with(width=1 << 30), "whole number from 4 to 128"),
         (card_with(width=16), "do not fit"),
         (card_with(far="many"), "far must be metres"),
@@ -368,7 +363,8 @@ def test_the_shipped_restorer_takes_away_its_part_of_a_corruption(
 def test_clean_is_no_corruption_to_the_shipped_one(shipped, panorama):
     seen = corrupt_observation(panorama, CLEAN, Key(0, "test"))
     dark = corrupt_observation(panorama, Corruption("low_light", 0.8), Key(0, "test"))
-    assert shipped.doubt(RGB, seen[RGB]) < 0 < shipped.doubt(RGB, dark[RGB])
+    assert shipped.restore(RGB, seen[RGB]) is seen[RGB]
+    assert shipped.restore(RGB, dark[RGB]) is not dark[RGB]
 
 
 def test_a_report_corrupts_depth_as_far_as_its_world_sees(panorama):
