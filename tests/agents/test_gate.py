@@ -19,7 +19,7 @@ PLACES = {"target_modules": ["stages.0"], "ring": ["stages.[12]"], "gates": ["st
 @pytest.fixture
 def encoder():
     torch.manual_seed(0)
-    return RGBEncoder(16, (16, 24, 32), 16, size=16).eval()
+    return RGBEncoder(16, size=16).eval()
 
 
 @pytest.fixture
@@ -147,7 +147,7 @@ def test_a_folder_and_a_copy_keep_it(encoder, frames, tmp_path):
 
 def test_each_encoder_has_its_own(frames):
     torch.manual_seed(0)
-    both = nn.ModuleDict({n: RGBEncoder(16, (16, 24, 32), 16, size=16) for n in ("one", "two")})
+    both = nn.ModuleDict({n: RGBEncoder(16, size=16) for n in ("one", "two")})
     insert_adapters(both, ["stages.[012]"], gates=["stem"])
     followed = {
         name: module.adapter.gates

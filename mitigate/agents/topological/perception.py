@@ -22,13 +22,13 @@ import torch.nn.functional as F
 from torch import Tensor, nn
 
 from mitigate.agents.adapters import adapters_of
+from mitigate.agents.encoders import DISTANCES, STEP
 from mitigate.agents.text import CONCEPTS
 from mitigate.core.checkpoint import borrow
 from mitigate.core.files import sha256
 from mitigate.core.observation import VIEWS
 
-ANGLES, DISTANCES = 120, 12
-STEP = 0.25  # metres per distance bin
+ANGLES = 120
 _PER_VIEW = ANGLES // VIEWS
 YAWS = np.radians(3.0 * (np.arange(ANGLES) + 0.5) - 15.0)  # clockwise from the heading
 COUNT, SEPARATION = 6, 8  # largest number of waypoints; bins (24 degrees) between two of them
@@ -78,7 +78,7 @@ def select(logits: np.ndarray) -> np.ndarray:
 
 SIZE = 128  # pixels of a view, for which the last map is 4x4
 CHANNELS, GRID = 320, 4  # channels and side of that map
-MEAN, STD = 127.0, 128.0  # normalisation of EfficientNet-Lite, not that of ImageNet
+MEAN, STD = 127.0, 128.0  # normalisation of EfficientNet-Lite; ImageNet uses another one
 STAGES = ((0, 3), (3, 5), (5, 11), (11, 16))  # ranges of blocks; maps of 1/4, 1/8, 1/16, 1/32
 BORROWED = ("stem.", "stages.")
 INSTALL = "pip install -e '.[encoders]'"
@@ -87,7 +87,7 @@ INSTALL = "pip install -e '.[encoders]'"
 class ImageNetEncoder(nn.Module):
     """Encode uint8 ``[n, H, W, 3]`` as features ``[n, width]`` and concept logits ``[n, C]``.
 
-    It replaces ``encoders.RGBEncoder``; ``stem`` and ``stages`` are those of EfficientNet-Lite0.
+    It replaces ``encoders.RGBEncoder``; EfficientNet-Lite0 provides ``stem`` and ``stages``.
 
     Raises:
         ValueError: ``size`` is not a multiple of 32, or the package is not installed.

@@ -90,9 +90,7 @@ def test_a_deaf_agent_does_not_use_the_instruction():
 
 
 def test_an_unknown_sensor_names_the_known_ones():
-    with pytest.raises(
-        ValueError, match=r"blind must be a list of rgb, depth, instruction, got .'sonar'"
-    ):
+    with pytest.raises(ValueError, match=r"'sonar'. Choose one of: rgb, depth, instruction"):
         TopologicalAgent(blind=("sonar",))
 
 
