@@ -23,7 +23,6 @@ SIZE = 64  # pixels of a view that the shipped agents are trained on
 DEPTH_RANGE = 5.0  # metres; larger depth does not matter for legs of at most 3 m
 GRID = 4  # rows and columns of the last feature map at 64 pixels
 DIRECTIONS, DISTANCES, STEP = 30, 12, 0.25  # bins of free space over 90 degrees; metres per bin
-CAMERA_ENCODERS = {RGB: ("rgb_encoder",), DEPTH: ("depth_encoder",)}
 LABELS = {RGB: "concepts", DEPTH: "free"}
 POSITIVE = 2.0  # weight of positive labels: most concepts are absent from a view
 
@@ -65,27 +64,40 @@ class Encoder(nn.Module):
         channels: channels of the input.
         widths: channels of the stem and of each stage.
         resize: how frames are resized, a mode of ``F.interpolate``.
+        stride: ``size`` must be a multiple of these pixels.
+        usual: an example of ``size``, for messages.
     """
 
     channels: int
     widths: tuple[int, ...]
     resize: str
+    stride = 16
+    usual = SIZE
 
     def __init__(self, size: int) -> None:
         super().__init__()
-        if size < 16 or size % 16:
-            raise ValueError(f"size must be a multiple of 16 pixels, such as {SIZE}, got {size}.")
+        if size < self.stride or size % self.stride:
+            raise ValueError(
+                f"size must be a multiple of {self.stride} pixels, such as {self.usual}, got "
+                f"{size}."
+            )
         self.size = size
+        self.stem, self.stages = self.backbone()
+
+    def backbone(self) -> tuple[nn.Sequential, nn.ModuleList]:
+        """Return the stem and the stages."""
         stem = nn.Conv2d(self.channels, self.widths[0], 3, 2, 1, bias=False)
-        self.stem = nn.Sequential(stem, nn.GroupNorm(8, self.widths[0]), nn.ReLU())
-        self.stages = nn.ModuleList(Block(a, b) for a, b in pairwise(self.widths))
+        stages = [Block(a, b) for a, b in pairwise(self.widths)]
+        norm = nn.GroupNorm(8, self.widths[0])
+        return nn.Sequential(stem, norm, nn.ReLU()), nn.ModuleList(stages)
 
     def sized(self, frames: Tensor) -> Tensor:
         """Resize frames ``[n, H, W, c]`` to float ``[n, c, size, size]``."""
         x = frames.permute(0, 3, 1, 2).float()
         if x.shape[-2:] == (self.size, self.size):
             return x
-        return F.interpolate(x, (self.size, self.size), mode=self.resize)
+        antialias = self.resize == "bilinear"
+        return F.interpolate(x, (self.size, self.size), mode=self.resize, antialias=antialias)
 
     def maps(self, x: Tensor) -> Tensor:
         """Return features ``[n, widths[-1], 4, 4]`` of normalised input ``[n, c, H, W]``."""
@@ -117,9 +129,12 @@ class RGBEncoder(Encoder):
         self.embed = nn.Linear(2 * last, width)
         self.concepts = nn.Linear(width, len(CONCEPTS))
 
+    def normalised(self, rgb: Tensor) -> Tensor:
+        """Return frames ``[n, H, W, 3]`` as input of the stem."""
+        return self.sized(rgb) / 127.5 - 1
+
     def forward(self, rgb: Tensor) -> tuple[Tensor, Tensor]:
-        x = self.sized(rgb) / 127.5 - 1
-        x = F.gelu(self.gather(self.maps(x)).flatten(1))
+        x = F.gelu(self.gather(self.maps(self.normalised(rgb))).flatten(1))
         features = F.gelu(self.embed(x))
         return features, self.concepts(features)
 

@@ -22,7 +22,7 @@ from mitigate.agents import schema
 from mitigate.agents.adapters import insert_adapters
 from mitigate.agents.agent import Output, SideBySide, check_started
 from mitigate.agents.controller import Controller
-from mitigate.agents.encoders import CAMERA_ENCODERS, LABELS, SIZE, CameraRGB, see_camera
+from mitigate.agents.encoders import LABELS, SIZE, CameraRGB, see_camera
 from mitigate.agents.frontier.grid import (
     CELL,
     Grid,
@@ -93,7 +93,7 @@ class FrontierAgent(SideBySide, nn.Module):
     views, sensors = 1, (RGB, DEPTH, POSE)
     tasks = ("ogn",)
     together = 8  # episodes at once (heuristic): a frame encoded alone takes twice as long
-    encoders = {RGB: CAMERA_ENCODERS[RGB]}
+    encoders = {RGB: ("rgb_encoder",)}
     labels = {RGB: LABELS[RGB]}
     grid: Grid  # from the first observation of an episode on
     _started = False
@@ -207,7 +207,7 @@ class FrontierAgent(SideBySide, nn.Module):
         depth = checked.frame(observation, DEPTH, 1)[..., 0]
         thing = np.zeros((len(concepts), 2), np.float32)
         if self.thing is not None:
-            thing = shows(concepts, self.thing)
+            thing = concepts[:, [self.thing, NEAR.start + self.thing]]
         depth = np.zeros_like(depth) if DEPTH in self.blind else depth
         self._near = float(thing[:, 1].max())
         self.grid.add(depth, pose, thing, worth(concepts, self.thing))
@@ -320,11 +320,6 @@ def named(text: str) -> int | None:
         for match in re.finditer(rf"\b{re.escape(name)}s?\b", text.lower())
     ]
     return max(ends)[2] if ends else None
-
-
-def shows(concepts: np.ndarray, thing: int) -> np.ndarray:
-    """Return the probabilities [n, 2] that columns show ``thing``, and that it is near."""
-    return concepts[:, [thing, NEAR.start + thing]]
 
 
 def worth(concepts: np.ndarray, thing: int | None) -> np.ndarray:

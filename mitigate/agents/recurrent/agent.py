@@ -22,7 +22,6 @@ from mitigate.agents import schema
 from mitigate.agents.adapters import insert_adapters
 from mitigate.agents.agent import Output, SideBySide, check_logits, check_started, stop_figures
 from mitigate.agents.encoders import (
-    CAMERA_ENCODERS,
     LABEL_LOSSES,
     LABELS,
     SIZE,
@@ -130,7 +129,7 @@ class RecurrentAgent(SideBySide, nn.Module):
             }
         )
         self.sensors, self.blind = tuple(sensors), tuple(blind)
-        self.encoders = {name: CAMERA_ENCODERS[name] for name in self.sensors}
+        self.encoders = {name: (f"{name}_encoder",) for name in self.sensors}
         self.labels = {name: LABELS[name] for name in self.sensors}
         self.vocabulary = Vocabulary(vocabulary)
         if RGB in sensors:
@@ -181,7 +180,8 @@ class RecurrentAgent(SideBySide, nn.Module):
         walks = [TrainingWalk(w, e, self.sensors) for w, e in zip(worlds, episodes, strict=True)]
         text = self.policy.read(self.tokens([e.instruction.text for e in episodes]))
         state, running = State.start(text), list(range(len(walks)))
-        keep_frames = self._trains_encoders()
+        weights = self.named_parameters()
+        keep_frames = any(p.requires_grad for name, p in weights if not name.startswith("policy."))
         for _ in range(LIMIT):
             rows, here = torch.tensor(running, device=self.device), [walks[i] for i in running]
             frames = {n: np.stack([walk.see()[n] for walk in here]) for n in self.sensors}
@@ -269,11 +269,6 @@ class RecurrentAgent(SideBySide, nn.Module):
             if label in truth:
                 losses[label] = LABEL_LOSSES[sensor](logits, truth[label])
         return torch.cat(views, -1), losses
-
-    def _trains_encoders(self) -> bool:
-        """Return whether any weight of the encoders is trained."""
-        encoders = (m for name, m in self.parts().items() if name != "policy")
-        return any(p.requires_grad for encoder in encoders for p in encoder.parameters())
 
     # closed loop ------------------------------------------------------------------------------
 

@@ -60,12 +60,8 @@ class Odometer:
         """
         out = np.zeros(MOVES, np.float32)
         out[1 + self.last] = 1.0
-        out[5:] = (
-            math.sin(self.heading),
-            math.cos(self.heading),
-            self.metres / _METRES,
-            self.steps / _STEPS,
-        )
+        out[5:7] = math.sin(self.heading), math.cos(self.heading)
+        out[7:] = self.metres / _METRES, self.steps / _STEPS
         return out
 
 

@@ -108,7 +108,7 @@ class TopologicalAgent(Agent, nn.Module):
         usual=(128, 4),
     )
     views, sensors = VIEWS, (RGB, DEPTH, POSE)
-    rgb_encoder: RGBEncoder | ImageNetEncoder
+    rgb_encoder: RGBEncoder
     _started = False
 
     def __init__(
@@ -230,7 +230,8 @@ class TopologicalAgent(Agent, nn.Module):
 
         If the perception is frozen, the piece holds its features in place of frames.
         """
-        trains = self._trains_perception()
+        weights = self.named_parameters()
+        trains = any(p.requires_grad for name, p in weights if name.startswith(PERCEPTION))
         labels = ("concepts", "free", "goal") if trains else ("goal",)
         walks = [LiveWalk(w, e, labels, clean) for w, e in zip(worlds, episodes, strict=True)]
 
@@ -292,11 +293,6 @@ class TopologicalAgent(Agent, nn.Module):
             features, logits = self.encode_rgb(frames)
             features = torch.cat([features, logits.sigmoid()], -1)
         return label_output(features, logits, sensor, truth)
-
-    def _trains_perception(self) -> bool:
-        """Return whether any weight of the perception is trained."""
-        parts = self.parts()
-        return any(p.requires_grad for name in PERCEPTION for p in parts[name].parameters())
 
     @torch.no_grad()
     def _perceived(self, rgb: np.ndarray, depth: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -33,16 +33,17 @@ _TRAVEL = 0.4  # weight of the metres to a ghost relative to the metres from it 
 
 
 class Walk(Protocol):
-    """One rollout: the agent's pose, motion along routes, the oracle, and the episode's end."""
+    """One rollout: the agent's pose, motion along routes, the expert, and the episode's end."""
 
     episode: Episode
+
+    @property
+    def expert(self) -> Any: ...
 
     @property
     def done(self) -> bool: ...
     def pose(self) -> np.ndarray: ...
     def go(self, route: list[np.ndarray]) -> None: ...
-    def distance(self, xy: np.ndarray) -> float: ...
-    def counts(self, metres: float) -> bool: ...
 
 
 # encodes the panoramas of several walks: views float32 [12, F] and waypoints [n, 2] of each
@@ -82,14 +83,23 @@ class Piece:
 
 
 def oracle(walk: Walk, graph: TopologicalMap, decision: Decision) -> Step:
-    """Return a decision with the answer of the shortest-path oracle."""
-    nodes = [walk.distance(p) for p in graph.positions]
-    ghosts = np.array([walk.distance(graph.ghosts[g].position) for g in decision.ghosts])
+    """Return a decision with the answer of the shortest-path oracle.
+
+    Raises:
+        ValueError: The world's expert knows no distances.
+    """
+    nodes = [walk.expert.distance(p) for p in graph.positions]
+    ghosts = np.array([walk.expert.distance(graph.ghosts[g].position) for g in decision.ghosts])
+    if np.isnan([*nodes, *ghosts]).any():
+        raise ValueError(
+            "distance(xy) of the world's expert must be a number of metres to the goal, got NaN. "
+            "Training a planning agent needs that method (docs/bring-your-own.md)."
+        )
     here = nodes[graph.current]
     target = np.zeros(1 + len(ghosts), np.float32)
     nearer = len(ghosts) > 0 and ghosts.min() < here - 0.25
     near = here <= STOP_WITHIN or (here <= STOP_BEST and not nearer)
-    if (near and walk.counts(here)) or not len(ghosts):
+    if (near and walk.expert.counts(here)) or not len(ghosts):
         target[0] = 1.0
     else:
         cost = ghosts + _TRAVEL * decision.travel
@@ -145,18 +155,6 @@ class LiveWalk:
         controller.follow(route)
         while not self.done and (action := controller.action(self.pose())) is not None:
             self.observation = self.world.step(action)
-
-    def distance(self, xy: np.ndarray) -> float:
-        metres = self.expert.distance(xy)
-        if np.isnan(metres):
-            raise ValueError(
-                "distance(xy) of the world's expert must be a number of metres to the goal, got "
-                "NaN. Training a planning agent needs that method (docs/bring-your-own.md)."
-            )
-        return metres
-
-    def counts(self, metres: float) -> bool:
-        return self.expert.counts(metres)
 
 
 @torch.no_grad()

@@ -134,12 +134,6 @@ class StoredWalk:
         dx, dy = route[-1] - before
         self.turn = _turns(float(np.arctan2(-dx, dy)))
 
-    def distance(self, xy: np.ndarray) -> float:
-        return self.expert.distance(xy)
-
-    def counts(self, metres: float) -> bool:
-        return self.expert.counts(metres)
-
 
 def _turns(heading: float) -> int:
     """Return a heading in steps of 30 degrees, counter-clockwise."""
