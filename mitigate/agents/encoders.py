@@ -120,7 +120,8 @@ def depth_channels(z: Tensor) -> Tensor:
 class RGBEncoder(Encoder):
     """Encode uint8 ``[n, H, W, 3]`` as features ``[n, width]`` and concept logits ``[n, C]``."""
 
-    channels, widths, resize = 3, (32, 48, 96, 160), "area"
+    channels, resize = 3, "area"
+    widths: tuple[int, ...] = (32, 48, 96, 160)
 
     def __init__(self, width: int, size: int = SIZE) -> None:
         super().__init__(size)

@@ -161,12 +161,16 @@ def _code_source(code: types.CodeType, file: str) -> str:
         return bytecode(code)
 
 
-@cache
-def source_of(kind: type) -> tuple[str, ...]:
+def source_of(kind: type) -> list[str]:
     """Return the sources of a class and its bases that are the user's code.
 
     They are read once, because a later edit of the file does not change a loaded class.
     """
+    return list(_source_of(kind))
+
+
+@cache
+def _source_of(kind: type) -> tuple[str, ...]:
     sources = []
     for each in kind.__mro__:
         with suppress(OSError, TypeError):  # defined interactively or at run time

@@ -27,7 +27,7 @@ def views() -> torch.Tensor:
 
 
 @pytest.mark.parametrize("factor", [0.0, 5.0])
-def test_a_blanked_or_inflated_view_falls_to_the_cap(views, factor):
+def test_reliability_gives_outliers_the_smallest_weight(views, factor):
     hurt = views.clone()
     hurt[3] *= factor
     weights = reliability(hurt)
@@ -41,26 +41,26 @@ def test_a_blanked_or_inflated_view_falls_to_the_cap(views, factor):
 
 
 @pytest.mark.parametrize("factor", [0.0, 5.0])
-def test_the_fused_vector_stays_closer_to_the_clean_one_than_the_mean(views, factor):
+def test_reliability_fuses_closer_to_clean_than_the_mean(views, factor):
     clean, hurt = views.mean(0), views.clone()
     hurt[3] *= factor
     fused, _ = fuse(hurt)
     assert (fused - clean).norm() < (hurt.mean(0) - clean).norm()
 
 
-def test_rate_zero_is_the_plain_mean(views):
+def test_reliability_with_rate_zero_is_the_mean(views):
     fused, weights = fuse(views, rate=0.0)
     assert torch.allclose(fused, views.mean(0), atol=1e-6)
     assert torch.allclose(weights, torch.full((12,), 1 / 12))
 
 
-def test_views_that_are_all_blank_weigh_the_same():
+def test_reliability_weighs_blank_views_equally():
     fused, weights = fuse(torch.zeros(2, 12, 8))
     assert torch.allclose(weights, torch.full((2, 12), 1 / 12)) and not fused.any()
     assert torch.isfinite(fused).all()
 
 
-def test_views_that_are_not_valid_do_not_count(views):
+def test_reliability_ignores_invalid_views(views):
     valid = torch.arange(12) < 4
     fused, weights = fuse(views, valid=valid)
     alone, _ = fuse(views[:4])
@@ -69,25 +69,25 @@ def test_views_that_are_not_valid_do_not_count(views):
     assert torch.allclose(nothing.sum(), torch.tensor(1.0))
 
 
-def test_gradients_are_finite_for_blank_views():
+def test_reliability_gradients_are_finite_for_blank_views():
     x = torch.zeros(12, 8, requires_grad=True)
     fuse(x)[0].sum().backward()
     assert torch.isfinite(x.grad).all()
 
 
 @pytest.mark.parametrize("bad", [{"rate": -1.0}, {"cap": -1.0}])
-def test_negative_constants_are_refused(views, bad):
+def test_reliability_rejects_negative_constants(views, bad):
     with pytest.raises(ValueError, match="must be >= 0"):
         reliability(views, **bad)
 
 
-def test_a_learned_reliability_starts_with_equal_weights(views):
+def test_learned_reliability_starts_with_equal_weights(views):
     torch.manual_seed(0)
     weights = LearnedReliability(64)(torch.stack([views, views * torch.arange(12)[:, None]]))
     assert torch.allclose(weights, torch.full((2, 12), 1 / 12))
 
 
-def test_a_learned_reliability_finds_what_the_magnitude_hides():
+def test_learned_reliability_learns_beyond_magnitudes():
     """Something of their magnitude has replaced views: the rule cannot tell, it learns to."""
     torch.manual_seed(0)
     marks = torch.nn.functional.normalize(torch.randn(8, 64), dim=-1)  # what a broken view shows
@@ -116,7 +116,7 @@ def test_a_learned_reliability_finds_what_the_magnitude_hides():
     assert (most <= least * torch.tensor(2 * CAP).exp() * 1.001).all()
 
 
-def test_a_learned_reliability_has_no_rate():
+def test_weigher_rejects_rate_for_learned_reliability():
     with pytest.raises(ValueError, match="rate must be null .* got 4"):
         weigher(8, learned=True, rate=4)
     with pytest.raises(ValueError, match="must be >= 0"):
@@ -149,14 +149,14 @@ def features() -> torch.Tensor:
     return made
 
 
-def test_in_the_planner_equal_weights_are_plain_means(features):
+def test_planner_with_equal_weights_takes_means(features):
     seen = torch.tensor([[0, 1, -1, -1], [14, -1, -1, -1], [3, 6, 9, 13]])
     plain = ghosts(None, features, seen)
     level = ghosts({"rate": 0.0, "cap": 3.0}, features, seen)
     assert torch.allclose(plain, level, atol=1e-5)
 
 
-def test_in_the_planner_the_weights_of_a_ghosts_views_add_up_to_one(features):
+def test_planner_normalises_the_weights_of_ghosts(features):
     """Seen once, in whatever view, it is that view; seen twice, it leans on the better one."""
     seen = torch.tensor([[0, -1, -1, -1], [1, -1, -1, -1], [0, 1, -1, -1]])
     plain = ghosts(None, features, seen)
@@ -165,7 +165,7 @@ def test_in_the_planner_the_weights_of_a_ghosts_views_add_up_to_one(features):
     assert not torch.allclose(fused[2], plain[2], atol=1e-3)
 
 
-def test_in_the_planner_a_learned_reliability_changes_nothing_until_it_has_learned(features):
+def test_planner_output_is_unchanged_by_untrained_reliability(features):
     """And the rest of the planner starts with the same weights."""
     seen = torch.tensor([[0, 1, -1, -1], [14, -1, -1, -1], [3, 6, 9, 13]])
     plain, learned = planner(None), planner({"learned": True})
@@ -176,7 +176,7 @@ def test_in_the_planner_a_learned_reliability_changes_nothing_until_it_has_learn
     assert torch.allclose(ghosts(None, features, seen), level, atol=1e-5)
 
 
-def test_a_planner_trains_its_learned_reliability():
+def test_planner_trains_its_learned_reliability():
     made, step = planner({"learned": True}), decision(3)
     looked = made.look(torch.rand(3, VIEWS, sum(made.widths)))
     out = made(made.read(torch.tensor([[2, 3, 4]])), looked, collate([step], [0], [0]))
@@ -184,7 +184,7 @@ def test_a_planner_trains_its_learned_reliability():
     assert made.fusion.score.weight.grad.abs().sum() > 0
 
 
-def test_a_planner_with_fusion_scores_what_it_looked_at():
+def test_planner_with_fusion_depends_on_views():
     made, step = planner({}), decision(3)
     tokens = torch.tensor([[2, 3, 4]])
     with torch.no_grad():

@@ -88,7 +88,7 @@ def topological() -> list[dict[str, np.ndarray]]:
 
 
 @pytest.mark.parametrize("walked", [stepwise, recurrent, topological])
-def test_frames_stay_as_they_were_seen(walked: Callable) -> None:
+def test_collect_copies_frames(walked: Callable) -> None:
     kept = walked()
     assert len(kept) == 3
     for number, frames in enumerate(kept):

@@ -50,7 +50,6 @@ if TYPE_CHECKING:  # it imports tensordict, which is as slow to import as torch
 
 MAX_DECISIONS = 15  # ETPNav: 15 in R2R-CE
 PERCEPTION = ("rgb_encoder", "depth_encoder", "waypoint_head")
-PARTS = (*PERCEPTION, "planner")
 # losses of the planner (metres to the goal; which views show the goal's landmark) and of the
 # perception (concepts in views; free space); chosen for the shipped agents
 LOSS_WEIGHTS = {"distance": 0.3, "grounding": 0.3, "concepts": 2.0, "waypoints": 2.0}
@@ -209,7 +208,7 @@ class TopologicalAgent(Agent, nn.Module):
 
     def parts(self) -> dict[str, nn.Module]:
         """Return its four modules by name."""
-        return {name: self.get_submodule(name) for name in PARTS}
+        return dict(self.named_children())
 
     def as_teacher(self) -> TopologicalAgent:
         """Return a copy without adapters that takes plain means over views."""
