@@ -1,4 +1,4 @@
-"""Adapters change nothing when they come in, leave the backbone alone, and can be taken out."""
+"""Adapters: insertion keeps outputs, training keeps the backbone, removal restores the model."""
 
 from __future__ import annotations
 
@@ -123,12 +123,12 @@ def test_remove_and_load_restore_the_outputs(encoder, tmp_path):
     model, targets, x, count = encoder
     clean, before = model(x), weights_sha(model)
     insert_adapters(model, targets)
-    hurt = shaken(model)(x)
+    damaged = shaken(model)(x)
     save_adapters(model, tmp_path)
     remove_adapters(model)
     assert torch.equal(model(x), clean) and weights_sha(model) == before
     assert len(load_adapters(model, tmp_path)) == count
-    assert torch.equal(model(x), hurt) and not torch.equal(hurt, clean)
+    assert torch.equal(model(x), damaged) and not torch.equal(damaged, clean)
 
 
 def test_scale_multiplies_the_correction(encoder, tmp_path):
@@ -303,7 +303,7 @@ def test_invalid_targets_keep_the_model(targets, kind, text):
 
 
 def test_save_warns_of_changed_statistics(tmp_path, recwarn):
-    """A BatchNorm in train mode follows the batches though its weights are frozen."""
+    """A BatchNorm in train mode updates its statistics although its weights are frozen."""
     model = ResNet()
     insert_adapters(model, ["layer[1-4]"])
     model.eval()(torch.randn(2, 3, 32, 32))

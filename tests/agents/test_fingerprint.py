@@ -1,4 +1,4 @@
-"""One hash over all that makes an agent behave as it does."""
+"""Fingerprints of agents: one hash of everything that determines their behaviour."""
 
 from __future__ import annotations
 
@@ -72,7 +72,7 @@ def test_fingerprint_changes_with_code_without_settings(tmp_path, monkeypatch):
 
 
 def _hashes(folder, agent, sources):
-    """The hash of the class ``agent`` in one module whose source is one after the other."""
+    """Return the hash of the class ``agent`` for each source of its module."""
     found = []
     for number, source in enumerate(sources):
         (folder / "own_agent.py").write_text(source + "#" * 9 * number)  # of other lengths
@@ -125,7 +125,7 @@ def test_fingerprint_ignores_code_of_installed_packages(tmp_path, monkeypatch):
     sys.modules.pop("installed_agent")
 
 
-def test_contents_reports_sets_of_networks():
+def test_fingerprint_ignores_the_order_of_sets():
     class Placed(nn.Linear):
         def __init__(self, place: int) -> None:
             super().__init__(1, 1)
@@ -522,7 +522,7 @@ class Config:
 
 
 class Described(Own):
-    """Also one with settings()."""
+    """An agent with settings()."""
 
     def settings(self):
         return {}
@@ -609,7 +609,7 @@ def _biased_planner(bias):
 
 
 def _with(owner, name, value, made):
-    """Set an attribute of a class or module until the end of the test, and make an agent."""
+    """Replace an attribute of a class or module during the test, and return an agent."""
 
     def make(number, patch):
         patch.setattr(owner, name, value(number), raising=False)

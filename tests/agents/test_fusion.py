@@ -1,4 +1,4 @@
-"""Reliability weights: a view that is blank or inflated loses its say, and nothing else does."""
+"""Reliability weights: only blank or inflated views lose weight."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from tests.agents.topological.test_planner import decision
 
 
 def fuse(views: torch.Tensor, **how) -> tuple[torch.Tensor, torch.Tensor]:
-    """The mean of views by their reliability, and the weights."""
+    """Return the mean of views weighted by reliability, and the weights."""
     weights = reliability(views, **how)
     return (views * weights.unsqueeze(-1)).sum(-2), weights
 
@@ -28,12 +28,12 @@ def views() -> torch.Tensor:
 
 @pytest.mark.parametrize("factor", [0.0, 5.0])
 def test_reliability_gives_outliers_the_smallest_weight(views, factor):
-    hurt = views.clone()
-    hurt[3] *= factor
-    weights = reliability(hurt)
+    damaged = views.clone()
+    damaged[3] *= factor
+    weights = reliability(damaged)
     others = weights[torch.arange(12) != 3]
     assert torch.isclose(weights.sum(), torch.tensor(1.0))
-    size = hurt.norm(dim=-1)
+    size = damaged.norm(dim=-1)
     deviation = (size - size.mean()).abs() / size.mean()
     assert RATE * deviation[3] > CAP  # so far off that the cap holds it, and no further
     expected = CAP - RATE * deviation[torch.arange(12) != 3]
@@ -42,10 +42,10 @@ def test_reliability_gives_outliers_the_smallest_weight(views, factor):
 
 @pytest.mark.parametrize("factor", [0.0, 5.0])
 def test_reliability_fuses_closer_to_clean_than_the_mean(views, factor):
-    clean, hurt = views.mean(0), views.clone()
-    hurt[3] *= factor
-    fused, _ = fuse(hurt)
-    assert (fused - clean).norm() < (hurt.mean(0) - clean).norm()
+    clean, damaged = views.mean(0), views.clone()
+    damaged[3] *= factor
+    fused, _ = fuse(damaged)
+    assert (fused - clean).norm() < (damaged.mean(0) - clean).norm()
 
 
 def test_reliability_with_rate_zero_is_the_mean(views):
@@ -88,7 +88,7 @@ def test_learned_reliability_starts_with_equal_weights(views):
 
 
 def test_learned_reliability_learns_beyond_magnitudes():
-    """Something of their magnitude has replaced views: the rule cannot tell, it learns to."""
+    """Noise of equal magnitude replaces views: the rule misses it, a learned score detects it."""
     torch.manual_seed(0)
     marks = torch.nn.functional.normalize(torch.randn(8, 64), dim=-1)  # what a broken view shows
 
@@ -124,14 +124,14 @@ def test_weigher_rejects_rate_for_learned_reliability():
 
 
 def planner(fusion: dict | None) -> Planner:
-    """One and the same untrained planner, with or without fusion."""
+    """Return an untrained planner with fixed weights, with or without fusion."""
     seeding.seed_everything(0, "planner")
     return Planner(8, 8, width=16, heads=2, text_layers=1, layers=1, fusion=fusion).eval()
 
 
 @torch.no_grad()
 def ghosts(fusion: dict | None, features: torch.Tensor, sightings: torch.Tensor) -> torch.Tensor:
-    """Tokens of the ghosts of a decision, seen in the flat views ``sightings`` [G, 4]."""
+    """Return the tokens of ghosts that the flat views ``sightings`` [G, 4] faced."""
     made, batch = planner(fusion), collate([decision(4)], [0], [0])
     batch.sightings[0, : len(sightings)] = sightings
     tokens = made.look(features)
@@ -142,7 +142,7 @@ def ghosts(fusion: dict | None, features: torch.Tensor, sightings: torch.Tensor)
 
 @pytest.fixture
 def features() -> torch.Tensor:
-    """Four panoramas; every third view is inflated."""
+    """Return four panoramas in which every third view is inflated."""
     torch.manual_seed(0)
     made = torch.rand(4, VIEWS, sum(planner(None).widths))
     made[:, ::3] *= 3.0
@@ -157,7 +157,7 @@ def test_planner_with_equal_weights_takes_means(features):
 
 
 def test_planner_normalises_the_weights_of_ghosts(features):
-    """Seen once, in whatever view, it is that view; seen twice, it leans on the better one."""
+    """A single view determines the token; of two views the more reliable one weighs more."""
     seen = torch.tensor([[0, -1, -1, -1], [1, -1, -1, -1], [0, 1, -1, -1]])
     plain = ghosts(None, features, seen)
     fused = ghosts({"rate": 4.0, "cap": 3.0}, features, seen)
@@ -166,7 +166,7 @@ def test_planner_normalises_the_weights_of_ghosts(features):
 
 
 def test_planner_output_is_unchanged_by_untrained_reliability(features):
-    """And the rest of the planner starts with the same weights."""
+    """The other weights of the planner have equal initial values, too."""
     seen = torch.tensor([[0, 1, -1, -1], [14, -1, -1, -1], [3, 6, 9, 13]])
     plain, learned = planner(None), planner({"learned": True})
     others = {k: v for k, v in learned.state_dict().items() if not k.startswith("fusion.")}
@@ -184,7 +184,7 @@ def test_planner_trains_its_learned_reliability():
     assert made.fusion.score.weight.grad.abs().sum() > 0
 
 
-def test_planner_with_fusion_depends_on_views():
+def test_planner_with_fusion_gives_finite_scores():
     made, step = planner({}), decision(3)
     tokens = torch.tensor([[2, 3, 4]])
     with torch.no_grad():

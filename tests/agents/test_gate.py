@@ -1,4 +1,4 @@
-"""A gate in an encoder: what it takes for clean passes its adapters as it is, bit for bit."""
+"""Gates of encoders: frames classified as clean pass unchanged, bit for bit."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def frames():
 
 
 def trained(model: nn.Module) -> nn.Module:
-    """With adapters that correct a great deal, and a gate that opens for about half the frames."""
+    """Give adapters and gate large random weights."""
     for parameter in adapters.adapter_parameters(model):
         nn.init.normal_(parameter, std=0.3)
     return model.eval()
@@ -39,7 +39,7 @@ def gate_of(model: nn.Module) -> FrameGate:
 
 
 def centred(model: nn.Module, frames: torch.Tensor) -> torch.Tensor:
-    """Move the gate's threshold to the median of ``frames``; returns for which it is open."""
+    """Open the gate for half the ``frames``; return for which it is open."""
     model(frames)
     gate = gate_of(model)
     with torch.no_grad():
@@ -141,7 +141,7 @@ def test_folder_and_copy_keep_the_gate(encoder, frames, tmp_path):
     assert load_adapters(encoder, tmp_path) == ["stem", "stages.0", "stages.1", "stages.2"]
     assert torch.equal(encoder.eval()(frames)[0], wanted)
     with torch.no_grad():
-        gate_of(encoder).judge.bias += 100  # the copy has a gate of its own
+        gate_of(encoder).judge.bias += 100  # the copy has a separate gate
     assert torch.equal(copied(frames)[0], wanted)
 
 

@@ -1,4 +1,4 @@
-"""What a training walk keeps is what was seen then, also of a world that reuses its arrays."""
+"""Training rollouts copy their frames, because a world may reuse its arrays."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The agent refuses or brings into shape what it would otherwise walk badly by."""
+"""Checks of observations: invalid ones are rejected, others are converted."""
 
 import numpy as np
 import pytest
@@ -87,7 +87,7 @@ def test_frame_accepts_any_memory_layout(agent):
 
 
 def test_agents_resize_views_of_any_size():
-    """Each pixel repeated 3 x 3 is the same picture, so it must give the same features."""
+    """Repeating each pixel 3 x 3 keeps the image, so the features must be equal."""
     torch.manual_seed(0)
     agent = TopologicalAgent(size=32).eval()
     rgb = torch.randint(0, 256, (1, 12, 32, 32, 3), dtype=torch.uint8)

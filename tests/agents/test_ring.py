@@ -1,4 +1,4 @@
-"""A ring adapter's neighbours lie where the camera's rotation puts them."""
+"""Ring adapters: neighbouring views are warped by the rotation of the camera."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def test_ring_keeps_cells_that_no_neighbour_sees():
 
 
 def test_ring_restores_a_lost_view(panorama):
-    """With a score that shuns black cells, the fused map is nearer to the clean one than zero."""
+    """If the score avoids black cells, the fused map is closer to the clean map than zeros are."""
     adapter = RingAdapter(3, reduction=1)
     with torch.no_grad():
         adapter.down.weight.zero_()
@@ -63,7 +63,7 @@ def test_ring_rejects_invalid_arguments(wrong):
         RingAdapter(8, **wrong)
 
 
-def test_ring_has_the_views_of_the_panorama():
+def test_ring_rejects_another_number_of_views():
     adapter = RingAdapter(8)
     with pytest.raises(RuntimeError):
         adapter(torch.zeros(VIEWS + 1, 8, 4, 4))

@@ -1,4 +1,4 @@
-"""What an agent holds is found wherever it is."""
+"""Reading the state of agents: networks, arrays and values at any place."""
 
 from __future__ import annotations
 
@@ -122,7 +122,7 @@ class Anything:
         return lambda *given: None
 
 
-def test_array_sha_is_empty_for_unreadable_arrays():
+def test_read_state_reports_unreadable_values():
     sparse, mixed = torch.eye(2).to_sparse(), np.array([object()])
     agent = SimpleNamespace(remote=Anything(), sparse=sparse, mixed=mixed)
     assert [*read_state(agent).unreadable] == ["sparse", "mixed"] and fingerprint(agent, {})
@@ -132,7 +132,7 @@ def test_array_sha_is_empty_for_unreadable_arrays():
 
 
 class Merged(nn.Linear):
-    """Merged in eval mode alone, as LoRA is."""
+    """A layer that merges its weights only in eval mode, as LoRA does."""
 
     def train(self, mode: bool = True):
         self.merged = not mode

@@ -1,4 +1,4 @@
-"""The frontier agent: its map, its search, and that it finds what it is told to."""
+"""The frontier agent: its map, its search, and the objects that it finds."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ NOTHING = np.full((4, 2), 0.01, np.float32)
 
 
 def wall(metres: float, size: int = 32) -> np.ndarray:
-    """Depth [H, W] of a wall ahead, with the floor and the ceiling before it."""
+    """Return the depth [H, W] of a wall ahead, with floor and ceiling."""
     up = np.abs(1 - (2 * np.arange(size) + 1) / size)[:, None] + np.zeros(size)
     return np.minimum(metres, 1.25 / up).astype(np.float32)
 
@@ -69,7 +69,7 @@ def test_frontiers_border_on_unknown_cells():
 
 
 def test_grid_locates_the_object_from_two_views():
-    """One look leaves a whole direction; the second, from the side, leaves where they meet."""
+    """One observation gives a direction; a second one from the side gives the intersection."""
     grid = Grid(np.zeros(3), 1.25)
     ahead = np.array([[0.02, 0.02], [0.95, 0.3], [0.02, 0.02], [0.02, 0.02]], np.float32)
     for _ in range(3):
@@ -131,7 +131,7 @@ def test_evaluation_warns_of_unsupported_tasks():
         warn_of_tasks(object(), routes, "any that does not say", "val_unseen")
 
 
-def test_agent_has_only_one_trainable_part():
+def test_frontier_agent_is_seeing_but_not_trainable():
     agent = FrontierAgent()
     assert isinstance(agent, Seeing) and not isinstance(agent, Trainable)
     assert {id(p) for m in agent.parts().values() for p in m.parameters()} == {

@@ -1,4 +1,4 @@
-"""The recurrent agent: what it decides in a batch is what it does step by step."""
+"""The recurrent agent: batches of decisions equal step-by-step actions."""
 
 from __future__ import annotations
 
@@ -185,7 +185,7 @@ def test_constructor_rejects_invalid_arguments():
 
 
 def test_state_separates_last_and_summed_attention():
-    """They were one tensor at the start: walks of a training followed another policy."""
+    """They once shared a tensor, so that training rollouts followed another policy."""
     made = agent()
     state = State.start(made.policy.read(made.tokens(["go left", "go right"])))
     fresh = State(state.hidden[:1] + 1, state.last[:1] + 0.1, state.sum[:1] + 0.7)

@@ -1,4 +1,4 @@
-"""The reference agent with an encoder that nobody here trained."""
+"""The reference agent with a pretrained encoder (EfficientNet-Lite0)."""
 
 from __future__ import annotations
 
@@ -98,7 +98,7 @@ def test_constructor_rejects_invalid_arguments():
 
 
 def test_depth_encoder_keeps_its_size():
-    """The base agent's encoder of depth comes with it; at another scale it sees no free floor."""
+    """The depth encoder of the base agent detects free floor only at its size."""
     made, base = agent(), TopologicalAgent(16, SMALL)
     base.load_state_dict(
         {n: w for n, w in made.state_dict().items() if not n.startswith("rgb")}, strict=False

@@ -1,4 +1,4 @@
-"""The topological map on hand-made cases: where ghosts stand, how they merge, which way leads."""
+"""The topological map on small examples: positions and merging of ghosts, and routes."""
 
 from __future__ import annotations
 

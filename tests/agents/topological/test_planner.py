@@ -1,4 +1,4 @@
-"""The planner scores what is there: padding and the order of ghosts make no difference."""
+"""The planner: scores do not depend on padding or on the order of ghosts."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def planner() -> Planner:
 
 
 def decision(moves: int) -> Decision:
-    """A decision after some moves, with about 3 ghosts a move."""
+    """Return a decision after some moves, with about 3 ghosts per move."""
     rng = np.random.default_rng(moves)
     graph, pose = TopologicalMap(), np.zeros(3)
     for _ in range(moves):
@@ -45,7 +45,7 @@ def score(planner, decisions, rows, offsets, panoramas, tokens) -> torch.Tensor:
 
 
 def split(logits: torch.Tensor, made: Decision, nodes: int) -> tuple[torch.Tensor, torch.Tensor]:
-    """Scores of [stop] and of the ghosts in a row padded to ``nodes`` nodes."""
+    """Return the scores of [stop] and of the ghosts in a row padded to ``nodes`` nodes."""
     return logits[0], logits[1 + nodes : 1 + nodes + len(made.ghosts)]
 
 

@@ -27,7 +27,7 @@ SIZE, SCENE = 16, "apartments/train/000000"
 
 
 class RoomWorld:
-    """An empty room whose views are noise; routes are walked at once."""
+    """An empty room whose views are noise; a route is one step."""
 
     rule_metres = 2.0
     done = False
@@ -92,7 +92,7 @@ def test_oracle_stops_at_the_goal():
 
 @pytest.mark.parametrize("metres", [0.2, 0.5, 1.5])
 def test_oracle_stops_only_where_it_counts(monkeypatch, metres):
-    """Nearer than it stops by itself; else nothing is as without the rule."""
+    """A stricter rule only delays the stop."""
     free, _ = traces_of(1.0)
     monkeypatch.setattr(RoomWorld, "rule_metres", metres)
     bound, _ = traces_of(1.0)
@@ -111,7 +111,7 @@ def test_roll_out_ends_at_the_limit():
 
 
 def test_roll_out_ends_with_the_episode(monkeypatch):
-    """Also in the middle of a route: a world need not take a step after its last one."""
+    """It also ends in the middle of a route, because worlds reject steps after the last one."""
     monkeypatch.setattr(simulator, "MAX_STEPS", 12)
     worlds, episodes = [ApartmentsWorld(SIZE) for _ in range(3)], load_episodes("val_seen")[:3]
     rngs = [np.random.default_rng(n) for n in range(3)]
@@ -130,7 +130,7 @@ def test_roll_out_depends_only_on_its_generator():
 
 @pytest.fixture(scope="module")
 def stored(tmp_path_factory):
-    """An untrained agent and its features of the first training apartment."""
+    """Return an untrained agent and its features of the first training apartment."""
     agent = wanderer()
     store = Store(agent, partial(ApartmentsWorld, SIZE, 1), tmp_path_factory.mktemp("stored"))
     store.build()
@@ -214,7 +214,7 @@ def test_live_walk_requires_an_expert():
 
 
 def test_stored_folders_keep_the_class_name(tmp_path):
-    """tensordict writes the name of the class into the folder and looks it up when it loads."""
+    """tensordict stores the name of the class in the folder and looks it up on loading."""
     arrays = {
         "xy": torch.rand(2, 2),
         "views": torch.rand(2, VIEWS, 4).half(),

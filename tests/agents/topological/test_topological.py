@@ -1,4 +1,4 @@
-"""The closed loop: when the agent looks, when it stops, and that it does the same thing twice."""
+"""The closed loop: when the agent reads frames, when it stops, and that it is deterministic."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def simulator() -> Simulator:
 
 
 def drive(agent, simulator, number=0, change=lambda frames: frames) -> tuple[list[int], list[int]]:
-    """Run an episode; the actions, and the steps at which frames were read."""
+    """Run an episode; return the actions and the steps at which frames were read."""
     episode = load_episodes("val_seen")[number]
     simulator.reset(episode)
     agent.reset(episode.instruction.text)

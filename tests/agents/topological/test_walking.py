@@ -1,4 +1,4 @@
-"""Waypoints point where one can go, and the controller gets there by odometry alone."""
+"""Waypoints lead to free places, and the controller reaches them by odometry alone."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from tests.agents.rooms import room, sure
 
 
 def walk(space, xy, heading, route) -> tuple[np.ndarray, int]:
-    """Where a controller ends and how many actions it took."""
+    """Return the final position of a controller and the number of its actions."""
     controller, xy, steps = Controller(), np.array(xy, float), 0
     controller.follow([np.array(p, float) for p in route])
     while (action := controller.action(np.array([*xy, heading]))) is not None:
