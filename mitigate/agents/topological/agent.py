@@ -179,7 +179,8 @@ class TopologicalAgent(Agent, nn.Module):
     def encode_rgb(self, rgb: Tensor) -> tuple[Tensor, Tensor]:
         """Return features [P, 12, width] and concept logits [P, 12, C]."""
         features, concepts = self.rgb_encoder(rgb.flatten(0, 1))
-        return features.unflatten(0, (-1, VIEWS)), concepts.unflatten(0, (-1, VIEWS))
+        views = rgb.shape[1]
+        return features.unflatten(0, (-1, views)), concepts.unflatten(0, (-1, views))
 
     def encode_depth(self, depth: Tensor) -> tuple[Tensor, Tensor]:
         """Return features [P, 12, width] and waypoint logits [P, 120, 12]."""
