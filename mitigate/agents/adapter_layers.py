@@ -38,6 +38,15 @@ class Adapter(nn.Module):
     hook: RemovableHandle | None = None
 
 
+def check_sizes(owner: str, kernel: int = 1, **sizes: int | None) -> None:
+    """Raise ValueError for a size below 1 or an even kernel; None sizes are unset."""
+    for name, size in sizes.items():
+        if size is not None and size < 1:
+            raise ValueError(f"{name} of a {owner} must be >= 1, got {size}.")
+    if kernel % 2 == 0:
+        raise ValueError(f"kernel of a {owner} must be odd, got {kernel}.")
+
+
 class Judged:
     """A gate's output for the last batch: logits ``[n]``, above 0 where the gate is open."""
 
@@ -72,11 +81,7 @@ class FrameGate(Adapter):
 
     def __init__(self, channels: int, middle: int = 16, views: int = 1) -> None:
         super().__init__()
-        if channels < 1 or middle < 1 or views < 1:
-            raise ValueError(
-                "channels, middle and views of a gate must be >= 1, got "
-                f"{channels}, {middle} and {views}."
-            )
+        check_sizes("gate", channels=channels, middle=middle, views=views)
         self.settings = {"kind": "gate", "channels": channels, "middle": middle, "views": views}
         self.views = views
         self.first = nn.Conv2d(channels, middle, 3, padding=1)
@@ -99,9 +104,8 @@ class FrameGate(Adapter):
         statistics = torch.cat([y.mean(2), spread, y.amax(2), textures(x)], 1)
         if self.views > 1:
             ring = statistics.unflatten(0, (-1, self.views))
-            statistics = torch.cat([ring, ring.mean(1, keepdim=True).expand_as(ring)], 2).flatten(
-                0, 1
-            )
+            mean = ring.mean(1, keepdim=True).expand_as(ring)
+            statistics = torch.cat([ring, mean], 2).flatten(0, 1)
         self.judged.logits = self.judge(F.gelu(self.hidden(statistics)))[:, 0] - self.threshold
 
     def calibrate(self, logits: Tensor, touched: float) -> None:
@@ -166,10 +170,7 @@ class Gate(nn.Module):
 
     def forward(self, y: Tensor, over: tuple[int, ...]) -> Tensor:
         """Return logits [n]; ``over`` are the axes of ``y`` other than frames and channels."""
-        if over:
-            mean, power = y.mean(over), (y * y).mean(over)
-        else:
-            mean, power = y, y * y
+        mean, power = (y.mean(over), (y * y).mean(over)) if over else (y, y * y)
         return self.read(torch.cat([mean, (power + 1e-6).sqrt()], 1))[:, 0]
 
 
@@ -199,16 +200,9 @@ class TokenAdapter(Adapter):
         middle: int | None = None,
     ) -> None:
         super().__init__()
-        if (
-            channels < 1
-            or reduction < 1
-            or batch not in (0, 1)
-            or (middle is not None and middle < 1)
-        ):
-            raise ValueError(
-                "channels, reduction and middle of a token adapter must be >= 1, got "
-                f"{channels}, {reduction} and {middle}; batch must be 0 or 1, got {batch}."
-            )
+        check_sizes("token adapter", channels=channels, reduction=reduction, middle=middle)
+        if batch not in (0, 1):
+            raise ValueError(f"batch of a token adapter must be 0 or 1, got {batch}.")
         self.settings = {"kind": "tokens", "channels": channels, "reduction": reduction}
         self.settings |= {"batch": batch, **optional_settings(gate, middle)}
         middle = middle or max(4, channels // reduction)
@@ -259,11 +253,8 @@ class ConvAdapter(Adapter):
         middle: int | None = None,
     ) -> None:
         super().__init__()
-        if channels < 1 or reduction < 1 or kernel % 2 == 0 or (middle is not None and middle < 1):
-            raise ValueError(
-                "channels, reduction and middle of an adapter must be >= 1, got "
-                f"{channels}, {reduction} and {middle}; kernel must be odd, got {kernel}."
-            )
+        sizes = {"channels": channels, "reduction": reduction, "middle": middle}
+        check_sizes("convolutional adapter", kernel, **sizes)
         self.settings = {"channels": channels, "reduction": reduction, "kernel": kernel}
         self.settings |= optional_settings(gate, middle)
         middle = middle or max(4, channels // reduction)
@@ -319,20 +310,15 @@ class RingAdapter(Adapter):
         hfov: float = HFOV_DEGREES,
     ) -> None:
         super().__init__()
-        if channels < 1 or reduction < 1 or kernel % 2 == 0 or views < 3 or not 0 < hfov < 180:
+        check_sizes("ring adapter", kernel, channels=channels, reduction=reduction)
+        if views < 3 or not 0 < hfov < 180:
             raise ValueError(
-                "channels and reduction of a ring adapter must be >= 1, got "
-                f"{channels} and {reduction}; kernel must be odd, got {kernel}; views must be "
-                f">= 3, got {views}; hfov must be between 0 and 180 degrees, got {hfov}."
+                f"views of a ring adapter must be >= 3, got {views}; hfov must be between 0 and "
+                f"180 degrees, got {hfov}."
             )
         middle = max(4, channels // reduction)
-        self.settings = {
-            "channels": channels,
-            "reduction": reduction,
-            "kernel": kernel,
-            "views": views,
-            "hfov": hfov,
-        }
+        self.settings = {"channels": channels, "reduction": reduction, "kernel": kernel}
+        self.settings |= {"views": views, "hfov": hfov}
         self.views, self.hfov = views, hfov
         self.gates = []
         self.down = nn.Conv2d(channels, middle, 1)
@@ -347,7 +333,7 @@ class RingAdapter(Adapter):
         parts = [x, y, self.score(y)]
         grid = neighbour_grid(x.shape[-2], x.shape[-1], 360 / self.views, self.hfov).to(x.device)
         maps = self.aligned(torch.cat([part.float() for part in parts], 1), grid)
-        unseen = (grid.abs() > 1).any(-1)  # [2, h, w]; a view sees all of its own cells
+        unseen = (grid.abs() > 1).any(-1)  # [2, h, w]; a view sees all its cells
         scores = torch.stack([each[:, -1] for each in maps], 1)
         scores = scores.masked_fill(F.pad(unseen, (0, 0, 0, 0, 1, 0)), -math.inf)
         weights = scores.softmax(1).unsqueeze(2).unbind(1)

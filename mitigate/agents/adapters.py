@@ -27,17 +27,7 @@ from mitigate.agents.adapter_layers import (
     RingAdapter,
     TokenAdapter,
 )
-from mitigate.agents.sites import (
-    MAP,
-    Run,
-    Site,
-    channels_of,
-    find_sites,
-    first,
-    inputs_of,
-    listed,
-    named,
-)
+from mitigate.agents.sites import MAP, Run, channels_of, find_sites, first, inputs_of, listed, named
 from mitigate.core import checkpoint
 from mitigate.core.files import write_text
 from mitigate.core.folders import problem, write_folder
@@ -112,45 +102,40 @@ def insert_adapters(
     for name, module in model.named_modules():
         if name in gated:
             adapters[name] = FrameGate(inputs_of(name, module), views=views if ringed else 1)
-        elif name in ringed and views == 1:  # no neighbours
-            adapters[name] = _plain(name, module, None, ring_reduction, kernel, gate, middle)
         elif name in ringed:
-            adapters[name] = RingAdapter(
-                channels_of(name, module), ring_reduction, kernel, views, hfov
+            channels = channels_of(name, module)
+            if views == 1:  # no neighbours
+                adapters[name] = ConvAdapter(channels, ring_reduction, kernel, gate, middle)
+            else:
+                adapters[name] = RingAdapter(channels, ring_reduction, kernel, views, hfov)
+        elif name in plain and sites is None:
+            channels = channels_of(name, module)
+            adapters[name] = ConvAdapter(channels, reduction, kernel, gate, middle)
+        elif name in plain and sites is not None:
+            site = sites.get(name, "the encoder does not call it")
+            if isinstance(site, str):
+                raise ValueError(
+                    f"No adapter fits the output of {name}: {site}. Choose another module."
+                )
+            adapters[name] = (
+                ConvAdapter(site.channels, reduction, kernel, gate, middle)
+                if site.kind == MAP
+                else TokenAdapter(site.channels, reduction, site.batch, gate, middle)
             )
-        elif name in plain:
-            adapters[name] = _plain(name, module, sites, reduction, kernel, gate, middle)
-    check_gates(adapters)
     attach_all(model, adapters)
     return list(adapters)
 
 
-def _plain(
-    name: str,
-    module: nn.Module,
-    sites: dict[str, Site | str] | None,
-    reduction: int,
-    kernel: int,
-    gate: bool,
-    middle: int | None,
-) -> Adapter:
-    """Return an adapter that fits the output of a module."""
-    if sites is None:
-        return ConvAdapter(channels_of(name, module), reduction, kernel, gate, middle)
-    site = sites.get(name, "the encoder does not call it")
-    if isinstance(site, str):
-        raise ValueError(f"No adapter fits the output of {name}: {site}. Choose another module.")
-    if site.kind == MAP:
-        return ConvAdapter(site.channels, reduction, kernel, gate, middle)
-    return TokenAdapter(site.channels, reduction, site.batch, gate, middle)
-
-
 def remove_adapters(model: nn.Module) -> None:
-    """Remove all adapters, which restores the backbone's output.
+    """Remove all adapters and their hooks, which restores the backbone's output.
 
     The backbone stays frozen; ``model.requires_grad_(True)`` makes it trainable again.
     """
-    detach_all(model)
+    for name, adapter in _attached(model).items():
+        if adapter.hook is not None:
+            adapter.hook.remove()
+            adapter.hook = None
+        delattr(model.get_submodule(name), NAME)
 
 
 def adapter_parameters(model: nn.Module) -> list[nn.Parameter]:
@@ -183,7 +168,7 @@ def scale_adapters(model: nn.Module, strength: float) -> None:
 
 
 def trainable_share(model: nn.Module) -> float:
-    """Return the number of adapter parameters divided by that of the backbone."""
+    """Return the parameter count of the adapters, relative to the backbone."""
     count = sum(p.numel() for p in adapter_parameters(model))
     return count / max(1, sum(p.numel() for p in model.parameters()) - count)
 
@@ -261,18 +246,14 @@ def load_adapters(model: nn.Module, folder: str | Path) -> list[str]:
     missing = sorted(set(shapes) - {name for name, _ in model.named_modules()})
     if missing:
         raise ValueError(f"This model has no module called {', '.join(missing)}.")
-    adapters: dict[str, Adapter] = {}
+    weights: dict[str, dict[str, Tensor]] = {_key(name): {} for name in shapes}
     try:
-        owners = tuple(f"{_key(name)}." for name in shapes)
-        for name in tensors:
-            if not name.startswith(owners):
+        for name, tensor in tensors.items():
+            owner, _, part = name.partition(".")
+            if owner not in weights:
                 raise ValueError(f"no adapter has the tensor {short(name)}")
-        for name, shape in shapes.items():
-            prefix = f"{_key(name)}."
-            weights = {
-                k.removeprefix(prefix): v for k, v in tensors.items() if k.startswith(prefix)
-            }
-            adapters[name] = _build_adapter(shape, weights)
+            weights[owner][part] = tensor
+        adapters = {name: _build_adapter(s, weights[_key(name)]) for name, s in shapes.items()}
     except (RuntimeError, TypeError, ValueError, ArithmeticError) as error:
         cause = " ".join(str(error).split())[:300]
         raise ValueError(f"The adapters in {folder} are damaged ({cause}).") from error
@@ -344,7 +325,16 @@ def reject_adapted(model: nn.Module) -> None:
 
 
 def attach_all(model: nn.Module, adapters: dict[str, Adapter]) -> None:
-    """Freeze ``model`` and attach all ``adapters``, or none if a name is in use."""
+    """Freeze ``model`` and attach all ``adapters``, or none if one does not fit."""
+    gates = _gates_of(adapters)
+    kinds = (name for name, adapter in adapters.items() if isinstance(adapter, FrameGate))
+    idle = [name for name in kinds if name not in gates.values()]
+    if idle:
+        raise ValueError(
+            f"The gate at {idle[0]} controls no adapter: no adapter for maps follows it in the "
+            "same encoder, and adapters for tokens take no gate. Leave it out of gates, or choose "
+            "other target modules."
+        )
     # an attribute of that name may be a module, a parameter or a method
     conflicts = [name for name in adapters if hasattr(model.get_submodule(name), NAME)]
     if conflicts:
@@ -356,29 +346,15 @@ def attach_all(model: nn.Module, adapters: dict[str, Adapter]) -> None:
     like = next(model.parameters(), torch.zeros(()))
     for name, adapter in adapters.items():
         _attach(model.get_submodule(name), adapter, like)
-    _follow(adapters)
+    for name, gate in gates.items():
+        adapters[name].gates = [adapters[gate]]
     setattr(model, _STATISTICS, _statistics(model))
-
-
-def detach_all(model: nn.Module) -> None:
-    """Remove all adapters and their hooks."""
-    for name, adapter in _attached(model).items():
-        if adapter.hook is not None:
-            adapter.hook.remove()
-            adapter.hook = None
-        delattr(model.get_submodule(name), NAME)
 
 
 def moved_statistics(model: nn.Module) -> bool:
     """Return whether the running statistics changed after the adapters were inserted."""
     before = vars(model).get(_STATISTICS, {})
     return any(not v.equal(before.get(name, v)) for name, v in _statistics(model).items())
-
-
-def _adapter_of(module: nn.Module) -> Adapter:
-    adapter = module.get_submodule(NAME)
-    assert isinstance(adapter, Adapter)
-    return adapter
 
 
 def _attach(module: nn.Module, adapter: Adapter, usual: Tensor) -> None:
@@ -393,7 +369,7 @@ def _attach(module: nn.Module, adapter: Adapter, usual: Tensor) -> None:
 
 def _adapt(module: nn.Module, inputs: Any, output: Any) -> Any:
     """Apply the adapter of ``module`` to its output, or to the first item of a tuple or list."""
-    adapter = _adapter_of(module)
+    adapter = module.get_submodule(NAME)
     if isinstance(output, (tuple, list)):
         rest = (adapter(first(output)), *output[1:])
         # the constructor of a named tuple takes one argument per item; only they have _make
@@ -403,27 +379,9 @@ def _adapt(module: nn.Module, inputs: Any, output: Any) -> Any:
 
 def _judge_input(module: nn.Module, inputs: Any) -> None:
     """Apply the gate of ``module`` to its input (forward pre-hook)."""
-    gate = _adapter_of(module)
+    gate = module.get_submodule(NAME)
     assert isinstance(gate, FrameGate)
     gate.look(inputs[0])
-
-
-def _follow(adapters: dict[str, Adapter]) -> None:
-    """Set the gate of each adapter that has one."""
-    for name, gate in _gates_of(adapters).items():
-        adapters[name].gates = [adapters[gate]]
-
-
-def check_gates(adapters: dict[str, Adapter]) -> None:
-    """Raise ValueError for a gate that controls no adapter."""
-    used = set(_gates_of(adapters).values())
-    idle = [name for name, m in adapters.items() if isinstance(m, FrameGate) and name not in used]
-    if idle:
-        raise ValueError(
-            f"The gate at {idle[0]} controls no adapter: no adapter for maps follows it in the "
-            "same encoder, and adapters for tokens take no gate. Leave it out of gates, or choose "
-            "other target modules."
-        )
 
 
 def _gates_of(adapters: dict[str, Adapter]) -> dict[str, str]:

@@ -22,6 +22,7 @@ from torch import Tensor, nn
 
 from mitigate.agents.adapters import remove_adapters
 from mitigate.core.contracts import missing_members, read, take_over
+from mitigate.core.observation import STOP
 
 if TYPE_CHECKING:
     from mitigate.worlds.episodes import Episode
@@ -137,10 +138,7 @@ class SideBySide(Agent):
         return self.answers(observations, [*memories, *[memories[-1]] * padding], len(memories))
 
     def answers(
-        self,
-        observations: Sequence[Mapping[str, np.ndarray]],
-        memories: Sequence[Any],
-        count: int,
+        self, observations: Sequence[Mapping[str, np.ndarray]], memories: Sequence[Any], count: int
     ) -> list[int]:
         """Return the actions of the first ``count`` episodes and update their memories."""
         raise NotImplementedError(f"{type(self).__name__} defines no answers(...)")
@@ -238,6 +236,22 @@ def check_logits(logits: Tensor, agent: Any) -> Tensor:
             f"the others, got {numbers}. Check its outputs for NaN."
         )
     return logits
+
+
+def stop_figures(logits: Tensor, target: Tensor) -> dict[str, Tensor]:
+    """Return the recall of STOP and the rate of false STOPs; targets are as in ``Decisions``."""
+    stop = target[:, STOP] > 0
+    chosen = logits.argmax(-1) == STOP
+    return {
+        "stop_recall": (chosen & stop).sum() / stop.sum().clamp(min=1),
+        "false_stop": (chosen & ~stop).sum() / (~stop).sum().clamp(min=1),
+    }
+
+
+def sample(probabilities: np.ndarray, rng: np.random.Generator) -> int:
+    """Return an index drawn from ``probabilities`` [n], which need not sum to 1."""
+    total = np.cumsum(probabilities.astype(np.float64))
+    return int(min(np.searchsorted(total, rng.random() * total[-1], side="right"), len(total) - 1))
 
 
 class Decisions(Protocol):

@@ -1,8 +1,10 @@
-"""Attention and transformer layers of the planner and of the instruction encoders."""
+"""Attention, transformer layers, and the instruction encoder of the planner and the policy."""
 
 from __future__ import annotations
 
 from torch import Tensor, nn
+
+from mitigate.agents.text import MAX_WORDS, PAD, Vocabulary
 
 
 class Attention(nn.Module):
@@ -15,11 +17,9 @@ class Attention(nn.Module):
     def __init__(self, width: int, heads: int) -> None:
         super().__init__()
         self.heads, self.scale = heads, (width // heads) ** -0.5
-        self.q, self.kv, self.out = (
-            nn.Linear(width, width),
-            nn.Linear(width, 2 * width),
-            nn.Linear(width, width),
-        )
+        self.q = nn.Linear(width, width)
+        self.kv = nn.Linear(width, 2 * width)
+        self.out = nn.Linear(width, width)
 
     def forward(
         self, x: Tensor, memory: Tensor, mask: Tensor | None, rows: Tensor | None = None
@@ -64,3 +64,37 @@ class Layer(nn.Module):
         y = self.self_norm(x)
         x = x + self.attention(y, y, mask)
         return x + self.dropout(self.ff(self.ff_norm(x)))
+
+
+class TextReader(nn.Module):
+    """Base class of networks that read an instruction with a small transformer.
+
+    Args:
+        vocabulary: of the instructions.
+        width: width of all layers.
+        heads: attention heads.
+        layers: transformer layers over the text.
+        dropout: dropout rate.
+    """
+
+    concept_words: Tensor
+
+    def __init__(
+        self, vocabulary: Vocabulary, width: int, heads: int, layers: int, dropout: float
+    ) -> None:
+        super().__init__()
+        self.words = nn.Embedding(len(vocabulary), width, padding_idx=PAD)
+        nn.init.normal_(self.words.weight, std=0.5)
+        self.places = nn.Embedding(MAX_WORDS, width)
+        nn.init.normal_(self.places.weight, std=0.1)
+        self.register_buffer("concept_words", vocabulary.concept_words(), persistent=False)
+        self.text = nn.ModuleList([Layer(width, heads, False, dropout) for _ in range(layers)])
+        self.text_norm = nn.LayerNorm(width)
+
+    def read(self, tokens: Tensor) -> tuple[Tensor, ...]:
+        """Return text features [E, L, width] and mask [E, L] of token ids [E, L]."""
+        mask = tokens != PAD
+        x = self.words(tokens) + self.places.weight[: tokens.shape[1]]
+        for layer in self.text:
+            x = layer(x, mask)
+        return self.text_norm(x), mask

@@ -38,7 +38,11 @@ def build_agent(
     """
     weights = None if weights is None else str(find(weights))
     if loading.is_ours(node["_target_"]):  # a huge width fills the memory, a pattern may not end
-        _check_config(plain(node))
+        config = plain(node)
+        known = schema.schema_of(config["_target_"]).settings
+        config = {name: value for name, value in config.items() if name in known}
+        again = "Give it such a value, or leave it out."  # the class rejects unknown settings
+        schema.check(config, "The options", node["_target_"], again)
     seeding.seed_everything(seed, "agent")
     agent = build(node)
     if weights is not None and not hasattr(agent, "state_dict"):  # any class of a config
@@ -142,13 +146,3 @@ def with_kind(options: Sequence[str]) -> list[str]:
     weights = values(options, "checkpoint")
     added = agent_option(options, weights[0]) if len(weights) == 1 else []
     return [*options, *added]
-
-
-def _check_config(config: dict[str, Any]) -> None:
-    """Raise ValueError if a config sets a shipped kind of agent to an invalid value.
-
-    The class rejects settings that are not in its schema.
-    """
-    target = config["_target_"]
-    known = {k: v for k, v in config.items() if k in schema.schema_of(target).settings}
-    schema.check(known, "The options", target, "Give it such a value, or leave it out.")

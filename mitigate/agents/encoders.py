@@ -9,39 +9,38 @@ position of an object in the view.
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import torch
 import torch.nn.functional as F
 from torch import Tensor, nn
 
 from mitigate.agents.agent import Output
 from mitigate.agents.text import CONCEPTS, THINGS
-from mitigate.core.observation import DEPTH
+from mitigate.core.observation import DEPTH, RGB
 
 SIZE = 64  # pixels of a view that the shipped agents are trained on
 DEPTH_RANGE = 5.0  # metres; larger depth does not matter for legs of at most 3 m
 GRID = 4  # rows and columns of the last feature map at 64 pixels
 DIRECTIONS, DISTANCES, STEP = 30, 12, 0.25  # bins of free space over 90 degrees; metres per bin
-CAMERA_ENCODERS = {"rgb": ("rgb_encoder",), "depth": ("depth_encoder",)}
-CAMERA_LABELS = {"rgb": "concepts", "depth": "free"}
+LABELS = {RGB: "concepts", DEPTH: "free"}
 POSITIVE = 2.0  # weight of positive labels: most concepts are absent from a view
 
 
 class Block(nn.Module):
-    """Residual block of two 3x3 convolutions; ``stride`` 2 halves the map."""
+    """Residual block of two 3x3 convolutions, which halves the map."""
 
-    def __init__(self, inputs: int, outputs: int, stride: int) -> None:
+    def __init__(self, inputs: int, outputs: int) -> None:
         super().__init__()
-        self.first = nn.Conv2d(inputs, outputs, 3, stride, 1, bias=False)
+        self.first = nn.Conv2d(inputs, outputs, 3, 2, 1, bias=False)
         self.norm1 = nn.GroupNorm(8, outputs)
         self.second = nn.Conv2d(outputs, outputs, 3, 1, 1, bias=False)
         self.norm2 = nn.GroupNorm(8, outputs)
         self.skip = nn.Conv2d(inputs, outputs, 1, bias=False)
-        self.stride = stride
 
     def forward(self, x: Tensor) -> Tensor:
         y = self.norm2(self.second(F.relu(self.norm1(self.first(x)))))
-        x = halved(x) if self.stride > 1 else x
-        return F.relu(y + self.skip(x))
+        return F.relu(y + self.skip(halved(x)))
 
 
 def halved(x: Tensor) -> Tensor:
@@ -59,28 +58,46 @@ def halved(x: Tensor) -> Tensor:
 class Encoder(nn.Module):
     """Stem and residual stages, from views of ``size`` pixels to a 4x4 map.
 
-    Frames of another size are resized with ``resize``, a mode of ``F.interpolate``.
+    Frames of another size are resized.
+
+    Attributes:
+        channels: channels of the input.
+        widths: channels of the stem and of each stage.
+        resize: how frames are resized, a mode of ``F.interpolate``.
+        stride: ``size`` must be a multiple of these pixels.
+        usual: an example of ``size``, for messages.
     """
 
-    def __init__(
-        self, channels: int, stem: int, widths: tuple[int, ...], size: int, resize: str
-    ) -> None:
+    channels: int
+    widths: tuple[int, ...]
+    resize: str
+    stride = 16
+    usual = SIZE
+
+    def __init__(self, size: int) -> None:
         super().__init__()
-        if size < 16 or size % 16:
-            raise ValueError(f"size must be a multiple of 16 pixels, such as {SIZE}, got {size}.")
-        self.size, self.resize = size, resize
-        self.stem = nn.Sequential(
-            nn.Conv2d(channels, stem, 3, 2, 1, bias=False), nn.GroupNorm(8, stem), nn.ReLU()
-        )
-        blocks = [Block(a, b, 2) for a, b in zip((stem, *widths[:-1]), widths, strict=True)]
-        self.stages = nn.ModuleList(blocks)
+        if size < self.stride or size % self.stride:
+            raise ValueError(
+                f"size must be a multiple of {self.stride} pixels, such as {self.usual}, got "
+                f"{size}."
+            )
+        self.size = size
+        self.stem, self.stages = self.backbone()
+
+    def backbone(self) -> tuple[nn.Sequential, nn.ModuleList]:
+        """Return the stem and the stages."""
+        stem = nn.Conv2d(self.channels, self.widths[0], 3, 2, 1, bias=False)
+        stages = [Block(a, b) for a, b in pairwise(self.widths)]
+        norm = nn.GroupNorm(8, self.widths[0])
+        return nn.Sequential(stem, norm, nn.ReLU()), nn.ModuleList(stages)
 
     def sized(self, frames: Tensor) -> Tensor:
         """Resize frames ``[n, H, W, c]`` to float ``[n, c, size, size]``."""
         x = frames.permute(0, 3, 1, 2).float()
         if x.shape[-2:] == (self.size, self.size):
             return x
-        return F.interpolate(x, (self.size, self.size), mode=self.resize)
+        antialias = self.resize == "bilinear"
+        return F.interpolate(x, (self.size, self.size), mode=self.resize, antialias=antialias)
 
     def maps(self, x: Tensor) -> Tensor:
         """Return features ``[n, widths[-1], 4, 4]`` of normalised input ``[n, c, H, W]``."""
@@ -103,21 +120,22 @@ def depth_channels(z: Tensor) -> Tensor:
 class RGBEncoder(Encoder):
     """Encode uint8 ``[n, H, W, 3]`` as features ``[n, width]`` and concept logits ``[n, C]``."""
 
-    def __init__(
-        self,
-        stem: int = 32,
-        widths: tuple[int, ...] = (48, 96, 160),
-        width: int = 128,
-        size: int = SIZE,
-    ) -> None:
-        super().__init__(3, stem, tuple(widths), size, "area")
-        self.gather = nn.Conv2d(widths[-1], 2 * widths[-1], GRID, groups=widths[-1])
-        self.embed = nn.Linear(2 * widths[-1], width)
+    channels, resize = 3, "area"
+    widths: tuple[int, ...] = (32, 48, 96, 160)
+
+    def __init__(self, width: int, size: int = SIZE) -> None:
+        super().__init__(size)
+        last = self.widths[-1]
+        self.gather = nn.Conv2d(last, 2 * last, GRID, groups=last)
+        self.embed = nn.Linear(2 * last, width)
         self.concepts = nn.Linear(width, len(CONCEPTS))
 
+    def normalised(self, rgb: Tensor) -> Tensor:
+        """Return frames ``[n, H, W, 3]`` as input of the stem."""
+        return self.sized(rgb) / 127.5 - 1
+
     def forward(self, rgb: Tensor) -> tuple[Tensor, Tensor]:
-        x = self.sized(rgb) / 127.5 - 1
-        x = F.gelu(self.gather(self.maps(x)).flatten(1))
+        x = F.gelu(self.gather(self.maps(self.normalised(rgb))).flatten(1))
         features = F.gelu(self.embed(x))
         return features, self.concepts(features)
 
@@ -129,16 +147,13 @@ class DepthEncoder(Encoder):
     surface that does not exist.
     """
 
-    def __init__(
-        self,
-        stem: int = 24,
-        widths: tuple[int, ...] = (32, 64, 96),
-        width: int = 128,
-        size: int = SIZE,
-    ) -> None:
-        super().__init__(2, stem, tuple(widths), size, "nearest-exact")
-        self.rows = nn.Conv2d(widths[-1], widths[-1], (GRID, 1))
-        self.embed = nn.Linear(GRID * widths[-1], width)
+    channels, widths, resize = 2, (24, 32, 64, 96), "nearest-exact"
+
+    def __init__(self, width: int, size: int = SIZE) -> None:
+        super().__init__(size)
+        last = self.widths[-1]
+        self.rows = nn.Conv2d(last, last, (GRID, 1))
+        self.embed = nn.Linear(GRID * last, width)
 
     def forward(self, depth: Tensor) -> Tensor:
         x = self.maps(depth_channels(self.sized(depth)))
@@ -163,6 +178,9 @@ def free_loss(logits: Tensor, target: Tensor) -> Tensor:
     return F.binary_cross_entropy_with_logits(logits.float(), target)
 
 
+LABEL_LOSSES = {RGB: presence_loss, DEPTH: free_loss}  # of the labels of each sensor
+
+
 def agreement(logits: Tensor, target: Tensor) -> Tensor:
     """Return the intersection over union of predicted and true free cells."""
     predicted, true = logits > 0, target > 0.5
@@ -174,15 +192,12 @@ def label_output(views: Tensor, logits: Tensor, sensor: str, truth: Tensor | Non
     out = Output(features={"views": views})
     if truth is None:
         return out
+    out.losses = {"labels": LABEL_LOSSES[sensor](logits, truth)}
     if sensor == DEPTH:
-        out.losses = {"labels": free_loss(logits, truth)}
         out.figures = {"iou": agreement(logits, truth)}
     else:
-        out.losses = {"labels": presence_loss(logits, truth)}
-        out.figures = {
-            "f1": f1(logits[..., THINGS], truth[..., THINGS]),
-            "f1_all": f1(logits, truth),
-        }
+        things = f1(logits[..., THINGS], truth[..., THINGS])
+        out.figures = {"f1": things, "f1_all": f1(logits, truth)}
     return out
 
 
@@ -192,15 +207,11 @@ class CameraRGB(Encoder):
     Features are ``[n, 4, width]``, logits ``[n, 4, C]``.
     """
 
-    def __init__(
-        self,
-        stem: int = 32,
-        widths: tuple[int, ...] = (48, 96, 160),
-        width: int = 96,
-        size: int = SIZE,
-    ) -> None:
-        super().__init__(3, stem, tuple(widths), size, "area")
-        last = widths[-1]
+    channels, widths, resize = 3, (32, 48, 96, 160), "area"
+
+    def __init__(self, width: int, size: int = SIZE) -> None:
+        super().__init__(size)
+        last = self.widths[-1]
         self.gather = nn.Conv2d(last, 2 * last, (GRID, 1), groups=last)
         self.embed = nn.Linear(2 * last, width)
         self.concepts = nn.Linear(width, len(CONCEPTS))
@@ -218,19 +229,15 @@ class CameraDepth(Encoder):
     angle, from 45 degrees left to 45 right, and by distance, 0.25 to 3 m.
     """
 
-    def __init__(
-        self,
-        stem: int = 24,
-        widths: tuple[int, ...] = (32, 64, 96),
-        width: int = 64,
-        size: int = SIZE,
-    ) -> None:
-        super().__init__(2, stem, tuple(widths), size, "nearest-exact")
-        self.rows = nn.Conv2d(widths[-1], widths[-1], (GRID, 1))
-        self.embed = nn.Linear(widths[-1], width)
-        self.free = nn.Sequential(
-            nn.Linear(GRID * width, 160), nn.GELU(), nn.Linear(160, DIRECTIONS * DISTANCES)
-        )
+    channels, widths, resize = 2, (24, 32, 64, 96), "nearest-exact"
+
+    def __init__(self, width: int, size: int = SIZE) -> None:
+        super().__init__(size)
+        last = self.widths[-1]
+        self.rows = nn.Conv2d(last, last, (GRID, 1))
+        self.embed = nn.Linear(last, width)
+        hidden = nn.Linear(GRID * width, 160)
+        self.free = nn.Sequential(hidden, nn.GELU(), nn.Linear(160, DIRECTIONS * DISTANCES))
 
     def forward(self, depth: Tensor) -> tuple[Tensor, Tensor]:
         x = F.relu(self.rows(self.maps(depth_channels(self.sized(depth)))))
@@ -243,15 +250,19 @@ def free_metres(logits: Tensor) -> Tensor:
     return STEP * logits.sigmoid().cumprod(-1).sum(-1)
 
 
-def see_camera(
-    encoder: CameraRGB | CameraDepth, sensor: str, frames: Tensor, truth: Tensor | None
-) -> Output:
-    """Return the output of ``see`` (``agents/agent.py``) for an encoder of one camera.
+def encode_camera(encoder: nn.Module, sensor: str, frames: Tensor) -> tuple[Tensor, Tensor]:
+    """Return features [n, F] and logits of frames [n, H, W, c] of one camera.
 
-    Features are those of all columns and the encoder's predictions (RGB: probabilities of
-    concepts; depth: free metres).
+    The features are all columns and the encoder's predictions (RGB: probabilities of concepts;
+    depth: free metres).
     """
-    features, logits = (x.unflatten(0, frames.shape[:2]) for x in encoder(frames.flatten(0, 1)))
+    features, logits = encoder(frames)
     predicted = free_metres(logits) if sensor == DEPTH else logits.sigmoid().flatten(-2)
-    views = torch.cat([features.flatten(-2), predicted], -1)
+    return torch.cat([features.flatten(-2), predicted], -1), logits
+
+
+def see_camera(encoder: nn.Module, sensor: str, frames: Tensor, truth: Tensor | None) -> Output:
+    """Return the output of ``see`` (``agents/agent.py``) for an encoder of one camera."""
+    encoded = encode_camera(encoder, sensor, frames.flatten(0, 1))
+    views, logits = (x.unflatten(0, frames.shape[:2]) for x in encoded)
     return label_output(views, logits, sensor, truth)

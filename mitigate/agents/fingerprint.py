@@ -104,7 +104,7 @@ def says_all(agent: Any) -> bool:
 
 
 def _definer(agent: Any) -> Any:
-    """Return the object or class that defines ``settings``; None if there is none.
+    """Return the object or class that defines ``settings``, or None.
 
     A ``settings`` that ``__getattr__`` provides does not count: it describes another object.
     """
@@ -114,7 +114,7 @@ def _definer(agent: Any) -> Any:
 
 
 def _changes(agent: Any) -> State:
-    """Return the parts of a shipped agent's state that differ from a new one with its settings.
+    """Return how the state of a shipped agent differs from a new agent with the same settings.
 
     Weights and the memory of an episode are excluded.
     """
@@ -137,7 +137,7 @@ def hash_of(parts: Mapping[str, Any], sensors: Mapping[str, Sensor], front: str 
 
 
 def code_sha(objective: nn.Module) -> str:
-    """Return the hash of the user's code in an objective and its agent; "" if there is none."""
+    """Return the hash of the user's code in an objective and its agent; "" without such code."""
     code = "\n".join(_codes(objective, read_state(objective, attributes=False)))
     return code and hashlib.sha256(code.encode()).hexdigest()[:DIGITS]
 

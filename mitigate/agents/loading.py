@@ -35,7 +35,7 @@ CARD, README = "card.json", "README.md"
 PROGRAM, INPUTS = "program.pt2", "program.json"
 FILES = (CONFIG, README, INPUTS)  # files of an agent with programs, in addition to the weights
 ONNX = ("perceive.onnx", "decide.onnx")
-# files that an export may write; a folder must not hold one that its manifest does not list
+# files that an export may write; the manifest must list each of them that a folder holds
 KNOWN = (checkpoint.WEIGHTS, adapters.WEIGHTS, adapters.SETTINGS, *FILES, PROGRAM, *ONNX)
 ENTRIES = ("adapters_only", "base", "vocabulary", "commit", "agent")  # required in a card
 LONGEST_PATH = 1000  # characters of the path of a base (heuristic; the limit of Linux is 4095)
@@ -65,7 +65,7 @@ def load(folder: str | Path, *, agent: Any = None) -> Any:
 
     Raises:
         FileNotFoundError, ValueError: Weights are missing or damaged; the settings of their agent
-            are missing; the agent is of a user's class and not given; or the given agent has other
+            are missing; the agent is of a user's class and not passed; or ``agent`` has other
             settings. The message names the file.
         TypeError: ``folder`` is not a path, or ``agent`` has no weights.
     """
@@ -102,16 +102,14 @@ def load_hardened(folder: str | Path, *, base: str | Path | None = None, agent: 
             path in the card, searched below the current folder, the folders above ``folder`` and
             the checkout.
         agent: an agent of a user's class with the settings of the exported one, to load the
-            weights into, in place. Without ``settings()`` it gets those of the folder. None builds
-            a shipped kind of agent.
+            weights into, in place. Without ``settings()`` it gets the settings in the folder.
+            None builds a shipped kind of agent.
 
     Raises:
         FileNotFoundError, ValueError: The folder is incomplete, or differs from its card.
         TypeError: ``folder`` is not a path, or ``agent`` has no weights.
     """
     _check_path(folder, "a hardened checkpoint", "checkpoints/hardened/ts_distill")
-    if agent is not None:
-        check_fillable(agent)
     folder = Path(folder)
     card = check_hardened(folder)
     with torch.random.fork_rng(devices=[]):
@@ -145,7 +143,11 @@ def _agent_to_fill(agent: Any, config: Path, again: str) -> Any:
     """Return ``agent`` if its settings match ``config``; for None, a new agent from it."""
     if agent is None:
         return build_from(config)
-    check_fillable(agent)
+    if isinstance(agent, type) or not hasattr(agent, "eval"):  # the user may pass anything
+        raise TypeError(
+            f"agent must be a torch.nn.Module with weights, got {agent!r:.80}. Create an object of "
+            "the class that was trained."
+        )
     if config.is_file():
         check_same(agent, config, again)
     return agent
@@ -198,19 +200,6 @@ def reject_other_models(run: Path) -> None:
 
 
 # agents of a user's class ------------------------------------------------------------------------
-
-
-def check_fillable(agent: Any) -> None:
-    """Raise TypeError if ``agent`` is a class, or an object without weights."""
-    if isinstance(agent, type):
-        raise TypeError(
-            f"agent must be an object, got the class {agent.__name__}. Create it first."
-        )
-    if not hasattr(agent, "eval"):  # the user may pass any object
-        raise TypeError(
-            f"agent must be a torch.nn.Module, got a {type(agent).__name__}, which has no weights. "
-            "Give an object of the class that was trained."
-        )
 
 
 def check_same(agent: Any, config: Path, again: str) -> None:

@@ -1,19 +1,19 @@
 """Allowed values of settings that are stored with weights.
 
-Each class in ``KINDS`` defines ``settings_schema`` next to its constructor. The limits are far
-above those of any shipped agent. They prevent a file from allocating all memory, and patterns that
-take forever to match.
+Each class in ``KINDS`` defines ``settings_schema`` next to its constructor. No shipped agent
+comes near the limits. They prevent a file from allocating all memory, and patterns that take
+forever to match.
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from importlib import import_module
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from mitigate.core import settings
+from mitigate.core import names, settings
 from mitigate.core.observation import DEPTH, RGB, VIEWS
 
 SENSES = (RGB, DEPTH, "instruction")
@@ -22,6 +22,13 @@ MOST_WORDS = 50_000  # of a vocabulary
 _WORD = re.compile(r"[a-z]{1,40}")
 _PATTERN = re.compile(r"[\w.\\\[\]|*+?-]{1,200}", re.ASCII)  # no groups, no counts
 _REPEATS = 2  # quantifiers of a pattern; more can backtrack for too long
+
+
+def check_blind(blind: Sequence[str], senses: Sequence[str] = SENSES) -> None:
+    """Raise ValueError if ``blind`` names an input that is not in ``senses``."""
+    for name in blind:
+        if name not in senses:
+            raise ValueError(names.unknown("sense to blank (agent.blind)", name, senses))
 
 
 class Kind(NamedTuple):
@@ -47,16 +54,16 @@ def number(least: float, most: float) -> Kind:
     )
 
 
-def one_of(names: tuple[str, ...]) -> Kind:
-    """Return the kind of values in ``names``."""
-    return Kind(f"one of {', '.join(names)}", lambda value: value in names)
+def one_of(allowed: tuple[str, ...]) -> Kind:
+    """Return the kind of values in ``allowed``."""
+    return Kind(f"one of {', '.join(allowed)}", lambda value: value in allowed)
 
 
-def some_of(names: tuple[str, ...]) -> Kind:
-    """Return the kind of lists of ``names``."""
+def some_of(allowed: tuple[str, ...]) -> Kind:
+    """Return the kind of lists of ``allowed`` values."""
     return Kind(
-        f"a list of {', '.join(names)}",
-        lambda value: isinstance(value, list) and all(item in names for item in value),
+        f"a list of {', '.join(allowed)}",
+        lambda value: isinstance(value, list) and all(item in allowed for item in value),
     )
 
 

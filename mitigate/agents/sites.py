@@ -170,7 +170,7 @@ def named(model: nn.Module, targets: Iterable[str]) -> set[str]:
 
 
 def channels_of(name: str, module: nn.Module) -> int:
-    """Return the output channels of a module: those of its last convolution or normalisation."""
+    """Return the output channels of a module, read from its last convolution or normalisation."""
     channels = 0
     for part in module.modules():
         if isinstance(part, nn.Conv2d):
@@ -188,7 +188,7 @@ def channels_of(name: str, module: nn.Module) -> int:
 
 
 def inputs_of(name: str, module: nn.Module) -> int:
-    """Return the input channels of a module: those of its first convolution."""
+    """Return the input channels of a module, read from its first convolution."""
     for part in module.modules():
         if isinstance(part, nn.Conv2d):
             return part.in_channels

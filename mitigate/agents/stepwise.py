@@ -14,7 +14,7 @@ import numpy as np
 import torch
 from torch import Tensor, nn
 
-from mitigate.agents.agent import Agent, Output, check_logits
+from mitigate.agents.agent import Agent, Output, check_logits, sample
 from mitigate.core.observation import RGB, STOP, Observation
 from mitigate.worlds.episodes import Episode
 from mitigate.worlds.world import World, expert_of
@@ -178,8 +178,7 @@ class StepwiseAgent(Agent, nn.Module):
             logits = check_logits(self._logits(step["frames"], step["text"]), self)
         except ValueError as error:
             raise ValueError(f"Episode {step['episode_id']}, step {number}: {error}") from None
-        total = np.cumsum(logits.double().softmax(-1).cpu().numpy())
-        return int(min(np.searchsorted(total, rng.random() * total[-1]), len(total) - 1))
+        return sample(logits.double().softmax(-1).cpu().numpy(), rng)
 
     def _logits(self, frames: Mapping[str, np.ndarray], text: str) -> Tensor:
         """Return the logits [actions] of one step."""

@@ -15,6 +15,7 @@ import re
 from collections.abc import Sequence
 
 import torch
+from torch.nn.utils.rnn import pad_sequence
 
 THING_NAMES = (
     *("bed", "wardrobe", "sofa", "armchair", "tv", "bookshelf", "lamp", "plant", "painting"),
@@ -24,12 +25,7 @@ THING_NAMES = (
 COLOUR_NAMES = ("red", "orange", "yellow", "green", "blue", "purple", "brown", "white")
 ROOM_NAMES = ("bedroom", "bathroom", "kitchen", "living room", "office", "dining room")
 # visible objects, objects nearer than 2 m, colours of objects, kinds of visible rooms
-CONCEPTS = (
-    *THING_NAMES,
-    *(f"near {name}" for name in THING_NAMES),
-    *COLOUR_NAMES,
-    *ROOM_NAMES,
-)
+CONCEPTS = (*THING_NAMES, *(f"near {name}" for name in THING_NAMES), *COLOUR_NAMES, *ROOM_NAMES)
 THINGS = slice(0, len(THING_NAMES))
 NEAR = slice(len(THING_NAMES), 2 * len(THING_NAMES))
 
@@ -101,10 +97,7 @@ class Vocabulary:
 
 def pad(rows: list[list[int]]) -> torch.Tensor:
     """Return token rows as int64 [n, longest], padded with ``PAD``."""
-    out = torch.full((len(rows), max(map(len, rows))), PAD, dtype=torch.int64)
-    for index, row in enumerate(rows):
-        out[index, : len(row)] = torch.tensor(row)
-    return out
+    return pad_sequence([torch.tensor(row) for row in rows], True, PAD)
 
 
 def _words_of(concept: str) -> list[str]:

@@ -1,4 +1,4 @@
-"""Adapters change nothing when they come in, leave the backbone alone, and can be taken out."""
+"""Adapters: insertion keeps outputs, training keeps the backbone, removal restores the model."""
 
 from __future__ import annotations
 
@@ -97,14 +97,14 @@ def shaken(model: nn.Module) -> nn.Module:
     return model
 
 
-def test_outputs_are_bit_identical_at_insertion(encoder):
+def test_insert_keeps_outputs_bit_identical(encoder):
     model, targets, x, count = encoder
     wanted, before = model(x), weights_sha(model)
     assert len(insert_adapters(model, targets)) == count
     assert torch.equal(model(x), wanted) and adapters.backbone_sha(model) == before
 
 
-def test_only_the_adapters_train_and_the_backbone_keeps_every_bit(encoder):
+def test_training_changes_only_adapters(encoder):
     model, targets, x, _ = encoder
     insert_adapters(model, targets)
     before = adapters.backbone_sha(model)
@@ -119,19 +119,19 @@ def test_only_the_adapters_train_and_the_backbone_keeps_every_bit(encoder):
     assert not torch.equal(model(x), first)
 
 
-def test_removal_gives_the_model_back_and_a_folder_brings_them_in_again(encoder, tmp_path):
+def test_remove_and_load_restore_the_outputs(encoder, tmp_path):
     model, targets, x, count = encoder
     clean, before = model(x), weights_sha(model)
     insert_adapters(model, targets)
-    hurt = shaken(model)(x)
+    damaged = shaken(model)(x)
     save_adapters(model, tmp_path)
     remove_adapters(model)
     assert torch.equal(model(x), clean) and weights_sha(model) == before
     assert len(load_adapters(model, tmp_path)) == count
-    assert torch.equal(model(x), hurt) and not torch.equal(hurt, clean)
+    assert torch.equal(model(x), damaged) and not torch.equal(damaged, clean)
 
 
-def test_scaled_adapters_make_a_share_of_their_correction_and_none_at_zero(encoder, tmp_path):
+def test_scale_multiplies_the_correction(encoder, tmp_path):
     model, targets, x, _ = encoder
     clean = model(x)
     insert_adapters(model, targets)
@@ -151,7 +151,7 @@ def test_scaled_adapters_make_a_share_of_their_correction_and_none_at_zero(encod
 
 
 @pytest.mark.parametrize("kind", ["map", "tokens", "ring"])
-def test_an_adapter_of_each_kind_is_scaled(kind):
+def test_scale_covers_every_kind(kind):
     layer = nn.Linear(8, 8) if kind == "tokens" else nn.Conv2d(8, 8, 1)
     model = nn.Sequential(layer)
     x = torch.randn((3, 5, 8) if kind == "tokens" else (3, 8, 4, 4))
@@ -166,14 +166,14 @@ def test_an_adapter_of_each_kind_is_scaled(kind):
     assert torch.equal(model(x), clean)
 
 
-def test_a_look_at_an_encoder_leaves_each_of_its_modules_in_its_mode():
+def test_find_sites_restores_modes():
     model = nn.Sequential(nn.Conv2d(3, 8, 3), nn.BatchNorm2d(8)).train()
     model[1].eval()  # as someone has it who trains around a frozen encoder
     insert_adapters(model, ["0"], run=lambda n: model(torch.zeros(n, 3, 8, 8)))
     assert model.training and model[0].training and not model[1].training
 
 
-def test_what_cannot_be_scaled_is_refused():
+def test_scale_rejects_invalid_arguments():
     model = nn.Sequential(nn.Conv2d(8, 8, 1))
     with pytest.raises(ValueError, match="no adapters to scale"):
         scale_adapters(model, 0.5)
@@ -183,7 +183,7 @@ def test_what_cannot_be_scaled_is_refused():
             scale_adapters(model, strength)
 
 
-def test_loaded_adapters_have_their_modules_type_and_do_not_come_in_twice(tmp_path):
+def test_load_matches_dtype_and_rejects_adapted_models(tmp_path):
     model = ResNet().double()
     insert_adapters(model, ["layer1"])
     save_adapters(model, tmp_path)
@@ -194,7 +194,7 @@ def test_loaded_adapters_have_their_modules_type_and_do_not_come_in_twice(tmp_pa
     assert {p.dtype for p in adapters.adapter_parameters(model)} == {torch.float64}
 
 
-def test_an_adapter_adapts_once(encoder):
+def test_adapter_is_called_once(encoder):
     model, targets, x, _ = encoder
     insert_adapters(model, targets)
     calls = []
@@ -205,7 +205,7 @@ def test_an_adapter_adapts_once(encoder):
     assert calls == adapters.adapted(model)
 
 
-def test_examples_of_the_encoder_page_load_adapters_without_this_package(tmp_path, monkeypatch):
+def test_documented_example_loads_without_this_package(tmp_path, monkeypatch):
     page = (Path(__file__).parents[2] / "docs/encoder.md").read_text(encoding="utf-8")
     train, load = (b for b in re.findall(r"```python\n(.*?)```", page, re.S) if "my-adapters" in b)
     monkeypatch.chdir(tmp_path)
@@ -220,7 +220,7 @@ def test_examples_of_the_encoder_page_load_adapters_without_this_package(tmp_pat
     assert torch.equal(twin(x), model(x)) and adapters.adapted(model) and not adapters.adapted(twin)
 
 
-def test_a_copy_has_adapters_of_its_own(encoder):
+def test_copy_has_separate_adapters(encoder):
     model, targets, x, _ = encoder
     clean = model(x)
     insert_adapters(model, targets)
@@ -230,13 +230,13 @@ def test_a_copy_has_adapters_of_its_own(encoder):
     assert torch.equal(twin(x), clean) and adapters.adapted(model)
 
 
-def test_the_share_on_the_reference_agent_is_between_one_and_four_per_cent():
+def test_share_on_the_reference_agent_is_small():
     cfg = conf.load_config("train", ["recipe=conv_adapter"])
     agent = build_agent(cfg.agent, weights=cfg.init, seed=0)
     assert 0.01 <= adapters.trainable_share(agent) <= 0.04
 
 
-def test_a_refused_insertion_leaves_the_model_as_it_was():
+def test_failed_insertion_keeps_the_model():
     model = nn.Sequential(nn.Conv2d(3, 8, 3), nn.Flatten(), nn.Linear(8, 4))
     for options in (
         {"target_modules": ["0", "2"]},  # a Linear has no channels
@@ -249,7 +249,7 @@ def test_a_refused_insertion_leaves_the_model_as_it_was():
     assert insert_adapters(model, ["0"]) == ["0"]
 
 
-def test_a_child_that_is_called_adapter_already_is_not_overwritten():
+def test_insert_rejects_an_existing_child_adapter():
     model = nn.Sequential(nn.Conv2d(3, 8, 3))
     model[0].add_module("adapter", nn.Conv2d(8, 8, 1))
     own = model[0].adapter
@@ -258,7 +258,7 @@ def test_a_child_that_is_called_adapter_already_is_not_overwritten():
     assert model[0].adapter is own and all(p.requires_grad for p in model.parameters())
 
 
-def test_a_ring_adapter_lets_a_view_see_its_neighbours_and_nothing_further():
+def test_ring_reads_only_neighbours():
     torch.manual_seed(0)
     model = nn.Sequential(nn.Conv2d(3, 8, 3, padding=1)).eval()
     insert_adapters(model, [], ring=["0"])
@@ -270,7 +270,7 @@ def test_a_ring_adapter_lets_a_view_see_its_neighbours_and_nothing_further():
     assert moved.nonzero().flatten().tolist() == [4, 5, 6]
 
 
-def test_a_ring_closes_and_panoramas_do_not_mix():
+def test_ring_wraps_around_within_each_panorama():
     torch.manual_seed(0)
     model = nn.Sequential(nn.Conv2d(3, 8, 3, padding=1)).eval()
     insert_adapters(model, [], ring=["0"])
@@ -282,7 +282,7 @@ def test_a_ring_closes_and_panoramas_do_not_mix():
     assert moved.nonzero().flatten().tolist() == [0, 1, VIEWS - 1]
 
 
-def test_a_target_that_matches_nothing_is_told_with_the_names_there_are():
+def test_insert_lists_modules_for_unknown_targets():
     with pytest.raises(ValueError, match=r"'layer9' matches none.*layer1"):
         insert_adapters(ResNet(), ["layer9"])
 
@@ -295,15 +295,15 @@ def test_a_target_that_matches_nothing_is_told_with_the_names_there_are():
         (["layer[1"], ValueError, "must be a regular expression"),
     ],
 )
-def test_targets_that_are_no_list_of_patterns_leave_the_model_as_it_was(targets, kind, text):
+def test_invalid_targets_keep_the_model(targets, kind, text):
     model = ResNet()
     with pytest.raises(kind, match=text):
         insert_adapters(model, targets)
     assert all(p.requires_grad for p in model.parameters())
 
 
-def test_saving_warns_if_the_backbones_statistics_have_moved(tmp_path, recwarn):
-    """A BatchNorm in train mode follows the batches though its weights are frozen."""
+def test_save_warns_of_changed_statistics(tmp_path, recwarn):
+    """A BatchNorm in train mode updates its statistics although its weights are frozen."""
     model = ResNet()
     insert_adapters(model, ["layer[1-4]"])
     model.eval()(torch.randn(2, 3, 32, 32))
@@ -314,12 +314,12 @@ def test_saving_warns_if_the_backbones_statistics_have_moved(tmp_path, recwarn):
         save_adapters(model.eval(), tmp_path / "moved")
 
 
-def test_a_module_without_channels_is_refused():
+def test_insert_rejects_modules_without_channels():
     with pytest.raises(ValueError, match="output channels of fc are unknown"):
         insert_adapters(ResNet(), ["fc"])
 
 
-def test_a_second_set_is_refused(encoder):
+def test_insert_rejects_adapted_models(encoder):
     model, targets, _, _ = encoder
     insert_adapters(model, targets)
     with pytest.raises(ValueError, match="has adapters already"):
@@ -329,7 +329,7 @@ def test_a_second_set_is_refused(encoder):
 @pytest.mark.parametrize(
     "spoil", ["missing", "cut", "bit", "settings", "levels", "shapes", "memory", "backbone"]
 )
-def test_a_damaged_or_foreign_folder_is_refused(tmp_path, spoil):
+def test_load_rejects_invalid_folders(tmp_path, spoil):
     torch.manual_seed(0)
     model = ResNet()
     insert_adapters(model, ["layer1"])

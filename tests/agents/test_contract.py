@@ -1,4 +1,4 @@
-"""Objects of users' own classes meet the contracts: what they lack has a default."""
+"""Objects of users' classes as agents, worlds and experts: missing members get defaults."""
 
 from __future__ import annotations
 

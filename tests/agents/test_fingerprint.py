@@ -1,4 +1,4 @@
-"""One hash over all that makes an agent behave as it does."""
+"""Fingerprints of agents: one hash of everything that determines their behaviour."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def agent(**settings) -> TopologicalAgent:
     return TopologicalAgent(16, **{"planner": SMALL, **settings})
 
 
-def test_equal_agents_have_one_identity_and_every_difference_another():
+def test_fingerprint_changes_with_every_difference():
     plain, views = agent(), cameras(64)
     moved = copy.deepcopy(plain)
     with torch.no_grad():
@@ -64,7 +64,7 @@ class Plain:
 """
 
 
-def test_an_agent_without_settings_is_another_one_when_its_code_is(tmp_path, monkeypatch):
+def test_fingerprint_changes_with_code_without_settings(tmp_path, monkeypatch):
     monkeypatch.syspath_prepend(tmp_path)
     edited = PLAIN.replace("steps = 0", "steps = 1")
     first, other, again = _hashes(tmp_path, "Plain", (PLAIN, edited, PLAIN))
@@ -72,7 +72,7 @@ def test_an_agent_without_settings_is_another_one_when_its_code_is(tmp_path, mon
 
 
 def _hashes(folder, agent, sources):
-    """The hash of the class ``agent`` in one module whose source is one after the other."""
+    """Return the hash of the class ``agent`` for each source of its module."""
     found = []
     for number, source in enumerate(sources):
         (folder / "own_agent.py").write_text(source + "#" * 9 * number)  # of other lengths
@@ -84,7 +84,7 @@ def _hashes(folder, agent, sources):
     return found
 
 
-def test_an_agent_is_what_was_loaded_whatever_becomes_of_its_file(tmp_path, monkeypatch):
+def test_fingerprint_ignores_later_edits_of_the_file(tmp_path, monkeypatch):
     monkeypatch.syspath_prepend(tmp_path)
     file = tmp_path / "edited_agent.py"
     file.write_text(PLAIN)
@@ -114,7 +114,7 @@ class Agent(nn.Module):
 """
 
 
-def test_the_code_of_installed_packages_does_not_count(tmp_path, monkeypatch):
+def test_fingerprint_ignores_code_of_installed_packages(tmp_path, monkeypatch):
     folder = tmp_path / "site-packages"
     folder.mkdir()
     monkeypatch.syspath_prepend(folder)
@@ -125,7 +125,7 @@ def test_the_code_of_installed_packages_does_not_count(tmp_path, monkeypatch):
     sys.modules.pop("installed_agent")
 
 
-def test_a_set_of_networks_has_no_order():
+def test_fingerprint_ignores_the_order_of_sets():
     class Placed(nn.Linear):
         def __init__(self, place: int) -> None:
             super().__init__(1, 1)
@@ -149,7 +149,7 @@ class Here:
     """A class of no package."""
 
 
-def test_the_code_of_an_agents_networks_counts_also_where_it_has_settings(tmp_path, monkeypatch):
+def test_fingerprint_counts_code_of_networks(tmp_path, monkeypatch):
     monkeypatch.syspath_prepend(tmp_path)
     edited = NETWORK.replace("return ", "return -")
     first, other, again = _hashes(tmp_path, "Agent", (NETWORK, edited, NETWORK))
@@ -223,7 +223,7 @@ def _notebook(tmp_path, name, **changes):
         ("a function", {"answer": 1}),
     ],
 )
-def test_what_the_code_of_an_agent_names_is_part_of_it(tmp_path, monkeypatch, place, change):
+def test_fingerprint_counts_objects_that_code_names(tmp_path, monkeypatch, place, change):
     monkeypatch.syspath_prepend(tmp_path)
     number = len([*sys.modules])
     first, again, other = (
@@ -242,7 +242,7 @@ def test_fingerprint_ignores_attributes_of_an_agent_with_settings(tmp_path, monk
     assert fingerprint(agent, {}) == before
 
 
-def test_a_network_that_its_code_names_is_in_eval_mode(tmp_path, monkeypatch):
+def test_in_eval_mode_reaches_networks_that_code_names(tmp_path, monkeypatch):
     monkeypatch.syspath_prepend(tmp_path)
     module = _notebook(tmp_path, "notebook_modes")
     with in_eval_mode(module.made["named"]):
@@ -380,7 +380,7 @@ def test_contents_reports_global_hooks():
         handle.remove()
 
 
-def test_fingerprint_of_a_shipped_agent_notices_hooks_and_replaced_methods(monkeypatch):
+def test_shipped_fingerprint_notices_hooks_and_replaced_methods(monkeypatch):
     before = fingerprint(agent(), {})
     hooked, replaced = agent(), agent()
     hooked.rgb_encoder.register_forward_hook(forward)
@@ -409,7 +409,7 @@ def test_fingerprint_reads_hooks_that_describe_themselves():
     assert hashes[0] == hashes[1] != hashes[2] and not contents(agents[0]).unreadable
 
 
-def test_kinds_of_agents_do_not_depend_on_module_paths(monkeypatch):
+def test_fingerprint_does_not_depend_on_module_paths(monkeypatch):
     before = fingerprint(agent(), {}), fingerprint(owner(), {})
     for kind in (TopologicalAgent, Owner):
         monkeypatch.setattr(kind, "__module__", f"{kind.__module__}_moved")
@@ -455,7 +455,7 @@ SHIPPED_CHANGES = {
 
 @pytest.mark.parametrize("kind", SHIPPED)
 @pytest.mark.parametrize("change", SHIPPED_CHANGES)
-def test_fingerprint_of_a_shipped_agent_notices_changes_beside_its_weights(kind, change):
+def test_shipped_fingerprint_notices_changed_attributes(kind, change):
     if (kind, change) == ("frontier", "a non-persistent buffer"):
         pytest.skip("it has none")
     before, changed = shipped(kind), shipped(kind)
@@ -465,7 +465,7 @@ def test_fingerprint_of_a_shipped_agent_notices_changes_beside_its_weights(kind,
 
 
 @pytest.mark.parametrize("kind", SHIPPED)
-def test_fingerprint_of_a_shipped_agent_stays_while_it_runs(kind):
+def test_shipped_fingerprint_is_stable_while_running(kind):
     cfg = conf.load_config("evaluate", [f"agent={kind}"])
     world = maker(cfg.env.world)()
     (episode,) = episodes(cfg.env, cfg.split, 1)
@@ -486,7 +486,7 @@ def test_fingerprint_of_a_shipped_agent_stays_while_it_runs(kind):
 
 
 @pytest.mark.parametrize("target", ["rgb_encoder.stages.0", "rgb_encoder.stem"])
-def test_adapters_are_read_completely(target):
+def test_contents_reads_adapters_completely(target):
     settings = {"adapters": {"target_modules": [target]}}
     made = [agent(**settings) for _ in range(2)]
     assert not contents(made[0]).unreadable
@@ -522,7 +522,7 @@ class Config:
 
 
 class Described(Own):
-    """Also one with settings()."""
+    """An agent with settings()."""
 
     def settings(self):
         return {}
@@ -609,7 +609,7 @@ def _biased_planner(bias):
 
 
 def _with(owner, name, value, made):
-    """Set an attribute of a class or module until the end of the test, and make an agent."""
+    """Replace an attribute of a class or module during the test, and return an agent."""
 
     def make(number, patch):
         patch.setattr(owner, name, value(number), raising=False)

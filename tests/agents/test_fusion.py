@@ -1,4 +1,4 @@
-"""Reliability weights: a view that is blank or inflated loses its say, and nothing else does."""
+"""Reliability weights: only blank or inflated views lose weight."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from tests.agents.topological.test_planner import decision
 
 
 def fuse(views: torch.Tensor, **how) -> tuple[torch.Tensor, torch.Tensor]:
-    """The mean of views by their reliability, and the weights."""
+    """Return the mean of views weighted by reliability, and the weights."""
     weights = reliability(views, **how)
     return (views * weights.unsqueeze(-1)).sum(-2), weights
 
@@ -27,13 +27,13 @@ def views() -> torch.Tensor:
 
 
 @pytest.mark.parametrize("factor", [0.0, 5.0])
-def test_a_blanked_or_inflated_view_falls_to_the_cap(views, factor):
-    hurt = views.clone()
-    hurt[3] *= factor
-    weights = reliability(hurt)
+def test_reliability_gives_outliers_the_smallest_weight(views, factor):
+    damaged = views.clone()
+    damaged[3] *= factor
+    weights = reliability(damaged)
     others = weights[torch.arange(12) != 3]
     assert torch.isclose(weights.sum(), torch.tensor(1.0))
-    size = hurt.norm(dim=-1)
+    size = damaged.norm(dim=-1)
     deviation = (size - size.mean()).abs() / size.mean()
     assert RATE * deviation[3] > CAP  # so far off that the cap holds it, and no further
     expected = CAP - RATE * deviation[torch.arange(12) != 3]
@@ -41,26 +41,26 @@ def test_a_blanked_or_inflated_view_falls_to_the_cap(views, factor):
 
 
 @pytest.mark.parametrize("factor", [0.0, 5.0])
-def test_the_fused_vector_stays_closer_to_the_clean_one_than_the_mean(views, factor):
-    clean, hurt = views.mean(0), views.clone()
-    hurt[3] *= factor
-    fused, _ = fuse(hurt)
-    assert (fused - clean).norm() < (hurt.mean(0) - clean).norm()
+def test_reliability_fuses_closer_to_clean_than_the_mean(views, factor):
+    clean, damaged = views.mean(0), views.clone()
+    damaged[3] *= factor
+    fused, _ = fuse(damaged)
+    assert (fused - clean).norm() < (damaged.mean(0) - clean).norm()
 
 
-def test_rate_zero_is_the_plain_mean(views):
+def test_reliability_with_rate_zero_is_the_mean(views):
     fused, weights = fuse(views, rate=0.0)
     assert torch.allclose(fused, views.mean(0), atol=1e-6)
     assert torch.allclose(weights, torch.full((12,), 1 / 12))
 
 
-def test_views_that_are_all_blank_weigh_the_same():
+def test_reliability_weighs_blank_views_equally():
     fused, weights = fuse(torch.zeros(2, 12, 8))
     assert torch.allclose(weights, torch.full((2, 12), 1 / 12)) and not fused.any()
     assert torch.isfinite(fused).all()
 
 
-def test_views_that_are_not_valid_do_not_count(views):
+def test_reliability_ignores_invalid_views(views):
     valid = torch.arange(12) < 4
     fused, weights = fuse(views, valid=valid)
     alone, _ = fuse(views[:4])
@@ -69,26 +69,26 @@ def test_views_that_are_not_valid_do_not_count(views):
     assert torch.allclose(nothing.sum(), torch.tensor(1.0))
 
 
-def test_gradients_are_finite_for_blank_views():
+def test_reliability_gradients_are_finite_for_blank_views():
     x = torch.zeros(12, 8, requires_grad=True)
     fuse(x)[0].sum().backward()
     assert torch.isfinite(x.grad).all()
 
 
 @pytest.mark.parametrize("bad", [{"rate": -1.0}, {"cap": -1.0}])
-def test_negative_constants_are_refused(views, bad):
+def test_reliability_rejects_negative_constants(views, bad):
     with pytest.raises(ValueError, match="must be >= 0"):
         reliability(views, **bad)
 
 
-def test_a_learned_reliability_starts_with_equal_weights(views):
+def test_learned_reliability_starts_with_equal_weights(views):
     torch.manual_seed(0)
     weights = LearnedReliability(64)(torch.stack([views, views * torch.arange(12)[:, None]]))
     assert torch.allclose(weights, torch.full((2, 12), 1 / 12))
 
 
-def test_a_learned_reliability_finds_what_the_magnitude_hides():
-    """Something of their magnitude has replaced views: the rule cannot tell, it learns to."""
+def test_learned_reliability_learns_beyond_magnitudes():
+    """Noise of equal magnitude replaces views: the rule misses it, a learned score detects it."""
     torch.manual_seed(0)
     marks = torch.nn.functional.normalize(torch.randn(8, 64), dim=-1)  # what a broken view shows
 
@@ -116,7 +116,7 @@ def test_a_learned_reliability_finds_what_the_magnitude_hides():
     assert (most <= least * torch.tensor(2 * CAP).exp() * 1.001).all()
 
 
-def test_a_learned_reliability_has_no_rate():
+def test_weigher_rejects_rate_for_learned_reliability():
     with pytest.raises(ValueError, match="rate must be null .* got 4"):
         weigher(8, learned=True, rate=4)
     with pytest.raises(ValueError, match="must be >= 0"):
@@ -124,14 +124,14 @@ def test_a_learned_reliability_has_no_rate():
 
 
 def planner(fusion: dict | None) -> Planner:
-    """One and the same untrained planner, with or without fusion."""
+    """Return an untrained planner with fixed weights, with or without fusion."""
     seeding.seed_everything(0, "planner")
     return Planner(8, 8, width=16, heads=2, text_layers=1, layers=1, fusion=fusion).eval()
 
 
 @torch.no_grad()
 def ghosts(fusion: dict | None, features: torch.Tensor, sightings: torch.Tensor) -> torch.Tensor:
-    """Tokens of the ghosts of a decision, seen in the flat views ``sightings`` [G, 4]."""
+    """Return the tokens of ghosts that the flat views ``sightings`` [G, 4] faced."""
     made, batch = planner(fusion), collate([decision(4)], [0], [0])
     batch.sightings[0, : len(sightings)] = sightings
     tokens = made.look(features)
@@ -142,22 +142,22 @@ def ghosts(fusion: dict | None, features: torch.Tensor, sightings: torch.Tensor)
 
 @pytest.fixture
 def features() -> torch.Tensor:
-    """Four panoramas; every third view is inflated."""
+    """Return four panoramas in which every third view is inflated."""
     torch.manual_seed(0)
     made = torch.rand(4, VIEWS, sum(planner(None).widths))
     made[:, ::3] *= 3.0
     return made
 
 
-def test_in_the_planner_equal_weights_are_plain_means(features):
+def test_planner_with_equal_weights_takes_means(features):
     seen = torch.tensor([[0, 1, -1, -1], [14, -1, -1, -1], [3, 6, 9, 13]])
     plain = ghosts(None, features, seen)
     level = ghosts({"rate": 0.0, "cap": 3.0}, features, seen)
     assert torch.allclose(plain, level, atol=1e-5)
 
 
-def test_in_the_planner_the_weights_of_a_ghosts_views_add_up_to_one(features):
-    """Seen once, in whatever view, it is that view; seen twice, it leans on the better one."""
+def test_planner_normalises_the_weights_of_ghosts(features):
+    """A single view determines the token; of two views the more reliable one weighs more."""
     seen = torch.tensor([[0, -1, -1, -1], [1, -1, -1, -1], [0, 1, -1, -1]])
     plain = ghosts(None, features, seen)
     fused = ghosts({"rate": 4.0, "cap": 3.0}, features, seen)
@@ -165,8 +165,8 @@ def test_in_the_planner_the_weights_of_a_ghosts_views_add_up_to_one(features):
     assert not torch.allclose(fused[2], plain[2], atol=1e-3)
 
 
-def test_in_the_planner_a_learned_reliability_changes_nothing_until_it_has_learned(features):
-    """And the rest of the planner starts with the same weights."""
+def test_planner_output_is_unchanged_by_untrained_reliability(features):
+    """The other weights of the planner have equal initial values, too."""
     seen = torch.tensor([[0, 1, -1, -1], [14, -1, -1, -1], [3, 6, 9, 13]])
     plain, learned = planner(None), planner({"learned": True})
     others = {k: v for k, v in learned.state_dict().items() if not k.startswith("fusion.")}
@@ -176,7 +176,7 @@ def test_in_the_planner_a_learned_reliability_changes_nothing_until_it_has_learn
     assert torch.allclose(ghosts(None, features, seen), level, atol=1e-5)
 
 
-def test_a_planner_trains_its_learned_reliability():
+def test_planner_trains_its_learned_reliability():
     made, step = planner({"learned": True}), decision(3)
     looked = made.look(torch.rand(3, VIEWS, sum(made.widths)))
     out = made(made.read(torch.tensor([[2, 3, 4]])), looked, collate([step], [0], [0]))
@@ -184,7 +184,7 @@ def test_a_planner_trains_its_learned_reliability():
     assert made.fusion.score.weight.grad.abs().sum() > 0
 
 
-def test_a_planner_with_fusion_scores_what_it_looked_at():
+def test_planner_with_fusion_gives_finite_scores():
     made, step = planner({}), decision(3)
     tokens = torch.tensor([[2, 3, 4]])
     with torch.no_grad():

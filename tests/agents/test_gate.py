@@ -1,4 +1,4 @@
-"""A gate in an encoder: what it takes for clean passes its adapters as it is, bit for bit."""
+"""Gates of encoders: frames classified as clean pass unchanged, bit for bit."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ PLACES = {"target_modules": ["stages.0"], "ring": ["stages.[12]"], "gates": ["st
 @pytest.fixture
 def encoder():
     torch.manual_seed(0)
-    return RGBEncoder(16, (16, 24, 32), 16, size=16).eval()
+    return RGBEncoder(16, size=16).eval()
 
 
 @pytest.fixture
@@ -28,7 +28,7 @@ def frames():
 
 
 def trained(model: nn.Module) -> nn.Module:
-    """With adapters that correct a great deal, and a gate that opens for about half the frames."""
+    """Give adapters and gate large random weights."""
     for parameter in adapters.adapter_parameters(model):
         nn.init.normal_(parameter, std=0.3)
     return model.eval()
@@ -39,7 +39,7 @@ def gate_of(model: nn.Module) -> FrameGate:
 
 
 def centred(model: nn.Module, frames: torch.Tensor) -> torch.Tensor:
-    """Move the gate's threshold to the median of ``frames``; returns for which it is open."""
+    """Open the gate for half the ``frames``; return for which it is open."""
     model(frames)
     gate = gate_of(model)
     with torch.no_grad():
@@ -48,7 +48,7 @@ def centred(model: nn.Module, frames: torch.Tensor) -> torch.Tensor:
     return gate.judged.logits > 0
 
 
-def test_frames_for_which_it_is_shut_get_the_features_without_adapters(encoder, frames):
+def test_closed_gate_keeps_features_without_adapters(encoder, frames):
     plain = encoder(frames)[0]
     insert_adapters(encoder, **PLACES)
     opened = centred(trained(encoder), frames)
@@ -58,7 +58,7 @@ def test_frames_for_which_it_is_shut_get_the_features_without_adapters(encoder, 
     assert torch.equal(same, ~opened)
 
 
-def test_it_comes_in_without_changing_anything_and_goes_without_a_trace(encoder, frames):
+def test_gate_insertion_and_removal_keep_outputs(encoder, frames):
     plain = encoder(frames)[0]
     names = insert_adapters(encoder, **PLACES)
     assert names == ["stem", "stages.0", "stages.1", "stages.2"]
@@ -77,19 +77,19 @@ class Patches(nn.Module):
         return self.block(self.stem(x).flatten(2).mT)
 
 
-def test_a_gate_that_nothing_follows_is_refused():
+def test_insert_rejects_a_gate_without_adapters():
     model, frames = Patches(), torch.randn(3, 3, 8, 8)
     with pytest.raises(ValueError, match="gate at stem controls no adapter"):
         insert_adapters(model, ["block"], gates=["stem"], run=lambda n: model(frames[:n]))
     assert not adapters.adapted(model)
 
 
-def test_one_camera_takes_the_options_of_plain_adapters(encoder):
+def test_single_camera_gets_plain_adapters(encoder):
     insert_adapters(encoder, [], ring=["stages.[12]"], views=1, gate=True, middle=2)
     assert all(m.gate is not None for m in encoder.modules() if isinstance(m, ConvAdapter))
 
 
-def test_it_learns_with_the_adapters(encoder, frames):
+def test_gate_trains_with_the_adapters(encoder, frames):
     insert_adapters(encoder, **PLACES)
     trained(encoder).train()
     loss = encoder(frames)[0].sum()
@@ -98,7 +98,7 @@ def test_it_learns_with_the_adapters(encoder, frames):
     assert all(p.grad is None for p in encoder.stages[0].first.parameters())
 
 
-def test_adapters_that_train_correct_every_frame(encoder, frames):
+def test_training_adapters_correct_every_frame(encoder, frames):
     insert_adapters(encoder, ["stages.[012]"], gates=["stem"])  # no neighbours
     opened = centred(trained(encoder), frames)
     in_use = encoder(frames)[0]
@@ -107,7 +107,7 @@ def test_adapters_that_train_correct_every_frame(encoder, frames):
     assert not torch.equal(training[~opened], in_use[~opened])
 
 
-def test_its_threshold_lets_a_share_of_clean_frames_through(encoder, frames):
+def test_calibrate_opens_for_a_share_of_frames(encoder, frames):
     insert_adapters(encoder, **PLACES)
     gate = gate_of(trained(encoder))
     for _ in range(2):  # a second time changes nothing
@@ -117,7 +117,7 @@ def test_its_threshold_lets_a_share_of_clean_frames_through(encoder, frames):
         assert int((gate.judged.logits > 0).sum()) == 6
 
 
-def test_noise_blur_steps_and_dark_change_the_textures_of_a_view():
+def test_textures_change_with_corruptions():
     torch.manual_seed(0)
     ramp = torch.linspace(-1, 1, 32).expand(1, 1, 32, 32)
     clean = torch.where(torch.arange(32) % 8 < 4, ramp, -ramp)
@@ -131,7 +131,7 @@ def test_noise_blur_steps_and_dark_change_the_textures_of_a_view():
         assert (textures(frame) - textures(clean)).abs().max() > 0.1, name
 
 
-def test_a_folder_and_a_copy_keep_it(encoder, frames, tmp_path):
+def test_folder_and_copy_keep_the_gate(encoder, frames, tmp_path):
     insert_adapters(encoder, **PLACES)
     centred(trained(encoder), frames)
     wanted = encoder(frames)[0]
@@ -141,13 +141,13 @@ def test_a_folder_and_a_copy_keep_it(encoder, frames, tmp_path):
     assert load_adapters(encoder, tmp_path) == ["stem", "stages.0", "stages.1", "stages.2"]
     assert torch.equal(encoder.eval()(frames)[0], wanted)
     with torch.no_grad():
-        gate_of(encoder).judge.bias += 100  # the copy has a gate of its own
+        gate_of(encoder).judge.bias += 100  # the copy has a separate gate
     assert torch.equal(copied(frames)[0], wanted)
 
 
-def test_each_encoder_has_its_own(frames):
+def test_each_encoder_has_a_separate_gate(frames):
     torch.manual_seed(0)
-    both = nn.ModuleDict({n: RGBEncoder(16, (16, 24, 32), 16, size=16) for n in ("one", "two")})
+    both = nn.ModuleDict({n: RGBEncoder(16, size=16) for n in ("one", "two")})
     insert_adapters(both, ["stages.[012]"], gates=["stem"])
     followed = {
         name: module.adapter.gates
@@ -158,7 +158,7 @@ def test_each_encoder_has_its_own(frames):
         assert gates == [both[name.split(".")[0]].stem.adapter]
 
 
-def test_without_adapters_behind_it_and_of_no_channels_it_is_refused(encoder):
+def test_gate_rejects_invalid_arguments(encoder):
     with pytest.raises(ValueError, match="target_modules names no module"):
         insert_adapters(encoder, [], gates=["stem"])
     with pytest.raises(ValueError, match="of a gate must be >= 1"):

@@ -1,4 +1,4 @@
-"""What a training walk keeps is what was seen then, also of a world that reuses its arrays."""
+"""Training rollouts copy their frames, because a world may reuse its arrays."""
 
 from __future__ import annotations
 
@@ -88,7 +88,7 @@ def topological() -> list[dict[str, np.ndarray]]:
 
 
 @pytest.mark.parametrize("walked", [stepwise, recurrent, topological])
-def test_frames_stay_as_they_were_seen(walked: Callable) -> None:
+def test_collect_copies_frames(walked: Callable) -> None:
     kept = walked()
     assert len(kept) == 3
     for number, frames in enumerate(kept):

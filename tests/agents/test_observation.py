@@ -1,4 +1,4 @@
-"""The agent refuses or brings into shape what it would otherwise walk badly by."""
+"""Checks of observations: invalid ones are rejected, others are converted."""
 
 import numpy as np
 import pytest
@@ -43,28 +43,28 @@ def seen(**changed):
         ("pose", np.zeros(2), ValueError, "three finite numbers"),
     ],
 )
-def test_what_no_sensor_of_the_agents_gives_is_refused(agent, name, value, kind, text):
+def test_frame_rejects_invalid_arrays(agent, name, value, kind, text):
     with pytest.raises(kind, match=text):
         agent.act(seen(**{name: value}))
 
 
-def test_a_missing_entry_is_named(agent):
+def test_frame_names_a_missing_entry(agent):
     with pytest.raises(KeyError, match="no entry 'depth'; it holds rgb, pose"):
         agent.act({k: v for k, v in seen().items() if k != "depth"})
 
 
-def test_normalised_depth_is_warned_of_and_real_depth_is_not(agent, recwarn):
+def test_frame_warns_of_normalised_depth(agent, recwarn):
     agent.act(seen())
     assert not recwarn.list
     with pytest.warns(UserWarning, match="normalised"):
         agent.act(seen(depth=seen()["depth"] / 10))
 
 
-def test_depth_without_any_reading_is_no_mistake(agent):
+def test_frame_accepts_depth_without_readings(agent):
     assert agent.act(seen(depth=np.full((12, 64, 64, 1), np.nan, np.float32))) is not None
 
 
-def test_an_episode_is_started_first_and_with_a_string():
+def test_agents_require_reset_with_a_string():
     agent = TopologicalAgent().eval()
     with pytest.raises(RuntimeError, match="agent.reset"):
         agent.act(seen())
@@ -74,7 +74,7 @@ def test_an_episode_is_started_first_and_with_a_string():
         agent.reset("走过红色沙发")
 
 
-def test_views_in_any_memory_layout_are_the_same_views(agent):
+def test_frame_accepts_any_memory_layout(agent):
     flipped = seen()["rgb"][..., ::-1]
     locked = flipped.copy()
     locked.flags.writeable = False
@@ -86,8 +86,8 @@ def test_views_in_any_memory_layout_are_the_same_views(agent):
     assert scores[0] == scores[1]
 
 
-def test_views_of_any_size_are_brought_to_the_agents_own():
-    """Each pixel repeated 3 x 3 is the same picture, so it must give the same features."""
+def test_agents_resize_views_of_any_size():
+    """Repeating each pixel 3 x 3 keeps the image, so the features must be equal."""
     torch.manual_seed(0)
     agent = TopologicalAgent(size=32).eval()
     rgb = torch.randint(0, 256, (1, 12, 32, 32, 3), dtype=torch.uint8)
@@ -101,7 +101,7 @@ def test_views_of_any_size_are_brought_to_the_agents_own():
         TopologicalAgent(size=50)
 
 
-def test_a_world_without_what_an_agent_reads_is_refused(agent):
+def test_check_fits_rejects_missing_sensors(agent):
     shown = cameras(64)
     check_fits(agent, shown, "Hall")
     alone = {name: sensor for name, sensor in shown.items() if name != DEPTH}

@@ -1,4 +1,4 @@
-"""A ring adapter's neighbours lie where the camera's rotation puts them."""
+"""Ring adapters: neighbouring views are warped by the rotation of the camera."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def panorama():
     return torch.from_numpy(rgb).permute(0, 3, 1, 2).float()
 
 
-def test_a_neighbour_turned_into_a_views_frame_shows_what_the_view_shows(panorama):
+def test_aligned_warps_neighbours_into_the_view(panorama):
     grid = neighbour_grid(64, 64, VIEW_STEP_DEGREES, HFOV_DEGREES)
     seen = (grid.abs() <= 1).all(-1)
     aligned = RingAdapter(3).aligned(panorama, grid)
@@ -33,7 +33,7 @@ def test_a_neighbour_turned_into_a_views_frame_shows_what_the_view_shows(panoram
         assert 0.5 < seen[side].float().mean() < 0.7  # 60 of 90 degrees, less the corners
 
 
-def test_a_cell_that_no_neighbour_sees_keeps_its_own_features():
+def test_ring_keeps_cells_that_no_neighbour_sees():
     torch.manual_seed(0)
     adapter = RingAdapter(8, views=3)  # 120 degrees apart: views of 90 degrees do not meet
     torch.nn.init.constant_(adapter.share.bias, 3.0)  # take all that there is to take
@@ -41,8 +41,8 @@ def test_a_cell_that_no_neighbour_sees_keeps_its_own_features():
     assert torch.allclose(adapter(x), x, atol=1e-6)
 
 
-def test_a_lost_view_can_be_taken_from_its_neighbours(panorama):
-    """With a score that shuns black cells, the fused map is nearer to the clean one than zero."""
+def test_ring_restores_a_lost_view(panorama):
+    """If the score avoids black cells, the fused map is closer to the clean map than zeros are."""
     adapter = RingAdapter(3, reduction=1)
     with torch.no_grad():
         adapter.down.weight.zero_()
@@ -58,12 +58,12 @@ def test_a_lost_view_can_be_taken_from_its_neighbours(panorama):
 
 
 @pytest.mark.parametrize("wrong", [{"views": 2}, {"kernel": 2}, {"hfov": 180}, {"reduction": 0}])
-def test_impossible_shapes_are_refused(wrong):
+def test_ring_rejects_invalid_arguments(wrong):
     with pytest.raises(ValueError, match="of a ring adapter must be"):
         RingAdapter(8, **wrong)
 
 
-def test_views_are_those_of_the_panorama():
+def test_ring_rejects_another_number_of_views():
     adapter = RingAdapter(8)
     with pytest.raises(RuntimeError):
         adapter(torch.zeros(VIEWS + 1, 8, 4, 4))

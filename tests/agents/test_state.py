@@ -1,4 +1,4 @@
-"""What an agent holds is found wherever it is."""
+"""Reading the state of agents: networks, arrays and values at any place."""
 
 from __future__ import annotations
 
@@ -46,14 +46,14 @@ PLACES = {
 @pytest.mark.parametrize(
     "kinds", [(net(1), net(2)), (np.zeros(3), np.ones(3)), (torch.zeros(3), torch.ones(3))]
 )
-def test_other_weights_are_another_agent_wherever_they_are(place, kinds):
+def test_fingerprint_changes_with_weights_anywhere(place, kinds):
     first, other = (PLACES[place](thing) for thing in kinds)
     assert (
         fingerprint(first, {}) == fingerprint(PLACES[place](kinds[0]), {}) != fingerprint(other, {})
     )
 
 
-def test_a_list_of_networks_in_a_network_counts():
+def test_fingerprint_counts_lists_of_networks():
     def agent(weight: float) -> nn.Module:
         made = net()
         made.further = [net(weight)]
@@ -62,7 +62,7 @@ def test_a_list_of_networks_in_a_network_counts():
     assert fingerprint(agent(1), {}) == fingerprint(agent(1), {}) != fingerprint(agent(2), {})
 
 
-def test_arrays_beside_networks_count_without_settings():
+def test_fingerprint_counts_arrays_without_settings():
     first = SimpleNamespace(net=net(), mean=torch.zeros(2))
     other = SimpleNamespace(net=net(), mean=torch.ones(2))
     assert fingerprint(first, {}) != fingerprint(other, {})
@@ -84,7 +84,7 @@ def test_read_state_follows_cycles_and_reports_what_it_cannot_read():
     assert not read_state(agent, attributes=False).unreadable
 
 
-def test_every_module_is_in_eval_mode_and_as_it_was_afterwards():
+def test_in_eval_mode_restores_every_mode():
     nested = nn.Sequential(nn.Dropout(), nn.BatchNorm1d(1))
     nested[1].eval()
     agent = SimpleNamespace(pol=SimpleNamespace(nets=[nested]))
@@ -112,7 +112,7 @@ def test_read_state_reports_too_many_values_and_loads_no_lazy_mapping(monkeypatc
     assert not read_state(SimpleNamespace(words=words, data=Lazy())).unreadable
 
 
-def test_things_of_pythons_own_library_hold_no_weights():
+def test_read_state_accepts_standard_library_objects():
     things = (re.compile("a"), range(3), threading.Lock(), datetime.datetime(2020, 1, 1))
     assert not read_state(SimpleNamespace(things=things, first=operator.itemgetter(0))).unreadable
 
@@ -122,7 +122,7 @@ class Anything:
         return lambda *given: None
 
 
-def test_what_cannot_be_hashed_is_unknown():
+def test_read_state_reports_unreadable_values():
     sparse, mixed = torch.eye(2).to_sparse(), np.array([object()])
     agent = SimpleNamespace(remote=Anything(), sparse=sparse, mixed=mixed)
     assert [*read_state(agent).unreadable] == ["sparse", "mixed"] and fingerprint(agent, {})
@@ -132,14 +132,14 @@ def test_what_cannot_be_hashed_is_unknown():
 
 
 class Merged(nn.Linear):
-    """Merged in eval mode alone, as LoRA is."""
+    """A layer that merges its weights only in eval mode, as LoRA does."""
 
     def train(self, mode: bool = True):
         self.merged = not mode
         return super().train(mode)
 
 
-def test_a_network_does_what_it_does_when_its_mode_changes():
+def test_in_eval_mode_calls_overridden_eval():
     agent = SimpleNamespace(net=Merged(1, 1))
     with in_eval_mode(agent):
         assert agent.net.merged

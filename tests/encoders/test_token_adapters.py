@@ -130,5 +130,5 @@ def test_full_size_shapes_match_the_agents():
 @pytest.mark.parametrize("kind", [ConvAdapter, TokenAdapter])
 @pytest.mark.parametrize("middle", [0, -1])
 def test_bottleneck_has_at_least_one_channel(kind, middle):
-    with pytest.raises(ValueError, match=rf"must be >= 1, got 8, 8 and {middle}"):
+    with pytest.raises(ValueError, match=f"middle of a .* must be >= 1, got {middle}"):
         kind(8, middle=middle)

@@ -22,7 +22,7 @@ from mitigate.agents import schema
 from mitigate.agents.adapters import insert_adapters
 from mitigate.agents.agent import Output, SideBySide, check_started
 from mitigate.agents.controller import Controller
-from mitigate.agents.encoders import CAMERA_ENCODERS, CAMERA_LABELS, SIZE, CameraRGB, see_camera
+from mitigate.agents.encoders import LABELS, SIZE, CameraRGB, see_camera
 from mitigate.agents.frontier.grid import (
     CELL,
     Grid,
@@ -33,7 +33,6 @@ from mitigate.agents.frontier.grid import (
     routes,
 )
 from mitigate.agents.text import CONCEPTS, NEAR, ROOM_NAMES, THING_NAMES
-from mitigate.core.names import unknown
 from mitigate.core.observation import (
     DEPTH,
     FORWARD,
@@ -94,8 +93,9 @@ class FrontierAgent(SideBySide, nn.Module):
     views, sensors = 1, (RGB, DEPTH, POSE)
     tasks = ("ogn",)
     together = 8  # episodes at once (heuristic): a frame encoded alone takes twice as long
-    encoders = {RGB: CAMERA_ENCODERS[RGB]}
-    labels = {RGB: CAMERA_LABELS[RGB]}
+    encoders = {RGB: ("rgb_encoder",)}
+    labels = {RGB: LABELS[RGB]}
+    grid: Grid  # from the first observation of an episode on
     _started = False
 
     def __init__(
@@ -107,9 +107,7 @@ class FrontierAgent(SideBySide, nn.Module):
         eye: float = 1.25,
     ) -> None:
         super().__init__()
-        for name in blind:
-            if name not in schema.SENSES:
-                raise ValueError(unknown("sense to blank (agent.blind)", name, schema.SENSES))
+        schema.check_blind(blind)
         self._settings = copy.deepcopy(
             {"width": width, "adapters": adapters, "blind": list(blind), "size": size, "eye": eye}
         )
@@ -148,7 +146,6 @@ class FrontierAgent(SideBySide, nn.Module):
                 stacklevel=2,
             )
         self._started = True
-        self.grid: Grid | None = None
         self.controller = Controller()
         self.actions = self._planned = self._bumps = 0
         self._before: np.ndarray | None = None  # where the last step forward began
@@ -203,21 +200,20 @@ class FrontierAgent(SideBySide, nn.Module):
         self, observation: Mapping[str, np.ndarray], pose: np.ndarray, concepts: np.ndarray
     ) -> None:
         """Add an observation to the map."""
-        if self.grid is None:
+        if self.actions == 0:
             self.grid = Grid(pose, self.eye)
         if self._before is not None:
             self._check_progress(pose, float(np.hypot(*(pose[:2] - self._before))))
         depth = checked.frame(observation, DEPTH, 1)[..., 0]
         thing = np.zeros((len(concepts), 2), np.float32)
         if self.thing is not None:
-            thing = shows(concepts, self.thing)
+            thing = concepts[:, [self.thing, NEAR.start + self.thing]]
         depth = np.zeros_like(depth) if DEPTH in self.blind else depth
         self._near = float(thing[:, 1].max())
         self.grid.add(depth, pose, thing, worth(concepts, self.thing))
 
     def _check_progress(self, pose: np.ndarray, moved: float) -> None:
         """Mark the cells ahead as blocked if a forward step of ``moved`` metres was too short."""
-        assert self.grid is not None
         self._bumps += moved < SLID
         if moved < STUCK:
             self.grid.block(pose)
@@ -243,7 +239,6 @@ class FrontierAgent(SideBySide, nn.Module):
 
     def _plan(self, pose: np.ndarray) -> int | None:
         """Choose a target and return an action, or None if no action is needed to reach it."""
-        assert self.grid is not None
         ways, late = routes(self.grid, pose[:2]), self.actions > LAST
         thing = object_cells(self.grid, MAYBE if late else FOUND)
         target = self._beside(ways, thing)
@@ -268,7 +263,6 @@ class FrontierAgent(SideBySide, nn.Module):
 
     def _check(self, thing: np.ndarray, pose: np.ndarray) -> int | None:
         """Turn to the object's cells and stop if it is seen nearby; else discard the cells."""
-        assert self.grid is not None
         dx, dy = self.grid.place(thing).mean(0) - pose[:2]
         error = np.arctan2(-dx, dy) - pose[2]
         error = np.degrees((error + np.pi) % (2 * np.pi) - np.pi)
@@ -281,7 +275,6 @@ class FrontierAgent(SideBySide, nn.Module):
 
     def _at(self, target: np.ndarray, pose: np.ndarray) -> bool:
         """Return whether the agent is within one step of ``target``."""
-        assert self.grid is not None
         return bool(np.hypot(*(self.grid.place(target[None])[0] - pose[:2])) < FORWARD_METRES)
 
     def _beside(self, ways: Routes, thing: np.ndarray) -> np.ndarray | None:
@@ -289,7 +282,6 @@ class FrontierAgent(SideBySide, nn.Module):
 
         The best cell is cheap to reach and near the object's centre.
         """
-        assert self.grid is not None
         reach = int(ARRIVED / CELL)
         steps = np.arange(-reach, reach + 1)
         around = np.stack(np.meshgrid(steps, steps, indexing="ij"), -1).reshape(-1, 2)
@@ -305,7 +297,6 @@ class FrontierAgent(SideBySide, nn.Module):
 
     def _frontier(self, ways: Routes) -> np.ndarray | None:
         """Return the nearest cell [2] of the frontier with the highest value minus path cost."""
-        assert self.grid is not None
         best = -np.inf
         target = None
         for group in frontiers(self.grid):
@@ -329,11 +320,6 @@ def named(text: str) -> int | None:
         for match in re.finditer(rf"\b{re.escape(name)}s?\b", text.lower())
     ]
     return max(ends)[2] if ends else None
-
-
-def shows(concepts: np.ndarray, thing: int) -> np.ndarray:
-    """Return the probabilities [n, 2] that columns show ``thing``, and that it is near."""
-    return concepts[:, [thing, NEAR.start + thing]]
 
 
 def worth(concepts: np.ndarray, thing: int | None) -> np.ndarray:

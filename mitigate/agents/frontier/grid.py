@@ -84,24 +84,12 @@ class Grid:
             worth: [n], how likely the object is in the direction of each column.
         """
         self._looks += 1
-        x, y = pose[:2] - self.origin
-        _scan(
-            np.ascontiguousarray(depth, np.float32),
-            float(x),
-            float(y),
-            float(pose[2]),
-            float(self.eye),
-            np.clip(_logit(seen), -3, 3).astype(np.float32),
-            seen.astype(np.float32),
-            worth.astype(np.float32),
-            self.occupied,
-            self.known,
-            self.value,
-            self.trust,
-            self.evidence,
-            self._stamp,
-            self._looks,
-        )
+        camera = (*map(float, pose[:2] - self.origin), float(pose[2]), float(self.eye))
+        odds = np.clip(_logit(seen), -3, 3).astype(np.float32)
+        columns = (odds, seen.astype(np.float32), worth.astype(np.float32))
+        free = (self.occupied, self.known, self.value, self.trust)
+        depth = np.ascontiguousarray(depth, np.float32)
+        _scan(depth, camera, columns, free, (self.evidence, self._stamp, self._looks))
 
     def block(self, pose: np.ndarray) -> None:
         """Mark the cells ahead of a pose [3] as blocked, whatever depth shows."""
@@ -130,23 +118,11 @@ def _logit(p: np.ndarray) -> np.ndarray:
 
 
 @njit(cache=True)
-def _scan(
-    depth,
-    x,
-    y,
-    heading,
-    eye,
-    odds,
-    seen,
-    worth,
-    occupied,
-    known,
-    value,
-    trust,
-    evidence,
-    stamp,
-    look,
-):
+def _scan(depth, camera, columns, free, things):
+    """Update the map with one observation; see :meth:`Grid.add`."""
+    x, y, heading, eye = camera
+    odds, seen, worth = columns
+    occupied, known, value, trust = free
     height, width = depth.shape
     for j in range(width):
         right = (2 * j + 1) / width - 1
@@ -170,9 +146,7 @@ def _scan(
             elif up <= LOW:
                 floor = max(floor, r)
             if THINGS_LOW < up < THINGS_HIGH and r < REACH:
-                _witness(
-                    x + dx * r, y + dy * r, r, odds[column], seen[column], evidence, stamp, look
-                )
+                _witness(x + dx * r, y + dy * r, r, odds[column], seen[column], things)
         met = second <= REACH  # a single reading may be noise
         end = second if met else min(floor, REACH)
         conf = 1 / stretch**2  # VLFM: cos^2 of the angle from the centre of the view
@@ -193,8 +167,9 @@ def _scan(
 
 
 @njit(cache=True)
-def _witness(x, y, r, odds, seen, evidence, stamp, look):
+def _witness(x, y, r, odds, seen, things):
     """Add evidence of one observation to the cell of a surface at (x, y), ``r`` metres away."""
+    evidence, stamp, look = things
     i, j = int(y / CELL), int(x / CELL)
     if i < 0 or j < 0 or i >= evidence.shape[0] or j >= evidence.shape[1] or stamp[i, j] == look:
         return

@@ -20,15 +20,14 @@ from torch import Tensor, nn
 from mitigate.agents import observation as checked
 from mitigate.agents import schema
 from mitigate.agents.adapters import insert_adapters
-from mitigate.agents.agent import Output, SideBySide, check_logits, check_started
+from mitigate.agents.agent import Output, SideBySide, check_logits, check_started, stop_figures
 from mitigate.agents.encoders import (
-    CAMERA_ENCODERS,
-    CAMERA_LABELS,
+    LABEL_LOSSES,
+    LABELS,
     SIZE,
     CameraDepth,
     CameraRGB,
-    free_loss,
-    free_metres,
+    encode_camera,
     presence_loss,
     see_camera,
 )
@@ -36,7 +35,7 @@ from mitigate.agents.recurrent.policy import ACTIONS, Odometer, Policy, State, T
 from mitigate.agents.recurrent.rollout import Piece, TrainingWalk, WalkDecisions, piece_of
 from mitigate.agents.text import MAX_WORDS, PAD, Vocabulary, pad
 from mitigate.core.names import unknown
-from mitigate.core.observation import DEPTH, RGB, STOP
+from mitigate.core.observation import DEPTH, RGB
 from mitigate.worlds.episodes import Episode
 from mitigate.worlds.world import World
 
@@ -72,7 +71,7 @@ class RecurrentAgent(SideBySide, nn.Module):
         blind: inputs to blank for ablations: its sensors or "instruction".
         adapters: keyword arguments of ``insert_adapters``; None: no adapters.
         size: side in pixels to which frames are resized.
-        vocabulary: the words it knows; None: those of the shipped agents.
+        vocabulary: the words it knows; None: the words of the shipped agents.
 
     Raises:
         ValueError: ``sensors`` is empty, or a name in ``sensors`` or ``blind`` is unknown.
@@ -115,26 +114,23 @@ class RecurrentAgent(SideBySide, nn.Module):
         for name in sensors:
             if name not in (RGB, DEPTH):
                 raise ValueError(unknown("sensor", name, (RGB, DEPTH)))
-        for name in blind:
-            if name not in (*sensors, "instruction"):
-                raise ValueError(
-                    unknown("sense to blank (agent.blind)", name, (*sensors, "instruction"))
-                )
+        schema.check_blind(blind, (*sensors, "instruction"))
         if not sensors:
             raise ValueError("sensors must name rgb, depth or both, got [].")
-        settings: dict[str, Any] = {
-            "rgb_width": rgb_width,
-            "depth_width": depth_width,
-            "policy": policy,
-            "sensors": list(sensors),
-            "blind": list(blind),
-            "adapters": adapters,
-            "size": size,
-        }
-        self._settings = copy.deepcopy(settings)
+        self._settings: dict[str, Any] = copy.deepcopy(
+            {
+                "rgb_width": rgb_width,
+                "depth_width": depth_width,
+                "policy": policy,
+                "sensors": list(sensors),
+                "blind": list(blind),
+                "adapters": adapters,
+                "size": size,
+            }
+        )
         self.sensors, self.blind = tuple(sensors), tuple(blind)
-        self.encoders = {name: CAMERA_ENCODERS[name] for name in self.sensors}
-        self.labels = {name: CAMERA_LABELS[name] for name in self.sensors}
+        self.encoders = {name: (f"{name}_encoder",) for name in self.sensors}
+        self.labels = {name: LABELS[name] for name in self.sensors}
         self.vocabulary = Vocabulary(vocabulary)
         if RGB in sensors:
             self.rgb_encoder = CameraRGB(width=rgb_width, size=size)
@@ -184,7 +180,8 @@ class RecurrentAgent(SideBySide, nn.Module):
         walks = [TrainingWalk(w, e, self.sensors) for w, e in zip(worlds, episodes, strict=True)]
         text = self.policy.read(self.tokens([e.instruction.text for e in episodes]))
         state, running = State.start(text), list(range(len(walks)))
-        keep_frames = self._trains_encoders()
+        weights = self.named_parameters()
+        keep_frames = any(p.requires_grad for name, p in weights if not name.startswith("policy."))
         for _ in range(LIMIT):
             rows, here = torch.tensor(running, device=self.device), [walks[i] for i in running]
             frames = {n: np.stack([walk.see()[n] for walk in here]) for n in self.sensors}
@@ -246,18 +243,12 @@ class RecurrentAgent(SideBySide, nn.Module):
             losses["distance"] = F.smooth_l1_loss(out["distance"][known], target)
         if "goal" in seen:
             losses["grounding"] = presence_loss(out["grounding"], seen["goal"])
-        stop = decisions.target[:, STOP] > 0
-        chosen = out["logits"].argmax(-1) == STOP
-        figures = {
-            "stop_recall": (chosen & stop).sum() / stop.sum().clamp(min=1),
-            "false_stop": (chosen & ~stop).sum() / (~stop).sum().clamp(min=1),
-        }
+        figures = stop_figures(out["logits"], decisions.target)
         return Output(out["logits"], None, {"views": views, "state": out["state"]}, losses, figures)
 
     def see(self, sensor: str, frames: Tensor, truth: Tensor | None = None) -> Output:
         """Return view features of a sensor's frames (``agents/agent.py``)."""
-        encoder = self.rgb_encoder if sensor == RGB else self.depth_encoder
-        return see_camera(encoder, sensor, frames, truth)
+        return see_camera(self.get_submodule(f"{sensor}_encoder"), sensor, frames, truth)
 
     @torch.no_grad()
     def _encode(self, frames: dict[str, np.ndarray]) -> Tensor:
@@ -268,30 +259,16 @@ class RecurrentAgent(SideBySide, nn.Module):
     def _perceive(
         self, frames: dict[str, Tensor], truth: dict[str, Tensor]
     ) -> tuple[Tensor, dict[str, Tensor]]:
-        """Return features [N, F] of frames, and with ``truth`` the encoders' losses.
-
-        Features are those of the columns, with the probabilities of concepts (RGB) and the free
-        distance in metres (depth).
-        """
-        parts, losses = [], {}
-        if RGB in self.sensors:
-            rgb = torch.zeros_like(frames[RGB]) if RGB in self.blind else frames[RGB]
-            features, logits = self.rgb_encoder(rgb)
-            parts += [features.flatten(-2), logits.sigmoid().flatten(-2)]
-            if "concepts" in truth:
-                losses["concepts"] = presence_loss(logits, truth["concepts"])
-        if DEPTH in self.sensors:
-            depth = torch.zeros_like(frames[DEPTH]) if DEPTH in self.blind else frames[DEPTH]
-            features, logits = self.depth_encoder(depth)
-            parts += [features.flatten(-2), free_metres(logits)]
-            if "free" in truth:
-                losses["free"] = free_loss(logits, truth["free"])
-        return torch.cat(parts, -1), losses
-
-    def _trains_encoders(self) -> bool:
-        """Return whether any weight of the encoders is trained."""
-        encoders = (m for name, m in self.parts().items() if name != "policy")
-        return any(p.requires_grad for encoder in encoders for p in encoder.parameters())
+        """Return features [N, F] of frames, and with ``truth`` the encoders' losses."""
+        views, losses = [], {}
+        for sensor in (name for name in (RGB, DEPTH) if name in self.sensors):
+            seen = torch.zeros_like(frames[sensor]) if sensor in self.blind else frames[sensor]
+            features, logits = encode_camera(self.get_submodule(f"{sensor}_encoder"), sensor, seen)
+            views.append(features)
+            label = LABELS[sensor]
+            if label in truth:
+                losses[label] = LABEL_LOSSES[sensor](logits, truth[label])
+        return torch.cat(views, -1), losses
 
     # closed loop ------------------------------------------------------------------------------
 
@@ -310,10 +287,7 @@ class RecurrentAgent(SideBySide, nn.Module):
 
     @torch.inference_mode()
     def answers(
-        self,
-        observations: Sequence[Mapping[str, np.ndarray]],
-        memories: Sequence[Walk],
-        count: int,
+        self, observations: Sequence[Mapping[str, np.ndarray]], memories: Sequence[Walk], count: int
     ) -> list[int]:
         """Return the likeliest actions of the first ``count`` episodes; update their memories."""
         frames = {

@@ -18,9 +18,9 @@ import torch
 import torch.nn.functional as F
 from torch import Tensor, nn
 
-from mitigate.agents.attention import Layer
+from mitigate.agents.attention import TextReader
 from mitigate.agents.encoders import DIRECTIONS, GRID
-from mitigate.agents.text import CONCEPTS, MAX_WORDS, NEAR, PAD, THINGS, Vocabulary
+from mitigate.agents.text import CONCEPTS, NEAR, THINGS, Vocabulary
 from mitigate.core.observation import FORWARD, FORWARD_METRES, LEFT, RIGHT, TURN_DEGREES
 
 MOVES = 5 + 4  # last action (none, or one of four); sine and cosine of heading, metres, steps
@@ -60,12 +60,8 @@ class Odometer:
         """
         out = np.zeros(MOVES, np.float32)
         out[1 + self.last] = 1.0
-        out[5:] = (
-            math.sin(self.heading),
-            math.cos(self.heading),
-            self.metres / _METRES,
-            self.steps / _STEPS,
-        )
+        out[5:7] = math.sin(self.heading), math.cos(self.heading)
+        out[7:] = self.metres / _METRES, self.steps / _STEPS
         return out
 
 
@@ -129,7 +125,7 @@ def gated(inputs: Tensor, hidden: Tensor, cell: nn.GRUCell) -> Tensor:
     return candidate + keep * (hidden - candidate)
 
 
-class Policy(nn.Module):
+class Policy(TextReader):
     """Recurrent policy over instructions, views and motion.
 
     Args:
@@ -142,8 +138,6 @@ class Policy(nn.Module):
         dropout: dropout rate.
     """
 
-    concept_words: Tensor
-
     def __init__(
         self,
         rgb: int,
@@ -154,18 +148,12 @@ class Policy(nn.Module):
         text_layers: int = 2,
         dropout: float = 0.1,
     ) -> None:
-        super().__init__()
+        super().__init__(vocabulary, width, heads, text_layers, dropout)
         self.sizes = [
             *([GRID * rgb, GRID * len(CONCEPTS)] if rgb else [0, 0]),
             *([GRID * depth, DIRECTIONS] if depth else [0, 0]),
         ]
-        self.words = nn.Embedding(len(vocabulary), width, padding_idx=PAD)
-        nn.init.normal_(self.words.weight, std=0.5)
-        self.places = nn.Embedding(MAX_WORDS, width)
-        nn.init.normal_(self.places.weight, std=0.1)
-        self.register_buffer("concept_words", vocabulary.concept_words(), persistent=False)
-        self.text = nn.ModuleList([Layer(width, heads, False, dropout) for _ in range(text_layers)])
-        self.text_norm, self.keys = nn.LayerNorm(width), nn.Linear(width, KEYS)
+        self.keys = nn.Linear(width, KEYS)
         if rgb:
             self.rgb = nn.Linear(rgb, width)
             self.seen, self.close, self.kinds = (
@@ -189,12 +177,8 @@ class Policy(nn.Module):
 
     def read(self, tokens: Tensor) -> Text:
         """Encode token ids [E, L]."""
-        mask = tokens != PAD
-        x = self.words(tokens) + self.places.weight[: tokens.shape[1]]
-        for layer in self.text:
-            x = layer(x, mask)
-        x = self.text_norm(x)
-        return Text(self.keys(x), x, mask)
+        values, mask = super().read(tokens)
+        return Text(self.keys(values), values, mask)
 
     def look(self, views: Tensor) -> Tensor:
         """Return columns [..., 4, width] of encoded views [..., F]."""

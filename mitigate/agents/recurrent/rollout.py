@@ -11,8 +11,10 @@ import torch
 from torch import Tensor
 
 from mitigate.agents import observation as checked
+from mitigate.agents.agent import sample
+from mitigate.agents.encoders import LABELS
 from mitigate.agents.recurrent.policy import Odometer
-from mitigate.core.observation import DEPTH, POSE, RGB, STOP, Observation
+from mitigate.core.observation import POSE, STOP, Observation
 from mitigate.worlds.episodes import Episode
 from mitigate.worlds.world import World, as_world, expert_of
 
@@ -87,19 +89,12 @@ class TrainingWalk:
             before = self._frames(self.observation.clean)
             seen |= {f"clean_{n}": np.array(f) for n, f in before.items()}
         truth: Mapping[str, np.ndarray] = self.world.truth()
-        labels = (*(labels_of(self.sensors) if frames else ()), "goal")
+        labels = [*(LABELS[name] for name in self.sensors if frames), "goal"]
         seen |= {name: np.array(truth[name]) for name in labels if name in truth}
-        weight = INFLECTION if action != self.before else 1.0
-        metres = self._metres()
-        self.steps.append(
-            {
-                "seen": seen,
-                "moves": self.odometer.moves(),
-                "answer": action,
-                "weight": weight,
-                "metres": metres,
-            }
-        )
+        step = {"seen": seen, "moves": self.odometer.moves(), "answer": action}
+        step["weight"] = INFLECTION if action != self.before else 1.0
+        step["metres"] = self._metres()
+        self.steps.append(step)
         self.before = action
 
     def _metres(self) -> float:
@@ -112,16 +107,10 @@ class TrainingWalk:
         """Take the expert's action, or an action sampled from ``chances`` [4]."""
         action = self.steps[-1]["answer"]
         if rng.random() >= expert_share:
-            total = np.cumsum(chances)
-            sampled = int(min(np.searchsorted(total, rng.random() * total[-1]), len(total) - 1))
+            sampled = sample(chances, rng)
             action = action if sampled == STOP else sampled
         self.observation = self.world.step(action)
         self.odometer.add(action)
-
-
-def labels_of(sensors: Sequence[str]) -> tuple[str, ...]:
-    """Return the labels of the world's truth that train the encoders of ``sensors``."""
-    return tuple(name for sensor, name in ((RGB, "concepts"), (DEPTH, "free")) if sensor in sensors)
 
 
 def piece_of(walks: Sequence[TrainingWalk]) -> Piece:

@@ -20,10 +20,11 @@ from torch import Tensor, nn
 
 from mitigate.agents import observation as checked
 from mitigate.agents import schema
-from mitigate.agents.adapters import insert_adapters, remove_adapters
-from mitigate.agents.agent import Agent, Output, check_logits, check_started
+from mitigate.agents.adapters import insert_adapters
+from mitigate.agents.agent import Agent, Output, check_logits, check_started, stop_figures
 from mitigate.agents.controller import Controller
 from mitigate.agents.encoders import (
+    LABELS,
     SIZE,
     DepthEncoder,
     RGBEncoder,
@@ -49,7 +50,6 @@ if TYPE_CHECKING:  # it imports tensordict, which is as slow to import as torch
 
 MAX_DECISIONS = 15  # ETPNav: 15 in R2R-CE
 PERCEPTION = ("rgb_encoder", "depth_encoder", "waypoint_head")
-PARTS = (*PERCEPTION, "planner")
 # losses of the planner (metres to the goal; which views show the goal's landmark) and of the
 # perception (concepts in views; free space); chosen for the shipped agents
 LOSS_WEIGHTS = {"distance": 0.3, "grounding": 0.3, "concepts": 2.0, "waypoints": 2.0}
@@ -81,10 +81,10 @@ class TopologicalAgent(Agent, nn.Module):
         blind: inputs to blank for ablations, of ``schema.SENSES``.
         adapters: keyword arguments of ``insert_adapters``; None: no adapters.
         size: side in pixels to which frames are resized.
-        vocabulary: the words it knows; None: those of the shipped agents.
-        encoder: the RGB encoder: "own", or "efficientnet_lite0" (``perception.py``), of which only
-            adapters and the layers after its feature map train. ``size`` then applies only to RGB;
-            depth stays at 64 pixels.
+        vocabulary: the words it knows; None: the words of the shipped agents.
+        encoder: the RGB encoder: "own", or "efficientnet_lite0" (``perception.py``). Its pretrained
+            layers do not train; only adapters and the layers after them do. ``size`` then applies
+            only to RGB; depth stays at 64 pixels.
 
     Raises:
         ValueError: A name in ``blind`` is unknown, or ``size`` is not a multiple of 16.
@@ -107,7 +107,7 @@ class TopologicalAgent(Agent, nn.Module):
         usual=(128, 4),
     )
     views, sensors = VIEWS, (RGB, DEPTH, POSE)
-    rgb_encoder: RGBEncoder | ImageNetEncoder
+    rgb_encoder: RGBEncoder
     _started = False
 
     def __init__(
@@ -121,13 +121,9 @@ class TopologicalAgent(Agent, nn.Module):
         encoder: str = OWN,
     ) -> None:
         super().__init__()
-        if encoder not in (OWN, IMAGENET):
-            raise ValueError(names.unknown("encoder", encoder, (OWN, IMAGENET)))
-        unknown = set(blind) - set(schema.SENSES)
-        if unknown:
-            raise ValueError(
-                f"blind must be a list of {', '.join(schema.SENSES)}, got {sorted(unknown)}."
-            )
+        if encoder not in RGB_ENCODERS:
+            raise ValueError(names.unknown("encoder", encoder, RGB_ENCODERS))
+        schema.check_blind(blind)
         self.blind = tuple(blind)
         self._settings: dict[str, Any] = copy.deepcopy(
             {
@@ -143,7 +139,7 @@ class TopologicalAgent(Agent, nn.Module):
         self._memory: Memory | None = None
         if encoder == IMAGENET:
             self.rgb_encoder, self.frozen = ImageNetEncoder(width, size), BORROWED
-            size = SIZE  # the depth encoder is that of the base agent
+            size = SIZE  # the same depth encoder as in the base agent
         else:
             self.rgb_encoder = RGBEncoder(width=width, size=size)
         self.depth_encoder = DepthEncoder(width=width, size=size)
@@ -176,10 +172,6 @@ class TopologicalAgent(Agent, nn.Module):
         """
         rgb = torch.zeros_like(rgb) if "rgb" in self.blind else rgb
         depth = torch.zeros_like(depth) if "depth" in self.blind else depth
-        return self.encode(rgb, depth)
-
-    def encode(self, rgb: Tensor, depth: Tensor) -> tuple[Tensor, Tensor, Tensor]:
-        """Encode as :meth:`perceive`, without blanking."""
         features, concepts = self.encode_rgb(rgb)
         depth_features, waypoints = self.encode_depth(depth)
         return torch.cat([features, concepts.sigmoid(), depth_features], -1), concepts, waypoints
@@ -187,7 +179,8 @@ class TopologicalAgent(Agent, nn.Module):
     def encode_rgb(self, rgb: Tensor) -> tuple[Tensor, Tensor]:
         """Return features [P, 12, width] and concept logits [P, 12, C]."""
         features, concepts = self.rgb_encoder(rgb.flatten(0, 1))
-        return features.unflatten(0, (-1, VIEWS)), concepts.unflatten(0, (-1, VIEWS))
+        views = rgb.shape[1]
+        return features.unflatten(0, (-1, views)), concepts.unflatten(0, (-1, views))
 
     def encode_depth(self, depth: Tensor) -> tuple[Tensor, Tensor]:
         """Return features [P, 12, width] and waypoint logits [P, 120, 12]."""
@@ -204,7 +197,7 @@ class TopologicalAgent(Agent, nn.Module):
 
     loss_weights = LOSS_WEIGHTS
     encoders = {RGB: ("rgb_encoder",), DEPTH: ("depth_encoder", "waypoint_head")}
-    labels = {RGB: "concepts", DEPTH: "free"}
+    labels = LABELS
     plain_walks = False
     stored_parts = ("planner",)  # parts that can train on stored features
 
@@ -216,12 +209,11 @@ class TopologicalAgent(Agent, nn.Module):
 
     def parts(self) -> dict[str, nn.Module]:
         """Return its four modules by name."""
-        return {name: self.get_submodule(name) for name in PARTS}
+        return dict(self.named_children())
 
     def as_teacher(self) -> TopologicalAgent:
         """Return a copy without adapters that takes plain means over views."""
-        teacher = copy.deepcopy(self)
-        remove_adapters(teacher)
+        teacher = super().as_teacher()
         teacher.planner.fusion = None
         return teacher
 
@@ -238,7 +230,8 @@ class TopologicalAgent(Agent, nn.Module):
 
         If the perception is frozen, the piece holds its features in place of frames.
         """
-        trains = self._trains_perception()
+        weights = self.named_parameters()
+        trains = any(p.requires_grad for name, p in weights if name.startswith(PERCEPTION))
         labels = ("concepts", "free", "goal") if trains else ("goal",)
         walks = [LiveWalk(w, e, labels, clean) for w, e in zip(worlds, episodes, strict=True)]
 
@@ -278,37 +271,28 @@ class TopologicalAgent(Agent, nn.Module):
     def decide(self, decisions: MapDecisions, *, clean: bool = False) -> Output:
         """Return logits over [stop] and ghosts; features "views" [P, 12, F], "nodes" [n, width]."""
         views, losses, figures = self._perception(decisions, clean)
-        planner, choices = self.planner, decisions.choices
-        out = planner(planner.read(decisions.tokens), planner.look(views), choices)
+        planner, valid = self.planner, decisions.valid
+        out = planner(planner.read(decisions.tokens), planner.look(views), decisions)
         distance = F.smooth_l1_loss(out["distance"], decisions.metres / _SCALE, reduction="none")
-        planner_losses = {"distance": (distance * choices.valid).sum() / choices.valid.sum()}
+        planner_losses = {"distance": (distance * valid).sum() / valid.sum()}
         if decisions.goal is not None:
             planner_losses["grounding"] = presence_loss(out["grounding"], decisions.goal)
-        features = {"views": views, "nodes": out["nodes"][choices.valid]}
-        figures |= _stop_figures(out["logits"], decisions.target[:, 0])
+        features = {"views": views, "nodes": out["nodes"][valid]}
+        figures |= stop_figures(out["logits"], decisions.target)
         losses = {**planner_losses, **losses}
-        return Output(out["logits"], choices.allowed, features, losses, figures)
+        return Output(out["logits"], decisions.allowed, features, losses, figures)
 
     def see(self, sensor: str, frames: Tensor, truth: Tensor | None = None) -> Output:
         """Return view features of a sensor's frames (``agents/agent.py``).
 
         RGB features include the probabilities of concepts.
         """
-        views = frames.shape[1]
         if sensor == DEPTH:
-            features = self.depth_encoder(frames.flatten(0, 1)).unflatten(0, (-1, views))
-            logits = self.waypoint_head(features)
+            features, logits = self.encode_depth(frames)
         else:
-            features, logits = (
-                x.unflatten(0, (-1, views)) for x in self.rgb_encoder(frames.flatten(0, 1))
-            )
+            features, logits = self.encode_rgb(frames)
             features = torch.cat([features, logits.sigmoid()], -1)
         return label_output(features, logits, sensor, truth)
-
-    def _trains_perception(self) -> bool:
-        """Return whether any weight of the perception is trained."""
-        parts = self.parts()
-        return any(p.requires_grad for name in PERCEPTION for p in parts[name].parameters())
 
     @torch.no_grad()
     def _perceived(self, rgb: np.ndarray, depth: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -431,18 +415,10 @@ class TopologicalAgent(Agent, nn.Module):
 
     def _see(self, rgb: np.ndarray, depth: np.ndarray) -> tuple[Tensor, np.ndarray]:
         """Return view features [1, 12, ...] and waypoints [n, 2] of one panorama."""
-
-        def encode_rgb(frames: Tensor) -> tuple[Tensor, Tensor]:
-            features, concepts = self.encode_rgb(frames)
-            return features, concepts.sigmoid()
-
-        def encode_depth(frames: Tensor) -> tuple[Tensor, np.ndarray]:
-            features, waypoints = self.encode_depth(frames)
-            return features, select(waypoints[0].float().cpu().numpy())
-
-        features, concepts = self._once("rgb", rgb, encode_rgb)
-        depth_features, waypoints = self._once("depth", depth, encode_depth)
-        return torch.cat([features, concepts, depth_features], -1), waypoints
+        features, concepts = self._once("rgb", rgb, self.encode_rgb)
+        depth_features, waypoints = self._once("depth", depth, self.encode_depth)
+        views = torch.cat([features, concepts.sigmoid(), depth_features], -1)
+        return views, select(waypoints[0].float().cpu().numpy())
 
     def _once(self, sensor: str, frames: np.ndarray, encode: Callable[[Tensor], tuple]) -> tuple:
         """Return ``encode`` of a sensor's frames [12, H, H, c], cached in :meth:`remembering`."""
@@ -462,12 +438,3 @@ class TopologicalAgent(Agent, nn.Module):
         node = max(self._stop_scores)[1]
         self.controller.follow(self.map.route_to_node(node))
         return True
-
-
-def _stop_figures(logits: Tensor, stop: Tensor) -> dict[str, Tensor]:
-    """Return the recall of stops and the rate of false stops."""
-    chosen = logits.argmax(-1) == 0
-    return {
-        "stop_recall": (chosen & (stop > 0)).sum() / stop.sum().clamp(min=1),
-        "false_stop": (chosen & (stop == 0)).sum() / (stop == 0).sum().clamp(min=1),
-    }

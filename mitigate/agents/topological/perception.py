@@ -22,13 +22,12 @@ import torch.nn.functional as F
 from torch import Tensor, nn
 
 from mitigate.agents.adapters import adapters_of
-from mitigate.agents.text import CONCEPTS
+from mitigate.agents.encoders import DISTANCES, STEP, RGBEncoder
 from mitigate.core.checkpoint import borrow
 from mitigate.core.files import sha256
 from mitigate.core.observation import VIEWS
 
-ANGLES, DISTANCES = 120, 12
-STEP = 0.25  # metres per distance bin
+ANGLES = 120
 _PER_VIEW = ANGLES // VIEWS
 YAWS = np.radians(3.0 * (np.arange(ANGLES) + 0.5) - 15.0)  # clockwise from the heading
 COUNT, SEPARATION = 6, 8  # largest number of waypoints; bins (24 degrees) between two of them
@@ -76,35 +75,28 @@ def select(logits: np.ndarray) -> np.ndarray:
     return np.array(chosen, np.float32).reshape(-1, 2)
 
 
-SIZE = 128  # pixels of a view, for which the last map is 4x4
-CHANNELS, GRID = 320, 4  # channels and side of that map
-MEAN, STD = 127.0, 128.0  # normalisation of EfficientNet-Lite, not that of ImageNet
 STAGES = ((0, 3), (3, 5), (5, 11), (11, 16))  # ranges of blocks; maps of 1/4, 1/8, 1/16, 1/32
-BORROWED = ("stem.", "stages.")
 INSTALL = "pip install -e '.[encoders]'"
 
 
-class ImageNetEncoder(nn.Module):
-    """Encode uint8 ``[n, H, W, 3]`` as features ``[n, width]`` and concept logits ``[n, C]``.
-
-    It replaces ``encoders.RGBEncoder``; ``stem`` and ``stages`` are those of EfficientNet-Lite0.
+class ImageNetEncoder(RGBEncoder):
+    """An RGB encoder whose stem and stages come from EfficientNet-Lite0.
 
     Raises:
         ValueError: ``size`` is not a multiple of 32, or the package is not installed.
     """
 
-    def __init__(self, width: int = 128, size: int = SIZE) -> None:
-        super().__init__()
-        if size < 32 or size % 32:
-            raise ValueError(f"size must be a multiple of 32 pixels, such as {SIZE}, got {size}.")
-        self.size = size
-        net, source = _pretrained()
-        self.stem = nn.Sequential(net._conv_stem, net._bn0, net._swish)
-        self.stages = nn.ModuleList(nn.Sequential(*net._blocks[a:b]) for a, b in STAGES)
-        borrow(self, BORROWED, source, "an EfficientNet-Lite0")
-        self.gather = nn.Conv2d(CHANNELS, 2 * CHANNELS, GRID, groups=CHANNELS)
-        self.embed = nn.Linear(2 * CHANNELS, width)
-        self.concepts = nn.Linear(width, len(CONCEPTS))
+    widths = (320,)  # channels of the last map
+    resize, stride, usual = "bilinear", 32, 128  # at 128 pixels the last map is 4x4
+
+    def __init__(self, width: int, size: int) -> None:
+        super().__init__(width, size)
+        borrow(self, ("stem.", "stages."), self.source, "an EfficientNet-Lite0")
+
+    def backbone(self) -> tuple[nn.Sequential, nn.ModuleList]:
+        net, self.source = _pretrained()
+        stages = nn.ModuleList(nn.Sequential(*net._blocks[a:b]) for a, b in STAGES)
+        return nn.Sequential(net._conv_stem, net._bn0, net._swish), stages
 
     def train(self, mode: bool = True) -> ImageNetEncoder:
         """Set the mode, except for pretrained layers, whose BatchNorm statistics stay fixed."""
@@ -115,22 +107,8 @@ class ImageNetEncoder(nn.Module):
                 adapter.train(mode)
         return self
 
-    def forward(self, rgb: Tensor) -> tuple[Tensor, Tensor]:
-        x = (self.sized(rgb) - MEAN) / STD
-        x = self.stem(x)
-        for stage in self.stages:
-            x = stage(x)
-        x = x if x.shape[-1] == GRID else F.adaptive_avg_pool2d(x, GRID)
-        x = F.gelu(self.gather(x).flatten(1))
-        features = F.gelu(self.embed(x))
-        return features, self.concepts(features)
-
-    def sized(self, frames: Tensor) -> Tensor:
-        """Resize frames ``[n, H, W, 3]`` to float ``[n, 3, size, size]``."""
-        x = frames.permute(0, 3, 1, 2).float()
-        if x.shape[-2:] == (self.size, self.size):
-            return x
-        return F.interpolate(x, (self.size, self.size), mode="bilinear", antialias=True)
+    def normalised(self, rgb: Tensor) -> Tensor:
+        return (self.sized(rgb) - 127.0) / 128.0  # of EfficientNet-Lite; ImageNet's differs
 
 
 def _pretrained() -> tuple[Any, str]:

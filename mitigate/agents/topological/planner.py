@@ -8,7 +8,7 @@ text. The 12 views of the current panorama are additional tokens (as in DUET's f
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -16,9 +16,9 @@ import torch
 import torch.nn.functional as F
 from torch import Tensor, nn
 
-from mitigate.agents.attention import Layer
+from mitigate.agents.attention import Layer, TextReader
 from mitigate.agents.fusion import weigher
-from mitigate.agents.text import CONCEPTS, MAX_WORDS, NEAR, PAD, THINGS, Vocabulary
+from mitigate.agents.text import CONCEPTS, NEAR, THINGS, Vocabulary
 from mitigate.agents.topological.mapping import GEOMETRY, SIGHTINGS, Decision
 from mitigate.core.observation import VIEW_STEP_DEGREES, VIEWS
 
@@ -45,9 +45,10 @@ class DecisionBatch:
     valid: Tensor
     allowed: Tensor
 
-    def to(self, device: torch.device) -> DecisionBatch:
+    def to(self, device: Any) -> Any:
         """Return the batch on ``device``."""
-        return DecisionBatch(*(tensor.to(device) for tensor in vars(self).values()))
+        moved = {n: v.to(device) for n, v in vars(self).items() if isinstance(v, Tensor)}
+        return replace(self, **moved)
 
 
 def collate(decisions: list[Decision], episodes: list[int], offsets: list[int]) -> DecisionBatch:
@@ -57,25 +58,23 @@ def collate(decisions: list[Decision], episodes: list[int], offsets: list[int]) 
     b = len(decisions)
     nodes = np.full((b, n), -1, np.int64)
     sightings = np.full((b, g, SIGHTINGS), -1, np.int64)
-    geometry = np.zeros((b, 1 + n + g, GEOMETRY), np.float32)
-    valid, allowed = np.zeros((b, 1 + n + g), bool), np.zeros((b, 1 + n + g), bool)
+    valid = np.zeros((b, 1 + n + g), bool)
     for row, (d, offset) in enumerate(zip(decisions, offsets, strict=True)):
-        a, c = len(d.nodes), len(d.ghosts)
-        nodes[row, :a] = d.nodes + offset
+        nodes[row, : len(d.nodes)] = d.nodes + offset
         flat = (d.sightings[..., 0] + offset) * VIEWS + d.sightings[..., 1]
-        sightings[row, :c] = np.where(d.sightings[..., 0] >= 0, flat, -1)
-        geometry[row, : 1 + a], geometry[row, 1 + n : 1 + n + c] = (
-            d.geometry[: 1 + a],
-            d.geometry[1 + a :],
-        )
-        valid[row, : 1 + a] = valid[row, 1 + n : 1 + n + c] = True
-        allowed[row, 0] = allowed[row, 1 + n : 1 + n + c] = True
+        sightings[row, : len(d.ghosts)] = np.where(d.sightings[..., 0] >= 0, flat, -1)
+        valid[row, : 1 + len(d.nodes)] = True
+        valid[row, 1 + n : 1 + n + len(d.ghosts)] = True
+    geometry = np.zeros((b, 1 + n + g, GEOMETRY), np.float32)
+    geometry[valid] = np.concatenate([d.geometry for d in decisions])
+    allowed = valid.copy()
+    allowed[:, 1 : 1 + n] = False
     current = np.array([d.panorama + o for d, o in zip(decisions, offsets, strict=True)])
     arrays = (np.array(episodes), current, nodes, sightings, geometry, valid, allowed)
     return DecisionBatch(*(torch.from_numpy(a) for a in arrays))
 
 
-class Planner(nn.Module):
+class Planner(TextReader):
     """Score [stop] and ghosts; the module's docstring describes the structure.
 
     Args:
@@ -92,7 +91,6 @@ class Planner(nn.Module):
         vocabulary: of the instructions; None: the default one.
     """
 
-    concept_words: Tensor
     yaws: Tensor
 
     def __init__(
@@ -107,16 +105,8 @@ class Planner(nn.Module):
         fusion: dict[str, Any] | None = None,
         vocabulary: Vocabulary | None = None,
     ) -> None:
-        super().__init__()
+        super().__init__(vocabulary or Vocabulary(), width, heads, text_layers, dropout)
         self.widths = (rgb_width, len(CONCEPTS), depth_width)
-        vocabulary = vocabulary or Vocabulary()
-        self.words = nn.Embedding(len(vocabulary), width, padding_idx=PAD)
-        nn.init.normal_(self.words.weight, std=0.5)
-        self.places = nn.Embedding(MAX_WORDS, width)
-        nn.init.normal_(self.places.weight, std=0.1)
-        self.register_buffer("concept_words", vocabulary.concept_words(), persistent=False)
-        self.text = nn.ModuleList([Layer(width, heads, False, dropout) for _ in range(text_layers)])
-        self.text_norm = nn.LayerNorm(width)
         self.seen, self.close, self.kinds = (nn.Linear(width, width, bias=False) for _ in range(3))
         self.rgb, self.depth = nn.Linear(rgb_width, width), nn.Linear(depth_width, width)
         self.yaw = nn.Linear(4, width)
@@ -145,14 +135,6 @@ class Planner(nn.Module):
     def looked_width(self) -> int:
         """Channels of the output of :meth:`look`."""
         return self.view_kind.numel() + (self.fusion is not None)
-
-    def read(self, tokens: Tensor) -> tuple[Tensor, Tensor]:
-        """Return text features [E, L, width] and mask [E, L] of token ids [E, L]."""
-        mask = tokens != PAD
-        x = self.words(tokens) + self.places.weight[: tokens.shape[1]]
-        for layer in self.text:
-            x = layer(x, mask)
-        return self.text_norm(x), mask
 
     def look(self, views: Tensor) -> Tensor:
         """Return view tokens [P, 12, width] of view features [P, 12, view_width].

@@ -8,7 +8,7 @@ stored features.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import Any, Protocol
 
 import numpy as np
@@ -16,7 +16,7 @@ import torch
 from torch import Tensor
 
 from mitigate.agents import observation as checked
-from mitigate.agents.agent import check_logits
+from mitigate.agents.agent import check_logits, sample
 from mitigate.agents.controller import Controller
 from mitigate.agents.topological.mapping import Decision, TopologicalMap
 from mitigate.agents.topological.planner import DecisionBatch, Planner, collate
@@ -33,16 +33,17 @@ _TRAVEL = 0.4  # weight of the metres to a ghost relative to the metres from it 
 
 
 class Walk(Protocol):
-    """One rollout: the agent's pose, motion along routes, the oracle, and the episode's end."""
+    """One rollout: the agent's pose, motion along routes, the expert, and the episode's end."""
 
     episode: Episode
+
+    @property
+    def expert(self) -> Any: ...
 
     @property
     def done(self) -> bool: ...
     def pose(self) -> np.ndarray: ...
     def go(self, route: list[np.ndarray]) -> None: ...
-    def distance(self, xy: np.ndarray) -> float: ...
-    def counts(self, metres: float) -> bool: ...
 
 
 # encodes the panoramas of several walks: views float32 [12, F] and waypoints [n, 2] of each
@@ -82,14 +83,23 @@ class Piece:
 
 
 def oracle(walk: Walk, graph: TopologicalMap, decision: Decision) -> Step:
-    """Return a decision with the answer of the shortest-path oracle."""
-    nodes = [walk.distance(p) for p in graph.positions]
-    ghosts = np.array([walk.distance(graph.ghosts[g].position) for g in decision.ghosts])
+    """Return a decision with the answer of the shortest-path oracle.
+
+    Raises:
+        ValueError: The world's expert knows no distances.
+    """
+    nodes = [walk.expert.distance(p) for p in graph.positions]
+    ghosts = np.array([walk.expert.distance(graph.ghosts[g].position) for g in decision.ghosts])
+    if np.isnan([*nodes, *ghosts]).any():
+        raise ValueError(
+            "distance(xy) of the world's expert must be a number of metres to the goal, got NaN. "
+            "Training a planning agent needs that method (docs/bring-your-own.md)."
+        )
     here = nodes[graph.current]
     target = np.zeros(1 + len(ghosts), np.float32)
     nearer = len(ghosts) > 0 and ghosts.min() < here - 0.25
     near = here <= STOP_WITHIN or (here <= STOP_BEST and not nearer)
-    if (near and walk.counts(here)) or not len(ghosts):
+    if (near and walk.expert.counts(here)) or not len(ghosts):
         target[0] = 1.0
     else:
         cost = ghosts + _TRAVEL * decision.travel
@@ -146,18 +156,6 @@ class LiveWalk:
         while not self.done and (action := controller.action(self.pose())) is not None:
             self.observation = self.world.step(action)
 
-    def distance(self, xy: np.ndarray) -> float:
-        metres = self.expert.distance(xy)
-        if np.isnan(metres):
-            raise ValueError(
-                "distance(xy) of the world's expert must be a number of metres to the goal, got "
-                "NaN. Training a planning agent needs that method (docs/bring-your-own.md)."
-            )
-        return metres
-
-    def counts(self, metres: float) -> bool:
-        return self.expert.counts(metres)
-
 
 @torch.no_grad()
 def roll_out(
@@ -198,7 +196,7 @@ def roll_out(
             traces[i].steps.append(oracle(walks[i], graphs[i], graphs[i].decision(walks[i].pose())))
         running = [i for i in running if traces[i].steps[-1].target[0] < 1.0]
         by_planner = [i for i in running if rngs[i].random() >= follow_oracle]
-        chosen = {i: _draw(traces[i].steps[-1].target[1:], rngs[i]) for i in running}
+        chosen = {i: sample(traces[i].steps[-1].target[1:], rngs[i]) for i in running}
         if follow_oracle < 1.0 and running:
             current = torch.from_numpy(np.stack([traces[i].views[-1] for i in running]))
             view_tokens = planner.look(current.to(tokens.device))
@@ -236,30 +234,18 @@ def _sample_ghosts(
     chances = check_logits(logits[:, first:], planner).softmax(-1)
     probabilities = chances.double().cpu().numpy()
     counts = [len(traces[i].steps[-1].decision.ghosts) for i in rows]
-    return [_draw(p[:n], rngs[i]) for i, p, n in zip(rows, probabilities, counts, strict=True)]
-
-
-def _draw(probabilities: np.ndarray, rng: np.random.Generator) -> int:
-    total = np.cumsum(probabilities.astype(np.float64))
-    return int(min(np.searchsorted(total, rng.random() * total[-1], side="right"), len(total) - 1))
+    return [sample(p[:n], rngs[i]) for i, p, n in zip(rows, probabilities, counts, strict=True)]
 
 
 @dataclass
-class MapDecisions:
-    """B padded decisions of E episodes with P panoramas.
+class MapDecisions(DecisionBatch):
+    """B padded decisions of E episodes with P panoramas, and the oracle's answers.
 
-    The first seven attributes are those of ``planner.DecisionBatch``. ``target`` and ``metres`` are
-    [B, 1 + N + G], ``weight`` [B], ``tokens`` int64 [E, L]. Observations are either features
-    (``views``, ``clean_views`` [P, 12, F]) or frames. Labels are None if the world lacks them.
+    ``target`` and ``metres`` are [B, 1 + N + G], ``weight`` [B], ``tokens`` int64 [E, L].
+    Observations are either features (``views``, ``clean_views`` [P, 12, F]) or frames. Labels are
+    None if the world lacks them.
     """
 
-    episode: Tensor
-    panorama: Tensor
-    nodes: Tensor
-    sightings: Tensor
-    geometry: Tensor
-    valid: Tensor
-    allowed: Tensor
     target: Tensor
     metres: Tensor
     weight: Tensor
@@ -275,25 +261,6 @@ class MapDecisions:
     free: Tensor | None = None
     goal: Tensor | None = None
 
-    def to(self, device: Any) -> MapDecisions:
-        """Return the decisions on ``device``."""
-        tensors = {n: v.to(device) for n, v in vars(self).items() if isinstance(v, Tensor)}
-        moved: dict[str, Any] = dict(tensors)
-        return replace(self, **moved)
-
-    @property
-    def choices(self) -> DecisionBatch:
-        """The decisions as the planner takes them."""
-        return DecisionBatch(
-            self.episode,
-            self.panorama,
-            self.nodes,
-            self.sightings,
-            self.geometry,
-            self.valid,
-            self.allowed,
-        )
-
 
 def join(pieces: Sequence[Piece], tokens: Callable[[list[str]], Tensor]) -> MapDecisions:
     """Pad the decisions of all traces with their targets; ``tokens`` encodes instructions."""
@@ -305,7 +272,10 @@ def join(pieces: Sequence[Piece], tokens: Callable[[list[str]], Tensor]) -> MapD
         [row for row, _ in steps],
         [int(offsets[row]) for row, _ in steps],
     )
-    target, metres = _answers(choices, [step for _, step in steps])
+    target, metres = torch.zeros(choices.valid.shape), torch.zeros(choices.valid.shape)
+    target[choices.allowed] = torch.from_numpy(np.concatenate([s.target for _, s in steps]))
+    known = np.concatenate([s.metres for _, s in steps])
+    metres[choices.valid] = torch.from_numpy(np.minimum(known, FARTHEST))
     seen = {
         name: torch.from_numpy(np.concatenate([piece.seen[name] for piece in pieces]))
         for name in pieces[0].seen
@@ -319,17 +289,3 @@ def join(pieces: Sequence[Piece], tokens: Callable[[list[str]], Tensor]) -> MapD
         episode_ids=[trace.episode.episode_id for trace in traces],
         **seen,
     )
-
-
-def _answers(choices: DecisionBatch, steps: list[Step]) -> tuple[Tensor, Tensor]:
-    """Return padded targets and metres, each float32 [B, 1 + N + G]."""
-    size, first = choices.valid.shape, 1 + choices.nodes.shape[1]
-    target, metres = np.zeros(size, np.float32), np.zeros(size, np.float32)
-    for index, step in enumerate(steps):
-        ghosts, nodes = len(step.decision.ghosts), len(step.decision.nodes)
-        target[index, 0], target[index, first : first + ghosts] = step.target[0], step.target[1:]
-        metres[index, : 1 + nodes], metres[index, first : first + ghosts] = (
-            step.metres[: 1 + nodes],
-            step.metres[1 + nodes :],
-        )
-    return torch.from_numpy(target), torch.from_numpy(np.minimum(metres, FARTHEST))

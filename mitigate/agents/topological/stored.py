@@ -79,7 +79,7 @@ class Features:
 
     @torch.no_grad()
     def blank(self, agent: Any, size: int) -> None:
-        """Replace features of inputs that the agent is blind to by those of blank frames."""
+        """Replace features of inputs that the agent is blind to by features of blank frames."""
         rgb = torch.zeros(1, VIEWS, size, size, 3, dtype=torch.uint8, device=agent.device)
         views, _, logits = agent.perceive(rgb, torch.zeros_like(rgb[..., :1], dtype=torch.float32))
         blanked, depth = views[0].float().cpu().numpy(), agent.planner.widths[-1]
@@ -96,7 +96,8 @@ class Features:
 class StoredWalk:
     """A rollout on stored features: every move ends at the lattice pose nearest to its target.
 
-    ``shown`` holds, for each observation, which views show the goal's landmark: float32 [12].
+    ``landmark_views`` holds, for each observation, which views show the goal's landmark: float32
+    [12].
     Steps are not counted, so the episode is never ``done``.
     """
 
@@ -109,7 +110,7 @@ class StoredWalk:
         self.index = int(features.tree.query(from_vlnce(episode.start_position))[1])
         self.turn = _turns(heading_of(episode.start_rotation))
         self.landmarks = np.uint64(sum(1 << i for i in world.landmarks(episode)))
-        self.shown: list[np.ndarray] = []
+        self.landmark_views: list[np.ndarray] = []
 
     def look(self) -> tuple[np.ndarray, np.ndarray]:
         """Return the views and waypoints at the current pose."""
@@ -120,7 +121,7 @@ class StoredWalk:
             2 * np.pi
         )
         visible = (features.seen[self.index] & self.landmarks) > 0
-        self.shown.append(np.roll(visible.astype(np.float32), self.turn))
+        self.landmark_views.append(np.roll(visible.astype(np.float32), self.turn))
         return np.roll(features.views[self.index].astype(np.float32), self.turn, 0), waypoints
 
     def pose(self) -> np.ndarray:
@@ -132,17 +133,6 @@ class StoredWalk:
         self.index = int(self.features.tree.query(route[-1])[1])
         dx, dy = route[-1] - before
         self.turn = _turns(float(np.arctan2(-dx, dy)))
-
-    def distance(self, xy: np.ndarray) -> float:
-        return self.expert.distance(xy)
-
-    def counts(self, metres: float) -> bool:
-        return self.expert.counts(metres)
-
-
-def look(walks: Sequence[StoredWalk]) -> list[tuple[np.ndarray, np.ndarray]]:
-    """Return the stored views and waypoints at the pose of each walk."""
-    return [walk.look() for walk in walks]
 
 
 def _turns(heading: float) -> int:
@@ -245,7 +235,7 @@ def _frames(world: Any, xy: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndar
 def _features(
     agent: Any, frames: list[tuple], known: list[tuple] | None = None
 ) -> dict[str, np.ndarray]:
-    """Return features of frames by name, without those of sensors that are equal in ``known``."""
+    """Return features of frames by name; leave out sensors whose frames are equal in ``known``."""
     seen = np.stack([frame[2] for frame in frames]).view(np.int64)  # torch cannot map uint64
     features = {"seen": seen}
     rgb, depth = ([frame[i] for frame in frames] for i in (0, 1))
@@ -400,14 +390,14 @@ class Store:
             self.agent.planner,
             self.agent.tokens([e.instruction.text for e in episodes]),
             walks,
-            look,
+            lambda running: [walk.look() for walk in running],
             follow_oracle=expert_share,
             rngs=rngs,
         )
         return Piece(
             traces,
             {
-                "goal": np.stack([s for walk in walks for s in walk.shown]),
+                "goal": np.stack([view for walk in walks for view in walk.landmark_views]),
                 "views": np.stack([view for trace in traces for view in trace.views]),
             },
         )

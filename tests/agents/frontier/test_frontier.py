@@ -1,4 +1,4 @@
-"""The frontier agent: its map, its search, and that it finds what it is told to."""
+"""The frontier agent: its map, its search, and the objects that it finds."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ NOTHING = np.full((4, 2), 0.01, np.float32)
 
 
 def wall(metres: float, size: int = 32) -> np.ndarray:
-    """Depth [H, W] of a wall ahead, with the floor and the ceiling before it."""
+    """Return the depth [H, W] of a wall ahead, with floor and ceiling."""
     up = np.abs(1 - (2 * np.arange(size) + 1) / size)[:, None] + np.zeros(size)
     return np.minimum(metres, 1.25 / up).astype(np.float32)
 
@@ -33,7 +33,7 @@ def looked(*looks: tuple[np.ndarray, np.ndarray]) -> Grid:
     return grid
 
 
-def test_a_wall_is_occupied_and_the_way_to_it_free():
+def test_grid_marks_walls_and_free_cells():
     grid = looked(*[(wall(2.0), np.zeros(3))] * 3)
     at = {metres: grid.cell(np.array([0.0, metres])) for metres in (1.0, 2.0, 3.0)}
     assert grid.known[at[1.0]] and grid.occupied[at[1.0]] < 0
@@ -41,11 +41,11 @@ def test_a_wall_is_occupied_and_the_way_to_it_free():
     assert not grid.known[at[3.0]]
 
 
-def test_depth_that_is_missing_says_nothing():
+def test_grid_ignores_missing_depth():
     assert not looked((np.zeros((32, 32)), np.zeros(3))).known.any()
 
 
-def test_routes_go_around_what_is_occupied():
+def test_routes_avoid_occupied_cells():
     grid = looked()
     grid.known[:] = True
     row, column = grid.cell(np.zeros(2))
@@ -58,7 +58,7 @@ def test_routes_go_around_what_is_occupied():
     assert ways.at(goal[None])[0] > 2.0 + 0.3
 
 
-def test_a_frontier_lies_between_known_and_unknown():
+def test_frontiers_border_on_unknown_cells():
     grid = looked(*[(wall(3.0), np.zeros(3))] * 3)
     groups = frontiers(grid)
     assert groups
@@ -68,8 +68,8 @@ def test_a_frontier_lies_between_known_and_unknown():
         assert not any(around)
 
 
-def test_looks_from_two_sides_place_the_object():
-    """One look leaves a whole direction; the second, from the side, leaves where they meet."""
+def test_grid_locates_the_object_from_two_views():
+    """One observation gives a direction; a second one from the side gives the intersection."""
     grid = Grid(np.zeros(3), 1.25)
     ahead = np.array([[0.02, 0.02], [0.95, 0.3], [0.02, 0.02], [0.02, 0.02]], np.float32)
     for _ in range(3):
@@ -81,19 +81,19 @@ def test_looks_from_two_sides_place_the_object():
     assert 0 < len(object_cells(grid, 1.0)) < spread
 
 
-def test_the_thing_named_last_is_searched():
+def test_named_returns_the_last_object():
     assert THING_NAMES[named("Find a washing machine.")] == "washing machine"
     assert THING_NAMES[named("Go past the sofa and stop at the blue chairs!")] == "chair"
     assert THING_NAMES[named("an armchair")] == "armchair"
     assert named("walk to the piano") is None
 
 
-def test_every_likely_thing_and_room_is_known():
+def test_likely_names_known_concepts():
     assert set(LIKELY) <= set(CONCEPTS)
     assert {name for names in LIKELY.values() for name in names} <= set(THING_NAMES)
 
 
-def test_it_finds_what_it_recognises():
+def test_agent_finds_recognised_objects():
     world, agent, won = ApartmentsWorld(views=1), FrontierAgent().eval(), 0
     agent._recognise = lambda rgb: 0.01 + 0.98 * world.truth()["concepts"][None]
     for episode in load_episodes("val_seen", "ogn")[:4]:
@@ -106,7 +106,7 @@ def test_it_finds_what_it_recognises():
     assert won >= 3
 
 
-def test_it_looks_around_first_and_needs_its_sensors():
+def test_agent_turns_first_and_requires_its_sensors():
     world, agent = ApartmentsWorld(views=1), FrontierAgent().eval()
     seen = world.reset(load_episodes("val_seen", "ogn")[0])
     with pytest.raises(RuntimeError, match="reset"):
@@ -121,7 +121,7 @@ def test_it_looks_around_first_and_needs_its_sensors():
         agent.reset("hello")
 
 
-def test_an_evaluation_on_routes_is_warned_of_and_one_on_objects_is_not():
+def test_evaluation_warns_of_unsupported_tasks():
     routes, objects = load_episodes("val_unseen")[:3], load_episodes("val_unseen", "ogn")[:2]
     with pytest.warns(UserWarning, match="mine can find an object, not follow a route, but 3 of 5"):
         warn_of_tasks(FrontierAgent(), [*routes, *objects], "mine", "val_unseen_ogn")
@@ -131,7 +131,7 @@ def test_an_evaluation_on_routes_is_warned_of_and_one_on_objects_is_not():
         warn_of_tasks(object(), routes, "any that does not say", "val_unseen")
 
 
-def test_only_its_encoder_is_learned():
+def test_frontier_agent_is_seeing_but_not_trainable():
     agent = FrontierAgent()
     assert isinstance(agent, Seeing) and not isinstance(agent, Trainable)
     assert {id(p) for m in agent.parts().values() for p in m.parameters()} == {
@@ -139,7 +139,7 @@ def test_only_its_encoder_is_learned():
     }
 
 
-def test_a_blind_agent_hears_nothing():
+def test_blind_agent_ignores_the_instruction():
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         agent = FrontierAgent(blind=("instruction",))
@@ -147,7 +147,7 @@ def test_a_blind_agent_hears_nothing():
     assert agent.thing is None
 
 
-def test_the_map_is_as_large_as_the_agent_can_walk():
+def test_grid_covers_the_longest_episode():
     grid = looked()
     assert grid.cell(np.array([1e3, -1e3])) == (0, len(grid.known) - 1)
     assert np.allclose(
@@ -155,7 +155,7 @@ def test_the_map_is_as_large_as_the_agent_can_walk():
     )
 
 
-def test_side_by_side_every_episode_goes_as_it_does_alone():
+def test_act_all_keeps_episodes_independent():
     made, episodes = FrontierAgent(size=16).eval(), load_episodes("val_seen", "ogn")[:3]
     assert made.together > 1
     worlds = [ApartmentsWorld(16, 2, 1) for _ in episodes]

@@ -1,4 +1,4 @@
-"""The recurrent agent: what it decides in a batch is what it does step by step."""
+"""The recurrent agent: batches of decisions equal step-by-step actions."""
 
 from __future__ import annotations
 
@@ -45,13 +45,13 @@ def walked(by: RecurrentAgent, count: int = 2, *, share: float = 0.5, clean: boo
         return by.collect(worlds, episodes, **how)
 
 
-def test_it_is_trainable_and_sees():
+def test_recurrent_agent_is_trainable_and_seeing():
     assert isinstance(agent(), Trainable) and isinstance(agent(), Seeing)
     assert set(agent().parts()) == {"rgb_encoder", "depth_encoder", "policy"}
     assert set(agent(RGB).parts()) == {"rgb_encoder", "policy"}
 
 
-def test_a_batch_answers_as_the_agent_does_step_by_step():
+def test_decide_equals_step_by_step_actions():
     made, episode = agent(), load_episodes("val_seen")[0]
     with torch.no_grad():
         made.policy.act[-1].bias[FORWARD] = 50.0  # whatever it sees, so both take the same way
@@ -68,7 +68,7 @@ def test_a_batch_answers_as_the_agent_does_step_by_step():
         seen = world.step(FORWARD)
 
 
-def test_walks_of_a_batch_do_not_depend_on_each_other():
+def test_collect_keeps_rollouts_independent():
     made = agent()
     together = made.join([walked(made, 2, share=1.0)])
     alone = made.join([walked(made, 1, share=1.0)])
@@ -77,7 +77,7 @@ def test_walks_of_a_batch_do_not_depend_on_each_other():
     assert torch.allclose(both[: len(one)], one, atol=1e-4)
 
 
-def test_its_own_stop_is_not_taken_in_training():
+def test_collect_never_takes_the_agents_stop():
     made = agent()
     with torch.no_grad():
         made.policy.act[-1].bias[STOP] = 50.0
@@ -86,7 +86,7 @@ def test_its_own_stop_is_not_taken_in_training():
     assert piece["answer"][-1] == STOP  # the expert's ends it
 
 
-def test_frozen_encoders_give_features_and_training_ones_frames():
+def test_collect_stores_features_of_frozen_encoders():
     made = agent()
     made.requires_grad_(False)
     made.policy.requires_grad_(True)
@@ -100,7 +100,7 @@ def test_frozen_encoders_give_features_and_training_ones_frames():
     assert made.rgb_encoder.stem[0].weight.grad.abs().sum() > 0
 
 
-def test_clean_frames_and_their_features_give_the_same_answer():
+def test_precompute_keeps_the_clean_output():
     made = agent()
     made.requires_grad_(False)
     piece = walked(made, clean=True)
@@ -111,7 +111,7 @@ def test_clean_frames_and_their_features_give_the_same_answer():
     assert not torch.allclose(frames, corrupted, atol=1e-5)
 
 
-def test_steps_at_which_the_expert_turns_count_more():
+def test_collect_weights_changes_of_action():
     piece = walked(agent(), 1, share=1.0)
     changes = np.flatnonzero(np.diff(piece["answer"].numpy())) + 1
     heavy = np.flatnonzero(piece["weight"].numpy() > 1)
@@ -119,7 +119,7 @@ def test_steps_at_which_the_expert_turns_count_more():
     assert piece["weight"][0] == pytest.approx(INFLECTION)
 
 
-def test_with_rgb_alone_depth_does_not_matter(monkeypatch):
+def test_rgb_agent_ignores_depth(monkeypatch):
     monkeypatch.setattr(simulator, "MAX_STEPS", 60)  # untrained, it does not stop before
     made, episode = agent(RGB), load_episodes("val_seen")[1]
     clean = run_episode(made, World(), episode, Corruption("clean", 0.0), 0)
@@ -128,7 +128,7 @@ def test_with_rgb_alone_depth_does_not_matter(monkeypatch):
 
 
 @pytest.mark.parametrize("sense", [RGB, DEPTH, "instruction"])
-def test_what_it_is_blind_to_changes_nothing(sense):
+def test_blind_agent_ignores_the_input(sense):
     made = agent(blind=[sense])
     made.reset("turn left" if sense == "instruction" else "go to the bed")
     world = World()
@@ -142,7 +142,7 @@ def test_what_it_is_blind_to_changes_nothing(sense):
     assert torch.equal(first, made._walk.state.hidden)
 
 
-def test_side_by_side_no_answer_depends_on_the_others():
+def test_act_all_keeps_episodes_independent():
     made, episodes = agent(), load_episodes("val_seen")[:3]
     seen = [World().reset(episode) for episode in episodes]
     memories = [made.begin(episode.instruction.text) for episode in episodes]
@@ -156,7 +156,7 @@ def test_side_by_side_no_answer_depends_on_the_others():
         assert torch.allclose(made._walk.state.hidden, alone.state.hidden, atol=1e-5)
 
 
-def test_side_by_side_in_an_evaluation_every_episode_has_the_row_that_it_has_alone(tmp_path):
+def test_evaluation_of_many_episodes_gives_equal_rows(tmp_path):
     made, episodes = agent(), load_episodes("val_seen")[:4]
     with torch.no_grad():
         made.policy.act[-1].bias[STOP] = 0.1  # it goes some steps
@@ -170,7 +170,7 @@ def test_side_by_side_in_an_evaluation_every_episode_has_the_row_that_it_has_alo
         assert run_episode(made, World(), episode, corruption, 0).items() <= row.items()
 
 
-def test_mistakes_say_what_is_wrong():
+def test_constructor_rejects_invalid_arguments():
     with pytest.raises(ValueError, match="rgbd"):
         agent("rgbd")
     with pytest.raises(ValueError, match="depth"):
@@ -184,8 +184,8 @@ def test_mistakes_say_what_is_wrong():
         made.act(panorama)
 
 
-def test_the_memory_keeps_the_last_attention_and_the_sum_of_all_apart():
-    """They were one tensor at the start: walks of a training followed another policy."""
+def test_state_separates_last_and_summed_attention():
+    """They once shared a tensor, so that training rollouts followed another policy."""
     made = agent()
     state = State.start(made.policy.read(made.tokens(["go left", "go right"])))
     fresh = State(state.hidden[:1] + 1, state.last[:1] + 0.1, state.sum[:1] + 0.7)

@@ -1,4 +1,4 @@
-"""The reference agent with an encoder that nobody here trained."""
+"""The reference agent with a pretrained encoder (EfficientNet-Lite0)."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def features(made: TopologicalAgent) -> torch.Tensor:
         return made.eval().encode_rgb(frames.to(torch.uint8))[0]
 
 
-def test_a_checkpoint_holds_what_differs_from_the_public_weights(tmp_path):
+def test_checkpoint_leaves_out_public_weights(tmp_path):
     made = agent()
     file = checkpoint.save_weights(made, tmp_path)
     held = checkpoint.load_tensors(file)
@@ -46,7 +46,7 @@ def test_a_checkpoint_holds_what_differs_from_the_public_weights(tmp_path):
     assert torch.equal(features(made), features(copy.deepcopy(made)))
 
 
-def test_what_was_trained_of_the_borrowed_part_is_kept(tmp_path):
+def test_checkpoint_keeps_changed_public_weights(tmp_path):
     made = agent()
     with torch.no_grad():
         made.rgb_encoder.stem[0].weight.mul_(1.1)
@@ -56,7 +56,7 @@ def test_what_was_trained_of_the_borrowed_part_is_kept(tmp_path):
     assert torch.equal(again.rgb_encoder.stem[0].weight, made.rgb_encoder.stem[0].weight)
 
 
-def test_other_public_weights_are_refused(tmp_path):
+def test_load_rejects_other_public_weights(tmp_path):
     made = agent()
     made.rgb_encoder.public[0] += 1
     checkpoint.save_weights(made, tmp_path)
@@ -64,7 +64,7 @@ def test_other_public_weights_are_refused(tmp_path):
         checkpoint.load_weights(agent(), tmp_path)
 
 
-def test_the_borrowed_part_stays_frozen_and_its_statistics_too():
+def test_training_keeps_pretrained_layers_frozen():
     made = agent(adapters=RING).train()
     before = made.rgb_encoder.stem[1].running_mean.clone()
     views_to_learn(made, "rgb")
@@ -79,26 +79,26 @@ def test_the_borrowed_part_stays_frozen_and_its_statistics_too():
     assert torch.equal(made.rgb_encoder.stem[1].running_mean, before)
 
 
-def test_gates_in_the_borrowed_part_are_open_while_their_adapters_train():
+def test_gates_in_pretrained_layers_are_open_in_training():
     made = agent(adapters={**RING, "gates": ["rgb_encoder.stem.0"]}).train()
     assert all(adapter.training for adapter in adapters_of(made))
     assert not made.rgb_encoder.stem[1].training
     assert not any(adapter.training for adapter in adapters_of(made.eval()))
 
 
-def test_adapters_change_nothing_at_first():
+def test_new_adapters_keep_the_features():
     assert torch.equal(features(agent()), features(agent(adapters=RING)))
 
 
-def test_mistakes_say_what_is_allowed():
+def test_constructor_rejects_invalid_arguments():
     with pytest.raises(ValueError, match="own"):
         TopologicalAgent(16, SMALL, encoder="resnet50")
     with pytest.raises(ValueError, match="multiple of 32"):
         TopologicalAgent(16, SMALL, size=48, encoder="efficientnet_lite0")
 
 
-def test_depth_is_seen_at_the_size_that_its_encoder_knows():
-    """The base agent's encoder of depth comes with it; at another scale it sees no free floor."""
+def test_depth_encoder_keeps_its_size():
+    """The depth encoder of the base agent detects free floor only at its size."""
     made, base = agent(), TopologicalAgent(16, SMALL)
     base.load_state_dict(
         {n: w for n, w in made.state_dict().items() if not n.startswith("rgb")}, strict=False

@@ -1,4 +1,4 @@
-"""The topological map on hand-made cases: where ghosts stand, how they merge, which way leads."""
+"""The topological map on small examples: positions and merging of ghosts, and routes."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def corridor() -> TopologicalMap:
     return graph
 
 
-def test_a_waypoint_becomes_a_ghost_clockwise_from_the_heading():
+def test_add_places_ghosts_clockwise_from_the_heading():
     graph = TopologicalMap()
     graph.add(pose(0, 0), waypoints((0, 1), (RIGHT, 1.5), (LEFT, 2)))
     assert places(graph) == [[0, 1], [1.5, 0], [-2, 0]]
@@ -40,7 +40,7 @@ def test_a_waypoint_becomes_a_ghost_clockwise_from_the_heading():
     assert places(turned) == [[0, 1], [1, 2]]
 
 
-def test_near_waypoints_merge_into_their_mean_and_keep_every_sighting():
+def test_add_merges_near_waypoints():
     graph = TopologicalMap()
     graph.add(pose(0, 0), waypoints((0, 2)))
     graph.add(pose(1, 0), waypoints((LEFT, 0.2)))  # joins nothing: it is the second node itself
@@ -50,7 +50,7 @@ def test_near_waypoints_merge_into_their_mean_and_keep_every_sighting():
     assert ghost.parents == [0, 2] and ghost.sightings == [(0, 0), (2, 6)]
 
 
-def test_a_waypoint_at_a_visited_place_is_an_edge_and_no_ghost():
+def test_add_joins_waypoints_at_visited_nodes():
     graph = TopologicalMap()
     graph.add(pose(0, 0), waypoints())
     graph.add(pose(3, 0), waypoints())
@@ -60,7 +60,7 @@ def test_a_waypoint_at_a_visited_place_is_an_edge_and_no_ghost():
     assert len(graph.ghosts) == before and graph.edges[1][0] == pytest.approx(3)
 
 
-def test_arriving_near_a_ghost_turns_it_into_the_node():
+def test_add_turns_a_reached_ghost_into_a_node():
     graph = TopologicalMap()
     graph.add(pose(0, 0), waypoints((0, 2), (RIGHT, 2)))
     graph.add(pose(0.1, 2 + MERGE / 3), waypoints())
@@ -68,13 +68,13 @@ def test_arriving_near_a_ghost_turns_it_into_the_node():
     assert 1 in graph.edges[0]
 
 
-def test_coming_back_to_a_node_renews_its_panorama():
+def test_add_updates_the_panorama_of_a_node():
     graph = corridor()
     graph.add(pose(0.1, 0.1), waypoints())
     assert len(graph.positions) == 3 and graph.current == 0 and graph.node_panorama == [3, 1, 2]
 
 
-def test_a_route_leads_back_over_the_visited_nodes():
+def test_route_follows_visited_nodes():
     graph = corridor()
     ghost = next(i for i, g in graph.ghosts.items() if g.position[0] > 1)
     assert np.allclose(graph.route(ghost), [[0, 2], [0, 0], [1.5, 0]], atol=1e-6)
@@ -82,7 +82,7 @@ def test_a_route_leads_back_over_the_visited_nodes():
     assert graph.route_to_node(2) == []
 
 
-def test_a_route_takes_the_shorter_way():
+def test_route_takes_the_shorter_way():
     graph = corridor()
     graph.add(pose(1.5, 3), waypoints())
     graph.add(pose(1.5, 0), waypoints((RIGHT, 2)))  # where the first ghost was: joined to node 0
@@ -92,7 +92,7 @@ def test_a_route_takes_the_shorter_way():
     assert np.allclose(graph.route(max(graph.ghosts)), [[3.5, 0]], atol=1e-6)
 
 
-def test_a_decision_lists_stop_nodes_and_ghosts_with_metres_to_travel():
+def test_decision_lists_stop_nodes_and_ghosts():
     graph = corridor()
     made = graph.decision(pose(0, 4))
     assert made.panorama == 2 and made.nodes.tolist() == [0, 1, 2]
@@ -102,7 +102,7 @@ def test_a_decision_lists_stop_nodes_and_ghosts_with_metres_to_travel():
     assert (made.sightings[:, 1:] == -1).all()
 
 
-def test_geometry_does_not_depend_on_where_the_world_lies():
+def test_geometry_is_invariant_to_the_world_frame():
     def geometry(shift: np.ndarray, turn: float) -> np.ndarray:
         graph = TopologicalMap()
         c, s = np.cos(turn), np.sin(turn)
@@ -116,7 +116,7 @@ def test_geometry_does_not_depend_on_where_the_world_lies():
     assert not np.allclose(here[1:], here[:1])
 
 
-def test_a_chosen_ghost_is_forgotten():
+def test_arrive_removes_the_ghost():
     graph = corridor()
     for ghost in list(graph.ghosts):
         graph.arrive(ghost)

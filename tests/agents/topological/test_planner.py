@@ -1,4 +1,4 @@
-"""The planner scores what is there: padding and the order of ghosts make no difference."""
+"""The planner: scores do not depend on padding or on the order of ghosts."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def planner() -> Planner:
 
 
 def decision(moves: int) -> Decision:
-    """A decision after some moves, with about 3 ghosts a move."""
+    """Return a decision after some moves, with about 3 ghosts per move."""
     rng = np.random.default_rng(moves)
     graph, pose = TopologicalMap(), np.zeros(3)
     for _ in range(moves):
@@ -45,11 +45,11 @@ def score(planner, decisions, rows, offsets, panoramas, tokens) -> torch.Tensor:
 
 
 def split(logits: torch.Tensor, made: Decision, nodes: int) -> tuple[torch.Tensor, torch.Tensor]:
-    """Scores of [stop] and of the ghosts in a row padded to ``nodes`` nodes."""
+    """Return the scores of [stop] and of the ghosts in a row padded to ``nodes`` nodes."""
     return logits[0], logits[1 + nodes : 1 + nodes + len(made.ghosts)]
 
 
-def test_padding_does_not_change_scores(planner):
+def test_planner_ignores_padding_of_decisions(planner):
     short, long = decision(2), decision(6)
     tokens = pad([Vocabulary().encode(text) for text in TEXT])
     alone = score(planner, [short], [0], [6], 8, tokens)
@@ -62,14 +62,14 @@ def test_padding_does_not_change_scores(planner):
     assert torch.isinf(padded).all()
 
 
-def test_padding_of_the_instruction_does_not_change_scores(planner):
+def test_planner_ignores_padding_of_instructions(planner):
     made, tokens = decision(3), pad([Vocabulary().encode(TEXT[0])])
     longer = torch.nn.functional.pad(tokens, (0, 9), value=PAD)
     one, other = (score(planner, [made], [0], [0], 3, t) for t in (tokens, longer))
     assert torch.allclose(one, other, atol=1e-5)
 
 
-def test_the_order_of_ghosts_permutes_their_scores(planner):
+def test_planner_permutes_scores_with_ghosts(planner):
     made, tokens = decision(4), pad([Vocabulary().encode(TEXT[0])])
     count, first = len(made.ghosts), 1 + len(made.nodes)
     order = np.random.default_rng(0).permutation(count)
@@ -89,14 +89,14 @@ def test_the_order_of_ghosts_permutes_their_scores(planner):
     assert before[first:].std() > 1e-3
 
 
-def test_only_stop_and_ghosts_may_be_chosen(planner):
+def test_planner_allows_only_stop_and_ghosts(planner):
     made = decision(3)
     logits = score(planner, [made], [0], [0], 3, pad([Vocabulary().encode(TEXT[1])]))[0]
     nodes = logits[1 : 1 + len(made.nodes)]
     assert torch.isinf(nodes).all() and torch.isfinite(logits).sum() == 1 + len(made.ghosts)
 
 
-def test_the_instruction_and_the_views_matter(planner):
+def test_planner_reads_instruction_and_views(planner):
     made, tokens = decision(3), pad([Vocabulary().encode(text) for text in TEXT])
     first, second = (score(planner, [made], [row], [0], 3, tokens) for row in (0, 1))
     other = score(planner, [made], [0], [1], 4, tokens)  # other panoramas behind the same map

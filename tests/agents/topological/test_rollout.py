@@ -27,10 +27,11 @@ SIZE, SCENE = 16, "apartments/train/000000"
 
 
 class RoomWorld:
-    """An empty room whose views are noise; routes are walked at once."""
+    """An empty room whose views are noise; a route is one step."""
 
     rule_metres = 2.0
     done = False
+    expert = property(lambda self: self)
 
     def __init__(self, number: int, width: int) -> None:
         rng = np.random.default_rng(number)
@@ -69,7 +70,7 @@ def traces_of(follow_oracle: float, seed: int = 0, limit: int = 12):
 
 
 @pytest.mark.parametrize("follow_oracle", [1.0, 0.3, 0.0])
-def test_targets_sum_to_one_over_stop_and_ghosts(follow_oracle):
+def test_oracle_targets_sum_to_one(follow_oracle):
     traces, _ = traces_of(follow_oracle)
     assert len(traces) == 5
     for trace in traces:
@@ -81,7 +82,7 @@ def test_targets_sum_to_one_over_stop_and_ghosts(follow_oracle):
             assert step.target[0] in (0.0, 1.0)
 
 
-def test_the_oracle_walks_to_the_goal_and_stops_there():
+def test_oracle_stops_at_the_goal():
     traces, worlds = traces_of(1.0)
     for trace, world in zip(traces, worlds, strict=True):
         assert trace.steps[-1].target[0] == 1.0
@@ -90,8 +91,8 @@ def test_the_oracle_walks_to_the_goal_and_stops_there():
 
 
 @pytest.mark.parametrize("metres", [0.2, 0.5, 1.5])
-def test_the_oracle_stops_only_where_the_rule_counts_it(monkeypatch, metres):
-    """Nearer than it stops by itself; else nothing is as without the rule."""
+def test_oracle_stops_only_where_it_counts(monkeypatch, metres):
+    """A stricter rule only delays the stop."""
     free, _ = traces_of(1.0)
     monkeypatch.setattr(RoomWorld, "rule_metres", metres)
     bound, _ = traces_of(1.0)
@@ -104,13 +105,13 @@ def test_the_oracle_stops_only_where_the_rule_counts_it(monkeypatch, metres):
             assert len(after.steps) > len(before.steps)
 
 
-def test_the_limit_bounds_the_decisions():
+def test_roll_out_ends_at_the_limit():
     traces, _ = traces_of(0.0, limit=2)
     assert max(len(trace.steps) for trace in traces) <= 2
 
 
-def test_a_rollout_ends_with_its_episode(monkeypatch):
-    """Also in the middle of a route: a world need not take a step after its last one."""
+def test_roll_out_ends_with_the_episode(monkeypatch):
+    """It also ends in the middle of a route, because worlds reject steps after the last one."""
     monkeypatch.setattr(simulator, "MAX_STEPS", 12)
     worlds, episodes = [ApartmentsWorld(SIZE) for _ in range(3)], load_episodes("val_seen")[:3]
     rngs = [np.random.default_rng(n) for n in range(3)]
@@ -120,7 +121,7 @@ def test_a_rollout_ends_with_its_episode(monkeypatch):
         assert len(trace.views) == len(trace.steps) > 0
 
 
-def test_a_rollout_is_a_function_of_its_generator():
+def test_roll_out_depends_only_on_its_generator():
     def walked(seed):
         return [world.xy.tolist() for world in traces_of(0.2, seed)[1]]
 
@@ -129,14 +130,14 @@ def test_a_rollout_is_a_function_of_its_generator():
 
 @pytest.fixture(scope="module")
 def stored(tmp_path_factory):
-    """An untrained agent and its features of the first training apartment."""
+    """Return an untrained agent and its features of the first training apartment."""
     agent = wanderer()
     store = Store(agent, partial(ApartmentsWorld, SIZE, 1), tmp_path_factory.mktemp("stored"))
     store.build()
     return agent, store.features(SCENE), store
 
 
-def test_a_world_turned_in_the_cache_is_the_one_rendered_at_that_heading(stored):
+def test_stored_views_equal_rendered_views(stored):
     agent, features, _ = stored
     apartment, renderer = apartment_of("apartments/train/000000"), Renderer(SIZE)
     renderer.load(apartment)
@@ -156,7 +157,7 @@ def test_a_world_turned_in_the_cache_is_the_one_rendered_at_that_heading(stored)
         assert int(np.argmin(errors)) == 0 and errors[0] < 0.2 * np.median(errors[1:])
 
 
-def test_waypoints_in_the_cache_point_to_the_same_places_at_every_heading(stored):
+def test_stored_waypoints_do_not_depend_on_the_heading(stored):
     _, features, _ = stored
     episode = make_episode(apartment_of(SCENE), "vln", 1)
     world = StoredWalk(episode, features, ApartmentsWorld(SIZE))
@@ -173,7 +174,7 @@ def test_waypoints_in_the_cache_point_to_the_same_places_at_every_heading(stored
         assert np.allclose(ends(), wanted, atol=1e-5) and len(wanted) > 0
 
 
-def test_a_cached_world_stands_on_free_lattice_poses(stored):
+def test_store_holds_free_lattice_poses(stored):
     _, features, _ = stored
     apartment = apartment_of("apartments/train/000000")
     world = StoredWalk(make_episode(apartment, "vln", 0), features, ApartmentsWorld(SIZE))
@@ -182,14 +183,14 @@ def test_a_cached_world_stands_on_free_lattice_poses(stored):
     assert apartment.space.index[tuple((features.xy.T[::-1] / 0.1).astype(int))].min() >= 0
 
 
-def test_building_again_keeps_what_is_there(stored):
+def test_store_builds_only_missing_scenes(stored):
     _, _, store = stored
     before = store.path(SCENE).stat().st_mtime_ns
     store.build()
     assert store.path(SCENE).stat().st_mtime_ns == before
 
 
-def test_two_processes_store_what_one_stores(stored, tmp_path):
+def test_store_does_not_depend_on_the_process_count(stored, tmp_path):
     agent, features, _ = stored
     store = Store(agent, partial(ApartmentsWorld, SIZE, 2), tmp_path)
     store.build(workers=2)
@@ -206,14 +207,14 @@ class Unguided(ApartmentsWorld):
         return None
 
 
-def test_a_world_without_an_expert_says_so():
+def test_live_walk_requires_an_expert():
     with pytest.raises(ValueError, match="Unguided has no expert"):
         world = Corrupted(Unguided(SIZE), CLEAN, 0)  # the message names the user's own world
         LiveWalk(world, load_episodes("val_seen")[0])
 
 
-def test_stored_folders_name_the_class_as_earlier_versions_did(tmp_path):
-    """tensordict writes the name of the class into the folder and looks it up when it loads."""
+def test_stored_folders_keep_the_class_name(tmp_path):
+    """tensordict stores the name of the class in the folder and looks it up on loading."""
     arrays = {
         "xy": torch.rand(2, 2),
         "views": torch.rand(2, VIEWS, 4).half(),

@@ -1,4 +1,4 @@
-"""The closed loop: when the agent looks, when it stops, and that it does the same thing twice."""
+"""The closed loop: when the agent reads frames, when it stops, and that it is deterministic."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def simulator() -> Simulator:
 
 
 def drive(agent, simulator, number=0, change=lambda frames: frames) -> tuple[list[int], list[int]]:
-    """Run an episode; the actions, and the steps at which frames were read."""
+    """Run an episode; return the actions and the steps at which frames were read."""
     episode = load_episodes("val_seen")[number]
     simulator.reset(episode)
     agent.reset(episode.instruction.text)
@@ -38,14 +38,14 @@ def drive(agent, simulator, number=0, change=lambda frames: frames) -> tuple[lis
     return actions, looks
 
 
-def test_it_reads_frames_only_to_decide_and_never_between(simulator):
+def test_act_reads_frames_only_to_decide(simulator):
     agent = wanderer()
     actions, looks = drive(agent, simulator)
     assert len(looks) == agent.decisions > 3
     assert len(set(looks)) == len(looks) < len(actions) / 2  # once a decision, with walks between
 
 
-def test_it_stops_at_the_limit_of_decisions(simulator, monkeypatch):
+def test_act_stops_at_the_limit_of_decisions(simulator, monkeypatch):
     monkeypatch.setattr(topological, "MAX_DECISIONS", 6)
     agent = wanderer()
     actions, looks = drive(agent, simulator, 3)
@@ -53,7 +53,7 @@ def test_it_stops_at_the_limit_of_decisions(simulator, monkeypatch):
     assert actions[-1] == STOP and actions.count(STOP) == 1 and len(actions) < MAX_STEPS
 
 
-def test_at_the_limit_it_walks_to_the_node_with_the_best_stop_score(simulator, monkeypatch):
+def test_act_returns_to_the_best_node_at_the_limit(simulator, monkeypatch):
     monkeypatch.setattr(topological, "MAX_DECISIONS", 6)
     agent = wanderer()
     for number in (3, 30, 60):
@@ -62,42 +62,40 @@ def test_at_the_limit_it_walks_to_the_node_with_the_best_stop_score(simulator, m
         assert np.hypot(*(simulator.xy - best)) < 0.5
 
 
-def test_the_same_episode_gives_the_same_actions(simulator):
+def test_act_is_deterministic(simulator):
     agent = wanderer()
     first = drive(agent, simulator, 1)
     drive(agent, simulator, 2)
     assert drive(agent, simulator, 1) == first
 
 
-def test_without_free_space_it_stops_at_once(simulator):
+def test_act_stops_without_free_space(simulator):
     agent = wanderer()
     agent.waypoint_head.out.bias.data.fill_(-50.0)
     assert drive(agent, simulator) == ([STOP], [0])
 
 
 @pytest.mark.parametrize("sensor", [RGB, DEPTH])
-def test_a_blind_agent_does_not_use_the_sensor(simulator, sensor):
+def test_blind_agent_ignores_the_sensor(simulator, sensor):
     def blanked(frames):
         return {**frames, sensor: np.full_like(frames[sensor], 7)}
 
     assert drive(wanderer(sensor), simulator) == drive(wanderer(sensor), simulator, 0, blanked)
 
 
-def test_a_deaf_agent_does_not_use_the_instruction():
+def test_blind_agent_ignores_the_instruction():
     agent = wanderer("instruction")
     assert agent.tokens(["Find a bed."]).equal(agent.tokens(["Walk to the red sofa."]))
     assert not wanderer().tokens(["Find a bed."]).equal(wanderer().tokens(["Find a tv."]))
 
 
-def test_an_unknown_sensor_names_the_known_ones():
-    with pytest.raises(
-        ValueError, match=r"blind must be a list of rgb, depth, instruction, got .'sonar'"
-    ):
+def test_blind_rejects_unknown_inputs():
+    with pytest.raises(ValueError, match=r"'sonar'. Choose one of: rgb, depth, instruction"):
         TopologicalAgent(blind=("sonar",))
 
 
 @pytest.mark.parametrize("side", [4, 7, 32])
-def test_halving_a_map_gives_the_bits_of_average_pooling_with_and_without_gradients(side):
+def test_halved_equals_average_pooling(side):
     x = torch.randn(12, 5, side, side)
     wanted = F.avg_pool2d(x, 2)
     with torch.no_grad():

@@ -1,4 +1,4 @@
-"""Waypoints point where one can go, and the controller gets there by odometry alone."""
+"""Waypoints lead to free places, and the controller reaches them by odometry alone."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from tests.agents.rooms import room, sure
 
 
 def walk(space, xy, heading, route) -> tuple[np.ndarray, int]:
-    """Where a controller ends and how many actions it took."""
+    """Return the final position of a controller and the number of its actions."""
     controller, xy, steps = Controller(), np.array(xy, float), 0
     controller.follow([np.array(p, float) for p in route])
     while (action := controller.action(np.array([*xy, heading]))) is not None:
@@ -34,7 +34,7 @@ def walk(space, xy, heading, route) -> tuple[np.ndarray, int]:
 
 
 @pytest.mark.parametrize("number", range(8))
-def test_the_controller_reaches_its_targets(number):
+def test_controller_reaches_its_targets(number):
     rng = np.random.default_rng(number)
     space = room(8, 8)
     points = rng.uniform(1, 7, (4, 2))
@@ -44,13 +44,13 @@ def test_the_controller_reaches_its_targets(number):
     assert steps < 1.5 * length / FORWARD_METRES + 3 * 12 + 6
 
 
-def test_the_controller_gives_up_on_a_wall_and_goes_on():
+def test_controller_gives_up_on_a_blocked_target():
     space = room(4, 4)
     end, steps = walk(space, (2, 2), 0.0, [(2, 6), (1, 1)])  # the first lies outside
     assert np.hypot(*(end - (1, 1))) < 0.2 and steps < 60
 
 
-def test_a_pose_that_its_world_moves_in_place_is_no_standing_still():
+def test_controller_copies_the_pose():
     controller, pose, steps = Controller(), np.zeros(3), 0
     controller.follow([np.array([0.0, 3.0])])
     while (action := controller.action(pose)) is not None and steps < 40:
@@ -61,14 +61,14 @@ def test_a_pose_that_its_world_moves_in_place_is_no_standing_still():
     assert np.hypot(*(pose[:2] - (0, 3))) < 0.3
 
 
-def test_no_route_no_action():
+def test_controller_without_route_returns_none():
     controller = Controller()
     assert controller.action(np.zeros(3)) is None
     controller.follow([np.zeros(2)])
     assert controller.action(np.array([0.1, 0.0, 1.0])) is None
 
 
-def test_free_directions_says_how_far_one_can_go():
+def test_free_directions_gives_free_distances():
     space = room(6, 6)
     grid = free_directions(space, np.array([3.0, 5.0]), 0.0)  # the wall is about 0.7 m ahead
     metres = 0.25 * grid.sum(1)
@@ -87,7 +87,7 @@ def test_free_directions_turns_against_the_heading(quarters):
 
 
 @pytest.mark.parametrize("heading", [0.0, 1.1])
-def test_waypoints_are_free_apart_and_within_reach(heading):
+def test_select_gives_free_separate_waypoints(heading):
     space, xy = room(6, 4), np.array([2.0, 1.5])
     chosen = select(sure(space, xy, heading))
     assert 3 <= len(chosen) <= COUNT and chosen.dtype == np.float32
@@ -101,7 +101,7 @@ def test_waypoints_are_free_apart_and_within_reach(heading):
     assert gaps.min() > 24
 
 
-def test_a_corridor_offers_its_two_ends():
+def test_select_finds_both_ends_of_a_corridor():
     space = room(1.0, 9)
     chosen = select(sure(space, np.array([0.5, 4.5]), 0.0))
     assert abs(np.cos(chosen[:2, 0])).min() > 0.99
@@ -109,5 +109,5 @@ def test_a_corridor_offers_its_two_ends():
     assert chosen[:2, 1] == pytest.approx(LONGEST)
 
 
-def test_nothing_free_no_waypoint():
+def test_select_without_free_space_is_empty():
     assert select(np.full((ANGLES, 12), -20.0)).shape == (0, 2)
