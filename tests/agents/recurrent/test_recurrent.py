@@ -45,12 +45,19 @@ def walked(by: RecurrentAgent, count: int = 2, *, share: float = 0.5, clean: boo
         return by.collect(worlds, episodes, **how)
 
 
+@pytest.fixture
+def short_episodes(monkeypatch):
+    """Episodes end after 40 steps."""
+    monkeypatch.setattr(simulator, "MAX_STEPS", 40)
+
+
 def test_it_is_trainable_and_sees():
     assert isinstance(agent(), Trainable) and isinstance(agent(), Seeing)
     assert set(agent().parts()) == {"rgb_encoder", "depth_encoder", "policy"}
     assert set(agent(RGB).parts()) == {"rgb_encoder", "policy"}
 
 
+@pytest.mark.usefixtures("short_episodes")
 def test_a_batch_answers_as_the_agent_does_step_by_step():
     made, episode = agent(), load_episodes("val_seen")[0]
     with torch.no_grad():
@@ -68,6 +75,7 @@ def test_a_batch_answers_as_the_agent_does_step_by_step():
         seen = world.step(FORWARD)
 
 
+@pytest.mark.usefixtures("short_episodes")
 def test_walks_of_a_batch_do_not_depend_on_each_other():
     made = agent()
     together = made.join([walked(made, 2, share=1.0)])
@@ -86,6 +94,7 @@ def test_its_own_stop_is_not_taken_in_training():
     assert piece["answer"][-1] == STOP  # the expert's ends it
 
 
+@pytest.mark.usefixtures("short_episodes")
 def test_frozen_encoders_give_features_and_training_ones_frames():
     made = agent()
     made.requires_grad_(False)
@@ -100,6 +109,7 @@ def test_frozen_encoders_give_features_and_training_ones_frames():
     assert made.rgb_encoder.stem[0].weight.grad.abs().sum() > 0
 
 
+@pytest.mark.usefixtures("short_episodes")
 def test_clean_frames_and_their_features_give_the_same_answer():
     made = agent()
     made.requires_grad_(False)

@@ -122,6 +122,7 @@ def test_the_episodes_may_be_a_file(walk):
     assert walk(Holder(weight(1)), listed="mine.json").rows == walk(Holder(weight(1))).rows
 
 
+@pytest.mark.slow
 def test_the_page_about_a_policy_and_an_environment_holds(tmp_path):
     page = (Path(__file__).parents[3] / "docs/leaderboard.md").read_text(encoding="utf-8")
     code = re.search(r"on one screen\n.*?```python\n(.*?)```", page, re.DOTALL)[1]
