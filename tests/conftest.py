@@ -3,18 +3,22 @@
 from __future__ import annotations
 
 import copy
+import gc
 import os
 import re
 from collections.abc import Iterable
 from importlib import import_module
 from multiprocessing import forkserver
 
+import numpy as np
 import pytest
 from omegaconf import DictConfig
 
 from mitigate.cli import COMMANDS
 from mitigate.core import conf
 from mitigate.core.workers import context
+from mitigate.corruptions import NAMES, Key, corrupt
+from mitigate.corruptions.registry import modality, unseen_names
 from mitigate.training.workers import PRELOAD
 
 PLACE = re.compile(r"(folder|runs|out)=(/[\w./-]+)")  # options that name a folder of one test
@@ -40,6 +44,7 @@ def load_config(primary: str, words: Iterable[str] = ()) -> DictConfig:
     return cfg
 
 
+gc.disable()  # until the tests are collected: nothing of what they import is garbage
 conf.load_config = load_config
 SLOW_FIXTURES = {"cluster"}  # a Ray cluster takes long to start
 for command in ("train", "evaluate", "table1", "table2", "sweep", "run", "replay", "export_drive"):
@@ -59,12 +64,32 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
             item.add_marker(pytest.mark.xdist_group(item.module.__name__))
 
 
+def compile_kernels(share: int, workers: int) -> None:
+    """Compile a share of the corruptions' kernels, which takes a minute in a new checkout.
+
+    No test starts before all workers have compiled their share. Each reads those of the others from
+    numba's cache, instead of compiling all of them.
+    """
+    frames = {
+        "rgb": np.full((12, 32, 32, 3), 90, np.uint8),
+        "depth": np.full((12, 32, 32, 1), 2.0, np.float32),
+    }
+    names = [*NAMES, *unseen_names(*frames)]
+    for name in names[share::workers]:
+        corrupt(frames[modality(name)], name, 0.6, key=Key(0, "compile"))
+
+
+@pytest.hookimpl(tryfirst=True)  # before pytest-xdist reports the tests
 def pytest_collection_finish() -> None:
     """Start the fork server with the modules that most workers import.
 
-    It starts once for all tests, and the first test that needs workers may preload less. Only runs
+    Garbage collection starts again, without the modules and tests of this process. The fork server
+    starts once for all tests, and the first test that needs workers may preload less. Only runs
     of many tests (pytest-xdist) start it here: a single test would wait for it.
     """
-    if "PYTEST_XDIST_WORKER" in os.environ:
+    gc.freeze()
+    gc.enable()
+    if worker := os.environ.get("PYTEST_XDIST_WORKER"):
+        compile_kernels(int(worker[2:]), int(os.environ["PYTEST_XDIST_WORKER_COUNT"]))
         context(PRELOAD)
         forkserver.ensure_running()

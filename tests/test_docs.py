@@ -11,6 +11,8 @@ from pathlib import Path
 
 import pytest
 
+from mitigate import cli
+
 ROOT = Path(__file__).parent.parent
 PAGES = sorted(
     [
@@ -83,22 +85,33 @@ def test_readme_python_examples_run(monkeypatch, tmp_path):
     assert (tmp_path / "runs/first/rows.jsonl").exists()
 
 
-def test_readme_evaluation_runs(tmp_path):
+@pytest.fixture
+def mitigate(monkeypatch, capsys):
+    """Run the command ``mitigate`` in this process and return what it prints."""
+    monkeypatch.chdir(ROOT)
+    monkeypatch.setattr(sys, "argv", ["mitigate"])
+    monkeypatch.setattr(sys, "path", [*sys.path])
+
+    def run(*options: str) -> str:
+        with pytest.raises(SystemExit) as stop:
+            cli.main(options)
+        assert not stop.value.code
+        return capsys.readouterr().out
+
+    return run
+
+
+def test_readme_evaluation_runs(mitigate, tmp_path):
     line = next(line for line in shell_lines(ROOT / "README.md") if " evaluate " in line)
     options = line.removeprefix("mitigate ").replace("episodes=10", "episodes=1").split()
-    command = [sys.executable, "-c", "from mitigate.cli import main; main()", *options]
-    output = subprocess.run(
-        [*command, f"out={tmp_path}"], cwd=ROOT, check=True, capture_output=True, text=True
-    ).stdout
-    assert "PRS-SR (Depth)" in output
+    assert "PRS-SR (Depth)" in mitigate(*options, f"out={tmp_path}")
 
 
-def test_readme_program_runs_and_loses_success(tmp_path):
+def test_readme_program_runs_and_loses_success(mitigate, tmp_path):
     line = next(line for line in shell_lines(ROOT / "README.md") if " run " in line)
     options = [f"out={tmp_path}", *shlex.split(line.removeprefix("mitigate run "))]
     options = [sys.executable if option == "python" else option for option in options]
-    command = [sys.executable, "-c", "from mitigate.cli import main; main()", "run", *options]
-    output = subprocess.run(command, cwd=ROOT, check=True, capture_output=True, text=True).stdout
+    output = mitigate("run", *options)
     assert "| Clean SR | 100.0" in output and "| Missing data | 0.0" in output
 
 

@@ -7,10 +7,9 @@ an 8-bit Llama; a Hydra multirun; export.
 
 from __future__ import annotations
 
-import os
-import subprocess
 import sys
 from collections import Counter
+from functools import partial
 from pathlib import Path
 
 import pytest
@@ -25,6 +24,8 @@ from mitigate.corruptions import Schedule
 from mitigate.recipes.distil import feature_loss, policy_kl
 from mitigate.shipping import export, export_command
 from mitigate.shipping.export import finished
+from mitigate.training import train
+from tests.agents.rooms import Brief
 
 ROOT = Path(__file__).parent.parent
 NAMES = ("low_light", "spatter", "flare", "defocus")
@@ -134,14 +135,10 @@ def runs(tmp_path_factory) -> list[Path]:
     options += ["agent.size=16", "agent.width=8", "env.size=16", "init=null", "workers=0"]
     options += ["stages.perception_depth=null", "stages.perception_rgb.recipe.panoramas=2"]
     options += ["evaluation.enabled=false", f"runs={folder}", "seed=0,1"]
-    done = subprocess.run(
-        [sys.executable, "-m", "mitigate.train", "--multirun", *options],
-        cwd=ROOT,
-        env={**os.environ, "PYTHONPATH": str(ROOT), "OMP_NUM_THREADS": "1"},
-        capture_output=True,
-        text=True,
-    )
-    assert done.returncode == 0, done.stderr[-2000:]
+    with pytest.MonkeyPatch.context() as patch:
+        patch.chdir(ROOT)
+        patch.setattr(sys, "argv", ["mitigate train", "--multirun", *options])
+        train.main()
     return sorted(path for path in folder.iterdir() if path.is_dir())
 
 
@@ -158,6 +155,7 @@ def test_export_reloads_to_the_same_outputs(runs, tmp_path, monkeypatch):
     with pytest.raises(ValueError, match=option):
         export.export(runs[0], "tiny", out=tmp_path)
     walks = export_command._walks_of(runs[0], [option, "env.size=16"], None)
+    walks.make_world = partial(Brief, 16, views=1)
     folder = export.export(runs[0], "tiny", out=tmp_path, walks=walks)
     assert 'load_hardened("checkpoints/hardened/tiny")' in (folder / "README.md").read_text()
     loaded, trained = mitigate.load_hardened(folder), finished(runs[0], walks)[1].eval()

@@ -7,8 +7,11 @@ import torch
 
 from mitigate.agents.topological import TopologicalAgent
 from mitigate.core import seeding
+from mitigate.core.observation import MAX_STEPS, Observation
 from mitigate.worlds.apartments.labels import free_directions
 from mitigate.worlds.apartments.navigation import CELL, FreeSpace
+from mitigate.worlds.apartments.world import ApartmentsWorld
+from mitigate.worlds.episodes import Episode
 
 
 def room(width: float, depth: float) -> FreeSpace:
@@ -16,6 +19,22 @@ def room(width: float, depth: float) -> FreeSpace:
     blocked = np.ones((round(depth / CELL), round(width / CELL)), bool)
     blocked[1:-1, 1:-1] = False
     return FreeSpace(blocked)
+
+
+class Brief(ApartmentsWorld):
+    """Apartments in which an episode ends after 30 steps."""
+
+    def reset(self, episode: Episode) -> Observation:
+        seen = super().reset(episode)
+        self.simulator.steps = MAX_STEPS - 30
+        return seen
+
+
+class Corner(ApartmentsWorld):
+    """Apartments of which only the first places count, so that few features are stored."""
+
+    def points(self) -> np.ndarray:
+        return super().points()[:400]
 
 
 def sure(space: FreeSpace, xy: np.ndarray, heading: float) -> np.ndarray:

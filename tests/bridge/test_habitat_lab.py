@@ -17,6 +17,8 @@ from mitigate.worlds.apartments.export_command import export
 
 from .conftest import condition
 
+pytestmark = pytest.mark.slow
+
 PROGRAM = Path(__file__).parent / "real" / "lab_agent.py"
 
 

@@ -103,7 +103,7 @@ def corpus(name: str) -> list[str]:
     return [e.instruction.text for e in islice(read_episodes(path), 500)]
 
 
-CORPORA = ["handwritten", "ours", pytest.param("r2r", marks=needs_r2r_ce)]
+CORPORA = ["handwritten", "ours", pytest.param("r2r", marks=[needs_r2r_ce, pytest.mark.slow])]
 
 
 @pytest.mark.parametrize("name", CORPORA)

@@ -15,6 +15,7 @@ import pytest
 from mitigate.core import conf
 from mitigate.corruptions import INSTRUCTION, NAMES, Record, Schedule, registry
 from mitigate.evaluation import evaluate
+from mitigate.worlds.apartments import simulator
 from tools.pages.descriptions import DESCRIPTIONS
 
 ROOT = Path(__file__).parents[2]
@@ -103,6 +104,7 @@ def run(installed: dict[str, str], folder: Path, *command: str) -> str:
 def test_a_corruption_of_another_package_joins_a_suite_and_a_schedule(
     found, tmp_path, monkeypatch, capsys
 ):
+    monkeypatch.setattr(simulator, "MAX_STEPS", 40)
     options = ["episodes=1", "conditions=[clean,rain,flare]", "env.size=32", "workers=1"]
     monkeypatch.setattr(sys, "argv", ["mitigate evaluate", *options, f"out={tmp_path}/out"])
     evaluate.main()

@@ -82,7 +82,7 @@ def test_mean_absolute_depth_error_never_falls(name, episode, scene):
     assert np.diff(errors).min() >= 0.0 and errors[-1] > 0.05, errors
 
 
-@pytest.mark.parametrize("size", [(48, 64), (96, 96)])
+@pytest.mark.parametrize("size", [(48, 64), pytest.param((96, 96), marks=pytest.mark.slow)])
 def test_on_a_fine_grid_strength_slips_by_no_more_than_stated(size, scene):
     found = curves(scene.draw(*size)[0][None], scene.draw(*size)[1][None, ..., None])
     assert list(found) == list(NAMES)

@@ -31,7 +31,7 @@ from mitigate.worlds.apartments.world import ApartmentsWorld
 from tests.agents.rooms import wanderer
 from tests.evaluation.straight import Straight
 
-CONDITIONS = [CLEAN, *(Corruption(name, 0.6) for name in NAMES[::3])]
+CONDITIONS = [CLEAN, *(Corruption(name, 0.6) for name in NAMES[::5])]
 SIZE = 16
 
 

@@ -18,6 +18,7 @@ from mitigate.recipes.distil import Distil, DistilViews, feature_loss, policy_kl
 from mitigate.recipes.imitate import Imitate, imitation
 from mitigate.training.states import checkpoints
 from mitigate.training.trainer import Trainer
+from mitigate.worlds.apartments import simulator
 from mitigate.worlds.apartments.tasks import DrawnEpisodes
 from mitigate.worlds.apartments.world import ApartmentsWorld
 from tests.tiny import assemble
@@ -41,6 +42,14 @@ def small(seed: int = 0, **options) -> TopologicalAgent:
 def missing_data() -> Schedule:
     """Every frame loses half of its depth."""
     return Schedule("per_episode", 1.0, clean_share=0.0, names=("missing_data",))
+
+
+@pytest.fixture(autouse=True, scope="module")
+def short_episodes():
+    """Episodes end after 40 steps."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(simulator, "MAX_STEPS", 40)
+        yield
 
 
 @pytest.fixture(scope="module")

@@ -25,6 +25,7 @@ from mitigate.guards.guard import Guard, Guards
 from mitigate.replay import export_drive, replay, report
 from mitigate.replay.export_drive import write_frames
 from mitigate.replay.walk import Answers, _share, compare, walk
+from mitigate.worlds.apartments import simulator
 from mitigate.worlds.apartments.tasks import load_episodes
 from mitigate.worlds.recorded import Recording, open_recording
 from mitigate.worlds.recorded.recording import NO_ACTION, movements
@@ -203,7 +204,8 @@ def mitigate(monkeypatch, capsys):
     return run
 
 
-def test_replay_writes_decisions_tables_and_pictures(tmp_path, mitigate):
+def test_replay_writes_decisions_tables_and_pictures(tmp_path, mitigate, monkeypatch):
+    monkeypatch.setattr(simulator, "MAX_STEPS", 25)  # a short drive
     drives = str(tmp_path / "drives")
     status, _, errors = mitigate("export_drive", drives, "episodes=1", "form=mcap", "env.size=64")
     assert status == 0, errors

@@ -103,9 +103,39 @@ def python(code: str, *arguments: object, cwd: Path = ROOT) -> str:
     return done.stdout
 
 
+class StandIn(torch.nn.Module):
+    """A network that is traced at once: tracing those of an agent takes half a minute."""
+
+    def __init__(self, names: tuple[str, ...]) -> None:
+        super().__init__()
+        self.names = names
+
+    def forward(self, *inputs: torch.Tensor) -> tuple[torch.Tensor, ...]:
+        return tuple(inputs[0].float() + number for number, _ in enumerate(self.names))
+
+
+def stand_in_programs(agent: TopologicalAgent, size: int) -> dict:
+    """Replace ``programs.export_programs``; its own tests are slow."""
+    given = programs.probe(agent, size)
+    return {
+        name: torch.export.export(
+            StandIn(names),
+            tuple(given[key] for key in programs.INPUTS[name]),
+            dynamic_shapes=(programs.free_dimensions(name),),
+        )
+        for name, names in programs.OUTPUTS.items()
+    }
+
+
+def check_here(draft: Path, outputs: dict) -> None:
+    """Replace ``export._reload``: check the agent in this process."""
+    agent = loading.load_hardened(draft)
+    again = programs.outputs(programs.networks(agent), programs.probe(agent, SIZE))
+    assert programs.difference(outputs, again) <= export.RELOADED
+
+
 def copy_programs(whole: Path, draft: Path) -> tuple[dict, dict]:
-    """Stand in for the programs of adapters: to trace them takes half a minute, and the slow test
-    ``test_export_writes_the_program_of_a_shipped_folder`` does it."""
+    """Replace ``export._programs``: a folder of adapters gets the programs of ``whole``."""
     for name in (loading.PROGRAM, loading.INPUTS):
         shutil.copy(whole / name, draft)
     card = loading.read_card(whole)
@@ -114,7 +144,7 @@ def copy_programs(whole: Path, draft: Path) -> tuple[dict, dict]:
 
 @pytest.fixture(scope="module")
 def place(tmp_path_factory) -> Path:
-    """Two exported agents, `whole` and `adapted`, and what they were made of."""
+    """Two exported agents with stand-in programs, `whole` and `adapted`, and their runs."""
     place = tmp_path_factory.mktemp("export")
     torch.manual_seed(0)
     agent = TopologicalAgent(**TINY)
@@ -126,6 +156,8 @@ def place(tmp_path_factory) -> Path:
     rows.write(run / "rows.jsonl", [*found, a_row("0123456789ab", 0, "clean", 0.0)])
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(programs, "TIMED", 2)
+        patch.setattr(programs, "export_programs", stand_in_programs)
+        patch.setattr(export, "_reload", check_here)
         export.export(run, "whole", out=place / "hardened")
 
     agent = TopologicalAgent(**TINY)
@@ -144,8 +176,16 @@ def place(tmp_path_factory) -> Path:
 
 
 @pytest.fixture(scope="module")
+def traced(place) -> Path:
+    """The folder of `whole` with its own programs, which take half a minute."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(programs, "TIMED", 2)
+        return export.export(place / "runs/whole", "whole", out=place / "traced")
+
+
+@pytest.fixture(scope="module")
 def exported(place) -> dict:
-    """The programs of `whole`, which take seconds to make."""
+    """The stand-in programs of `whole`."""
     return load_pt2(str(place / "hardened/whole/program.pt2")).exported_programs
 
 
@@ -259,7 +299,7 @@ for folder in sys.argv[1:3]:
 
 
 @pytest.mark.slow
-def test_the_program_runs_a_decision_without_our_code(place, tmp_path):
+def test_the_program_runs_a_decision_without_our_code(traced, tmp_path):
     code = """
 import json, sys
 import numpy, torch
@@ -278,7 +318,7 @@ print(json.dumps([waypoints.sum().item(), logits[0].tolist()]))
 """
     import numpy as np
 
-    agent = loading.load_hardened(place / "hardened/whole")
+    agent = loading.load_hardened(traced)
     given = programs.probe(agent, SIZE)
     first = {  # the first decision of an episode: one panorama, one node, two ghosts
         **{name: given[name][:1] for name in ("rgb", "depth", "tokens", "episode")},
@@ -290,7 +330,7 @@ print(json.dumps([waypoints.sum().item(), logits[0].tolist()]))
         "allowed": torch.tensor([[True, False, True, True]]),
     }
     np.savez(tmp_path / "given.npz", **{name: t.numpy() for name, t in first.items()})
-    printed = python(code, place / "hardened/whole", tmp_path / "given.npz", cwd=tmp_path)
+    printed = python(code, traced, tmp_path / "given.npz", cwd=tmp_path)
     waypoints, logits = json.loads(printed)
     wanted = programs.outputs(programs.networks(agent), first)
     assert waypoints == pytest.approx(wanted["waypoints"].sum().item(), abs=1e-2)
@@ -581,6 +621,7 @@ def test_a_disk_that_is_full_is_told_in_a_paragraph_and_leaves_nothing(
     command = ["export", str(place / "runs/whole"), "mine", "--out", str(tmp_path)]
     monkeypatch.setattr(programs, "TIMED", 2)
     monkeypatch.setattr(programs, "export_programs", lambda *_: exported)
+    monkeypatch.setattr(programs, "package_pt2", lambda file, **_: file.write(bytes(2 * weights)))
     monkeypatch.setattr("sys.argv", command)
     with files_of_at_most(most), pytest.raises(SystemExit, match="File too large"):
         export_command.main()
@@ -643,11 +684,12 @@ def test_onnx_files_do_what_the_agent_does(place, tmp_path):
         check_onnx(tmp_path, agent, SIZE, -1.0)
 
 
-def test_the_examples_of_the_deployment_page_run(place, tmp_path, monkeypatch):
+@pytest.mark.slow
+def test_the_examples_of_the_deployment_page_run(traced, tmp_path, monkeypatch):
     examples = re.findall(r"```python\n(.*?)```", PAGE.read_text(encoding="utf-8"), re.DOTALL)
     assert len(examples) == 3
     (tmp_path / "checkpoints/hardened").mkdir(parents=True)
-    shutil.copytree(place / "hardened/whole", tmp_path / "checkpoints/hardened/ts_distill")
+    shutil.copytree(traced, tmp_path / "checkpoints/hardened/ts_distill")
     monkeypatch.chdir(tmp_path)
     encoder = torch.nn.Sequential(torch.nn.Conv2d(3, 8, 3), torch.nn.BatchNorm2d(8)).eval()
     images = torch.rand(2, 3, 8, 8)
@@ -665,16 +707,37 @@ def test_the_examples_of_the_deployment_page_run(place, tmp_path, monkeypatch):
     assert not torch.equal(names["features"], plain) and torch.equal(encoder(images), plain)
 
 
-def test_no_file_says_where_it_was_made(place):
-    """Neither the checkout nor the folder of the export, as the programs' traces once did."""
-    for name in ("whole", "adapted"):
-        for file in (place / "hardened" / name).iterdir():
-            parts = [file.read_bytes()]
-            if file.suffix == ".pt2":
-                with zipfile.ZipFile(file) as archive:
-                    parts = [archive.read(part) for part in archive.namelist()]
-            for where in (str(ROOT), sys.prefix):
-                assert not any(where.encode() in part for part in parts), (file.name, where)
+def places_in(file: Path) -> list[str]:
+    """Return which of the checkout and the environment ``file`` names."""
+    parts = [file.read_bytes()]
+    if file.suffix == ".pt2":
+        with zipfile.ZipFile(file) as archive:
+            parts = [archive.read(part) for part in archive.namelist()]
+    return [x for x in (str(ROOT), sys.prefix) if any(x.encode() in part for part in parts)]
+
+
+@pytest.mark.parametrize("name", ["whole", "adapted"])
+def test_export_writes_no_path_of_this_machine(place, name):
+    for file in (place / "hardened" / name).iterdir():
+        if file.name != loading.PROGRAM:
+            assert places_in(file) == [], file.name
+
+
+@pytest.mark.slow
+def test_programs_hold_no_path_of_this_machine(traced):
+    """As their traces once did."""
+    assert places_in(traced / loading.PROGRAM) == []
+
+
+@pytest.mark.slow
+def test_export_compares_the_programs_in_a_new_process(traced):
+    card = loading.read_card(traced)
+    assert card["checked"]["program_tolerance"] == export.EXPORTED
+    agent = loading.load_hardened(traced)
+    given = programs.probe(agent, SIZE)
+    program = programs.load_programs(traced / loading.PROGRAM)
+    wanted = programs.outputs(programs.networks(agent), given)
+    assert programs.difference(wanted, programs.outputs(program, given)) <= export.EXPORTED
 
 
 SHIPPED = sorted(p.name for p in (ROOT / "checkpoints/hardened").glob("[!.]*"))

@@ -13,6 +13,7 @@ import mitigate
 from mitigate.agents.building import agent_option
 from mitigate.core import checkpoint, conf
 from mitigate.evaluation import evaluate
+from mitigate.worlds.apartments import simulator
 
 ROOT = Path(__file__).parents[2]
 SHIPPED = {
@@ -76,7 +77,8 @@ def test_evaluate_asks_of_the_world_what_the_agent_of_the_checkpoint_needs(monke
     assert usual.split == "val_unseen"
 
 
-def test_benchmark_takes_the_kind_of_agent_from_the_weights(tmp_path, capsys):
+def test_benchmark_takes_the_kind_of_agent_from_the_weights(tmp_path, monkeypatch):
+    monkeypatch.setattr(simulator, "MAX_STEPS", 40)
     entry = mitigate.benchmark(
         "checkpoints/frontier/base", episodes=1, suite=["spatter"], out=tmp_path
     )

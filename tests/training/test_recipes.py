@@ -34,7 +34,7 @@ LITTLE = {  # what a stage's recipe learns from, beside two rollouts a step
     "variants": 1,
 }
 RECIPES = sorted(path.stem for path in (conf.CONF / "recipe").rglob("*.yaml"))
-QUICK = ("conv_adapter", "da_per_episode", "ts_distill")  # the others are slow, one by one
+QUICK = ("conv_adapter", "ts_distill")  # the others are slow, one by one
 
 
 def some_slow(names, quick):

@@ -11,6 +11,7 @@ from mitigate.core import conf
 from mitigate.training import train
 from mitigate.training.parts import policy_parts, train_only
 from mitigate.training.plan import nothing_to_train
+from mitigate.worlds.apartments import simulator
 from tests.tiny import TinyAgent
 
 RGB, DEPTH, POLICY, STORED = (
@@ -55,7 +56,8 @@ def test_every_kind_of_agent_says_what_it_asks_of_the_world(kind):
     assert conf.load_config("evaluate", [f"agent={kind}"]).checkpoint == cfg.weights.base
 
 
-def test_a_stage_may_name_one_that_is_left_out(tmp_path, capsys):
+def test_a_stage_may_name_one_that_is_left_out(tmp_path, capsys, monkeypatch):
+    monkeypatch.setattr(simulator, "MAX_STEPS", 40)
     small = ["agent.size=16", "env.size=16", "agent.depth_width=8", "init=null", "trainer.steps=1"]
     options = ["agent=recurrent", "agent.sensors=[depth]", *small, "evaluation.enabled=false"]
     cfg = conf.load_config("train", ["recipe=ts_distill", "debug=smoke", "rollouts=1", *options])

@@ -298,7 +298,8 @@ def test_additional_evaluation_limits_episodes(tmp_path, table, asked, walked):
 
 def test_a_column_or_an_evaluation_that_is_null_is_left_out(tmp_path):
     null = ["columns.base=null", "evaluations.pairs=null", "+evaluations.mine=null"]
-    cfg = load("table2", f"out={tmp_path}", "evaluations=beyond", *null)
+    columns = less("table2", ["base", "da_per_frame"])  # each is composed and checked
+    cfg = load("table2", f"out={tmp_path}", "evaluations=beyond", *null, *columns)
     made = tables.cells(cfg)
     cells.check(made, cfg)
     assert "base" not in {cell.column for cell in made}

@@ -45,12 +45,19 @@ def walked(by: RecurrentAgent, count: int = 2, *, share: float = 0.5, clean: boo
         return by.collect(worlds, episodes, **how)
 
 
+@pytest.fixture
+def short_episodes(monkeypatch):
+    """Episodes end after 40 steps."""
+    monkeypatch.setattr(simulator, "MAX_STEPS", 40)
+
+
 def test_recurrent_agent_is_trainable_and_seeing():
     assert isinstance(agent(), Trainable) and isinstance(agent(), Seeing)
     assert set(agent().parts()) == {"rgb_encoder", "depth_encoder", "policy"}
     assert set(agent(RGB).parts()) == {"rgb_encoder", "policy"}
 
 
+@pytest.mark.usefixtures("short_episodes")
 def test_decide_equals_step_by_step_actions():
     made, episode = agent(), load_episodes("val_seen")[0]
     with torch.no_grad():
@@ -68,6 +75,7 @@ def test_decide_equals_step_by_step_actions():
         seen = world.step(FORWARD)
 
 
+@pytest.mark.usefixtures("short_episodes")
 def test_collect_keeps_rollouts_independent():
     made = agent()
     together = made.join([walked(made, 2, share=1.0)])
@@ -86,6 +94,7 @@ def test_collect_never_takes_the_agents_stop():
     assert piece["answer"][-1] == STOP  # the expert's ends it
 
 
+@pytest.mark.usefixtures("short_episodes")
 def test_collect_stores_features_of_frozen_encoders():
     made = agent()
     made.requires_grad_(False)
@@ -100,6 +109,7 @@ def test_collect_stores_features_of_frozen_encoders():
     assert made.rgb_encoder.stem[0].weight.grad.abs().sum() > 0
 
 
+@pytest.mark.usefixtures("short_episodes")
 def test_precompute_keeps_the_clean_output():
     made = agent()
     made.requires_grad_(False)

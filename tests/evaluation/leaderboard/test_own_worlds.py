@@ -122,6 +122,7 @@ def test_benchmark_reads_episodes_from_a_file(walk):
     assert walk(Holder(weight(1)), listed="mine.json").rows == walk(Holder(weight(1))).rows
 
 
+@pytest.mark.slow
 def test_documented_policy_and_environment_work(tmp_path):
     page = (Path(__file__).parents[3] / "docs/leaderboard.md").read_text(encoding="utf-8")
     code = re.search(r"on one screen\n.*?```python\n(.*?)```", page, re.DOTALL)[1]

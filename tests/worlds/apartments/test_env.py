@@ -49,6 +49,12 @@ def walk(env: ApartmentsEnv | TransformedEnv, steps: int) -> dict[tuple[str, int
     return seen
 
 
+@pytest.fixture(scope="module")
+def clean(episodes):
+    """The clean frames of 60 steps."""
+    return walk(ApartmentsEnv(episodes, size=SIZE), 60)
+
+
 def four(**options) -> SerialEnv:
     makers = [
         lambda i=i: ApartmentsEnv(worker=i, workers=4, size=SIZE, **options) for i in range(4)
@@ -110,15 +116,12 @@ def test_drawn_episodes_depend_only_on_the_seed():
 
 
 @pytest.mark.parametrize("mode", ["per_episode", "per_frame"])
-def test_pixels_do_not_depend_on_parallel_environments(episodes, mode):
+def test_pixels_do_not_depend_on_parallel_environments(episodes, clean, mode):
     schedule = Schedule(mode, 0.8, clean_share=0.2)
-    one = walk(
-        TransformedEnv(ApartmentsEnv(episodes, size=SIZE), CorruptObservation(schedule)), 120
-    )
-    many = walk(TransformedEnv(four(episodes=episodes), CorruptObservation(schedule)), 30)
-    clean = walk(ApartmentsEnv(episodes, size=SIZE), 120)
+    one = walk(TransformedEnv(ApartmentsEnv(episodes, size=SIZE), CorruptObservation(schedule)), 60)
+    many = walk(TransformedEnv(four(episodes=episodes), CorruptObservation(schedule)), 15)
     common = one.keys() & many.keys()
-    assert len(common) > 60 and len({name for name, _ in common}) >= 8
+    assert len(common) > 30 and len({name for name, _ in common}) >= 4
     for place in common:
         assert all(torch.equal(a, b) for a, b in zip(one[place], many[place], strict=True))
     hurt = [not all(map(torch.equal, one[place], clean[place])) for place in common]
