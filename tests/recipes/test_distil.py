@@ -113,8 +113,9 @@ def test_matched_features_count_in_units_of_the_teachers_variance():
 
 
 def test_the_kl_of_two_policies_is_that_of_their_softened_choices():
-    student, teacher = torch.tensor([[2.0, 0.0]]), torch.tensor([[0.0, 2.0]])
-    p, q = torch.tensor([1.0, np.e]) / (1 + np.e), torch.tensor([np.e, 1.0]) / (1 + np.e)
+    student, teacher = torch.tensor([[2.0, 0.0]]), torch.tensor([[0.0, 4.0]])
+    p = torch.tensor([1.0, np.e**2]) / (1 + np.e**2)
+    q = torch.tensor([np.e, 1.0]) / (1 + np.e)  # the KL of q and p is another number
     expected = float((p * (p / q).log()).sum())  # at temperature 2
     assert float(policy_kl(student, teacher, 2.0)) == pytest.approx(expected, abs=1e-6)
 
@@ -161,9 +162,9 @@ def test_the_teacher_keeps_every_bit_and_the_student_moves(teacher, tmp_path):
 def test_policy_kl_is_zero_for_equal_policies_and_ignores_masked_entries():
     student = torch.tensor([[1.0, 2.0, float("-inf")]], requires_grad=True)
     assert policy_kl(student, student.detach(), 2.0) == 0
-    teacher = torch.tensor([[2.0, 1.0, float("-inf")]])
+    teacher = torch.tensor([[3.0, 1.0, float("-inf")]])
     found = policy_kl(student, teacher, 1.0)
-    p = torch.tensor([2.0, 1.0]).softmax(0)
+    p = torch.tensor([3.0, 1.0]).softmax(0)
     q = torch.tensor([1.0, 2.0]).softmax(0)
     assert found.item() == pytest.approx((p * (p / q).log()).sum().item(), rel=1e-5)
     found.backward()
