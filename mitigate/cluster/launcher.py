@@ -38,13 +38,13 @@ def count(launcher: LauncherConfig, requested: int | None, jobs: int, worth: int
 
     Args:
         launcher: where they run.
-        wanted: the requested number; None uses as many as are worth starting, or as the Ray cluster
+        requested: the requested number; None: as many as are worth starting, or as the Ray cluster
             has room for.
         jobs: number of jobs.
         worth: jobs per process below which its start takes longer than it saves.
 
     Raises:
-        ValueError: ``wanted`` is less than 1.
+        ValueError: ``requested`` is less than 1.
     """
     if launcher.name == "local":
         return workers.count(requested, jobs, worth)

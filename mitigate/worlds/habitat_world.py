@@ -77,7 +77,9 @@ class HabitatWorld(World):
         rules = {"apartments": measures.Rule("vln", 2.0), **measures.RULES}
         rules = {name: known for name, known in rules.items() if not known.view_points}
         if rule not in rules:
-            raise ValueError(unknown("success rule without view points", rule, rules))
+            raise ValueError(
+                f"{unknown('success rule', rule, rules)} This world has no view points."
+            )
         if views not in (1, VIEWS):
             raise ValueError(f"views must be {VIEWS} (panorama) or 1 (forward), got {views}.")
         self._arguments = {

@@ -20,7 +20,7 @@ HEAD = {
 
 @pytest.fixture(scope="session")
 def cluster():
-    """Ray's own cluster for tests: three nodes on this machine, one CPU each."""
+    """Start a Ray test cluster: three nodes on this machine with one CPU each."""
     ray = pytest.importorskip("ray", reason="ray is not installed (the extra cluster)")
     from ray.cluster_utils import Cluster
 
@@ -41,7 +41,7 @@ def ray_launcher(cluster):
 
 @pytest.fixture
 def slurm_launcher(tmp_path, monkeypatch):
-    """Makes a launcher of jobs that are processes here."""
+    """Return a launcher whose SLURM jobs are processes of this machine."""
     pytest.importorskip("submitit", reason="submitit is not installed (the extra cluster)")
     from submitit.core.core import Job
 

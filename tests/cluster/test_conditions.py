@@ -1,4 +1,4 @@
-"""``mitigate run`` on a cluster: a condition whose worker dies is measured anew, each row once."""
+"""``mitigate run`` on a cluster: a condition runs again if its worker dies, one row each."""
 
 from __future__ import annotations
 

@@ -54,7 +54,7 @@ pytestmark = pytest.mark.xdist_group("launchers")  # one cluster is enough
 
 
 def run(launcher, task, workers=2):
-    """Results by number, each once, and the processes that worked."""
+    """Return the results by number, each once, and the process ids of the workers."""
     output = {}
     with Progress("jobs", 18, unit="job") as progress:
         for item in results(launcher, task, GROUPS, workers, progress):
@@ -128,7 +128,7 @@ def test_slurm_raises_a_value_error_at_once(slurm_launcher, tmp_path):
 
 
 def test_slurm_resubmits_the_rest_of_a_share(tmp_path, monkeypatch):
-    """A group is what a process takes: as one group the rest would be one process's."""
+    """A process takes one group at a time, so the rest must stay several groups."""
     options, cancelled = [], []
 
     class Job:

@@ -1,4 +1,4 @@
-"""Chains of programs on this machine, on Ray and as SLURM jobs: what a cell of a grid is."""
+"""Chains of programs on this machine, on Ray and as SLURM jobs, as in the cells of a grid."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ def chain(folder: Path, name: str, deadly: bool = False, code: str = ROWS) -> pr
 
 
 def run(chains, launcher, jobs=2) -> dict[int, programs.Outcome]:
-    """The outcome of each chain, each told once."""
+    """Return the outcome of each chain, each reported once."""
     results: dict[int, programs.Outcome] = {}
 
     def told(number, outcome):

@@ -1,4 +1,4 @@
-"""Encoders in the shapes that navigation agents have, thin where only the form counts."""
+"""Encoders with the module structure of those in navigation agents, but fewer channels."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ class TinyNet(nn.Module):
 
 
 def tiny(channels: int = 3, width: int = 8) -> nn.Module:
-    """The same weights each time, as if they came from a file."""
+    """Return an encoder with fixed weights, as if they came from a file."""
     with torch.random.fork_rng(devices=[]):
         torch.manual_seed(0)
         return TinyNet(channels, width)

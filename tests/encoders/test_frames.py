@@ -1,4 +1,4 @@
-"""Frames of a world and of a folder: repeatable, in two splits that share no scene."""
+"""Frames of a world and of a folder: reproducible, in two disjoint splits."""
 
 from __future__ import annotations
 

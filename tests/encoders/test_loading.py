@@ -1,4 +1,4 @@
-"""An encoder by import path or file, its weights by prefix, and what is said if they do not fit."""
+"""Loading of encoders and weights, and the error messages."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def encoder(**options) -> Encoder:
 
 
 def numbered() -> torch.nn.Module:
-    """Modules called 0, 1 and 2, as in most short encoders."""
+    """Return an encoder with modules called 0, 1 and 2."""
     return torch.nn.Sequential(torch.nn.Conv2d(3, 4, 3, 2, 1), torch.nn.ReLU(), torch.nn.Flatten())
 
 
@@ -57,14 +57,14 @@ def test_load_model_explains_an_invalid_model(model, kwargs, says, monkeypatch):
 
 
 def drawn(width: int = 8) -> torch.nn.Module:
-    """An encoder whose weights are others each time, but for its classifier."""
+    """Return an encoder with random weights, except its classifier."""
     result = TinyNet(width=width)
     torch.nn.init.zeros_(result.fc.weight)
     return result
 
 
 def test_encoder_rejects_random_weights_with_adapters(tmp_path):
-    """They would be lost with the process, and no adapters fit other ones."""
+    """Random weights are lost with the process, and the adapters fit no other weights."""
     path, state = f"{__name__}:drawn", torch.random.get_rng_state()
     with pytest.raises(
         ValueError, match=r"initialises 11 .* at random \(stem.weight.*agent.weights="
@@ -106,14 +106,14 @@ def test_transform_rejects_invalid_options(name, values):
 
 
 class Spoiled(TinyNet):
-    """Whose features are no numbers."""
+    """An encoder whose features are NaN."""
 
     def forward(self, x: torch.Tensor) -> torch.Tensor:
         return super().forward(x) * float("nan")
 
 
 class Centred(TinyNet):
-    """Which divides by how much a frame varies: none of constant frames."""
+    """An encoder that divides by the variation of a frame, which is 0 for constant frames."""
 
     def forward(self, x: torch.Tensor) -> torch.Tensor:
         return super().forward(x / x.std((1, 2, 3), keepdim=True))
@@ -153,7 +153,7 @@ def test_load_model_locates_errors_of_user_code(tmp_path, monkeypatch, name, say
 
 
 class Gives(TinyNet):
-    """Returns what ``kind`` says in place of its classes."""
+    """An encoder that returns an output of the type ``kind``."""
 
     def __init__(self, kind: str) -> None:
         super().__init__()
@@ -254,7 +254,7 @@ def test_load_weights_uses_the_prefix(tmp_path, kind):
 
 
 class Config(dict):
-    """As yacs has it: pickled beside the weights of many navigation agents."""
+    """A config like that of yacs, which many navigation agents pickle with their weights."""
 
 
 def test_load_weights_ignores_a_pickled_config(tmp_path, monkeypatch):
@@ -286,7 +286,7 @@ def test_load_weights_ignores_a_habitat_config(tmp_path):
 
 
 class Runs:
-    """A pickle that would run a command."""
+    """A class whose pickle runs a command."""
 
     def __reduce__(self):
         return (print, ("this ran",))
@@ -303,7 +303,7 @@ def test_load_weights_unpickles_nothing(tmp_path, capsys):
 
 
 class Commands:
-    """A pickle that would give a text to the shell: torch never lets its function in."""
+    """A class whose pickle calls the shell; torch never allows that function."""
 
     def __reduce__(self):
         return (os.system, ("exit",))

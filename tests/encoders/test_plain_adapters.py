@@ -1,4 +1,4 @@
-"""The file to copy gives what ours gives, reads data only, and needs nothing of ours."""
+"""``plain_adapters.py`` equals ``load_adapters``, runs no code and works as a copied file."""
 
 from __future__ import annotations
 
@@ -74,7 +74,7 @@ def test_attach_rejects_a_changed_file(tmp_path):
 
 
 def wrong(folder: Path, name: str, value: torch.Tensor) -> None:
-    """Give the adapters in ``folder`` a tensor that none of ours writes, and fitting sums."""
+    """Add an unknown tensor to the adapters in ``folder``, with valid checksums."""
     file = folder / plain_adapters.WEIGHTS
     tensors = plain_adapters.parse(file.read_bytes())
     save_file({**tensors, name: value}, file)
@@ -173,7 +173,7 @@ def test_module_imports_only_numpy_and_torch():
 
 
 def test_module_works_as_a_copy(tmp_path):
-    """In another process that cannot import this project."""
+    """Run in another process that cannot import this project."""
     saved(tmp_path)
     (tmp_path / "plain_adapters.py").write_text(FILE.read_text(encoding="utf-8"))
     code = (
@@ -187,7 +187,7 @@ def test_module_works_as_a_copy(tmp_path):
 
 
 class Policy:
-    """An agent that holds an encoder."""
+    """An agent with an encoder."""
 
     settings = {"kind": "policy"}
 

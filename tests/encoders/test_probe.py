@@ -1,4 +1,4 @@
-"""The measures, against values known by other means."""
+"""The measures of the report against known values."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The recipe from the command's config to a folder that loads, on tiny encoders."""
+"""The encoder recipe on tiny encoders, from the config to a folder that loads."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ TINY = ["agent=encoder", "agent.model=tests.encoders.shapes:tiny", "agent.output
 
 @pytest.fixture(scope="module")
 def pictures(tmp_path_factory):
-    """Six scenes of smooth random pictures."""
+    """Write six scenes of smooth random pictures."""
     path, rng = tmp_path_factory.mktemp("pictures"), np.random.default_rng(0)
     for scene in range(6):
         (path / f"s{scene}").mkdir()
@@ -138,7 +138,7 @@ def test_training_of_a_torchscript_file(tmp_path, pictures):
 
 
 def saved_network(kind: str, path) -> str:
-    """A file of the tiny network: "ts" traced, "pt2" exported for any number of frames."""
+    """Write the tiny network to a file: "ts" traced, "pt2" exported with dynamic batch size."""
     file, frames = str(path / f"net.{kind}"), torch.randn(2, 3, 32, 32)
     if kind == "ts":
         torch.jit.trace(tiny().eval(), frames).save(file)
@@ -245,7 +245,7 @@ def test_card_contains_no_import_path(tmp_path):
 
 
 def test_load_takes_no_import_path_from_a_folder(tmp_path, pictures):
-    """Neither is one written, nor is one read that somebody wrote into it."""
+    """No import path is written, and an import path in the folder is ignored."""
     cfg = config(tmp_path, pictures, *TINY, "evaluation.enabled=false", "agent.tune=all")
     out = train.run(cfg) / "agent"
     assert "tests.encoders" not in (out / "config.yaml").read_text()

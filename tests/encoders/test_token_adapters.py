@@ -1,4 +1,4 @@
-"""Adapters look at what a block really returns: maps, tokens either way round, tuples, vectors."""
+"""Adapters for blocks that return maps, tokens in either order, tuples or vectors."""
 
 from __future__ import annotations
 
@@ -76,7 +76,7 @@ def test_new_adapter_changes_nothing(encoder, gate):
 
 @pytest.mark.parametrize("gate", [False, True])
 def test_adapter_corrects_each_frame_separately(encoder, gate):
-    """Also where the frames are not the first axis."""
+    """This also holds if the frames are not the first axis."""
     model, frames, target, _, _ = encoder
     insert_adapters(model, [target], run=lambda n: model(frames[:n]), gate=gate)
     shaken(model)

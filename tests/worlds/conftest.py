@@ -1,4 +1,4 @@
-"""A panorama as the suite and as Habitat have it."""
+"""A panorama in the formats of the suite and of Habitat."""
 
 import numpy as np
 import pytest
@@ -15,7 +15,7 @@ def panorama():
 
 @pytest.fixture
 def obs(panorama):
-    """As ETPNav has it: rgb_A looks A degrees to the left, so at view 12 - A / 30."""
+    """Return an observation of ETPNav: rgb_A faces A degrees left, as view 12 - A / 30."""
     rgb, depth = panorama
     entries = {"instruction": "go", "rgb": rgb[0], "depth": depth[0]}
     for step in range(1, 12):

@@ -22,14 +22,14 @@ SIZE = 16
 
 
 def episode(seed: int) -> Episode:
-    told = Instruction("Go.")
+    instruction = Instruction("Go.")
     return Episode(
-        f"e{seed}", "0", "room", (0, 0, 0), (0, 0, 0, 1), (), told, (), info={"seed": seed}
+        f"e{seed}", "0", "room", (0, 0, 0), (0, 0, 0, 1), (), instruction, (), info={"seed": seed}
     )
 
 
 class Brightness:
-    """Says 0 (STOP) in the dark and 1 in the light; keeps what it saw."""
+    """An agent that stops in dark frames, otherwise takes action 1; it records its frames."""
 
     def reset(self, instruction):
         self.seen = []
@@ -40,7 +40,7 @@ class Brightness:
 
 
 class Room(gymnasium.Env):
-    """Lit for as many steps as the seed says; to stop in the dark is right."""
+    """A room that is bright for as many steps as its seed; stopping in the dark succeeds."""
 
     def __init__(self, entry: str | None = None):
         box = gymnasium.spaces.Box(0, 255, (SIZE, SIZE, 3), np.uint8)
@@ -111,7 +111,7 @@ def test_gym_world_requires_a_reported_success():
 
 
 class Long(gymnasium.Wrapper):
-    """Ends after 525 steps, and only then reports success."""
+    """An environment that ends after 525 steps and reports success only then."""
 
     def __init__(self) -> None:
         super().__init__(Room())
@@ -205,7 +205,7 @@ def test_gym_world_rejects_invalid_success_arguments(success):
 
 
 class Within(Room):
-    """The camera and the goal of it are within parts of the observation."""
+    """A room with nested entries for the camera and the goal."""
 
     def __init__(self):
         super().__init__()
@@ -267,7 +267,7 @@ def test_gym_world_rejects_unsupported_frame_shapes(shape):
 
 
 class Deep(Room):
-    """A room of which depth is seen, the same everywhere."""
+    """A room with constant depth."""
 
     def __init__(self, depth, most=60000):
         super().__init__("rgb")
@@ -308,7 +308,7 @@ def test_gym_world_requires_the_unit_of_normalised_depth():
 
 @pytest.mark.parametrize(("most", "far"), [(np.inf, np.inf), (8.0, 8.0)])
 def test_env_world_keeps_the_maximum_of_depth(most, far):
-    """torchrl writes down an end that there is not as the greatest number of the dtype."""
+    """torchrl represents a missing maximum by the largest number of the dtype."""
     from torchrl.envs import GymWrapper
 
     from mitigate.worlds.gym import GymWorld
@@ -364,7 +364,7 @@ def test_gym_world_requires_frames():
 
 
 def test_env_world_runs_an_environment():
-    """There and back: the apartments as an environment, and that as a world again."""
+    """Convert a world to an environment and back."""
     listed = load_episodes("val_seen")[:1]
     world = EnvWorld(WorldEnv(ApartmentsWorld(SIZE), listed), **BY_REWARD)
     assert world.sensors[RGB].shape == (12, SIZE, SIZE, 3)
@@ -388,7 +388,7 @@ def test_env_world_requires_the_named_frames():
 
 
 class Failing(Room):
-    """Raises an error at a call; the others work."""
+    """An environment whose reset or step raises an error."""
 
     def __init__(self, call, error):
         super().__init__("rgb")
@@ -440,7 +440,7 @@ def test_worlds_name_the_episode_of_an_invalid_success():
 
 
 class Changing(Room):
-    """Changes an element of what its step returns."""
+    """An environment that replaces one element of the result of step."""
 
     def __init__(self, place, value):
         super().__init__()

@@ -1,4 +1,4 @@
-"""Files of episodes: text, tokens and everything else after corruption, on files of any size."""
+"""The command that corrupts episode files: text, tokens, options and output files."""
 
 from __future__ import annotations
 

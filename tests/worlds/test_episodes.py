@@ -1,4 +1,4 @@
-"""VLN-CE files are read in bounded memory, come back as they were, and fail with a place."""
+"""Reading and writing of VLN-CE files: round trips, memory, error messages."""
 
 from __future__ import annotations
 
@@ -62,7 +62,7 @@ def load(path: Path) -> object:
 
 
 def episode_file(path: Path, **changes: object) -> Path:
-    """A file of two good episodes and a third one with ``changes`` (``...`` drops the key)."""
+    """Write two valid episodes and a third with ``changes`` (``...`` removes the key)."""
     third = {key: value for key, value in (R2R | changes).items() if value is not ...}
     return write_json(path / "bad.json.gz", {"episodes": [R2R, RXR, third]})
 

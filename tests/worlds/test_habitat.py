@@ -1,4 +1,4 @@
-"""Habitat's dictionaries: the cameras of an observation as one panorama."""
+"""Corruption of Habitat observations, whose cameras form one panorama."""
 
 import numpy as np
 import pytest

@@ -1,7 +1,7 @@
-"""The observation transformer of habitat-baselines, and the sensor that keys it.
+"""The observation transformer of habitat-baselines and its key sensor.
 
-habitat-lab does not import without its simulator, which no package registry has, so the transformer
-meets a small stand-in of habitat-baselines' public interface here.
+habitat-lab does not import without its simulator, which no package index has. The tests therefore
+use a small replacement of the public interface of habitat-baselines.
 """
 
 import dataclasses
@@ -19,14 +19,14 @@ from mitigate.worlds.habitat import corrupt_habitat
 
 
 class Space:
-    """What the transformer needs of a ``gym.spaces.Dict``."""
+    """The part of ``gym.spaces.Dict`` that the transformer uses."""
 
     def __init__(self, spaces: dict) -> None:
         self.spaces = spaces
 
 
 def batch_of(*instants: dict) -> dict[str, torch.Tensor]:
-    """As habitat-baselines batches them."""
+    """Stack observations as habitat-baselines does."""
     stacked = {e: np.stack([i[e] for i in instants]) for e in instants[0]}
     return {entry: torch.from_numpy(array) for entry, array in stacked.items()}
 
@@ -145,7 +145,7 @@ def test_key_depends_on_scene_episode_and_step():
 
 @pytest.fixture
 def stand_in(monkeypatch):
-    """Modules with the public names of habitat-lab and habitat-baselines 0.3 that are used."""
+    """Provide modules with the used public names of habitat-lab and habitat-baselines 0.3."""
     known = {}
 
     class ObservationTransformer(torch.nn.Module):

@@ -1,5 +1,4 @@
-"""What a Habitat world is told before its simulator starts; walks in it are run by hand
-(docs/habitat.md)."""
+"""The Habitat world without its simulator; episodes in it are tested by hand (docs/habitat.md)."""
 
 import json
 import math
@@ -42,7 +41,7 @@ def test_navmesh_settings_have_a_default_file(tmp_path):
     "given, words",
     [
         ({"rule": "etpnaw"}, "no success rule 'etpnaw'. Did you mean etpnav"),
-        ({"rule": "objectnav"}, "view points, which this world does not have. Choose .*vln_ce"),
+        ({"rule": "objectnav"}, "no success rule 'objectnav'.*vln_ce.*no view points"),
         ({"rule": "wmnav"}, "view points"),
         ({"views": 4}, r"must be 12 \(panorama\) or 1"),
     ],
@@ -53,7 +52,7 @@ def test_habitat_world_rejects_invalid_arguments_first(given, words):
 
 
 class Simulator:
-    """Of habitat-sim, what loading a scene needs; ``walkable``: whether a navmesh can be made."""
+    """A replacement of habitat-sim; ``walkable``: whether a navmesh can be computed."""
 
     walkable, loaded = True, ""
     pathfinder = None
@@ -88,7 +87,7 @@ def test_failed_scene_is_loaded_again(tmp_path, monkeypatch):
 
 
 def started(rule, monkeypatch):
-    """A world as it stands at the start of an episode, without a simulator."""
+    """Return a world at the start of an episode, without a simulator."""
     told = SimpleNamespace(reference_path=[(0.0, 0.0, 0.0), (0.0, 0.0, -2.0)])
     habitat = HabitatWorld("scenes", rule=rule)
     vars(habitat).update(episode=told, path=[np.zeros(3)], start_distance=2.0)

@@ -23,7 +23,7 @@ HURT = Schedule("per_episode", 0.8, clean_share=0.2)
 
 
 class Corridor(EnvBase):
-    """P agents in one environment: frames tell row and step, row i ends after 2 + i steps."""
+    """A batched environment: frames depend on the step, row i ends after 2 + i steps."""
 
     def __init__(self, rows: int = 3, rgb: str = "rgb", top: float = 10.0) -> None:
         super().__init__(device="cpu", batch_size=[rows])
@@ -71,7 +71,7 @@ def hurt_env(rows: int = 3, schedule: Schedule = HURT, **options) -> Transformed
 
 
 def seen(data: TensorDict) -> dict[tuple[int, int], tuple[torch.Tensor, torch.Tensor]]:
-    """(episode, frame) -> frames of every instant of a rollout."""
+    """Return the frames of a rollout by (episode, frame)."""
     return {
         (int(i["episode"]), int(i["frame"])): (i["rgb"], i["depth"])
         for i in data.reshape(-1).unbind(0)

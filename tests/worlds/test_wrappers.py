@@ -1,4 +1,4 @@
-"""The gymnasium wrapper: keys, spaces, order, and what it refuses."""
+"""The gymnasium wrapper: keys, spaces, order of entries, error messages."""
 
 import importlib
 import sys
@@ -30,7 +30,7 @@ HURT_RGB = Schedule("per_episode", 0.8, clean_share=0.0, names=RGB)
 
 
 class Room(gymnasium.Env):
-    """Shows a space's frames, which tell the step; an episode has 3 steps."""
+    """An environment with frames of a space that depend on the step; it ends after 3 steps."""
 
     def __init__(self, space: spaces.Space) -> None:
         self.observation_space, self.action_space = space, spaces.Discrete(2)

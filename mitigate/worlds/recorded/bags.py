@@ -88,7 +88,7 @@ class Bag(Source):
         }
 
     def frames(self, chosen: Sequence[int]) -> Iterator[dict[str, np.ndarray]]:
-        indices = {kind: [int(self._frames[kind][i]) for i in chosen] for kind in self.kinds}
+        indices = {kind: [int(self._image_numbers[kind][i]) for i in chosen] for kind in self.kinds}
         last_use = {kind: {n: at for at, n in enumerate(w)} for kind, w in indices.items()}
         buffer: dict[str, dict[int, np.ndarray]] = {kind: {} for kind in self.kinds}
         done = 0
@@ -230,7 +230,7 @@ class Bag(Source):
         if self.poses is not None:
             self.poses[:, 2] -= math.radians(yaw)
         self.dropped = instants.dropped
-        self._frames = instants.frames
+        self._image_numbers = instants.frames
 
 
 def _choose_clock(stamps: Sequence[tuple[float, float]]) -> list[float]:

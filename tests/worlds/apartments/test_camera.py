@@ -1,4 +1,4 @@
-"""A world with one camera that looks ahead: the first view of the panorama, and its own labels."""
+"""A world with one forward camera: the first view of the panorama, with labels per column."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ def test_camera_labels_describe_columns_and_directions():
 
 
 def test_furniture_on_the_left_is_in_left_columns():
-    """Turned to the right, what was in a column is in one farther left."""
+    """After a right turn, furniture moves to columns farther left."""
     world = ApartmentsWorld(views=1)
     world.enter("apartments/train/000003")
     rng = np.random.default_rng(0)

@@ -1,4 +1,4 @@
-"""The torchrl environment and the corrupting transform: specs, rewards, and the same pixels."""
+"""The torchrl environment with the corrupting transform: specs, rewards, equal pixels."""
 
 from __future__ import annotations
 
@@ -24,12 +24,12 @@ def episodes():
 
 
 def actions_for(name: str, count: int) -> list[int]:
-    """Actions keyed by the run of an episode; about every tenth is STOP."""
+    """Draw actions keyed by the run of an episode; about every tenth is STOP."""
     return [int(a) for a in generator("walk", name).choice(4, count, p=[0.1, 0.5, 0.2, 0.2])]
 
 
 def walk(env: ApartmentsEnv | TransformedEnv, steps: int) -> dict[tuple[str, int], torch.Tensor]:
-    """Walk on through the ends of episodes; (episode, frame) -> rgb and depth of every instant."""
+    """Step through several episodes; return rgb and depth by (episode, frame)."""
     seen = {}
 
     def note(data) -> None:

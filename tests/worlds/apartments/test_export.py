@@ -1,4 +1,4 @@
-"""Apartments as files for Habitat."""
+"""Export of apartments for Habitat."""
 
 import gzip
 import json
@@ -14,7 +14,7 @@ from mitigate.worlds.episodes import read_episodes
 
 
 def chunks(data):
-    """The JSON document and the binary part of a GLB file."""
+    """Return the JSON document and the binary part of a GLB file."""
     magic, version, length = struct.unpack_from("<4sII", data)
     assert (magic, version, length) == (b"glTF", 2, len(data))
     size, kind = struct.unpack_from("<I4s", data, 12)

@@ -1,4 +1,4 @@
-"""What is rendered is there: faces, metric depth, the turning sense, no other scenes."""
+"""The renderer against ray casting: faces, depth in metres, directions, several scenes."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def pose(apartment: Apartment, number: int) -> tuple[float, float, float]:
 
 
 def rays(heading: float, view: int) -> np.ndarray:
-    """Directions of a view's pixel centres, 1 m along the optical axis: [S * S, 3]."""
+    """Return the directions of pixel centres, 1 m along the optical axis: [S * S, 3]."""
     row, column = np.mgrid[0:SIZE, 0:SIZE]
     up, right = 1 - (2 * row + 1) / SIZE, (2 * column + 1) / SIZE - 1
     yaw = heading - np.radians(30 * view)
@@ -37,7 +37,7 @@ def rays(heading: float, view: int) -> np.ndarray:
 
 
 def cast(corners: np.ndarray, eye: np.ndarray, directions: np.ndarray) -> tuple[np.ndarray, ...]:
-    """Metres to, and index of, the nearest rectangle that faces the eye, for every ray."""
+    """Return distance and index of the nearest visible rectangle for every ray."""
     metres, hit = np.full(len(directions), np.inf), np.full(len(directions), -1)
     for index, (a, b, c, d) in enumerate(corners.astype(np.float64)):
         normal = np.cross(b - a, d - a)
@@ -55,7 +55,7 @@ def cast(corners: np.ndarray, eye: np.ndarray, directions: np.ndarray) -> tuple[
 
 
 def inner(hit: np.ndarray) -> np.ndarray:
-    """Pixels whose 8 neighbours show the same face: away from every edge."""
+    """Return the pixels whose 8 neighbours show the same face."""
     grid = hit.reshape(SIZE, SIZE)
     same = np.zeros_like(grid, bool)
     neighbours = [np.roll(grid, (i, j), (0, 1)) for i in (-1, 0, 1) for j in (-1, 0, 1)]
@@ -128,7 +128,7 @@ def test_views_overlap_by_30_degrees(renderer):
 
 
 def test_first_view_faces_the_heading(renderer):
-    """Facing a wall of its room, the middle of view 0 is as deep as the wall is far."""
+    """The depth in the middle of view 0 equals the distance of the wall ahead."""
     apartment = Apartment(200_001)
     renderer.load(apartment)
     for number in range(6):
@@ -160,7 +160,7 @@ def test_panorama_is_reproducible_after_other_scenes():
 
 
 def test_all_renderers_draw_the_same():
-    """Also where two faces are equally far: the order of drawing must not follow memory."""
+    """The order of equally distant faces must not depend on memory addresses."""
     apartments, first, alive = [Apartment(100_000), Apartment(100_001)], None, []
     for _ in range(6):
         alive.append(Renderer(24))

@@ -1,4 +1,4 @@
-"""Motion, geodesics and errors of the simulator; the oracle solves what it is given."""
+"""Motion, geodesic distances, errors and the expert of the simulator."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def free_at(space: FreeSpace, xy: np.ndarray) -> bool:
 
 
 def box(width: int, depth: int) -> FreeSpace:
-    """An empty room of cells with blocked borders."""
+    """Return an empty room with blocked borders."""
     blocked = np.ones((depth, width), bool)
     blocked[1:-1, 1:-1] = False
     return FreeSpace(blocked)
@@ -180,7 +180,7 @@ def test_reset_explains_an_unknown_scene(episodes, scene, words):
 
 
 def test_reset_rejects_positions_outside_free_space(episodes):
-    """A sign error in z, or positions of another scene, would look like a bad agent."""
+    """A sign error in z, or positions of another scene, would otherwise lower the success rate."""
     first = episodes[0]
     x, y, z = first.start_position
     for wrong in (

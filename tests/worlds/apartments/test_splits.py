@@ -1,4 +1,4 @@
-"""The splits share no layout, palette or template; the shipped lists are what is drawn."""
+"""The splits share no layout, palette or template; the shipped lists can be generated."""
 
 from __future__ import annotations
 
