@@ -15,8 +15,8 @@ import signal
 import sys
 import textwrap
 import threading
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager, redirect_stderr
+from collections.abc import Callable, Sequence
+from contextlib import redirect_stderr
 from itertools import takewhile
 from pathlib import Path
 from typing import Any, TextIO
@@ -42,7 +42,7 @@ FULL = "HYDRA_FULL_ERROR"  # environment variable: Hydra shows whole tracebacks
 # Set by main together with FULL. It tells programs that main starts that the user did not set FULL.
 OURS = "MITIGATE_FULL_ERROR"
 # printed by Hydra (hydra.core.utils, JobReturn.return_value)
-HYDRAS = "Error executing job with overrides"
+HYDRA_LINE = "Error executing job with overrides"
 WHOLE = "# @package _global_"  # first line of a file that also sets entries outside its group
 KINDS = {
     "Integer": "a whole number, such as 4",
@@ -112,7 +112,7 @@ def main(
         sys.argv[1:] = flags_first(sys.argv[1:])
         for notice in notices(primary, sys.argv[1:]):
             print(notice, file=sys.stderr)
-        with _without_hydras_line():
+        with redirect_stderr(_WithoutHydraLine(sys.stderr)):
             program()
     except (HydraException, OmegaConfBaseException) as error:
         sys.exit(f"error: {explain(error, primary, sys.argv[1:])}")
@@ -131,24 +131,17 @@ def main(
         del os.environ[FULL], os.environ[OURS]
 
 
-@contextmanager
-def _without_hydras_line() -> Iterator[None]:
-    """Drop the line with which Hydra announces an error.
+class _WithoutHydraLine:
+    """A stream without the line with which Hydra announces an error.
 
     Users' errors are explained in a paragraph, and others have a traceback.
     """
-    with redirect_stderr(_Quieter(sys.stderr)):
-        yield
-
-
-class _Quieter:
-    """A stream that drops lines that begin with ``HYDRAS``."""
 
     def __init__(self, stream: TextIO) -> None:
         self._stream = stream
 
     def write(self, text: str) -> int:
-        return len(text) if text.startswith(HYDRAS) else self._stream.write(text)
+        return len(text) if text.startswith(HYDRA_LINE) else self._stream.write(text)
 
     def __getattr__(self, name: str) -> Any:
         return getattr(self._stream, name)  # everything else behaves as the stream

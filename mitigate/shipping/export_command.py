@@ -40,9 +40,9 @@ def main() -> None:
         nargs="*",
         default=[],  # else argparse requires at least one
         metavar="key=value",
-        help="parsed of your own agent: agent=policy env=corridor, as for mitigate evaluate",
+        help="options that name an agent of another class: agent=policy env=corridor",
     )
-    parser.add_argument("--config-dir", type=Path, help="folder of your own configs")
+    parser.add_argument("--config-dir", type=Path, help="folder of your configs")
     parser.add_argument(
         "--out",
         type=Path,
