@@ -64,7 +64,7 @@ class World:
     A subclass defines ``reset``, ``step``, ``measures``, ``sensors`` and ``done``; the rest has
     defaults. Objects of any other class work too: :func:`as_world` adds the missing defaults.
 
-    A class that defines ``beside()``, which returns another world like this one, can run several
+    A class that defines ``beside()``, which returns another world of the same kind, can run several
     episodes at the same time.
 
     Attributes:

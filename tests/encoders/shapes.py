@@ -167,8 +167,11 @@ BRANCH = 0.2  # weight of the last normalisation of a residual branch (ours)
 
 
 def ddppo() -> nn.Module:
-    """DDPPO's depth encoder at full size, random weights; residual branches add little, as those of
-    trained networks do: else so deep a network of random weights turns any change into noise."""
+    """Return DDPPO's depth encoder at full size with random weights.
+
+    Residual branches are scaled down, as in trained networks. Otherwise such a deep random network
+    turns any change into noise.
+    """
     model = _seeded(DdppoDepth)
     for block in model.modules():
         if isinstance(block, Bottleneck):

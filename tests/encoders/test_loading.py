@@ -254,7 +254,7 @@ def test_load_weights_uses_the_prefix(tmp_path, kind):
 
 
 class Config(dict):
-    """A config like that of yacs, which many navigation agents pickle with their weights."""
+    """A config like a yacs config, which many navigation agents pickle with their weights."""
 
 
 def test_load_weights_ignores_a_pickled_config(tmp_path, monkeypatch):
