@@ -32,7 +32,9 @@ from mitigate.agents.agent import Agent, check_logits
 from mitigate.agents.sites import first
 from mitigate.core import checkpoint
 from mitigate.core.contracts import missing_members, read
+from mitigate.core.observation import DEPTH, RGB
 from mitigate.core.spaces import ActionSpace, Box, Composite, Discrete, MultiDiscrete
+from mitigate.worlds.seeded import WHOLE
 
 # One distribution per part of the action, or the actions (or values of actions) [B, ...] themselves
 Answer = Sequence[Distribution] | Tensor
@@ -54,6 +56,7 @@ class Policy(Agent, nn.Module):
     """
 
     recurrent = False
+    run_state = ("_memory",)
 
     def __init__(self, network: nn.Module, native: Any, space: ActionSpace) -> None:
         super().__init__()
@@ -81,6 +84,12 @@ class Policy(Agent, nn.Module):
             return np.array(choices).reshape(self.space.counts.shape)
         first_answer = answer[0] if isinstance(answer, Tensor) else mode(answer[0])[0]
         if isinstance(self.space, Discrete):
+            values = answer if isinstance(answer, Tensor) else getattr(answer[0], "logits", None)
+            if values is not None and values.shape[-1] != self.space.n:
+                raise ValueError(
+                    f"{self.name} gives {values.shape[-1]} values for the {self.space.n} actions "
+                    "of the environment. Give one per action."
+                )
             if isinstance(answer, Tensor):
                 first_answer = check_logits(first_answer, self).argmax()
             return int(first_answer) + self.space.start
@@ -147,6 +156,9 @@ class Policy(Agent, nn.Module):
             answers.append(answer)
         return answers
 
+    def forget(self) -> None:
+        """Remove what the network keeps of its last call, so that it can be copied."""
+
     @contextmanager
     def recording(self, module: str) -> Iterator[list[Tensor]]:
         """Record the outputs of a module of the network in the yielded list."""
@@ -196,6 +208,13 @@ class StableBaselinesPolicy(Policy):
             memory = (torch.zeros(layers, count, size, device=policy.device),) * 2
         distribution, memory = policy.get_distribution(inputs, memory, starts)
         return _parts(distribution.distribution), memory
+
+    def forget(self) -> None:
+        for module in self.network.modules():
+            last_call = read(module, "action_dist")
+            for name, value in vars(last_call).items() if last_call else ():
+                if isinstance(value, (Tensor, Distribution, list)):
+                    setattr(last_call, name, None)  # distributions and actions, with their graph
 
     def action(self, answer: Answer) -> Any:
         policy: Any = self.network
@@ -282,11 +301,18 @@ class ModulePolicy(Policy):
     def answer(self, observation: Any, memory: Any = None) -> tuple[Answer, Any]:
         inputs = _tensors(observation, self.device)
         arguments = (inputs, memory) if self.recurrent else (inputs,)
-        output = (
-            self.network(*arguments)
-            if self._forward is None
-            else self._forward(self.network, *arguments)
-        )
+        try:
+            output = (
+                self.network(*arguments)
+                if self._forward is None
+                else self._forward(self.network, *arguments)
+            )
+        except KeyError as error:
+            raise ValueError(
+                f"{self.name} reads the entry {error}, but the world passes only "
+                f"{', '.join(_flat(inputs))}. Name every entry that the policy reads: "
+                "GymWorld(entries={...})."
+            ) from error
         if self.recurrent:
             output, memory = output
         if isinstance(output, Tensor):
@@ -338,6 +364,14 @@ def as_policy(
             "conversion of frames to the observation that the policy was trained on. GymWorld and "
             "EnvWorld have both."
         )
+    for name in (name for name in (RGB, DEPTH) if name in world.sensors):
+        if len(world.sensors[name].shape) == 4:
+            raise ValueError(
+                f"The {name} frames must have the shape [H, W, channels], got "
+                f"{list(world.sensors[name].shape)}. Stacked frames are not supported: the first "
+                "of four axes counts cameras here. Use a policy with memory, or stack frames "
+                "inside it."
+            )
     network = policy if isinstance(policy, nn.Module) else read(policy, "policy")
     if not isinstance(network, nn.Module):
         raise TypeError(
@@ -345,10 +379,19 @@ def as_policy(
             f"torch.nn.Module, got a {type(policy).__name__}. For a policy without weights only "
             "mitigate.benchmark applies."
         )
+    if any(parameter.is_meta for parameter in network.parameters()):
+        raise ValueError(
+            f"The weights of {type(network).__name__} are on the device meta, which holds no "
+            "values. Load them first."
+        )
     if forward is None and hasattr(network, "obs_to_tensor"):
         _check_read(getattr(network.observation_space, "spaces", {}), world)
         return StableBaselinesPolicy(network, world.native, world.action_space)
     if forward is None and hasattr(network, "in_keys") and hasattr(network, "out_keys"):
+        if list(world.entries.values()) != [WHOLE]:
+            states = {_dotted(key)[5:] for key in network.out_keys if _dotted(key)[:5] == "next."}
+            keys = {_dotted(key) for key in network.in_keys} - states - {"is_init"}
+            _check_read([key.split(".")[0] for key in keys], world)
         return TorchrlPolicy(network, world.native, world.action_space)
     return ModulePolicy(network, world.native, world.action_space, forward, recurrent)
 
@@ -369,7 +412,8 @@ def load_policy(policy: Any, folder: str | Path) -> Any:
     """Load the weights that ``mitigate.harden`` wrote into ``policy``, in place, and return it.
 
     Args:
-        policy: a policy with the architecture of the hardened one, such as the original.
+        policy: a policy with the architecture of the hardened one; for adapters the original
+            policy, because they fit only its weights.
         folder: the folder ``agent`` of the run.
 
     Raises:
@@ -389,6 +433,7 @@ def copied(policy: Policy) -> Policy:
     Raises:
         ValueError: The network cannot be copied.
     """
+    policy.forget()
     try:
         twin = copy.copy(policy)
         twin._modules = {"network": copy.deepcopy(policy.network)}

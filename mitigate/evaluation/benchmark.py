@@ -109,7 +109,7 @@ def benchmark(
     config, met = _conditions(agent, suite, severity, seed, options)
     texts = {"training_data": training_data, "link": link}
     make_world = world or maker(config.env.world)
-    first, made_by = _first_world(make_world, met, version)
+    first, made_by = checked_world(make_world, met, version)
     if is_policy(agent):
         agent = as_policy(agent, first)
         name, version = name or agent.name, version or agent.version
@@ -219,8 +219,8 @@ def _plain(name: str) -> str:
     return re.sub(r"[^A-Za-z0-9.@+-]+", "-", name)
 
 
-def _first_world(
-    make_world: Any, met: Sequence[Corruption], version: str | None
+def checked_world(
+    make_world: Any, met: Sequence[Corruption], version: str | None = None
 ) -> tuple[World, dict[str, str]]:
     """Return a world and the description of how it was made (``provenance.first_world``).
 

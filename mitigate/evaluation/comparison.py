@@ -122,7 +122,7 @@ def compare(rows: Iterable[Row]) -> Comparison:
     them, (R_corrupted - R_random) / (R_clean - R_random).
 
     Raises:
-        ValueError: Agents share no episodes, or a clean agent returns no more than random actions.
+        ValueError: Agents share no episodes, or the first one is no better than random actions.
     """
     rows = list(rows)
     cells: dict[tuple[str, str], dict[str, list[Row]]] = defaultdict(lambda: defaultdict(list))
@@ -136,26 +136,29 @@ def compare(rows: Iterable[Row]) -> Comparison:
     scores = _Scores(cells, episodes, agents)
     lines: list[Line] = []
     if rows[0]["rule"] != RETURN:
+        if (RANDOM, CLEAN) in cells:
+            scores.check_skill("success", "succeeds in a share of")
         lines += scores.lines("success", "SR (%)", names, 100.0)
         lines += scores.prs(names)
     if all(RETURN in row for row in rows) and any(row[RETURN] for row in rows):
         lines += scores.lines(RETURN, "Return", names, 1.0)
-    if (RANDOM, CLEAN) in cells:
+    if (RANDOM, CLEAN) in cells and rows[0]["rule"] == RETURN:
         lines += scores.retention(names)
     severities = sorted({row["severity"] for row in rows if row["corruption"] != CLEAN})
     rule = "" if rows[0]["rule"] == RETURN else f" Success: {markdown_of(rows[0]['rule'])}."
     random = ""
-    if (RANDOM, CLEAN) in cells:
+    if (RANDOM, CLEAN) in cells and rows[0]["rule"] == RETURN:
         random = (
             f" Random actions return {_cell(mean(scores.values(RANDOM, CLEAN, RETURN)), '.1f')}. "
-            "Retention = (R - R_random) / (R_clean - R_random)."
+            "Retention = (R - R_random) / (R_clean - R_random), with R_clean of the first column."
         )
     seeds = sorted({row["seed"] for row in rows})
     listed_seeds = f"seed{'s' * (len(seeds) > 1)} {', '.join(map(str, seeds))}"
     about = (
         f"{counted(len(episodes), 'episode')}, {listed_seeds}, severity "
         f"{', '.join(f'{s:g}' for s in severities)}.{rule}{random} Brackets: {100 * LEVEL:.0f} % "
-        f"paired bootstrap over episodes, {RESAMPLES:,} resamples. Changes in bold exclude zero."
+        f"paired bootstrap over episodes, {RESAMPLES:,} resamples; where all or none succeed, "
+        "Wilson's; [–]: no resample differs. Changes in bold exclude zero."
     )
     return Comparison(tuple(lines), agents, about)
 
@@ -205,19 +208,23 @@ class _Scores:
     def retention(self, names: Sequence[str]) -> list[Line]:
         """Return the lines of the retention of returns, for all corruptions and for each one."""
         random = self.values(RANDOM, CLEAN, RETURN)
-        for agent in self.agents:
-            clean = self.values(agent, CLEAN, RETURN)
-            if clean.mean() <= random.mean():
-                raise ValueError(
-                    f"{agent} returns {clean.mean():.1f} on clean episodes, no more than random "
-                    f"actions ({random.mean():.1f}), so that retention is undefined. Train it "
-                    "further, or check its observations."
-                )
+        self.check_skill(RETURN, "returns")
         groups = (
             {f"**Retention, mean of {len(names)} corruptions**": names} if len(names) > 1 else {}
         )
         groups |= {f"Retention, {title(name).lower()}": [name] for name in names}
         return [self._ratio(heading, RETURN, group, random) for heading, group in groups.items()]
+
+    def check_skill(self, measure: str, verb: str) -> None:
+        """Raise ValueError if the first agent is no better than random actions on clean frames."""
+        agent = self.agents[0]
+        value, random = (self.values(name, CLEAN, measure).mean() for name in (agent, RANDOM))
+        if value <= random:
+            raise ValueError(
+                f"The policy {agent!r} {verb} {value:.2f} on clean episodes, no more than random "
+                f"actions ({random:.2f}), so that there is nothing to keep. Train it further, or "
+                "check that it gets the observations that it was trained on."
+            )
 
     def prs(self, names: Sequence[str]) -> list[Line]:
         """Return the lines of PRS-SR by sensor; none if an agent never succeeds on clean frames."""
@@ -227,17 +234,24 @@ class _Scores:
         for name in names:
             kind = modality(name)
             groups.setdefault(f"PRS-SR ({LABELS.get(kind, kind)})", []).append(name)
-        zero = np.zeros(len(self.episodes))
-        return [self._ratio(heading, "success", group, zero) for heading, group in groups.items()]
+        return [self._ratio(heading, "success", group) for heading, group in groups.items()]
 
-    def _ratio(self, heading: str, measure: str, names: Sequence[str], base: np.ndarray) -> Line:
-        """Return the mean over ``names`` of (corrupted - base) / (clean - base)."""
+    def _ratio(
+        self, heading: str, measure: str, names: Sequence[str], base: np.ndarray | float = 0.0
+    ) -> Line:
+        """Return the mean over ``names`` of (corrupted - base) / (clean - base).
+
+        PRS divides by the clean success of the same agent, as the paper does. Retention divides by
+        the clean return of the first agent, so that a loss on clean frames does not raise it.
+        """
         values: dict[str, tuple[float, np.ndarray]] = {}
         for agent in self.agents:
-            clean = self.values(agent, CLEAN, measure) - base
+            reference = self.agents[0] if measure == RETURN else agent
+            clean = self.values(reference, CLEAN, measure) - base
             gained = np.mean([self.values(agent, name, measure) for name in names], axis=0) - base
             draws = resampled_means(np.stack([gained, clean]))
-            values[agent] = float(gained.mean() / clean.mean()), draws[:, 0] / draws[:, 1]
+            with np.errstate(divide="ignore", invalid="ignore"):
+                values[agent] = float(gained.mean() / clean.mean()), draws[:, 0] / draws[:, 1]
         first, *others = self.agents
         (value, samples) = values[first]
         changes = {n: _estimate(values[n][0] - value, values[n][1] - samples) for n in others}

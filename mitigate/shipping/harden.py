@@ -15,6 +15,8 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from hydra.errors import HydraException
+from omegaconf.errors import OmegaConfBaseException
 from torch import nn
 
 from mitigate.agents.adapters import (
@@ -27,16 +29,21 @@ from mitigate.agents.policies import Forward, Policy, as_policy, copied
 from mitigate.agents.sites import find_sites
 from mitigate.core import checkpoint, conf, seeding
 from mitigate.core.locks import FolderLock
-from mitigate.core.names import counted
+from mitigate.core.names import counted, unknown
 from mitigate.core.observation import DEPTH, RGB
 from mitigate.core.progress import duration, say
+from mitigate.core.workers import packed
 from mitigate.corruptions import CLEAN, Corruption, Schedule
 from mitigate.corruptions.registry import modality
+from mitigate.corruptions.suite import check_name
+from mitigate.evaluation import provenance
+from mitigate.evaluation.benchmark import checked_world
 from mitigate.evaluation.comparison import RANDOM, Comparison, RandomPolicy, compare
 from mitigate.evaluation.episode import run_episode
 from mitigate.evaluation.evaluator import evaluate
-from mitigate.evaluation.rows import RETURN, ROWS, Row
+from mitigate.evaluation.rows import ROWS, Row
 from mitigate.recipes.self_distil import SelfDistil, last_convolution
+from mitigate.training import states
 from mitigate.training.trainer import Trainer
 from mitigate.worlds.episodes import Episode
 from mitigate.worlds.seeded import seeded_episodes
@@ -46,6 +53,11 @@ OUT = Path("runs/harden")
 EPISODES = 50  # that compare before and after, by default (heuristic): SR within about 10 points
 FIRST_TRAINING_SEED = 1_000_000  # seeds of training episodes; the comparison's seeds are smaller
 TUNE = ("all", "adapters")
+SPLIT = "compared"
+SETTINGS = (
+    *("every", "episodes", "frames", "batch", "window", "module", "curriculum"),
+    *("w_policy", "w_feat", "w_consistency"),
+)
 
 
 @dataclass(frozen=True)
@@ -106,7 +118,8 @@ def harden(
             corruptions of sensors that the policy does not read are left out.
         severity: of the comparison, from 0 to 1. Training draws from 0.3 to 1.
         tune: "all" weights, or "adapters" inserted into the frozen policy.
-        targets: regular expressions for the modules that get adapters; None: every convolution.
+        targets: regular expressions for the modules that get adapters; None: every
+            convolution, or else the first layer.
         steps, lr: of the training.
         broad_share: share of corrupted frames with random compositions in place of the suite's
             corruptions, for corruptions that the suite lacks.
@@ -123,57 +136,86 @@ def harden(
     seeding.check(seed)
     if tune not in TUNE:
         raise ValueError(f"tune must be one of {', '.join(TUNE)}, got {tune!r:.80}.")
-    first = world()
+    if type(steps) is not int or steps < 1:
+        raise ValueError(f"steps must be a whole number >= 1, got {steps!r:.80}.")
+    unknown_names = sorted(set(settings) - set(SETTINGS))
+    if unknown_names:
+        raise ValueError(unknown("argument of harden", unknown_names[0], SETTINGS))
+    first, made_by = checked_world(world, [])
     before = as_policy(policy, first, forward=forward, recurrent=recurrent)
     after = copied(before)
     names = _corruptions(suite, before)
     folder = Path(out or OUT / f"{_plain(before.name)}-s{severity:g}-seed{seed}")
     compared = seeded_episodes(range(EPISODES)) if listed is None else list(listed)
     conditions = [CLEAN, *(Corruption(name, severity) for name in names)]
+    if workers != 1:
+        packed((before, world), "The policy or its world", "give workers=1")
     if tune == "adapters":
         _insert_adapters(after, first, compared[0], targets)
-    schedule = Schedule("per_episode", (0.3, 1.0), names=tuple(names), broad_share=broad_share)
-    _print_estimate(before, world, compared, conditions, steps, folder)
+    objective = SelfDistil(
+        after,
+        world,
+        _Training(training, compared),
+        Schedule("per_episode", (0.3, 1.0), names=tuple(names), broad_share=broad_share),
+        folder / "frames",
+        steps,
+        seed=seed,
+        **settings,
+    )
+    identity = {
+        "policy": before.version,
+        "settings_of_policy": before.settings(),
+        "names": list(names),
+        "broad_share": broad_share,
+        "tune": tune,
+        "settings": {name: str(value) for name, value in settings.items()},
+    }
+    trainer = Trainer(
+        objective,
+        steps=steps,
+        folder=folder / "training",
+        lr=lr,
+        warmup=min(50, steps // 10),
+        seed=seed,
+        precision="fp32",
+        save_every=max(1, steps // 5),
+        name="harden",
+        config=identity,
+    )
     with FolderLock(folder):
-        rows = _evaluate(before, "before", world, compared, conditions, folder, seed, workers)
-        if first.rule == RETURN:
-            random = RandomPolicy(before.space, seed)
-            rows += _evaluate(random, RANDOM, world, compared, [CLEAN], folder, seed, workers)
-            compare(rows)  # an error before the training, if the policy is no better than random
-        objective = SelfDistil(
-            after,
-            world,
-            _Training(training, compared),
-            schedule,
-            folder / "frames",
-            steps,
-            seed=seed,
-            **settings,
-        )
-        identity = {
-            "start": checkpoint.weights_sha(before.network),
-            "policy": before.settings(),
-            "names": list(names),
-            "broad_share": broad_share,
-            "tune": tune,
-            "settings": {name: str(value) for name, value in settings.items()},
-        }
-        Trainer(
-            objective,
-            steps=steps,
-            folder=folder / "training",
-            lr=lr,
-            warmup=min(50, steps // 10),
-            seed=seed,
-            precision="fp32",
-            save_every=max(1, steps // 5),
-            name="harden",
-            config=identity,
-        ).fit()
+        _check_folder(trainer, folder)
+        provenance.keep(folder, first, made_by, SPLIT, compared)
+        _print_estimate(before, world, compared, conditions, steps, folder)
+        arguments = (world, compared, folder, seed)
+        rows = _evaluate(before, "before", conditions, *arguments, workers)
+        rows += _evaluate(RandomPolicy(before.space, seed), RANDOM, [CLEAN], *arguments, 1)
+        compare(rows)  # raises before the training if the policy is no better than random
+        try:
+            trainer.fit()
+        except KeyboardInterrupt:
+            say("harden: interrupted. The same call continues.")
+            raise
         after.requires_grad_(True)
-        _write(after.network, folder / "agent", tune)
-        rows += _evaluate(after, "after", world, compared, conditions, folder, seed, workers)
+        if tune == "adapters":
+            save_adapters(after.network, folder / "agent")
+        else:
+            checkpoint.save_weights(after.network, folder / "agent")
+        rows += _evaluate(after, "after", conditions, *arguments, workers)
     return Hardened(_like(policy, after), after, compare(rows), rows, folder)
+
+
+def _check_folder(trainer: Trainer, folder: Path) -> None:
+    """Raise ValueError if the folder holds the training of another policy or of other settings."""
+    newest = states.load_newest(trainer.folder)
+    if newest is None:
+        return
+    changed = states.differences(states.as_json(newest[1]["config"]), trainer.config)
+    if changed:
+        raise ValueError(
+            f"{folder} holds the run of another policy or of other arguments "
+            f"({'; '.join(changed[:6])}). Use the old arguments to continue it, or choose another "
+            "folder (out=...)."
+        )
 
 
 class _Training:
@@ -199,9 +241,13 @@ class _Training:
 
 def _corruptions(suite: str | Sequence[str], policy: Policy) -> list[str]:
     """Return the corruptions of a suite that change what the policy reads."""
-    listed = suite
     if isinstance(suite, str):
-        listed = list(conf.load_config("evaluate", [f"suite={suite}"]).suite.conditions)
+        try:
+            listed = list(conf.load_config("evaluate", [f"suite={suite}"]).suite.conditions)
+        except (HydraException, OmegaConfBaseException) as error:
+            raise ValueError(conf.explain(error, "evaluate", [f"suite={suite}"])) from None
+    else:
+        listed = [check_name(name) for name in suite if name != "clean"]
     kinds = {name: modality(name) for name in listed if name != "clean"}
     sensors = [sensor for sensor in (RGB, DEPTH) if sensor in policy.sensors]
     names = [name for name, kind in kinds.items() if kind in sensors]
@@ -234,25 +280,19 @@ def _insert_adapters(
             if isinstance(module, nn.Conv2d) and name in called
         ]
         targets = [re.escape(name) for name in convolutions or [last_convolution(policy)]]
-    insert_adapters(policy.network, targets, run=run, reduction=2)
+    adapted = insert_adapters(policy.network, targets, run=run, reduction=2)
     for parameter in adapter_parameters(policy.network):
         parameter.requires_grad_(True)
-    say(f"adapters: {trainable_share(policy.network):.1%} of the policy's weights")
-
-
-def _write(network: nn.Module, folder: Path, tune: str) -> None:
-    if tune == "adapters":
-        save_adapters(network, folder)
-    else:
-        checkpoint.save_weights(network, folder)
+    share = trainable_share(policy.network)
+    say(f"adapters behind {', '.join(adapted)}: {share:.1%} of the policy's weights")
 
 
 def _evaluate(
     agent: Any,
     name: str,
+    conditions: list[Corruption],
     world: Callable[[], World],
     episodes: list[Episode],
-    conditions: list[Corruption],
     folder: Path,
     seed: int,
     workers: int | None,
@@ -264,7 +304,7 @@ def _evaluate(
         conditions,
         name=name,
         out=folder / ROWS,
-        split="compared",
+        split=SPLIT,
         seed=seed,
         workers=workers,
         version=agent.version if isinstance(agent, Policy) else None,
@@ -285,10 +325,11 @@ def _print_estimate(
     started = time.monotonic()
     run_episode(policy, made, episodes[-1], CLEAN, 0)
     each = time.monotonic() - started
-    total = 2 * len(episodes) * len(conditions)
+    count = len(episodes) * len(conditions)
     say(
-        f"harden: {counted(steps, 'step')} of training, and {counted(total, 'episode')} before and "
-        f"after it, which take about {duration(each * total)}; in {folder}"
+        f"harden: {counted(count, 'episode')} with the policy (about {duration(each * count)}), "
+        f"{counted(steps, 'step')} of training, {counted(count, 'episode')} with the hardened "
+        f"policy; in {folder}"
     )
 
 

@@ -325,6 +325,14 @@ class SeededWorld(World):
 
     def _observation(self, values: Mapping[str, Any]) -> Observation:
         """Return an observation with copies, because an environment may reuse its buffers."""
+        absent = [entry for entry in self.entries.values() if entry not in values]
+        if absent:
+            raise ValueError(
+                f"The observation after step {self._steps} of episode {self._name} must have "
+                "the entry "
+                f"{absent[0]!r}, which its space names, got "
+                f"{', '.join(map(str, values)) or 'none'}."
+            )
         frames = {name: np.array(values[entry]) for name, entry in self.entries.items()}
         for name in {RGB, DEPTH}.intersection(frames):
             frame, sensor = frames[name], self.sensors[name]

@@ -1,5 +1,7 @@
 """Policies of other libraries as agents: the same actions, distributions with gradients, errors."""
 
+from dataclasses import replace
+
 import gymnasium
 import numpy as np
 import pytest
@@ -173,6 +175,27 @@ def test_as_policy_names_entries_that_the_world_leaves_out():
     model = sb3.PPO("MultiInputPolicy", env)
     with pytest.raises(ValueError, match="'far': 'far'"):
         as_policy(model, GymWorld(env, {"rgb": "image"}))
+
+
+def test_as_policy_names_an_entry_that_the_forward_function_misses():
+    world = world_of(Noise(depth=True))
+    policy = as_policy(nn.Linear(1, 3), world, forward=lambda net, seen: seen["vector"])
+    with pytest.raises(ValueError, match="'vector', but the world passes only image, far"):
+        rollout(world, policy)
+
+
+def test_as_policy_rejects_stacked_frames():
+    world = world_of(Noise())
+    world.sensors["rgb"] = replace(world.sensors["rgb"], shape=(4, 36, 36, 3))
+    with pytest.raises(ValueError, match="Stacked frames"):
+        as_policy(Memory(), world)
+
+
+def test_act_rejects_another_number_of_values():
+    net = nn.Sequential(nn.Flatten(), nn.Linear(36 * 36 * 3, 7))
+    world = world_of(Noise())
+    with pytest.raises(ValueError, match="7 values for the 3 actions"):
+        rollout(world, as_policy(net, world, forward=lambda net, seen: net(seen.float())))
 
 
 def test_as_policy_rejects_objects_without_weights():

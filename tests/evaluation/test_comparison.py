@@ -22,7 +22,7 @@ def example(clean=(10.0, 12.0), random=(2.0, 0.0)):
         *rows_of("before", "clean", clean),
         *rows_of("before", "flare", [6.0, 6.0]),
         *rows_of("before", "spatter", [1.0, 1.0]),
-        *rows_of("after", "clean", clean),
+        *rows_of("after", "clean", [5.0, 5.0]),
         *rows_of("after", "flare", [10.0, 11.0]),
         *rows_of("after", "spatter", [1.0, 1.0]),
         *rows_of(RANDOM, "clean", random),
@@ -33,7 +33,7 @@ def test_compare_computes_retention_against_random():
     comparison = compare(example())
     flare = comparison.line("Retention, flare")
     assert flare.values["before"].value == pytest.approx((6 - 1) / (11 - 1))
-    assert flare.values["after"].value == pytest.approx((10.5 - 1) / 10)
+    assert flare.values["after"].value == pytest.approx((10.5 - 1) / 10)  # R_clean of before
     mean = comparison.line("**Retention, mean of 2 corruptions**")
     assert mean.values["after"].value == pytest.approx(0.95 / 2)
     assert mean.changes["after"].value == pytest.approx(0.45 / 2)

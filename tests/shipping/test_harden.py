@@ -73,6 +73,19 @@ def trained(continuous=False):
     return net
 
 
+def imitate(policy, env):
+    """Train a policy of stable-baselines3 on the right sides."""
+    optimizer = torch.optim.Adam(policy.parameters(), 1e-3)
+    env.reset(seed=7)
+    for _ in range(40):
+        frames, sides = zip(*[(env.observe(), env.side) for _ in range(16)], strict=True)
+        inputs, _ = policy.obs_to_tensor(np.stack(frames))
+        loss = -policy.get_distribution(inputs).log_prob(torch.tensor(sides)).mean()
+        optimizer.zero_grad()
+        loss.backward()
+        optimizer.step()
+
+
 def world():
     return GymWorld(Lights())
 
@@ -92,7 +105,7 @@ def test_harden_returns_a_hardened_copy_and_a_report(tmp_path):
     assert checkpoint.weights_sha(net) == before
     assert type(result.policy) is Net
     assert checkpoint.weights_sha(result.policy) != before
-    assert {row["name"] for row in result.rows} == {"before", "after"}
+    assert {row["name"] for row in result.rows} == {"before", "after", "random"}
     line = result.report.line("**SR (%), mean of 2 corruptions**")
     assert line.values["before"].value == 100.0
     assert "| change |" in str(result)
@@ -147,23 +160,46 @@ def test_harden_continuous_policy_reports_the_return(tmp_path):
     np.testing.assert_array_equal(loaded.act(observation), result.agent.act(observation))
 
 
-def test_harden_stops_before_training_if_the_policy_is_no_better_than_random(tmp_path):
-    net = Net(1)
+@pytest.mark.parametrize("continuous", [False, True])
+def test_harden_stops_before_training_without_skill(tmp_path, continuous):
+    net = Net(1 if continuous else 2)
     with torch.no_grad():
         net.head.weight.zero_()
-        net.head.bias.fill_(1.0)  # always to the right
+        net.head.bias.copy_(torch.ones(1) if continuous else torch.tensor([0.0, 1.0]))  # right
+    listed = seeded_episodes([3, 5])
+    make = continuous_world if continuous else world
     with pytest.raises(ValueError, match="no more than random"):
-        mitigate.harden(
-            net, continuous_world, listed=seeded_episodes([3, 5]), out=tmp_path, **SHORT
-        )
-    assert not (tmp_path / "training").exists()
+        mitigate.harden(net, make, listed=listed, out=tmp_path, **SHORT)
+    assert not list((tmp_path / "training").glob("step-*"))
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({"steps": 0}, "steps must be"),
+        ({"stepz": 3}, "stepz"),
+        ({"tune": "adapter"}, "all, adapters"),
+        ({"suite": ["spater"]}, "spatter"),
+        ({"suite": "fulll"}, "full"),
+        ({"world": GymWorld(Lights())}, "must be a function"),
+        ({"world": Lights}, "not a world"),
+        ({"training": seeded_episodes([2, 3, 9])}, "share 2 episodes"),
+        ({"w_policy": -1}, "w_policy"),
+    ],
+)
+def test_harden_rejects_arguments_before_any_episode(tmp_path, options, message):
+    arguments = {"world": world} | SHORT | options
+    with pytest.raises(ValueError, match=message):
+        mitigate.harden(trained(), listed=FEW, out=tmp_path, **arguments)
+    assert not (tmp_path / "rows.jsonl").exists()
 
 
 def test_harden_takes_a_model_of_stable_baselines(tmp_path):
     sb3 = pytest.importorskip("stable_baselines3")
     wide = {"size": 36}
     env = Lights(**wide)
-    model = sb3.PPO("CnnPolicy", env, n_steps=16, seed=0)
+    model = sb3.PPO("CnnPolicy", env, n_steps=16, batch_size=16, seed=0)
+    imitate(model.policy, env)
     result = mitigate.harden(
         model, lambda: GymWorld(Lights(**wide)), listed=FEW, out=tmp_path, **SHORT
     )
@@ -171,13 +207,6 @@ def test_harden_takes_a_model_of_stable_baselines(tmp_path):
     action, _ = result.policy.predict(frame, deterministic=True)
     assert int(action) == result.agent.act(GymWorld(env).reset(FEW[0]))
     assert result.policy.policy is not model.policy
-
-
-def test_harden_rejects_training_on_the_compared_episodes(tmp_path):
-    with pytest.raises(ValueError, match="share 2 episodes"):
-        mitigate.harden(
-            trained(), world, listed=FEW, training=seeded_episodes([2, 3, 9]), out=tmp_path, **SHORT
-        )
 
 
 def test_harden_names_frames_that_were_lost(tmp_path):
@@ -195,8 +224,18 @@ def test_harden_rejects_another_policy_in_the_folder(tmp_path):
     other = trained()
     with torch.no_grad():
         other.head.bias.add_(1)
-    with pytest.raises(ValueError, match="start"):
+    rows = (tmp_path / "rows.jsonl").read_bytes()
+    with pytest.raises(ValueError, match="another policy"):
         mitigate.harden(other, world, listed=FEW, out=tmp_path, **SHORT)
+    assert (tmp_path / "rows.jsonl").read_bytes() == rows
+
+
+def test_harden_rejects_another_world_in_the_folder(tmp_path):
+    mitigate.harden(trained(), world, listed=FEW, out=tmp_path, **SHORT)
+    with pytest.raises(ValueError, match="another world"):
+        mitigate.harden(
+            trained(), lambda: GymWorld(Lights(), limit=3), listed=FEW, out=tmp_path, **SHORT
+        )
 
 
 def test_harden_leaves_out_corruptions_of_sensors_that_are_not_read(tmp_path, capsys):
