@@ -503,3 +503,19 @@ def test_env_world_accepts_categorical_actions(shape):
     world.reset(listed[0])
     world.step(1)
     assert world.measures() == {"success": 0, "spl": 0.0, "return": 0.0, "steps": 1}
+
+
+def test_env_world_runs_the_same_episode_as_gym_world():
+    from torchrl.envs import GymWrapper
+
+    from mitigate.worlds.gym import GymWorld
+    from mitigate.worlds.seeded import seeded_episodes
+
+    start = seeded_episodes([7])[0]
+    frames = []
+    for world in (
+        GymWorld(Room("rgb"), **BY_REWARD),
+        EnvWorld(GymWrapper(Room("rgb")), **BY_REWARD),
+    ):
+        frames.append([world.reset(start)["rgb"], world.step(1)["rgb"]])
+    np.testing.assert_array_equal(*frames)
