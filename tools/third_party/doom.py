@@ -8,11 +8,13 @@ from pathlib import Path
 
 import cv2
 import gymnasium
+import numpy as np
 import vizdoom.gymnasium_wrapper  # noqa: F401 - registers the environments
 from gymnasium import spaces
 from stable_baselines3 import PPO
+from stable_baselines3.common.callbacks import EvalCallback, StopTrainingOnRewardThreshold
 from stable_baselines3.common.env_util import make_vec_env
-from stable_baselines3.common.vec_env import VecNormalize
+from stable_baselines3.common.vec_env import VecNormalize, VecTransposeImage
 
 WEIGHTS = Path(__file__).parent / "weights"
 HEIGHT, WIDTH = 48, 64
@@ -56,9 +58,29 @@ def make_env(name: str, frame_skip: int) -> gymnasium.Env:
     return SmallFrames(env)
 
 
-def train_ppo(make, path: Path, steps: int, policy: str = "MultiInputPolicy") -> None:
-    """Train a policy with PPO and save it without the state of its optimizer."""
+def train_ppo(
+    make,
+    path: Path,
+    steps: int,
+    policy: str = "MultiInputPolicy",
+    target: float = np.inf,
+    ent_coef: float = 0.01,
+) -> None:
+    """Train a policy with PPO until its likeliest actions reach a mean return, and save it.
+
+    The file leaves out the state of the optimizer.
+    """
     envs = VecNormalize(make_vec_env(make, n_envs=8, seed=100_000), norm_obs=False)
+    test_env = VecNormalize(
+        make_vec_env(make, seed=200_000), training=False, norm_obs=False, norm_reward=False
+    )
+    test_env = VecTransposeImage(test_env)  # PPO wraps its own environments in the same way
+    stop = EvalCallback(
+        test_env,
+        callback_on_new_best=StopTrainingOnRewardThreshold(target, verbose=1),
+        n_eval_episodes=20,
+        eval_freq=512,  # calls, of 8 steps
+    )
     model = PPO(
         policy,
         envs,
@@ -66,17 +88,18 @@ def train_ppo(make, path: Path, steps: int, policy: str = "MultiInputPolicy") ->
         n_steps=128,
         batch_size=256,
         n_epochs=3,
-        ent_coef=0.01,
+        ent_coef=ent_coef,
         policy_kwargs={"features_extractor_kwargs": FEATURES[policy]},
         seed=0,
         verbose=1,
         device="cpu",
     )
     started = time.time()
-    model.learn(steps, log_interval=5)
-    print(f"{path.name}: {steps} steps in {time.time() - started:.0f} s")
+    model.learn(steps, log_interval=5, callback=stop)
+    print(f"{path.name}: {model.num_timesteps} steps in {time.time() - started:.0f} s", flush=True)
     optimizer = model.policy.optimizer
     model.policy.optimizer = type(optimizer)(model.policy.parameters(), lr=model.learning_rate)
     path.parent.mkdir(exist_ok=True)
     model.save(path)
     envs.close()
+    test_env.close()

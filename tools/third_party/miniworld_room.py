@@ -33,9 +33,5 @@ def load_policy() -> PPO:
     return PPO.load(PATH, device="cpu")
 
 
-def act(policy: PPO, observation) -> int:
-    return int(policy.predict(observation, deterministic=True)[0])
-
-
 if __name__ == "__main__":
-    train_ppo(make, PATH, steps=60_000, policy="CnnPolicy")
+    train_ppo(make, PATH, steps=60_000, policy="CnnPolicy", target=0.9, ent_coef=0.0)

@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 import time
+from collections import deque
 
 import numpy as np
 import torch
-from tensordict import TensorDict
 from tensordict.nn import TensorDictModule
 from torch import nn
 from torch.distributions import Categorical
 from torchrl.collectors import Collector
 from torchrl.envs import GymWrapper, RewardSum, SerialEnv, TransformedEnv
-from torchrl.envs.utils import ExplorationType, set_exploration_type
 from torchrl.modules import ConvNet, ProbabilisticActor, ValueOperator
 from torchrl.objectives import ClipPPOLoss
 from torchrl.objectives.value import GAE
@@ -61,26 +60,20 @@ def load_policy() -> ProbabilisticActor:
     return actor.eval()
 
 
-@torch.no_grad()
-def act(policy: ProbabilisticActor, observation: np.ndarray) -> int:
-    data = TensorDict({"pixels": torch.from_numpy(observation)[None]}, [1])
-    with set_exploration_type(ExplorationType.DETERMINISTIC):
-        return int(policy(data)["action"])
-
-
 def make_torchrl_env() -> TransformedEnv:
     env = GymWrapper(make(), pixels_only=True, categorical_action_encoding=True)
     return TransformedEnv(env, RewardSum())
 
 
-def train(steps: int = 100_000) -> None:
+def train(steps: int = 60_000, target: float = 0.93) -> None:
+    recent = deque(maxlen=100)  # returns of episodes
     torch.manual_seed(0)
     env = SerialEnv(ENVS, make_torchrl_env)
     env.set_seed(100_000)
     actor = make_actor()
     critic = ValueOperator(nn.Sequential(features(), nn.Linear(128, 1)), in_keys=["pixels"])
     critic(env.reset())
-    loss_module = ClipPPOLoss(actor, critic, entropy_coeff=0.01)
+    loss_module = ClipPPOLoss(actor, critic, entropy_coeff=0.0)
     advantage = GAE(gamma=0.99, lmbda=0.95, value_network=critic)
     optimizer = torch.optim.Adam(loss_module.parameters(), lr=5e-4)
     started = time.time()
@@ -97,13 +90,13 @@ def train(steps: int = 100_000) -> None:
                 loss.backward()
                 nn.utils.clip_grad_norm_(loss_module.parameters(), 0.5)
                 optimizer.step()
-        ended = data["next", "episode_reward"][data["next", "done"]]
-        if index % 5 == 0:
-            print(
-                f"{(index + 1) * FRAMES} steps, {time.time() - started:.0f} s: "
-                f"return {ended.mean():.2f}",
-                flush=True,
-            )
+        recent.extend(data["next", "episode_reward"][data["next", "done"]].tolist())
+        done = (index + 1) * FRAMES
+        print(
+            f"{done} steps, {time.time() - started:.0f} s: return {np.mean(recent):.2f}", flush=True
+        )
+        if len(recent) == 100 and np.mean(recent) >= target:
+            break
     collector.shutdown()
     torch.save(actor.state_dict(), PATH)
 

@@ -25,7 +25,7 @@ LINKS = 0.1, 0.11  # metres
 STIFFNESS, DAMPING = 0.5, 0.05  # torque per radian and per radian/s (tuned by hand)
 CAMERA = {"distance": 0.62, "elevation": -90.0, "azimuth": 90.0, "lookat": np.zeros(3)}
 CLOSE = 0.03  # metres
-ROUNDS, EPISODES, EPOCHS = 10, 20, 4
+ROUNDS, EPISODES, EPOCHS = 8, 15, 4
 
 
 class SpringDriven(gymnasium.ActionWrapper):
@@ -81,10 +81,9 @@ def load_policy() -> nn.Sequential:
     return policy.eval()
 
 
-@torch.no_grad()
-def act(policy: nn.Module, observation: np.ndarray) -> np.ndarray:
-    frame = torch.from_numpy(observation).permute(2, 0, 1)[None] / 255
-    return policy(frame)[0].numpy()
+def forward(policy: nn.Module, observation: torch.Tensor) -> torch.Tensor:
+    """Return actions for frames uint8 [N, 64, 64, 3], as ``mitigate.harden(forward=...)`` needs."""
+    return policy(observation.permute(0, 3, 1, 2) / 255)
 
 
 def expert(env: gymnasium.Env) -> np.ndarray:
@@ -112,7 +111,10 @@ def rollout(env: gymnasium.Env, policy: nn.Module | None, seed: int, frames: lis
         label = expert(env)
         frames.append(observation)
         labels.append(label)
-        action = label if policy is None else act(policy, observation)
+        action = label
+        if policy is not None:
+            with torch.no_grad():
+                action = forward(policy, torch.from_numpy(observation)[None])[0].numpy()
         observation, reward, terminated, truncated, _ = env.step(action)
         over = terminated or truncated
         total += reward
@@ -130,11 +132,11 @@ def train() -> None:
         student = policy if index else None
         seeds = range(100_000 + index * EPISODES, 100_000 + (index + 1) * EPISODES)
         totals = [rollout(env, student, seed, frames, labels) for seed in seeds]
-        inputs = torch.from_numpy(np.stack(frames)).permute(0, 3, 1, 2)
+        inputs = torch.from_numpy(np.stack(frames))
         targets = torch.from_numpy(np.stack(labels))
         for _ in range(EPOCHS):
             for batch in torch.randperm(len(inputs)).split(128):
-                loss = nn.functional.mse_loss(policy(inputs[batch] / 255), targets[batch])
+                loss = nn.functional.mse_loss(forward(policy, inputs[batch]), targets[batch])
                 optimizer.zero_grad()
                 loss.backward()
                 optimizer.step()

@@ -12,7 +12,6 @@ from stable_baselines3 import PPO
 from mitigate.worlds.gym import GymWorld
 from mitigate.worlds.seeded import Ending
 from tools.third_party.doom import METRES, WEIGHTS, SmallFrames, make_env, train_ppo
-from tools.third_party.vizdoom_basic import act  # noqa: F401 - the same call
 
 PATH = WEIGHTS / "vizdoom_health.zip"
 
