@@ -114,7 +114,7 @@ def rollout(env: gymnasium.Env, policy: nn.Module | None, seed: int, frames: lis
         action = label
         if policy is not None:
             with torch.no_grad():
-                action = forward(policy, torch.from_numpy(observation)[None])[0].numpy()
+                action = forward(policy, torch.from_numpy(observation.copy())[None])[0].numpy()
         observation, reward, terminated, truncated, _ = env.step(action)
         over = terminated or truncated
         total += reward
