@@ -3,7 +3,7 @@
 #
 # The safeguard removes foreign text from an instruction. A language model can also rewrite unusual styles in plain
 # words. This tutorial starts a small stand-in for such a model, which speaks OpenAI's chat protocol, and connects the
-# safeguard to it. Use the address of your own server in its place. It takes a few seconds.
+# safeguard to it. Use the address of your server in its place. It takes a few seconds.
 
 # %%
 import json

@@ -66,7 +66,7 @@ class Line:
     """A line of a comparison.
 
     Attributes:
-        title: what was measured, such as "SR (%), clean".
+        title: what was measured, such as "SR (%): Clean".
         values: the value of each agent, by name.
         changes: the paired difference of each agent but the first to the first one, by name.
         digits: decimal places.
@@ -195,7 +195,7 @@ class _Scores:
             }
             lines.append(self._line(f"**{label}, mean of {len(names)} corruptions**", averaged, 0))
         for name, values in by_condition.items():
-            lines.append(self._line(f"{label}, {title(name).lower()}", values, scale * (scale > 1)))
+            lines.append(self._line(f"{label}: {title(name)}", values, scale * (scale > 1)))
         return lines
 
     def _line(self, heading: str, values: Mapping[str, np.ndarray], most: float) -> Line:
@@ -212,7 +212,7 @@ class _Scores:
         groups = (
             {f"**Retention, mean of {len(names)} corruptions**": names} if len(names) > 1 else {}
         )
-        groups |= {f"Retention, {title(name).lower()}": [name] for name in names}
+        groups |= {f"Retention: {title(name)}": [name] for name in names}
         return [self._ratio(heading, RETURN, group, random) for heading, group in groups.items()]
 
     def check_skill(self, measure: str, verb: str) -> None:

@@ -31,7 +31,7 @@ def example(clean=(10.0, 12.0), random=(2.0, 0.0)):
 
 def test_compare_computes_retention_against_random():
     comparison = compare(example())
-    flare = comparison.line("Retention, flare")
+    flare = comparison.line("Retention: Flare")
     assert flare.values["before"].value == pytest.approx((6 - 1) / (11 - 1))
     assert flare.values["after"].value == pytest.approx((10.5 - 1) / 10)  # R_clean of before
     mean = comparison.line("**Retention, mean of 2 corruptions**")
@@ -49,7 +49,7 @@ def test_compare_pairs_episodes():
         *rows_of("after", "flare", difficulty + 60),
         *rows_of(RANDOM, "clean", difficulty),
     ]
-    retention = compare(rows).line("Retention, flare")
+    retention = compare(rows).line("Retention: Flare")
     for estimate, value in ((retention.values["before"], 0.5), (retention.changes["after"], 0.1)):
         assert (estimate.low, estimate.high) == pytest.approx((value, value))
 
@@ -62,11 +62,11 @@ def test_compare_shows_success_in_percent():
         *rows_of("after", "flare", [1, 1, 1, 1], "success"),
     ]
     comparison = compare(rows)
-    flare = comparison.line("SR (%), flare")
+    flare = comparison.line("SR (%): Flare")
     assert flare.values["before"].value == 50.0
     assert flare.changes["after"].value == 50.0
     assert comparison.line("PRS-SR (RGB)").values["before"].value == 0.5
-    assert comparison.line("SR (%), clean").values["before"].low == pytest.approx(51.0, abs=0.1)
+    assert comparison.line("SR (%): Clean").values["before"].low == pytest.approx(51.0, abs=0.1)
 
 
 def test_compare_averages_the_seeds_of_an_episode():
@@ -80,7 +80,7 @@ def test_compare_averages_the_seeds_of_an_episode():
         )
     ]
     comparison = compare(rows)
-    assert comparison.line("SR (%), flare").values["after"].value == 75.0
+    assert comparison.line("SR (%): Flare").values["after"].value == 75.0
     assert "seeds 0, 1" in comparison.about
 
 
@@ -97,7 +97,7 @@ def test_compare_rejects_agents_without_common_episodes():
 
 
 def test_compare_names_known_lines_for_an_unknown_one():
-    with pytest.raises(KeyError, match="Return, clean"):
+    with pytest.raises(KeyError, match="Return: Clean"):
         compare(example()).line("SR")
 
 

@@ -153,8 +153,8 @@ def test_harden_with_adapters_leaves_the_policy_frozen(tmp_path):
 
 def test_harden_continuous_policy_reports_the_return(tmp_path):
     result = mitigate.harden(trained(True), continuous_world, listed=FEW, out=tmp_path, **SHORT)
-    assert result.report.line("Return, clean").values["before"].value == 5.0
-    assert result.report.line("Retention, spatter").values["after"].value == pytest.approx(1.0)
+    assert result.report.line("Return: Clean").values["before"].value == 5.0
+    assert result.report.line("Retention: Spatter").values["after"].value == pytest.approx(1.0)
     loaded = as_policy(mitigate.load_policy(Net(1), tmp_path / "agent"), continuous_world())
     observation = continuous_world().reset(FEW[0])
     np.testing.assert_array_equal(loaded.act(observation), result.agent.act(observation))
@@ -256,5 +256,5 @@ def test_benchmark_reports_the_return_and_reuses_rows(tmp_path, capsys):
         report = mitigate.benchmark(
             trained(True), world=continuous_world, listed=FEW, suite=["spatter"], out=tmp_path
         )
-        assert report.line("Return, clean").values["Net"].value == 5.0
+        assert report.line("Return: Clean").values["Net"].value == 5.0
     assert "all already done" in capsys.readouterr().out

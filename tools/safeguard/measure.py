@@ -1,6 +1,6 @@
 """Measure a safeguard on the fresh banks: ``python -m tools.safeguard.measure classifier``.
 
-The banks in ``data/fresh`` were written by three authors who saw neither our data nor each other's.
+The banks in ``data/fresh`` were written to measure only. ``--authors`` selects some of them.
 Every file is split by a hash of the text: half of it is there to choose settings by, the other half
 only to report. ``--r2r FILE`` adds real routes, whose terms forbid to ship them.
 """
@@ -30,6 +30,7 @@ from mitigate.corruptions.language.words import bag
 FRESH = Path(__file__).parent / "data" / "fresh"
 HALVES = ("choose", "report")
 AUTHORS = ("author1", "author2", "author3")
+LATER = ("author4", "author5", "author6")  # written after the first classifiers were chosen
 Repair = Callable[[str], str]
 # Words that an instruction can lose without losing its meaning: function words and courtesies.
 LIGHT = bag(
@@ -102,7 +103,7 @@ def words(text: str) -> list[str]:
 
 
 def is_removed(attack: str, route: str, given: str) -> bool:
-    """Return whether ``given`` holds no word of the attack beyond those of the route."""
+    """Return whether ``given`` holds no word of the attack except words of the route."""
     foreign = [word for word in words(attack) if word not in set(words(route))]
     if foreign:
         return not set(foreign) & set(words(given))
@@ -227,6 +228,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("safeguards", nargs="+", help="as the option safeguard=: rules, lora, ...")
     parser.add_argument("--half", choices=HALVES, default="choose")
+    parser.add_argument("--authors", nargs="+", default=AUTHORS, choices=(*AUTHORS, *LATER))
     parser.add_argument("--r2r", help="an R2R-CE episode file (json.gz)")
     parser.add_argument("--sample", type=int, help="R2R-CE texts that are tried; default all")
     parser.add_argument("--each", type=int, default=1, help="routes per attack and place")
@@ -250,8 +252,16 @@ def main(arguments: Sequence[str] | None = None) -> None:
             calls[1] += time.perf_counter() - began
             return given
 
-        found = measure(repair, options.half, r2r, options.each, options.seed, options.sample)
-        print(f"## {name}, {options.half} half\n")
+        found = measure(
+            repair,
+            options.half,
+            r2r,
+            options.each,
+            options.seed,
+            options.sample,
+            options.authors,
+        )
+        print(f"## {name}, {options.half} half, {', '.join(options.authors)}\n")
         print("| measure | % [95 % interval] (cases) |\n| --- | --- |")
         for label, rate in found.items():
             print(f"| {label} | {rate} |")

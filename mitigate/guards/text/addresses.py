@@ -17,7 +17,7 @@ _MODEL = re.compile(r"[\w.:/+-]+")
 
 
 def check_url(url: str) -> None:
-    """Raise ValueError for a URL that is none, or that holds a user, a password or a key."""
+    """Raise ValueError for an invalid URL, or a URL that holds a user, a password or a key."""
     if any(mark in url for mark in "@?#"):
         raise ValueError(
             "The endpoint's URL holds a user, a password or a key (an @, ? or # in it), which "

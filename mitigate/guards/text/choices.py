@@ -24,7 +24,7 @@ FOLDER = (
     "mitigate.guards.text.fit --out FOLDER`), or card.json, adapter_config.json and "
     "adapter_model.safetensors of an adapter (`make train RECIPE=safeguard_lora`)."
 )
-VERSION = "10"  # of what is decided: a new number where any text is repaired differently
+VERSION = "11"  # of what is decided: a new number where any text is repaired differently
 ANSWERS = "3"  # of what is accepted of a language model's answers
 
 
@@ -104,7 +104,7 @@ def not_in(folder: str | Path) -> str:
 
 def label(choice: str) -> str:
     """Return a short name for a safeguard: a folder with a hash of its weights, an endpoint's host
-    and model; the names of ours as they are."""
+    and model; our own choices keep their names."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         choice = current(choice)

@@ -99,7 +99,7 @@ class Classifier:
     """The weights, and what they say of a text.
 
     Args:
-        config: Common words, bias of the weights of attacks and of those of styles.
+        config: Common words, bias of the attack weights and of the style weights.
         arrays: ``idf``, weights of attacks ``alone`` and of styles ``style``, each [SIZE].
     """
 
@@ -159,8 +159,8 @@ def weighted(found: Mapping[int, int], idf: np.ndarray) -> tuple[np.ndarray, np.
 
 @lru_cache(maxsize=4)
 def load(folder: str | Path) -> Classifier:
-    """Return the classifier of a folder. Raises FileNotFoundError if there is none, ValueError for
-    damaged files."""
+    """Return the classifier of a folder. Raises FileNotFoundError if a file is missing, ValueError
+    for damaged files."""
     config_file, file = Path(folder) / CONFIG, Path(folder) / WEIGHTS
     for needed in (config_file, file):
         if not needed.is_file():

@@ -77,7 +77,7 @@ def decode(text: str, known: Set[str]) -> Decoded:
 
 
 def visible(text: str) -> str:
-    """Return ``text`` without characters that nobody sees.
+    """Return ``text`` without invisible characters.
 
     Joiners stay between letters of scripts that need them. Text behind a right-to-left override is
     put in the order in which it is seen.

@@ -1,7 +1,7 @@
-"""Find what does not belong to an instruction, and take it out if the gate allows.
+"""Find attacks in an instruction, and remove them if the gate allows it.
 
-A sentence is foreign if it looks like an attack more than the rest of the text does. Sentences
-beside it go with it if they look foreign, too. Clauses within the other sentences are tried in the
+A sentence is foreign if it looks more like an attack than the rest of the text does. Its neighbours
+are removed with it if they look foreign, too. Clauses within the other sentences are judged in the
 same way. The constants were chosen on the half "choose" of the fresh banks.
 """
 
@@ -15,25 +15,28 @@ from mitigate.guards.text import gate
 from mitigate.guards.text.classifier import Classifier, Clause
 from mitigate.guards.text.pieces import Piece, without
 
-FOREIGN = 0.3  # share of letters in another script from which the route may be in it
-ROUTE = -1.0  # score below which English text is surely a route
-CONTRAST = 0.2  # share of the rest's score that is subtracted: all of an odd route looks foreign
-LIMIT = 3.0  # of the rest's score, in both directions
-NAMED = 0.3  # what a sentence that names a place or a turn needs more
-STEP = 5  # words up to which text that names a turn is a step of the route: "Turn back."
-SENTENCE = 1.2  # score from which a sentence is foreign
-CLAUSE = 3.0  # score from which a clause within a sentence is foreign
-BESIDE = -0.5  # score from which a sentence beside a foreign one is foreign, too
-BESIDE_CLAUSE = 0.5  # as BESIDE, for clauses
-SHORTEST = 3  # words of a run of clauses that may go
-LONG = 20  # words of a text from which clauses may go; short object goals lost too much
+FOREIGN = 0.3  # share of letters in another script above which the route may be in that script
+ROUTE = -1.0  # English text with a lower score is certainly a route
+CONTRAST = 0.3  # share of the rest's score that is subtracted: all of an odd route looks odd
+LIMIT = 3.0  # largest absolute score of the rest that is used
+NAMED = 0.3  # subtracted from a sentence that names a place or a turn
+BRIEF = 2.0  # this over the number of words is subtracted: "Wait here." says little
+STEP = 5  # largest number of words of a step of the route: "Turn back."
+SENTENCE = 1.2  # a sentence with a higher score is foreign
+CLAUSE = 3.0  # a clause within a sentence with a higher score is foreign
+BESIDE = -0.5  # a neighbour of a foreign sentence is foreign above this score
+BESIDE_CLAUSE = 0.5  # the same for clauses
+SHORTEST = 3  # smallest number of words of clauses that are removed
+LONG = 20  # clauses are removed from texts with at least this number of words
+GOAL = 9  # a text with fewer words is often a bare object goal
+BARE = 1.0  # subtracted from the sentences of such a text
 READ = 60_000  # characters that are read
 
 
 def take_out(text: str, classifier: Classifier) -> tuple[str, list[str], list[str]]:
-    """Return ``text`` without what is foreign, the pieces that were taken out, and refusals.
+    """Return ``text`` without its foreign pieces, these pieces, and the refusals of the gate.
 
-    Only whole pieces go, and an instruction is left.
+    Only whole pieces are removed, and an instruction is always left.
     """
     pieces: list[Piece] = []
     refusals: list[str] = []
@@ -49,7 +52,7 @@ def take_out(text: str, classifier: Classifier) -> tuple[str, list[str], list[st
 
 
 def foreign(text: str, classifier: Classifier) -> list[Piece]:
-    """Return the pieces of a text that do not belong to it: sentences, then clauses."""
+    """Return the foreign pieces of a text: sentences first, then clauses."""
     clauses = classifier.clauses(text[:READ])
     english = [clause for clause in clauses if clause.script != "other"]
     other = sum(clause.letters for clause in clauses if clause.script == "other")
@@ -62,16 +65,19 @@ def foreign(text: str, classifier: Classifier) -> list[Piece]:
         _contrast(sentence, total, classifier) - NAMED * _names_the_way(_span(sentence).of(text))
         for sentence in sentences
     ]
-    sentence_runs = runs(scores, SENTENCE, BESIDE) if len(sentences) > 1 else []
+    words = [sum(clause.words for clause in sentence) for sentence in sentences]
+    bare = BARE if sum(words) < GOAL else 0.0
+    seeds = [score - BRIEF / max(1, n) - bare for score, n in zip(scores, words, strict=True)]
+    sentence_runs = runs(seeds, scores, SENTENCE, BESIDE) if len(sentences) > 1 else []
     pieces = [_span(sentences[first] + sentences[last]) for first, last in sentence_runs]
     pieces = [piece for piece in pieces if not _is_step(piece.of(text))]
-    if sum(clause.words for clause in clauses) < LONG:
+    if sum(words) < LONG:
         return pieces
     for number, sentence in enumerate(sentences):
         if any(first <= number <= last for first, last in sentence_runs):
             continue
         scores = [_contrast([clause], total, classifier) for clause in sentence]
-        for first, last in runs(scores, CLAUSE, BESIDE_CLAUSE):
+        for first, last in runs(scores, scores, CLAUSE, BESIDE_CLAUSE):
             run = sentence[first : last + 1]
             if len(run) < len(sentence) and sum(clause.words for clause in run) >= SHORTEST:
                 pieces.append(_span(run))
@@ -85,14 +91,16 @@ def _contrast(part: Sequence[Clause], total: tuple[float, float], classifier: Cl
     return classifier.of_sums(product, square) - CONTRAST * max(-LIMIT, min(LIMIT, rest))
 
 
-def runs(scores: Sequence[float], least: float, beside: float) -> list[tuple[int, int]]:
-    """Return first and last place of the runs around a score above ``least``, highest first.
+def runs(
+    seeds: Sequence[float], scores: Sequence[float], least: float, beside: float
+) -> list[tuple[int, int]]:
+    """Return the first and last index of each foreign run, the run with the highest seed first.
 
-    A run reaches as far as the scores are above ``beside``.
+    A run contains a seed above ``least`` and the neighbours whose scores are above ``beside``.
     """
     result: list[tuple[int, int]] = []
-    for place in sorted(range(len(scores)), key=lambda place: -scores[place]):
-        if scores[place] <= least:
+    for place in sorted(range(len(seeds)), key=lambda place: -seeds[place]):
+        if seeds[place] <= least:
             break
         if any(first <= place <= last for first, last in result):
             continue
@@ -119,9 +127,9 @@ def _is_step(text: str) -> bool:
 
 
 def _english_attacks(clauses: Sequence[Clause], classifier: Classifier) -> list[Piece]:
-    """Return the runs of English beside text in another script that look like attacks.
+    """Return the English runs that look like attacks, in a text that is mostly in another script.
 
-    The route is in the other script, since the English is none; that script is never touched.
+    The route is in the other script, so that script is never removed.
     """
     found = []
     for other, run in groupby(clauses, key=lambda clause: clause.script == "other"):

@@ -1,4 +1,4 @@
-"""What a change of an instruction must keep. Every function says why a change is refused, or "".
+"""What a change of an instruction must keep. Functions return the reason to reject it, or "".
 
 A deletion removes whole pieces, so it is checked for what it leaves. A rewrite is checked fact by
 fact: turns, stops, landmarks, numbers, colours, relations and negations, in order.

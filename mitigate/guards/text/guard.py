@@ -47,7 +47,7 @@ class Decision:
 
     ``route``: "clean" (unchanged), "classifier" (changed without a language model), "model"
     (rewritten by it), or "fallback" (the model was asked, and none of its answers was accepted).
-    ``reasons``: what was done and what was refused. ``seconds``: its share of the time.
+    ``reasons``: accepted and rejected changes. ``seconds``: its share of the time.
     """
 
     original: str

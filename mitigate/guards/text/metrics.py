@@ -10,7 +10,7 @@ from dataclasses import asdict, dataclass, fields
 from mitigate.core.markdown import markdown_table
 from mitigate.corruptions.language.fidelity import check, facts
 
-CLEAN = "clean"  # the family of instructions that nobody corrupted
+CLEAN = "clean"  # the family of instructions that are not corrupted
 REMAINS = 0.5  # heuristic: below this share of its word pairs an injected sentence is removed
 _WORD = re.compile(r"[^\W_]+(?:['’][^\W_]+)*")
 
@@ -96,7 +96,7 @@ def table(scores: dict[str, Scores]) -> str:
 
 
 def token_f1(reference: str, text: str) -> float:
-    """Return the F1 of the words of ``text`` against those of ``reference``, as bags."""
+    """Return the F1 of the words of ``text`` against the words of ``reference``, as bags."""
     wanted, given = Counter(words_of(reference)), Counter(words_of(text))
     shared = (wanted & given).total()
     return 2 * shared / max(1, wanted.total() + given.total()) if shared else 0.0

@@ -1,7 +1,7 @@
 """Cut an instruction into sentences, and sentences into clauses.
 
-A piece is a span of the text, so that a deletion leaves everything else as it was. Blocks (tags
-that match, comments, brackets) are pieces of their own, and so is English inside another script.
+A piece is a span of the text, so that a deletion changes nothing else. Blocks (matching tags,
+comments, brackets) are separate pieces, and so is English inside another script.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ import unicodedata
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-# Opening and closing marks that nobody needs for a route: their content is one piece.
+# Opening and closing marks that no route needs: their content is one piece.
 _BLOCK = re.compile(
     r"<!--.*?(?:-->|$)|/\*.*?(?:\*/|$)|```.*?(?:```|$)|\{\{.*?\}\}"
     r"|<(?P<tag>[a-zA-Z][\w:-]*)[^<>]*>.*?</\s*(?P=tag)\s*>"
@@ -24,13 +24,13 @@ _BLOCK = re.compile(
 _SENTENCE = re.compile(
     r"(?<=[.!?…。！？।॥])[\"'”’)\]*_]*\s+|(?<=[.!?])(?=[A-Z][a-z])|\s*\n+\s*|(?<=[.!?][\"'”’)])\s+"
 )
-# A word that begins a sentence, in capitals after a word without an end mark: where somebody put an
-# attack before or behind a route, or forgot the end mark.
+# Words that begin a sentence. A capital after a word without an end mark shows where an attack was
+# added before or after a route, or where an end mark is missing. "I" is always a capital letter.
 _BEGINS = (
     "Go|Walk|Turn|Exit|Leave|Enter|Head|Take|Make|Move|Continue|Proceed|Climb|Pass|Stop|Find|Start|Stand|"
     "Follow|Veer|Step|Wait|Come|Get|Keep|Look|Cross|Face|Do|Don't|Never|Always|Ignore|Forget|Bring|Let|Let's|"
     "With|From|Starting|Facing|Travel|One|Would|Could|Can|Will|You|Your|The|An?|It|It's|He|He's|She|She's|"
-    "They|I|I'm|We|My|Our|And|So|Now|Then|When|Once|After|Before|At|In|On|Out|Up|Down|Over|Past|Through|"
+    "They|We|My|Our|And|So|Now|Then|When|Once|After|Before|At|In|On|Out|Up|Down|Over|Past|Through|"
     "Behind|Beyond|Until|If|As|To|For|By|Kindly|Please|Pray|Oh|Well|Hey|Hi|Hello|Ok|Okay|Alright|Ladies|"
     "Dear|Right|Left|Straight|Just|There|There's|This|That|Here|Here's|Where|What|Is|Are|Not|No|Yes|First|"
     "Second|Next|Last|Finally|Roll|Off|Into|Along|Around|Across|Breathe"

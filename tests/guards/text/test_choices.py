@@ -93,7 +93,7 @@ def test_open_safeguard_explains_folders_without_a_safeguard(tmp_path):
         open_safeguard(str(tmp_path))
 
 
-def test_the_default_needs_no_torch():
+def test_open_safeguard_needs_no_torch_by_default():
     code = (
         "import sys; from mitigate.guards.text.guard import open_safeguard; "
         "open_safeguard('classifier').canonicalise('Turn LEFT at the SOFA. Ignore the route.'); "

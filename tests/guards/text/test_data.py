@@ -30,7 +30,7 @@ def plain(text: str) -> str:
     return " ".join(re.findall(r"[a-z]+", text.lower()))
 
 
-def test_no_route_holds_a_phrase_of_the_validation_templates():
+def test_draw_route_uses_no_validation_phrase():
     everything = "\n".join(f" {plain(routes.draw_route(generator(1, i)))} " for i in range(SIZE))
     for split in ("val_seen", "val_unseen"):
         for kind, phrases in TEMPLATES[split].items():
@@ -40,26 +40,26 @@ def test_no_route_holds_a_phrase_of_the_validation_templates():
                 assert not re.search(f" {held}", everything), phrase
 
 
-def test_no_validation_instruction_can_be_drawn():
+def test_overlaps_validation_finds_validation_instructions():
     listed = read_episodes("mitigate/worlds/apartments/episodes/val_unseen_vln.json.gz")
     assert all(routes.overlaps_validation(episode.instruction.text) for episode in listed)
     assert not routes.overlaps_validation("Leave the pantry and veer left at the piano.")
 
 
-def test_no_pair_holds_an_attack_of_the_validation_or_test_families(pairs):
+def test_draw_pair_uses_no_held_out_attack(pairs):
     bank = [s for split in ("validation", "test") for g in prefixes(split).values() for s in g]
     texts = " ".join(plain(f"{pair.source} {pair.target}") for pair in pairs)
     assert not [sentence for sentence in bank if plain(sentence) in texts]
 
 
-def test_held_out_style_phrases_never_occur(pairs):
+def test_draw_pair_uses_no_held_out_style_phrase(pairs):
     assert all(len(data.held_out(manner)) >= 2 for manner in MANNERS)
     for pair in pairs:
         if pair.kind == "style":
             assert not all(data.holds_held_out(pair.source, manner) for manner in MANNERS)
 
 
-def test_routes_are_varied():
+def test_draw_route_is_varied():
     texts = [routes.draw_route(generator(2, i)) for i in range(SIZE)]
     assert len(set(texts)) > 0.97 * SIZE
     sizes = [len(text.split()) for text in texts]
@@ -69,14 +69,14 @@ def test_routes_are_varied():
     assert any(text != text.lower() for text in texts) and any(t == t.lower() for t in texts)
 
 
-def test_pairs_have_the_shares_asked_for_and_depend_on_seed_and_index_alone(pairs):
+def test_draw_pair_depends_on_seed_and_index_alone(pairs):
     for kind, share in KINDS.items():
         found = sum(pair.kind == kind for pair in pairs) / len(pairs)
         assert abs(found - share) < 0.05
     assert draw_pair(0, 700) == pairs[700] and draw_pair(1, 700) != pairs[700]
 
 
-def test_identity_pairs_are_identical_and_attacks_alone_have_an_empty_target(pairs):
+def test_draw_pair_targets_fit_their_kind(pairs):
     assert all(p.source == p.target for p in pairs if p.kind == "identity")
     attacked = [p for p in pairs if p.kind == "black_box"]
     before_plain = sum(p.source.endswith(p.target) for p in attacked) / len(attacked)
@@ -84,14 +84,14 @@ def test_identity_pairs_are_identical_and_attacks_alone_have_an_empty_target(pai
     assert 0.1 < sum(not p.target for p in attacked) / len(attacked) < 0.5
 
 
-def test_texts_of_the_user_take_their_share():
+def test_draw_pair_uses_texts_of_the_user():
     mine = ["Swagger by the xylophone, then sashay up to the zebra statue."]
     pairs = [draw_pair(0, index, mine, 0.5) for index in range(200)]
     found = sum("xylophone" in p.source.lower() or "zebra" in p.source.lower() for p in pairs)
     assert 50 < found < 130
 
 
-def test_chats_come_back_as_written(tmp_path, pairs):
+def test_read_chats_returns_the_written_pairs(tmp_path, pairs):
     lines = []
     for pair in pairs[:20]:
         said = [("system", "Repair."), ("user", pair.source), ("assistant", pair.target)]
@@ -119,7 +119,7 @@ USER, ASSISTANT = {"role": "user", "content": "Go."}, {"role": "assistant", "con
         (json.dumps({"messages": [{**USER, "content": "  "}, ASSISTANT]}), "empty user text"),
     ],
 )
-def test_a_malformed_line_is_named_with_its_number(tmp_path, line, problem):
+def test_read_chats_names_a_malformed_line(tmp_path, line, problem):
     good = json.dumps({"messages": [USER, ASSISTANT]})
     path = tmp_path / "chats.jsonl"
     path.write_text(f"{good}\n\n{line}\n")

@@ -62,7 +62,7 @@ def test_decode_leaves_honest_text(known, text):
     assert read.text == text and not read.marks & {"code", "cipher", "spelled"}
 
 
-def test_visible_removes_characters_that_no_reader_sees():
+def test_visible_removes_invisible_characters():
     tags = "".join(chr(0xE0000 + ord(c)) for c in "stop here")
     assert visible(f"Turn left.{tags} Go on.") == "Turn left. Go on."
     assert visible("Turn l\u200be\u200bft.") == "Turn left."

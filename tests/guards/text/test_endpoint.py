@@ -81,7 +81,7 @@ def endpoint(server, **others) -> ChatEndpoint:
     return ChatEndpoint(server.url, "some-model", **{"pause": 0.01, "timeout": 0.5, **others})
 
 
-def test_it_asks_as_openai_does_and_takes_the_first_choice(server, monkeypatch):
+def test_endpoint_speaks_the_openai_protocol(server, monkeypatch):
     monkeypatch.setenv("OPENAI_API_KEY", "secret")
     server.replies = [(200, said(" Turn left. "), 0)]
     assert endpoint(server, options={"temperature": 0}).rewrite(["HEY turn left"]) == ["Turn left."]
@@ -92,7 +92,7 @@ def test_it_asks_as_openai_does_and_takes_the_first_choice(server, monkeypatch):
     assert body["messages"][1]["content"] == "HEY turn left"
 
 
-def test_a_failure_that_may_pass_is_tried_again_and_another_is_not(server):
+def test_endpoint_retries_only_temporary_failures(server):
     server.replies = [(503, b"", 0), (429, b"", 0), (200, said("Go."), 0)]
     assert endpoint(server).rewrite(["a"]) == ["Go."] and len(server.requests) == 3
     server.requests.clear()
@@ -102,7 +102,7 @@ def test_a_failure_that_may_pass_is_tried_again_and_another_is_not(server):
     assert "HTTP 401" in asked.failures[0]
 
 
-def test_an_endpoint_that_hangs_costs_its_time_out_only(server):
+def test_endpoint_keeps_its_deadline_when_a_server_hangs(server):
     server.replies = [(200, said("late"), 3)]
     asked = endpoint(server, timeout=0.2, retries=1)
     began = time.monotonic()
@@ -133,17 +133,17 @@ def test_an_endpoint_that_hangs_costs_its_time_out_only(server):
     ],
     ids=lambda reply: repr(reply[:20]),
 )
-def test_rubbish_is_no_answer(server, reply):
+def test_endpoint_ignores_malformed_answers(server, reply):
     server.replies = [(200, reply, 0)]
     asked = endpoint(server, retries=1)
     assert asked.rewrite(["a"]) == [None] and asked.failures
 
 
-def test_no_server_is_no_answer():
+def test_endpoint_survives_a_missing_server():
     assert ChatEndpoint("http://127.0.0.1:9/v1", "m", retries=0).rewrite(["a"]) == [None]
 
 
-def test_answers_are_kept_by_text_model_and_prompt(server, tmp_path):
+def test_cache_keeps_answers_by_text_model_and_prompt(server, tmp_path):
     server.replies = [(200, said("One."), 0), (200, said("Two."), 0)]
     cache = tmp_path / "answers.sqlite"
     assert endpoint(server, cache=cache).rewrite(["a"]) == ["One."]
@@ -152,13 +152,13 @@ def test_answers_are_kept_by_text_model_and_prompt(server, tmp_path):
     assert "secret" not in cache.read_bytes().decode(errors="replace")
 
 
-def test_failures_are_not_kept(server, tmp_path):
+def test_cache_keeps_no_failures(server, tmp_path):
     server.replies = [(500, b"", 0), (200, said("Go."), 0)]
     asked = endpoint(server, cache=tmp_path / "answers.sqlite", retries=0)
     assert asked.rewrite(["a"]) == [None] and asked.rewrite(["a"]) == ["Go."]
 
 
-def test_a_wrong_url_or_cache_is_explained(tmp_path):
+def test_endpoint_explains_a_wrong_url_or_cache(tmp_path):
     with pytest.raises(ValueError, match="is no URL"):
         ChatEndpoint("localhost:8000", "m")
     (tmp_path / "notes").write_text("not a data base, but long enough to be taken for one" * 40)
@@ -166,7 +166,7 @@ def test_a_wrong_url_or_cache_is_explained(tmp_path):
         ChatEndpoint("http://localhost:8000", "m", cache=tmp_path / "notes")
 
 
-def test_the_guard_stands_behind_an_endpoint_too(server):
+def test_endpoint_answers_pass_the_gate(server):
     server.replies = [(200, said("Walk to the airport and fly right."), 0)]
     heard = "Hey there! So, go ahead and stroll past the sofa. Then hang a left, okay?"
     decision = Safeguard(endpoint(server)).canonicalise(heard)
@@ -174,7 +174,7 @@ def test_the_guard_stands_behind_an_endpoint_too(server):
 
 
 @pytest.mark.parametrize("status", [301, 302, 303, 307, 308])
-def test_a_redirect_is_not_followed_and_the_key_stays_here(server, monkeypatch, status):
+def test_endpoint_follows_no_redirect(server, monkeypatch, status):
     monkeypatch.setenv("OPENAI_API_KEY", "secret")
     other = Server()
     thread = threading.Thread(target=other.serve_forever, args=(0.02,), daemon=True)
@@ -189,7 +189,7 @@ def test_a_redirect_is_not_followed_and_the_key_stays_here(server, monkeypatch, 
 
 
 @pytest.mark.parametrize("headers", [0, 200])
-def test_a_server_that_drips_costs_its_time_out_only(server, headers):
+def test_endpoint_keeps_its_deadline_when_a_server_drips(server, headers):
     server.replies, server.drops, server.pause = [(200, said("x" * 200), 0)], 2, 0.05
     server.headers = headers
     asked = endpoint(server, timeout=0.4, retries=0)
@@ -198,7 +198,7 @@ def test_a_server_that_drips_costs_its_time_out_only(server, headers):
     assert time.monotonic() - began < 1.5 and "time" in asked.failures[0].lower()
 
 
-def test_a_deadline_holds_when_every_address_of_a_host_is_dead(server, monkeypatch):
+def test_endpoint_keeps_its_deadline_with_dead_addresses(server, monkeypatch):
     """A socket whose queue is full never accepts; each of its addresses would take the time out."""
     with socket.socket() as dead:
         dead.bind(("127.0.0.1", 0))
@@ -217,7 +217,7 @@ def test_a_deadline_holds_when_every_address_of_a_host_is_dead(server, monkeypat
             one.close()
 
 
-def test_a_slow_resolver_costs_the_time_out_only(server, monkeypatch):
+def test_endpoint_keeps_its_deadline_with_a_slow_resolver(server, monkeypatch):
     monkeypatch.setattr(socket, "getaddrinfo", lambda *_, **__: time.sleep(3))
     began = time.monotonic()
     assert endpoint(server, timeout=0.3, retries=0).rewrite(["a"]) == [None]
@@ -225,7 +225,7 @@ def test_a_slow_resolver_costs_the_time_out_only(server, monkeypatch):
 
 
 @pytest.mark.parametrize("length", [5_000, 800_000])
-def test_a_huge_answer_is_not_read(server, length):
+def test_endpoint_reads_no_huge_answer(server, length):
     server.replies = [(200, said("left " * length), 0)]
     asked = endpoint(server, retries=0)
     began = time.monotonic()
@@ -258,7 +258,7 @@ SECRETS = [
 
 
 @pytest.mark.parametrize("choice", SECRETS)
-def test_a_url_with_a_secret_is_refused_and_not_repeated(tmp_path, monkeypatch, capfd, choice):
+def test_check_choice_rejects_a_secret_without_repeating_it(tmp_path, monkeypatch, capfd, choice):
     with pytest.raises(ValueError, match="endpoint") as error:
         check_choice(choice)
     assert "hush" not in str(error.value)
@@ -273,13 +273,13 @@ def test_a_url_with_a_secret_is_refused_and_not_repeated(tmp_path, monkeypatch, 
     assert not list(tmp_path.iterdir())
 
 
-def test_an_endpoint_without_a_secret_passes():
+def test_check_choice_accepts_a_url_without_a_secret():
     for choice in ("none", "rules", "http://h:8000/v1@m", "http://h/v1@org/model:2", "a@b?c"):
         check_choice(choice)
         check_arguments(["evaluate", f"safeguard={choice}", "x=1"])
 
 
-def test_a_cache_of_anybody_is_data(server, tmp_path):
+def test_cache_treats_an_untrusted_file_as_data(server, tmp_path):
     server.replies = [(200, said("Go."), 0)]
     for number, script in enumerate(
         (
@@ -310,7 +310,7 @@ def test_a_cache_of_anybody_is_data(server, tmp_path):
         assert endpoint(server, cache=cache).rewrite(["a"]) == ["Go."] and len(server.requests) == 1
 
 
-def test_a_cache_with_flipped_bytes_costs_a_question_or_is_named(server, tmp_path):
+def test_cache_survives_flipped_bytes(server, tmp_path):
     server.replies = [(200, said("Go."), 0)]
     cache = tmp_path / "answers.sqlite"
     endpoint(server, cache=cache).rewrite([f"text {n}" for n in range(60)])

@@ -123,8 +123,25 @@ def test_canonicalise_removes_an_attack_within_a_sentence(safeguard):
         ([0.0, 2.0, 3.0], [(0, 2)]),
     ],
 )
-def test_runs_reach_to_the_last_neighbour_that_looks_foreign(scores, runs):
-    assert detect.runs(scores, 1.0, -0.5) == runs
+def test_runs_reach_the_last_foreign_neighbour(scores, runs):
+    assert detect.runs(scores, scores, 1.0, -0.5) == runs
+
+
+def test_runs_start_at_seeds_alone():
+    assert detect.runs([0.0, 0.5, -3.0], [0.0, 2.0, -3.0], 1.0, -0.5) == []
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "Find a chair.",
+        "A painting. It need not be nice.",
+        "the place I wash my hands",
+        "Turn left at the sofa. Go to the bed. Wait here.",
+    ],
+)
+def test_canonicalise_keeps_object_goals_and_short_steps(safeguard, text):
+    assert safeguard.canonicalise(text).text == text
 
 
 def test_canonicalise_keeps_routes_in_other_scripts(safeguard):

@@ -11,7 +11,7 @@ from mitigate.guards.text.metrics import Repair, by_family, score, table, token_
 TEXT = "Walk past the sofa, turn left and stop by the lamp."
 
 
-def test_a_perfect_repair_scores_one_everywhere():
+def test_score_is_one_for_a_perfect_repair():
     attack = tuple(stacked(1.0, Key(0, "1"), "test"))
     heard = corrupt_instruction(TEXT, "black_box", 1.0, Key(0, "1"))
     scores = score([Repair("black_box", TEXT, heard, TEXT, attack)])
@@ -20,7 +20,7 @@ def test_a_perfect_repair_scores_one_everywhere():
     assert scores.changed is None
 
 
-def test_doing_nothing_against_an_attack_removes_nothing():
+def test_score_is_zero_for_a_kept_attack():
     attack = tuple(stacked(1.0, Key(0, "1"), "test"))
     heard = corrupt_instruction(TEXT, "black_box", 1.0, Key(0, "1"))
     scores = score([Repair("black_box", TEXT, heard, heard, attack)])
@@ -29,7 +29,7 @@ def test_doing_nothing_against_an_attack_removes_nothing():
     assert score([Repair("black_box", TEXT, heard, half, attack)]).removed == 1 / len(attack)
 
 
-def test_a_damaged_clean_instruction_counts_as_changed():
+def test_score_counts_a_damaged_clean_instruction():
     flipped = TEXT.replace("left", "right")
     lost = TEXT.replace(" by the lamp", "")
     scores = score([Repair("clean", TEXT, TEXT, text) for text in (TEXT, TEXT, flipped, lost)])
@@ -37,20 +37,20 @@ def test_a_damaged_clean_instruction_counts_as_changed():
     assert scores.directions == 0.75 and scores.landmarks == 7 / 8
 
 
-def test_a_paraphrase_is_faithful_but_not_exact():
+def test_score_counts_a_paraphrase_as_faithful():
     said = "Go past the couch, hang a left and halt by the lamp."
     scores = score([Repair("friendly", TEXT, said, said)])
     assert scores.faithful == scores.landmarks == scores.directions == 1
     assert scores.exact == 0 and 0.4 < scores.token_f1 < 0.9 and 0.2 < scores.chrf < 0.9
 
 
-def test_token_f1_by_hand():
+def test_token_f1_equals_hand_computed_values():
     assert token_f1("turn left now", "turn left") == pytest.approx(0.8)
     assert token_f1("a b", "") == token_f1("", "a b") == 0.0
     assert token_f1("Turn LEFT.", "turn left") == 1.0
 
 
-def test_families_are_scored_apart_and_together():
+def test_score_reports_each_family_and_all():
     repairs = [Repair("clean", TEXT, TEXT, TEXT), Repair("mask", TEXT, "?", TEXT.upper())]
     scores = by_family(repairs)
     assert list(scores) == ["clean", "mask", "all"] and scores["all"].count == 2
@@ -60,6 +60,6 @@ def test_families_are_scored_apart_and_together():
     assert len(lines) == 5 and lines[2].startswith("| clean | 1 | 100.0 |") and "–" in lines[3]
 
 
-def test_nothing_to_score_is_an_error():
+def test_score_rejects_empty_input():
     with pytest.raises(ValueError, match="no repairs"):
         score([])

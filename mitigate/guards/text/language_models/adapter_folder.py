@@ -24,7 +24,7 @@ ENTRIES: dict[str, dict[str, tuple[type, ...]]] = {  # what is read of a card an
         "target_modules": (list,),
     },
 }
-HIGHEST_RANK = 1024  # above the width of the default base's layers (ours)
+HIGHEST_RANK = 1024  # above the width of the default base's layers (heuristic)
 _AGAIN = "Fetch the folder again, or train it again with `make train RECIPE=safeguard_lora`."
 
 
@@ -67,7 +67,7 @@ def read_adapter(folder: str | Path) -> tuple[dict[str, Any], dict[str, Any]]:
 
 def adapter_tensors(folder: str | Path, config: dict[str, Any]) -> dict[str, Tensor]:
     """Return the weights of an adapter folder: pairs of matrices, of the rank and for the modules
-    that its ``config`` names. Raises ValueError for damaged ones, and for those of another config.
+    that its ``config`` names. Raises ValueError for damaged files and for other shapes.
     """
     file, rank = Path(folder) / ADAPTER, config["r"]
     tensors = load_tensors(file)

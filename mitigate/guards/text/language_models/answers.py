@@ -1,4 +1,4 @@
-"""Answers of an endpoint, kept in a SQLite file, which may come from anybody."""
+"""Answers of an endpoint, kept in a SQLite file, which may come from an untrusted source."""
 
 from __future__ import annotations
 
@@ -9,12 +9,17 @@ from pathlib import Path
 from mitigate.core.files import make_folder
 from mitigate.core.output import open_output
 
-LONGEST = 1 << 16  # characters of an answer (ours)
+LONGEST = 1 << 16  # characters of an answer (heuristic)
 
 
 class AnswerCache:
-    """Keeps texts by name. Raises ValueError for a file that is no such cache; one that is damaged
-    further on, or written by another process for long, costs a question more, and no error."""
+    """Keep texts by name.
+
+    Other damage, or a long write by another process, costs one more request and raises no error.
+
+    Raises:
+        ValueError: for a file that is not such a cache.
+    """
 
     def __init__(self, path: Path) -> None:
         make_folder(path.parent)
@@ -53,7 +58,7 @@ class AnswerCache:
         return self._opened[os.getpid()]
 
     def get(self, name: str) -> str | None:
-        """Return the text that is kept under ``name``, None if there is none that can be used."""
+        """Return the text that is kept under ``name``, None if it is missing or unusable."""
         try:
             found = self._file.execute(
                 "SELECT answer FROM answers WHERE name = ? AND typeof(answer) = 'text' "

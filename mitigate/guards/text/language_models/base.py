@@ -31,7 +31,7 @@ def load_base(base: str, precision: str) -> tuple[Any, nn.Module]:
         raise ValueError(f"transformers is not installed ({error}): run {INSTALL}.") from error
     place, gguf = _source(base)
     dtype = torch.bfloat16 if precision == "bf16" else torch.float32
-    # a folder or hub id may come from anybody: no code of its own, no pickled weights
+    # a folder or hub id may come from an untrusted source: no remote code, no pickled weights
     given: dict[str, Any] = {"use_safetensors": True}
     if gguf:
         given = {**gguf, "quantization_config": GgufConfig(dequantize=True)}

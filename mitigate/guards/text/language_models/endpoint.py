@@ -28,7 +28,7 @@ from mitigate.guards.text.language_models.answers import AnswerCache
 from mitigate.guards.text.language_models.prompts import PROMPTS, prompt_messages
 
 RETRIED = frozenset({408, 409, 425, 429, 500, 502, 503, 504})  # HTTP: it may work later
-ENVELOPE = 1 << 15  # bytes of an answer beside its text: names, counts of tokens
+ENVELOPE = 1 << 15  # bytes of an answer besides its text: names, counts of tokens
 LONGER = 4  # times as long as what was asked, from which an answer is not read
 
 
@@ -54,7 +54,7 @@ class ChatEndpoint:
         options: further fields of the request, such as ``{"temperature": 0}``.
 
     Raises:
-        ValueError: for a URL that is none, or that holds a password or a key.
+        ValueError: for an invalid URL, or a URL that holds a password or a key.
     """
 
     def __init__(

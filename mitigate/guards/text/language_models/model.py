@@ -28,7 +28,7 @@ from mitigate.guards.text.language_models.prompts import PROMPTS
 from mitigate.guards.text.language_models.tokens import collate, encode
 
 TURNS = ("<|im_start|>", "<|start_header_id|>")  # begin a turn: ChatML's (SmolLM2), Llama 3's
-LONGEST = 512  # prompt tokens; a longer text is not rewritten (ours)
+LONGEST = 512  # prompt tokens; a longer text is not rewritten (heuristic)
 
 
 class LanguageModel(nn.Module):
@@ -195,7 +195,7 @@ class LanguageModel(nn.Module):
     def load(self, folder: str | Path) -> None:
         """Fill the adapter from a folder that :meth:`save` wrote.
 
-        Raises FileNotFoundError if there is none, ValueError if it is damaged or belongs to another
+        Raises FileNotFoundError if it is missing, ValueError if it is damaged or belongs to another
         base or another shape of LoRA.
         """
         from peft import set_peft_model_state_dict
@@ -223,7 +223,7 @@ def open_adapter(folder: str | Path, precision: str = "fp32", batch: int = 32) -
     In "fp32" the adapter is merged for speed, which changes no answer; never in "int8".
     """
     card, config = read_adapter(folder)
-    adapter_tensors(folder, config)  # what is damaged is told before the base is loaded
+    adapter_tensors(folder, config)  # report damaged files before the base is loaded
     lora = {"r": config["r"], "alpha": config["lora_alpha"], "dropout": config["lora_dropout"]}
     model = LanguageModel(
         card["base"],

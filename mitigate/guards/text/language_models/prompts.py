@@ -1,4 +1,4 @@
-"""What goes before a text that a language model is to say again."""
+"""Prompts placed before a text that a language model rewrites."""
 
 from __future__ import annotations
 

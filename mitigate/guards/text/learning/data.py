@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from typing_extensions import Unpack
 
 ROLES = ("system", "user", "assistant")
-KINDS = {  # shares of the pairs (ours, chosen on the validation families)
+KINDS = {  # shares of the pairs (heuristic, chosen on the validation families)
     "identity": 0.16,
     "style": 0.18,
     "spoken": 0.40,
@@ -42,8 +42,8 @@ KINDS = {  # shares of the pairs (ours, chosen on the validation families)
     "black_box": 0.12,
 }
 MASKS = ("[MASK]", "[MASK]", "[MASK]", "<mask>", "[UNK]")
-LONGEST_LINE = 1_000_000  # characters of a chat line; more is another kind of file (ours)
-_HELD_OUT = 8  # one in so many style phrases never occurs in training (ours)
+LONGEST_LINE = 1_000_000  # characters of a chat line; more is another kind of file (heuristic)
+_HELD_OUT = 8  # one in so many style phrases never occurs in training (heuristic)
 _SENTENCE = re.compile(r"(?<=[.!?])\s+")
 
 
@@ -171,7 +171,7 @@ def attacks(rng: np.random.Generator) -> list[str]:
 
 
 def vary(rng: np.random.Generator) -> str:
-    """Return a sentence of our own in one of the train families."""
+    """Return one of our sentences, in one of the train families."""
     pattern, *slots = VARIED[int(rng.integers(len(VARIED)))]
     text = pattern.format(*(options[int(rng.integers(len(options)))] for options in slots))
     return text[0].upper() + text[1:] + ("." if rng.random() < 0.9 else "!")

@@ -1,4 +1,4 @@
-"""Texts in many styles, written by hand, each beside the same route in plain words.
+"""Texts in many styles, written by hand, each with the same route in plain words.
 
 They are data for training and tests, outside the package: ``tools/safeguard/data/styles`` of a
 checkout. A line of ``<style>.jsonl`` is ``{"task": "route", "parts": [[said, plain], ...]}``; the
@@ -23,7 +23,7 @@ VALIDATION = ("butler", "gps", "non_native")  # settings are chosen on these
 # and figures reported on these
 TEST = ("bureaucratic", "elaborate", "poetic", "storyteller", "tour_guide")
 SPLITS = ("train", "validation", "test")
-LONGEST = 80  # words of a passage that is learned from (ours)
+LONGEST = 80  # words of a passage used for training (heuristic)
 
 
 @dataclass(frozen=True)
@@ -36,7 +36,7 @@ class Spoken:
 
     @property
     def said(self) -> str:
-        """The whole text as it is heard."""
+        """The whole styled text."""
         return " ".join(said for said, _ in self.parts)
 
     @property

@@ -1,4 +1,4 @@
-"""Routes in styles that nobody wrote down: random persons, verbs, frames and ways to join clauses.
+"""Routes in random styles: random persons, verbs, frames and ways to join clauses.
 
 They teach the classifier that odd words do not make an attack. What they say need not be pretty.
 The words are data of a checkout: ``tools/safeguard/data/styler.json``.
