@@ -1,25 +1,16 @@
-"""ViZDoom environments with small frames, and their training by stable-baselines3."""
+"""ViZDoom environments with small frames."""
 
 from __future__ import annotations
 
 import os
-import time
-from pathlib import Path
 
 import cv2
 import gymnasium
-import numpy as np
 import vizdoom.gymnasium_wrapper  # noqa: F401 - registers the environments
 from gymnasium import spaces
-from stable_baselines3 import PPO
-from stable_baselines3.common.callbacks import EvalCallback, StopTrainingOnRewardThreshold
-from stable_baselines3.common.env_util import make_vec_env
-from stable_baselines3.common.vec_env import VecNormalize, VecTransposeImage
 
-WEIGHTS = Path(__file__).parent / "weights"
 HEIGHT, WIDTH = 48, 64
 METRES = 7.35 / 32  # per level of the depth buffer: 7.35 map units (measured), 32 of them per metre
-FEATURES = {"MultiInputPolicy": {"cnn_output_dim": 64}, "CnnPolicy": {"features_dim": 128}}
 
 
 class SmallFrames(gymnasium.ObservationWrapper):
@@ -56,50 +47,3 @@ def make_env(name: str, frame_skip: int) -> gymnasium.Env:
         doom_config_path=os.devnull,  # else it writes into the working folder
     )
     return SmallFrames(env)
-
-
-def train_ppo(
-    make,
-    path: Path,
-    steps: int,
-    policy: str = "MultiInputPolicy",
-    target: float = np.inf,
-    ent_coef: float = 0.01,
-) -> None:
-    """Train a policy with PPO until its likeliest actions reach a mean return, and save it.
-
-    The file leaves out the state of the optimizer.
-    """
-    envs = VecNormalize(make_vec_env(make, n_envs=8, seed=100_000), norm_obs=False)
-    test_env = VecNormalize(
-        make_vec_env(make, seed=200_000), training=False, norm_obs=False, norm_reward=False
-    )
-    test_env = VecTransposeImage(test_env)  # PPO wraps its own environments in the same way
-    stop = EvalCallback(
-        test_env,
-        callback_on_new_best=StopTrainingOnRewardThreshold(target, verbose=1),
-        n_eval_episodes=20,
-        eval_freq=512,  # calls, of 8 steps
-    )
-    model = PPO(
-        policy,
-        envs,
-        learning_rate=5e-4,
-        n_steps=128,
-        batch_size=256,
-        n_epochs=3,
-        ent_coef=ent_coef,
-        policy_kwargs={"features_extractor_kwargs": FEATURES[policy]},
-        seed=0,
-        verbose=1,
-        device="cpu",
-    )
-    started = time.time()
-    model.learn(steps, log_interval=5, callback=stop)
-    print(f"{path.name}: {model.num_timesteps} steps in {time.time() - started:.0f} s", flush=True)
-    optimizer = model.policy.optimizer
-    model.policy.optimizer = type(optimizer)(model.policy.parameters(), lr=model.learning_rate)
-    path.parent.mkdir(exist_ok=True)
-    model.save(path)
-    envs.close()
-    test_env.close()

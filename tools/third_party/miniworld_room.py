@@ -12,9 +12,9 @@ from stable_baselines3 import PPO  # noqa: E402
 
 from mitigate.worlds.gym import GymWorld  # noqa: E402
 from mitigate.worlds.seeded import Ending  # noqa: E402
-from tools.third_party.doom import WEIGHTS, train_ppo  # noqa: E402
+from tools.third_party.ppo import WEIGHTS, load_ppo, train_ppo  # noqa: E402
 
-PATH = WEIGHTS / "miniworld_room.zip"
+PATH = WEIGHTS / "miniworld_room.safetensors"
 
 
 def make() -> gymnasium.Env:
@@ -30,7 +30,7 @@ def make_world() -> GymWorld:
 
 
 def load_policy() -> PPO:
-    return PPO.load(PATH, device="cpu")
+    return load_ppo(make, PATH, "CnnPolicy")
 
 
 if __name__ == "__main__":

@@ -7,6 +7,7 @@ from collections import deque
 
 import numpy as np
 import torch
+from safetensors.torch import load_file, save_file
 from tensordict.nn import TensorDictModule
 from torch import nn
 from torch.distributions import Categorical
@@ -16,10 +17,10 @@ from torchrl.modules import ConvNet, ProbabilisticActor, ValueOperator
 from torchrl.objectives import ClipPPOLoss
 from torchrl.objectives.value import GAE
 
-from tools.third_party.doom import WEIGHTS
 from tools.third_party.miniworld_room import make, make_world  # noqa: F401 - the same world
+from tools.third_party.ppo import WEIGHTS
 
-PATH = WEIGHTS / "miniworld_torchrl.pt"
+PATH = WEIGHTS / "miniworld_torchrl.safetensors"
 ACTIONS = 3
 ENVS, FRAMES, BATCH, EPOCHS = 8, 1024, 256, 3
 
@@ -56,7 +57,7 @@ def make_actor() -> ProbabilisticActor:
 
 def load_policy() -> ProbabilisticActor:
     actor = make_actor()
-    actor.load_state_dict(torch.load(PATH, weights_only=True))
+    actor.load_state_dict(load_file(PATH))
     return actor.eval()
 
 
@@ -98,7 +99,7 @@ def train(steps: int = 60_000, target: float = 0.93) -> None:
         if len(recent) == 100 and np.mean(recent) >= target:
             break
     collector.shutdown()
-    torch.save(actor.state_dict(), PATH)
+    save_file(actor.state_dict(), PATH)
 
 
 if __name__ == "__main__":

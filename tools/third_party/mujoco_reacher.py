@@ -14,13 +14,14 @@ os.environ.setdefault("MUJOCO_GL", "egl")  # before mujoco is imported
 import gymnasium
 import numpy as np
 import torch
+from safetensors.torch import load_file, save_file
 from torch import nn
 
 from mitigate.worlds.gym import GymWorld
 from mitigate.worlds.seeded import Ending
-from tools.third_party.doom import WEIGHTS
+from tools.third_party.ppo import WEIGHTS
 
-PATH = WEIGHTS / "mujoco_reacher.pt"
+PATH = WEIGHTS / "mujoco_reacher.safetensors"
 LINKS = 0.1, 0.11  # metres
 STIFFNESS, DAMPING = 0.5, 0.05  # torque per radian and per radian/s (tuned by hand)
 CAMERA = {"distance": 0.62, "elevation": -90.0, "azimuth": 90.0, "lookat": np.zeros(3)}
@@ -77,7 +78,7 @@ def network() -> nn.Sequential:
 
 def load_policy() -> nn.Sequential:
     policy = network()
-    policy.load_state_dict(torch.load(PATH, weights_only=True))
+    policy.load_state_dict(load_file(PATH))
     return policy.eval()
 
 
@@ -145,7 +146,7 @@ def train() -> None:
             f"{time.time() - started:.0f} s",
             flush=True,
         )
-    torch.save(policy.state_dict(), PATH)
+    save_file(policy.state_dict(), PATH)
 
 
 if __name__ == "__main__":

@@ -6,9 +6,10 @@ from stable_baselines3 import PPO
 
 from mitigate.worlds.gym import GymWorld
 from mitigate.worlds.seeded import Ending
-from tools.third_party.doom import METRES, WEIGHTS, SmallFrames, make_env, train_ppo
+from tools.third_party.doom import METRES, SmallFrames, make_env
+from tools.third_party.ppo import WEIGHTS, load_ppo, train_ppo
 
-PATH = WEIGHTS / "vizdoom_basic.zip"
+PATH = WEIGHTS / "vizdoom_basic.safetensors"
 
 
 def make() -> SmallFrames:
@@ -30,7 +31,7 @@ def make_world() -> GymWorld:
 
 
 def load_policy() -> PPO:
-    return PPO.load(PATH, device="cpu")
+    return load_ppo(make, PATH)
 
 
 if __name__ == "__main__":
