@@ -75,6 +75,9 @@ class Lines:
     def say(self, text):
         self.said.append(text)
 
+    def advance(self, count=1):
+        pass
+
 
 def run(task, groups, count=2):
     lines = Lines()

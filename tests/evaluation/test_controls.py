@@ -10,7 +10,7 @@ from mitigate.core import conf
 from mitigate.core.files import find
 from mitigate.corruptions import CLEAN
 from mitigate.evaluation import controls, rows
-from mitigate.evaluation.controls import OracleAgent, RandomAgent
+from mitigate.evaluation.control_agents import OracleAgent, RandomAgent
 from mitigate.evaluation.episode import run_episode
 from mitigate.worlds.apartments.tasks import load_episodes
 from mitigate.worlds.apartments.world import ApartmentsWorld

@@ -563,7 +563,7 @@ def test_the_programs_weigh_the_views_as_the_agent_does(fusion):
 
 def test_rows_of_another_agent_are_no_metrics_of_this_one(place, tmp_path):
     rows.write(tmp_path / "rows.jsonl", [a_row("0123456789ab", 0, "clean", 1.0)])
-    with pytest.raises(ValueError, match="not of this agent"):
+    with pytest.raises(ValueError, match="not to this agent"):
         export.export(
             place / "runs/whole", "mine", out=tmp_path / "out", rows=[tmp_path / "rows.jsonl"]
         )

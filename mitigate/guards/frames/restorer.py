@@ -122,7 +122,9 @@ class Restorer(nn.Module, Guard):
                 restored[sensor] = self.restore(sensor, restored[sensor])
         return restored
 
-    observe = forward
+    def observe(self, observation: Mapping[str, Any]) -> Mapping[str, Any]:
+        """Return :meth:`forward` of an observation."""
+        return self.forward(observation)
 
     def restore(self, sensor: str, frame: np.ndarray) -> np.ndarray:
         """Return the restored frame, a new array of the same shape and dtype.
@@ -143,6 +145,14 @@ class Restorer(nn.Module, Guard):
         net, views = self._net(sensor), self._views(sensor, frame)
         changed, result = net.judged(torch.from_numpy(views))
         return result.numpy().reshape(frame.shape).astype(frame.dtype) if changed else frame
+
+    def doubt(self, sensor: str, frame: np.ndarray) -> float:
+        """Return the gate's logit minus its threshold, for one frame as in :meth:`restore`.
+
+        Above 0 the frame is restored, unless that would move most of its depth far. The value is
+        -inf for depth without a reading, or with too many readings beyond ``far``.
+        """
+        return self._net(sensor).doubt(torch.from_numpy(self._views(sensor, frame)))
 
     def _net(self, sensor: str) -> SensorRestorer:
         if sensor not in self.nets:

@@ -12,6 +12,7 @@ enlarged. ``x`` and the other views keep their full size, so detail stays.
 
 from __future__ import annotations
 
+import math
 import warnings
 
 import torch
@@ -169,6 +170,17 @@ class SensorRestorer(nn.Module):
         if self.sensor == DEPTH and _share((y - x).abs() > MOVED, valid) > 0.5:
             return False, frames
         return True, self.unscaled(y)
+
+    @torch.inference_mode()
+    def doubt(self, frames: Tensor) -> float:
+        """Return the gate's logit for frames [V, H, W, c] of an instant minus its threshold.
+
+        The value is -inf for frames out of the known range.
+        """
+        x, valid = self.scaled(frames)
+        if not self.knows(frames, valid):
+            return -math.inf
+        return float(self.judge(*self.small(x, valid), len(frames))[2] - self.threshold)
 
     def knows(self, frames: Tensor, valid: Tensor) -> bool:
         """Return whether frames [V, H, W, c] have readings, most of them within ``far``.

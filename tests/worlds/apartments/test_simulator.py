@@ -10,7 +10,7 @@ import pytest
 
 from mitigate.core.observation import FORWARD, LEFT, MAX_STEPS, RIGHT, STOP
 from mitigate.corruptions import CLEAN
-from mitigate.evaluation.controls import OracleAgent
+from mitigate.evaluation.control_agents import OracleAgent
 from mitigate.evaluation.episode import run_episode
 from mitigate.worlds.apartments.apartment import Apartment, apartment_of
 from mitigate.worlds.apartments.navigation import CELL, FreeSpace
