@@ -13,7 +13,7 @@ from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 import pytest
 
 from mitigate.evaluation import evaluate
-from mitigate.guards.text.addresses import check_arguments, check_choice
+from mitigate.core.addresses import check_arguments, check_choice
 from mitigate.guards.text.guard import Safeguard, open_safeguard
 from mitigate.guards.text.language_models.endpoint import ENVELOPE, ChatEndpoint
 

@@ -20,10 +20,10 @@ from urllib.parse import urlsplit
 import urllib3
 from tqdm import tqdm
 
+from mitigate.core.addresses import check_url
 from mitigate.core.json_files import parse_json
 from mitigate.core.names import short
 from mitigate.core.seeding import digest
-from mitigate.guards.text.addresses import check_url
 from mitigate.guards.text.language_models.answers import AnswerCache
 from mitigate.guards.text.language_models.prompts import PROMPTS, prompt_messages
 
