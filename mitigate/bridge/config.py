@@ -42,7 +42,7 @@ class RunConfig:
     launcher: Any = MISSING
     split: str = "unnamed"
     rule: str | None = None
-    safeguard: str = "none"
+    safeguard: Any = "none"  # text; check_choice checks it, because Hydra would print it
     restore: str | None = None
     tokenizer: str | None = None
     token_length: int | None = None

@@ -22,7 +22,7 @@ _SEPARATORS = re.compile(r"[\s,=\"'\\(){}\[\]]+")
 # Other options may hold an @ or a //, but not a URL with an @.
 _NAMES_SAFEGUARD = re.compile(r"safeguard[\"']?\s*[=:]", re.IGNORECASE)
 _SECRET = re.compile(r"(?:https?|ftp)[:/]\S*[@?]", re.IGNORECASE)
-_EARLIER = re.compile(r"(?:rules|tagger|reader)\+")  # prefixes of earlier versions
+_EARLIER = re.compile(r"^(?:rules|tagger|reader)\+")  # prefixes of earlier versions
 
 
 def check_url(url: str) -> None:
@@ -42,13 +42,15 @@ def check_url(url: str) -> None:
         raise ValueError(f"The endpoint is not a valid URL. {_EXAMPLE}")
 
 
-def check_choice(choice: str) -> None:
-    """Raise ValueError if a value of ``safeguard=`` is an invalid address.
+def check_choice(choice: object) -> None:
+    """Raise ValueError if a value of ``safeguard=`` is not text, or an invalid address.
 
     A name or an existing folder passes. Anything else with a mark of an address must be
     ``URL@model``.
     """
-    choice = _EARLIER.sub("", choice, count=1) if _EARLIER.match(choice) else choice
+    if not isinstance(choice, str):
+        raise ValueError(f"safeguard must be text, got a {type(choice).__name__}. {_EXAMPLE}")
+    choice = _EARLIER.sub("", choice)
     if not _SUSPECT.search(choice) or _is_folder(choice):
         return
     url, at, model = choice.rpartition("@")
@@ -80,6 +82,6 @@ def check_arguments(arguments: Iterable[str]) -> None:
 
 def _is_folder(text: str) -> bool:
     try:
-        return Path(text).is_dir()
+        return bool(text) and Path(text).is_dir()
     except (OSError, ValueError):  # too long, or a zero byte
         return False

@@ -106,7 +106,7 @@ class EvaluateConfig:
 
     runs: str = "runs"
     checkpoint: str | None = None
-    safeguard: str = "none"
+    safeguard: Any = "none"  # text; check_choice checks it, because Hydra would print it
     restore: str | None = None
     name: str | None = None
     version: str | None = None

@@ -59,8 +59,10 @@ def check(choice: object) -> None:
         return
     alone = bool(plus) and name in ("none", *REPLACED, "classifier")
     if alone or name not in (*CHOICES, *REPLACED) and not (name and Path(name).is_dir()):
-        shown = choice if is_plain(choice) else "with this value"  # it may hold a password
-        raise ValueError(f"{unknown('safeguard', shown, CHOICES)} Or name a folder. {FOLDER}")
+        cause = f"This value is no safeguard. Choose one of: {', '.join(CHOICES)}."
+        if is_plain(choice):  # any other value may hold a password
+            cause = unknown("safeguard", choice, CHOICES)
+        raise ValueError(f"{cause} Or name a folder. {FOLDER}")
     if name not in (*CHOICES, *REPLACED) and kind(name) is None:
         raise FileNotFoundError(not_in(name))
 
