@@ -31,6 +31,8 @@ RETRIED = frozenset({408, 409, 425, 429, 500, 502, 503, 504})  # HTTP: it may wo
 ENVELOPE = 1 << 15  # bytes of an answer besides its text: names, counts of tokens
 LONGER = 4  # times as long as what was asked, from which an answer is not read
 
+CONNECT_SHARE = 0.25  # of a deadline, to connect to one of a host's addresses (heuristic)
+
 
 class _Refused(Exception):
     """An answer of another status than 200."""
@@ -165,7 +167,8 @@ def _asked(url: str, body: bytes, headers: dict[str, str], seconds: float, most:
     proxy = urllib.request.getproxies().get(parts.scheme)
     direct = proxy is None or urllib.request.proxy_bypass(parts.hostname or "")
     pool = urllib3.PoolManager() if direct or proxy is None else urllib3.ProxyManager(proxy)
-    limit = urllib3.Timeout(connect=seconds, read=seconds)
+    # urllib3 applies "connect" to each address of the host: after a dead one, time must be left
+    limit = urllib3.Timeout(connect=CONNECT_SHARE * seconds, read=seconds)
     ends = time.monotonic() + seconds
     reply = pool.request("POST", url, body=body, headers=headers, timeout=limit, retries=False,
                          redirect=False, preload_content=False)  # fmt: skip
