@@ -6,6 +6,7 @@ import gzip
 import json
 import os
 import resource
+import tracemalloc
 import zlib
 from pathlib import Path
 
@@ -165,3 +166,27 @@ def test_an_error_of_what_is_read_meanwhile_stays_as_it_is(tmp_path):
     ):
         (tmp_path / "gone").read_bytes()
     assert not [*tmp_path.iterdir()]
+
+
+@pytest.mark.parametrize("separator", [b"", b"\n"], ids=["one line", "many lines"])
+def test_item_9_last_lines_read_little_of_a_huge_output(tmp_path, separator):
+    path = tmp_path / "log"
+    with open(path, "wb") as file:
+        for _ in range(300):
+            file.write(b"x" * (1 << 20) + separator)
+        file.write(b"end")
+    tracemalloc.start()
+    with open(path, "rb") as log:
+        lines = files.last_lines(log, 12)
+    memory = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert memory < 1 << 21
+    assert len(lines) <= 12 and all(len(line) < 210 for line in lines)
+    assert lines[-1].endswith("end")
+
+
+def test_item_9_last_lines_escape_control_characters(tmp_path):
+    path = tmp_path / "log"
+    path.write_bytes("first\n\x1b[31mrot\tgrün\x1b[0m\xff\n\n".encode() + b"\xff\n")
+    with open(path, "rb") as log:
+        assert files.last_lines(log, 2) == ["\\x1b[31mrot grün\\x1b[0mÿ", "\ufffd"]
