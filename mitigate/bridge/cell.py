@@ -29,7 +29,7 @@ from mitigate.bridge.results import (
     maybe_normalised,
 )
 from mitigate.core import output
-from mitigate.core.files import atomic_text, sha256
+from mitigate.core.files import atomic_text, last_lines, sha256
 from mitigate.core.json_files import read_object
 from mitigate.core.names import counted, short
 from mitigate.corruptions import Corruption
@@ -260,8 +260,10 @@ class Cell:
 
     def output_excerpt(self) -> str:
         """Return the end of the command's output for an error message."""
-        lines = self.log.read_text("utf-8", "replace").splitlines() if self.log.is_file() else []
-        tail = "\n".join(f"  | {line}" for line in lines[-TAIL:])
+        if not self.log.is_file():
+            return " It printed nothing."
+        with open(self.log, "rb") as file:
+            tail = "\n".join(f"  | {line}" for line in last_lines(file, TAIL))
         return f"\nThe end of {self.log}:\n{tail}" if tail else " It printed nothing."
 
     def reports(self) -> Reports:

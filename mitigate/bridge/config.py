@@ -16,11 +16,11 @@ from omegaconf import MISSING
 from mitigate.bridge.condition import SETTLE_TIME
 from mitigate.cluster import launcher  # noqa: F401 - registers the kinds of conf/launcher
 from mitigate.core import conf
+from mitigate.core.addresses import check_choice
 from mitigate.core.files import make_folder
 from mitigate.core.names import short, unknown
 from mitigate.evaluation.conditions import suite_conditions
 from mitigate.evaluation.rows import allowed
-from mitigate.guards.text.addresses import check_choice
 from mitigate.worlds.measures import RULES
 
 
@@ -42,7 +42,7 @@ class RunConfig:
     launcher: Any = MISSING
     split: str = "unnamed"
     rule: str | None = None
-    safeguard: str = "none"
+    safeguard: Any = "none"  # text; check_choice checks it, because Hydra would print it
     restore: str | None = None
     tokenizer: str | None = None
     token_length: int | None = None

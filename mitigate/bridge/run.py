@@ -33,7 +33,6 @@ from mitigate.core.output import output_folder
 from mitigate.core.progress import Progress
 from mitigate.core.signals import raise_ended
 from mitigate.corruptions.language.text import is_english, passed_through
-from mitigate.guards.text.addresses import check_arguments
 
 PROGRESS_INTERVAL = 15.0  # seconds between two lines of progress (heuristic)
 PAUSE = 0.2  # seconds between two polls of a running command
@@ -355,8 +354,7 @@ def main() -> None:
 
 
 def _check_line(options: Sequence[str]) -> None:
-    """Raise ValueError for an invalid address of a safeguard, and for a command without ``--``."""
-    check_arguments(options)
+    """Raise ValueError for a command without ``--``."""
     words = [option for option in options if "=" not in option and option[:1] not in ("-", "~")]
     if words:
         raise ValueError(

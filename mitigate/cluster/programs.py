@@ -20,12 +20,13 @@ from typing import ClassVar
 from mitigate.cluster import launcher as launchers
 from mitigate.cluster import tied
 from mitigate.cluster.config import LauncherConfig
-from mitigate.core.files import make_folder
+from mitigate.core.files import last_lines, make_folder
 from mitigate.core.output import open_output
 from mitigate.core.progress import Progress
 
 PAUSE = 0.1  # seconds between two checks of running programs
 GRACE = 30.0  # seconds that a program may take to save after SIGTERM (heuristic)
+REASON_WIDTH = 400  # characters of a program's last line in a problem (heuristic)
 
 
 @dataclass(frozen=True)
@@ -88,9 +89,7 @@ class Running:
         spent = self.outcome.seconds
         spent[self.what] = spent.get(self.what, 0.0) + used.ru_utime + used.ru_stime
         if self.process.returncode:
-            log = self.chain.log
-            text = log.read_text("utf-8", "replace").strip() if log.is_file() else "its log is lost"
-            last = " ".join(text.splitlines()[-1:])[-400:]
+            last = _last_line(self.chain.log)
             self.outcome.problem = f"{self.what} ended with {self.process.returncode} ({last})"
         elif self.left:
             self._next()
@@ -108,6 +107,13 @@ class Running:
         except subprocess.TimeoutExpired:
             self.process.kill()
             self.process.wait()
+
+
+def _last_line(log: Path) -> str:
+    if not log.is_file():
+        return "its log is lost"
+    with open(log, "rb") as file:
+        return "".join(last_lines(file, 1, REASON_WIDTH))
 
 
 class ChainTask:

@@ -29,6 +29,7 @@ from hydra.utils import get_object
 from omegaconf import DictConfig, OmegaConf
 from omegaconf.errors import OmegaConfBaseException
 
+from mitigate.core.addresses import check_arguments
 from mitigate.core.build import argument_names
 from mitigate.core.errors import error_message, too_large_message
 from mitigate.core.files import PACKAGE
@@ -93,7 +94,7 @@ def main(
     Args:
         program: a ``hydra.main`` function over ``conf/<primary>.yaml``.
         primary: name of the config.
-        check: called before ``program``.
+        check: called before ``program``, after the check of addresses (``core/addresses.py``).
         behind: words of the command line that are not Hydra's; they end the printed command.
         again: what the printed command does, if it does not resume.
     """
@@ -101,17 +102,13 @@ def main(
         print(help_text(sys.modules[program.__module__].__doc__ or "", primary))
         return
     if os.environ.get(FULL) and OURS not in os.environ:
+        _prepare(primary, check)
         return program()
     os.environ.update({FULL: "1", OURS: "1"})  # makes Hydra raise errors instead of exiting
     if threading.current_thread() is threading.main_thread():
         signal.signal(signal.SIGTERM, raise_ended)
     try:
-        if check is not None:
-            check()
-        check_dashes(sys.argv[1:])
-        sys.argv[1:] = flags_first(sys.argv[1:])
-        for notice in notices(primary, sys.argv[1:]):
-            print(notice, file=sys.stderr)
+        _prepare(primary, check)
         with redirect_stderr(_WithoutHydraLine(sys.stderr)):
             program()
     except (HydraException, OmegaConfBaseException) as error:
@@ -129,6 +126,17 @@ def main(
         sys.exit(error.status if isinstance(error, Ended) else 130)
     finally:
         del os.environ[FULL], os.environ[OURS]
+
+
+def _prepare(primary: str, check: Callable[[], None] | None) -> None:
+    """Check the command line before Hydra parses or prints it, and bring it in Hydra's order."""
+    check_arguments(sys.argv[1:])
+    if check is not None:
+        check()
+    check_dashes(sys.argv[1:])
+    sys.argv[1:] = flags_first(sys.argv[1:])
+    for notice in notices(primary, sys.argv[1:]):
+        print(notice, file=sys.stderr)
 
 
 class _WithoutHydraLine:
@@ -185,8 +193,10 @@ def load_config(primary: str, words: Sequence[str] = ()) -> DictConfig:
     The words are overrides, and optionally a folder with more configs (``--config-dir=mine``).
 
     Raises:
-        ValueError: no imported module has registered the types of this file.
+        ValueError: no imported module has registered the types of this file, or an address in the
+            words holds a password.
     """
+    check_arguments(words)
     if primary not in TYPES:
         raise ValueError(
             f"The types of conf/{primary}.yaml are not registered: import the module of the "

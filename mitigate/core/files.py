@@ -14,7 +14,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from importlib.util import find_spec
 from pathlib import Path
-from typing import Any, TextIO
+from typing import Any, BinaryIO, TextIO
 
 from mitigate.core import output
 
@@ -24,6 +24,8 @@ RECORDING = "recording.json"  # in the folder of a recording by `mitigate run re
 # to 31).
 RATIO = 128
 FREE = 1 << 24
+TAIL_BYTES = 1 << 16  # of a program's output that a message reads (heuristic)
+LINE_WIDTH = 200  # characters of a line of it that a message shows (heuristic)
 
 PACKAGE = Path(__file__).resolve().parents[1]  # the folder of mitigate
 ROOT = PACKAGE.parent  # the checkout, or the folder of all installed packages
@@ -133,6 +135,31 @@ def read_regular(path: Path | str) -> str:
     """Return the UTF-8 text of a small file in an output folder. Raises as :func:`open_text`."""
     with open_text(path) as file:
         return file.read()
+
+
+def last_lines(file: BinaryIO, count: int, width: int = LINE_WIDTH) -> list[str]:
+    """Return the last lines of a program's output that are not empty, for a message.
+
+    Only the last ``TAIL_BYTES`` are read. A longer line is shortened in its middle, and control
+    characters are escaped.
+
+    Args:
+        file: seekable file, open for reading.
+        count: largest number of lines.
+        width: largest number of characters of a line, without the mark of the gap.
+    """
+    size = file.seek(0, os.SEEK_END)
+    file.seek(max(0, size - TAIL_BYTES))
+    text = file.read(TAIL_BYTES).decode("utf-8", "replace").replace("\t", " ")
+    lines = [line for line in text.splitlines() if line.strip()][-count:]
+    return [_printable(line, width) for line in lines]
+
+
+def _printable(line: str, width: int) -> str:
+    half = width // 2
+    if len(line) > width:
+        line = f"{line[:half]} ... {line[-half:]}"
+    return "".join(c if c.isprintable() else ascii(c)[1:-1] for c in line)
 
 
 def make_folder(folder: Path | str) -> Path:

@@ -15,9 +15,9 @@ from omegaconf import MISSING, DictConfig, OmegaConf
 
 from mitigate.cluster import launcher  # noqa: F401 - registers the kinds of conf/launcher
 from mitigate.core import conf, seeding
+from mitigate.core.addresses import check_choice
 from mitigate.core.conf import CONF
 from mitigate.evaluation import conditions  # noqa: F401 - registers ${suite:...} of conf/suite
-from mitigate.guards.text.addresses import check_choice
 
 # the report at the end of an agent's training
 REPORT = "mitigate.training.reports.before_after.report_before_after"
@@ -106,7 +106,7 @@ class EvaluateConfig:
 
     runs: str = "runs"
     checkpoint: str | None = None
-    safeguard: str = "none"
+    safeguard: Any = "none"  # text; check_choice checks it, because Hydra would print it
     restore: str | None = None
     name: str | None = None
     version: str | None = None

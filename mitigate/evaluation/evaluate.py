@@ -25,7 +25,6 @@ from mitigate.evaluation.conditions import check_sensors, conditions
 from mitigate.evaluation.config import EvaluateConfig, changed, default_folder
 from mitigate.evaluation.episode_lists import episodes, warn_of_tasks
 from mitigate.evaluation.rows import ROWS
-from mitigate.guards.text.addresses import check_arguments
 
 DECISIONS = "safeguard.jsonl"  # log of a safeguard's decision on each instruction
 
@@ -175,8 +174,7 @@ def hydra_main(cfg: DictConfig) -> None:
 
 
 def _add_kind_of_agent() -> None:
-    """Check the command line, and add the kind of agent of its weights."""
-    check_arguments(sys.argv)
+    """Add the kind of agent of its weights to the command line."""
     if any("checkpoint=" in option for option in sys.argv[1:]):
         from mitigate.agents.building import with_kind
 

@@ -21,6 +21,14 @@ from mitigate.evaluation.rows import Row
 from mitigate.evaluation.sections import Difference, Retained, Section, label, sections
 
 NO_DIFFERENCE = Difference(None, None, {})
+# Limits of pictures, whose time grows with panels and cells: rows come from other people (heuristic)
+MOST_CORRUPTIONS = 100  # of a picture
+MOST_COLUMNS = 50  # of a picture
+MOST_HEATMAPS = 50  # of a report
+NO_PICTURE = (
+    f"No picture: it would show more than {MOST_CORRUPTIONS} corruptions or {MOST_COLUMNS} "
+    f"columns, or this report has {MOST_HEATMAPS} heatmaps."
+)
 FEW = 10  # with fewer episodes no difference is in bold (heuristic)
 
 
@@ -30,6 +38,8 @@ def markdown(parts: Sequence[Section], pictures: Sequence[Sequence[str]] = ()) -
     for index, section in enumerate(parts):
         names = pictures[index] if index < len(pictures) else ()
         images = "\n".join(f"![{Path(name).stem}]({name})" for name in names)
+        if pictures and section.blocks and not names:
+            images = NO_PICTURE
         table = _table(section)
         about = f"{NO_WIDTH}\n" * (NO_INTERVAL in table) + _notes(section)
         texts.append(f"{_heading(section)}\n\n{table}\n\n{about}\n\n{images}")
@@ -46,7 +56,8 @@ def write(
 ) -> list[Path]:
     """Write ``table.md``, ``heatmap.png`` and ``severity.png`` to ``folder``; return their paths.
 
-    More sections and grids get ``heatmap-2.png``, ``severity-2.png`` and so on.
+    More sections and grids get ``heatmap-2.png``, ``severity-2.png`` and so on. Sections that are
+    too large, or beyond ``MOST_HEATMAPS``, have no pictures.
 
     Args:
         rows: result rows.
@@ -64,7 +75,7 @@ def write(
     heatmaps = 0
     grids: list[Grid] = []
     for section, names in zip(parts, pictures, strict=True):
-        if not section.blocks:
+        if not section.blocks or not _is_drawable(section.grid) or heatmaps == MOST_HEATMAPS:
             continue
         names.append(_numbered("heatmap", heatmaps))
         plots.heatmap(section, folder / names[-1])
@@ -76,6 +87,10 @@ def write(
     with atomic_text(folder / "table.md") as file:
         file.write(markdown(parts, pictures))
     return [folder / "table.md", *(folder / name for names in pictures for name in names)]
+
+
+def _is_drawable(grid: Grid) -> bool:
+    return len(grid.corruptions) <= MOST_CORRUPTIONS and len(grid.columns) <= MOST_COLUMNS
 
 
 def _heading(section: Section) -> str:

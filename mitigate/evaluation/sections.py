@@ -194,7 +194,11 @@ class Section:
 
     def partial(self, column: str, corruption: str) -> bool:
         """Return whether a cell has missing episodes."""
-        return any((gap.column, gap.corruption) == (column, corruption) for gap in self.gaps)
+        return (column, corruption) in self._incomplete
+
+    @cached_property
+    def _incomplete(self) -> frozenset[tuple[str, str]]:
+        return frozenset((gap.column, gap.corruption) for gap in self.gaps)
 
     def whole(self, part: str) -> int:
         """Return how many corruptions a complete PRS over a block, or a half of it, covers."""

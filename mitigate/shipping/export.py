@@ -29,7 +29,7 @@ from torch import Tensor, nn
 from mitigate.agents import adapters, loading
 from mitigate.agents.topological import TopologicalAgent
 from mitigate.core import checkpoint, folders, older_folders, settings
-from mitigate.core.files import find, put_folder, write_text
+from mitigate.core.files import find, last_lines, put_folder, write_text
 from mitigate.core.output import output_folder
 from mitigate.corruptions import CLEAN
 from mitigate.evaluation import rows as result_rows
@@ -45,6 +45,7 @@ HARDENED = Path("checkpoints/hardened")
 RELOADED = 1e-5  # the folder in a new process, compared with the agent in this process
 EXPORTED = 1e-3  # program.pt2 and the ONNX files, compared with the agent
 ROUNDED = 0.1  # the float16 weights, compared with the float32 weights of the run
+REASON_WIDTH = 400  # characters of a failed check's last line in a message (heuristic)
 WALKS = 2  # episodes in which a reloaded agent of another class is compared (heuristic)
 _RUN = "import sys; from mitigate.shipping import export; export.{}(*sys.argv[1:])"
 _TRAIN = "Run `make train` to the end, then name its folder (runs/...)."
@@ -402,14 +403,15 @@ def _run_apart(check: str, what: str, *paths: Path) -> None:
     the same ``what``.
     """
     root = str(Path(__file__).resolve().parents[2])
-    process = subprocess.run(
-        [sys.executable, "-c", _RUN.format(check), *map(str, paths)],
-        env={**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, (root, *sys.path)))},
-        capture_output=True,
-        text=True,
-    )
+    with tempfile.TemporaryFile() as errors:
+        process = subprocess.run(
+            [sys.executable, "-c", _RUN.format(check), *map(str, paths)],
+            env={**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, (root, *sys.path)))},
+            stdout=subprocess.DEVNULL,
+            stderr=errors,
+        )
+        last = "".join(last_lines(errors, 1, REASON_WIDTH)) or "no message"
     if process.returncode:
-        last = (process.stderr.strip().splitlines() or ["no message"])[-1]
         raise ValueError(
             f"The folder does not reload to the same {what} ({last}). Nothing was written."
         )

@@ -12,6 +12,7 @@ from omegaconf import MISSING, DictConfig
 
 from mitigate.cluster import programs
 from mitigate.core import build, conf
+from mitigate.core.addresses import check_arguments
 from mitigate.core.files import atomic_text
 from mitigate.core.json_files import read_json
 from mitigate.core.names import short
@@ -220,7 +221,7 @@ def cells(config: TablesConfig) -> list[Cell]:
 def listed(entries: Mapping[str, Any], place: str) -> dict[str, tuple[str, ...]]:
     """Return the options of each entry of ``columns`` or ``evaluations``, without null entries.
 
-    Raises ValueError for an entry that is not a list of options.
+    Raises ValueError for an entry that is not a list of options, or an address with a password.
     """
     lists = {str(name): options for name, options in entries.items() if options is not None}
     for name, options in lists.items():
@@ -229,6 +230,7 @@ def listed(entries: Mapping[str, Any], place: str) -> dict[str, tuple[str, ...]]
                 f"{place}.{name}={options} must be a list of options, in quotes for the shell: "
                 f"'{place}.{name}=[\"{EXAMPLES[place]}\"]'."
             )
+        check_arguments(options)
     return {name: tuple(options) for name, options in lists.items()}
 
 

@@ -27,7 +27,6 @@ from mitigate.core.options import without_config_folder
 from mitigate.core.progress import Progress
 from mitigate.core.workers import cores
 from mitigate.evaluation.evaluate import write_table
-from mitigate.guards.text.addresses import check_arguments
 
 COMMANDS = ("train", "evaluate")
 LOGS = "logs"
@@ -188,5 +187,5 @@ def main() -> int:
     def program() -> None:
         run_all(conf.typed(conf.load_config("sweep", sweep_options), "sweep"), options)
 
-    conf.main(program, "sweep", lambda: check_arguments(options))
+    conf.main(program, "sweep")
     return 0

@@ -362,3 +362,12 @@ def test_run_lists_the_launchers():
         check=False,
     )
     assert "Choose one of: local, ray, slurm." in result.stderr
+
+
+def test_item_9_run_prints_little_of_a_command_that_prints_much(run, tmp_path):
+    code = "import sys; sys.stdout.write('x' * (50 << 20) + chr(27) + '[31m'); sys.exit(3)"
+    command = f"{sys.executable} -c {shlex.quote(code)}"
+    result = run(tmp_path / "o", "conditions=[clean]", command)
+    assert "the command ended with status 3" in result.stderr
+    assert len(result.stderr) < 1000 and "\x1b" not in result.stderr
+    assert result.stderr.count("xxx ... xxx") == 1

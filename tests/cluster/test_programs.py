@@ -124,3 +124,14 @@ def test_stopped_chain_lets_its_programs_save(tmp_path):
         signal.signal(signal.SIGTERM, before)
     assert (tmp_path / "one").read_text() == (tmp_path / "two").read_text() == "saved"
     assert not result[2].log.exists()
+
+
+def test_item_9_chain_repeats_little_of_a_program_that_prints_much(tmp_path):
+    code = "import sys; sys.stdout.write('x' * (50 << 20)); sys.exit(3)"
+    chain = programs.Chain(
+        "one", (("train", (sys.executable, "-c", code)),), tmp_path / "log", tmp_path
+    )
+    running = programs.Running(chain)
+    while (outcome := running.poll()) is None:
+        time.sleep(0.02)
+    assert outcome.problem.startswith("train ended with 3 (xxx") and len(outcome.problem) < 450

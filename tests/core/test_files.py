@@ -6,6 +6,7 @@ import gzip
 import json
 import os
 import resource
+import tracemalloc
 import zlib
 from pathlib import Path
 
@@ -165,3 +166,25 @@ def test_an_error_of_what_is_read_meanwhile_stays_as_it_is(tmp_path):
     ):
         (tmp_path / "gone").read_bytes()
     assert not [*tmp_path.iterdir()]
+
+
+@pytest.mark.parametrize("block", [b"x" * 4096, b"\n" * 4096], ids=["one line", "empty lines"])
+def test_item_9_last_lines_read_little_of_a_huge_output(tmp_path, block):
+    path = tmp_path / "log"
+    with open(path, "wb") as file:
+        file.seek(300 << 20)  # a sparse file
+        file.write(block * 64 + b"end")
+    tracemalloc.start()
+    with open(path, "rb") as log:
+        lines = files.last_lines(log, 12)
+    memory = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert memory < 1 << 21
+    assert len(lines) == 1 and len(lines[0]) < 210 and lines[0].endswith("end")
+
+
+def test_item_9_last_lines_escape_control_characters(tmp_path):
+    path = tmp_path / "log"
+    path.write_bytes("first\n\x1b[31mrot\tgrün\x1b[0m\xff\n\n".encode() + b"\xff\n")
+    with open(path, "rb") as log:
+        assert files.last_lines(log, 2) == ["\\x1b[31mrot grün\\x1b[0mÿ", "\ufffd"]

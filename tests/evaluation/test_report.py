@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+import time
 
 import cv2
 import numpy as np
@@ -12,7 +13,7 @@ import pytest
 from mitigate.core.markdown import markdown_of
 from mitigate.corruptions import DEPTH, INSTRUCTION, NAMES, RGB
 from mitigate.corruptions.registry import unseen_names
-from mitigate.evaluation import rows, table
+from mitigate.evaluation import report, rows, table
 from mitigate.evaluation.report import markdown, sections, write
 from mitigate.evaluation.sections import Difference
 from tests.evaluation.made_rows import cell, column, row
@@ -459,3 +460,25 @@ def test_columns_distinguish_hashes_with_equal_prefixes():
     rows = [*cell(8, agent="myagent-v1"), *cell(2, agent="myagent-v2")]
     (part,) = sections(rows)
     assert set(part.columns) == {"base (myagent-v1)", "base (myagent-v2)"}
+
+
+def test_item_9_report_over_2000_made_up_corruptions_finishes(tmp_path):
+    wins = {f"made_up_{number}": number % 10 for number in range(2000)}
+    rows = column(9, wins) + column(8, wins, name="other", agent="a" * 12)[:-1]  # with a gap
+    began = time.process_time()
+    paths = report.write(rows, tmp_path)
+    assert time.process_time() - began < 30
+    assert [path.name for path in paths] == ["table.md"]
+    text = paths[0].read_text()
+    assert report.NO_PICTURE in text and "made_up_1999" in text and "other" in text
+
+
+def test_item_9_report_over_many_severities_draws_a_bounded_number_of_pictures(
+    tmp_path, monkeypatch
+):
+    monkeypatch.setattr(report, "MOST_HEATMAPS", 1)
+    rows = cell(9) + cell(5, corruption="spatter", severity=0.3)
+    rows += cell(4, corruption="spatter", severity=0.6)
+    names = [path.name for path in report.write(rows, tmp_path)]
+    assert names == ["table.md", "heatmap.png", "severity.png"]
+    assert (tmp_path / "table.md").read_text().count(report.NO_PICTURE) == 1

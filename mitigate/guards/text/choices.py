@@ -7,10 +7,10 @@ import re
 import warnings
 from pathlib import Path
 
+from mitigate.core.addresses import check_choice, is_plain
 from mitigate.core.checksums import DIGITS
 from mitigate.core.files import find, sha256
 from mitigate.core.names import unknown
-from mitigate.guards.text.addresses import check_choice
 from mitigate.guards.text.classifier import CONFIG, WEIGHTS
 
 CHOICES = ("none", "classifier", "prompted", "lora", "http://host/v1@model")
@@ -59,7 +59,10 @@ def check(choice: object) -> None:
         return
     alone = bool(plus) and name in ("none", *REPLACED, "classifier")
     if alone or name not in (*CHOICES, *REPLACED) and not (name and Path(name).is_dir()):
-        raise ValueError(f"{unknown('safeguard', choice, CHOICES)} Or name a folder. {FOLDER}")
+        cause = f"This value is no safeguard. Choose one of: {', '.join(CHOICES)}."
+        if is_plain(choice):  # any other value may hold a password
+            cause = unknown("safeguard", choice, CHOICES)
+        raise ValueError(f"{cause} Or name a folder. {FOLDER}")
     if name not in (*CHOICES, *REPLACED) and kind(name) is None:
         raise FileNotFoundError(not_in(name))
 

@@ -16,6 +16,8 @@ from mitigate.guards.text.learning.route_words import ROOMS, THINGS
 
 KNOWN = frozenset(CANONICAL) | frozenset(CANONICAL.values()) | bag(" ".join((*THINGS, *ROOMS)))
 LONG = 3000  # characters; so much text holds an instruction
+LENGTH = 200  # characters that every rewrite may have (heuristic)
+TIMES = 4  # times as long as the original that a longer rewrite may be (heuristic)
 LONGER = 3  # words by which a rewrite may exceed what it replaces
 _CONDITIONS = bag("if unless until till before after otherwise once except instead")
 _WORD = re.compile(r"\[mask\]|[a-z]+(?:['’][a-z]+)?|\d+")
@@ -45,12 +47,17 @@ def leaves_no_instruction(text: str, removed: str, rest: str) -> str:
     return ""
 
 
+def is_too_long(heard: str, said: str) -> bool:
+    """Return whether a rewrite has so many characters that it is not read."""
+    return len(said) > max(LENGTH, TIMES * len(heard))
+
+
 def rewrite_refused(heard: str, said: str | None, last: bool = False) -> str:
     """Return why ``said`` may not replace ``heard``; ``last``: the text ends with it, so that a
     stop may be added, which is meant."""
     if said is None:
         return "no answer in time"
-    if len(words(said)) > len(words(heard)) + LONGER:
+    if is_too_long(heard, said) or len(words(said)) > len(words(heard)) + LONGER:
         return "longer than what it replaces"
     plain = heard.replace("[MASK]", "the")
     if last and "stop" in facts(said).directions and "stop" not in facts(plain).directions:

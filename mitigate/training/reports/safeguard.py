@@ -19,6 +19,7 @@ from typing import Any
 
 from torch import nn
 
+from mitigate.core.addresses import check_choice
 from mitigate.core.files import atomic_text, find, open_text
 from mitigate.core.markdown import markdown_table
 from mitigate.core.options import positive
@@ -26,7 +27,6 @@ from mitigate.core.seeding import generator
 from mitigate.corruptions.instruction import corrupt_instruction
 from mitigate.corruptions.keying import Key
 from mitigate.corruptions.language.style import MANNERS
-from mitigate.guards.text.addresses import check_choice
 from mitigate.guards.text.guard import Rewriter, Safeguard, open_safeguard, passages
 from mitigate.guards.text.learning.data import read_texts
 from mitigate.guards.text.learning.spoken import SPLITS, spoken

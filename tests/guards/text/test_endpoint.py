@@ -8,12 +8,13 @@ import sqlite3
 import sys
 import threading
 import time
+from contextlib import ExitStack, contextmanager
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 
 import pytest
 
+from mitigate.core.addresses import check_arguments, check_choice
 from mitigate.evaluation import evaluate
-from mitigate.guards.text.addresses import check_arguments, check_choice
 from mitigate.guards.text.guard import Safeguard, open_safeguard
 from mitigate.guards.text.language_models.endpoint import ENVELOPE, ChatEndpoint
 
@@ -159,7 +160,7 @@ def test_cache_keeps_no_failures(server, tmp_path):
 
 
 def test_endpoint_explains_a_wrong_url_or_cache(tmp_path):
-    with pytest.raises(ValueError, match="is no URL"):
+    with pytest.raises(ValueError, match="is not a valid URL"):
         ChatEndpoint("localhost:8000", "m")
     (tmp_path / "notes").write_text("not a data base, but long enough to be taken for one" * 40)
     with pytest.raises(ValueError, match="is no cache"):
@@ -274,7 +275,7 @@ def test_check_choice_rejects_a_secret_without_repeating_it(tmp_path, monkeypatc
 
 
 def test_check_choice_accepts_a_url_without_a_secret():
-    for choice in ("none", "rules", "http://h:8000/v1@m", "http://h/v1@org/model:2", "a@b?c"):
+    for choice in ("none", "rules", "http://h:8000/v1@m", "http://h/v1@org/model:2"):
         check_choice(choice)
         check_arguments(["evaluate", f"safeguard={choice}", "x=1"])
 
@@ -321,3 +322,49 @@ def test_cache_survives_flipped_bytes(server, tmp_path):
             assert endpoint(server, cache=cache).rewrite(["text 7"])[0] is not None
         except ValueError as error:
             assert "is no cache" in str(error)
+
+
+@contextmanager
+def dead_address():
+    """Yield the address of a socket whose queue is full, so that it never accepts."""
+    with socket.socket() as dead, ExitStack() as stack:
+        dead.bind(("127.0.0.1", 0))
+        dead.listen(0)
+        for _ in range(4):
+            waiting = stack.enter_context(socket.socket())
+            waiting.setblocking(False)
+            waiting.connect_ex(dead.getsockname())
+        yield dead.getsockname()
+
+
+def test_item_7_endpoint_answers_when_the_first_address_is_dead(server, monkeypatch):
+    server.replies = [(200, said("Go."), 0)]
+    live = ("127.0.0.1", server.server_port)
+    with dead_address() as dead:
+        info = [(socket.AF_INET, socket.SOCK_STREAM, 6, "", address) for address in (dead, live)]
+        monkeypatch.setattr(socket, "getaddrinfo", lambda *_, **__: info)
+        began = time.monotonic()
+        assert endpoint(server, timeout=4.0, retries=0).rewrite(["a"]) == ["Go."]
+        assert time.monotonic() - began < 4.0
+
+
+@pytest.mark.parametrize("count", [1, 5])
+def test_item_7_deadline_for_all_texts_holds_with_dead_addresses(server, monkeypatch, count):
+    with dead_address() as dead:
+        info = [(socket.AF_INET, socket.SOCK_STREAM, 6, "", dead)] * count
+        monkeypatch.setattr(socket, "getaddrinfo", lambda *_, **__: info)
+        asked = endpoint(server, timeout=60.0, retries=3)
+        began = time.monotonic()
+        assert asked.rewrite(["a", "b", "c"], seconds=0.5) == [None] * 3
+        assert time.monotonic() - began < 2.0
+
+
+def test_item_7_deadline_holds_while_another_process_locks_the_cache(server, tmp_path):
+    server.replies = [(200, said("Go."), 0)]
+    asked = endpoint(server, cache=tmp_path / "answers.sqlite")
+    with sqlite3.connect(tmp_path / "answers.sqlite") as other:
+        other.execute("BEGIN EXCLUSIVE")
+        began = time.monotonic()
+        assert asked.rewrite(["a", "b"], seconds=2.0) == ["Go.", "Go."]
+        assert time.monotonic() - began < 2.0
+    other.close()

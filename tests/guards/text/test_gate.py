@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import time
 
 import pytest
 
@@ -63,3 +64,19 @@ def test_leaves_no_instruction_keeps_the_only_place():
     assert leaves_no_instruction(text, "Is there a plant in this flat?", "Stop next to it.")
     assert not leaves_no_instruction(text, "Stop next to it.", "Is there a plant in this flat?")
     assert leaves_no_instruction("Find a chair.", "Find a chair.", "")
+
+
+ANSWERS = {
+    "words": "left " * 160_000,
+    "no Latin letters": "é" * 800_000,
+    "points": ". " * 400_000,
+    "quotes": "'" * 800_000,
+    "one word": "x" * 800_000,
+}
+
+
+@pytest.mark.parametrize("answer", ANSWERS.values(), ids=ANSWERS)
+def test_item_9_gate_rejects_a_huge_answer_in_little_time(answer):
+    began = time.process_time()
+    assert rewrite_refused("Kindly hang a left.", answer) == "longer than what it replaces"
+    assert time.process_time() - began < 0.5

@@ -10,6 +10,7 @@ from mitigate.core.files import make_folder
 from mitigate.core.output import open_output
 
 LONGEST = 1 << 16  # characters of an answer (heuristic)
+WAIT = 0.1  # seconds for a lock of another process, which count for no deadline (heuristic)
 
 
 class AnswerCache:
@@ -27,6 +28,7 @@ class AnswerCache:
             open_output(path, "ab").close()
         self._path = path.resolve()
         self._opened: dict[int, sqlite3.Connection] = {}  # by process: none survives a fork
+        self._wait = 5.0
         try:
             file = self._file
             file.execute("CREATE TABLE IF NOT EXISTS answers (name TEXT PRIMARY KEY, answer)")
@@ -49,11 +51,13 @@ class AnswerCache:
                 f"{path} is no cache of endpoint answers (it holds {others[0]!r:.60}): name "
                 "another file, or delete it."
             )
+        self._opened.clear()
+        self._wait = WAIT
 
     @property
     def _file(self) -> sqlite3.Connection:
         if os.getpid() not in self._opened:
-            self._opened[os.getpid()] = made = sqlite3.connect(self._path)
+            self._opened[os.getpid()] = made = sqlite3.connect(self._path, self._wait)
             made.execute("PRAGMA trusted_schema = OFF")
         return self._opened[os.getpid()]
 

@@ -20,16 +20,17 @@ from urllib.parse import urlsplit
 import urllib3
 from tqdm import tqdm
 
+from mitigate.core.addresses import check_url
 from mitigate.core.json_files import parse_json
 from mitigate.core.names import short
 from mitigate.core.seeding import digest
-from mitigate.guards.text.addresses import check_url
+from mitigate.guards.text import gate
 from mitigate.guards.text.language_models.answers import AnswerCache
 from mitigate.guards.text.language_models.prompts import PROMPTS, prompt_messages
 
 RETRIED = frozenset({408, 409, 425, 429, 500, 502, 503, 504})  # HTTP: it may work later
 ENVELOPE = 1 << 15  # bytes of an answer besides its text: names, counts of tokens
-LONGER = 4  # times as long as what was asked, from which an answer is not read
+CONNECT_SHARE = 0.25  # of a deadline, to connect to one of a host's addresses (heuristic)
 
 
 class _Refused(Exception):
@@ -103,8 +104,8 @@ class ChatEndpoint:
                 break
             try:
                 answer = _content(self._post(text, left))
-                if len(answer) > max(200, LONGER * len(text)):
-                    raise ValueError(f"the answer is over {LONGER} times as long as the text")
+                if gate.is_too_long(text, answer):
+                    raise ValueError(f"the answer is over {gate.TIMES} times as long as the text")
                 return answer
             except _Refused as error:
                 problem = str(error)
@@ -124,7 +125,7 @@ class ChatEndpoint:
         headers = {"Content-Type": "application/json"}
         if os.environ.get(self.key):
             headers["Authorization"] = f"Bearer {os.environ[self.key]}"
-        most = ENVELOPE + 6 * LONGER * len(text)  # JSON may need six bytes per character
+        most = ENVELOPE + 6 * gate.TIMES * len(text)  # JSON may need six bytes per character
         url = f"{self.url}/chat/completions"
         return parse_json(post(url, json.dumps(body).encode(), headers, timeout, most))
 
@@ -165,7 +166,8 @@ def _asked(url: str, body: bytes, headers: dict[str, str], seconds: float, most:
     proxy = urllib.request.getproxies().get(parts.scheme)
     direct = proxy is None or urllib.request.proxy_bypass(parts.hostname or "")
     pool = urllib3.PoolManager() if direct or proxy is None else urllib3.ProxyManager(proxy)
-    limit = urllib3.Timeout(connect=seconds, read=seconds)
+    # urllib3 applies "connect" to each address of the host: after a dead one, time must be left
+    limit = urllib3.Timeout(connect=CONNECT_SHARE * seconds, read=seconds)
     ends = time.monotonic() + seconds
     reply = pool.request("POST", url, body=body, headers=headers, timeout=limit, retries=False,
                          redirect=False, preload_content=False)  # fmt: skip

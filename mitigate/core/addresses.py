@@ -1,0 +1,87 @@
+"""Reject passwords and keys in the addresses of chat endpoints before anything repeats them.
+
+An address becomes part of messages, file names and result rows. No message here repeats a value.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+from pathlib import Path
+from urllib.parse import urlsplit
+
+_EXAMPLE = (
+    "Write http:// or https:// and the path up to /chat/completions, such as "
+    "http://localhost:8000/v1 (as a safeguard: http://localhost:8000/v1@name-of-the-model)."
+)
+_MODEL = re.compile(r"[\w.:/+-]+")
+_SUSPECT = re.compile(r"//|[@?#]|^(?:https?|ftp)[:/]", re.IGNORECASE)
+_PLAIN = re.compile(r"[\w./~+ -]*")
+# What can stand around a value in a list, a mapping, a sweep or a quotation of Hydra.
+_SEPARATORS = re.compile(r"[\s,=\"'\\(){}\[\]]+")
+# Other options may hold an @ or a //, but not a URL with an @.
+_NAMES_SAFEGUARD = re.compile(r"safeguard[\"']?\s*[=:]", re.IGNORECASE)
+_SECRET = re.compile(r"(?:https?|ftp)[:/]\S*[@?]", re.IGNORECASE)
+_EARLIER = re.compile(r"^(?:rules|tagger|reader)\+")  # prefixes of earlier versions
+
+
+def check_url(url: str) -> None:
+    """Raise ValueError if ``url`` is not a URL, or if it holds a user, a password or a key."""
+    if any(mark in url for mark in "@?#"):
+        raise ValueError(
+            "The endpoint's URL holds a user, a password or a key (an @, ? or # in it), which "
+            "would get into the names of results. Give the key in the environment variable "
+            f"OPENAI_API_KEY. {_EXAMPLE}"
+        )
+    try:
+        parts = urlsplit(url)
+        valid = parts.scheme in ("http", "https") and parts.hostname and parts.port != 0
+    except ValueError:
+        valid = False
+    if not valid or not url.isascii() or not url.isprintable() or " " in url:
+        raise ValueError(f"The endpoint is not a valid URL. {_EXAMPLE}")
+
+
+def check_choice(choice: object) -> None:
+    """Raise ValueError if a value of ``safeguard=`` is not text, or an invalid address.
+
+    A name or an existing folder passes. Anything else with a mark of an address must be
+    ``URL@model``.
+    """
+    if not isinstance(choice, str):
+        raise ValueError(f"safeguard must be text, got a {type(choice).__name__}. {_EXAMPLE}")
+    choice = _EARLIER.sub("", choice)
+    if not _SUSPECT.search(choice) or _is_folder(choice):
+        return
+    url, at, model = choice.rpartition("@")
+    check_url(url if at else choice)
+    if not _MODEL.fullmatch(model) or not urlsplit(url).path:
+        raise ValueError(  # without a path, the part before the @ may be a password
+            "The endpoint needs the name of a model after the last @, and a path before it. "
+            f"{_EXAMPLE} Where there is no path, end the URL in a slash."
+        )
+
+
+def is_plain(choice: object) -> bool:
+    """Return whether a message may repeat a value of ``safeguard=``: it cannot be an address."""
+    return isinstance(choice, str) and bool(_PLAIN.fullmatch(choice)) and "//" not in choice
+
+
+def check_arguments(arguments: Iterable[str]) -> None:
+    """Check the addresses in the words of a command line before Hydra parses and prints them.
+
+    The words are not parsed, because an invalid word must not be repeated either. Every part that
+    looks like an address is checked as :func:`check_choice` does.
+    """
+    for word in arguments:
+        is_suspect = _NAMES_SAFEGUARD.search(word) or _SECRET.search(word)
+        if is_suspect and not _is_folder(word.partition("=")[2]):
+            for part in _SEPARATORS.split(word):
+                check_choice(part)
+
+
+def _is_folder(text: str) -> bool:
+    try:
+        return bool(text) and Path(text).is_dir()
+    except (OSError, ValueError):  # too long, or a zero byte
+        return False

@@ -1,0 +1,146 @@
+"""Item 6 of issue 62: a password in ``safeguard=`` is never repeated, whatever surrounds it."""
+
+from __future__ import annotations
+
+import sys
+import traceback
+
+import pytest
+
+from mitigate.core import conf
+from mitigate.core.addresses import check_arguments, check_choice
+from mitigate.evaluation import evaluate
+from mitigate.evaluation.config import check
+from mitigate.guards.text import choices
+from mitigate.training.cells import listed
+
+URLS = [
+    "https://me:PW@h/v1@m",
+    "rules+https://me:PW@h/v1@m",
+    "lora+https://me:PW@h/v1@m",
+    "prompted+https://me:PW@h/v1@m",
+    " https://me:PW@h/v1@m",
+    "\thttps://me:PW@h/v1@m",
+    "ftp://me:PW@h/v1@m",
+    "https//me:PW@h/v1@m",
+    "https:/me:PW@h/v1@m",
+    "//me:PW@h",
+    "me:PW@h/v1",
+    "https://me:PW",
+    "https://h/v1?key=PW",
+    "https://h/v1#PW",
+    "http://me:1234@PW",
+]
+WORDS = [
+    *(f"safeguard={url}" for url in URLS),
+    "safeguard='https://me:PW@h/v1@m'",
+    "safeguard=none,https://me:PW@h/v1@m",
+    "safeguard=[none,https://me:PW@h/v1@m]",
+    "safeguard=choice(none,https://me:PW@h/v1@m)",
+    "safeguard={url: https://me:PW@h/v1@m}",
+    "safeguard=https://me:a,PW,b@h/v1@m",
+    "safeguard=https://me:a=PW@h/v1@m",
+    "safeguard=https\\://me:PW@h/v1@m",
+    "+safeguard=https://me:PW@h/v1@m",
+    "++safeguard=lora+https://me:PW@h/v1@m",
+    "~safeguard=https://me:PW@h/v1@m",
+    "--safeguard=https://me:PW@h/v1@m",
+    "--safeguard https://me:PW@h/v1@m",
+    "safegard=https://me:PW@h/v1@m",
+    "safeguard = https://me:PW@h/v1@m",
+    "agent.safeguard=https//me:PW@h/v1@m",
+    '+evaluations.x=["safeguard=https//me:PW@h/v1@m"]',
+]
+
+
+def output(monkeypatch, capfd, words: list[str]) -> str:
+    """Return everything that an evaluation with an invalid command line prints."""
+    monkeypatch.setattr(sys, "argv", ["evaluate", *words])
+    with pytest.raises((SystemExit, ValueError)) as stop:
+        evaluate.main()
+    return "".join([*traceback.format_exception(stop.value), *capfd.readouterr()])
+
+
+@pytest.mark.parametrize("flags", [[], ["-m"]], ids=["run", "multirun"])
+@pytest.mark.parametrize("full", ["", "1"], ids=["paragraph", "HYDRA_FULL_ERROR"])
+@pytest.mark.parametrize("word", WORDS)
+def test_item_6_command_line_never_repeats_a_password(
+    tmp_path, monkeypatch, capfd, word, full, flags
+):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv(conf.FULL, full)
+    words = word.split(" ") if " = " in word or word.startswith("-") else [word]
+    text = output(monkeypatch, capfd, [*flags, *words, "checkpoint=nowhere"])
+    assert "PW" not in text and "endpoint" in text
+    assert not list(tmp_path.iterdir())  # no multirun.yaml and no folder of results
+
+
+@pytest.mark.parametrize("url", URLS)
+def test_item_6_choices_never_repeat_a_password(url):
+    with pytest.raises(ValueError, match="endpoint") as error:
+        choices.check(url)
+    assert "PW" not in "".join(traceback.format_exception(error.value))
+
+
+def test_item_6_unknown_value_is_repeated_only_if_it_is_a_name():
+    with pytest.raises(ValueError, match="'clasifier'. Did you mean classifier"):
+        choices.check("clasifier")
+    for value in ("me:PW", ["PW"], {"url": "PW"}, "PW%40h"):
+        with pytest.raises(ValueError, match="This value is no safeguard") as error:
+            choices.check(value)
+        assert "PW" not in str(error.value)
+
+
+@pytest.mark.parametrize("value", ["https://me:PW@h/v1@m", "['https://me:PW@h/v1@m']"])
+@pytest.mark.parametrize("full", ["", "1"])
+def test_item_6_config_file_never_repeats_a_password(tmp_path, monkeypatch, capfd, full, value):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv(conf.FULL, full)
+    (tmp_path / "suite").mkdir()
+    file = tmp_path / "suite" / "mine.yaml"
+    file.write_text(f"# @package _global_\nsafeguard: {value}\n")
+    text = output(monkeypatch, capfd, ["--config-dir", str(tmp_path), "suite=mine"])
+    assert "PW" not in text
+
+
+def test_item_6_environment_variable_never_repeats_a_password(monkeypatch):
+    monkeypatch.setenv("MY_URL", "https://me:PW@h/v1@m")
+    config = conf.typed(conf.load_config("evaluate", ["safeguard=${oc.env:MY_URL}"]), "evaluate")
+    with pytest.raises(ValueError, match="endpoint") as error:
+        check(config)
+    assert "PW" not in str(error.value)
+
+
+def test_item_6_columns_of_a_table_never_repeat_a_password():
+    with pytest.raises(ValueError, match="endpoint") as error:
+        listed({"x": ["agent=recurrent", "safeguard=https://me:P=PW@h/v1@m"]}, "columns")
+    assert "PW" not in str(error.value)
+
+
+@pytest.mark.parametrize(
+    "word",
+    [
+        "safeguard=none",
+        "safeguard=rules,lora",
+        "safeguard=http://h:8000/v1@m",
+        "safeguard='http://h/v1@org/model:2'",
+        "safeguard=none,http://h/@m",
+        "safeguard=rules+http://h/v1@m",
+        "safeguard=${oc.env:URL}",
+        "safeguard=checkpoints/safeguard",
+        'columns.x=["restore=my.module:call","safeguard=http://h/v1@m"]',
+        "out=runs/safeguard#1",
+        "env@other=apartments",
+        "hydra.searchpath=[file:///a@b]",
+        "checkpoint=a//b",
+    ],
+)
+def test_item_6_valid_words_pass(word):
+    check_arguments([word])
+
+
+def test_item_6_folder_with_marks_of_an_address_passes(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "my@guard").mkdir()
+    check_choice("my@guard")
+    check_arguments(["safeguard=my@guard"])
