@@ -280,10 +280,10 @@ def _print_estimate(
     folder: Path,
 ) -> None:
     """Print the amount of work, with the time of the comparison, measured on one episode."""
-    made = world()
-    run_episode(policy, made, episodes[0], CLEAN, 0)  # the first episode also loads libraries
+    built = world()
+    run_episode(policy, built, episodes[0], CLEAN, 0)  # the first episode also loads libraries
     started = time.monotonic()
-    run_episode(policy, made, episodes[-1], CLEAN, 0)
+    run_episode(policy, built, episodes[-1], CLEAN, 0)
     each = time.monotonic() - started
     total = 2 * len(episodes) * len(conditions)
     say(

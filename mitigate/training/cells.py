@@ -108,9 +108,9 @@ class Cell:
     @property
     def evaluation(self) -> Path:
         """Folder of the cell's result rows."""
-        return self.further("")
+        return self.evaluation_folder("")
 
-    def further(self, name: str) -> Path:
+    def evaluation_folder(self, name: str) -> Path:
         """Return the folder of the rows of an additional evaluation; "" is the main one."""
         return self.folder / (f"evaluation-{name}" if name else "evaluation")
 
@@ -119,7 +119,7 @@ class Cell:
 
         A program that had nothing to do does not change them.
         """
-        rows = self.further(kind.removeprefix("evaluate").strip()) / ROWS
+        rows = self.evaluation_folder(kind.removeprefix("evaluate").strip()) / ROWS
         files = [*(self.folder / "run").glob("*/step-*.pt")] if kind == "train" else [rows]
         return sorted((str(file), file.stat().st_mtime_ns) for file in files if file.is_file())
 
@@ -151,7 +151,7 @@ class Cell:
             f"episodes={'null' if config.episodes is None else config.episodes}",
             f"severity={config.severity}",
             *(_at_most(config.episodes, option) for option in options),
-            f"out={self.further(name)}",
+            f"out={self.evaluation_folder(name)}",
         ]
 
     def chain(self, config: TablesConfig) -> programs.Chain:

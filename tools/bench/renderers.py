@@ -98,10 +98,10 @@ def views_per_second(draw: Callable[[], int], seconds: float) -> tuple[float, fl
 
 def compare(size: int, seconds: float) -> dict[str, tuple[float, float]]:
     """Return the best round of each renderer; MiniWorld only if it is installed."""
-    own = {OURS: ours(size)}
+    this_package = {OURS: ours(size)}
     best: dict[str, tuple[float, float]] = {}
     for scene in SCENES:
-        drawers = own | _try_miniworld(scene, size)
+        drawers = this_package | _try_miniworld(scene, size)
         for draw in drawers.values():
             views_per_second(draw, 0.2)
         for _, (name, draw) in itertools.product(range(ROUNDS), drawers.items()):

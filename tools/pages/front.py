@@ -47,8 +47,8 @@ def draw_corrupted(path: Path) -> None:
     for row, (frame, names, picture) in zip(axes, rows, strict=True):
         for axis, name in zip(row, names, strict=True):
             clean = name.startswith("clean")
-            shown = frame if clean else corrupt(frame, name, SEVERITY, key=key)
-            axis.imshow(picture(shown))
+            image = frame if clean else corrupt(frame, name, SEVERITY, key=key)
+            axis.imshow(picture(image))
             axis.set_title(name if clean else name.replace("_", " "), fontsize=14)
             axis.axis("off")
     write_figure(path, figure, dpi=80, facecolor="white")

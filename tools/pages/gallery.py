@@ -56,8 +56,8 @@ def _cell(rgb: np.ndarray, depth: np.ndarray, name: str, severity: float, key: K
     if registry.modality(name) == "rgb":
         return np.hstack(list(corrupt(rgb, name, severity, key=key)[list(views)]))
     corrupted = corrupt(depth, name, severity, key=key)[list(views)]
-    shown = depth[list(views)]
-    far = float(np.max(shown, initial=0.0, where=np.isfinite(shown))) or Z_MAX
+    metres = depth[list(views)]
+    far = float(np.max(metres, initial=0.0, where=np.isfinite(metres))) or Z_MAX
     return np.hstack([depth_picture(view[..., 0], far) for view in corrupted])
 
 
@@ -145,15 +145,15 @@ def write_page(folder: Path = DOCS, grid: np.ndarray = curves.GRID) -> None:
     rgb, depth = rendered_frame(PAGE_SEED, PAGE_SIZE)
     view = varied_view(depth)
     contact_sheet(rgb[view], depth[view], folder / "pictures" / "corruptions.jpg")
-    found = curves.curves(rgb[CURVE_VIEWS], depth[CURVE_VIEWS], grid)
-    curves.draw(found, folder / "pictures" / "severity-curves.png", grid)
-    write_bytes(folder / "corruptions.md", page.page(found, PAGE_SEED).encode())
+    suite = curves.curves(rgb[CURVE_VIEWS], depth[CURVE_VIEWS], grid)
+    curves.draw(suite, folder / "pictures" / "severity-curves.png", grid)
+    write_bytes(folder / "corruptions.md", page.page(suite, PAGE_SEED).encode())
     for half, picture in unseen_page.PICTURES.items():
         names = registry.unseen_names(*BOTH, half=half)
         contact_sheet(rgb[view], depth[view], folder / picture, names=names)
     unseen = curves.curves(rgb[CURVE_VIEWS], depth[CURVE_VIEWS], grid, SHEETS["unseen"])
     curves.draw(unseen, folder / unseen_page.CURVES, grid)
-    text = unseen_page.page(unseen, found, grid, PAGE_SEED)
+    text = unseen_page.page(unseen, suite, grid, PAGE_SEED)
     write_bytes(folder / "unseen-corruptions.md", text.encode())
 
 

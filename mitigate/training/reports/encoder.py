@@ -129,10 +129,10 @@ def write(scores: Scores, folder: Path, about: str) -> list[Path]:
     with atomic_text(folder / "features.jsonl") as file:
         file.writelines(json.dumps(row) + "\n" for row in rows(scores, about))
     write_figure(folder / "features.png", picture(scores, about), dpi=120, facecolor="white")
-    written = [folder / f"features.{kind}" for kind in ("md", "jsonl", "png")]
+    report_paths = [folder / f"features.{kind}" for kind in ("md", "jsonl", "png")]
     print(text, flush=True)
-    print("\n".join(f"wrote {path}" for path in written), flush=True)
-    return written
+    print("\n".join(f"wrote {path}" for path in report_paths), flush=True)
+    return report_paths
 
 
 def rows(scores: Scores, about: str) -> list[dict[str, Any]]:
