@@ -55,7 +55,7 @@ class HardenEncoder(Objective):
     Args:
         agent: the encoder; its adapters, or all of its weights, are trained in place.
         source: source of the frames.
-        schedule: schedule of corruptions; only those of the encoder's sensor are drawn.
+        schedule: schedule of corruptions; only corruptions of the encoder's sensor are drawn.
         frames: number of frames, read once from the training scenes. Unseen files are read too, so
             that an invalid one is found at once.
         batch: frames per step.

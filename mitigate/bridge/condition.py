@@ -248,7 +248,7 @@ class Subset:
             (self.folder / name).unlink(missing_ok=True)
 
     def _bound(self) -> float | None:
-        """Return the stored bound; None if there is none yet."""
+        """Return the stored bound, or None before the first is stored."""
         file = self.folder / "episodes.json"
         if not output.is_regular(file):
             return None

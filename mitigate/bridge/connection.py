@@ -86,7 +86,7 @@ class SharedMemory:
         return {"file": str(self.file), "size": size}
 
     def delete_file(self) -> None:
-        """Delete the file: the memory lasts as long as it is mapped."""
+        """Delete the file; the memory stays until both processes unmap it."""
         if self.file is not None:
             self.file.unlink(missing_ok=True)
             self.file = None

@@ -1,6 +1,6 @@
 """Rows, table and figures of a run's folder.
 
-They contain all finished conditions of the folder, not only those of the last call.
+They contain every finished condition in the folder, also from earlier calls.
 """
 
 from __future__ import annotations

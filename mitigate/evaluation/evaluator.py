@@ -120,7 +120,7 @@ class EpisodeTask:
 
 def _together(agent: Any, world: Any) -> int:
     """Return how many episodes the agent can run at once in such worlds."""
-    # an inherited or delegated beside() may make worlds of another class
+    # an inherited or delegated ``beside()`` may make worlds of another class
     defined = "beside" in vars(type(world))
     return as_agent(agent).together if defined else 1
 

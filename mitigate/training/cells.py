@@ -140,7 +140,7 @@ class Cell:
     def measurement(self, config: TablesConfig, name: str, options: Sequence[str]) -> list[str]:
         """Return all options of one of the cell's evaluations.
 
-        ``options`` add to or override those of the table. The evaluation has at most as many
+        ``options`` add to or override the options of the table. The evaluation has at most as many
         episodes as the table.
         """
         return [

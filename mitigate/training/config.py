@@ -95,7 +95,7 @@ class StageConfig:
     """One stage of a recipe.
 
     Attributes:
-        recipe: a ``_target_`` node: the objective, with its arguments and those of its source.
+        recipe: a ``_target_`` node: the objective, with its arguments and its source's arguments.
         trainer: settings of this stage's trainer.
         cost: seconds per step on the machine of ``precision.REFERENCE``, for the estimate at the
             start; None: unknown.
@@ -106,7 +106,7 @@ class StageConfig:
     cost: float | None = None
 
     def settings(self, common: TrainerConfig) -> dict[str, Any]:
-        """Return the trainer settings that are set; those of ``common`` override the stage's."""
+        """Return the trainer settings that are not None; ``common`` overrides the stage."""
         return {
             name: value
             for part in (self.trainer, common)

@@ -142,7 +142,7 @@ def load_teacher(agent: nn.Module, weights: str | None) -> nn.Module:
             checkpoint.load_weights(teacher, find(weights))
         except FileNotFoundError as error:
             raise FileNotFoundError(
-                f"There is no teacher at {weights}. Train one with `make train "
+                f"There is no teacher at {weights}. Train a teacher with `make train "
                 "RECIPE=da_per_episode` and set teacher=runs/.../agent."
             ) from error
     return teacher.requires_grad_(False).eval()

@@ -387,8 +387,8 @@ def check_folder(config: TrainConfig, stages: list[StagePlan]) -> None:
 def check_stages(name: str, agent: nn.Module, stages: list[StagePlan], ranks: Ranks) -> None:
     """Build the objectives of all stages on a copy of ``agent``, up to the first user's objective.
 
-    This finds a mistake in a later stage before the first one trains. What a user's objective
-    changes in the agent is unknown before it has trained.
+    This finds a mistake in a later stage before the first one trains. Before a training, it is
+    unknown which parts of the agent a user's objective changes.
 
     Raises:
         ValueError: There are more ``ranks`` than pieces; or raised by an objective.

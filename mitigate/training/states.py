@@ -87,7 +87,7 @@ def load(path: Path) -> dict[str, Any]:
 
 
 def load_newest(folder: Path) -> tuple[Path, dict[str, Any]] | None:
-    """Return the newest intact checkpoint in ``folder`` and its state; None if there are none.
+    """Return the newest intact checkpoint in ``folder`` and its state; None without a checkpoint.
 
     Prints a line for each damaged checkpoint that is skipped. Raises Damaged if all are damaged
     (none is deleted), and as :func:`load` does.

@@ -241,5 +241,5 @@ def _named(folder: Path) -> str:
 
 
 def _rows(folder: Path) -> list[Row]:
-    """Return the rows in ``folder``; empty if there are none."""
+    """Return the rows in ``folder``; empty without rows."""
     return read(folder / ROWS) if is_regular(folder / ROWS) else []

@@ -1,4 +1,4 @@
-"""Times every corruption (steady, per frame, first frame) and those of other libraries."""
+"""Times every corruption (steady, per frame, first frame), also of other libraries."""
 
 from __future__ import annotations
 
@@ -108,7 +108,7 @@ def cost(
         frame: uint8 [V, H, W, 3] or float32 metres [V, H, W].
         seconds: Duration of each measurement.
         others: Times of other libraries.
-        bar: The target in milliseconds, None if there is none.
+        bar: The target in milliseconds; None without a target.
     """
     tiny = np.ascontiguousarray(frame[:, :TINY, :TINY])
     heading = 0.3 if len(frame) > 1 else None  # without a heading a single view has the flare

@@ -1,4 +1,4 @@
-"""Faults of a recipe's training; the weights must be equal to those of an undisturbed one.
+"""Faults of a recipe's training; the weights must equal the weights of an undisturbed training.
 
 One training goes through all faults: after each it resumes. A training that ends before a fault is
 compared, deleted and started again.
@@ -124,7 +124,7 @@ class Training:
         return problem
 
     def weights(self) -> str:
-        """Return the sha256 of all weights of the result; empty if there are none."""
+        """Return the sha256 of all weights of the result; empty without weights."""
         files = sorted((self.folder / "agent").rglob("*.safetensors"))
         if not files:
             return ""
@@ -277,8 +277,8 @@ SAME = "ends the same"
 def break_training(recipe: str, out: Path, seed: int, faults: list[str]) -> dict[str, str]:
     """Return the outcome of each fault of a recipe's training.
 
-    An outcome is "survived", "not run: ..." or the problem. The last one compares the weights with
-    those of an undisturbed training, bit for bit.
+    An outcome is "survived", "not run: ..." or the problem. The last run compares the weights with
+    an undisturbed training, bit for bit.
     """
     rng = random.Random(f"{seed} {recipe}")
     unbroken = Training(recipe, out / recipe / "unbroken" / "run", rng)

@@ -15,7 +15,7 @@ from mitigate.corruptions.suite import NAMES, corrupt
 
 GRID = np.linspace(0.0, 1.0, 101)
 EPISODES = 3  # random draws that a curve averages over
-OFF = 0.05  # of the depth: what counts as changed (ours)
+OFF = 0.05  # relative change of depth above which a pixel counts as changed (heuristic)
 SSIM_WINDOW, SSIM_SIGMA = 11, 1.5  # pixels (Wang et al. 2004)
 # Largest decrease of an effect from one severity of the grid to the next (SSIM, or metres of depth)
 SLIPS = {
@@ -53,8 +53,8 @@ def psnr(a: np.ndarray, b: np.ndarray) -> float:
 
 
 def depth_error(clean: np.ndarray, corrupted: np.ndarray) -> float:
-    """Mean absolute error in metres over the pixels that are valid in ``clean``; a lost reading
-    counts as 0 m, as it is written."""
+    """Mean absolute error in metres over the pixels that are valid in ``clean``; a lost reading is
+    stored as 0 m and counts as 0 m."""
     valid = np.isfinite(clean) & (clean > 0)
     return float(np.abs(corrupted[valid].astype(np.float64) - clean[valid]).mean())
 

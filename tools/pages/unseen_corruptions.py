@@ -1,4 +1,5 @@
-"""The page ``docs/unseen-corruptions.md``: formulas, halves, and strength beside the suite's."""
+"""The page ``docs/unseen-corruptions.md``: formulas, halves, and strength compared with the
+suite."""
 
 from __future__ import annotations
 

@@ -192,9 +192,8 @@ def measure(
     for manner, routes in (("plain", plain), ("styled", styled)):
         for line, place, route, heard in attacked(half, routes, each, seed, authors):
             repaired = repair(heard)
-            good = is_removed(line["text"], route, repaired) and not is_lost(
-                repair(route), repaired
-            )
+            removed = is_removed(line["text"], route, repaired)
+            good = removed and not is_lost(repair(route), repaired)
             where = "inside" if place == "inside" else "before or after"
             case = f"[{line['author']} {line['mechanism']} {place}] {heard}\n   -> {repaired}"
             rate(f"attacks {where} {manner} text, removed").add(good, good, case)

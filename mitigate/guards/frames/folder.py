@@ -49,8 +49,9 @@ def card(folder: str | Path) -> dict[str, Any]:
     missing = [n for n in (CARD, checkpoint.WEIGHTS) if not (folder / n).is_file()]
     if missing:
         raise FileNotFoundError(
-            f"There is no restorer at {folder}: {', '.join(missing)} missing. Train one with `make "
-            "train RECIPE=restore` (its folder is runs/.../agent), or name checkpoints/restorer or "
+            f"There is no restorer at {folder}: {', '.join(missing)} missing. Train a restorer "
+            "with `make train RECIPE=restore` (its folder is runs/.../agent), or name "
+            "checkpoints/restorer or "
             "a function (module:callable)."
         )
     damage = folders.problem(folder / CARD)

@@ -45,7 +45,7 @@ def before_after(config: TrainConfig, base: Any, trained: nn.Module, folder: Pat
     """Print and write how well features survive each corruption, before and after a training.
 
     The frames are 12 for each of ``evaluation.episodes``, at most as many as in the training, from
-    the scenes of ``evaluation.split``. The conditions are those of the suite for this sensor.
+    the scenes of ``evaluation.split``. The conditions are the suite's corruptions of this sensor.
 
     Args:
         config: options of the training.
