@@ -24,7 +24,7 @@ from mitigate.evaluation import bootstrap, report, rows
 from mitigate.evaluation.rows import ROWS, Row
 from mitigate.worlds.measures import RULES
 
-LABELS = ("agent", "seed", "split")  # of rows.IDENTITY; equal in all rows of a run
+LABELS = ("agent", "seed", "split")  # keys in rows.IDENTITY that are equal in all rows of a run
 
 
 def write_report(cells: Sequence[Cell], out: Path) -> None:

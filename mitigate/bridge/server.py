@@ -120,7 +120,7 @@ class Listener:
             try:
                 channel, _ = listening.accept()
             except TimeoutError:
-                if os.getppid() != parent:  # it was killed and could not end this process
+                if os.getppid() != parent:  # the parent was killed and could not end this process
                     self._delete_folders()
                     os.killpg(0, signal.SIGKILL)
                 continue

@@ -36,10 +36,10 @@ from mitigate.evaluation.rows import read
 from mitigate.worlds.episodes import Episode
 from mitigate.worlds.world import World
 
-# agents without settings(), by id: the agent, its parts after the last run, and before the first
+# id of an agent without settings() -> the agent, its parts after the last run and before the first
 _last: dict[int, tuple[Callable[[], Any], Any, Any]] = {}
-# hashes of the names that the code of worlds reads, before the first episode and after the last, by
-# the classes of the layers and the user's version
+# (classes of the layers, user's version) -> hashes of the names that the code of worlds reads,
+# before the first episode and after the last
 _read_by: dict[tuple[tuple[type, ...], str | None], tuple[str, str]] = {}
 
 

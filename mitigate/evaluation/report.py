@@ -291,7 +291,7 @@ def _numbered(stem: str, index: int) -> str:
     return f"{stem}.png" if index == 0 else f"{stem}-{index + 1}.png"
 
 
-SEVERITY = 0.6  # of the paper's Table II (its caption); other severities are not compared
+SEVERITY = 0.6  # severity of the paper's Table II (its caption); other severities are not compared
 
 
 def beside(

@@ -29,8 +29,8 @@ from mitigate.evaluation.config import (
 
 LONGEST = 100  # characters of options in the name of a folder; longer names end in a digest
 COUNT = 10**9  # steps; at 1000 steps per second a training would take 11 days
-EPISODES = 100_000  # per step, a generous bound
-PROCESSES = 256  # a generous bound
+EPISODES = 100_000  # largest number of episodes per step (a generous bound)
+PROCESSES = 256  # largest number of processes (a generous bound)
 LIMITS: dict[str, tuple[float, float]] = {  # least and greatest value; all are finite
     "steps": (1, COUNT),
     "keep": (1, 10**6),
@@ -47,7 +47,8 @@ MEANS = {
     "keep": ", at least 1",
     "lr": ", above 0",
 }
-OPTIONS: dict[str, tuple[float, float, str]] = {  # of a run: least value, greatest value, meaning
+# option of a run -> least value, greatest value, meaning
+OPTIONS: dict[str, tuple[float, float, str]] = {
     "severity": (0, 1, "a severity from 0 (clean) to 1 (strongest), such as severity=0.6"),
     "severity_depth": (0, 1, "a severity from 0 (clean) to 1 (strongest); null uses severity"),
     "rollouts": (1, EPISODES, "a number of episodes per step, such as rollouts=24"),

@@ -80,7 +80,7 @@ class Ranks:
     ) -> None:
         """Replace gradients and logged values by their weighted means over the ranks.
 
-        A loss that is a mean by the same ``weight`` (``Objective.weight``) gets the gradient that a
+        A loss that is a mean weighted by ``Objective.weight`` gets the gradient that a
         single process would compute from all pieces. Other losses become means of ranks: the KL of
         the distillation, auxiliary losses of agents, errors in units of a batch's variance.
         """

@@ -73,7 +73,7 @@ def load(path: Path) -> dict[str, Any]:
     try:
         state = torch.load(path, map_location="cpu", weights_only=True)
     except Exception as error:  # any error, if torch did not write the file
-        if has_sum:  # intact: memory ran out, or it holds more than plain data
+        if has_sum:  # the file is intact: memory ran out, or it holds more than plain data
             cause = " ".join(str(error).split())[:300]
             what = f"The checkpoint {path} is intact, but cannot be read: {cause}"
             raise ValueError(what) from error

@@ -351,7 +351,7 @@ def check_metres(depth: np.ndarray, name: str, fix: str) -> None:
     Args:
         depth: float32 of any shape, 0 for no reading.
         name: Name of the depth in the message.
-        fix: What to do, the end of the message.
+        fix: The end of the message: what the user can do.
 
     Raises:
         ValueError: The median reading is above ``MAX_MEDIAN_DEPTH``.

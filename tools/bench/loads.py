@@ -18,8 +18,8 @@ from pathlib import Path
 import numpy as np
 
 ENDLESS = 10_000_000  # steps
-EPISODES = 20  # per round of evaluation or bridge traffic (heuristic)
-STEPS = 20  # per episode of bridge traffic (heuristic)
+EPISODES = 20  # episodes per round of evaluation or bridge traffic (heuristic)
+STEPS = 20  # steps per episode of bridge traffic (heuristic)
 SEVERITY = 0.6
 
 

@@ -26,7 +26,7 @@ from mitigate.worlds.apartments.renderer import Renderer
 ROUNDS = 4
 OURS = "apartments"
 SCENES = ("Maze", "FourRooms")  # many rooms, as in apartments, and four empty rooms
-_POSES = 40  # of MiniWorld's agent
+_POSES = 40  # number of poses of MiniWorld's agent
 
 
 def ours(size: int) -> Callable[[], int]:
@@ -114,7 +114,7 @@ def _try_miniworld(scene: str, size: int) -> dict[str, Callable[[], int]]:
     """Return the functions of :func:`miniworld`; print the reason if they are not available."""
     try:
         return miniworld(scene, size)
-    except Exception as error:  # of pyglet, EGL or the driver
+    except Exception as error:  # pyglet, EGL or the driver may raise any error
         print(
             f"MiniWorld's {scene} is not measured: {type(error).__name__}: {error}. Install it "
             "with `pip install -e '.[bench]'`. It needs libEGL, libGL and libGLU of the system "

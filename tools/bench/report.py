@@ -12,7 +12,7 @@ from tools.bench.targets import REASONS
 from tools.bench.timing import machine
 from tools.bench.training import CAPS, LAYOUTS, Stage, table
 
-AIM = 0.15  # of a training step, at most, in which no network computes
+AIM = 0.15  # largest share of a training step in which no network may compute
 COLUMNS = (
     "corruption",
     "steady",

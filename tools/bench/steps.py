@@ -18,7 +18,7 @@ from pathlib import Path
 
 from mitigate.training.journal import CPU
 
-MIN_STEPS = 3  # per stage: one to warm up, and two
+MIN_STEPS = 3  # steps per stage: one to warm up, two to measure
 
 
 def main(arguments: list[str] | None = None) -> int:

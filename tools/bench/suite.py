@@ -18,8 +18,8 @@ from tools.bench.targets import BARS
 from tools.bench.timing import fresh, steady
 from tools.pages.gallery import rendered_frame
 
-SEVERITY = 0.6  # as in the paper for R2R
-SEED = 7  # of the rendered apartment and of the keys
+SEVERITY = 0.6  # the paper's severity for R2R
+SEED = 7  # seed of the rendered apartment and of the keys
 SIZES = {"480x640": (1, 480, 640), "224x224": (1, 224, 224), "12x64x64": (12, 64, 64)}
 PANORAMA, PANORAMA_BAR = (12, 224, 224), 4.2  # the worst pair: low_light_noise, then multipath
 EPISODES = 4  # the steady state is the mean over these episodes

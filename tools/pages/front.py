@@ -29,7 +29,7 @@ DEPTH_NAMES = ("gaussian_noise", "missing_data", "multipath")
 EPISODES = "mitigate/worlds/apartments/episodes/val_unseen_vln.json.gz"
 AGENTS = {"base agent": "checkpoints/base", "after `harden`": "checkpoints/hardened/harden"}
 SMALL_TEXT = 8  # points; smaller labels of the floor plan are not legible in the animation
-FRAMES, MILLISECONDS = 36, 160  # of the animation: number of pictures, duration of each
+FRAMES, MILLISECONDS = 36, 160  # number of pictures of the animation, and duration of each
 COLOURS = ("#d55e00", "#0072b2")  # distinguishable by colour-blind readers
 
 

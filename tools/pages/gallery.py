@@ -34,13 +34,13 @@ from tools.pages import curves
 from tools.pages import unseen_corruptions as unseen_page
 
 SEVERITIES = (0.0, 0.25, 0.5, 0.75, 1.0)
-SUFFIXES = (".png", ".jpg", ".jpeg")  # of a sheet
+SUFFIXES = (".png", ".jpg", ".jpeg")  # formats of a sheet
 GUTTER, TITLE, LABEL = 4, 24, 150  # pixels: between cells, column titles, row labels
 LINE = 16  # pixels between lines of a label
 JPEG_QUALITY = 88
 DOCS = Path(__file__).resolve().parents[2] / "docs"
 PAGE_SEED, PAGE_SIZE = 200021, 112  # the apartment and view size of the page
-CURVE_VIEWS = slice(0, 12, 3)  # of its panorama, for the curves
+CURVE_VIEWS = slice(0, 12, 3)  # views of the panorama from which the curves are computed
 BOTH = ("rgb", "depth")
 SHEETS = {  # what a sheet shows, by the name of its suite
     "full": NAMES,
@@ -180,7 +180,7 @@ def read_frame(rgb: Path, depth: Path) -> tuple[np.ndarray, np.ndarray]:
         metres = np.lib.format.open_memmap(depth, mode="r")
     except ValueError as error:
         raise ValueError(
-            f"{depth} is no whole .npy file ({error}): save depth in metres with np.save."
+            f"{depth} is not a complete .npy file ({error}). Save depth in metres with np.save."
         ) from error
     if metres.dtype.kind != "f":
         raise ValueError(

@@ -16,7 +16,8 @@ from stable_baselines3.common.vec_env import VecNormalize
 
 WEIGHTS = Path(__file__).parent / "weights"
 HEIGHT, WIDTH = 48, 64
-METRES = 7.35 / 32  # per level of the depth buffer: 7.35 map units (measured), 32 of them per metre
+# metres per level of the depth buffer: 7.35 map units (measured), 32 map units per metre
+METRES = 7.35 / 32
 FEATURES = {"MultiInputPolicy": {"cnn_output_dim": 64}, "CnnPolicy": {"features_dim": 128}}
 
 

@@ -50,9 +50,10 @@ AGAIN = 8  # actions until it plans again
 LEG = 1.5  # metres that it goes straight before it checks its route again
 STUCK = 0.05  # a forward step shorter than these metres was blocked
 SLID, BUMPS = 0.2, 4  # metres of a step that slid along something; such steps before it gives up
-LAST = 400  # actions after which it goes to the most likely known place and stops
+LAST = 400  # after this many actions, the agent goes to the most likely known place and stops
 WORTH = 6.0  # path length in metres that a frontier of value 1 is worth (chosen on val_seen_ogn)
-FOUND, MAYBE = 4.0, 1.0  # evidence at which it goes to the object; the same after LAST actions
+# evidence at which the agent goes to the object, before and after LAST actions
+FOUND, MAYBE = 4.0, 1.0
 TRIES = 12  # attempts to plan per step
 NEAR_ENOUGH = 0.4  # probability that the object is near, above which it stops in front of it
 ARRIVED = 0.9  # metres from the object's cells within which it stops

@@ -159,7 +159,7 @@ class Channel:
         self.pid = os.getpid()
         self.memory = None
         self.layout = {}
-        self.number = 0  # of the last message: its answer repeats it
+        self.number = 0  # number of the last message; its answer has the same number
         self.patience = float(os.environ.get(PATIENCE, "25"))
         try:
             self.socket = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
@@ -191,7 +191,7 @@ class Channel:
                 f"the values of {kind} must be numbers, text and lists, and cannot be sent "
                 f"({error}). Convert them."
             )
-        except BaseException as error:  # of any kind: the agent might catch it
+        except BaseException as error:  # any error: the agent might catch it
             stop(f"the connection to the server broke ({_describe_error(error)}).")
         if answer is None:
             stop("the server of `mitigate run` is gone.")
@@ -304,14 +304,14 @@ class Session:
 
     def __init__(self):
         self.channel = None
-        self.cameras = None  # as described to the server
+        self.cameras = None  # descriptions that the server has received
         self.sim = self.task = self.episode = None
         self.active = False  # whether an episode began and did not end
         self.busy = False
-        self.handled = id(None)  # of the exception that was being handled as the episode began
-        self.farthest = {}  # by depth camera: the maximum of the first frame
+        self.handled = id(None)  # id of the exception that was being handled as the episode began
+        self.farthest = {}  # depth camera -> the maximum of its first frame
         self.simulated = False  # whether this episode got frames of habitat-sim without the lab
-        self.episode_pid = None  # of the process that began the episode
+        self.episode_pid = None  # id of the process that began the episode
         self.lock_pid = os.getpid()
         self.lock = threading.RLock()
         self.current = None  # the Episode of ``connect``

@@ -106,7 +106,7 @@ def fill(restorer: Restorer, folder: str | Path) -> None:
         )
     file = Path(folder) / checkpoint.WEIGHTS
     if not folders.is_listed(file):
-        raise ValueError(f"{file} is listed in no {folders.MANIFEST} of its folder. {_AGAIN}")
+        raise ValueError(f"{file} is not listed in the {folders.MANIFEST} of its folder. {_AGAIN}")
     wrong = folders.problem(file)
     if wrong:  # load_weights would advise to delete the checksum, but it is required here
         raise ValueError(f"{file} is cut short or damaged: it {wrong}. {_AGAIN}")

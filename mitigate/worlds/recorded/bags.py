@@ -50,7 +50,7 @@ _OTHER_IMAGES = re.compile(r"infra|mask|(?:^|[/_])ir(?:$|[/_])")  # infrared ima
 
 KINDS = (RGB, DEPTH)
 # Heuristic limits.
-MAX_POSES = 16 * MAX_INSTANTS  # of a drive: 500 Hz next to images at 30 Hz
+MAX_POSES = 16 * MAX_INSTANTS  # poses per drive: 500 Hz for images at 30 Hz
 MAX_BUFFER_BYTES = 1 << 30  # images that wait for images of another topic
 
 
@@ -274,7 +274,7 @@ def choose_topics(
         topics: The user's choice.
 
     Returns:
-        Topics by name, without those that the bag lacks.
+        Topics by name; topics that the bag lacks are left out.
 
     Raises:
         ValueError: A chosen topic is missing or of another type, several topics fit, or the bag has
