@@ -50,7 +50,7 @@ def frame_source(
 
 
 class HardenEncoder(Objective):
-    """Train an encoder to give the clean features for corrupted frames.
+    """Train an encoder to output the features of clean frames for corrupted frames.
 
     Args:
         agent: the encoder; its adapters, or all of its weights, are trained in place.

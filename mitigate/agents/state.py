@@ -247,7 +247,8 @@ class _Reader:
                 if k not in left_out:
                     self.add(inner, [(k, part)], whole or replaces or adapter)
         packed = [(k, one) for k, one in saved.items() if not isinstance(one, torch.Tensor)]
-        self.add(_join(place, "state_dict()"), packed)  # for example of a quantised layer
+        # for example packed weights of a quantised layer
+        self.add(_join(place, "state_dict()"), packed)
 
     def visit_hooks(self, place: str, module: nn.Module) -> None:
         """Note the hooks of a module.
@@ -357,7 +358,7 @@ def _attributes(value: Any) -> Parts:
     for kind in type(value).__mro__:
         for name, one in vars(kind).items() if "__slots__" in vars(kind) else ():
             if isinstance(one, types.MemberDescriptorType):
-                with suppress(AttributeError):  # not set
+                with suppress(AttributeError):  # the slot has no value
                     yield name, one.__get__(value)
 
 

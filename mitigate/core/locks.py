@@ -101,7 +101,7 @@ class FolderLock:
             self._root = None
         if self._file is not None:
             status = os.fstat(self._file.fileno())
-            if output.is_same(status, self.path):  # else it is the lock of another process
+            if output.is_same(status, self.path):  # a different file is the lock of another process
                 self.path.unlink(missing_ok=True)
             _locks.pop(self.path, None)
             self._file.close()

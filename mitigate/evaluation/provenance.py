@@ -421,7 +421,7 @@ def _made_by(make: Any) -> Iterator[tuple[str, str]]:
 
 
 def _function(make: FunctionType) -> Iterator[tuple[str, str]]:
-    code = make.__code__  # not its source: its lines may hold other code, too
+    code = make.__code__  # the bytecode, because the source lines may also hold other code
     yield from _flat(MADE, [code.co_names, [c for c in code.co_consts if c is not None]])
     defaults = {str(number): value for number, value in enumerate(make.__defaults__ or ())}
     yield from _flat(f"{MADE}, default", defaults | (make.__kwdefaults__ or {}))

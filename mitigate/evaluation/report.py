@@ -21,7 +21,7 @@ from mitigate.evaluation.rows import Row
 from mitigate.evaluation.sections import Difference, Retained, Section, label, sections
 
 NO_DIFFERENCE = Difference(None, None, {})
-FEW = 10  # with fewer episodes no difference is in bold (heuristic)
+FEW = 10  # with fewer episodes, the table prints no difference in bold (heuristic)
 
 
 def markdown(parts: Sequence[Section], pictures: Sequence[Sequence[str]] = ()) -> str:

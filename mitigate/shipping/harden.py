@@ -43,7 +43,7 @@ from mitigate.worlds.seeded import seeded_episodes
 from mitigate.worlds.world import World
 
 OUT = Path("runs/harden")
-EPISODES = 50  # that compare before and after, by default (heuristic): SR within about 10 points
+EPISODES = 50  # default episodes of the comparison (heuristic): SR within about 10 points
 FIRST_TRAINING_SEED = 1_000_000  # seeds of training episodes; the comparison's seeds are smaller
 TUNE = ("all", "adapters")
 

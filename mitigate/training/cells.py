@@ -27,8 +27,9 @@ LOG, OPTIONS = "log.txt", "options.json"
 EXAMPLES = {"columns": "agent=recurrent", "evaluations": "suite=pairs"}
 # Of a training, passed on to evaluations.
 OF_AGENT = ("agent=", "env=", "env.", "+env.", "--config-dir=")
-CELLS = ("agent", "checkpoint", "name", "seed", "out")  # not allowed in an additional evaluation
-PLACES = ("seed", "folder", "out", "workers", "evaluation")  # not allowed in a column
+# options that an additional evaluation must not set
+CELLS = ("agent", "checkpoint", "name", "seed", "out")
+PLACES = ("seed", "folder", "out", "workers", "evaluation")  # options that a column must not set
 MEASURED = ("split", "episodes", "conditions", "severity")  # nor in a column without training
 
 

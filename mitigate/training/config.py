@@ -183,7 +183,7 @@ def read(cfg: DictConfig) -> TrainConfig:
 def plain_data(value: Any) -> Any:
     """Return a config as dicts, lists and numbers, as ``config.yaml`` stores it."""
     if is_dataclass(value) and not isinstance(value, type):
-        value = vars(value)  # with the entries that it does not declare
+        value = vars(value)  # includes entries that the class does not declare
     if isinstance(value, Mapping):
         return {name: plain_data(entry) for name, entry in value.items()}
     return [*map(plain_data, value)] if isinstance(value, (list, tuple)) else value
@@ -192,7 +192,8 @@ def plain_data(value: Any) -> Any:
 def default_folder(config: TrainConfig | DictConfig, variant: str = "") -> str:
     """Return ``runs/<name>-s<severity>[-d<depth>]-seed<seed>[-<variant>]``."""
     depth = "" if config.severity_depth is None else f"-d{config.severity_depth:g}"
-    variant = re.sub(r"=(True|False)\b", lambda match: match[0].lower(), variant)  # as in sweeps
+    # sweeps write booleans in lower case
+    variant = re.sub(r"=(True|False)\b", lambda match: match[0].lower(), variant)
     end = re.sub(r"[^A-Za-z0-9._+-]+", "_", variant.replace("=", "-"))  # Hydra splits at "="
     if len(end) > LONGEST:
         end = f"{end[:LONGEST]}-{seeding.digest(variant):032x}"[: LONGEST + 9]

@@ -17,7 +17,7 @@ from mitigate.core.contracts import missing_members
 from mitigate.core.files import find
 from mitigate.core.names import unknown
 
-ADAPTERS = "adapters"  # in a list of parts: all adapters of the agent
+ADAPTERS = "adapters"  # name of the part that contains all adapters of the agent
 POLICY = "policy"  # instead of a list of parts: all parts except the encoders
 TRAINABLE = ("parts", "collect", "join", "decide")  # members of agents that learn on episodes
 SEEING = ("parts", "encoders", "labels", "see")  # ... whose encoders learn on single observations

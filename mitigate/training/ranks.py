@@ -19,8 +19,8 @@ from torch.distributed.distributed_c10d import _set_pg_timeout
 
 from mitigate.core.names import counted
 
-FIND = timedelta(seconds=40)  # for all ranks to find each other (heuristic)
-WAIT = timedelta(hours=2)  # for a rank that makes a cache or evaluates (heuristic)
+FIND = timedelta(seconds=40)  # limit for all ranks to find each other (heuristic)
+WAIT = timedelta(hours=2)  # limit for a rank that builds a cache or evaluates (heuristic)
 
 
 class Ranks:

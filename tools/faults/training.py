@@ -32,8 +32,8 @@ RECIPE_OPTIONS = {  # options that make a recipe small, or that it needs
                 "stages.gate_depth.recipe.instants=8", "stages.gate_depth.recipe.held=4"),
 }  # fmt: skip
 STATUS = {signal.SIGTERM: 143, signal.SIGINT: 130, signal.SIGKILL: -signal.SIGKILL}
-STAGE_START = "workers make batches"  # in the first line of a stage
-REPLACED = "a new one repeats its work"  # in the line that reports a dead worker
+STAGE_START = "workers make batches"  # text in the first line of a stage
+REPLACED = "a new one repeats its work"  # text in the line that reports a dead worker
 NOTICE_TIME = 10.0  # seconds until a dead worker is usually noticed, when its work is missing
 TRIES = 4  # attempts to inject a fault before the training ends
 DISK = 800  # MB of the file system that is filled
@@ -148,7 +148,8 @@ def interrupt(training: Training, number: int) -> str:
 def interrupt_write(training: Training, number: int) -> str:
     """Send a signal while a checkpoint is being written."""
     command = training.start()
-    draft = f"*/.step-*.{command.process.pid}.tmp"  # as mitigate/core/files.py names it
+    # the name of unfinished files in mitigate/core/files.py
+    draft = f"*/.step-*.{command.process.pid}.tmp"
     if not command.wait_for(lambda: list(training.folder.glob(draft))):
         training._raise_too_late(command)
     return training.send_signal(command, number)

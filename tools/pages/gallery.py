@@ -42,7 +42,7 @@ DOCS = Path(__file__).resolve().parents[2] / "docs"
 PAGE_SEED, PAGE_SIZE = 200021, 112  # the apartment and view size of the page
 CURVE_VIEWS = slice(0, 12, 3)  # views of the panorama from which the curves are computed
 BOTH = ("rgb", "depth")
-SHEETS = {  # what a sheet shows, by the name of its suite
+SHEETS = {  # name of a suite -> corruptions on its sheet
     "full": NAMES,
     "unseen": registry.unseen_names(*BOTH),
     "unseen_val": registry.unseen_names(*BOTH, half=VALIDATION),

@@ -15,7 +15,7 @@ from mitigate.corruptions.suite import DEPTH, RGB
 from tools.pages.corruptions import formulas
 from tools.pages.curves import EPISODES, OFF, SLIPS, Curve
 
-SEVERITY = 0.6  # at which the page compares them with the suite
+SEVERITY = 0.6  # severity of the comparison with the suite
 PICTURES = {VALIDATION: "pictures/unseen-validation.jpg", TEST: "pictures/unseen-test.jpg"}
 CURVES = "pictures/unseen-curves.png"
 TEXT = """# Unseen corruptions

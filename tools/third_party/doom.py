@@ -52,7 +52,7 @@ def make_env(name: str, frame_skip: int) -> gymnasium.Env:
         frame_skip=frame_skip,
         screen_resolution="RES_160X120",
         depth_buffer_enabled=True,
-        doom_config_path=os.devnull,  # else it writes into the working folder
+        doom_config_path=os.devnull,  # the default is a file in the working folder
     )
     return SmallFrames(env)
 

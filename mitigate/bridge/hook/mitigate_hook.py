@@ -165,7 +165,7 @@ class Channel:
             self.socket = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
             self.socket.settimeout(self.patience)
             self.socket.connect(os.environ[ADDRESS])
-        except BaseException as error:  # also an interrupt: the agent might catch it
+        except BaseException as error:  # includes an interrupt, because the agent might catch it
             stop(
                 f"the server of `mitigate run` cannot be reached at "
                 f"{os.environ.get(ADDRESS)} ({_describe_error(error)}). A container needs the "
@@ -1098,7 +1098,7 @@ def _check_fraction(value, name):
 def _check_non_negative(value, name):
     """Return a number that is 0 or more, or infinite. Raises ValueError for other values."""
     try:
-        number = float(value)  # also of an array or tensor with one item
+        number = float(value)  # also accepts an array or tensor with one item
     except (TypeError, ValueError):
         number = math.nan
     if not number >= 0:
@@ -1253,7 +1253,7 @@ PATCHES = {  # module: ((class, empty for a function of the module; method; wrap
     ),
     "WMNav_env": (("Env", "_run_episode", _wmnav_episode),),
 }
-OPTIONAL = ("get_sensor_observations_async_finish",)  # not in every version
+OPTIONAL = ("get_sensor_observations_async_finish",)  # methods that some versions lack
 
 
 def patch(module):

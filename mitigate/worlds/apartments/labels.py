@@ -27,7 +27,8 @@ _HALF_ANGLE = np.radians(18.0)
 # labels of free space: angle bins, distance bins, metres per distance bin
 ANGLES, DISTANCES, STEP = 120, 12, 0.25
 COLUMNS = 4  # number of columns per view, of equal width in pixels
-YAWS = np.radians(360.0 / ANGLES * (np.arange(ANGLES) + 0.5) - 180.0 / VIEWS)  # to the right
+# direction of each bin, positive to the right
+YAWS = np.radians(360.0 / ANGLES * (np.arange(ANGLES) + 0.5) - 180.0 / VIEWS)
 
 
 def free_directions(space: FreeSpace, xy: np.ndarray, heading: float) -> np.ndarray:

@@ -45,7 +45,8 @@ POSES = (
     "geometry_msgs/msg/PoseWithCovarianceStamped",
 )
 OFF = "none"  # value of a topic option that turns the topic off
-_DEPTH_TOPIC = re.compile(r"(?:^|[/_])depth(?:$|/|_(?!camera))")  # not /depth_camera/image_raw
+# does not match /depth_camera/image_raw
+_DEPTH_TOPIC = re.compile(r"(?:^|[/_])depth(?:$|/|_(?!camera))")
 _OTHER_IMAGES = re.compile(r"infra|mask|(?:^|[/_])ir(?:$|[/_])")  # infrared images and masks
 
 KINDS = (RGB, DEPTH)
