@@ -124,7 +124,8 @@ COMMANDS = {
 
 def main(arguments: Sequence[str] | None = None) -> None:
     """Run a command from the command line, and exit with its status."""
-    if os.getcwd() not in sys.path:  # as python -m does, for modules of the user
+    # so that modules of the user can be imported, as python -m does
+    if os.getcwd() not in sys.path:
         sys.path.insert(0, os.getcwd())
     name, *options = [*(sys.argv[1:] if arguments is None else arguments), ""]
     options = options[:-1]

@@ -30,7 +30,8 @@ HELD, FRESH = 1_000_000, 2_000_000  # step numbers that no training reaches
 class Adapt(Distil):
     """Train adapters on rollouts; the teacher is the agent without its adapters.
 
-    Arguments are those of ``Distil``. By default only features are matched: w_il and w_kl are 0.
+    The arguments are the same as for ``Distil``. By default only features are matched: w_il and
+    w_kl are 0.
 
     Raises:
         ValueError: The agent has no adapters.

@@ -3,7 +3,7 @@
 Rollouts cost more time than learning. So the current policy runs some episodes every few steps, and
 their rollouts are stored on disk. Each step learns from a random sample of all stored rollouts, an
 aggregated data set as in Ross et al. 2011 that grows during the training. The oracle's share of the
-decisions falls over time. The loss is that of ``recipes/imitate.py``. The rollouts of the agent
+decisions falls over time. The loss is defined in ``recipes/imitate.py``. The rollouts of the agent
 must be plain data (tensors, lists, text).
 """
 

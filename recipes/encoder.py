@@ -50,12 +50,12 @@ def frame_source(
 
 
 class HardenEncoder(Objective):
-    """Train an encoder to give the clean features for corrupted frames.
+    """Train an encoder to output the features of clean frames for corrupted frames.
 
     Args:
         agent: the encoder; its adapters, or all of its weights, are trained in place.
         source: source of the frames.
-        schedule: schedule of corruptions; only those of the encoder's sensor are drawn.
+        schedule: schedule of corruptions; only corruptions of the encoder's sensor are drawn.
         frames: number of frames, read once from the training scenes. Unseen files are read too, so
             that an invalid one is found at once.
         batch: frames per step.
@@ -180,7 +180,7 @@ class HardenEncoder(Objective):
         self._last = np.stack(changed[:SHOWN])
         return {
             "frames": torch.from_numpy(np.stack(changed)),
-            **self._wanted(np.array(chosen), clean),
+            **self._targets(np.array(chosen), clean),
             "corrupted": torch.tensor(hit),
             "episode_ids": [self.frames.names[self.frames.scene[index]] for index in chosen],
         }
@@ -189,11 +189,11 @@ class HardenEncoder(Objective):
         """Return the number of frames."""
         return float(len(batch["frames"]))
 
-    def _wanted(self, chosen: np.ndarray, clean: list[np.ndarray]) -> dict[str, Tensor]:
+    def _targets(self, chosen: np.ndarray, clean: list[np.ndarray]) -> dict[str, Tensor]:
         """Return the clean features of a step's frames, or the clean frames."""
         if self.targets is None:
             return {"clean": torch.from_numpy(np.stack(clean))}
-        return {"wanted": self.targets[torch.from_numpy(chosen).to(self.targets.device)]}
+        return {"target": self.targets[torch.from_numpy(chosen).to(self.targets.device)]}
 
     def micro_batches(self, batch: dict[str, Any]) -> list[dict[str, Any]]:
         """Split the frames of a step; each part has its share of the frames."""
@@ -204,7 +204,7 @@ class HardenEncoder(Objective):
         return [{**part, "share": len(part["frames"]) / self.weight(batch)} for part in parts]
 
     def forward(self, batch: dict[str, Any]) -> dict[str, Tensor]:
-        target = batch["wanted"] if "wanted" in batch else self._clean(batch["clean"])
+        target = batch["target"] if "target" in batch else self._clean(batch["clean"])
         gates: list[Tensor] = []
         handles = [
             module.register_forward_hook(lambda _, _inputs, out: gates.append(out))

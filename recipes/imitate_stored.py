@@ -1,7 +1,7 @@
 """Imitation on stored features: no rendering, hundreds of decisions per step.
 
 The encoders are frozen; their features on a grid of poses of every scene are computed once. The
-agent must have a ``store``. The loss is that of ``recipes/imitate.py``.
+agent must have a ``store``. The loss is defined in ``recipes/imitate.py``.
 """
 
 from __future__ import annotations

@@ -52,8 +52,8 @@ class Judged(NamedTuple):
     spent: Tensor
 
     @property
-    def wanted(self) -> tuple[Tensor, Tensor]:
-        """Which instants should be restored, and which count in the loss: bool [N] each."""
+    def labels(self) -> tuple[Tensor, Tensor]:
+        """Return which instants should be restored, and which count in the loss: bool [N] each."""
         intact = self.spent <= SPENT
         better = (self.before > 0) & (self.after < BETTER * self.before) & intact
         return better, better | (self.after >= self.before) | ~intact
@@ -135,7 +135,7 @@ class RestoreGate(Objective):
 
     def forward(self, batch: dict[str, Any]) -> dict[str, Tensor]:
         judged = Judged(*(part.to(self.net.threshold.device) for part in batch["judged"]))
-        logits, (better, counted) = self._logits(judged), judged.wanted
+        logits, (better, counted) = self._logits(judged), judged.labels
         each = F.binary_cross_entropy_with_logits(logits, better.float(), reduction="none")
         total, right = counted.sum().clamp(min=1), (logits > 0) == better
         return {
@@ -196,7 +196,7 @@ class RestoreGate(Objective):
         return {
             "threshold": float(self.net.threshold),
             "clean_touched": self._above(self._logits(fresh)),
-            "helped_found": self._above(self._logits(corrupted)[corrupted.wanted[0]]),
+            "helped_found": self._above(self._logits(corrupted)[corrupted.labels[0]]),
         }
 
     def _above(self, logits: Tensor) -> float:

@@ -13,7 +13,8 @@ The severity rises over the first part of the training, and the last part is mos
 that the student returns to the clean behaviour (the order of STRONG-VLA, 2026).
 
 Rollouts are slow and learning is fast, so the student runs episodes only every ``every`` steps.
-Their clean frames are stored, and each step corrupts a random sample of all stored frames anew.
+Their clean frames are stored, and each step draws a random sample of all stored frames and corrupts
+it with new draws.
 """
 
 from __future__ import annotations

@@ -25,7 +25,7 @@ from typing import Any
 
 import numpy as np
 
-if "l3mvn" in sys.argv:  # also in its workers, which import this file first
+if "l3mvn" in sys.argv:  # also applies to its workers, which import this file first
     import habitat.config
 
     habitat.config.Config = dict

@@ -69,7 +69,7 @@ def main() -> None:
 
 
 def measure(commit: str | None, only: list[str] | None, episodes: int) -> dict[str, str]:
-    """Return digests by name at a commit, or of the working tree; those of a commit are stored."""
+    """Return digests by name at a commit (then stored), or of the working tree."""
     digests: dict[str, str] = {}
     sha = commit and run(["git", "rev-parse", "--short=12", f"{commit}^{{commit}}"], ROOT).strip()
     file = STORED / f"{sha}-{episodes}.json"

@@ -40,32 +40,32 @@ def requirements() -> dict[str, list[Requirement]]:
     """Return the requirements of the project by extra; "base" is always required."""
     project = tomllib.loads(PROJECT.read_text(encoding="utf-8"))["project"]
     listed = {"base": project["dependencies"], **project["optional-dependencies"]}
-    found = {extra: [Requirement(text) for text in texts] for extra, texts in listed.items()}
+    by_extra = {extra: [Requirement(text) for text in texts] for extra, texts in listed.items()}
     for name, extra in APART.items():
-        found[extra].append(Requirement(name))
-    return found
+        by_extra[extra].append(Requirement(name))
+    return by_extra
 
 
 def installed() -> tuple[dict[str, tuple[Distribution, str]], list[str]]:
     """Return the installed packages by name with the first requirer, and the missing names."""
-    found: dict[str, tuple[Distribution, str]] = {}
+    packages: dict[str, tuple[Distribution, str]] = {}
     missing: list[str] = []
     named = sorted(requirements().items(), key=lambda item: item[0] == "dev")  # dev repeats others
     waiting = [(each, extra) for extra, listed in named for each in listed]
     while waiting:
         requirement, requirer = waiting.pop(0)
         name = canonicalize_name(requirement.name)
-        if name in found or name in missing:
+        if name in packages or name in missing:
             continue
         try:
             package = distribution(requirement.name)
         except PackageNotFoundError:
             missing.append(name)
             continue
-        found[name] = (package, requirer)
+        packages[name] = (package, requirer)
         if name not in APART:
             waiting += [(each, name) for each in needs(package, requirement.extras)]
-    return found, missing
+    return packages, missing
 
 
 def needs(package: Distribution, extras: set[str]) -> Iterator[Requirement]:
@@ -121,9 +121,9 @@ def main() -> int:
     """Print the table; return 1 if ``--verify`` found a changed or missing file."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--verify", action="store_true", help="compare all files with their sums")
-    found, missing = installed()
+    packages, missing = installed()
     if parser.parse_args().verify:
-        files = {name: changed(package) for name, (package, _) in sorted(found.items())}
+        files = {name: changed(package) for name, (package, _) in sorted(packages.items())}
         wrong = [f"{name}: {file}" for name, (_, listed) in files.items() for file in listed]
         count = sum(n for n, _ in files.values())
         print(f"{count} files of {len(files)} packages, changed or missing: {len(wrong)}")
@@ -132,7 +132,7 @@ def main() -> int:
     print(
         "| package | version | licence in its metadata | required by |\n| --- | --- | --- | --- |"
     )
-    for name, (package, by) in sorted(found.items()):
+    for name, (package, by) in sorted(packages.items()):
         print(f"| {name} | {package.version} | {licence(package)} | {by} |")
     print(f"\nRequired, but not installed here: {', '.join(sorted(missing)) or 'none'}.")
     return 0

@@ -135,10 +135,10 @@ def table(scores: dict[str, dict[str, tuple[float, float, float]]]) -> str:
     return markdown_table(["", *scores], lines)
 
 
-def _column(weights: str, taken: Collection[str]) -> str:
-    """Return the name of ``weights``, or their path if that name is taken."""
+def _column(weights: str, used: Collection[str]) -> str:
+    """Return the name of ``weights``, or their path if ``used`` has that name."""
     name = name_of(weights)
-    return weights if name in taken else name
+    return weights if name in used else name
 
 
 @lru_cache(maxsize=1)

@@ -387,7 +387,8 @@ def _judge_input(module: nn.Module, inputs: Any) -> None:
 def _gates_of(adapters: dict[str, Adapter]) -> dict[str, str]:
     """Return the gate of each adapter by name: the nearest one in the same encoder."""
     controllable = [n for n, m in adapters.items() if isinstance(m, (ConvAdapter, RingAdapter))]
-    gates: dict[str, tuple[str, str]] = {}  # by adapter: their common module, and the gate
+    # name of an adapter -> names of its module and of the gate
+    gates: dict[str, tuple[str, str]] = {}
     for name, gate in adapters.items():
         if not isinstance(gate, FrameGate):
             continue

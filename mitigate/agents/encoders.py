@@ -178,7 +178,7 @@ def free_loss(logits: Tensor, target: Tensor) -> Tensor:
     return F.binary_cross_entropy_with_logits(logits.float(), target)
 
 
-LABEL_LOSSES = {RGB: presence_loss, DEPTH: free_loss}  # of the labels of each sensor
+LABEL_LOSSES = {RGB: presence_loss, DEPTH: free_loss}  # loss on the labels of each sensor
 
 
 def agreement(logits: Tensor, target: Tensor) -> Tensor:

@@ -81,7 +81,7 @@ def contents(agent: Any, version: str | None = None) -> Contents:
     state = _changes(agent) if shipped else read_state(agent, attributes=not says_all(agent))
     optional = {
         "code": _codes(agent, state),
-        # "settings" counts by what it returns, not as an attribute, which loading may have set
+        # ``settings`` counts with its result, not as an attribute, which loading may have set
         "state": sorted(line for line in state.lines if not _SETTINGS_LINE.match(line)),
         "version": version,
         "unreadable": sorted(state.unreadable.items()) if version is None else [],

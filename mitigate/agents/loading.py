@@ -30,7 +30,7 @@ from mitigate.core.files import find, places, sha256
 from mitigate.core.json_files import read_object
 from mitigate.core.names import short
 
-FORMAT = 2  # of a card; format 1 can be read, too (core/older_folders.py)
+FORMAT = 2  # format of a card; format 1 can also be read (core/older_folders.py)
 CARD, README = "card.json", "README.md"
 PROGRAM, INPUTS = "program.pt2", "program.json"
 FILES = (CONFIG, README, INPUTS)  # files of an agent with programs, in addition to the weights

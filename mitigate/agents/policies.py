@@ -437,7 +437,7 @@ def copied(policy: Policy) -> Policy:
     try:
         twin = copy.copy(policy)
         twin._modules = {"network": copy.deepcopy(policy.network)}
-    except Exception as error:  # of the user's code
+    except Exception as error:  # the user's code may raise any error
         raise ValueError(
             f"{policy.name} cannot be copied ({type(error).__name__}: {str(error)[:200]}), which "
             "the clean teacher needs. Give a policy without open files or environments."

@@ -18,7 +18,7 @@ from mitigate.core.observation import DEPTH, RGB, VIEWS
 
 SENSES = (RGB, DEPTH, "instruction")
 MOST_TARGETS = 64  # patterns of a list
-MOST_WORDS = 50_000  # of a vocabulary
+MOST_WORDS = 50_000  # largest size of a vocabulary
 _WORD = re.compile(r"[a-z]{1,40}")
 _PATTERN = re.compile(r"[\w.\\\[\]|*+?-]{1,200}", re.ASCII)  # no groups, no counts
 _REPEATS = 2  # quantifiers of a pattern; more can backtrack for too long
@@ -126,7 +126,7 @@ class Schema(NamedTuple):
     usual: tuple[int, int] = (1, 1)
 
 
-KINDS = (  # classes that a folder may name, and no others
+KINDS = (  # the only classes that a folder may name
     "mitigate.agents.topological.TopologicalAgent",
     "mitigate.agents.recurrent.RecurrentAgent",
     "mitigate.agents.frontier.FrontierAgent",

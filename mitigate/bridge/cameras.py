@@ -19,8 +19,8 @@ from mitigate.corruptions import Corruption, DepthSensor, Key, corrupt_observati
 from mitigate.corruptions.normalised import corrupt_normalised
 from mitigate.guards.guard import Guards
 
-MAX_BYTES = 1 << 30  # of all frames of a call (heuristic): 24 cameras of 1080 x 1920 have 5e8
-MAX_CAMERAS = 256  # of a call (heuristic)
+MAX_BYTES = 1 << 30  # bytes of all frames in a call (heuristic): 24 cameras of 1080 x 1920 have 5e8
+MAX_CAMERAS = 256  # cameras per call (heuristic)
 MAX_MEDIAN = 100.0  # metres: a larger median depth needs a declared range (heuristic)
 CHANNELS = {RGB: (3,), DEPTH: (1,)}
 _NAME_WITH_YAW = re.compile(r"(?:rgb|depth)_(\d+(?:\.\d+)?)")

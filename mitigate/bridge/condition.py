@@ -31,7 +31,8 @@ from mitigate.worlds.episodes import read_extras
 if TYPE_CHECKING:
     from mitigate.bridge.cameras import Rig
 
-SETTLE_TIME = 4.0  # seconds without a new environment after which all are known (heuristic)
+# all environments count as known after this many seconds without a new one (heuristic)
+SETTLE_TIME = 4.0
 NO_TOKENIZER = (
     "the agent's episodes hold instruction tokens in addition to the text. Without a tokenizer the "
     "agent would read the original instruction. Set tokenizer=bert_config/bert-base-uncased (a "
@@ -43,7 +44,7 @@ NO_TOKENIZER = (
 class Observer:
     """Receives messages and frames before they are corrupted; this class ignores them."""
 
-    kinds: ClassVar[tuple[str, ...]] = ()  # of the cameras whose frames it needs
+    kinds: ClassVar[tuple[str, ...]] = ()  # kinds of the cameras whose frames it needs
 
     def episode(self, message: Mapping[str, Any]) -> None:
         """Receive the message that begins an episode."""
@@ -248,7 +249,7 @@ class Subset:
             (self.folder / name).unlink(missing_ok=True)
 
     def _bound(self) -> float | None:
-        """Return the stored bound; None if there is none yet."""
+        """Return the stored bound, or None before the first is stored."""
         file = self.folder / "episodes.json"
         if not output.is_regular(file):
             return None

@@ -86,7 +86,7 @@ class SharedMemory:
         return {"file": str(self.file), "size": size}
 
     def delete_file(self) -> None:
-        """Delete the file: the memory lasts as long as it is mapped."""
+        """Delete the file; the memory stays until both processes unmap it."""
         if self.file is not None:
             self.file.unlink(missing_ok=True)
             self.file = None
@@ -111,7 +111,7 @@ class Connection:
         self.folder = folder
         self.token = token
         self.shared = SharedMemory(memory)
-        self.answers = {  # by kind of message, after "hello"
+        self.answers = {  # kind of a message (all after "hello") -> its method
             "spec": self.on_spec,
             "episode": self.on_episode,
             "frame": self.on_frame,
@@ -127,10 +127,10 @@ class Connection:
         self.open = False  # whether an episode is running
         self.loop = False  # whether it belongs to a loop without Habitat
         self.chosen = False  # whether the program let episodes be chosen
-        self.names: list[str] = []  # of a dataset, received so far
+        self.names: list[str] = []  # episode names of a dataset, received so far
         self.described: list[Any] = []  # descriptions of cameras that were received so far
-        self.kinds: set[str] = set()  # of the cameras of this episode's calls
-        self.calls = 0  # of this episode
+        self.kinds: set[str] = set()  # kinds of the cameras in this episode's calls
+        self.calls = 0  # number of calls in this episode
         self.seconds = 0.0  # spent in corruptions of this episode
 
     def serve(self) -> None:
@@ -160,7 +160,7 @@ class Connection:
                 raise ValueError(unknown("kind of message", kind[:40], self.answers))
             answer = self.answers[kind](message)
             os.utime(self.folder / EVENTS)  # a sign of life
-        except Exception as error:  # of any kind: the agent's process must stop
+        except Exception as error:  # after any error, the agent's process must stop
             problem = _describe_error(kind, error)
             trace = traceback.format_exc()
             write_event(self.folder, event="refused", problem=problem, trace=trace)

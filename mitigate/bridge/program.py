@@ -173,7 +173,7 @@ def processes() -> dict[int, tuple[int, bool]]:
             ):
                 text = file.read()
                 fields = text[text.rindex(b")") + 2 :].split()  # proc_pid_stat(5), from field 3
-                # with more threads the process runs, though its main thread ended
+                # if other threads remain, the process still runs although its main thread ended
                 zombie = fields[0] in (b"Z", b"X") and int(fields[17]) <= 1
                 states[int(name)] = (int(fields[1]), not zombie)
     return states

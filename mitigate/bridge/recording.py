@@ -117,7 +117,8 @@ class Recorder(Observer):
             result = {name: value for name, value in message.items() if name != "kind"}
             with atomic_text(self.draft / "end.json") as file:
                 json.dump(result, file)
-            output.delete_folder(self.target)  # of an earlier run, or an earlier end in this one
+            # left by an earlier run, or by an earlier end in this run
+            output.delete_folder(self.target)
             output.forget(self.draft)
             os.replace(self.draft, self.target)
         self._close()

@@ -1,6 +1,6 @@
 """Rows, table and figures of a run's folder.
 
-They contain all finished conditions of the folder, not only those of the last call.
+They contain every finished condition in the folder, also from earlier calls.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from mitigate.evaluation import bootstrap, report, rows
 from mitigate.evaluation.rows import ROWS, Row
 from mitigate.worlds.measures import RULES
 
-LABELS = ("agent", "seed", "split")  # of rows.IDENTITY; equal in all rows of a run
+LABELS = ("agent", "seed", "split")  # keys in rows.IDENTITY that are equal in all rows of a run
 
 
 def write_report(cells: Sequence[Cell], out: Path) -> None:

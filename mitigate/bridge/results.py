@@ -174,7 +174,7 @@ def rows(
         label: Entries of all rows ("agent", "name", "split", "seed").
         rule: A name in ``RULES`` that replaces the agent's Success measure. An agent without
             either gets rows by the common rule only.
-        clean: The reports of the clean condition, if ``reports`` are of another.
+        clean: The reports of the clean condition, if ``reports`` belong to another condition.
     """
     result = []
     rules = _choose_rules(reports, rule, clean)

@@ -294,7 +294,7 @@ class ConditionTask:
                 attempt.start()
                 while (problem := attempt.poll()) is None:
                     time.sleep(PAUSE)
-            except ValueError as error:  # it cannot be started; the others continue
+            except ValueError as error:  # this command cannot be started; the others continue
                 problem = str(error)
             finally:
                 attempt.kill()

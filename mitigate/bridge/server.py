@@ -53,7 +53,7 @@ class Listener:
 
     def __enter__(self) -> Listener:
         listening = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
-        listening.bind(self.address)  # in a folder that only this user may enter
+        listening.bind(self.address)  # the socket is in a folder that only this user may enter
         os.chmod(self.address, 0o600)
         listening.listen(256)
         make_folder(self.folder)
@@ -120,7 +120,7 @@ class Listener:
             try:
                 channel, _ = listening.accept()
             except TimeoutError:
-                if os.getppid() != parent:  # it was killed and could not end this process
+                if os.getppid() != parent:  # the parent was killed and could not end this process
                     self._delete_folders()
                     os.killpg(0, signal.SIGKILL)
                 continue

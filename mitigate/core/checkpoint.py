@@ -198,7 +198,7 @@ def load_tensors(file: Path) -> dict[str, torch.Tensor]:
 
     Raises:
         ValueError: The file is damaged.
-        PermissionError: The file may not be read.
+        PermissionError: The user may not read the file.
     """
     file.open("rb").close()  # raises PermissionError, which does not mean damage
     problem = folders.problem(file)
@@ -220,7 +220,8 @@ def load_tensors(file: Path) -> dict[str, torch.Tensor]:
 def _again(file: Path) -> str:
     """Return what to do about damaged weights."""
     folder = file.resolve().parent
-    if folder.name == "agent" and any(folder.parent.glob("*/step-*.pt")):  # as train.run writes it
+    # the layout of a training run
+    if folder.name == "agent" and any(folder.parent.glob("*/step-*.pt")):
         return (
             "They belong to a run: the same `make train` command writes them again from its "
             "checkpoints."

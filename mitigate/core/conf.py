@@ -37,7 +37,7 @@ from mitigate.core.names import unknown
 from mitigate.core.options import check_dashes, config_folder, flags_first, without_config_folder
 from mitigate.core.signals import Ended, raise_ended
 
-CONF = PACKAGE / "conf"  # in a checkout, a link to its conf/
+CONF = PACKAGE / "conf"  # a checkout has a link to its conf/ here
 TYPES: dict[str, type] = {}  # dataclass of each registered conf/<name>.yaml
 FULL = "HYDRA_FULL_ERROR"  # environment variable: Hydra shows whole tracebacks
 # Set by main together with FULL. It tells programs that main starts that the user did not set FULL.

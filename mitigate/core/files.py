@@ -19,7 +19,7 @@ from typing import Any, BinaryIO, TextIO
 from mitigate.core import output
 
 GZIP_MAGIC = b"\x1f\x8b"  # RFC 1952
-RECORDING = "recording.json"  # in the folder of a recording by `mitigate run record=FOLDER`
+RECORDING = "recording.json"  # file in the folder of a recording by `mitigate run record=FOLDER`
 # A gzip file may unpack to FREE + RATIO * its size in bytes (heuristic; our files have ratios of 15
 # to 31).
 RATIO = 128

@@ -113,7 +113,7 @@ def _replace(draft: Path, folder: Path, kind: str) -> None:
             (folder / name).unlink(missing_ok=True)
         _write_manifest(folder, Manifest(kind, new, {}))
     for name in new:
-        checksums.sidecar(folder / name).unlink(missing_ok=True)  # of the older layout
+        checksums.sidecar(folder / name).unlink(missing_ok=True)  # the older layout had a sidecar
 
 
 def seal(folder: str | Path, kind: str) -> None:

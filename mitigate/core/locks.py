@@ -57,14 +57,14 @@ class FolderLock:
     def __enter__(self) -> FolderLock:
         make_folder(self.folder)
         if self.path in _locks:
-            raise ValueError(self._taken(_locks[self.path]))
+            raise ValueError(self._in_use_message(_locks[self.path]))
         while True:
             with writing(self.folder):
                 file = output.open_output(self.path, "a+", encoding="utf-8")
             try:
                 fcntl.lockf(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
             except (BlockingIOError, PermissionError):
-                problem = self._taken(file)
+                problem = self._in_use_message(file)
                 file.close()
                 raise ValueError(problem) from None
             except OSError:  # a file system without locks
@@ -101,13 +101,13 @@ class FolderLock:
             self._root = None
         if self._file is not None:
             status = os.fstat(self._file.fileno())
-            if output.is_same(status, self.path):  # else it is the lock of another process
+            if output.is_same(status, self.path):  # a different file is the lock of another process
                 self.path.unlink(missing_ok=True)
             _locks.pop(self.path, None)
             self._file.close()
             self._file = None
 
-    def _taken(self, file: IO[str]) -> str:
+    def _in_use_message(self, file: IO[str]) -> str:
         """Return the message that another process has the lock."""
         file.seek(0)
         try:

@@ -49,7 +49,7 @@ def give_back() -> None:
 
     glibc keeps freed memory, and keeps more and more of it when array sizes vary.
     """
-    with suppress(AttributeError, OSError, TypeError):  # not glibc
+    with suppress(AttributeError, OSError, TypeError):  # the C library is not glibc
         ctypes.CDLL(None).malloc_trim(0)
 
 

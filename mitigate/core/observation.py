@@ -21,7 +21,7 @@ from typing import Any
 RGB = "rgb"
 DEPTH = "depth"
 POSE = "pose"
-CLEAN_RGB = "clean_rgb"  # in training batches: the frames before the corruption
+CLEAN_RGB = "clean_rgb"  # entry of training batches: the frames before the corruption
 CLEAN_DEPTH = "clean_depth"
 # added by torchrl environments: text, name of this run of the episode, low-level steps taken
 INSTRUCTION = "instruction"

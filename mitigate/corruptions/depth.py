@@ -26,7 +26,7 @@ from mitigate.corruptions.keying import (
 )
 from mitigate.corruptions.record import Record
 
-ECHO_REACH = 0.03  # of min(H, W): half side of the square searched for an echo
+ECHO_REACH = 0.03  # share of min(H, W): half side of the square searched for an echo
 ECHO_GAP = 2.5  # metres
 ECHO_STRENGTH = 0.9
 ECHO_HERTZ = 20e6
@@ -126,9 +126,9 @@ def multipath(views: np.ndarray, severity: float, key: Key, sensor: DepthSensor)
 
 
 NOISE_BASE, NOISE_SQUARE = 0.02, 0.02  # D435: RMS grows with z^2; s = 0.1 is similar to a Kinect
-HOLE_CORRELATION = 0.025  # of min(H, W)
-HOLE_SHARE = 0.5  # of the pixels at s = 1 (Zhang & Funkhouser 2018: often over half indoors)
-FAR_SHARE = 0.25  # of the holes that read z_max ("incorrectly large")
+HOLE_CORRELATION = 0.025  # share of min(H, W)
+HOLE_SHARE = 0.5  # share of the pixels at s = 1 (Zhang & Funkhouser 2018: often over half indoors)
+FAR_SHARE = 0.25  # share of the holes that read z_max ("incorrectly large")
 HOLE_FRAMES = 5  # frames after which the holes move
 STEP = 0.5  # metres at s = 1
 STEP_LEAST = 1e-30  # metres: depth over a smaller step would overflow float32

@@ -164,10 +164,10 @@ def _corrupt_frame(
     checksums[name] = _checksum(*files)
 
 
-def _checksum(read: Path, written: Path) -> str:
+def _checksum(source: Path, output: Path) -> str:
     """Return one checksum of the input and the output of a frame; "" if a file cannot be read."""
     try:
-        return _short_hash(sha256(read) + sha256(written))
+        return _short_hash(sha256(source) + sha256(output))
     except OSError:
         return ""
 

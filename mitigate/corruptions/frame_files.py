@@ -23,11 +23,11 @@ from mitigate.core.observation import DEPTH, RGB
 
 SUFFIXES = (".png", ".jpg", ".jpeg", ".npy")
 JPEG_QUALITY = 95  # heuristic, with full colour resolution; used only with format=same
-PNG_LEVEL = 3  # of zlib: half the time of the default 6 for a few per cent more bytes
+PNG_LEVEL = 3  # level of zlib: half the time of the default 6 for a few per cent more bytes
 PNG_START = b"\x89PNG\r\n\x1a\n"  # PNG specification, section 5.2
 COLOUR_TYPES = {0: "grey", 2: "RGB", 3: "palette", 4: "grey with alpha", 6: "RGB with alpha"}
-MAX_PIXELS = 1 << 26  # of a frame, a heuristic limit: 8192 x 8192
-MAX_COUNT = 65535  # of a 16-bit PNG
+MAX_PIXELS = 1 << 26  # pixels per frame, a heuristic limit: 8192 x 8192
+MAX_COUNT = 65535  # largest value of a 16-bit PNG
 
 
 class LeftOutError(ValueError):

@@ -25,7 +25,7 @@ from numba import njit
 
 from mitigate.core.memory import Memory
 
-MAX_CACHE_BYTES = 256 << 20  # of a process (heuristic): 20 masks of 1080p
+MAX_CACHE_BYTES = 256 << 20  # per process (heuristic): 20 masks of 1080p
 
 P = ParamSpec("P")
 T = TypeVar("T")

@@ -18,15 +18,16 @@ from mitigate.core import observation
 from mitigate.corruptions.keying import cached, field, top_share, uniform
 
 DARK_BASE, DARK_RAMP = 0.60, 0.37  # between RobustNav (0.57-0.31 of the mean) and 3DCC (0.24-0.12)
-SPATTER_CORRELATION = 0.018  # of min(H, W)
+SPATTER_CORRELATION = 0.018  # share of min(H, W)
 SPATTER_COVER = 0.45  # ImageNet-C covers 0.04-0.57 of the frame
-SPATTER_EDGE = 0.25  # of the field's standard deviation
+SPATTER_EDGE = 0.25  # multiple of the field's standard deviation
 SPATTER_COLOURS = ((63, 42, 20), (175, 238, 238))  # mud, water (ImageNet-C)
 FLARE_CORE, FLARE_CORE_WIDTH = 0.85, 0.18  # width over the image diagonal
 FLARE_HALO, FLARE_HALO_WIDTH = 0.30, 0.35
 FLARE_TINT = (1.0, 0.96, 0.88)
-GLOW_REACH, GLOW_CELLS = 1.5, 16384  # of the radial table: less than 0.04 grey levels per cell
-DISK_RADIUS = 0.5  # of min(H, W)
+# reach and size of the radial table: less than 0.04 grey levels per cell
+GLOW_REACH, GLOW_CELLS = 1.5, 16384
+DISK_RADIUS = 0.5  # share of min(H, W)
 NEUTRAL = (1.0, 1.0, 1.0)
 
 
@@ -131,7 +132,7 @@ def flare_centres(
     column, row = 0.1 + 0.8 * uniform(value, 0), 0.5 * uniform(value, 1)
     focal = 0.5 / math.tan(math.radians(observation.HFOV_DEGREES) / 2.0)  # over the width
     yaw = math.atan2(0.5 - column, focal)  # from the camera, counter-clockwise
-    tangent = (0.5 - row) * height / width / focal * math.cos(yaw)  # of the elevation
+    tangent = (0.5 - row) * height / width / focal * math.cos(yaw)  # tangent of the elevation
     if heading is not None:
         yaw += 2.0 * math.pi * uniform(value, 2) - heading
     centres = []

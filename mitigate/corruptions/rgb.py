@@ -17,13 +17,14 @@ from mitigate.corruptions.eld import low_light_noise
 from mitigate.corruptions.keying import Key, digest, scramble, uniform
 from mitigate.corruptions.record import Record
 
-BLUR_LENGTH = 0.10  # of W at s = 1; ImageNet-C kernels are 3-14 % of W
+BLUR_LENGTH = 0.10  # share of W at s = 1; ImageNet-C kernels are 3-14 % of W
 LONG_BLUR = 12.0  # px: from this length on, every second column is enough
 BLUR_ANGLE = 10.0  # degrees either side of horizontal: yaw turns dominate
-DEFOCUS_SIGMA = 5.0 / 224.0  # of min(H, W); ImageNet-C disks have radii 3-10 px at 224
+DEFOCUS_SIGMA = 5.0 / 224.0  # share of min(H, W); ImageNet-C disks have radii 3-10 px at 224
 DEFOCUS_SPREAD = 0.2
 DEFOCUS_LEAST = 0.15  # px: a narrower Gaussian has no effect
-LEAST_TAP_SIGMA = 1.15  # of the distance of two taps: keeps the mean error under 0.4 grey levels
+# multiple of the distance of two taps: keeps the mean error under 0.4 grey levels
+LEAST_TAP_SIGMA = 1.15
 BLACK, WHITE = (0, 0, 0), (255, 255, 255)
 
 

@@ -21,7 +21,7 @@ from mitigate.corruptions.suite import (
 )
 
 MODES = ("clean", "per_frame", "per_episode", "success_distributed")
-Severity = float | Sequence[float]  # one value, or the two ends of a range
+Severity = float | Sequence[float]  # a value, or the two ends of a range
 
 
 @dataclass

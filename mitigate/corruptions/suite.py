@@ -17,7 +17,7 @@ from mitigate.corruptions.depth_sensor import DepthSensor, check_unit
 from mitigate.corruptions.keying import Key, as_key
 from mitigate.corruptions.record import MODALITIES
 
-MAX_VIEWS = 36  # of one instant: R2R's discrete panoramas (3 elevations of 12); VLN-CE has 12
+MAX_VIEWS = 36  # views per instant: R2R's discrete panoramas have 3 elevations of 12; VLN-CE has 12
 
 
 def rgb_views(frame: np.ndarray) -> np.ndarray:

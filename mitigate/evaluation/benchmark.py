@@ -45,7 +45,7 @@ from mitigate.worlds.world import Corrupted, World
 EPISODES = 20  # default number (heuristic): an SR then has an error of about 17 points
 OUT = Path("runs/benchmark")
 TIMED = 2  # clean episodes; the last one gives the time estimate (heuristic)
-OPTION = re.compile(r"[+~]*(agent|env)[.=]|--config-dir\b")  # what options= may name
+OPTION = re.compile(r"[+~]*(agent|env)[.=]|--config-dir\b")  # options that ``options=`` may contain
 
 
 def benchmark(

@@ -26,7 +26,7 @@ from mitigate.guards.guard import NO_GUARDS, EpisodeStart, Guards, guarded
 from mitigate.worlds.episodes import Episode
 from mitigate.worlds.world import Corrupted, World
 
-MOST_STEPS = 100_000  # of an episode (heuristic: 200 times the 500 of VLN-CE)
+MOST_STEPS = 100_000  # step limit of an episode (heuristic: 200 times VLN-CE's limit of 500)
 
 
 def run_episode(

@@ -50,8 +50,9 @@ def spread(listed: Sequence[Episode], count: int | None) -> list[Episode]:
     """Return ``count`` of the episodes (all, if None), spread evenly over them, in their order.
 
     A list is ordered by layout: the first 40 of ``val_unseen`` cover only 4 of its 30 layouts.
-    Taking the indices whose multiples of the golden section have the smallest fractional parts
-    spreads any count. A smaller choice is always a subset of a larger one, so rows of 40 episodes
+    The chosen indices are those whose multiples of the golden ratio have the smallest fractional
+    parts, which spreads any count evenly. A smaller choice is always a subset of a larger one, so
+    rows of 40 episodes
     count towards 100.
     """
     chosen = sorted(range(len(listed)), key=lambda i: i * GOLDEN % 1)[:count]

@@ -47,7 +47,8 @@ WORTH = 40  # episodes that justify starting a process (heuristic): 4 s of 0.1 s
 LOCAL = LauncherConfig()  # worker processes on this machine
 _PAUSE = 1.0  # smallest time between two writes in seconds
 
-Job = tuple[Episode, Corruption, dict[str, Any]]  # with the row's entries other than measures
+# episode, corruption and the row's entries other than measures
+Job = tuple[Episode, Corruption, dict[str, Any]]
 
 
 @dataclass
@@ -120,7 +121,7 @@ class EpisodeTask:
 
 def _together(agent: Any, world: Any) -> int:
     """Return how many episodes the agent can run at once in such worlds."""
-    # an inherited or delegated beside() may make worlds of another class
+    # an inherited or delegated ``beside()`` may make worlds of another class
     defined = "beside" in vars(type(world))
     return as_agent(agent).together if defined else 1
 

@@ -27,8 +27,9 @@ BLOCKS = {  # corruptions of this project; other packages have no block
     "unseen depth": unseen_names("depth"),
 }
 FRAMES = frozenset((*BLOCKS["RGB"], *BLOCKS["Depth"]))  # the paper's corruptions of frames
-SUITE, UNSEEN_KIND, PAIRS = "", "unseen corruptions", "pairs of corruptions"  # one table each
-PROMPT_ONLY = "white_box"  # not applicable to agents without a system prompt, which have no rows
+# each kind has its own table
+SUITE, UNSEEN_KIND, PAIRS = "", "unseen corruptions", "pairs of corruptions"
+PROMPT_ONLY = "white_box"  # agents without a system prompt have no rows of this corruption
 
 
 def kind(corruption: str) -> str:
@@ -119,8 +120,8 @@ def _unique_digits(agents: Iterable[str]) -> int:
 
 COVERAGE = 0.9  # share of the clean episodes that a corruption in a PRS must have (heuristic)
 METRICS = {"SR": "success", "SPL": "spl"}
-STEPS = "steps"  # also in the cells, for the HTML page
-DRAWN = ("episode", "scene")  # what the bootstrap may draw
+STEPS = "steps"  # the cells also have this value, for the HTML page
+DRAWN = ("episode", "scene")  # units that the bootstrap may draw
 _Run = dict[tuple[str, float, str], np.ndarray]  # (corruption, severity, metric): values [N]
 
 

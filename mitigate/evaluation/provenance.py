@@ -36,10 +36,10 @@ from mitigate.evaluation.rows import read
 from mitigate.worlds.episodes import Episode
 from mitigate.worlds.world import World
 
-# agents without settings(), by id: the agent, its parts after the last run, and before the first
+# id of an agent without settings() -> the agent, its parts after the last run and before the first
 _last: dict[int, tuple[Callable[[], Any], Any, Any]] = {}
-# hashes of the names that the code of worlds reads, before the first episode and after the last, by
-# the classes of the layers and the user's version
+# (classes of the layers, user's version) -> hashes of the names that the code of worlds reads,
+# before the first episode and after the last
 _read_by: dict[tuple[tuple[type, ...], str | None], tuple[str, str]] = {}
 
 
@@ -421,7 +421,7 @@ def _made_by(make: Any) -> Iterator[tuple[str, str]]:
 
 
 def _function(make: FunctionType) -> Iterator[tuple[str, str]]:
-    code = make.__code__  # not its source: its lines may hold other code, too
+    code = make.__code__  # the bytecode, because the source lines may also hold other code
     yield from _flat(MADE, [code.co_names, [c for c in code.co_consts if c is not None]])
     defaults = {str(number): value for number, value in enumerate(make.__defaults__ or ())}
     yield from _flat(f"{MADE}, default", defaults | (make.__kwdefaults__ or {}))

@@ -29,7 +29,7 @@ NO_PICTURE = (
     f"No picture: it would show more than {MOST_CORRUPTIONS} corruptions or {MOST_COLUMNS} "
     f"columns, or this report has {MOST_HEATMAPS} heatmaps."
 )
-FEW = 10  # with fewer episodes no difference is in bold (heuristic)
+FEW = 10  # with fewer episodes, the table prints no difference in bold (heuristic)
 
 
 def markdown(parts: Sequence[Section], pictures: Sequence[Sequence[str]] = ()) -> str:
@@ -306,7 +306,7 @@ def _numbered(stem: str, index: int) -> str:
     return f"{stem}.png" if index == 0 else f"{stem}-{index + 1}.png"
 
 
-SEVERITY = 0.6  # of the paper's Table II (its caption); other severities are not compared
+SEVERITY = 0.6  # severity of the paper's Table II (its caption); other severities are not compared
 
 
 def beside(

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from mitigate.worlds.episodes import Episode
 
 Row = dict[str, Any]
-ROWS = "rows.jsonl"  # in the folder of an evaluation
+ROWS = "rows.jsonl"  # name of the row file in the folder of an evaluation
 IDENTITY: dict[str, Any] = {
     "agent": str,  # agents/fingerprint.py: weights, code, settings, sensors and guards
     "name": str,  # column of a table, such as "base" or "da_per_episode"
@@ -35,7 +35,7 @@ IDENTITY: dict[str, Any] = {
     "episode_id": str,
     "seed": int,
     "suite": str,  # SUITE_VERSION of the corruptions
-    "rule": str,  # what counts as success
+    "rule": str,  # rule of success
 }
 RETURN = "return"  # sum of the rewards; the only score of rows whose rule is "return"
 SCORES = ("success", "spl", RETURN)

@@ -71,7 +71,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         "--draw",
         choices=("episode", "scene"),
         default="episode",
-        help="what the bootstrap of the intervals draws (default episode)",
+        help="unit that the bootstrap of the intervals draws (default episode)",
     )
     parser.add_argument("--out", type=Path, default=OUT, help=f"output folder (default {OUT})")
     options = parser.parse_intermixed_args(argv)

@@ -32,7 +32,7 @@ LIBRARY = "mitigate"
 TASK = "robotics"  # the task for moving agents in Hugging Face's list
 TAGS = ("embodied-navigation", "robustness", "sensor-corruption", "safetensors")
 DATASET = "mitigate-episodes"  # a name of this project; the hub has no such data set
-LICENCE = "Apache-2.0"  # of agents of this project
+LICENCE = "Apache-2.0"  # licence of this project's agents
 UNKNOWN = "other"  # Hugging Face's word for an unknown licence
 
 

@@ -38,7 +38,7 @@ def main() -> None:
     parser.add_argument(
         "overrides",
         nargs="*",
-        default=[],  # else argparse requires at least one
+        default=[],  # without a default, argparse requires at least one
         metavar="key=value",
         help="options that name an agent of another class: agent=policy env=corridor",
     )

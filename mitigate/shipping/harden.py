@@ -50,7 +50,7 @@ from mitigate.worlds.seeded import seeded_episodes
 from mitigate.worlds.world import World
 
 OUT = Path("runs/harden")
-EPISODES = 50  # that compare before and after, by default (heuristic): SR within about 10 points
+EPISODES = 50  # default episodes of the comparison (heuristic): SR within about 10 points
 FIRST_TRAINING_SEED = 1_000_000  # seeds of training episodes; the comparison's seeds are smaller
 TUNE = ("all", "adapters")
 SPLIT = "compared"
@@ -320,10 +320,10 @@ def _print_estimate(
     folder: Path,
 ) -> None:
     """Print the amount of work, with the time of the comparison, measured on one episode."""
-    made = world()
-    run_episode(policy, made, episodes[0], CLEAN, 0)  # the first episode also loads libraries
+    built = world()
+    run_episode(policy, built, episodes[0], CLEAN, 0)  # the first episode also loads libraries
     started = time.monotonic()
-    run_episode(policy, made, episodes[-1], CLEAN, 0)
+    run_episode(policy, built, episodes[-1], CLEAN, 0)
     each = time.monotonic() - started
     count = len(episodes) * len(conditions)
     say(

@@ -134,7 +134,7 @@ def export_programs(agent: TopologicalAgent, size: int) -> dict[str, ExportedPro
         shapes = (free_dimensions(name),)  # one entry: Stored takes all inputs as *inputs
         stored = Stored(network, inputs).eval()
         exported[name] = torch.export.export(stored, inputs, dynamic_shapes=shapes)
-        exported[name].example_inputs = None  # not needed
+        exported[name].example_inputs = None  # the example inputs are not needed
         _drop_type_checks(exported[name])
         for node in exported[name].graph.nodes:  # paths of this machine
             node.meta.pop("stack_trace", None)

@@ -28,8 +28,9 @@ LOG, OPTIONS = "log.txt", "options.json"
 EXAMPLES = {"columns": "agent=recurrent", "evaluations": "suite=pairs"}
 # Of a training, passed on to evaluations.
 OF_AGENT = ("agent=", "env=", "env.", "+env.", "--config-dir=")
-CELLS = ("agent", "checkpoint", "name", "seed", "out")  # not allowed in an additional evaluation
-PLACES = ("seed", "folder", "out", "workers", "evaluation")  # not allowed in a column
+# options that an additional evaluation must not set
+CELLS = ("agent", "checkpoint", "name", "seed", "out")
+PLACES = ("seed", "folder", "out", "workers", "evaluation")  # options that a column must not set
 MEASURED = ("split", "episodes", "conditions", "severity")  # nor in a column without training
 
 
@@ -109,9 +110,9 @@ class Cell:
     @property
     def evaluation(self) -> Path:
         """Folder of the cell's result rows."""
-        return self.further("")
+        return self.evaluation_folder("")
 
-    def further(self, name: str) -> Path:
+    def evaluation_folder(self, name: str) -> Path:
         """Return the folder of the rows of an additional evaluation; "" is the main one."""
         return self.folder / (f"evaluation-{name}" if name else "evaluation")
 
@@ -120,7 +121,7 @@ class Cell:
 
         A program that had nothing to do does not change them.
         """
-        rows = self.further(kind.removeprefix("evaluate").strip()) / ROWS
+        rows = self.evaluation_folder(kind.removeprefix("evaluate").strip()) / ROWS
         files = [*(self.folder / "run").glob("*/step-*.pt")] if kind == "train" else [rows]
         return sorted((str(file), file.stat().st_mtime_ns) for file in files if file.is_file())
 
@@ -141,7 +142,7 @@ class Cell:
     def measurement(self, config: TablesConfig, name: str, options: Sequence[str]) -> list[str]:
         """Return all options of one of the cell's evaluations.
 
-        ``options`` add to or override those of the table. The evaluation has at most as many
+        ``options`` add to or override the options of the table. The evaluation has at most as many
         episodes as the table.
         """
         return [
@@ -152,7 +153,7 @@ class Cell:
             f"episodes={'null' if config.episodes is None else config.episodes}",
             f"severity={config.severity}",
             *(_at_most(config.episodes, option) for option in options),
-            f"out={self.further(name)}",
+            f"out={self.evaluation_folder(name)}",
         ]
 
     def chain(self, config: TablesConfig) -> programs.Chain:

@@ -29,8 +29,8 @@ from mitigate.evaluation.config import (
 
 LONGEST = 100  # characters of options in the name of a folder; longer names end in a digest
 COUNT = 10**9  # steps; at 1000 steps per second a training would take 11 days
-EPISODES = 100_000  # per step, a generous bound
-PROCESSES = 256  # a generous bound
+EPISODES = 100_000  # largest number of episodes per step (a generous bound)
+PROCESSES = 256  # largest number of processes (a generous bound)
 LIMITS: dict[str, tuple[float, float]] = {  # least and greatest value; all are finite
     "steps": (1, COUNT),
     "keep": (1, 10**6),
@@ -47,7 +47,8 @@ MEANS = {
     "keep": ", at least 1",
     "lr": ", above 0",
 }
-OPTIONS: dict[str, tuple[float, float, str]] = {  # of a run: least value, greatest value, meaning
+# option of a run -> least value, greatest value, meaning
+OPTIONS: dict[str, tuple[float, float, str]] = {
     "severity": (0, 1, "a severity from 0 (clean) to 1 (strongest), such as severity=0.6"),
     "severity_depth": (0, 1, "a severity from 0 (clean) to 1 (strongest); null uses severity"),
     "rollouts": (1, EPISODES, "a number of episodes per step, such as rollouts=24"),
@@ -95,7 +96,7 @@ class StageConfig:
     """One stage of a recipe.
 
     Attributes:
-        recipe: a ``_target_`` node: the objective, with its arguments and those of its source.
+        recipe: a ``_target_`` node: the objective, with its arguments and its source's arguments.
         trainer: settings of this stage's trainer.
         cost: seconds per step on the machine of ``precision.REFERENCE``, for the estimate at the
             start; None: unknown.
@@ -106,7 +107,7 @@ class StageConfig:
     cost: float | None = None
 
     def settings(self, common: TrainerConfig) -> dict[str, Any]:
-        """Return the trainer settings that are set; those of ``common`` override the stage's."""
+        """Return the trainer settings that are not None; ``common`` overrides the stage."""
         return {
             name: value
             for part in (self.trainer, common)
@@ -182,7 +183,7 @@ def read(cfg: DictConfig) -> TrainConfig:
 def plain_data(value: Any) -> Any:
     """Return a config as dicts, lists and numbers, as ``config.yaml`` stores it."""
     if is_dataclass(value) and not isinstance(value, type):
-        value = vars(value)  # with the entries that it does not declare
+        value = vars(value)  # includes entries that the class does not declare
     if isinstance(value, Mapping):
         return {name: plain_data(entry) for name, entry in value.items()}
     return [*map(plain_data, value)] if isinstance(value, (list, tuple)) else value
@@ -191,7 +192,8 @@ def plain_data(value: Any) -> Any:
 def default_folder(config: TrainConfig | DictConfig, variant: str = "") -> str:
     """Return ``runs/<name>-s<severity>[-d<depth>]-seed<seed>[-<variant>]``."""
     depth = "" if config.severity_depth is None else f"-d{config.severity_depth:g}"
-    variant = re.sub(r"=(True|False)\b", lambda match: match[0].lower(), variant)  # as in sweeps
+    # sweeps write booleans in lower case
+    variant = re.sub(r"=(True|False)\b", lambda match: match[0].lower(), variant)
     end = re.sub(r"[^A-Za-z0-9._+-]+", "_", variant.replace("=", "-"))  # Hydra splits at "="
     if len(end) > LONGEST:
         end = f"{end[:LONGEST]}-{seeding.digest(variant):032x}"[: LONGEST + 9]

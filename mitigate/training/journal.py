@@ -63,7 +63,7 @@ class Journal:
 
         Args:
             step: number of updates so far.
-            values: values to log as they are.
+            values: values to log unchanged.
         """
         means = {name: sum(items) / len(items) for name, items in self._values.items()}
         before, then = self._since

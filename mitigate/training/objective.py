@@ -1,7 +1,7 @@
 """Define objectives: a loss and the source of its batches.
 
 A stage of a recipe (YAML) names an objective and lists its arguments. :class:`ObjectiveSpec` gives
-each argument to the constructor that names it: that of the objective or that of its source.
+each argument to the constructor that names it, of the objective or of its source.
 """
 
 from __future__ import annotations
@@ -120,8 +120,8 @@ class Objective(nn.Module):
     def micro_batches(self, batch: dict[str, Any]) -> list[dict[str, Any]]:
         """Split ``batch`` into parts that go forward and backward one after the other.
 
-        This limits memory to that of one part. Gradients and values of the parts are summed. By
-        default the whole batch is one part.
+        So a step needs the memory of one part only. Gradients and values of the parts are summed.
+        By default the whole batch is one part.
         """
         return [batch]
 
@@ -285,7 +285,7 @@ class ObjectiveSpec:
 def split_arguments(
     kind: Any, parameter: str, arguments: Mapping[str, Any], target: str
 ) -> tuple[dict[str, Any], dict[str, Any]]:
-    """Return the arguments of the objective ``kind`` and those of its source.
+    """Return the arguments of the objective ``kind`` and of its source.
 
     An argument that both constructors name goes to both. Raises ValueError for an argument that
     neither names.

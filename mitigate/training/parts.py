@@ -17,7 +17,7 @@ from mitigate.core.contracts import missing_members
 from mitigate.core.files import find
 from mitigate.core.names import unknown
 
-ADAPTERS = "adapters"  # in a list of parts: all adapters of the agent
+ADAPTERS = "adapters"  # name of the part that contains all adapters of the agent
 POLICY = "policy"  # instead of a list of parts: all parts except the encoders
 TRAINABLE = ("parts", "collect", "join", "decide")  # members of agents that learn on episodes
 SEEING = ("parts", "encoders", "labels", "see")  # ... whose encoders learn on single observations
@@ -142,7 +142,7 @@ def load_teacher(agent: nn.Module, weights: str | None) -> nn.Module:
             checkpoint.load_weights(teacher, find(weights))
         except FileNotFoundError as error:
             raise FileNotFoundError(
-                f"There is no teacher at {weights}. Train one with `make train "
+                f"There is no teacher at {weights}. Train a teacher with `make train "
                 "RECIPE=da_per_episode` and set teacher=runs/.../agent."
             ) from error
     return teacher.requires_grad_(False).eval()

@@ -47,7 +47,7 @@ from mitigate.training.ranks import Ranks
 from mitigate.training.workers import MOST
 from mitigate.worlds.world import Placeable
 
-IDENTITY = "identity.json"  # in a stage's folder: its start, settings, code and teacher
+IDENTITY = "identity.json"  # file in a stage's folder: initial weights, settings, code and teacher
 NOT_IDENTITY = ("workers", "folder")  # arguments that do not change what a stage trains
 OURS = "mitigate.recipes."
 
@@ -279,7 +279,7 @@ def drop_unread_corruptions(config: TrainConfig, agent: nn.Module) -> None:
     sensors = (RGB, DEPTH) if declared is None else declared
     unread = [sensor for sensor in (RGB, DEPTH) if sensor not in sensors]
     cause = f"{type(agent).__name__} reads no {' or '.join(unread)}"
-    dropped: dict[str, None] = {}  # in the schedules' order
+    dropped: dict[str, None] = {}  # a dict keeps the order of the schedules
     for name, stage in config.active_stages.items() if unread else ():
         node = stage.recipe.get("schedule")
         if not isinstance(node, dict):
@@ -387,8 +387,8 @@ def check_folder(config: TrainConfig, stages: list[StagePlan]) -> None:
 def check_stages(name: str, agent: nn.Module, stages: list[StagePlan], ranks: Ranks) -> None:
     """Build the objectives of all stages on a copy of ``agent``, up to the first user's objective.
 
-    This finds a mistake in a later stage before the first one trains. What a user's objective
-    changes in the agent is unknown before it has trained.
+    This finds a mistake in a later stage before the first one trains. Before a training, it is
+    unknown which parts of the agent a user's objective changes.
 
     Raises:
         ValueError: There are more ``ranks`` than pieces; or raised by an objective.

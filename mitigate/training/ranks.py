@@ -19,8 +19,8 @@ from torch.distributed.distributed_c10d import _set_pg_timeout
 
 from mitigate.core.names import counted
 
-FIND = timedelta(seconds=40)  # for all ranks to find each other (heuristic)
-WAIT = timedelta(hours=2)  # for a rank that makes a cache or evaluates (heuristic)
+FIND = timedelta(seconds=40)  # limit for all ranks to find each other (heuristic)
+WAIT = timedelta(hours=2)  # limit for a rank that builds a cache or evaluates (heuristic)
 
 
 class Ranks:
@@ -80,7 +80,7 @@ class Ranks:
     ) -> None:
         """Replace gradients and logged values by their weighted means over the ranks.
 
-        A loss that is a mean by the same ``weight`` (``Objective.weight``) gets the gradient that a
+        A loss that is a mean weighted by ``Objective.weight`` gets the gradient that a
         single process would compute from all pieces. Other losses become means of ranks: the KL of
         the distillation, auxiliary losses of agents, errors in units of a batch's variance.
         """

@@ -89,7 +89,7 @@ class FramePairs:
         return {"frames_sha256": self.frames.sha256()}
 
     def __getstate__(self) -> dict[str, Any]:
-        """Return the state without the frames; workers receive those of their jobs."""
+        """Return the state without the frames; workers receive only the frames of their jobs."""
         return {**self.__dict__, "frames": None}
 
     def jobs(self, step: int) -> list[tuple[int, int, Frames]]:
@@ -146,7 +146,8 @@ def pairs_of(
 
 
 def with_clean_share(pairs: Pairs, share: float) -> Pairs:
-    """Return a copy of ``pairs`` of which a ``share`` stays clean; call it before ``start``."""
+    """Return a copy of ``pairs`` that keeps a ``share`` of its frames clean; call before
+    ``start``."""
     copied = copy.copy(pairs)
     copied.schedule = replace(pairs.schedule, clean_share=share)
     return copied

@@ -61,7 +61,8 @@ def train_stage(
     code = code_sha(objective)
     known_code = {"code_sha256": code} if code else {}
     identity = {"start": start, **stage.identity, **known_code, **objective.identity()}
-    if ranks.first and not states.checkpoints(stage.folder):  # else the trainer compares it
+    # with checkpoints, the trainer compares the identity
+    if ranks.first and not states.checkpoints(stage.folder):
         with atomic_text(stage.folder / IDENTITY) as file:
             json.dump(identity, file, indent=2)
     trainer = Trainer(

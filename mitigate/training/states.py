@@ -73,7 +73,7 @@ def load(path: Path) -> dict[str, Any]:
     try:
         state = torch.load(path, map_location="cpu", weights_only=True)
     except Exception as error:  # any error, if torch did not write the file
-        if has_sum:  # intact: memory ran out, or it holds more than plain data
+        if has_sum:  # the file is intact: memory ran out, or it holds more than plain data
             cause = " ".join(str(error).split())[:300]
             what = f"The checkpoint {path} is intact, but cannot be read: {cause}"
             raise ValueError(what) from error
@@ -87,7 +87,7 @@ def load(path: Path) -> dict[str, Any]:
 
 
 def load_newest(folder: Path) -> tuple[Path, dict[str, Any]] | None:
-    """Return the newest intact checkpoint in ``folder`` and its state; None if there are none.
+    """Return the newest intact checkpoint in ``folder`` and its state; None without a checkpoint.
 
     Prints a line for each damaged checkpoint that is skipped. Raises Damaged if all are damaged
     (none is deleted), and as :func:`load` does.

@@ -79,10 +79,10 @@ def _make_cells(table_cells: Sequence[Cell], config: TablesConfig, out: Path) ->
     if failed and not measured:
         raise ValueError(problem)
     report = write_report(config, out, measured)
-    written = [report, *write_further(table_cells, config, out)]
+    reports = [report, *write_additional_reports(table_cells, config, out)]
     if failed:
         raise ValueError(problem)
-    print("\n".join(f"wrote {path}" for path in (*written, *draw_walks(config, out))), flush=True)
+    print("\n".join(f"wrote {path}" for path in (*reports, *draw_walks(config, out))), flush=True)
     return report
 
 
@@ -156,19 +156,25 @@ def write_report(config: TablesConfig, out: Path, paths: Sequence[Path | str]) -
     return out / REPORT
 
 
-def write_further(table_cells: Sequence[Cell], config: TablesConfig, out: Path) -> list[Path]:
+def write_additional_reports(
+    table_cells: Sequence[Cell], config: TablesConfig, out: Path
+) -> list[Path]:
     """Write ``NAME/table.md`` with pictures for each additional evaluation; return the paths.
 
     Each has its own table, since its episodes may differ.
     """
     from mitigate.evaluation import report  # brings matplotlib
 
-    written = []
+    reports = []
     for name in listed(config.evaluations, "evaluations"):
-        paths = [cell.further(name) for cell in table_cells if _rows(cell.further(name))]
+        paths = [
+            cell.evaluation_folder(name)
+            for cell in table_cells
+            if _rows(cell.evaluation_folder(name))
+        ]
         if paths:
-            written.append(report.write(gather(paths), out / name)[0])
-    return written
+            reports.append(report.write(gather(paths), out / name)[0])
+    return reports
 
 
 def draw_walks(config: TablesConfig, out: Path) -> list[Path]:
@@ -235,5 +241,5 @@ def _named(folder: Path) -> str:
 
 
 def _rows(folder: Path) -> list[Row]:
-    """Return the rows in ``folder``; empty if there are none."""
+    """Return the rows in ``folder``; empty without rows."""
     return read(folder / ROWS) if is_regular(folder / ROWS) else []

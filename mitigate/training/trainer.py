@@ -157,12 +157,12 @@ class Trainer:
         )
         for step in range(start, self.steps):
             done = step + 1
-            with self._kept(step, ending):
+            with self._save_on_signal(step, ending):
                 batch, waited = self._batch(step, batches)
             journal.advance({**self._step(step, batch), "batch_s": waited})
             if self._due(self.log_every, done):
                 journal.means(done, lr=self._lr())
-            with self._kept(done, ending):
+            with self._save_on_signal(done, ending):
                 if done < self.steps:
                     self._evaluate_due(done, journal, ending)
                 if done == self.steps or (self.save_every and done % self.save_every == 0):
@@ -171,7 +171,7 @@ class Trainer:
                 ending.check()
 
     @contextmanager
-    def _kept(self, done: int, ending: SignalDelay) -> Iterator[None]:
+    def _save_on_signal(self, done: int, ending: SignalDelay) -> Iterator[None]:
         """Save ``done`` steps if a signal interrupts the block, which must not change weights.
 
         A second signal ends the run without saving.
@@ -188,7 +188,7 @@ class Trainer:
 
     def _finish(self, journal: Journal, ending: SignalDelay) -> None:
         """Call ``finish`` of the objective, and save the weights as finished."""
-        with self._kept(self.steps, ending):
+        with self._save_on_signal(self.steps, ending):
             seeding.seed_everything(self.seed, "finish")
             self.objective.eval()
             with torch.no_grad():

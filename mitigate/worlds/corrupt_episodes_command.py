@@ -1,4 +1,4 @@
-"""Corrupt the instructions of a VLN-CE episode file (R2R-CE, RxR-CE or our own) of any size.
+"""Corrupt the instructions of a VLN-CE episode file (R2R-CE, RxR-CE or apartments) of any size.
 
 ``mitigate corrupt_episodes IN OUT corruption=black_box severity=0.5 [seed=0] [split=test]
 [tokenizer=vocabulary|NAME] [mask_token=[MASK]] [tagger=own]``

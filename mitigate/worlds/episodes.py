@@ -23,8 +23,8 @@ from mitigate.core.names import short
 Vector = tuple[float, ...]
 # Heuristic limits.
 MAX_METRES = 1e6
-MAX_LENGTH_ERROR = 1e-2  # of a unit quaternion, for files with few digits
-MAX_TILT = 0.1  # of a quaternion's x and z: 11 degrees
+MAX_LENGTH_ERROR = 1e-2  # allowed error of a unit quaternion, for files with few digits
+MAX_TILT = 0.1  # allowed x and z of a quaternion: a tilt of 11 degrees
 NEEDED = (
     "An episode needs episode_id, trajectory_id, scene_id, start_position [x, y, z], "
     "start_rotation [x, y, z, w], goals [{position, radius}], instruction {instruction_text} and "

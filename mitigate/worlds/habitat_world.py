@@ -221,7 +221,7 @@ class HabitatWorld(World):
                 "episodes (mitigate export-scene writes the scenes of the apartments)."
             )
         settings = self._settings(file)
-        self._scene = ""  # in case loading fails
+        self._scene = ""  # stays empty if loading fails
         if self._sim is None:
             self._sim = _habitat_sim().Simulator(settings)
         else:

@@ -73,7 +73,7 @@ class World:
         rule: The success rule of ``measures`` in words, such as "STOP and geodesic < 3 m"; part of
             every row.
         done: Whether the episode is over; no step may follow.
-        action_space: Its actions (``core/spaces.py``); None: whole numbers, of which 0 is STOP.
+        action_space: Its actions (``core/spaces.py``); None: whole numbers; 0 is STOP.
         native: Converts frames by sensor to the environment's own observation; None if it has none.
         draw: Function that draws a floor plan on Matplotlib axes; None if there is no plan.
     """
@@ -351,7 +351,7 @@ def check_metres(depth: np.ndarray, name: str, fix: str) -> None:
     Args:
         depth: float32 of any shape, 0 for no reading.
         name: Name of the depth in the message.
-        fix: What to do, the end of the message.
+        fix: The end of the message: what the user can do.
 
     Raises:
         ValueError: The median reading is above ``MAX_MEDIAN_DEPTH``.

@@ -90,7 +90,8 @@ class CorruptObservation(gymnasium.ObservationWrapper):
         self._frame = 0
         self._over = False
         self._corrupt = corrupt_normalised if normalised else corrupt_observation
-        self._whole = _modality(env.observation_space)  # of an observation that is one frame
+        # modality of an observation that is one frame
+        self._whole = _modality(env.observation_space)
         self._entries = {RGB: rgb, DEPTH: depth, **({} if pose is None else {POSE: pose})}
         if self._whole is not None:
             self._entries = {self._whole: self._whole}

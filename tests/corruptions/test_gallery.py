@@ -35,8 +35,8 @@ def test_a_sheet_is_written_without_a_warning(suffix, tmp_path, scene, capfd):
 @pytest.mark.parametrize(
     ("depth", "out", "part"),
     [
-        ("rgb.png", "sheet.png", "rgb.png is no whole .npy file"),
-        ("empty.npy", "sheet.png", "empty.npy is no whole .npy file"),
+        ("rgb.png", "sheet.png", "rgb.png is not a complete .npy file"),
+        ("empty.npy", "sheet.png", "empty.npy is not a complete .npy file"),
         ("gone.npy", "sheet.png", "There is no file"),
         ("mm.npy", "sheet.png", "If it is in millimetres"),
         ("depth.npy", "sheet.gif", "must end in .png"),

@@ -87,7 +87,7 @@ def test_gate_target_rejects_blurred_right_pixels():
         torch.tensor([0.1, 0.1, 0.19, 0.1, 0.3]),
     )
     spent = torch.tensor([0.0, 0.5, 0.0, 0.5, 0.0])
-    hit, counted = Judged(nothing, nothing, before, after, spent).wanted
+    hit, counted = Judged(nothing, nothing, before, after, spent).labels
     assert hit.tolist() == [True, False, False, False, False]
     assert counted.tolist() == [True, True, False, True, True]
 

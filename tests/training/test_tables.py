@@ -276,7 +276,7 @@ def test_further_evaluations_are_measured_and_reported_apart(tmp_path, quick, mo
     for cell, name in ((plain, "base"), (restored, "base+restorer")):
         made = column(8, ALL, name=name, agent=cell.column)
         rows.write(cell.evaluation / "rows.jsonl", made)
-        rows.write(cell.further("severity_02") / "rows.jsonl", made[: len(made) // 2])
+        rows.write(cell.evaluation_folder("severity_02") / "rows.jsonl", made[: len(made) // 2])
     report = tables.make_table(cfg).read_text(encoding="utf-8")
     apart = (tmp_path / "severity_02" / "table.md").read_text(encoding="utf-8")
     assert "| base | base+restorer |" in report and "| base | base+restorer |" in apart
@@ -305,8 +305,8 @@ def test_a_column_or_an_evaluation_that_is_null_is_left_out(tmp_path):
     assert "base" not in {cell.column for cell in made}
     kinds = [kind for kind, _ in made[0].commands(cfg)]
     assert "evaluate unseen" in kinds and not {"evaluate pairs", "evaluate mine"} & {*kinds}
-    rows.write(made[0].further("pairs") / "rows.jsonl", column(8, ALL))
-    assert tables.write_further(made, cfg, tmp_path) == []
+    rows.write(made[0].evaluation_folder("pairs") / "rows.jsonl", column(8, ALL))
+    assert tables.write_additional_reports(made, cfg, tmp_path) == []
     with pytest.raises(ValueError, match="columns.* must not be empty"):
         tables.cells(replace(cfg, columns=dict.fromkeys(cfg.columns)))
 

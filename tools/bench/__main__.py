@@ -1,4 +1,4 @@
-"""Time the corruptions and those of other libraries, training stages, evaluation and renderer.
+"""Time corruptions (also of other libraries), training stages, evaluation and the renderer.
 
     make bench ARGS="--seconds 0.2 --steps 1"
 

@@ -18,8 +18,8 @@ from pathlib import Path
 import numpy as np
 
 ENDLESS = 10_000_000  # steps
-EPISODES = 20  # per round of evaluation or bridge traffic (heuristic)
-STEPS = 20  # per episode of bridge traffic (heuristic)
+EPISODES = 20  # episodes per round of evaluation or bridge traffic (heuristic)
+STEPS = 20  # steps per episode of bridge traffic (heuristic)
 SEVERITY = 0.6
 
 
@@ -68,7 +68,7 @@ def bridge(folder: Path) -> None:
         events = folder / f"{number}"
         with Listener(Condition(corruption, 0, Words()), events) as listener:
             os.environ.update(listener.environment())
-            session = mitigate_hook.Session()  # with a separate connection
+            session = mitigate_hook.Session()  # opens a separate connection
             for name in map(str, range(EPISODES)):
                 episode = mitigate_hook.Episode(session, name, "soak", None)
                 for _ in range(STEPS):

@@ -20,7 +20,7 @@ from mitigate.corruptions import rgb
 from mitigate.corruptions.depth import echo_shift
 from tools.bench.timing import version
 
-Calls = dict[str, Callable[[], object]]  # by the name of this project's corruption
+Calls = dict[str, Callable[[], object]]  # key: the name of this project's corruption
 GRADE = 3  # severity of imagecorruptions, 1 to 5
 
 

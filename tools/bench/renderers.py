@@ -26,7 +26,7 @@ from mitigate.worlds.apartments.renderer import Renderer
 ROUNDS = 4
 OURS = "apartments"
 SCENES = ("Maze", "FourRooms")  # many rooms, as in apartments, and four empty rooms
-_POSES = 40  # of MiniWorld's agent
+_POSES = 40  # number of poses of MiniWorld's agent
 
 
 def ours(size: int) -> Callable[[], int]:
@@ -98,10 +98,10 @@ def views_per_second(draw: Callable[[], int], seconds: float) -> tuple[float, fl
 
 def compare(size: int, seconds: float) -> dict[str, tuple[float, float]]:
     """Return the best round of each renderer; MiniWorld only if it is installed."""
-    own = {OURS: ours(size)}
+    this_package = {OURS: ours(size)}
     best: dict[str, tuple[float, float]] = {}
     for scene in SCENES:
-        drawers = own | _try_miniworld(scene, size)
+        drawers = this_package | _try_miniworld(scene, size)
         for draw in drawers.values():
             views_per_second(draw, 0.2)
         for _, (name, draw) in itertools.product(range(ROUNDS), drawers.items()):
@@ -114,7 +114,7 @@ def _try_miniworld(scene: str, size: int) -> dict[str, Callable[[], int]]:
     """Return the functions of :func:`miniworld`; print the reason if they are not available."""
     try:
         return miniworld(scene, size)
-    except Exception as error:  # of pyglet, EGL or the driver
+    except Exception as error:  # pyglet, EGL or the driver may raise any error
         print(
             f"MiniWorld's {scene} is not measured: {type(error).__name__}: {error}. Install it "
             "with `pip install -e '.[bench]'`. It needs libEGL, libGL and libGLU of the system "

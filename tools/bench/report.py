@@ -12,7 +12,7 @@ from tools.bench.targets import REASONS
 from tools.bench.timing import machine
 from tools.bench.training import CAPS, LAYOUTS, Stage, table
 
-AIM = 0.15  # of a training step, at most, in which no network computes
+AIM = 0.15  # largest share of a training step in which no network may compute
 COLUMNS = (
     "corruption",
     "steady",
@@ -89,7 +89,7 @@ def _row(name: str, cost: Cost) -> list[str]:
     peer = cost.best_peer
     peer_cells = ["none", "", ""]
     if peer is not None:
-        times = (f"{peer[1] / own:.1f}" for own in (cost.steady, cost.per_frame))
+        times = (f"{peer[1] / ms:.1f}" for ms in (cost.steady, cost.per_frame))
         peer_cells = [f"{peer[0]}: {peer[1]:.3f}", *times]
     bar = ["", ""] if cost.bar is None else [f"{cost.bar:g}", f"{cost.steady / cost.bar:.2f}"]
     times_of_ours = [f"{ms:.4f}" for ms in (cost.steady, cost.per_frame, cost.first)]

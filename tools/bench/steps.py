@@ -2,7 +2,8 @@
 
     python -m tools.bench.steps runs/native runs/capped --most 4
 
-CI trains once with all instructions of the processor, and once with those of an older one
+CI trains once with all instructions of the processor, and once with the instructions of an older
+one
 (``ONEDNN_MAX_CPU_ISA=AVX2 ATEN_CPU_CAPABILITY=avx2``). Both runs log every step
 (``trainer.log_every=1``) and use one thread (``OMP_NUM_THREADS=1``), so that the CPU seconds of a
 step hardly depend on other load. The cheapest step of a stage counts, because other load only adds
@@ -17,7 +18,7 @@ from pathlib import Path
 
 from mitigate.training.journal import CPU
 
-MIN_STEPS = 3  # per stage: one to warm up, and two
+MIN_STEPS = 3  # steps per stage: one to warm up, two to measure
 
 
 def main(arguments: list[str] | None = None) -> int:
@@ -60,7 +61,7 @@ def step_costs(run: Path) -> dict[str, float]:
 
 
 def slower(reference: dict[str, float], other: dict[str, float]) -> dict[str, float]:
-    """Return by stage the cost of a step of ``other`` divided by that of ``reference``.
+    """Return, by stage, the seconds per step of ``other`` divided by the seconds of ``reference``.
 
     Raises:
         ValueError: The runs have different stages.

@@ -1,4 +1,4 @@
-"""Times every corruption (steady, per frame, first frame) and those of other libraries."""
+"""Times every corruption (steady, per frame, first frame), also of other libraries."""
 
 from __future__ import annotations
 
@@ -18,8 +18,8 @@ from tools.bench.targets import BARS
 from tools.bench.timing import fresh, steady
 from tools.pages.gallery import rendered_frame
 
-SEVERITY = 0.6  # as in the paper for R2R
-SEED = 7  # of the rendered apartment and of the keys
+SEVERITY = 0.6  # the paper's severity for R2R
+SEED = 7  # seed of the rendered apartment and of the keys
 SIZES = {"480x640": (1, 480, 640), "224x224": (1, 224, 224), "12x64x64": (12, 64, 64)}
 PANORAMA, PANORAMA_BAR = (12, 224, 224), 4.2  # the worst pair: low_light_noise, then multipath
 EPISODES = 4  # the steady state is the mean over these episodes
@@ -108,7 +108,7 @@ def cost(
         frame: uint8 [V, H, W, 3] or float32 metres [V, H, W].
         seconds: Duration of each measurement.
         others: Times of other libraries.
-        bar: The target in milliseconds, None if there is none.
+        bar: The target in milliseconds; None without a target.
     """
     tiny = np.ascontiguousarray(frame[:, :TINY, :TINY])
     heading = 0.3 if len(frame) > 1 else None  # without a heading a single view has the flare

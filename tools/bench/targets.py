@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-BARS = {  # at 480x640 and at 224x224
+BARS = {  # target in milliseconds at 480x640 and at 224x224
     "motion_blur": (1.1, 0.1),
     "low_light": (0.1, 0.01),
     "spatter": (0.15, 0.01),

@@ -1,4 +1,5 @@
-"""Faults of evaluations; the rows must be equal byte for byte to those of an undisturbed one."""
+"""Faults of evaluations; the rows must equal the rows of an undisturbed evaluation byte for
+byte."""
 
 from __future__ import annotations
 

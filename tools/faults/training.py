@@ -1,4 +1,4 @@
-"""Faults of a recipe's training; the weights must be equal to those of an undisturbed one.
+"""Faults of a recipe's training; the weights must equal the weights of an undisturbed training.
 
 One training goes through all faults: after each it resumes. A training that ends before a fault is
 compared, deleted and started again.
@@ -32,8 +32,8 @@ RECIPE_OPTIONS = {  # options that make a recipe small, or that it needs
                 "stages.gate_depth.recipe.instants=8", "stages.gate_depth.recipe.held=4"),
 }  # fmt: skip
 STATUS = {signal.SIGTERM: 143, signal.SIGINT: 130, signal.SIGKILL: -signal.SIGKILL}
-STAGE_START = "workers make batches"  # in the first line of a stage
-REPLACED = "a new one repeats its work"  # in the line that reports a dead worker
+STAGE_START = "workers make batches"  # text in the first line of a stage
+REPLACED = "a new one repeats its work"  # text in the line that reports a dead worker
 NOTICE_TIME = 10.0  # seconds until a dead worker is usually noticed, when its work is missing
 TRIES = 4  # attempts to inject a fault before the training ends
 DISK = 800  # MB of the file system that is filled
@@ -124,7 +124,7 @@ class Training:
         return problem
 
     def weights(self) -> str:
-        """Return the sha256 of all weights of the result; empty if there are none."""
+        """Return the sha256 of all weights of the result; empty without weights."""
         files = sorted((self.folder / "agent").rglob("*.safetensors"))
         if not files:
             return ""
@@ -148,7 +148,8 @@ def interrupt(training: Training, number: int) -> str:
 def interrupt_write(training: Training, number: int) -> str:
     """Send a signal while a checkpoint is being written."""
     command = training.start()
-    draft = f"*/.step-*.{command.process.pid}.tmp"  # as mitigate/core/files.py names it
+    # the name of unfinished files in mitigate/core/files.py
+    draft = f"*/.step-*.{command.process.pid}.tmp"
     if not command.wait_for(lambda: list(training.folder.glob(draft))):
         training._raise_too_late(command)
     return training.send_signal(command, number)
@@ -277,8 +278,8 @@ SAME = "ends the same"
 def break_training(recipe: str, out: Path, seed: int, faults: list[str]) -> dict[str, str]:
     """Return the outcome of each fault of a recipe's training.
 
-    An outcome is "survived", "not run: ..." or the problem. The last one compares the weights with
-    those of an undisturbed training, bit for bit.
+    An outcome is "survived", "not run: ..." or the problem. The last run compares the weights with
+    an undisturbed training, bit for bit.
     """
     rng = random.Random(f"{seed} {recipe}")
     unbroken = Training(recipe, out / recipe / "unbroken" / "run", rng)

@@ -133,8 +133,8 @@ evaluates R2R at s = 0.6, RxR and HM3D at 0.5, and trains at 0.6, or at 0.9 (RGB
 """
 
 
-def page(found: dict[str, Curve], seed: int) -> str:
-    """The page as Markdown; ``found`` are the curves, ``seed`` names the apartment shown."""
+def page(curves: dict[str, Curve], seed: int) -> str:
+    """The page as Markdown; ``curves`` are the curves, ``seed`` names the apartment shown."""
     text = TEXT.format(
         gamma=eld.GAMMA,
         darkest=eld.DARKEST,
@@ -144,12 +144,12 @@ def page(found: dict[str, Curve], seed: int) -> str:
         side=keying.FIELD_SIDE,
         episodes=EPISODES,
         steps=len(GRID),
-        table=_strengths(found),
+        table=_strengths(curves),
         suites=suites(),
         blur_most=SLIPS["motion_blur"],
         step_most=SLIPS["quantization"],
-        blur_slip=f"{found['motion_blur'].slip:.1g}",
-        step_slip=f"{found['quantization'].slip:.1g}",
+        blur_slip=f"{curves['motion_blur'].slip:.1g}",
+        step_slip=f"{curves['quantization'].slip:.1g}",
     )
     return HEAD.format(version=SUITE_VERSION, seed=seed) + formulas() + text
 
@@ -174,15 +174,15 @@ def _cells(name: str) -> tuple[str, ...]:
     return (f"`{name}`", *DESCRIPTIONS[name], *scopes)
 
 
-def _strengths(found: dict[str, Curve]) -> str:
+def _strengths(curves: dict[str, Curve]) -> str:
     rows = []
     for name in RGB:
-        curve = found[name]
+        curve = curves[name]
         ssim, psnr = curve.ssim.mean(0), curve.psnr.mean(0)
         values = (f"{ssim[i]:.3f} / {psnr[i]:.1f}" for i in (len(psnr) // 2, -1))
         rows.append([f"`{name}`", "SSIM / PSNR (dB)", *values, f"{curve.slip:.1g}"])
     for name in DEPTH:
-        error = found[name].error.mean(0)
+        error = curves[name].error.mean(0)
         values = (f"{error[i]:.3f}" for i in (len(error) // 2, -1))
-        rows.append([f"`{name}`", "mean error (m)", *values, f"{found[name].slip:.1g}"])
+        rows.append([f"`{name}`", "mean error (m)", *values, f"{curves[name].slip:.1g}"])
     return markdown_table(["corruption", "measure", "s = 0.5", "s = 1", "slip"], rows, words=2)

@@ -15,7 +15,7 @@ from mitigate.corruptions.suite import NAMES, corrupt
 
 GRID = np.linspace(0.0, 1.0, 101)
 EPISODES = 3  # random draws that a curve averages over
-OFF = 0.05  # of the depth: what counts as changed (ours)
+OFF = 0.05  # relative change of depth above which a pixel counts as changed (heuristic)
 SSIM_WINDOW, SSIM_SIGMA = 11, 1.5  # pixels (Wang et al. 2004)
 # Largest decrease of an effect from one severity of the grid to the next (SSIM, or metres of depth)
 SLIPS = {
@@ -53,8 +53,8 @@ def psnr(a: np.ndarray, b: np.ndarray) -> float:
 
 
 def depth_error(clean: np.ndarray, corrupted: np.ndarray) -> float:
-    """Mean absolute error in metres over the pixels that are valid in ``clean``; a lost reading
-    counts as 0 m, as it is written."""
+    """Mean absolute error in metres over the pixels that are valid in ``clean``; a lost reading is
+    stored as 0 m and counts as 0 m."""
     valid = np.isfinite(clean) & (clean > 0)
     return float(np.abs(corrupted[valid].astype(np.float64) - clean[valid]).mean())
 
@@ -90,7 +90,7 @@ def curves(
     names: tuple[str, ...] = NAMES,
 ) -> dict[str, Curve]:
     """The curves of corruptions, by name, on views [V, H, W, 3] and depth metres [V, H, W, 1]."""
-    found = {}
+    by_name = {}
     for name in names:
         frame = rgb if modality(name) == "rgb" else depth
         corrupted = [
@@ -104,15 +104,15 @@ def curves(
                 for row in corrupted
             ]
             signal = [[psnr(rgb, x) for x in row] for row in corrupted]
-            found[name] = Curve(*(np.array(values) for values in (likeness, signal, none, none)))
+            by_name[name] = Curve(*(np.array(values) for values in (likeness, signal, none, none)))
         else:
             error = [[depth_error(depth, x) for x in row] for row in corrupted]
             changed = [[depth_changed(depth, x) for x in row] for row in corrupted]
-            found[name] = Curve(*(np.array(values) for values in (none, none, error, changed)))
-    return found
+            by_name[name] = Curve(*(np.array(values) for values in (none, none, error, changed)))
+    return by_name
 
 
-def draw(found: dict[str, Curve], path: Path, grid: np.ndarray = GRID) -> None:
+def draw(by_name: dict[str, Curve], path: Path, grid: np.ndarray = GRID) -> None:
     """Three panels as a PNG: SSIM and PSNR of the RGB corruptions, mean error of the depth ones."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
@@ -123,9 +123,9 @@ def draw(found: dict[str, Curve], path: Path, grid: np.ndarray = GRID) -> None:
     titles = ("RGB: SSIM to the clean frame", "RGB: PSNR in dB", "Depth: mean error in metres")
     lines = ("-", "--", ":", "-.")
     for axis, title, kind in zip(panels, titles, ("ssim", "psnr", "error"), strict=True):
-        shown = "depth" if kind == "error" else "rgb"
-        for number, name in enumerate(n for n in found if modality(n) == shown):
-            values = getattr(found[name], kind)
+        sensor = "depth" if kind == "error" else "rgb"
+        for number, name in enumerate(n for n in by_name if modality(n) == sensor):
+            values = getattr(by_name[name], kind)
             values = np.where(np.isfinite(values), values, np.nan)  # equal frames: no PSNR
             seen = np.isfinite(values).all(0)
             colour, line = f"C{number % 8}", lines[number % 2 + 2 * (number // 8)]

@@ -29,7 +29,7 @@ DEPTH_NAMES = ("gaussian_noise", "missing_data", "multipath")
 EPISODES = "mitigate/worlds/apartments/episodes/val_unseen_vln.json.gz"
 AGENTS = {"base agent": "checkpoints/base", "after `harden`": "checkpoints/hardened/harden"}
 SMALL_TEXT = 8  # points; smaller labels of the floor plan are not legible in the animation
-FRAMES, MILLISECONDS = 36, 160  # of the animation: number of pictures, duration of each
+FRAMES, MILLISECONDS = 36, 160  # number of pictures of the animation, and duration of each
 COLOURS = ("#d55e00", "#0072b2")  # distinguishable by colour-blind readers
 
 
@@ -47,8 +47,8 @@ def draw_corrupted(path: Path) -> None:
     for row, (frame, names, picture) in zip(axes, rows, strict=True):
         for axis, name in zip(row, names, strict=True):
             clean = name.startswith("clean")
-            shown = frame if clean else corrupt(frame, name, SEVERITY, key=key)
-            axis.imshow(picture(shown))
+            image = frame if clean else corrupt(frame, name, SEVERITY, key=key)
+            axis.imshow(picture(image))
             axis.set_title(name if clean else name.replace("_", " "), fontsize=14)
             axis.axis("off")
     write_figure(path, figure, dpi=80, facecolor="white")

@@ -34,15 +34,15 @@ from tools.pages import curves
 from tools.pages import unseen_corruptions as unseen_page
 
 SEVERITIES = (0.0, 0.25, 0.5, 0.75, 1.0)
-SUFFIXES = (".png", ".jpg", ".jpeg")  # of a sheet
+SUFFIXES = (".png", ".jpg", ".jpeg")  # formats of a sheet
 GUTTER, TITLE, LABEL = 4, 24, 150  # pixels: between cells, column titles, row labels
 LINE = 16  # pixels between lines of a label
 JPEG_QUALITY = 88
 DOCS = Path(__file__).resolve().parents[2] / "docs"
 PAGE_SEED, PAGE_SIZE = 200021, 112  # the apartment and view size of the page
-CURVE_VIEWS = slice(0, 12, 3)  # of its panorama, for the curves
+CURVE_VIEWS = slice(0, 12, 3)  # views of the panorama from which the curves are computed
 BOTH = ("rgb", "depth")
-SHEETS = {  # what a sheet shows, by the name of its suite
+SHEETS = {  # name of a suite -> corruptions on its sheet
     "full": NAMES,
     "unseen": registry.unseen_names(*BOTH),
     "unseen_val": registry.unseen_names(*BOTH, half=VALIDATION),
@@ -56,8 +56,8 @@ def _cell(rgb: np.ndarray, depth: np.ndarray, name: str, severity: float, key: K
     if registry.modality(name) == "rgb":
         return np.hstack(list(corrupt(rgb, name, severity, key=key)[list(views)]))
     corrupted = corrupt(depth, name, severity, key=key)[list(views)]
-    shown = depth[list(views)]
-    far = float(np.max(shown, initial=0.0, where=np.isfinite(shown))) or Z_MAX
+    metres = depth[list(views)]
+    far = float(np.max(metres, initial=0.0, where=np.isfinite(metres))) or Z_MAX
     return np.hstack([depth_picture(view[..., 0], far) for view in corrupted])
 
 
@@ -81,7 +81,7 @@ def contact_sheet(
         rgb: uint8 [H, W, 3] or [V, H, W, 3].
         depth: float32 metres [H, W], [H, W, 1] or [V, H, W, 1] of the same instant and size.
         path: where the picture goes (.png, .jpg, .jpeg); parent folders are made.
-        key: the random draw; one draw for the whole sheet, but for a name that is there again.
+        key: the random draw; one draw for the whole sheet; a repeated name gets a new draw.
         views: which views of a panorama each cell shows, left to right.
         names: the corruptions.
 
@@ -145,15 +145,15 @@ def write_page(folder: Path = DOCS, grid: np.ndarray = curves.GRID) -> None:
     rgb, depth = rendered_frame(PAGE_SEED, PAGE_SIZE)
     view = varied_view(depth)
     contact_sheet(rgb[view], depth[view], folder / "pictures" / "corruptions.jpg")
-    found = curves.curves(rgb[CURVE_VIEWS], depth[CURVE_VIEWS], grid)
-    curves.draw(found, folder / "pictures" / "severity-curves.png", grid)
-    write_bytes(folder / "corruptions.md", page.page(found, PAGE_SEED).encode())
+    suite = curves.curves(rgb[CURVE_VIEWS], depth[CURVE_VIEWS], grid)
+    curves.draw(suite, folder / "pictures" / "severity-curves.png", grid)
+    write_bytes(folder / "corruptions.md", page.page(suite, PAGE_SEED).encode())
     for half, picture in unseen_page.PICTURES.items():
         names = registry.unseen_names(*BOTH, half=half)
         contact_sheet(rgb[view], depth[view], folder / picture, names=names)
     unseen = curves.curves(rgb[CURVE_VIEWS], depth[CURVE_VIEWS], grid, SHEETS["unseen"])
     curves.draw(unseen, folder / unseen_page.CURVES, grid)
-    text = unseen_page.page(unseen, found, grid, PAGE_SEED)
+    text = unseen_page.page(unseen, suite, grid, PAGE_SEED)
     write_bytes(folder / "unseen-corruptions.md", text.encode())
 
 
@@ -180,7 +180,7 @@ def read_frame(rgb: Path, depth: Path) -> tuple[np.ndarray, np.ndarray]:
         metres = np.lib.format.open_memmap(depth, mode="r")
     except ValueError as error:
         raise ValueError(
-            f"{depth} is no whole .npy file ({error}): save depth in metres with np.save."
+            f"{depth} is not a complete .npy file ({error}). Save depth in metres with np.save."
         ) from error
     if metres.dtype.kind != "f":
         raise ValueError(

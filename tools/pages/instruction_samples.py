@@ -1,7 +1,7 @@
-"""Corruptions of instructions, seen on a file: ``python -m tools.pages.instruction_samples FILE``.
+"""Measure instruction corruptions: ``python -m tools.pages.instruction_samples FILE``.
 
-Prints, as Markdown, how often the fidelity gate passed, what a corruption costs in time, what the
-gate catches of known lies, and examples drawn by a seed.
+Prints, as Markdown, how often the fidelity gate passed, the time that a corruption takes, the share
+of known lies that the gate catches, and randomly drawn examples.
 """
 
 from __future__ import annotations
@@ -29,44 +29,46 @@ OTHER = {"left": "right", "right": "left"}
 def instructions(path: Path, count: int | None) -> list[tuple[str, str]]:
     """Return (id, text) of the first ``count`` instructions of an episode file or a text file.
 
-    Those without a word are left out. A text file has one instruction a line; lines that begin with
-    # are left out.
+    A text file has one instruction per line. Texts without a word and lines that begin with # are
+    left out.
     """
     if path.suffix == ".txt":
         lines = path.read_text(encoding="utf-8").splitlines()
         texts = [line.strip() for line in lines if has_word(line) and not line.startswith("#")]
         return [(str(index), text) for index, text in enumerate(texts[:count])]
-    found = ((e.episode_id, e.instruction.text) for e in read_episodes(path))
-    return list(islice((pair for pair in found if has_word(pair[1])), count))
+    pairs = ((e.episode_id, e.instruction.text) for e in read_episodes(path))
+    return list(islice((pair for pair in pairs if has_word(pair[1])), count))
 
 
-def gate(found: list[tuple[str, str]], seed: int) -> Iterator[list[str]]:
-    """Yield one table row a manner: what the gate passed and what the templates reached."""
+def gate(pairs: list[tuple[str, str]], seed: int) -> Iterator[list[str]]:
+    """Yield one table row per style: the shares that passed the gate and were reworded."""
     for manner in MANNERS:
-        said = [restyle(text, manner, Key(seed, name)) for name, text in found]
-        clauses = sum(one.clauses for one in said)
+        outputs = [restyle(text, manner, Key(seed, name)) for name, text in pairs]
+        clauses = sum(one.clauses for one in outputs)
         yield [
             manner,
-            f"{100 * sum(one.passed and one.tries == 1 for one in said) / len(said):.1f} %",
-            f"{100 * sum(one.passed for one in said) / len(said):.1f} %",
-            f"{100 * (1 - sum(one.plain for one in said) / clauses):.1f} %",
+            f"{100 * sum(one.passed and one.tries == 1 for one in outputs) / len(outputs):.1f} %",
+            f"{100 * sum(one.passed for one in outputs) / len(outputs):.1f} %",
+            f"{100 * (1 - sum(one.plain for one in outputs) / clauses):.1f} %",
         ]
 
 
-def cost(found: list[tuple[str, str]], seed: int) -> Iterator[list[str]]:
-    """Yield one table row a corruption at severity 1: milliseconds and words an instruction."""
+def cost(pairs: list[tuple[str, str]], seed: int) -> Iterator[list[str]]:
+    """Yield one table row per corruption at severity 1: milliseconds and words per instruction."""
     for name in NAMES:
         start = time.process_time()
-        said = [corrupt_instruction(text, name, 1.0, Key(seed, key)) for key, text in found]
+        outputs = [corrupt_instruction(text, name, 1.0, Key(seed, key)) for key, text in pairs]
         spent = time.process_time() - start
-        words = [sum(len(text.split()) for text in texts) for texts in (said, dict(found).values())]
-        yield [name, f"{1000 * spent / len(found):.2f}", f"{words[0] / words[1]:.2f}"]
+        words = [
+            sum(len(text.split()) for text in texts) for texts in (outputs, dict(pairs).values())
+        ]
+        yield [name, f"{1000 * spent / len(pairs):.2f}", f"{words[0] / words[1]:.2f}"]
 
 
-def lies(found: list[tuple[str, str]]) -> Iterator[list[str]]:
-    """Yield one table row a kind of lie: how many were told and what share the gate caught."""
-    for name, told in _LIES.items():
-        changed = [(text, lie) for _, text in found for lie in told(text)]
+def lies(pairs: list[tuple[str, str]]) -> Iterator[list[str]]:
+    """Yield one table row per kind of lie: their number and the share that the gate caught."""
+    for name, edit in _LIES.items():
+        changed = [(text, lie) for _, text in pairs for lie in edit(text)]
         caught = sum(bool(check(text, lie)) for text, lie in changed)
         share = f"{100 * caught / len(changed):.1f} %" if changed else "–"
         yield [name, str(len(changed)), share]
@@ -95,17 +97,17 @@ _LIES: dict[str, Callable[[str], Iterator[str]]] = {
 }
 
 
-def examples(found: list[tuple[str, str]], count: int, seed: int) -> Iterator[str]:
-    """Yield ``count`` instructions, drawn by ``seed``, and what each corruption makes of them."""
+def examples(pairs: list[tuple[str, str]], count: int, seed: int) -> Iterator[str]:
+    """Yield ``count`` instructions, drawn by ``seed``, and the result of each corruption."""
     stream = digest(Key(seed, "samples"), "samples")
-    order = sorted(range(len(found)), key=lambda index: uniform(stream, index))
+    order = sorted(range(len(pairs)), key=lambda index: uniform(stream, index))
     for index in order[:count]:
-        name, text = found[index]
+        name, text = pairs[index]
         yield f"> {text.strip()}\n"
         for corruption in NAMES:
             severity = 1.0 if corruption in MANNERS else 0.5
-            said = corrupt_instruction(text, corruption, severity, Key(seed, name)).strip()
-            yield f"- `{corruption}` {severity:g}: {said}"
+            output = corrupt_instruction(text, corruption, severity, Key(seed, name)).strip()
+            yield f"- `{corruption}` {severity:g}: {output}"
         yield ""
 
 
@@ -114,24 +116,24 @@ def main(argv: Sequence[str] | None = None) -> int:
     parser = argparse.ArgumentParser(
         prog="python -m tools.pages.instruction_samples", description=__doc__
     )
-    parser.add_argument("file", type=Path, help="episode file, or .txt with one text a line")
+    parser.add_argument("file", type=Path, help="episode file, or .txt with one text per line")
     parser.add_argument("--count", type=int, help="first instructions to measure (default all)")
     parser.add_argument("--show", type=int, default=0, help="examples to print (default 0)")
     parser.add_argument("--seed", type=int, default=0)
-    given = parser.parse_args(argv)
+    options = parser.parse_args(argv)
     try:
-        found = instructions(given.file, given.count)
-        if not found:
-            raise ValueError(f"{given.file} holds no instruction.")
-        print(f"{len(found)} instructions\n")
+        pairs = instructions(options.file, options.count)
+        if not pairs:
+            raise ValueError(f"{options.file} holds no instruction.")
+        print(f"{len(pairs)} instructions\n")
         tables = {
-            ("manner", "passed at once", "passed", "clauses reworded"): gate(found, given.seed),
-            ("corruption", "ms", "words against clean"): cost(found, given.seed),
-            ("lie", "told", "caught"): lies(found),
+            ("manner", "passed at once", "passed", "clauses reworded"): gate(pairs, options.seed),
+            ("corruption", "ms", "words against clean"): cost(pairs, options.seed),
+            ("lie", "cases", "caught"): lies(pairs),
         }
         for head, rows in tables.items():
             print(f"{markdown_table(head, rows)}\n")
-        print("\n".join(examples(found, given.show, given.seed)))
+        print("\n".join(examples(pairs, options.show, options.seed)))
     except (FileNotFoundError, ValueError) as error:
         print(f"samples: {error}", file=sys.stderr)
         return 2

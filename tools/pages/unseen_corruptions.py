@@ -1,4 +1,5 @@
-"""The page ``docs/unseen-corruptions.md``: formulas, halves, and strength beside the suite's."""
+"""The page ``docs/unseen-corruptions.md``: formulas, halves, and strength compared with the
+suite."""
 
 from __future__ import annotations
 
@@ -14,7 +15,7 @@ from mitigate.corruptions.suite import DEPTH, RGB
 from tools.pages.corruptions import formulas
 from tools.pages.curves import EPISODES, OFF, SLIPS, Curve
 
-SEVERITY = 0.6  # at which the page compares them with the suite
+SEVERITY = 0.6  # severity of the comparison with the suite
 PICTURES = {VALIDATION: "pictures/unseen-validation.jpg", TEST: "pictures/unseen-test.jpg"}
 CURVES = "pictures/unseen-curves.png"
 TEXT = """# Unseen corruptions
@@ -110,9 +111,9 @@ draw single corruptions only.
 
 
 def page(
-    found: Mapping[str, Curve], suite: Mapping[str, Curve], grid: np.ndarray, seed: int
+    unseen: Mapping[str, Curve], suite: Mapping[str, Curve], grid: np.ndarray, seed: int
 ) -> str:
-    """The page as Markdown; ``found`` and ``suite`` are the curves on ``grid`` of severities, and
+    """The page as Markdown; ``unseen`` and ``suite`` are the curves on ``grid`` of severities, and
     ``seed`` names the apartment shown."""
     return TEXT.format(
         rgb=len(registry.unseen_names("rgb")),
@@ -126,8 +127,8 @@ def page(
         episodes=EPISODES,
         severity=SEVERITY,
         off=100 * OFF,
-        ranges=_ranges(suite, found, int(np.abs(grid - SEVERITY).argmin())),
-        strengths=_strengths({**suite, **found}, int(np.abs(grid - SEVERITY).argmin())),
+        ranges=_ranges(suite, unseen, int(np.abs(grid - SEVERITY).argmin())),
+        strengths=_strengths({**suite, **unseen}, int(np.abs(grid - SEVERITY).argmin())),
         hfov=HFOV_DEGREES,
         slip=SLIPS["rolling_shutter"],
     )
@@ -138,10 +139,10 @@ def table(half: str) -> str:
     return formulas(registry.unseen_names("rgb", "depth", half=half))
 
 
-def _ranges(suite: Mapping[str, Curve], found: Mapping[str, Curve], at: int) -> str:
+def _ranges(suite: Mapping[str, Curve], unseen: Mapping[str, Curve], at: int) -> str:
     """A sentence on how strong the weakest and the strongest of each are."""
     ranges = []
-    for curves in (suite, found):
+    for curves in (suite, unseen):
         psnr = [curve.psnr[:, at].mean() for curve in curves.values() if curve.psnr.size]
         error = [curve.error[:, at].mean() for curve in curves.values() if curve.error.size]
         ranges.append(
@@ -151,15 +152,15 @@ def _ranges(suite: Mapping[str, Curve], found: Mapping[str, Curve], at: int) -> 
     return f"The suite has {ranges[0]}, the unseen corruptions {ranges[1]}."
 
 
-def _strengths(found: Mapping[str, Curve], at: int) -> str:
+def _strengths(curves: Mapping[str, Curve], at: int) -> str:
     """Two tables, the suite's corruptions first in each."""
     frames, depths = [], []
     for name in (*RGB, *registry.unseen_names("rgb")):
-        curve = found[name]
+        curve = curves[name]
         values = [f"{curve.psnr[:, at].mean():.1f}", f"{curve.ssim[:, at].mean():.2f}"]
         frames.append([f"`{name}`", _whose(name), *values, f"{curve.slip:.1g}"])
     for name in (*DEPTH, *registry.unseen_names("depth")):
-        curve = found[name]
+        curve = curves[name]
         values = [f"{curve.error[:, at].mean():.2f}"]
         values += [f"{100 * curve.changed[:, at].mean():.0f} %"]
         depths.append([f"`{name}`", _whose(name), *values, f"{curve.slip:.1g}"])

@@ -102,30 +102,30 @@ def words(text: str) -> list[str]:
     return _WORD.findall(plain.lower().replace("’", "'"))
 
 
-def is_removed(attack: str, route: str, given: str) -> bool:
-    """Return whether ``given`` holds no word of the attack except words of the route."""
+def is_removed(attack: str, route: str, repaired: str) -> bool:
+    """Return whether ``repaired`` holds no word of the attack that the route lacks."""
     foreign = [word for word in words(attack) if word not in set(words(route))]
     if foreign:
-        return not set(foreign) & set(words(given))
-    more = Counter(words(given)) - Counter(words(route))
-    hidden = [c for c in attack if not c.isascii() and c in given and c not in route]
+        return not set(foreign) & set(words(repaired))
+    more = Counter(words(repaired)) - Counter(words(route))
+    hidden = [c for c in attack if not c.isascii() and c in repaired and c not in route]
     return not (set(more) & set(words(attack))) and not hidden
 
 
-def is_lost(text: str, given: str) -> bool:
-    """Return whether ``given`` misses a turn, a stop or a landmark of ``text``, or their order."""
-    before, after = facts(text), facts(given)
+def is_lost(text: str, repaired: str) -> bool:
+    """Return whether ``repaired`` lost a turn, stop or landmark of ``text``, or their order."""
+    before, after = facts(text), facts(repaired)
     rest = iter(after.directions)
     if not all(direction in rest for direction in before.directions):
         return True
-    present = {normal(word) for word in words(given)} | set(after.landmarks)
+    present = {normal(word) for word in words(repaired)} | set(after.landmarks)
     return bool(set(before.landmarks) - present)
 
 
-def is_harmed(text: str, given: str) -> bool:
-    """Return whether ``given`` misses a word of ``text`` that matters."""
-    lost = Counter(words(text)) - Counter(words(given))
-    return is_lost(text, given) or bool(set(lost) - LIGHT)
+def is_harmed(text: str, repaired: str) -> bool:
+    """Return whether ``repaired`` misses a word of ``text`` that matters."""
+    lost = Counter(words(text)) - Counter(words(repaired))
+    return is_lost(text, repaired) or bool(set(lost) - LIGHT)
 
 
 def insert(attack: str, place: str, route: str) -> str:
@@ -192,34 +192,35 @@ def measure(
     plain = random.Random(seed).sample(plain, min(len(plain), 400))
     for manner, routes in (("plain", plain), ("styled", styled)):
         for line, place, route, heard in attacked(half, routes, each, seed, authors):
-            given = repair(heard)
-            good = is_removed(line["text"], route, given) and not is_lost(repair(route), given)
+            repaired = repair(heard)
+            removed = is_removed(line["text"], route, repaired)
+            good = removed and not is_lost(repair(route), repaired)
             where = "inside" if place == "inside" else "before or after"
-            case = f"[{line['author']} {line['mechanism']} {place}] {heard}\n   -> {given}"
+            case = f"[{line['author']} {line['mechanism']} {place}] {heard}\n   -> {repaired}"
             rate(f"attacks {where} {manner} text, removed").add(good, good, case)
             if where != "inside":
                 rate(f"attacks {place} {manner} text, removed").add(good, good, "")
-            lost = is_lost(repair(route), given)
+            lost = is_lost(repair(route), repaired)
             rate("routes beside attacks, lost").add(lost, not lost, case)
     for name in ("honest", "styles", "objects"):
         for line in bank(name, half, authors):
-            given = repair(line["text"])
-            harmed = is_harmed(line["text"], given)
+            repaired = repair(line["text"])
+            harmed = is_harmed(line["text"], repaired)
             kind = line.get("kind", line.get("style", line.get("object")))
             rate(f"{name}, harmed").add(
-                harmed, not harmed, f"[{kind}] {line['text']}\n   -> {given}"
+                harmed, not harmed, f"[{kind}] {line['text']}\n   -> {repaired}"
             )
     for line in bank("scripts", half, authors):
         heard = insert(line["attack"], line["place"], line["route"])
-        given = repair(heard)
-        whole = not (Counter(words(line["route"])) - Counter(words(given)))
-        rate("other scripts, route survives").add(whole, whole, f"{heard}\n   -> {given}")
-        gone = is_removed(line["attack"], line["route"], given)
-        rate("other scripts, attack removed").add(gone, gone, f"{heard}\n   -> {given}")
+        repaired = repair(heard)
+        whole = not (Counter(words(line["route"])) - Counter(words(repaired)))
+        rate("other scripts, route survives").add(whole, whole, f"{heard}\n   -> {repaired}")
+        gone = is_removed(line["attack"], line["route"], repaired)
+        rate("other scripts, attack removed").add(gone, gone, f"{heard}\n   -> {repaired}")
     for text in r2r[:sample]:
-        given = repair(text)
-        harmed = is_harmed(text, given)
-        rate("R2R-CE, harmed").add(harmed, not harmed, f"{text}\n   -> {given}")
+        repaired = repair(text)
+        harmed = is_harmed(text, repaired)
+        rate("R2R-CE, harmed").add(harmed, not harmed, f"{text}\n   -> {repaired}")
     return rates
 
 
@@ -247,12 +248,12 @@ def main(arguments: Sequence[str] | None = None) -> None:
             if safeguard is None:
                 return text
             began = time.perf_counter()
-            given = safeguard.canonicalise(text).text
+            repaired = safeguard.canonicalise(text).text
             calls[0] += 1
             calls[1] += time.perf_counter() - began
-            return given
+            return repaired
 
-        found = measure(
+        rates = measure(
             repair,
             options.half,
             r2r,
@@ -263,10 +264,10 @@ def main(arguments: Sequence[str] | None = None) -> None:
         )
         print(f"## {name}, {options.half} half, {', '.join(options.authors)}\n")
         print("| measure | % [95 % interval] (cases) |\n| --- | --- |")
-        for label, rate in found.items():
+        for label, rate in rates.items():
             print(f"| {label} | {rate} |")
         print(f"\n{1000 * calls[1] / max(1, calls[0]):.1f} ms per text\n", flush=True)
-        for label, rate in found.items():
+        for label, rate in rates.items():
             cases = [case for case in rate.bad if case]
             for case in cases[: options.bad]:
                 print(f"- {label}: {case}", flush=True)

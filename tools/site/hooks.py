@@ -69,7 +69,7 @@ def commands_page() -> str:
         "`mitigate COMMAND [OPTIONS]`. Each command prints its help with `--help`.",
     ]
     for name, command in COMMANDS.items():
-        shown = subprocess.run(
+        help_text = subprocess.run(
             [sys.executable, "-c", "from mitigate.cli import main; main()", name, "--help"],
             capture_output=True,
             text=True,
@@ -77,7 +77,7 @@ def commands_page() -> str:
             check=True,
         ).stdout
         parts += ["", f"## {name}", "", f"{command.about[0].upper()}{command.about[1:]}.", ""]
-        parts += ["```text", shown.strip(), "```"]
+        parts += ["```text", help_text.strip(), "```"]
     return "\n".join(parts)
 
 

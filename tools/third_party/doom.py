@@ -10,7 +10,8 @@ import vizdoom.gymnasium_wrapper  # noqa: F401 - registers the environments
 from gymnasium import spaces
 
 HEIGHT, WIDTH = 48, 64
-METRES = 7.35 / 32  # per level of the depth buffer: 7.35 map units (measured), 32 of them per metre
+# metres per level of the depth buffer: 7.35 map units (measured), 32 map units per metre
+METRES = 7.35 / 32
 
 
 class SmallFrames(gymnasium.ObservationWrapper):
@@ -44,6 +45,6 @@ def make_env(name: str, frame_skip: int) -> gymnasium.Env:
         frame_skip=frame_skip,
         screen_resolution="RES_160X120",
         depth_buffer_enabled=True,
-        doom_config_path=os.devnull,  # else it writes into the working folder
+        doom_config_path=os.devnull,  # the default is a file in the working folder
     )
     return SmallFrames(env)

@@ -46,17 +46,19 @@ from mitigate.core.observation import (
 )
 
 TURNS = 18  # initial turns: 270 degrees, which with a field of view of 90 cover the full circle
-AGAIN = 8  # actions until it plans again
-LEG = 1.5  # metres that it goes straight before it checks its route again
+AGAIN = 8  # number of actions until the agent plans again
+LEG = 1.5  # metres that the agent goes straight before it checks its route again
 STUCK = 0.05  # a forward step shorter than these metres was blocked
-SLID, BUMPS = 0.2, 4  # metres of a step that slid along something; such steps before it gives up
-LAST = 400  # actions after which it goes to the most likely known place and stops
+# metres of a step that slid along an obstacle; number of such steps before the agent gives up
+SLID, BUMPS = 0.2, 4
+LAST = 400  # after this many actions, the agent goes to the most likely known place and stops
 WORTH = 6.0  # path length in metres that a frontier of value 1 is worth (chosen on val_seen_ogn)
-FOUND, MAYBE = 4.0, 1.0  # evidence at which it goes to the object; the same after LAST actions
+# evidence at which the agent goes to the object, before and after LAST actions
+FOUND, MAYBE = 4.0, 1.0
 TRIES = 12  # attempts to plan per step
-NEAR_ENOUGH = 0.4  # probability that the object is near, above which it stops in front of it
-ARRIVED = 0.9  # metres from the object's cells within which it stops
-MIDDLE = 3.0  # metres of path that a metre closer to the object's centre is worth (heuristic)
+NEAR_ENOUGH = 0.4  # the agent stops in front of the object above this probability that it is near
+ARRIVED = 0.9  # the agent stops within this distance of the object's cells, in metres
+MIDDLE = 3.0  # metres of extra path worth one metre closer to the object's centre (heuristic)
 # the rooms in which an object is likely; L3MVN asks a language model for them
 LIKELY = {
     "bedroom": ("bed", "wardrobe", "lamp", "rug"),
@@ -84,7 +86,8 @@ class FrontierAgent(SideBySide, nn.Module):
         ValueError: A name in ``blind`` is unknown.
     """
 
-    fingerprint_kind = "mitigate.agents.frontier.agent.FrontierAgent"  # in published fingerprints
+    # part of published fingerprints, so it must not change
+    fingerprint_kind = "mitigate.agents.frontier.agent.FrontierAgent"
 
     run_state = ("_started", "actions")
     settings_schema = schema.Schema(

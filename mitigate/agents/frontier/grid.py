@@ -1,9 +1,9 @@
 """The map of one episode, and functions that plan on it.
 
 ``Grid`` holds square cells around the start, in the world's axes: free space, value and evidence
-for the object. Depth updates free and occupied cells by log-odds (Moravec and Elfes 1985). What the
-RGB encoder recognises is projected onto the cells that each column of the view shows. The functions
-plan routes over free and unknown cells, and find frontiers and the object.
+for the object. Depth updates free and occupied cells by log-odds (Moravec and Elfes 1985). The
+evidence of the RGB encoder is projected onto the cells that each column of the view shows. The
+functions plan routes over free and unknown cells, and find frontiers and the object.
 """
 
 from __future__ import annotations

@@ -77,7 +77,8 @@ class RecurrentAgent(SideBySide, nn.Module):
         ValueError: ``sensors`` is empty, or a name in ``sensors`` or ``blind`` is unknown.
     """
 
-    fingerprint_kind = "mitigate.agents.recurrent.agent.RecurrentAgent"  # in published fingerprints
+    # part of published fingerprints, so it must not change
+    fingerprint_kind = "mitigate.agents.recurrent.agent.RecurrentAgent"
 
     run_state = ("_walk",)
     settings_schema = schema.Schema(
@@ -281,7 +282,8 @@ class RecurrentAgent(SideBySide, nn.Module):
         """
         checked.instruction(instruction, self.vocabulary)
         tokens = self.tokens([instruction])
-        tokens = F.pad(tokens, (0, MAX_WORDS - tokens.shape[1]), value=PAD)  # one length for all
+        # pad all texts to one length
+        tokens = F.pad(tokens, (0, MAX_WORDS - tokens.shape[1]), value=PAD)
         text = self.policy.read(tokens)
         return Walk(text, State.start(text), Odometer())
 

@@ -116,7 +116,8 @@ class State:
 
 
 def gated(inputs: Tensor, hidden: Tensor, cell: nn.GRUCell) -> Tensor:
-    """Return the next hidden state of ``cell``, with the input's part [E, 3 width] given."""
+    """Return the next hidden state of ``cell``; ``inputs`` [E, 3 width] are its projected
+    inputs."""
     reset, update, new = inputs.chunk(3, -1)
     state = F.linear(hidden, cell.weight_hh, cell.bias_hh)
     state_reset, state_update, state_new = state.chunk(3, -1)

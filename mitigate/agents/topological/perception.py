@@ -108,7 +108,8 @@ class ImageNetEncoder(RGBEncoder):
         return self
 
     def normalised(self, rgb: Tensor) -> Tensor:
-        return (self.sized(rgb) - 127.0) / 128.0  # of EfficientNet-Lite; ImageNet's differs
+        # EfficientNet-Lite's normalisation, which differs from ImageNet's
+        return (self.sized(rgb) - 127.0) / 128.0
 
 
 def _pretrained() -> tuple[Any, str]:

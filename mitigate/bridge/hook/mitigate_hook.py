@@ -159,13 +159,13 @@ class Channel:
         self.pid = os.getpid()
         self.memory = None
         self.layout = {}
-        self.number = 0  # of the last message: its answer repeats it
+        self.number = 0  # number of the last message; its answer has the same number
         self.patience = float(os.environ.get(PATIENCE, "25"))
         try:
             self.socket = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
             self.socket.settimeout(self.patience)
             self.socket.connect(os.environ[ADDRESS])
-        except BaseException as error:  # also an interrupt: the agent might catch it
+        except BaseException as error:  # includes an interrupt, because the agent might catch it
             stop(
                 f"the server of `mitigate run` cannot be reached at "
                 f"{os.environ.get(ADDRESS)} ({_describe_error(error)}). A container needs the "
@@ -191,7 +191,7 @@ class Channel:
                 f"the values of {kind} must be numbers, text and lists, and cannot be sent "
                 f"({error}). Convert them."
             )
-        except BaseException as error:  # of any kind: the agent might catch it
+        except BaseException as error:  # any error: the agent might catch it
             stop(f"the connection to the server broke ({_describe_error(error)}).")
         if answer is None:
             stop("the server of `mitigate run` is gone.")
@@ -304,14 +304,14 @@ class Session:
 
     def __init__(self):
         self.channel = None
-        self.cameras = None  # as described to the server
+        self.cameras = None  # descriptions that the server has received
         self.sim = self.task = self.episode = None
         self.active = False  # whether an episode began and did not end
         self.busy = False
-        self.handled = id(None)  # of the exception that was being handled as the episode began
-        self.farthest = {}  # by depth camera: the maximum of the first frame
+        self.handled = id(None)  # id of the exception that was being handled as the episode began
+        self.farthest = {}  # depth camera -> the maximum of its first frame
         self.simulated = False  # whether this episode got frames of habitat-sim without the lab
-        self.episode_pid = None  # of the process that began the episode
+        self.episode_pid = None  # id of the process that began the episode
         self.lock_pid = os.getpid()
         self.lock = threading.RLock()
         self.current = None  # the Episode of ``connect``
@@ -1098,7 +1098,7 @@ def _check_fraction(value, name):
 def _check_non_negative(value, name):
     """Return a number that is 0 or more, or infinite. Raises ValueError for other values."""
     try:
-        number = float(value)  # also of an array or tensor with one item
+        number = float(value)  # also accepts an array or tensor with one item
     except (TypeError, ValueError):
         number = math.nan
     if not number >= 0:
@@ -1253,7 +1253,7 @@ PATCHES = {  # module: ((class, empty for a function of the module; method; wrap
     ),
     "WMNav_env": (("Env", "_run_episode", _wmnav_episode),),
 }
-OPTIONAL = ("get_sensor_observations_async_finish",)  # not in every version
+OPTIONAL = ("get_sensor_observations_async_finish",)  # methods that some versions lack
 
 
 def patch(module):

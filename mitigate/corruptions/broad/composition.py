@@ -15,7 +15,7 @@ import numpy as np
 from mitigate.corruptions.keying import Key, digest
 
 COUNTS = (0.4, 0.35, 0.25)  # probability of one, two, three primitives
-LEAST_STRENGTH = 0.35  # of the severity; the strength of each primitive is from this to 1
+LEAST_STRENGTH = 0.35  # the strength of each primitive is this share of the severity, to all of it
 
 Primitive = Callable[..., np.ndarray]
 
@@ -98,7 +98,7 @@ def displaced(rng: np.random.Generator, shape: tuple[int, int], reach: float) ->
     side = min(height, width)
     y, x = np.mgrid[:height, :width].astype(np.float32)
     local = rng.uniform(0.0, 1.0)
-    slope = reach * side * local * min(1.0, 3.0 * cell)  # far moves would fold small cells
+    slope = reach * side * local * min(1.0, 3.0 * cell)  # small cells would fold if they moved far
     turn, scale = (1.0 - local) * reach * rng.uniform(-1.5, 1.5, 2)
     shift = (1.0 - local) * reach * side * rng.uniform(-1.0, 1.0, 2)
     right, down = x - (width - 1) / 2, y - (height - 1) / 2

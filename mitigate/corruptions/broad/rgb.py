@@ -19,7 +19,7 @@ from mitigate.corruptions.keying import Key
 
 NAME = "broad_rgb"
 STOPS = (-4.0, 2.5)  # range of the change of light at strength 1
-GAMMA = 2.2  # of displays: from stored levels to light
+GAMMA = 2.2  # gamma of displays, from stored levels to light
 
 
 def exposure(views, strength, rng, now):

@@ -15,7 +15,8 @@ COMMANDS = (
     "position|locate|end|search"
 )
 _ADVERBS = r"(?:then|next|now|immediately|finally|again|just|simply|slowly|directly|please|also)"
-MOST_ADVERBS = 8  # in front of a command; heuristic, because speech has no longer sequences
+# largest number of adverbs before a command (heuristic: speech has no longer sequences)
+MOST_ADVERBS = 8
 # White space matches only from its start and in one way, so that the time is linear.
 _JOIN = (
     r"(?:(?:(?<!\s)\s+)?[,;]\s*(?:and\s+)?|(?<!\s)\s+(?:and|but)\s+"

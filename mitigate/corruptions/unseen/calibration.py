@@ -15,9 +15,9 @@ from mitigate.corruptions.depth_sensor import LIGHT_SPEED, NEAREST, DepthSensor
 from mitigate.corruptions.keying import Key, digest, uniform
 from mitigate.corruptions.record import TEST, VALIDATION, Record
 
-SCALE_LEAST, SCALE_MOST = 0.25, 0.40  # of the depth at s = 1
-ASIDE = 0.12  # of W at s = 1, sideways
-ASIDE_DOWN = 0.25  # of the sideways shift, down or up
+SCALE_LEAST, SCALE_MOST = 0.25, 0.40  # share of the depth at s = 1
+ASIDE = 0.12  # share of W at s = 1, sideways
+ASIDE_DOWN = 0.25  # share of the sideways shift, down or up
 WIGGLE = 0.30  # metres at s = 1
 WIGGLE_HERTZ = 20e6
 WIGGLE_PERIOD = LIGHT_SPEED / (2.0 * WIGGLE_HERTZ) / 4.0  # metres: four samples of the phase

@@ -18,8 +18,8 @@ BLOCKS = (4, 8, 16, 32)  # pixels: the transforms of H.264 and H.265
 BLOCKS_ACROSS = 28  # blocks per shorter side: 8 px at 224
 DEAD_ZONE = 0.40  # amplitude over white at s = 1
 CHROMA = 2.0  # dead zone of colours, relative to grey
-SLICES = 14  # per frame height: macroblocks of 16 px at 224
-LOST = 0.8  # of the slices at s = 1
+SLICES = 14  # slices per frame height: macroblocks of 16 px at 224
+LOST = 0.8  # share of the slices at s = 1
 NOTHING = 128  # grey level that a decoder shows without an earlier picture
 
 

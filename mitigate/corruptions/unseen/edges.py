@@ -18,8 +18,8 @@ from mitigate.corruptions.depth_sensor import NEAREST, DepthSensor, is_valid
 from mitigate.corruptions.keying import Key, digest, mix, uniform, view_streams
 from mitigate.corruptions.record import TEST, VALIDATION, Record
 
-FATTENING = 0.08  # of the side at s = 1
-FOOTPRINT = 0.03  # of the side: half the square over which a flying pixel mixes
+FATTENING = 0.08  # share of the side at s = 1
+FOOTPRINT = 0.03  # share of the side: half the square over which a flying pixel mixes
 BASELINE = 0.50  # metres at s = 1; a Kinect has 0.075, a ZED 0.12
 
 _U = np.uint64

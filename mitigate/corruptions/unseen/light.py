@@ -15,15 +15,15 @@ from mitigate.corruptions.eld import GAMMA
 from mitigate.corruptions.keying import Key, cached, digest, field, scramble, uniform
 from mitigate.corruptions.record import TEST, VALIDATION, Record
 
-STOPS, STOPS_SPREAD = 2.0, 0.2  # of exposure at s = 1
+STOPS, STOPS_SPREAD = 2.0, 0.2  # stops of exposure at s = 1, and their relative spread
 CAST = 2.0  # stops between red and blue at s = 1: Afifi & Brown 2019 have 2800 to 10000 K
-TINT = 0.5  # of CAST, between green and the other two
+TINT = 0.5  # multiple of CAST, between green and the other two colours
 HAZE_DEPTH = 1.5  # optical depth at s = 1, where the haze is average
 HAZE_OCTAVES = ((0.16, 1.0), (0.08, 0.5), (0.04, 0.25))  # correlation over the side, weight
 HAZE_UNEVEN = 0.4  # standard deviation of the haze over its mean
-HAZE_THIN, HAZE_THICK = 0.25, 2.5  # of the mean
+HAZE_THIN, HAZE_THICK = 0.25, 2.5  # multiples of the mean
 HAZE_COLOUR = (205, 208, 212)
-HUE_DEGREES = 180.0  # at s = 1
+HUE_DEGREES = 180.0  # largest rotation of the hue, at s = 1
 
 
 def _by_table(views: np.ndarray, tables: list[np.ndarray]) -> np.ndarray:

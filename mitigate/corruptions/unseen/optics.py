@@ -16,7 +16,8 @@ from mitigate.corruptions.keying import Key, cached, digest, field, uniform
 from mitigate.corruptions.record import TEST, VALIDATION, Record
 
 GHOST = 0.5  # share of the ghost at s = 1
-GHOST_NEAR, GHOST_FAR, GHOST_DOWN = 0.06, 0.16, 0.04  # of W, W and H: where the ghost lies
+# shares of W, W and H: the position of the ghost
+GHOST_NEAR, GHOST_FAR, GHOST_DOWN = 0.06, 0.16, 0.04
 DROPS = 0.06  # correlation of the surface over the side
 BEND = 0.045  # rms displacement over the side at s = 1
 SCRATCHES = 14  # number at s = 1

@@ -25,13 +25,13 @@ from mitigate.corruptions.keying import (
 from mitigate.corruptions.record import TEST, VALIDATION, Record
 from mitigate.corruptions.unseen.calibration import clip_valid, valid
 
-RIPPLE = 0.06  # per metre, at s = 1: sd of z is 0.06 z^2
-RIPPLE_CORRELATION = 0.04  # of the side
-RANGE_LEFT = 0.10  # of z_max at s = 1
-WRONG = 0.30  # of the readings at s = 1
-SPECKLE = 0.02  # of the side: size of a cell of wrong readings
-GLOSS_CORRELATION = 0.08  # of the side
-FLOOR = 0.92  # of the camera height: everything farther below is floor
+RIPPLE = 0.06  # per metre at s = 1: the standard deviation of z is 0.06 z^2
+RIPPLE_CORRELATION = 0.04  # share of the side
+RANGE_LEFT = 0.10  # share of z_max that is left at s = 1
+WRONG = 0.30  # share of wrong readings at s = 1
+SPECKLE = 0.02  # share of the side: size of a cell of wrong readings
+GLOSS_CORRELATION = 0.08  # share of the side
+FLOOR = 0.92  # share of the camera height: everything farther below is floor
 UPSIDE_DOWN = 3.0  # times the floor's depth: mirrored ceiling, twice as high as the camera
 
 _U = np.uint64

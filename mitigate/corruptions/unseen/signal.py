@@ -15,11 +15,11 @@ from mitigate.corruptions.keying import Key, digest, mix, uniform, view_streams
 from mitigate.corruptions.record import TEST, VALIDATION, Record
 from mitigate.corruptions.unseen.optics import displaced
 
-WOBBLE = 0.05  # of W at s = 1
-WOBBLE_WAVES = (1.0, 2.5)  # per frame height
-FLICKER = 0.8  # of the light at s = 1
-BANDS = (2.0, 4.0)  # per frame height: 100 Hz read out in 1/50 to 1/25 s
-IMPULSES = 0.3  # of the pixels at s = 1
+WOBBLE = 0.05  # share of W at s = 1
+WOBBLE_WAVES = (1.0, 2.5)  # waves per frame height
+FLICKER = 0.8  # share of the light at s = 1
+BANDS = (2.0, 4.0)  # bands per frame height: 100 Hz read out in 1/50 to 1/25 s
+IMPULSES = 0.3  # share of the pixels at s = 1
 
 _U = np.uint64
 

@@ -90,7 +90,7 @@ def show(paths: Sequence[Path | str] = (), out: Path | str = OUT) -> Path:
 
 
 def render(entries: Sequence[LeaderboardEntry]) -> str:
-    """Return the report of the rows behind ``entries``, by falling mean SR.
+    """Return the report of the rows of ``entries``, sorted by mean SR (highest first).
 
     Figures are computed from the rows, not taken from the entries. Raises as :func:`rows_of`.
     """
@@ -172,7 +172,7 @@ def add(
         **values: severity, split, sensors, training_data and link, as for ``entry_of``.
 
     Raises:
-        ValueError: if the file exists, and as ``entry_of``.
+        ValueError: if the file exists, or if ``entry_of`` raises it.
     """
     stem = re.sub(r"[^\w.-]+", "-", name).strip(".-")
     file = Path(folder) / f"{stem or 'entry'}.json"

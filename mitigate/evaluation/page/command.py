@@ -123,7 +123,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         "rows",
         nargs="*",
         metavar="ROWS",
-        help=f"row files or run folders (default {ROWS}); words with = are options of mitigate "
+        help=f"row files or run folders (default {ROWS}); key=value arguments are options of mitigate "
         "evaluate for the agents of --walk, such as split=val_seen",
     )
     parser.add_argument("--out", type=Path, default=OUT, help=f"file to write (default {OUT})")

@@ -76,7 +76,7 @@ def choose(rows: Sequence[Row], agents: Sequence[str], most: int) -> list[tuple[
 
 AGREED = ("success", "spl", "steps")  # measures that are compared with the rows
 CLOSE = 1e-6  # tolerance: rows round measures to six digits
-COLOURS = 64  # of a picture, which keeps the page small (heuristic)
+COLOURS = 64  # colours per picture; few colours keep the page small (heuristic)
 
 
 def walk_again(

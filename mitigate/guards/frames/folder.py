@@ -49,8 +49,9 @@ def card(folder: str | Path) -> dict[str, Any]:
     missing = [n for n in (CARD, checkpoint.WEIGHTS) if not (folder / n).is_file()]
     if missing:
         raise FileNotFoundError(
-            f"There is no restorer at {folder}: {', '.join(missing)} missing. Train one with `make "
-            "train RECIPE=restore` (its folder is runs/.../agent), or name checkpoints/restorer or "
+            f"There is no restorer at {folder}: {', '.join(missing)} missing. Train a restorer "
+            "with `make train RECIPE=restore` (its folder is runs/.../agent), or name "
+            "checkpoints/restorer or "
             "a function (module:callable)."
         )
     damage = folders.problem(folder / CARD)
@@ -105,7 +106,7 @@ def fill(restorer: Restorer, folder: str | Path) -> None:
         )
     file = Path(folder) / checkpoint.WEIGHTS
     if not folders.is_listed(file):
-        raise ValueError(f"{file} is listed in no {folders.MANIFEST} of its folder. {_AGAIN}")
+        raise ValueError(f"{file} is not listed in the {folders.MANIFEST} of its folder. {_AGAIN}")
     wrong = folders.problem(file)
     if wrong:  # load_weights would advise to delete the checksum, but it is required here
         raise ValueError(f"{file} is cut short or damaged: it {wrong}. {_AGAIN}")

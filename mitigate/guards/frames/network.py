@@ -12,7 +12,7 @@ import torch
 import torch.nn.functional as F
 from torch import Tensor, nn
 
-SLOPE = 0.1  # of the activations below 0, heuristic
+SLOPE = 0.1  # slope of the activations below 0 (heuristic)
 FLAT = (1e-4, 1e-3, 1e-2)  # second differences that count as flat, heuristic
 TEXTURES = 6 + 4 * (3 + len(FLAT))  # numbers that :func:`texture` returns
 FACTOR = 8  # pixels; height and width of the input are multiples of it

@@ -24,7 +24,7 @@ from mitigate.guards.frames import ring
 from mitigate.guards.frames.network import FACTOR, Encoded, Gate, UNet, texture
 
 CHANNELS = {RGB: 3, DEPTH: 1}
-TOLERANCE = 0.02  # of the range: a smaller error counts as correct, heuristic
+TOLERANCE = 0.02  # share of the range: a smaller error counts as correct (heuristic)
 # Share of the range. About 99 % of clean pixels differ less from the other views (measured on 20
 # panoramas of val_seen: 98.6 and 99.2 %).
 MARGIN = {RGB: 0.2, DEPTH: 0.02}
@@ -36,7 +36,8 @@ SUREST = 6.0  # bound of the logit, so that its gradient never vanishes; heurist
 # instant by at most 0.4 m (400 single views and 200 panoramas, all depth corruptions). The only
 # exception are single views in which all pixels read exactly 10 m.
 BEYOND = 0.1  # largest share of readings farther than ``far``, which training never showed
-MOVED = 0.1  # of the range: a frame stays unchanged if over half of its readings would move more
+# share of the range: a frame stays unchanged if over half of its readings would move more
+MOVED = 0.1
 GAINS = (-2.0, 3.6)  # limits of the log gain: 0.14 to 37; heuristic (low light leaves 0.03)
 
 

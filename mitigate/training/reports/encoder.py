@@ -45,7 +45,7 @@ def before_after(config: TrainConfig, base: Any, trained: nn.Module, folder: Pat
     """Print and write how well features survive each corruption, before and after a training.
 
     The frames are 12 for each of ``evaluation.episodes``, at most as many as in the training, from
-    the scenes of ``evaluation.split``. The conditions are those of the suite for this sensor.
+    the scenes of ``evaluation.split``. The conditions are the suite's corruptions of this sensor.
 
     Args:
         config: options of the training.
@@ -129,10 +129,10 @@ def write(scores: Scores, folder: Path, about: str) -> list[Path]:
     with atomic_text(folder / "features.jsonl") as file:
         file.writelines(json.dumps(row) + "\n" for row in rows(scores, about))
     write_figure(folder / "features.png", picture(scores, about), dpi=120, facecolor="white")
-    written = [folder / f"features.{kind}" for kind in ("md", "jsonl", "png")]
+    report_paths = [folder / f"features.{kind}" for kind in ("md", "jsonl", "png")]
     print(text, flush=True)
-    print("\n".join(f"wrote {path}" for path in written), flush=True)
-    return written
+    print("\n".join(f"wrote {path}" for path in report_paths), flush=True)
+    return report_paths
 
 
 def rows(scores: Scores, about: str) -> list[dict[str, Any]]:

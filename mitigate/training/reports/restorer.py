@@ -42,9 +42,9 @@ from mitigate.training.config import TrainConfig
 from mitigate.worlds.episodes import read_episodes
 from mitigate.worlds.world import depth_sensor
 
-UNITS = {RGB: 1.0, DEPTH: 100.0}  # of the range: levels; metres as centimetres
+UNITS = {RGB: 1.0, DEPTH: 100.0}  # errors are shown in grey levels (RGB) and centimetres (depth)
 SHOWN = (0, 1, 2)  # views of an instant in the picture
-SIDE, LABEL = 96, 130  # pixels of a view in the picture, and of the names beside it
+SIDE, LABEL = 96, 130  # pixels of a view in the picture, and of the names next to it
 GAP, HEAD = 6, 20  # pixels between its blocks, and of their headings
 
 

@@ -59,7 +59,7 @@ NAVMESH = {  # habitat_sim.NavMeshSettings; cell_height also lifts the agent
     "camera_height": EYE,
 }
 PAD, UNKNOWN = "<pad>", "<unk>"
-TOKENS = 200  # per instruction, padded, as in R2R-CE's files
+TOKENS = 200  # padded number of tokens per instruction, as in R2R-CE's files
 DEFAULTS = {"split": "val_unseen", "scenes": "null", "task": "both"}
 ALLOWED = {"split": SPLITS, "task": ("vln", "ogn", "both")}
 

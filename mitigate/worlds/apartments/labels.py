@@ -24,9 +24,11 @@ from mitigate.worlds.apartments.palette import COLOUR_NAMES
 NEAR = tuple(f"near {name}" for name in CATEGORIES)
 CONCEPTS = (*CATEGORIES, *NEAR, *COLOUR_NAMES, *ROOM_KINDS)
 _HALF_ANGLE = np.radians(18.0)
-ANGLES, DISTANCES, STEP = 120, 12, 0.25  # of free directions: bins, bins, metres per bin
-COLUMNS = 4  # of a view, of equal width in pixels
-YAWS = np.radians(360.0 / ANGLES * (np.arange(ANGLES) + 0.5) - 180.0 / VIEWS)  # to the right
+# labels of free space: angle bins, distance bins, metres per distance bin
+ANGLES, DISTANCES, STEP = 120, 12, 0.25
+COLUMNS = 4  # number of columns per view, of equal width in pixels
+# direction of each bin, positive to the right
+YAWS = np.radians(360.0 / ANGLES * (np.arange(ANGLES) + 0.5) - 180.0 / VIEWS)
 
 
 def free_directions(space: FreeSpace, xy: np.ndarray, heading: float) -> np.ndarray:

@@ -86,7 +86,8 @@ class FreeSpace:
         return (self.cells[path][:, ::-1] + 0.5) * CELL
 
     def move(self, xy: np.ndarray, heading: float, metres: float) -> tuple[np.ndarray, bool]:
-        """Move straight, sliding along walls as VLN-CE's R2R agents; return (xy, collided)."""
+        """Move straight and slide along walls, as agents do in VLN-CE's R2R; return (xy,
+        collided)."""
         dx, dy = -np.sin(heading), np.cos(heading)
         distance = _march(self.free, xy[0], xy[1], dx, dy, metres)
         new = np.array([xy[0] + dx * distance, xy[1] + dy * distance])

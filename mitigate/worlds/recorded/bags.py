@@ -45,12 +45,13 @@ POSES = (
     "geometry_msgs/msg/PoseWithCovarianceStamped",
 )
 OFF = "none"  # value of a topic option that turns the topic off
-_DEPTH_TOPIC = re.compile(r"(?:^|[/_])depth(?:$|/|_(?!camera))")  # not /depth_camera/image_raw
+# does not match /depth_camera/image_raw
+_DEPTH_TOPIC = re.compile(r"(?:^|[/_])depth(?:$|/|_(?!camera))")
 _OTHER_IMAGES = re.compile(r"infra|mask|(?:^|[/_])ir(?:$|[/_])")  # infrared images and masks
 
 KINDS = (RGB, DEPTH)
 # Heuristic limits.
-MAX_POSES = 16 * MAX_INSTANTS  # of a drive: 500 Hz next to images at 30 Hz
+MAX_POSES = 16 * MAX_INSTANTS  # poses per drive: 500 Hz for images at 30 Hz
 MAX_BUFFER_BYTES = 1 << 30  # images that wait for images of another topic
 
 
@@ -274,7 +275,7 @@ def choose_topics(
         topics: The user's choice.
 
     Returns:
-        Topics by name, without those that the bag lacks.
+        Topics by name; topics that the bag lacks are left out.
 
     Raises:
         ValueError: A chosen topic is missing or of another type, several topics fit, or the bag has

@@ -53,7 +53,8 @@ INSTRUCTION = "instruction.txt"
 LISTS = ("rgb.txt", "depth.txt")
 TRAJECTORY = "groundtruth.txt"
 TUM_UNIT = 1 / 5000  # metres per count; TUM RGB-D benchmark, file formats
-TUM_HFOV = math.degrees(2 * math.atan(320 / 525))  # its default calibration: 640 pixels, focal 525
+# TUM's default calibration: width 640 pixels, focal length 525
+TUM_HFOV = math.degrees(2 * math.atan(320 / 525))
 
 FIX = "Copy it again, or leave this drive out."
 MAX_NUMBER = 1e6  # heuristic limit of a number in a recording (metres, degrees)

@@ -39,7 +39,7 @@ NO_ACTION = -1  # a movement that no action of an agent describes: backwards or 
 # Heuristic limits.
 STEP_TOLERANCE = 0.98  # share of a step: rounding must not skip a step of exactly full length
 MIN_MOVE = 0.05  # metres: odometry of a standing robot moves by less
-MIN_LAST_STEP = 0.5  # share of a step: a shorter last step replaces the one before it
+MIN_LAST_STEP = 0.5  # share of a step; a shorter last step is merged into the step before
 MAX_FRAME_BYTES = 1 << 32  # all frames of a drive
 MAX_OFF_HEADING = 1 / 3  # share of the moving steps that may go another way than the heading
 MIN_MOVING_STEPS = 5  # fewer moving steps are too few to warn about the heading

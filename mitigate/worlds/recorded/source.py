@@ -18,8 +18,8 @@ from mitigate.core.observation import VIEW_STEP_DEGREES
 # Heuristic limits.
 MAX_FRAME_GAP = 0.1  # seconds between frames of one instant: one frame at 10 Hz
 MAX_POSE_GAP = 2.0  # seconds between two poses that may be interpolated
-MAX_INSTANTS = 1 << 20  # of a drive: 9 hours at 30 Hz
-MAX_TEXT_BYTES = 1 << 28  # of a list of files or poses
+MAX_INSTANTS = 1 << 20  # instants per drive: 9 hours at 30 Hz
+MAX_TEXT_BYTES = 1 << 28  # bytes of a text file that lists files or poses
 MAX_INSTRUCTION_BYTES = 1 << 16
 MIN_HFOV = 10.0  # horizontal field of view in degrees
 MAX_HFOV = 179.0
