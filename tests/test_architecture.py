@@ -80,7 +80,7 @@ def test_climbing_finds_an_upward_import():
     assert not climbing("mitigate.training.train", {"mitigate.core.names"})
 
 
-def test_package_names_no_concrete_agent_and_agent_no_concrete_world():
+def test_package_names_no_concrete_agent_or_world():
     concrete = re.compile(r"mitigate\.worlds\.(apartments|habitat_world|recorded)\b")
     agents = re.compile(r"mitigate\.agents\.(topological|recurrent|frontier)\b")
     for path in SOURCES:

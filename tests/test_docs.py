@@ -24,7 +24,7 @@ LARGEST_PICTURE = 300_000  # bytes (ours)
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(ROOT)))
-def test_every_link_and_picture_is_there(page):
+def test_every_link_and_picture_exists(page):
     for target in re.findall(r"\]\(([^)#]+)", page.read_text(encoding="utf-8")):
         if "://" not in target:
             assert (page.parent / target).exists(), f"{page.name} names {target}"
@@ -38,14 +38,14 @@ def anchors(page: Path) -> set[str]:
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(ROOT)))
-def test_every_heading_that_a_link_names_is_there(page):
+def test_every_linked_heading_exists(page):
     links = re.findall(r"\]\(([^)#:]*)#([^)]+)\)", page.read_text(encoding="utf-8"))
     for target, heading in links:
         assert heading in anchors(page.parent / target if target else page), f"{target}#{heading}"
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(ROOT)))
-def test_every_source_file_named_is_there(page):
+def test_every_named_source_file_exists(page):
     text = page.read_text(encoding="utf-8")
     for name in re.findall(r"`((?:mitigate|recipes|conf|tests)/[\w/.]+)`", text):
         assert (ROOT / name).exists(), f"{page.name} names {name}"

@@ -72,13 +72,13 @@ def test_success_distributed_schedule_draws_harder_corruptions_more_often():
     assert sorted(found, key=success.__getitem__) == sorted(found, key=lambda name: -found[name])
 
 
-def test_policy_kl_of_equal_policies_is_zero_and_else_positive():
+def test_policy_kl_is_zero_for_equal_policies_only():
     logits = torch.randn(64, 5, generator=torch.Generator().manual_seed(0))
     assert float(policy_kl(logits, logits.clone(), 2.0)) == pytest.approx(0, abs=1e-6)
     assert float(policy_kl(logits.flip(0), logits, 2.0)) > 0.01
 
 
-def test_feature_mse_of_equal_features_is_zero_and_else_positive():
+def test_feature_mse_is_zero_for_equal_features_only():
     features = torch.randn(64, 12, generator=torch.Generator().manual_seed(0))
     assert float(feature_loss(features, features.clone())) == 0
     assert float(feature_loss(features + 0.1, features)) > 0
@@ -101,7 +101,7 @@ def test_fresh_conv_adapter_changes_no_bit_and_has_gradients():
 
 
 @pytest.mark.parametrize("factor", [0.0, 3.0])
-def test_fusion_weights_sum_to_one_and_are_lower_for_a_less_reliable_view(factor):
+def test_fusion_weights_sum_to_one_and_follow_reliability(factor):
     views = torch.randn(4, 12, 32, generator=torch.Generator().manual_seed(0))
     views = views / views.norm(dim=-1, keepdim=True)
     views[:, 5] *= factor  # a blank or an overexposed view
@@ -111,7 +111,7 @@ def test_fusion_weights_sum_to_one_and_are_lower_for_a_less_reliable_view(factor
     assert (weights[:, 5] < others_.min(1).values).all()
 
 
-def test_lora_on_an_8_bit_llama_trains_only_the_adapter(tmp_path):
+def test_lora_on_8_bit_llama_trains_only_the_adapter(tmp_path):
     pytest.importorskip("bitsandbytes", reason="needs bitsandbytes: pip install -e '.[safeguard]'")
     from mitigate.guards.text.language_models.model import LanguageModel
     from mitigate.recipes.safeguard_lora import SafeguardLora

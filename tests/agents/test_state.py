@@ -70,7 +70,7 @@ def test_fingerprint_counts_arrays_without_settings():
     assert fingerprint(first, {}) == fingerprint(other, {})
 
 
-def test_read_state_follows_cycles_and_reports_what_it_cannot_read():
+def test_read_state_follows_cycles_and_reports_unreadable_values():
     agent = SimpleNamespace(itself=None, session=iter(()), deep=SimpleNamespace())
     agent.itself = agent
     place = agent.deep
@@ -94,7 +94,7 @@ def test_in_eval_mode_restores_every_mode():
     assert [module.training for module in nested.modules()] == [True, True, False]
 
 
-def test_read_state_reports_too_many_values_and_loads_no_lazy_mapping(monkeypatch):
+def test_read_state_limits_values_and_loads_no_lazy_mapping(monkeypatch):
     class Lazy(Mapping):
         def __getitem__(self, key):
             raise AssertionError("loaded")

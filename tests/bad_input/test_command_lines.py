@@ -106,7 +106,7 @@ FAST = settings(
 
 
 @pytest.mark.parametrize(("name", "option", "words"), LINES, ids=IDS)
-def test_a_wrong_option_is_named_before_anything_is_made(
+def test_wrong_option_is_named_before_anything_is_written(
     tmp_path, monkeypatch, capsys, name, option, words
 ):
     monkeypatch.delenv("HYDRA_FULL_ERROR", raising=False)
@@ -217,14 +217,14 @@ def test_export_refuses_a_name_that_is_no_folder(tmp_path, name):
 
 
 @pytest.mark.parametrize("name", ["trian", "../train", "--x", "train=1", "\0", "x" * 1000])
-def test_a_command_that_is_none_is_named(capsys, name):
+def test_unknown_command_is_named(capsys, name):
     status, told = said_by(lambda: cli.main([name[:99]]), capsys)
     assert status == 1 and "no command" in told
 
 
 @FAST
 @given(st.lists(st.text(max_size=12), max_size=4))
-def test_any_words_are_refused_or_read_as_folders(tmp_path, monkeypatch, capsys, words):
+def test_parse_reads_any_words_as_folders_or_fails(tmp_path, monkeypatch, capsys, words):
     monkeypatch.chdir(tmp_path)
     for main in (frames_command.main, table.main):
         if not any(word.startswith("-") for word in words):

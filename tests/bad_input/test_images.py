@@ -88,7 +88,7 @@ FRAMES = {
 
 
 @pytest.mark.parametrize("name", FRAMES)
-def test_a_frame_that_is_none_is_left_out_with_a_reason(tmp_path, name):
+def test_corrupt_skips_invalid_frames_with_a_reason(tmp_path, name):
     path = tmp_path / name
     path.write_bytes(FRAMES[name])
     for take in (
@@ -101,7 +101,7 @@ def test_a_frame_that_is_none_is_left_out_with_a_reason(tmp_path, name):
 
 
 @pytest.mark.parametrize("corruption", ["spatter", "missing_data"])
-def test_a_folder_of_them_is_reported_and_nothing_is_half_written(tmp_path, capsys, corruption):
+def test_corrupt_reports_invalid_frames_and_writes_none(tmp_path, capsys, corruption):
     source, out = tmp_path / "in", tmp_path / "out"
     source.mkdir()
     for name, raw in FRAMES.items():
@@ -129,7 +129,7 @@ def test_flipped_and_cut_frames_are_read_or_left_out(tmp_path, name, data):
         assert "\n" not in str(error)
 
 
-def test_an_archive_is_not_opened_for_what_is_in_it(tmp_path):
+def test_load_image_rejects_archives_unopened(tmp_path):
     with zipfile.ZipFile(tmp_path / "a.npy", "w") as archive:
         archive.writestr("../../outside.npy", b"x")
     with pytest.raises(LeftOutError):

@@ -76,13 +76,13 @@ def plain(tmp_path):
         ("instruction.txt", "go " * 40_000),
     ],
 )
-def test_a_plain_folder_with_lies_is_refused(plain, name, text):
+def test_plain_folder_with_false_values_is_rejected(plain, name, text):
     assert len(read(plain)) == 1
     (plain / name).write_text(text)
     refused(plain)
 
 
-def test_a_frame_of_absurd_size_is_refused_before_it_is_decoded(plain):
+def test_huge_frame_is_rejected_before_decoding(plain):
     first = sorted((plain / "rgb").iterdir())[0]
     raw = bytearray(first.read_bytes())
     raw[16:24] = struct.pack(">II", 1 << 16, 1 << 16)
@@ -113,14 +113,14 @@ def tum(folder: Path) -> Path:
         ("groundtruth.txt", "# nothing\n", "no pose"),
     ],
 )
-def test_a_tum_folder_with_lies_is_refused(tmp_path, name, text, said):
+def test_tum_folder_with_false_values_is_rejected(tmp_path, name, text, said):
     folder = tum(tmp_path / "drive")
     assert len(read(folder)) == 1
     (folder / name).write_text(text)
     refused(folder, said)
 
 
-def test_a_list_that_is_too_long_is_refused_before_it_is_read_whole(tmp_path, monkeypatch):
+def test_long_list_is_rejected_before_it_is_read(tmp_path, monkeypatch):
     folder = tum(tmp_path / "drive")
     with open(folder / "rgb.txt", "wb") as file:
         file.truncate(1 << 30)  # sparse: one line without an end
@@ -159,7 +159,7 @@ def recording(folder: Path) -> Path:
         ("scene/1/steps.jsonl", '{"position": \n{}\n{}\n'),
     ],
 )
-def test_a_recording_with_lies_is_refused(tmp_path, name, text):
+def test_bag_with_false_values_is_rejected(tmp_path, name, text):
     folder = recording(tmp_path)
     assert len(read(folder)) == 1
     (folder / name).write_text(text)
@@ -167,7 +167,7 @@ def test_a_recording_with_lies_is_refused(tmp_path, name, text):
 
 
 @pytest.mark.parametrize("position", ["[1e400, 0, 0]", f"[{'9' * 400}, 0, 0]", "[[], 0, 0]", '"x"'])
-def test_a_place_that_is_none_leaves_a_recording_without_poses_or_is_refused(tmp_path, position):
+def test_invalid_position_drops_poses_or_is_rejected(tmp_path, position):
     folder = recording(tmp_path)
     lines = [f'{{"position": {position}, "heading": 0}}'] * 3
     (folder / "scene/1/steps.jsonl").write_text("\n".join(lines))
@@ -215,7 +215,7 @@ def bombs():
 
 
 @pytest.mark.parametrize("kind", ["zstd", "lz4"])
-def test_a_bomb_in_a_chunk_is_refused(tmp_path, bombs, kind):
+def test_chunk_bomb_is_rejected(tmp_path, bombs, kind):
     (tmp_path / "robot.mcap").write_bytes(chunk(kind, bombs[kind], BOMB))
     if kind == "zstd":
         refused(tmp_path / "robot.mcap", "robot.*unpacks to more than")
@@ -224,7 +224,7 @@ def test_a_bomb_in_a_chunk_is_refused(tmp_path, bombs, kind):
             read(tmp_path / "robot.mcap")
 
 
-def test_a_file_that_is_packed_whole_is_counted_before_it_is_unpacked_to_the_disk(tmp_path, bombs):
+def test_compressed_file_is_counted_before_it_is_unpacked(tmp_path, bombs):
     bag = write_bag(tmp_path / "robot", steps(), "mcap")
     note, file = bag / "metadata.yaml", mcap(bag)
     (bag / f"{file.name}.zstd").write_bytes(bombs["zstd"])
@@ -235,7 +235,7 @@ def test_a_file_that_is_packed_whole_is_counted_before_it_is_unpacked_to_the_dis
     refused(bag, "unpacks to more than")
 
 
-def test_what_is_unpacked_in_all_is_bounded_and_streams_are_joined():
+def test_unpacked_size_is_bounded_and_streams_are_joined():
     for make, pack in (
         (bz2.BZ2Decompressor, bz2.compress),
         (lz4.frame.LZ4FrameDecompressor, lz4.frame.compress),
@@ -260,7 +260,7 @@ def test_what_is_unpacked_in_all_is_bounded_and_streams_are_joined():
         "CREATE TABLE t(a); CREATE TRIGGER x AFTER INSERT ON t BEGIN DELETE FROM t; END",
     ],
 )
-def test_a_data_base_that_computes_is_refused(tmp_path, script):
+def test_database_with_computation_is_rejected(tmp_path, script):
     file = tmp_path / "robot.db3"
     base = sqlite3.connect(file)
     base.executescript("CREATE TABLE messages(id); CREATE TABLE topics(id);" + script)
@@ -269,7 +269,7 @@ def test_a_data_base_that_computes_is_refused(tmp_path, script):
 
 
 @pytest.mark.parametrize("raw", [b"", b"SQLite format 3\0" + bytes(50), b"\0" * 5000])
-def test_what_is_no_data_base_is_refused(tmp_path, raw):
+def test_file_that_is_no_database_is_rejected(tmp_path, raw):
     (tmp_path / "robot.db3").write_bytes(raw)
     refused(tmp_path / "robot.db3", "robot")
 
@@ -323,18 +323,18 @@ def picture(**changes) -> Message:
         {"encoding": "x" * 10_000},
     ],
 )
-def test_an_image_whose_header_lies_is_refused(changes):
+def test_image_with_false_header_is_rejected(changes):
     with pytest.raises(ValueError, match="bag"):
         ros.read_image(picture(**changes), RGB, Path("bag"))
 
 
-def test_a_row_whose_step_lies_takes_no_memory():
+def test_row_with_false_step_takes_no_memory():
     row = ros.read_image(picture(height=1, step=1 << 31), RGB, Path("bag"))
     assert row.shape == (1, 4, 3)
 
 
 @pytest.mark.parametrize("size", [(1 << 15, 1 << 15), (1 << 20, 1)])
-def test_a_compressed_image_of_absurd_size_is_not_decoded(monkeypatch, size):
+def test_huge_compressed_image_is_not_decoded(monkeypatch, size):
     def record(kind: bytes, data: bytes) -> bytes:
         return (
             struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
@@ -352,7 +352,7 @@ def test_a_compressed_image_of_absurd_size_is_not_decoded(monkeypatch, size):
 @pytest.mark.parametrize(
     ("focal", "centre"), [((8, 1e-300), (8, 8)), ((8, 1e300), (8, 8)), ((8, 8), (1e300, 8))]
 )
-def test_a_lens_that_sees_nothing_is_refused(focal, centre):
+def test_lens_without_field_of_view_is_rejected(focal, centre):
     assert Lens(RGB, focal=(8, 8), centre=(8, 8), size=(16, 16))
     with pytest.raises(ValueError, match="must be"):
         Lens(RGB, focal=focal, centre=centre, size=(16, 16))

@@ -112,7 +112,7 @@ DAMAGED = {
 
 
 @pytest.mark.parametrize("raw", DAMAGED.values(), ids=DAMAGED)
-def test_a_checkpoint_or_foreign_weights_that_are_none_are_refused(tmp_path, raw):
+def test_load_rejects_invalid_checkpoints_and_foreign_weights(tmp_path, raw):
     path = tmp_path / "step-00000003.pt"
     path.write_bytes(raw)
     assert str(path) in refused(lambda: states.load(path))
@@ -121,7 +121,7 @@ def test_a_checkpoint_or_foreign_weights_that_are_none_are_refused(tmp_path, raw
     assert [p.name for p in tmp_path.iterdir()] == [path.name]
 
 
-def test_no_file_of_weights_runs_code(tmp_path, monkeypatch):
+def test_load_runs_no_code_from_weights(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     for name, raw in trapped(tmp_path / "ran").items():
         path = tmp_path / "step-00000003.pt"
@@ -164,7 +164,7 @@ SAFETENSORS = {
 
 
 @pytest.mark.parametrize("raw", SAFETENSORS.values(), ids=SAFETENSORS)
-def test_a_safetensors_file_that_is_none_is_refused(tmp_path, raw):
+def test_load_rejects_invalid_safetensors(tmp_path, raw):
     path = tmp_path / checkpoint.WEIGHTS
     path.write_bytes(raw)
     for read in (
@@ -206,20 +206,20 @@ CARDS = {
 
 
 @pytest.mark.parametrize("made", CARDS.values(), ids=CARDS)
-def test_a_hardened_folder_whose_card_is_none_is_refused(tmp_path, made):
+def test_load_hardened_rejects_invalid_card(tmp_path, made):
     raw = made if isinstance(made, bytes) else json.dumps(made).encode()
     (tmp_path / agents.CARD).write_bytes(raw)
     assert str(tmp_path) in refused(lambda: agents.load_hardened(tmp_path))
 
 
 @pytest.mark.parametrize("folder", [None, 3, True])
-def test_a_hardened_folder_that_is_no_path_is_refused(folder):
+def test_load_hardened_rejects_values_that_are_no_path(folder):
     with pytest.raises(TypeError, match=f"path of a hardened checkpoint, got {folder}. Name one"):
         agents.load_hardened(folder)
 
 
 @pytest.mark.parametrize("name", [OTHER, "/etc/passwd", "..", "", ".", "a/b", "./x", "a\\..\\/b"])
-def test_a_card_reads_no_file_outside_its_folder(tmp_path, name):
+def test_card_reads_no_file_outside_its_folder(tmp_path, name):
     needed = (*agents.FILES, checkpoint.WEIGHTS)
     for each in needed:
         (tmp_path / each).write_text("x")
@@ -254,7 +254,7 @@ ADAPTERS = {
 
 
 @pytest.mark.parametrize("made", ADAPTERS.values(), ids=ADAPTERS)
-def test_a_folder_of_adapters_that_does_not_fit_is_refused(tmp_path, made):
+def test_adapters_that_do_not_fit_are_rejected(tmp_path, made):
     network = nn.Sequential(nn.Conv2d(3, 3, 3))
     if isinstance(made, dict):
         made = {"backbone_sha256": adapters.backbone_sha(network), **made}
@@ -288,7 +288,7 @@ PEFT_BAD = {
 
 
 @pytest.mark.parametrize(("name", "made"), PEFT_BAD.values(), ids=PEFT_BAD)
-def test_a_lora_folder_that_is_none_is_refused(tmp_path, name, made):
+def test_lora_rejects_invalid_folder(tmp_path, name, made):
     (tmp_path / adapter_folder.ADAPTER).write_bytes(b"")
     for file, good in ((adapter_folder.CARD, PEFT_CARD), (adapter_folder.CONFIG, PEFT)):
         (tmp_path / file).write_text(json.dumps(good))
@@ -310,7 +310,7 @@ ENCODER_BAD = {
 
 
 @pytest.mark.parametrize("made", ENCODER_BAD.values(), ids=ENCODER_BAD)
-def test_a_folder_of_an_encoder_that_is_none_is_refused(tmp_path, made):
+def test_encoder_rejects_invalid_folder(tmp_path, made):
     raw = made if isinstance(made, bytes) else json.dumps(made).encode()
     (tmp_path / encoder_folder.CARD).write_bytes(raw)
     refused(lambda: encoder_folder.card(tmp_path), encoder_folder.CARD)
@@ -334,7 +334,7 @@ def test_flipped_and_cut_bytes_are_noticed(tmp_path, data):
 
 @FAST
 @given(st.dictionaries(st.text(max_size=9), st.none() | st.integers() | st.text(max_size=9)))
-def test_any_header_of_safetensors_is_refused_or_fits(tmp_path, header):
+def test_safetensors_header_is_rejected_or_fits(tmp_path, header):
     path = tmp_path / checkpoint.WEIGHTS
     path.write_bytes(tensors(header, bytes(16)))
     refused(lambda: checkpoint.load_weights(NETWORK, path))

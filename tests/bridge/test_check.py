@@ -101,7 +101,7 @@ def test_check_reports_the_range_of_depth(tmp_path, capsys, depth, words):
     assert words in capsys.readouterr().out
 
 
-def test_draw_sheet_draws_a_call_in_which_a_corruption_acts(monkeypatch):
+def test_draw_sheet_draws_a_corrupted_call(monkeypatch):
     named = []
     rig = Rig([{"name": "left", "type": "rgb", "shape": [8, 8, 3], "dtype": "uint8"}])
 

@@ -66,7 +66,7 @@ def with_damaged_line(data, number):
 
 
 @pytest.mark.parametrize("number", [1, 4, -1])
-def test_run_rejects_a_damaged_line_of_events_and_changes_nothing(finished, number):
+def test_run_rejects_damaged_event_line_and_changes_nothing(finished, number):
     out, again = finished
     events = out / CONDITION / "events.jsonl"
     count = len(events.read_bytes().splitlines())
@@ -79,7 +79,7 @@ def test_run_rejects_a_damaged_line_of_events_and_changes_nothing(finished, numb
 
 
 @pytest.mark.parametrize("cut", [1, 40])
-def test_run_rejects_events_that_were_cut_after_the_condition_finished(finished, cut):
+def test_run_rejects_events_cut_after_the_condition_finished(finished, cut):
     out, again = finished
     events = out / CONDITION / "events.jsonl"
     events.write_bytes(events.read_bytes()[:-cut])
@@ -291,7 +291,7 @@ def test_run_names_a_folder_in_place_of_its_files(finished, name):
 
 
 @pytest.mark.parametrize("kind", ["link", "file"])
-def test_run_keeps_a_finished_condition_that_cannot_be_put_aside(finished, tmp_path, kind):
+def test_run_keeps_finished_condition_that_cannot_be_moved(finished, tmp_path, kind):
     out, again = finished
     aside = out / "conditions/low_light-s0.6.finished"
     if kind == "link":

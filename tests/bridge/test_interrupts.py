@@ -136,7 +136,7 @@ def test_fork_does_not_end_the_episode_of_its_parent(tmp_path):
     assert not reports.repeated and not reports.problems
 
 
-def test_fork_stops_if_it_continues_the_episode_of_its_parent(tmp_path):
+def test_fork_stops_if_it_continues_its_parents_episode(tmp_path):
     _, reports = run_loop(tmp_path, FORK.replace("CHILD", "env.step(1)"))
     assert (
         len(reports.problems) == 1 and "Reset the environment in the process" in reports.problems[0]

@@ -103,7 +103,7 @@ def test_run_fails_if_fewer_episodes_end_than_wanted_returned(run, tmp_path):
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGKILL])
-def test_run_leaves_no_process_behind_when_a_signal_ends_it(sleeper, tmp_path, number):
+def test_run_leaves_no_process_after_a_signal(sleeper, tmp_path, number):
     command = sleeper("setsid").split()
     (tmp_path / "nav.py").write_text((tmp_path / "nav.py").read_text() + "time.sleep(60)\n")
     out = tmp_path / "o"

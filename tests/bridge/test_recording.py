@@ -137,7 +137,7 @@ def test_recorder_deletes_nothing_behind_a_link(tmp_path, inner):
 
 
 @pytest.mark.parametrize("plant", [lambda path: path.symlink_to("../../v"), os.mkfifo])
-def test_run_rejects_a_link_or_a_fifo_in_its_recording(run, tmp_path, plant):
+def test_run_rejects_link_or_fifo_in_recording(run, tmp_path, plant):
     kept = tmp_path / "v" / "0" / "keep.txt"
     kept.parent.mkdir(parents=True)
     kept.write_text("mine")

@@ -88,13 +88,13 @@ def test_run_rejects_a_rule_that_judges_only_some_episodes(run, tmp_path, first)
     assert "1 of 2 episodes did not report. Pass finish(stopped=...)" in result.stderr
 
 
-def test_rows_leave_out_a_common_rule_that_judges_only_some_episodes(tmp_path):
+def test_rows_omit_common_rule_without_all_episodes(tmp_path):
     known = "distance_to_goal=0.05 if name == 'a' else None"
     judged, _, _ = judge(tmp_path, f"episode.finish(success=True, {known})", None)
     assert list(judged) == [OWN]
 
 
-def test_rows_judge_failures_without_a_distance_if_clean_reports_one(tmp_path):
+def test_rows_judge_failures_if_clean_reports_distance(tmp_path):
     _, clean, _ = judge(tmp_path / "c", "episode.finish(success=True, distance_to_goal=1)", None)
     _, reports, _ = judge(tmp_path / "t", "episode.finish(success=False)", None)
     common = str(COMMON["words"])

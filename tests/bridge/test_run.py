@@ -194,7 +194,7 @@ def test_run_chooses_episodes_again_after_a_failed_run(run, tmp_path, monkeypatc
     assert json.loads((out / "episodes.json").read_text())["of"] == 90
 
 
-def test_run_does_not_finish_a_condition_that_lost_an_episode(run, tmp_path):
+def test_run_does_not_finish_condition_that_lost_an_episode(run, tmp_path):
     """The command ends with status 0, but one of its workers was killed."""
     out = tmp_path / "o"
     result = run(out, "conditions=[clean]", f"{AGENT} --workers 4 --die-at 1 --die-worker 2")

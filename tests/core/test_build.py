@@ -35,7 +35,7 @@ CAR = {
 }
 
 
-def test_what_a_maker_makes_shares_nothing_with_what_it_made_before():
+def test_maker_results_share_nothing():
     """As worlds do that are walked in lockstep: each has an environment of its own."""
     cfg = OmegaConf.create({"doors": 2, "car": CAR})
     make = pickle.loads(pickle.dumps(build.maker(cfg.car)))
@@ -43,13 +43,13 @@ def test_what_a_maker_makes_shares_nothing_with_what_it_made_before():
     assert first.doors == second.doors == 2 and first.engine is not second.engine
 
 
-def test_an_entry_marked_partial_arrives_as_such_a_function():
+def test_partial_entry_becomes_a_function():
     cfg = OmegaConf.create({"doors": 3, "garage": {"_target_": f"{__name__}.Garage", "car": CAR}})
     made = build.build(cfg.garage, size=2)
     assert made.cars[0].engine is not made.cars[1].engine and made.cars[1].doors == 3
 
 
-def test_an_entry_that_is_marked_not_partial_is_made():
+def test_non_partial_entry_is_built():
     engine = {"_target_": f"{__name__}.Engine", "_partial_": False}
     cfg = OmegaConf.create({"_target_": f"{__name__}.Car", "engine": engine})
     assert isinstance(build.build(cfg).engine, Engine)
@@ -73,9 +73,7 @@ class Gained(torch.nn.Module):
 @pytest.mark.parametrize(
     ("overrides", "gain"), [([], -1.0), (["agent=mine"], -1.0), (["agent.gain=2.0"], 2.0)]
 )
-def test_settings_that_lie_beside_the_weights_count_unless_the_command_sets_them(
-    overrides, gain, tmp_path
-):
+def test_settings_of_weights_apply_unless_overridden(overrides, gain, tmp_path):
     """A config chosen by ``agent=mine`` names the class: its own values are of another agent."""
     target = f"{__name__}.Gained"
     checkpoint.save_weights(Gained(-1.0), tmp_path)

@@ -57,7 +57,7 @@ def checked(folder: Path) -> int:
     return subprocess.run(command, cwd=folder).returncode
 
 
-def test_every_flipped_bit_of_a_checkpoint_is_found(tmp_path):
+def test_checkpoint_detects_every_flipped_bit(tmp_path):
     states.save(tmp_path, state(1))
     path = states.save(tmp_path, state(2))
     for changed in flips(path.read_bytes(), "step"):
@@ -92,7 +92,7 @@ def test_load_detects_flipped_bits_without_a_sidecar(tmp_path):
 
 @pytest.mark.parametrize("share", [0.0, 0.3, 0.99])
 @pytest.mark.parametrize("noted", [True, False])
-def test_a_truncated_checkpoint_is_passed_over(tmp_path, share, noted, capsys):
+def test_truncated_checkpoint_is_skipped(tmp_path, share, noted, capsys):
     states.save(tmp_path, state(1))
     path = states.save(tmp_path, state(2))
     os.truncate(path, int(path.stat().st_size * share))
@@ -104,7 +104,7 @@ def test_a_truncated_checkpoint_is_passed_over(tmp_path, share, noted, capsys):
 
 
 @pytest.mark.parametrize("text", ["", "\n", "0" * 64, "0" * 64 + "  other\n", "\xff", "x  model"])
-def test_a_damaged_sidecar_is_named_and_may_be_deleted(tmp_path, text):
+def test_damaged_sidecar_is_named_and_may_be_deleted(tmp_path, text):
     file = checkpoint.save_weights(nn.Linear(3, 2), tmp_path / "model.safetensors")
     note_of(file).write_bytes(text.encode("latin-1"))
     with pytest.raises(ValueError, match="only model.safetensors.sha256 is damaged, delete it"):
@@ -119,7 +119,7 @@ def test_a_damaged_sidecar_is_named_and_may_be_deleted(tmp_path, text):
     assert states.load_newest(tmp_path)[1]["step"] == 1
 
 
-def test_if_every_checkpoint_is_damaged_none_is_deleted(tmp_path):
+def test_damaged_checkpoints_are_not_deleted(tmp_path):
     for step in (1, 2):
         path = states.save(tmp_path, state(step))
         path.write_bytes(flipped(path.read_bytes(), 4000))
@@ -138,7 +138,7 @@ def test_sidecars_are_what_sha256sum_checks(tmp_path):
     assert checked(tmp_path) != 0
 
 
-def test_rotation_deletes_sidecars_too_and_those_that_a_kill_left(tmp_path):
+def test_rotation_deletes_sidecars_and_orphans(tmp_path):
     (tmp_path / "step-00000001.pt.sha256").write_text("left by a kill")
     for step in (2, 3, 4, 5):
         states.save(tmp_path, state(step), keep=2)

@@ -64,7 +64,7 @@ def test_write_folder_deletes_listed_files_alone(tmp_path):
     assert folders.check(folder).files.keys() == {"two"}
 
 
-def test_write_folder_leaves_the_folder_as_it_was_after_an_error(tmp_path):
+def test_write_folder_keeps_the_old_folder_after_an_error(tmp_path):
     folder = written(tmp_path, one="1")
     with pytest.raises(RuntimeError), folders.write_folder(folder, "agent") as draft:
         (draft / "one").write_text("2")
@@ -72,7 +72,7 @@ def test_write_folder_leaves_the_folder_as_it_was_after_an_error(tmp_path):
     assert (folder / "one").read_text() == "1" and names(folder) == {"one", folders.MANIFEST}
 
 
-def test_every_flipped_bit_of_weights_is_found(tmp_path):
+def test_weights_detect_every_flipped_bit(tmp_path):
     path = checkpoint.save_weights(nn.Linear(30, 20), tmp_path)
     sound = path.read_bytes()
     places = seeding.generator(0, "flipped bits", "weights").integers(0, 8 * len(sound), FLIPS)
@@ -90,7 +90,7 @@ def test_shipped_weights_with_a_flipped_bit_are_refused(tmp_path):
         checkpoint.load_weights(TopologicalAgent(), folder)
 
 
-def test_a_file_of_another_size_is_not_read(tmp_path, monkeypatch):
+def test_file_of_another_size_is_not_read(tmp_path, monkeypatch):
     folder = written(tmp_path, one="1")
     (folder / "one").write_text("10")
 
@@ -104,9 +104,7 @@ def test_a_file_of_another_size_is_not_read(tmp_path, monkeypatch):
 
 @pytest.mark.parametrize("earlier", ["manifest", "sidecar", "nothing"])
 @pytest.mark.parametrize("when", range(4))
-def test_a_kill_at_any_moment_leaves_the_old_file_or_the_new_one(
-    tmp_path, monkeypatch, when, earlier
-):
+def test_kill_leaves_the_old_or_the_new_file(tmp_path, monkeypatch, when, earlier):
     """A file is replaced in three steps: the manifest with both files, itself, the manifest."""
     old = nn.Linear(3, 2)
     new = nn.Linear(3, 2)
@@ -141,7 +139,7 @@ def test_a_kill_at_any_moment_leaves_the_old_file_or_the_new_one(
     assert "replaced" not in json.loads((tmp_path / folders.MANIFEST).read_text())
 
 
-def test_a_mixture_of_the_old_and_the_new_folder_is_refused(tmp_path, monkeypatch):
+def test_mixture_of_old_and_new_folder_is_rejected(tmp_path, monkeypatch):
     folder = written(tmp_path, one="1", two="1")
     replace = os.replace
 
@@ -159,7 +157,7 @@ def test_a_mixture_of_the_old_and_the_new_folder_is_refused(tmp_path, monkeypatc
     assert folders.check(written(folder, one="2", two="2"))
 
 
-def test_a_damaged_file_that_is_replaced_does_not_become_a_sound_one(tmp_path, monkeypatch):
+def test_damaged_file_stays_invalid_after_replacement(tmp_path, monkeypatch):
     file = checkpoint.save_weights(nn.Linear(3, 2), tmp_path)
     damaged = flipped(file.read_bytes(), 700)
     file.write_bytes(damaged)
@@ -205,7 +203,7 @@ DAMAGED = {
 
 
 @pytest.mark.parametrize("made", DAMAGED.values(), ids=DAMAGED)
-def test_a_damaged_manifest_is_refused(tmp_path, made):
+def test_damaged_manifest_is_rejected(tmp_path, made):
     file = checkpoint.save_weights(nn.Linear(3, 2), tmp_path)
     raw = made if isinstance(made, bytes) else json.dumps(made).encode()
     (tmp_path / folders.MANIFEST).write_bytes(raw)
@@ -221,7 +219,7 @@ def test_a_damaged_manifest_is_refused(tmp_path, made):
     checkpoint.load_weights(nn.Linear(3, 2), file)
 
 
-def test_folders_of_earlier_versions_are_read_and_become_ours_when_written(tmp_path):
+def test_older_folders_are_read_and_upgraded_when_written(tmp_path):
     module = nn.Linear(3, 2)
     file = older(module, tmp_path)
     (tmp_path / "config.yaml").write_text("agent: {}\n")

@@ -35,14 +35,14 @@ def other(tmp_path):
         process.kill()
 
 
-def test_a_second_process_is_refused_and_told_of_the_first(tmp_path, other):
+def test_second_process_is_rejected_and_names_the_first(tmp_path, other):
     with pytest.raises(ValueError, match=rf"is in use: process {other.pid} on .* Wait for it"):
         FolderLock(tmp_path / "run").__enter__()
     with FolderLock(tmp_path / "another"):
         pass
 
 
-def test_the_lock_of_a_killed_process_does_not_block(tmp_path, other):
+def test_lock_of_a_killed_process_does_not_block(tmp_path, other):
     other.send_signal(signal.SIGKILL)
     other.wait()
     assert (tmp_path / "run" / NAME).is_file()  # stale
@@ -52,7 +52,7 @@ def test_the_lock_of_a_killed_process_does_not_block(tmp_path, other):
 
 
 @pytest.mark.parametrize("note", ["", "{", "[]", '{"pid": "x"}', "[" * 9999, "\x00"])
-def test_a_damaged_note_of_a_lock_blocks_nobody(tmp_path, note):
+def test_damaged_lock_note_does_not_block(tmp_path, note):
     (tmp_path / NAME).write_text(note)
     with FolderLock(tmp_path):
         with pytest.raises(ValueError, match=f"process {os.getpid()} on"):
@@ -61,7 +61,7 @@ def test_a_damaged_note_of_a_lock_blocks_nobody(tmp_path, note):
             FolderLock(tmp_path).__enter__()
 
 
-def test_a_worker_does_not_inherit_the_lock(tmp_path):
+def test_worker_does_not_inherit_the_lock(tmp_path):
     with FolderLock(tmp_path):
         child = os.fork()
         if child == 0:
@@ -74,7 +74,7 @@ def test_a_worker_does_not_inherit_the_lock(tmp_path):
         os.waitpid(child, 0)
 
 
-def test_what_was_not_yet_whole_is_deleted_and_nothing_else(tmp_path):
+def test_cleanup_deletes_only_partial_files(tmp_path):
     dead, alive = DEAD, os.getppid()
     left = [f".step-00000100.pt.{dead}.tmp", f"agent/.model.safetensors.{dead}.tmp"]
     kept = ["step-00000050.pt", ".step-00000100.pt", "notes.tmp", ".mine.tmp", "agent/.x.tmp.5"]
@@ -95,7 +95,7 @@ def test_what_was_not_yet_whole_is_deleted_and_nothing_else(tmp_path):
 
 
 @pytest.mark.parametrize("name", ["train", "evaluate"])
-def test_a_second_training_or_evaluation_in_a_folder_is_refused(tmp_path, name):
+def test_second_run_in_a_folder_is_rejected(tmp_path, name):
     place = {"train": "folder", "evaluate": "out"}[name]
     small = ["debug=smoke"] if name == "train" else ["episodes=1", "conditions=[clean]"]
     cfg = load_config(name, [*small, f"{place}={tmp_path}"])
@@ -104,14 +104,14 @@ def test_a_second_training_or_evaluation_in_a_folder_is_refused(tmp_path, name):
     assert not list(tmp_path.iterdir())
 
 
-def test_a_folder_that_cannot_be_made_is_named_with_what_to_do(tmp_path):
+def test_folder_that_cannot_be_created_is_named(tmp_path):
     (tmp_path / "file").write_text("x")
     for place in (tmp_path / "file/under", Path("/proc/under")):
         with pytest.raises(OSError, match=f"Cannot write {place}: .* choose another folder"):
             FolderLock(place).__enter__()
 
 
-def test_a_refused_second_lock_does_not_end_the_first(tmp_path):
+def test_rejected_second_lock_keeps_the_first(tmp_path):
     code = "import sys; from mitigate.core.locks import FolderLock\n"
     code += "FolderLock(sys.argv[1]).__enter__()"
     with FolderLock(tmp_path):
@@ -129,7 +129,7 @@ def test_a_refused_second_lock_does_not_end_the_first(tmp_path):
     assert "is in use: process" in other.stderr
 
 
-def test_what_a_process_of_the_same_number_left_is_deleted_too(tmp_path):
+def test_cleanup_deletes_files_of_a_reused_process_id(tmp_path):
     """In a container that is started anew every process has the number it had before."""
     (tmp_path / "walks").mkdir()
     own, other = (tmp_path / f".{n}.pt.{n}.tmp" for n in (os.getpid(), os.getppid()))

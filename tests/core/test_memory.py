@@ -20,12 +20,12 @@ def made(memory, key, log, size=8):
     return memory.recall(key, make)
 
 
-def test_what_is_kept_is_not_made_again():
+def test_cache_returns_the_stored_result():
     memory, log = Memory(100), []
     assert made(memory, "a", log)[0] is made(memory, "a", log)[0] and log == ["a"]
 
 
-def test_what_was_not_used_longest_goes_first_when_the_bytes_are_used_up():
+def test_cache_drops_least_recently_used_first():
     memory, log = Memory(24), []
     for key in "abcad":
         made(memory, key, log)
@@ -35,7 +35,7 @@ def test_what_was_not_used_longest_goes_first_when_the_bytes_are_used_up():
     assert "".join(log) == "abcdb"
 
 
-def test_a_result_larger_than_the_limit_is_kept_alone():
+def test_cache_keeps_a_single_large_result():
     memory, log = Memory(4), []
     made(memory, "a", log)
     made(memory, "b", log)
@@ -43,7 +43,7 @@ def test_a_result_larger_than_the_limit_is_kept_alone():
 
 
 @pytest.mark.skipif("glibc" not in platform.libc_ver(), reason="of glibc alone")
-def test_what_was_freed_between_what_is_kept_goes_back_to_the_system():
+def test_freed_memory_returns_to_the_system():
     pieces = [bytearray(60_000) for _ in range(3000)]  # below the size that is mapped by itself
     kept = pieces[::100]
     del pieces

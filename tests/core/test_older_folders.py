@@ -49,7 +49,7 @@ def flip(file: Path) -> None:
 
 
 @pytest.mark.parametrize("name", SHIPPED)
-def test_a_shipped_folder_is_read_and_a_flipped_bit_is_found(name, tmp_path, monkeypatch):
+def test_shipped_folder_loads_and_detects_flipped_bits(name, tmp_path, monkeypatch):
     monkeypatch.chdir(ROOT)  # the base of adapters is named from here
     folder = Path(shutil.copytree(ROOT / "checkpoints" / name, tmp_path / "mine"))
     assert not (folder / folders.MANIFEST).exists()
@@ -75,7 +75,7 @@ def test_adapters_of_before_are_read(tmp_path):
     }
 
 
-def test_a_restorer_of_before_is_read_and_needs_its_sum(tmp_path):
+def test_older_restorer_loads_and_needs_its_checksum(tmp_path):
     restorer = Restorer(width=4, depth_width=4, size=32)
     restorer.save(tmp_path)
     as_before(tmp_path)
@@ -85,7 +85,7 @@ def test_a_restorer_of_before_is_read_and_needs_its_sum(tmp_path):
         load_restorer(tmp_path)
 
 
-def test_the_agent_of_a_run_of_before_is_read(tmp_path):
+def test_older_run_loads(tmp_path):
     agent = mitigate.load(ROOT / "checkpoints/frontier/base")
     text = (ROOT / "checkpoints/frontier/base/config.yaml").read_text()
     checkpoint.save_agent(agent, tmp_path, text)
@@ -96,7 +96,7 @@ def test_the_agent_of_a_run_of_before_is_read(tmp_path):
     assert torch.equal(next(mitigate.load(tmp_path).parameters()), next(iter(agent.parameters())))
 
 
-def test_a_changed_config_is_found_since_the_manifest(tmp_path):
+def test_changed_config_is_detected_since_the_manifest(tmp_path):
     agent = mitigate.load(ROOT / "checkpoints/frontier/base")
     text = (ROOT / "checkpoints/frontier/base/config.yaml").read_text()
     checkpoint.save_agent(agent, tmp_path, text)
@@ -106,7 +106,7 @@ def test_a_changed_config_is_found_since_the_manifest(tmp_path):
         mitigate.load(tmp_path)
 
 
-def test_a_hardened_folder_of_before_becomes_one_of_today_without_its_sums(tmp_path):
+def test_older_hardened_folder_is_upgraded(tmp_path):
     folder = Path(shutil.copytree(ROOT / "checkpoints/hardened/stacked", tmp_path / "mine"))
     card = json.loads((folder / "card.json").read_text())
     assert older_folders.card_files(folder, "").keys() == card["files"].keys()

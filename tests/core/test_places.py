@@ -24,9 +24,7 @@ def make(folder: Path) -> Path:
     return folder / "base"
 
 
-def test_find_prefers_here_then_the_package_then_the_checkout_then_the_variable(
-    nowhere, monkeypatch
-):
+def test_find_searches_cwd_package_checkout_then_variable(nowhere, monkeypatch):
     named = make(nowhere / "named")
     monkeypatch.setenv(files.WEIGHTS_VARIABLE, str(nowhere / "named"))
     assert files.find("checkpoints/base") == named

@@ -28,7 +28,7 @@ CPU = torch.device("cpu")
         ({"amx_bf16": True}, "ALL", True),
     ],
 )
-def test_bf16_is_native_with_its_instructions_and_no_cap_below_them(capabilities, cap, wanted):
+def test_bf16_is_native_with_its_instructions_and_no_lower_cap(capabilities, cap, wanted):
     assert native(capabilities, cap) is wanted
 
 
@@ -47,7 +47,7 @@ def test_probe_returns_milliseconds_and_leaves_the_generator_alone():
     assert torch.equal(torch.get_rng_state(), before)
 
 
-def test_the_context_says_which_precision_it_is():
+def test_context_reports_its_precision():
     product = torch.ones(2, 2)
     for kind, dtype in (("fp32", torch.float32), ("bf16", torch.bfloat16)):
         with computing(kind, CPU):
@@ -81,7 +81,7 @@ def test_preparation_batches_and_networks_obey_the_trainers_precision(kind, tmp_
     assert recipe.seen == {"start": kind, "batch": kind, "forward": kind}
 
 
-def test_a_run_goes_on_in_its_own_precision_on_another_machine(tmp_path, monkeypatch, capsys):
+def test_run_keeps_its_precision_on_another_machine(tmp_path, monkeypatch, capsys):
     monkeypatch.setattr(precision, "native", lambda: True)
     Trainer(TinyRecipe(), steps=4, save_every=2, folder=tmp_path).fit()
     kept = states.checkpoints(tmp_path)
@@ -94,7 +94,7 @@ def test_a_run_goes_on_in_its_own_precision_on_another_machine(tmp_path, monkeyp
     assert "resumes in its first precision bf16" in capsys.readouterr().out
 
 
-def test_another_precision_asked_for_by_name_is_another_run(tmp_path):
+def test_explicit_other_precision_is_another_run(tmp_path):
     Trainer(TinyRecipe(), steps=2, folder=tmp_path, precision="bf16").fit()
     with pytest.raises(ValueError, match=r"trainer\.precision: bf16 -> fp32"):
         Trainer(TinyRecipe(), steps=2, folder=tmp_path, precision="fp32").fit()

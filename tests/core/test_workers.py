@@ -90,7 +90,7 @@ def groups(*actions):
 
 
 @pytest.mark.parametrize("count", [1, 2])
-def test_every_job_has_its_result_under_its_number(count, tmp_path):
+def test_results_are_numbered_by_job(count, tmp_path):
     found, said = run(Squares(tmp_path), [*groups("", "", ""), []], count)
     assert found == {n: n**2 for n in range(9)} and not said
 
@@ -112,12 +112,12 @@ def test_results_raise_workers_died_after_a_second_death(tmp_path):
 
 
 @pytest.mark.parametrize("count", [1, 2])
-def test_what_a_job_raises_is_raised_here_with_its_own_type(count, tmp_path):
+def test_job_error_keeps_its_type(count, tmp_path):
     with pytest.raises(FileNotFoundError, match="no file 4"):
         run(Squares(tmp_path), groups("", "fail"), count)
 
 
-def test_a_worker_without_progress_is_reported_and_not_killed(tmp_path, monkeypatch):
+def test_idle_worker_is_reported_and_not_killed(tmp_path, monkeypatch):
     monkeypatch.setattr(workers, "STUCK", 0.5)
     monkeypatch.setattr(workers, "SECOND", 0.1)
     found, said = run(Squares(tmp_path), groups("wait", ""))
@@ -165,7 +165,7 @@ print("ended by", ending.number)
 """
 
 
-def test_a_signal_to_all_processes_is_the_parents_to_answer(tmp_path):
+def test_signal_to_all_processes_is_handled_by_the_parent(tmp_path):
     """As SLURM and ``timeout`` send it: workers that it killed looked like a lack of memory."""
     ended = subprocess.run(
         [sys.executable, "-c", GROUP.format(folder=str(tmp_path))],
@@ -182,7 +182,7 @@ def alive(pids):
     return [pid for pid in pids if Path(f"/proc/{pid}").exists()]
 
 
-def test_ctrl_c_ends_workers_in_the_middle_of_a_job(tmp_path):
+def test_ctrl_c_ends_workers_during_a_job(tmp_path):
     (tmp_path / "long").touch()
     assert not alive(stopped_by(signal.SIGINT, tmp_path))
 
@@ -194,7 +194,7 @@ def test_workers_whose_parent_was_killed_end_after_their_job(tmp_path):
         time.sleep(0.05)
 
 
-def test_as_many_workers_as_cores_but_none_for_a_few_jobs(monkeypatch):
+def test_worker_count_is_cores_or_none_for_few_jobs(monkeypatch):
     monkeypatch.setattr(workers, "cores", lambda: 4)
     assert [workers.count(None, jobs, 10) for jobs in (0, 9, 29, 1000)] == [1, 1, 2, 4]
     assert workers.count(3, 1, 10) == 3
@@ -202,7 +202,7 @@ def test_as_many_workers_as_cores_but_none_for_a_few_jobs(monkeypatch):
         workers.count(0, 100, 10)
 
 
-def test_a_signal_ends_many_jobs_at_once_within_a_training(tmp_path):
+def test_signal_ends_many_jobs_within_a_training(tmp_path):
     """Which holds signals until its step is done: measuring success rates takes minutes."""
     (tmp_path / "long").touch()
     began = time.monotonic()
@@ -227,7 +227,7 @@ def test_results_finish_a_started_job_before_a_signal(tmp_path):
     assert found == [(0, "one")] and ended.value.status == 143
 
 
-def test_what_cannot_be_sent_to_workers_is_told_with_a_way_out(tmp_path):
+def test_unpicklable_job_is_reported_with_a_way_out(tmp_path):
     class Local(Squares):
         """Of a function, which another process cannot find."""
 

@@ -36,7 +36,7 @@ def test_dropped_mask_is_made_again_to_the_bit(memory, name):
     assert np.array_equal(corrupt(rgb, name, 0.6, key=Key(0, "a")), first)
 
 
-def test_cached_keeps_the_last_used_and_a_large_result_alone(memory):
+def test_cached_keeps_the_last_used_and_one_large_result(memory):
     made = []
 
     @keying.cached

@@ -71,7 +71,7 @@ def summary(folder: Path) -> dict:
     return json.loads((folder / "corrupt.json").read_text())
 
 
-def test_every_frame_is_what_the_suite_makes_of_it(run, walk):
+def test_every_frame_equals_the_suites_output(run, walk):
     status, out, err = run("corruption=low_light_noise", "severity=0.7", "seed=3")
     assert status == 0 and "13 frames written" in out
     for number in range(12):  # frame10 is number 10, not number 2
@@ -92,7 +92,7 @@ def test_all_frames_can_be_one_episode(run, walk):
     assert np.array_equal(read(walk / "out/b/c/0.png"), wanted)
 
 
-def test_the_same_command_goes_on_and_new_frames_join_at_the_end(run, walk):
+def test_same_command_resumes_and_appends_new_frames(run, walk):
     run(*SPATTER)
     again = walk / "out/b/c/0.png"
     whole = again.read_bytes()
@@ -105,7 +105,7 @@ def test_the_same_command_goes_on_and_new_frames_join_at_the_end(run, walk):
     assert np.array_equal(read(walk / "out/a/frame12.png"), wanted)
 
 
-def test_other_settings_or_frames_in_the_same_folder_are_refused(run, walk):
+def test_other_settings_or_frames_in_a_folder_are_rejected(run, walk):
     run(*SPATTER)
     text = complaint(run("corruption=spatter", "severity=0.5"))
     assert "severity=0.6 there, severity=0.5 now" in text and "Name another folder" in text
@@ -151,7 +151,7 @@ def test_npy_depth_is_in_metres_and_keeps_its_kind(run, tmp_path, dtype):
     assert np.array_equal(out[wanted == metres], depth[wanted == metres])
 
 
-def test_a_jpeg_becomes_png_or_stays_jpeg(run, tmp_path):
+def test_jpeg_becomes_png_or_stays_jpeg(run, tmp_path):
     save(tmp_path / "in/x.JPG", RGB[0])
     decoded = read(tmp_path / "in/x.JPG")
     wanted = corrupt(decoded, "spatter", 0.6, key=Key(0, ".", 0))
@@ -163,7 +163,7 @@ def test_a_jpeg_becomes_png_or_stays_jpeg(run, tmp_path):
         assert np.abs(np.array(image).astype(int) - wanted).mean() < 8
 
 
-def test_a_jpeg_is_turned_upright_as_its_exif_data_say(run, tmp_path):
+def test_jpeg_is_rotated_by_its_exif_data(run, tmp_path):
     (tmp_path / "in").mkdir()
     exif = Image.Exif()
     exif[0x0112] = 6  # turned by 90 degrees
@@ -173,7 +173,7 @@ def test_a_jpeg_is_turned_upright_as_its_exif_data_say(run, tmp_path):
     assert np.array_equal(read(tmp_path / "out/x.png"), np.rot90(decoded, -1))
 
 
-def test_two_files_never_become_one(run, tmp_path):
+def test_two_files_never_share_an_output(run, tmp_path):
     save(tmp_path / "in/x.png", RGB[0])
     save(tmp_path / "in/x.jpg", RGB[1])
     status, _, err = run(*SPATTER)
@@ -183,7 +183,7 @@ def test_two_files_never_become_one(run, tmp_path):
     )
 
 
-def test_corrupt_reports_a_png_that_is_added_beside_a_jpeg(run, tmp_path):
+def test_corrupt_reports_a_png_added_next_to_a_jpeg(run, tmp_path):
     save(tmp_path / "in/x.jpg", RGB[1])
     run(*SPATTER)
     save(tmp_path / "in/x.png", RGB[0])
@@ -202,7 +202,7 @@ def test_files_that_are_left_alone_are_counted_by_suffix(run, walk):
     assert "no rgb frame" in text and "not read: 1 .tif" in text and "PNG or JPEG" in text
 
 
-def test_bad_files_are_left_out_with_the_reason_and_keep_their_number(run, tmp_path):
+def test_bad_files_are_skipped_and_keep_their_number(run, tmp_path):
     folder = tmp_path / "in"
     save(folder / "0.png", RGB[0])
     save(folder / "1.png", RGB[1])
@@ -268,7 +268,7 @@ def test_depth_in_another_unit_is_left_out(run, tmp_path):
     assert not (tmp_path / "out/0.png").exists()
 
 
-def test_a_run_that_is_cut_off_leaves_whole_files_only(run, walk, monkeypatch):
+def test_interrupted_run_leaves_whole_files_only(run, walk, monkeypatch):
     real, calls = os.replace, []
 
     def full(source, target):
@@ -332,13 +332,13 @@ def test_wrong_options_are_explained(run, walk, options, part):
     assert not (walk / "out").exists()
 
 
-def test_a_unit_too_small_for_the_range_is_refused(run, tmp_path):
+def test_unit_too_small_for_the_range_is_rejected(run, tmp_path):
     save(tmp_path / "in/0.png", COUNTS[0])
     text = complaint(run("corruption=multipath", "severity=1", "unit=0.0001"))
     assert "to fit into a 16-bit PNG" in text and "z_max=6.5535" in text
 
 
-def test_the_list_names_every_corruption(capsys):
+def test_list_names_every_corruption(capsys):
     assert program.main(["--list"]) == 0
     lines = capsys.readouterr().out.splitlines()
     assert [line.split()[0] for line in lines[1:]] == list(registry.known("rgb", "depth"))
@@ -353,7 +353,7 @@ def test_help_names_every_option(capsys):
     assert program.main([]) == 2
 
 
-def test_it_starts_without_torch():
+def test_corrupt_starts_without_torch():
     code = (
         "import sys, mitigate.corruptions.frames_command as c; c.main(['--list']); "
         "sys.exit(any(m in sys.modules for m in ('torch', 'hydra', 'torchrl')))"

@@ -73,7 +73,7 @@ def test_pixels_are_those_of_the_suite_version(name):
 
 
 @pytest.mark.parametrize("name", UNSEEN)
-def test_pixels_of_an_unseen_one_are_those_of_its_version(name):
+def test_unseen_pixels_match_their_version(name):
     golden = json.loads(GOLDEN.read_text())["unseen"][name]
     assert golden.pop("version") == record(name).version, "regenerate (see the docstring)"
     for severity, wanted in golden.items():
@@ -81,7 +81,7 @@ def test_pixels_of_an_unseen_one_are_those_of_its_version(name):
 
 
 @pytest.mark.parametrize("name", BROAD)
-def test_compositions_of_a_broad_one_are_those_of_its_version(name):
+def test_broad_compositions_match_their_version(name):
     golden = json.loads(GOLDEN.read_text())["broad"][name]
     assert golden["version"] == record(name).version, "regenerate (see the docstring)"
     near = 0.5 if modality(name) == "rgb" else 0.02

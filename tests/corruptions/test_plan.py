@@ -31,7 +31,7 @@ def walk(tmp_path):
     return tmp_path
 
 
-def test_links_to_folders_are_followed_but_not_in_a_circle_nor_into_the_results(walk):
+def test_links_are_followed_except_cycles_and_results(walk):
     for written in (7, 0):  # the second run meets the results of the first behind a link
         found = run(walk / "in", walk / "out", Settings("spatter", 0.6))
         assert found["written"] == written and found["there"] == 7 - written
@@ -46,7 +46,7 @@ def test_links_to_folders_are_followed_but_not_in_a_circle_nor_into_the_results(
     assert (walk / "out/linked/c/0.png").is_file() and not (walk / "out/linked").is_symlink()
 
 
-def test_a_pipe_is_left_out_with_the_reason(walk):
+def test_pipe_is_skipped_with_a_reason(walk):
     for name in ("0.5.png", "2.jpg", "3.npy"):
         os.mkfifo(walk / "in/a" / name)
     found = run(walk / "in/a", walk / "out", Settings("spatter", 0.6))

@@ -28,7 +28,7 @@ def suite(name: str) -> list[str]:
     return list(conf.load_config("evaluate", [f"suite={name}"]).suite.conditions)
 
 
-def test_the_suites_hold_what_the_records_say():
+def test_suites_match_the_records():
     assert suite("full") == ["clean", *NAMES]
     assert suite("rgb") == ["clean", *registry.names("rgb")]
     assert suite("depth") == ["clean", *registry.names("depth")]
@@ -42,7 +42,7 @@ def test_record_is_described_in_the_docs(name):
     assert record.name == name and name in registry.table()
 
 
-def test_a_wrong_record_is_refused():
+def test_wrong_record_is_rejected():
     def same(views, *_):
         return views
 
@@ -101,9 +101,7 @@ def run(installed: dict[str, str], folder: Path, *command: str) -> str:
     return done.stdout
 
 
-def test_a_corruption_of_another_package_joins_a_suite_and_a_schedule(
-    found, tmp_path, monkeypatch, capsys
-):
+def test_external_corruption_joins_a_suite_and_a_schedule(found, tmp_path, monkeypatch, capsys):
     monkeypatch.setattr(simulator, "MAX_STEPS", 40)
     options = ["episodes=1", "conditions=[clean,rain,flare]", "env.size=32", "workers=1"]
     monkeypatch.setattr(sys, "argv", ["mitigate evaluate", *options, f"out={tmp_path}/out"])
@@ -122,11 +120,11 @@ def test_a_corruption_of_another_package_joins_a_suite_and_a_schedule(
     assert (drawn.name, drawn.modality) == ("rain", "rgb") and "rain" not in NAMES
 
 
-def test_the_list_of_another_process_has_it(installed, tmp_path):
+def test_external_corruption_is_listed_in_another_process(installed, tmp_path):
     assert "rain" in run(installed, tmp_path, "-m", "mitigate.corrupt", "--list")
 
 
-def test_it_changes_frames_by_its_key_and_not_at_severity_0(installed, tmp_path):
+def test_external_corruption_depends_on_key_and_severity(installed, tmp_path):
     code = (
         "import numpy as np\nfrom mitigate.corruptions import corrupt\n"
         "frame = np.full((32, 32, 3), 90, np.uint8)\n"
@@ -137,13 +135,13 @@ def test_it_changes_frames_by_its_key_and_not_at_severity_0(installed, tmp_path)
     run(installed, tmp_path, "-c", code)
 
 
-def test_a_name_that_is_not_installed_is_unknown_here():
+def test_uninstalled_name_is_unknown():
     with pytest.raises(KeyError):
         registry.record("rain")
     assert registry.title("rain_drops") == "Rain drops"
 
 
-def test_a_broken_package_is_left_out_with_a_warning_and_stops_nothing(installed, tmp_path):
+def test_broken_package_is_skipped_with_a_warning(installed, tmp_path):
     (tmp_path / "rain.py").write_text("raise ImportError('no cloud')")
     code = (
         "import warnings\nfrom mitigate.corruptions import registry\n"

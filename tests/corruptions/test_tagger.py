@@ -30,13 +30,13 @@ def accuracy(triples: list[tuple[str, str, str]]) -> float:
     return sum(label == tag for _, label, tag in triples) / len(triples)
 
 
-def test_our_tagger_on_what_it_was_written_with_and_on_what_it_was_not():
+def test_tagger_scores_on_known_and_new_texts():
     tuned, unseen = pairs(TUNED, tagger.tag), pairs(UNSEEN, tagger.tag)
     assert len(tuned) >= 200 and len(unseen) >= 150
     assert round(accuracy(tuned), 3) == 0.99 and round(accuracy(unseen), 3) == 0.96  # docs
 
 
-def test_an_installed_spacy_pipeline_is_used_with_our_overrides():
+def test_installed_spacy_pipeline_is_used_with_overrides():
     try:
         spacy = tagger.named("spacy")
     except ValueError as error:

@@ -122,7 +122,7 @@ def test_pairing_narrows_the_interval_of_a_difference(results):
     assert paired.high - paired.low < 0.7 * (unpaired.high - unpaired.low)
 
 
-def test_without_clean_success_there_is_no_prs():
+def test_prs_needs_clean_success():
     found = prs(np.zeros(20), np.zeros((3, 20)))
     assert all(math.isnan(x) for x in (found.value, found.low, found.high))
     assert not found.excludes_zero

@@ -235,7 +235,7 @@ def test_keep_accepts_a_world_whose_class_only_episodes_changed(tmp_path):
         keep(tmp_path, Counted)
 
 
-def test_keep_asks_for_a_version_of_a_world_that_cannot_be_read(tmp_path, capsys):
+def test_keep_requires_a_version_for_unreadable_worlds(tmp_path, capsys):
     class Unreadable(Maze):
         lines = (number for number in range(3))
 

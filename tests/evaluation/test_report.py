@@ -90,7 +90,7 @@ def test_prs_differences_are_paired_and_against_base():
     assert (nothing.low, nothing.high) == (0.0, 0.0)
 
 
-def test_one_episode_has_no_interval():
+def test_interval_needs_two_episodes():
     def one(wins, **agent):
         return [row(0, wins, **agent), row(0, 1, **agent, corruption="spatter", severity=0.6)]
 
@@ -102,7 +102,7 @@ def test_one_episode_has_no_interval():
     assert "[–]" not in markdown(sections(column(8, ALL)))
 
 
-def test_few_episodes_make_no_difference_sure():
+def test_difference_of_few_episodes_is_uncertain():
     def made(count):
         better = [row(e, 1, **HARD) for e in range(count)]
         return [row(e, 0 if e else 1) for e in range(count)] + better
@@ -185,7 +185,7 @@ def test_each_severity_has_a_table():
     assert strong.retained["base", "RGB", "SR"].estimate.value == pytest.approx(0.25)
 
 
-def test_two_agents_of_one_name_are_told_apart():
+def test_agents_of_one_name_are_distinguished():
     made = column(8, ALL) + column(4, ALL, agent="ba9876543210")
     assert lines(made)["Corruption"] == ["base (012345)", "base (ba9876)"]
 

@@ -227,7 +227,7 @@ def test_callable_that_changes_nothing_leaves_the_same_objects():
     assert not made[RGB].any() and np.array_equal(shown[RGB], before[RGB])
 
 
-def test_callable_class_is_constructed_once_and_a_guard_is_used_as_it_is():
+def test_callable_class_is_built_once_and_guard_is_unchanged():
     guard = open_callable(f"{FILTERS}:Brighter")
     assert isinstance(guard.call, filters.Brighter) and guard.frames == (RGB,)
     for _ in range(2):

@@ -41,13 +41,13 @@ def walks(batch: dict) -> list[str]:
     return [ids[rows.index(walk)] for walk in range(max(rows) + 1)]
 
 
-def test_a_step_learns_from_fresh_walks_and_from_kept_ones(tmp_path):
+def test_step_learns_from_fresh_and_stored_rollouts(tmp_path):
     made = recipe(tmp_path)
     assert [len(walks(made.batch(step))) for step in range(5)] == [2, 2, 3, 3, 3]
     assert len(list(tmp_path.glob("*.pt"))) == 6  # 3 steps of 2 pieces
 
 
-def test_a_resumed_run_draws_the_same_walks(tmp_path):
+def test_resumed_run_draws_the_same_rollouts(tmp_path):
     made = recipe(tmp_path)
     batches = [made.batch(step) for step in range(4)]
     again = recipe(tmp_path).batch(3)
@@ -55,7 +55,7 @@ def test_a_resumed_run_draws_the_same_walks(tmp_path):
     assert torch.equal(again["decisions"].moves, batches[3]["decisions"].moves)
 
 
-def test_without_a_kept_walk_a_run_says_that_it_cannot_go_on(tmp_path):
+def test_missing_stored_rollout_stops_a_resume(tmp_path):
     recipe(tmp_path).batch(0)
     for file in tmp_path.glob("*.pt"):
         file.write_bytes(file.read_bytes()[:100])
@@ -63,7 +63,7 @@ def test_without_a_kept_walk_a_run_says_that_it_cannot_go_on(tmp_path):
         recipe(tmp_path).batch(1)
 
 
-def test_kept_walks_are_read_as_data_and_half_as_large(tmp_path):
+def test_stored_rollouts_are_plain_data_and_half_as_large(tmp_path):
     made = recipe(tmp_path)
     made.batch(0)
     piece = torch.load(next(tmp_path.glob("*.pt")), weights_only=True)
@@ -77,7 +77,7 @@ def test_kept_walks_have_gradients_as_fresh_ones(tmp_path):
     assert made.agent.policy.first.weight_hh.grad.abs().sum() > 0
 
 
-def test_the_oracle_takes_less_and_less_of_the_decisions(tmp_path):
+def test_oracle_share_falls_over_the_steps(tmp_path):
     made = recipe(tmp_path, follow_oracle=0.25)
     shares = [made.jobs(step)[0][-1] for step in (0, 2, 6, 8)]
     assert shares[0] == 1 and shares == sorted(shares, reverse=True)
@@ -96,6 +96,6 @@ def test_walks_that_are_no_plain_data_are_refused(tmp_path):
         made.collate(0, [(object(), None)])
 
 
-def test_a_schedule_by_success_is_refused(tmp_path):
+def test_schedule_by_success_is_rejected(tmp_path):
     with pytest.raises(ValueError, match="which this recipe does not measure"):
         recipe(tmp_path, schedule=Schedule("success_distributed", 0.6))

@@ -82,7 +82,7 @@ def gradients(recipe: Distil, loss: torch.Tensor) -> set[str]:
     }
 
 
-def test_each_term_reaches_what_it_should_and_nothing_else(recipe, batch):
+def test_each_loss_term_reaches_its_parts_only(recipe, batch):
     values = recipe(batch)
     everything = {"rgb_encoder", "depth_encoder", "planner"}
     assert gradients(recipe, values["kl"]) == everything
@@ -91,7 +91,7 @@ def test_each_term_reaches_what_it_should_and_nothing_else(recipe, batch):
     assert gradients(recipe, values["waypoints"]) == {"depth_encoder", "waypoint_head"}
 
 
-def test_the_loss_is_the_sum_of_its_terms(recipe, batch):
+def test_loss_is_the_sum_of_its_terms(recipe, batch):
     """L = w_il L_il + w_kl T^2 KL + w_feat sum of MSE in units of the teacher's variance."""
     recipe.eval()
     with torch.no_grad():
@@ -112,7 +112,7 @@ def test_matched_features_count_in_units_of_the_teachers_variance():
     assert float(feature_loss(10 * student, 10 * teacher)) == pytest.approx(1.5 / (20 / 3))
 
 
-def test_the_kl_of_two_policies_is_that_of_their_softened_choices():
+def test_policy_kl_is_that_of_softened_policies():
     student, teacher = torch.tensor([[2.0, 0.0]]), torch.tensor([[0.0, 4.0]])
     p = torch.tensor([1.0, np.e**2]) / (1 + np.e**2)
     q = torch.tensor([np.e, 1.0]) / (1 + np.e)  # the KL of q and p is another number
@@ -133,7 +133,7 @@ def test_teacher_and_student_answer_over_the_same_candidates(recipe, batch):
     )
 
 
-def test_without_teacher_terms_it_is_imitation_bit_for_bit(teacher, tmp_path):
+def test_loss_without_teacher_terms_is_imitation(teacher, tmp_path):
     shas = []
     for kind in ("imitation", "distillation"):
         agent = small()
@@ -148,7 +148,7 @@ def test_without_teacher_terms_it_is_imitation_bit_for_bit(teacher, tmp_path):
     assert shas[0] == shas[1] != weights_sha(small())
 
 
-def test_the_teacher_keeps_every_bit_and_the_student_moves(teacher, tmp_path):
+def test_teacher_stays_equal_and_student_moves(teacher, tmp_path):
     agent = small()
     made = assemble(Distil, agent, teacher=teacher, schedule=missing_data(), **EPISODES)
     before, start = weights_sha(made.teacher), weights_sha(agent)
@@ -159,7 +159,7 @@ def test_the_teacher_keeps_every_bit_and_the_student_moves(teacher, tmp_path):
     assert weights_sha(agent) != start
 
 
-def test_policy_kl_is_zero_for_equal_policies_and_ignores_masked_entries():
+def test_policy_kl_is_zero_for_equal_policies_and_ignores_masks():
     student = torch.tensor([[1.0, 2.0, float("-inf")]], requires_grad=True)
     assert policy_kl(student, student.detach(), 2.0) == 0
     teacher = torch.tensor([[3.0, 1.0, float("-inf")]])
@@ -173,7 +173,7 @@ def test_policy_kl_is_zero_for_equal_policies_and_ignores_masked_entries():
 
 @pytest.mark.parametrize("modality", ["rgb", "depth"])
 @pytest.mark.parametrize("kind", ["views", "adapters"])
-def test_a_resumed_run_ends_with_the_same_bits(kind, modality, teacher, tmp_path):
+def test_resumed_run_ends_with_the_same_bits(kind, modality, teacher, tmp_path):
     def made():
         if kind == "views":
             return assemble(DistilViews, small(), modality=modality, teacher=teacher, **VIEWS)
@@ -214,7 +214,7 @@ def test_adapt_views_scales_adapters_at_the_end(tmp_path):
         assemble(AdaptViews, resumed, modality="rgb", **VIEWS, strength=0)
 
 
-def test_a_gate_learns_which_views_are_corrupted(tmp_path):
+def test_gate_learns_which_views_are_corrupted(tmp_path):
     agent = small(adapters={**ADAPTERS, "gates": ["rgb_encoder.stem"]})
     made = assemble(AdaptViews, agent, modality="rgb", **VIEWS, own=True)
     batch = made.batch(0)
@@ -236,7 +236,7 @@ def test_a_gate_learns_which_views_are_corrupted(tmp_path):
     assert not torch.equal(agent.rgb_encoder.stem.adapter.judge.weight, start)
 
 
-def test_the_threshold_of_a_gate_is_set_on_held_back_clean_views():
+def test_gate_threshold_is_set_on_held_out_clean_views():
     agent = small(adapters={**ADAPTERS, "gates": ["rgb_encoder.stem"]})
     made = assemble(
         AdaptViews, agent, modality="rgb", **VIEWS, own=True, touched=0.25, held=4
@@ -301,7 +301,7 @@ def test_frozen_normalisations_keep_their_statistics(kind, learning, tmp_path):
     assert moved == learning
 
 
-def test_a_backbone_that_changed_is_no_result_of_adapters(tmp_path):
+def test_changed_backbone_is_rejected(tmp_path):
     agent = small(adapters=ADAPTERS)
     agent.rgb_encoder.register_buffer("count", torch.zeros(1))
     agent.rgb_encoder.register_forward_hook(
@@ -312,7 +312,7 @@ def test_a_backbone_that_changed_is_no_result_of_adapters(tmp_path):
         Trainer(made, steps=1, folder=tmp_path, seed=0).fit()
 
 
-def test_views_differ_where_a_pixel_does_and_a_hole_is_a_hole():
+def test_views_differ_where_pixels_differ_and_holes_compare_equal():
     clean = torch.ones(2, 2, 4, 4, 1)
     clean[0, 0, 0] = torch.nan
     frames = clean.clone()
@@ -320,7 +320,7 @@ def test_views_differ_where_a_pixel_does_and_a_hole_is_a_hole():
     assert differ(frames, clean).tolist() == [False, False, True, False]
 
 
-def test_a_stage_may_draw_the_corruptions_of_its_sensor_alone():
+def test_stage_may_draw_corruptions_of_its_sensor_only():
     teacher = {"teacher": "start", "modality": "depth"}
     both, own = (
         assemble(DistilViews, small(), **VIEWS, **teacher, own=own) for own in (False, True)
@@ -330,7 +330,7 @@ def test_a_stage_may_draw_the_corruptions_of_its_sensor_alone():
         Schedule("per_episode", 0.6, names=("spatter",)).only("depth")
 
 
-def test_a_missing_teacher_is_an_error_that_names_the_command(tmp_path):
+def test_missing_teacher_names_the_command(tmp_path):
     with pytest.raises(FileNotFoundError, match="make train RECIPE=da_per_episode"):
         assemble(Distil, small(), teacher=str(tmp_path), schedule=missing_data(), **EPISODES)
 
@@ -346,7 +346,7 @@ def test_adapters_alone_are_no_teacher():
         )
 
 
-def test_one_option_names_the_teacher_of_all_stages():
+def test_teacher_option_applies_to_all_stages():
     for recipe in ("ts_distill", "stacked"):
         cfg = conf.load_config("train", [f"recipe={recipe}", "teacher=mine"])
         assert {stage.recipe.teacher for stage in cfg.stages.values()} == {"mine"}
@@ -373,7 +373,7 @@ def test_frozen_views_are_no_part_of_the_loss(teacher):
     assert losses[0] == losses[1]
 
 
-def test_a_run_is_not_resumed_under_another_teacher(tmp_path):
+def test_run_is_not_resumed_under_another_teacher(tmp_path):
     sources = []
     for seed in (1, 2):
         checkpoint.save_weights(small(seed), tmp_path / "teacher")
@@ -389,7 +389,7 @@ def test_a_run_is_not_resumed_under_another_teacher(tmp_path):
         trainer.fit()
 
 
-def test_an_unknown_feature_is_refused(teacher):
+def test_unknown_feature_is_rejected(teacher):
     with pytest.raises(ValueError, match="match must be names of views, nodes"):
         made = assemble(
             Distil, small(), teacher=teacher, match=("logits",), schedule=missing_data(), **EPISODES
@@ -405,7 +405,7 @@ def test_an_unknown_feature_is_refused(teacher):
         ({"w_il": 0.0, "w_kl": 0.0, "w_feat": 0.0}, "train: w_il, w_kl and w_feat are 0"),
     ],
 )
-def test_weights_that_make_no_sense_are_refused_as_what_they_are(options, words):
+def test_invalid_weights_are_rejected_by_name(options, words):
     with pytest.raises(ValueError, match=words):
         assemble(Distil, small(), teacher="start", schedule=missing_data(), **EPISODES, **options)
 
@@ -422,7 +422,7 @@ def test_distil_views_rejects_invalid_numbers(options, words):
         assemble(DistilViews, small(), modality="depth", teacher="start", **{**VIEWS, **options})
 
 
-def test_of_two_ranks_the_one_with_more_panoramas_counts_more():
+def test_rank_with_more_panoramas_weighs_more():
     made = assemble(
         DistilViews, small(), modality="depth", teacher="start", **{**VIEWS, "panoramas": 3}
     )

@@ -41,7 +41,7 @@ def test_adapters_alone_train_in_frozen_modules(tmp_path):
     assert backbone_sha(agent) == backbone and weights_sha(agent) != whole
 
 
-def test_a_prior_is_one_agents_evaluation(tmp_path):
+def test_prior_needs_the_evaluation_of_one_agent(tmp_path):
     """A run's own rows hold two agents, before and after: their mean is nobody's success."""
     schedule = Schedule("success_distributed", 0.6, names=("flare", "spatter"))
     hard = [r for name in schedule.names for r in cell(2, corruption=name, severity=0.6)]
@@ -66,7 +66,7 @@ def test_a_prior_is_one_agents_evaluation(tmp_path):
             )
 
 
-def test_an_unknown_part_is_refused():
+def test_unknown_part_is_rejected():
     with pytest.raises(ValueError, match="adapters"):
         recipe(TopologicalAgent(16, SMALL), "encoder")
 
@@ -101,7 +101,7 @@ def test_imitate_rejects_weights_of_unknown_losses():
         check_losses(agent, {"waypoint": 0.5}, out)
 
 
-def test_a_step_needs_an_episode():
+def test_step_needs_an_episode():
     with pytest.raises(ValueError, match="must be >= 1, got"):
         schedule = Schedule("clean", 0.0)
         assemble(Imitate, TopologicalAgent(16, SMALL), **SOURCES, schedule=schedule, episodes=0)
@@ -139,7 +139,7 @@ def test_measuring_success_leaves_the_agent_in_training_mode():
     assert all(module.training for module in made.modules())
 
 
-def test_logits_that_are_no_numbers_give_a_loss_that_is_none():
+def test_nan_logits_give_nan_loss():
     """Else the loss is 0, and what went wrong shows as the gradient's norm alone."""
     target, weight = torch.tensor([[0.0, 1.0, 0.0]]), torch.ones(1)
     decisions = SimpleNamespace(target=target, weight=weight)
@@ -168,7 +168,7 @@ def test_imitation_adds_weighted_auxiliary_losses():
     assert float(values["accuracy"]) == 0.5
 
 
-def test_every_step_and_piece_meets_other_episodes_and_other_keys():
+def test_every_step_and_piece_draws_other_episodes_and_keys():
     """What training draws anew must not come again."""
     drawn, keys = [], []
 

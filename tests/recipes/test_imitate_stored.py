@@ -59,7 +59,7 @@ def spread(made: ImitateStored) -> tuple[float, float]:
     return float(views[..., :-depth].std(0).mean()), float(views[..., -depth:].std(0).mean())
 
 
-def test_a_blind_run_leaves_whole_features_to_the_next(folder):
+def test_blind_run_stores_whole_features_for_the_next(folder):
     """The blind one comes first and fills the cache."""
     assert spread(recipe(folder, ("rgb",)))[0] == 0.0
     seeing, deaf = recipe(folder), recipe(folder, ("instruction",))
@@ -75,7 +75,7 @@ def test_views_of_another_size_are_stored_apart(folder):
     assert len({recipe.rollouts.store.folder for recipe in made}) == 3
 
 
-def test_a_batch_trains_the_planner_alone(folder):
+def test_batch_trains_the_planner_only(folder):
     made = recipe(folder)
     losses = made(made.batch(0))
     losses["loss"].backward()
@@ -126,7 +126,7 @@ def test_variants_are_known_by_what_makes_their_pixels(tmp_path, monkeypatch):
     assert folder() != known
 
 
-def test_a_flare_in_a_stored_panorama_stands_at_any_yaw(tmp_path):
+def test_flare_in_a_stored_panorama_has_any_yaw(tmp_path):
     task = stored.ScenesTask(
         TopologicalAgent(16, SMALL),
         partial(ApartmentsWorld, 64, 1),

@@ -102,14 +102,14 @@ def test_restore_loss_prefers_fewer_wrong_pixels():
     assert few < all_ and float(recipe._error(wanted, wanted, valid)) == 0
 
 
-def test_depth_that_is_too_far_costs_more_than_what_is_too_near():
+def test_depth_loss_weighs_too_far_more_than_too_near():
     recipe = recipe_of(w_grad=0.0, w_right=0.0, w_far=3.0)
     wanted, valid = torch.full((1, 1, 8, 8), 0.5), torch.ones(1, 1, 8, 8)
     far, near = (float(recipe._error(wanted + off, wanted, valid)) for off in (0.1, -0.1))
     assert far == pytest.approx(3 * near)
 
 
-def test_a_folder_of_frames_will_do(tmp_path):
+def test_folder_of_frames_can_be_the_source(tmp_path):
     rng = np.random.default_rng(0)
     for scene in range(3):
         (tmp_path / f"s{scene}").mkdir()
@@ -169,12 +169,12 @@ def test_folder_depth_uses_the_range_of_the_restorer(tmp_path):
     assert batch["frames"].mean() > 18 and batch["clean"].min() >= 21
 
 
-def test_a_schedule_without_a_corruption_of_the_sensor_is_refused():
+def test_schedule_without_the_sensor_is_rejected():
     with pytest.raises(ValueError, match="must contain a depth corruption"):
         recipe_of(DEPTH, names=("flare",))
 
 
-def test_a_folder_with_other_frames_is_another_run(tmp_path):
+def test_folder_with_other_frames_is_another_run(tmp_path):
     for scene in range(4):
         (tmp_path / f"s{scene}").mkdir()
         Image.new("RGB", (24, 24), "navy").save(tmp_path / f"s{scene}/0.png")

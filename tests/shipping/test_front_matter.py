@@ -24,7 +24,7 @@ def card_of(folder: Path) -> dict:
 
 
 @pytest.mark.parametrize("folder", SHIPPED, ids=lambda folder: folder.name)
-def test_a_shipped_folder_is_a_model_repository(folder):
+def test_shipped_folder_is_a_model_repository(folder):
     card, found = card_of(folder), ModelCard.load(folder / "README.md")
     data = found.data
     assert (data.library_name, data.license, data.pipeline_tag) == (
@@ -47,13 +47,13 @@ def test_a_shipped_folder_is_a_model_repository(folder):
 
 
 @pytest.mark.parametrize("folder", SHIPPED, ids=lambda folder: folder.name)
-def test_the_published_rows_are_found_by_a_shipped_card(folder):
+def test_published_rows_match_a_shipped_card(folder):
     published = gather([ROOT / f"docs/results/second/{folder.name}-val_unseen.jsonl.gz"])
     (agent,) = card_of(folder)["rows_agent"]
     assert len({row["corruption"] for row in published if row["agent"] == agent}) == 13
 
 
-def test_a_card_without_metrics_or_with_strange_names_is_one_too():
+def test_card_without_metrics_or_with_odd_names_is_valid():
     card = card_of(SHIPPED[0]) | {"metrics": []}
     assert ModelCard(front_matter(card)).data.eval_results is None
     strange = 'a: [b\n---\n"x": !!python/object:os.system'
@@ -66,13 +66,13 @@ def test_a_card_without_metrics_or_with_strange_names_is_one_too():
 
 
 @pytest.mark.parametrize("name", ["on", "null", "2.0"])
-def test_a_text_stays_one_to_readers_of_yaml_of_today(name):
+def test_text_stays_one_string_for_current_yaml_readers(name):
     card = card_of(SHIPPED[0]) | {"name": name, "recipe": name}
     text = front_matter(card)
     assert f"name: '{name}'\n" in text and ModelCard(text).data.model_name == name
 
 
-def test_a_page_shows_the_words_of_rows_as_they_are():
+def test_page_shows_words_of_rows_unchanged():
     card = card_of(SHIPPED[0])
     card["metrics"][0]["suite"] = "1.1 <script>alert(1)</script> `x`"
     text = ModelCard(readme(card)).text
@@ -95,7 +95,7 @@ def test_renew_changes_the_readme_and_the_manifest_alone(tmp_path):
     assert [p.name for p in tmp_path.iterdir()] == ["mine"]
 
 
-def test_renewing_adds_the_agent_of_rows_to_a_card_that_lacks_it(tmp_path):
+def test_renewing_adds_the_agent_of_rows_to_a_card(tmp_path):
     folder = Path(shutil.copytree(ROOT / "checkpoints/hardened/conv_adapter", tmp_path / "mine"))
     old = {k: v for k, v in card_of(folder).items() if k != "rows_agent"}
     resigned = {**old, "sha256": older_folders.card_sha(old)}

@@ -23,7 +23,7 @@ KINDS = {
 
 @pytest.mark.slow  # tests/test_methods.py exports a run of the frontier agent quickly
 @pytest.mark.parametrize("kind", KINDS)
-def test_a_run_is_exported_and_loads_again(tmp_path, kind, monkeypatch):
+def test_run_is_exported_and_loads_again(tmp_path, kind, monkeypatch):
     monkeypatch.setattr(export, "WALKS", 1)
     made, own = KINDS[kind]
     options = [f"agent={kind}", *SMALL, *own]
@@ -42,7 +42,7 @@ def test_a_run_is_exported_and_loads_again(tmp_path, kind, monkeypatch):
     assert weights_sha(loaded) == weights_sha(finished(run, walks)[1])
 
 
-def test_options_may_stand_behind_the_rows_and_a_wrong_one_is_explained(monkeypatch, tmp_path):
+def test_options_may_follow_rows_and_wrong_ones_are_explained(monkeypatch, tmp_path):
     given = {}
 
     def read(run, overrides, configs):

@@ -17,7 +17,7 @@ def rows(agent: str, wins: bool) -> list[dict]:
     return [{**row(f"e{n}", wins), "agent": agent, "weights": "w" * 12} for n in range(3)]
 
 
-def test_the_runs_own_rows_say_which_agent_of_equal_weights_it_is():
+def test_run_rows_identify_agents_of_equal_weights():
     own, blind = rows("a" * 12, True), rows("b" * 12, False)
     found = list(_of_one_agent(own[:1], own + blind, {"w" * 12}))
     assert {r["agent"] for r in found} == {"a" * 12} and len(found) == 3
@@ -30,7 +30,7 @@ def test_rows_of_before_are_known_by_their_weights():
     assert list(_of_one_agent([], old, {"w" * 12})) == old
 
 
-def test_a_card_names_the_agent_of_its_rows_and_not_those_of_other_weights():
+def test_card_names_the_agent_of_its_rows():
     found = [*rows("a" * 12, True), *rows("b" * 12, True)]
     assert rows_agent(found, {"w" * 12}) == ["a" * 12, "b" * 12]
     assert rows_agent(found, {"v" * 12}) == []
@@ -44,7 +44,7 @@ class Mine:
         return {"gain": self.gain}
 
 
-def test_an_agent_with_other_settings_than_the_folders_is_refused(tmp_path):
+def test_agent_with_other_settings_is_rejected(tmp_path):
     config = tmp_path / "config.yaml"
     config.write_text(yaml.safe_dump({"agent": {"_target_": "mine.Mine", "gain": -1.0}}))
     check_same(Mine(-1.0), config, "")
@@ -56,7 +56,7 @@ class Scaled:
     settings = {"scales": (1, 2)}
 
 
-def test_settings_may_be_a_mapping_and_a_tuple_is_a_list(tmp_path):
+def test_settings_may_be_a_mapping_and_tuples_become_lists(tmp_path):
     config = tmp_path / "config.yaml"
     config.write_text(yaml.safe_dump({"agent": {"_target_": "mine.Scaled", "scales": [1, 2]}}))
     check_same(Scaled(), config, "")
@@ -66,7 +66,7 @@ def test_settings_may_be_a_mapping_and_a_tuple_is_a_list(tmp_path):
 
 
 @pytest.mark.parametrize("filled", [load, load_hardened])
-def test_what_cannot_be_filled_is_named(filled):
+def test_values_that_cannot_be_loaded_are_named(filled):
     folder = "checkpoints/hardened/ts_distill" if filled is load_hardened else "checkpoints/base"
     with pytest.raises(TypeError, match="must be a torch.nn.Module .*, got <class .*Silent"):
         filled(folder, agent=Silent)
@@ -81,7 +81,7 @@ class Silent:
         self.gain, self.net = gain, object()
 
 
-def test_of_an_agent_without_settings_attributes_are_compared_and_it_has_the_folders(tmp_path):
+def test_attributes_are_compared_without_settings(tmp_path):
     """So an evaluation and ``benchmark(load_hardened(...))`` have one hash for it."""
     config = tmp_path / "config.yaml"
     config.write_text(yaml.safe_dump({"agent": {"_target_": "mine.Silent", "gain": 1, "net": "a"}}))

@@ -88,7 +88,7 @@ def two():
 
 
 @pytest.mark.parametrize("ahead", [True, False])
-def test_two_workers_train_the_weights_that_none_trains(ahead, two, tmp_path):
+def test_two_workers_train_the_same_weights_as_zero(ahead, two, tmp_path):
     alone = trained(tmp_path / "alone", None, ahead=ahead)
     assert trained(tmp_path / "two", two, ahead=ahead) == alone
     states.checkpoints(tmp_path / "two")[-1].unlink()  # back to step 4
@@ -96,7 +96,7 @@ def test_two_workers_train_the_weights_that_none_trains(ahead, two, tmp_path):
 
 
 @pytest.mark.parametrize("ahead,busy", [(True, 6), (False, 3)])
-def test_more_workers_than_pieces_work_at_several_steps_at_once(ahead, busy, tmp_path):
+def test_many_workers_work_on_several_steps_at_once(ahead, busy, tmp_path):
     with Workers(7) as workers:
         given = dict.fromkeys(range(7), 0)
         for worker in workers._all:
@@ -124,7 +124,7 @@ def test_workers_do_not_deadlock_on_full_pipes(tmp_path):
     assert states.checkpoints(tmp_path)
 
 
-def test_the_weights_that_lag_are_those_of_so_many_updates_before(tmp_path):
+def test_lagging_weights_are_so_many_updates_old(tmp_path):
     seeding.seed_everything(0, "init")
     recipe, seen = Shared(), []
     recipe.work = lambda job: (
@@ -148,7 +148,7 @@ def test_batches_made_of_no_weights_know_no_lag(two, tmp_path):
 
 @pytest.mark.parametrize("where", ["job", "message"])
 @pytest.mark.parametrize("how", [{"ahead": True}, {}, {"lag": 2, "save_every": 0}], ids=str)
-def test_a_worker_that_is_killed_is_replaced_and_nothing_is_lost(how, where, tmp_path, capsys):
+def test_killed_worker_is_replaced_and_nothing_is_lost(how, where, tmp_path, capsys):
     mark = tmp_path / where
     mark.touch()
     with Workers(2) as workers:
@@ -163,7 +163,7 @@ def test_second_worker_death_ends_the_training(tmp_path):
     assert states.checkpoints(tmp_path)
 
 
-def test_an_error_in_a_worker_is_raised_as_it_was(two, tmp_path):
+def test_worker_error_is_raised_unchanged(two, tmp_path):
     with pytest.raises(ValueError, match="no such pose"):
         trained(tmp_path / "raised", two, fatal="raise")
     assert trained(tmp_path / "next", two) == trained(tmp_path / "alone", None)  # nothing is left
@@ -199,7 +199,7 @@ def _no_job():
         ("unpickled", OSError, "no job can be made"),
     ],
 )
-def test_what_cannot_be_sent_is_told_as_what_it_is(fatal, kind, said, tmp_path):
+def test_unpicklable_result_is_reported(fatal, kind, said, tmp_path):
     """Not as a want of memory, and nobody waits for it."""
     with Workers(1) as workers, pytest.raises(kind, match=said) as raised:
         Trainer(Unpackable(fatal=fatal), steps=2, folder=tmp_path, workers=workers).fit()
@@ -214,7 +214,7 @@ def test_workers_reject_torchscript_objectives(two, tmp_path):
         Trainer(recipe, steps=1, folder=tmp_path, workers=two).fit()
 
 
-def test_a_recipe_that_cannot_be_sent_is_refused_with_a_way_out(two, tmp_path):
+def test_unpicklable_recipe_is_rejected_with_a_way_out(two, tmp_path):
     class Local(Shared):
         """Classes inside functions cannot be pickled."""
 
@@ -222,7 +222,7 @@ def test_a_recipe_that_cannot_be_sent_is_refused_with_a_way_out(two, tmp_path):
         Trainer(Local(), steps=1, folder=tmp_path, workers=two).fit()
 
 
-def test_a_worker_that_stands_still_is_reported_until_it_goes_on(tmp_path, monkeypatch, capsys):
+def test_stopped_worker_is_reported_until_it_continues(tmp_path, monkeypatch, capsys):
     monkeypatch.setattr(workers, "STUCK", 0.2)
     with Workers(1) as pool:
         wanted = trained(tmp_path / "whole", pool)

@@ -66,7 +66,7 @@ def refusal(folder, *options: str) -> str:
         ("da_per_episode", "restorer", ["stage perception_rgb", "no labels, see"]),
     ],
 )
-def test_a_recipe_for_other_agents_says_which_it_takes(tmp_path, recipe, agent, words):
+def test_recipe_for_other_agents_names_them(tmp_path, recipe, agent, words):
     said = refusal(tmp_path, f"recipe={recipe}", f"agent={agent}", OFF)
     assert all(word in said for word in words), said
 
@@ -74,7 +74,7 @@ def test_a_recipe_for_other_agents_says_which_it_takes(tmp_path, recipe, agent, 
 @pytest.mark.parametrize(
     "recipe", [Dagger, HardenEncoder, Imitate, ImitateStored, Pretrain, Restore]
 )
-def test_a_recipe_names_what_the_agent_lacks_and_what_to_do(recipe):
+def test_recipe_names_what_the_agent_lacks(recipe):
     said = recipe.misfit(TinyAgent())
     assert said.startswith("it has no ") and len(said.split(". ")) > 1
     assert not TinyRecipe.misfit(TinyAgent())
@@ -112,7 +112,7 @@ def test_plan_warns_about_unused_severity(recipe, capsys):
 
 
 @pytest.mark.parametrize("recipe", ["base", "dagger", "replan", "swap_encoder"])
-def test_the_oracles_share_falls_over_the_steps_that_are_taken(recipe):
+def test_oracle_share_falls_over_the_actual_steps(recipe):
     for options, steps in (
         (["trainer.steps=7"], 7),
         (["stages.{}.trainer.steps=9"], 9),
@@ -162,7 +162,7 @@ def left(cfg) -> list[str]:
     ("recipe", "stage"),
     [("imitation", "imitation"), ("da_success", "imitation"), ("ts_distill", "episodes")],
 )
-def test_an_agent_that_shows_no_encoders_learns_on_episodes_alone(recipe, stage, capsys):
+def test_agent_without_encoders_trains_on_episodes_only(recipe, stage, capsys):
     cfg = load(f"recipe={recipe}")
     plan.leave_out_stages(cfg, Walker())
     assert left(cfg) == [stage]
@@ -200,7 +200,7 @@ def test_blinded_agent_without_stages_is_evaluated(tmp_path, monkeypatch, capsys
 @pytest.mark.parametrize(
     ("agent", "views", "taken"), [("recurrent", 12, 1), ("frontier", 12, 1), ("topological", 1, 12)]
 )
-def test_a_world_with_another_number_of_views_is_refused(tmp_path, agent, views, taken):
+def test_world_with_another_number_of_views_is_rejected(tmp_path, agent, views, taken):
     said = refusal(tmp_path, f"agent={agent}", f"env.views={views}", OFF)
     assert f"takes {taken}" in said and f"env.views={taken}" in said
 
@@ -215,7 +215,7 @@ def tiny(folder, name: str, *stages: str, width: int = 8):
     return cfg
 
 
-def test_a_folder_with_a_run_of_another_recipe_is_left_as_it_is(tmp_path):
+def test_folder_of_another_recipe_is_unchanged(tmp_path):
     train.run(tiny(tmp_path, "one", "first"))
     before = {p: p.read_bytes() for p in tmp_path.rglob("*") if p.is_file()}
     with pytest.raises(ValueError, match=r"another recipe: it has a stage first.*folder="):
@@ -337,7 +337,7 @@ def fitted(agent, *options: str):
     ],
 )
 @pytest.mark.parametrize("recipe", ["da_per_frame", "da_per_episode", "da_success", "ts_distill"])
-def test_an_agent_meets_corruptions_of_what_it_reads_alone(recipe, agent, read, capsys):
+def test_agent_gets_corruptions_of_its_sensors_only(recipe, agent, read, capsys):
     stages, _ = fitted(agent, f"recipe={recipe}")
     for stage in stages.values():
         schedule = build(stage.recipe["schedule"])
@@ -349,7 +349,7 @@ def test_an_agent_meets_corruptions_of_what_it_reads_alone(recipe, agent, read, 
     assert said.count("reads no") == 1 and said.endswith(f"the schedule leaves out {lost}\n")
 
 
-def test_of_named_corruptions_those_it_reads_are_drawn():
+def test_unread_corruptions_are_dropped_from_a_list():
     stages, _ = fitted(RecurrentAgent(["rgb"]), "schedule.names=[multipath,flare,spatter]")
     assert stages["imitation"].recipe["schedule"]["names"] == ["flare", "spatter"]
 
@@ -357,7 +357,7 @@ def test_of_named_corruptions_those_it_reads_are_drawn():
 @pytest.mark.parametrize(
     "agent", [TopologicalAgent(16), RecurrentAgent(), FrontierAgent(), TinyAgent()]
 )
-def test_an_agent_that_reads_both_draws_what_the_schedule_says(agent, capsys):
+def test_agent_with_both_sensors_draws_the_whole_schedule(agent, capsys):
     """To the letter: what it was trained under is part of a run's identity."""
     for recipe in ("da_per_episode", "stacked"):
         stages, before = fitted(agent, f"recipe={recipe}")
@@ -377,13 +377,13 @@ def test_clean_schedules_stay_as_they_are():
         ("depth", "flare", ["no rgb", "only flare", "gaussian_noise"]),
     ],
 )
-def test_a_schedule_of_nothing_that_the_agent_reads_is_refused(tmp_path, sensor, names, words):
+def test_schedule_without_read_corruptions_is_rejected(tmp_path, sensor, names, words):
     options = ["agent=recurrent", f"agent.sensors=[{sensor}]", "init=null", OFF]
     said = refusal(tmp_path, *options, f"schedule.names=[{names}]")
     assert all(word in said for word in words) and "schedule.names=[...]" in said
 
 
-def test_a_run_trains_on_what_was_drawn_and_says_so(tmp_path, monkeypatch):
+def test_run_trains_on_and_records_the_drawn_corruptions(tmp_path, monkeypatch):
     met = {}
 
     def trained(plan, stage, *_):
@@ -403,7 +403,7 @@ def test_plan_rejects_an_unused_teacher(tmp_path):
     )
 
 
-def test_check_stages_stops_at_the_first_stage_of_a_user(monkeypatch):
+def test_check_stages_stops_at_the_first_user_stage(monkeypatch):
     built = []
     monkeypatch.setattr(
         ObjectiveSpec, "build", lambda spec, agent: built.append(spec.target) or Objective()

@@ -47,7 +47,7 @@ def losses(said):
 
 
 @pytest.mark.parametrize("agent,recipe", KINDS)
-def test_it_loses_on_the_gpu_what_it_loses_on_the_processor(tmp_path, capfd, agent, recipe):
+def test_loss_on_gpu_equals_loss_on_cpu(tmp_path, capfd, agent, recipe):
     found = []
     for place, device in (("processor", "cpu"), ("gpu", GPU)):
         trained(tmp_path / place, device, f"agent={agent}", f"recipe={recipe}")
@@ -68,7 +68,7 @@ def test_workers_feed_every_stage_as_the_training_itself_does(tmp_path, capfd, r
 
 @pytest.mark.parametrize("computed", ["fp32", "bf16"])
 @pytest.mark.parametrize("precision", ["fp32", "int8"])
-def test_the_language_model_learns_and_answers(tmp_path, precision, computed):
+def test_language_model_learns_and_answers(tmp_path, precision, computed):
     pytest.importorskip("bitsandbytes")
     base = write_tiny_model(tmp_path / "base")
     options = ["recipe=safeguard_lora", f"agent.base={base}", f"agent.precision={precision}"]
@@ -83,7 +83,7 @@ def test_the_language_model_learns_and_answers(tmp_path, precision, computed):
 
 
 @pytest.mark.parametrize("first,then", [("cpu", GPU), (GPU, "cpu")])
-def test_a_run_begun_on_one_goes_on_on_the_other(tmp_path, first, then):
+def test_run_resumes_on_the_other_device(tmp_path, first, then):
     folder = trained(tmp_path, first, "recipe=harden", "name=moves")
     more = settings(tmp_path, then, "recipe=harden", "name=moves")
     for stage in more.stages.values():
@@ -92,7 +92,7 @@ def test_a_run_begun_on_one_goes_on_on_the_other(tmp_path, first, then):
     checkpoint.load_agent(build(more.agent), folder / "agent")
 
 
-def test_the_shipped_agent_walks_as_on_the_processor(tmp_path):
+def test_shipped_agent_acts_as_on_cpu(tmp_path):
     node, rows = conf.load_config("train", []).agent, []
     for place, device in (("processor", "cpu"), ("gpu", GPU)):
         walked = evaluate(

@@ -34,7 +34,7 @@ class OnNumbers(Objective):
 TARGET = f"{__name__}.OnNumbers"
 
 
-def test_spec_gives_each_argument_to_the_constructors_that_name_it():
+def test_spec_passes_arguments_by_constructor_name():
     spec = ObjectiveSpec.of({"_target_": TARGET, "count": 5, "seed": 7, "weight": 2.0})
     assert spec.source == {"count": 5, "seed": 7}
     assert spec.arguments == {"seed": 7, "weight": 2.0}

@@ -11,7 +11,7 @@ from mitigate.training import poses
 from mitigate.worlds.apartments.world import ApartmentsWorld
 
 
-def test_a_corruption_is_shown_a_picture_in_every_view(monkeypatch):
+def test_corruption_gets_a_picture_in_every_view(monkeypatch):
     """It may put another view's picture in the place of one."""
     shown = []
 

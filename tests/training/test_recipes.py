@@ -80,7 +80,7 @@ def test_int8_language_model_trains_without_log_spam(tmp_path, capfd):
 
 
 @pytest.mark.slow
-def test_a_language_model_goes_on_from_an_adapter(tmp_path):
+def test_language_model_resumes_from_an_adapter(tmp_path):
     base = write_tiny_model(tmp_path / "tiny-llama")
     options = ["recipe=safeguard_lora", "debug=smoke", "evaluation.enabled=false", "workers=1"]
     options += [f"agent.base={base}", "agent.lora.dropout=0"]

@@ -114,7 +114,7 @@ def test_interrupted_training_saves_and_resumes_to_the_same_result(tmp_path, num
     assert torch.equal(found, train(tmp_path / "unbroken", 0))
 
 
-def test_a_signal_while_it_is_evaluated_loses_no_step(tmp_path):
+def test_signal_during_evaluation_loses_no_step(tmp_path):
     class Evaluated(Slow):
         def evaluate(self, step):
             os.kill(os.getpid(), signal.SIGTERM)
@@ -148,7 +148,7 @@ def test_signal_at_the_end_does_not_skip_finish(tmp_path, when):
     assert resumed.steps == [] and resumed.threshold == resumed.line.weight.sum() != 0
 
 
-def test_a_run_that_is_killed_while_it_is_finished_loses_no_step(tmp_path, capsys):
+def test_kill_while_finishing_loses_no_step(tmp_path, capsys):
     class Killed(BaseException):
         pass
 
@@ -166,7 +166,7 @@ def test_a_run_that_is_killed_while_it_is_finished_loses_no_step(tmp_path, capsy
     assert "already trained for 6 steps" in capsys.readouterr().out
 
 
-def test_a_checkpoint_of_an_older_version_counts_as_finished(tmp_path, capsys):
+def test_older_checkpoint_counts_as_finished(tmp_path, capsys):
     settings = {"steps": 2, "precision": "fp32", "folder": tmp_path / "run"}
     Trainer(Slow(tmp_path, 0), **settings).fit()
     state = states.load(states.checkpoints(tmp_path / "run")[-1])
@@ -175,7 +175,7 @@ def test_a_checkpoint_of_an_older_version_counts_as_finished(tmp_path, capsys):
     assert "already trained for 2 steps" in capsys.readouterr().out
 
 
-def test_what_ends_an_evaluation_loses_no_step(tmp_path):
+def test_interrupted_evaluation_loses_no_step(tmp_path):
     class Evaluated(Slow):
         def evaluate(self, step):
             end_within_another_block()
@@ -186,7 +186,7 @@ def test_what_ends_an_evaluation_loses_no_step(tmp_path):
     assert [path.name for path in (tmp_path / "run").glob("step-*.pt")] == ["step-00000002.pt"]
 
 
-def test_a_signal_in_an_inner_block_is_told_to_the_outer_one(tmp_path):
+def test_signal_in_an_inner_block_reaches_the_outer_one(tmp_path):
     with delay_signals() as outer:
         with uninterrupted():
             os.kill(os.getpid(), signal.SIGTERM)
@@ -201,7 +201,7 @@ def test_a_signal_in_an_inner_block_is_told_to_the_outer_one(tmp_path):
         time.sleep(0.01)
 
 
-def test_a_second_signal_ends_it_at_once(tmp_path):
+def test_second_signal_ends_at_once(tmp_path):
     with pytest.raises(Ended) as ended, delay_signals() as first:
         os.kill(os.getpid(), signal.SIGTERM)
         time.sleep(0.01)

@@ -63,7 +63,7 @@ def test_rates_do_not_depend_on_the_number_of_processes(capsys):
     assert "success at step 60: 4 episodes" in capsys.readouterr().out
 
 
-def test_episodes_are_walked_in_fp32_inside_a_training_in_bf16():
+def test_rollouts_use_fp32_inside_a_bf16_training():
     """Or rates would depend on who measures: this process, or workers of its own."""
     cpu = torch.device("cpu")
     with computing("bf16", cpu), EpisodeTask(wanderer(), partial(ApartmentsWorld, 16)).ready():

@@ -35,7 +35,7 @@ def fake(monkeypatch):
     return ran
 
 
-def test_every_combination_is_run_by_hydras_grammar():
+def test_sweep_runs_every_combination_of_hydra_grammar():
     made = sweep.combinations(["recipe=da_per_frame,stacked", "seed=range(2)", "severity=0.3"])
     assert made == [
         [f"recipe={recipe}", f"seed={seed}", "severity=0.3"]
@@ -45,12 +45,12 @@ def test_every_combination_is_run_by_hydras_grammar():
     assert sweep.combinations([]) == [[]]
 
 
-def test_a_list_is_one_value_and_not_a_sweep():
+def test_list_is_one_value_and_not_a_sweep():
     assert len(sweep.combinations(["agent.blind=[rgb,depth]", "seed=3"])) == 1
 
 
 @pytest.mark.parametrize("given", [[], ["runs=sweeps/default"], ["command=evaluate", "jobs=2"]])
-def test_without_options_to_combine_it_shows_how_and_runs_nothing(given, monkeypatch, fake, capsys):
+def test_sweep_without_combinations_shows_help_and_runs_nothing(given, monkeypatch, fake, capsys):
     """``make sweep`` alone gives it ``runs=``."""
     monkeypatch.setattr(sys, "argv", ["mitigate sweep", *given])
     assert sweep.main() == 2 and not fake
@@ -62,7 +62,7 @@ def test_without_options_to_combine_it_shows_how_and_runs_nothing(given, monkeyp
 @pytest.mark.parametrize(
     ("command", "option"), [("evaluate", "out=x"), ("train", "folder=x"), ("train", "+out=x")]
 )
-def test_one_folder_for_all_runs_is_refused(tmp_path, fake, command, option):
+def test_shared_folder_for_all_runs_is_rejected(tmp_path, fake, command, option):
     with pytest.raises(ValueError, match=r"is a single folder, .* Set runs=FOLDER"):
         sweep.run_all(config(tmp_path, f"command={command}"), ["seed=0,1", option])
     assert not fake
@@ -108,7 +108,7 @@ def test_sweep_gives_each_run_a_log_a_folder_and_cores(tmp_path, monkeypatch):
     assert there.environment["PYTHON_CPU_COUNT"] == "4"
 
 
-def test_combinations_whose_names_would_be_one_have_a_digest_each(tmp_path):
+def test_combinations_with_equal_names_get_a_digest(tmp_path):
     cfg = config(tmp_path, "command=evaluate")
     made = sweep.combinations(["checkpoint=a/b,a_b"])
     assert len({sweep.chain(cfg, one, made).log for one in made}) == 2
@@ -132,7 +132,7 @@ def test_sweep_continues_after_a_failed_run(tmp_path, fake):
         ([], ["severity=high"], "must be a number"),
     ],
 )
-def test_what_no_run_could_have_is_said_before_any_starts(tmp_path, fake, own, options, said):
+def test_impossible_options_are_reported_before_any_run(tmp_path, fake, own, options, said):
     with pytest.raises(ValueError, match=said):
         sweep.run_all(config(tmp_path, *own), options)
     assert not fake

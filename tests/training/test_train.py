@@ -57,7 +57,7 @@ def test_stages_run_in_order_and_leave_agent_and_config(tmp_path):
     assert OmegaConf.load(tmp_path / "agent" / "config.yaml").agent["_target_"]
 
 
-def test_the_second_stage_goes_on_from_the_first(tmp_path):
+def test_second_stage_continues_from_the_first(tmp_path):
     train.run(config(tmp_path / "two"))
     train.run(config(tmp_path / "one", stages={"second": stage(steps=6)}))
     assert not same(weights(tmp_path / "one"), weights(tmp_path / "two"))
@@ -75,7 +75,7 @@ def test_train_resumes_an_interrupted_run(tmp_path, capsys):
     assert same(weights(tmp_path / "whole"), weights(tmp_path / "broken"))
 
 
-def test_a_stage_made_with_other_settings_is_not_resumed(tmp_path):
+def test_stage_with_other_settings_is_not_resumed(tmp_path):
     train.run(config(tmp_path))
     with pytest.raises(ValueError, match=r"trainer\.lr"):
         train.run(config(tmp_path, "trainer.lr=0.5"))
@@ -93,7 +93,7 @@ class OwnAgent(TinyAgent):
 """
 
 
-def test_a_stage_trained_by_other_code_of_ones_own_is_not_resumed(tmp_path, monkeypatch):
+def test_stage_with_other_user_code_is_not_resumed(tmp_path, monkeypatch):
     monkeypatch.syspath_prepend(tmp_path)
     folder, cfg = tmp_path / "run", config(tmp_path / "run")
     cfg.agent = {"_target_": "own_scaled_agent.OwnAgent"}
@@ -112,7 +112,7 @@ def test_a_stage_trained_by_other_code_of_ones_own_is_not_resumed(tmp_path, monk
     assert (folder / "agent").is_dir()
 
 
-def test_a_refused_resume_leaves_the_folder_as_it_is(tmp_path):
+def test_rejected_resume_leaves_the_folder_unchanged(tmp_path):
     train.run(config(tmp_path))
     before = {p: p.read_bytes() for p in tmp_path.rglob("*") if p.is_file()}
     with pytest.raises(ValueError, match="other settings"):
@@ -143,7 +143,7 @@ def test_train_rewrites_damaged_final_weights(tmp_path):
     checkpoint.load_weights(TinyAgent(), tmp_path / "agent")
 
 
-def test_a_negative_number_of_workers_is_refused(tmp_path):
+def test_negative_number_of_workers_is_rejected(tmp_path):
     with pytest.raises(ValueError, match="null uses one per core"):
         train.run(config(tmp_path, "workers=-1"))
     for wrong in (0, -3):  # which showed only after the training
@@ -171,7 +171,7 @@ def test_train_rejects_invalid_options_before_building(tmp_path, option, words, 
         train.run(config(tmp_path, option))
 
 
-def test_a_run_says_first_what_it_will_do_and_how_long_that_takes(tmp_path, capsys):
+def test_run_reports_its_plan_and_duration_first(tmp_path, capsys):
     cfg = config(tmp_path)
     cfg.stages.first.cost, cfg.stages.second.cost = 60.0, 60.0
     train.run(cfg)
@@ -227,7 +227,7 @@ def test_default_folder_ignores_options_without_effect(option, monkeypatch):
     assert met == ["runs/da_success-s0.6-seed0"] * 2
 
 
-def test_build_hands_the_very_object_on_and_shows_a_users_error():
+def test_build_passes_objects_on_and_shows_user_errors():
     agent = TinyAgent()
     assert build(OmegaConf.create(TINY), agent=agent).agent is agent
     node = OmegaConf.create(

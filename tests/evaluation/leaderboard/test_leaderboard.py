@@ -91,7 +91,7 @@ def test_mean_sr_of_some_frames_leaves_out_instructions():
     assert more.scores["Mean SR"] == plain.scores["Mean SR"] != alone.scores["Mean SR"]
 
 
-def test_half_of_the_unseen_corruptions_is_called_so():
+def test_half_of_unseen_corruptions_has_its_name():
     halves = {half: unseen_names("rgb", half=half) for half in HALVES}
     test = entry_of(column(5, dict.fromkeys(halves["test"], 3)), "base", severity=0.6)
     assert "PRS-SR (unseen RGB, test)" in test.scores and "PRS-SR (unseen RGB)" not in test.scores
@@ -179,7 +179,7 @@ def test_add_writes_separate_files_for_unicode_names(rows, tmp_path, monkeypatch
     assert command.main(["check", "entries"]) == 0
 
 
-def test_show_ranks_entries_by_the_mean_sr_of_their_rows(tmp_path, monkeypatch, capsys):
+def test_show_ranks_entries_by_mean_sr(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     evil = "</script><script>alert(1)</script>"
     rows = column(8, {"spatter": 2}, name="low") + column(8, {"spatter": 7}, name=evil)
@@ -303,7 +303,7 @@ def test_add_writes_the_sensors_it_is_given(rows, tmp_path, monkeypatch, capsys)
         assert words in capsys.readouterr().err
 
 
-def test_nothing_is_written_that_would_be_refused_again(rows, tmp_path, monkeypatch, capsys):
+def test_add_writes_only_valid_entries(rows, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     result_rows.write("rows.jsonl", rows)
     before = {p.name: p.read_bytes() for p in tmp_path.iterdir()}

@@ -167,7 +167,7 @@ def test_benchmark_does_not_reuse_rows_of_unreadable_agents(walk):
         walk(Told(1), out="told")
 
 
-def test_benchmark_reuses_rows_of_a_version_and_runs_another_again(walk, capsys):
+def test_benchmark_reuses_rows_of_a_version_only(walk, capsys):
     first = walk(Hidden(1), version="1")
     capsys.readouterr()
     assert walk(Hidden(1), version="1").agents == first.agents

@@ -53,7 +53,7 @@ def test_fit_learns_a_new_mechanism_and_reloads_the_same(data, tmp_path, monkeyp
     assert open_safeguard(str(tmp_path)).canonicalise(text).text == said
 
 
-def test_load_reads_a_folder_of_the_classifier_with_two_steps(tmp_path):
+def test_load_reads_a_classifier_with_two_steps(tmp_path):
     shipped = classifier.load(find(choices.CLASSIFIER))
     older = {"hidden": np.zeros((31, 10)), "linear": np.zeros(31), "shift": np.zeros(10)}
     (tmp_path / "classifier.json").write_text(json.dumps(shipped.config | {"threshold": 0.6}))

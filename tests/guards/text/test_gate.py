@@ -45,7 +45,7 @@ def test_rewrite_refused_keeps_conditions_and_the_last_stop():
     assert "directions" in rewrite_refused("And there is your sofa.", "Stop at the sofa.")
 
 
-def test_rewrite_refused_accepts_an_empty_answer_only_for_words_without_facts():
+def test_rewrite_accepts_empty_answer_only_without_facts():
     assert rewrite_refused("Hello there, my friend!", "") == ""
     assert rewrite_refused("Turn left, my friend!", "")
 
