@@ -49,9 +49,9 @@ def imported(source: str) -> set[str]:
 
 def climbing(module: str, names: set[str]) -> set[str]:
     """Return the imported ``names`` that are above the package of ``module``, or beside it."""
-    own = package_of(module)
-    others = {name for name in names if package_of(name) in RANK and package_of(name) != own}
-    return {name for name in others if RANK[package_of(name)] >= RANK[own]}
+    own_value = package_of(module)
+    others = {name for name in names if package_of(name) in RANK and package_of(name) != own_value}
+    return {name for name in others if RANK[package_of(name)] >= RANK[own_value]}
 
 
 def test_layers_name_every_package():

@@ -67,10 +67,10 @@ def folder(files) -> Path:
 
 
 def success(file: Path) -> dict[str, float]:
-    found: dict[str, list[int]] = {}
+    matches: dict[str, list[int]] = {}
     for row in map(json.loads, file.read_text().splitlines()):
-        found.setdefault(row["corruption"], []).append(row["success"])
-    return {name: sum(won) / len(won) for name, won in found.items()}
+        matches.setdefault(row["corruption"], []).append(row["success"])
+    return {name: sum(won) / len(won) for name, won in matches.items()}
 
 
 def test_world_and_agent_fit_on_a_page():
@@ -104,9 +104,9 @@ def test_run_folder_fills_an_agent_built_by_the_user(folder):
     row = json.loads((folder / "again/rows.jsonl").read_text().splitlines()[0])
     agent = mitigate.load(place, agent=mine(adapters=True))
     assert weights_sha(agent) == row["weights"] and not agent.training
-    for told in (mitigate.load, mitigate.load_hardened):  # each names what does it
+    for reported in (mitigate.load, mitigate.load_hardened):  # each names what does it
         with pytest.raises((ValueError, FileNotFoundError), match=r"mitigate\.load.*agent=\.\.\."):
-            told(place)
+            reported(place)
     with pytest.raises(ValueError, match="do not fit this Policy"):
         mitigate.load(place, agent=mine(width=4, adapters=True))
 

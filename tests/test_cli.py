@@ -24,10 +24,10 @@ def own_command_line(monkeypatch):
 def test_help_lists_every_command_with_an_example(capsys):
     with pytest.raises(SystemExit) as ended:
         cli.main(["--help"])
-    shown = capsys.readouterr().out
+    printed = capsys.readouterr().out
     assert ended.value.code == 0
     for name, command in cli.COMMANDS.items():
-        assert command.about in shown and f"mitigate {name}" in shown
+        assert command.about in printed and f"mitigate {name}" in printed
 
 
 def test_unknown_command_names_the_nearest():

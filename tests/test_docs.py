@@ -121,8 +121,8 @@ def test_corrupt_frames_tutorial_prints_what_it_shows(monkeypatch, tmp_path, cap
     names: dict[str, object] = {}
     for block in python_blocks(page):
         exec(block, names)
-    shown = re.search(r"```text\n(.*?)\n```", page.read_text(encoding="utf-8"), re.S)
-    assert capsys.readouterr().out.strip() == shown[1]
+    printed = re.search(r"```text\n(.*?)\n```", page.read_text(encoding="utf-8"), re.S)
+    assert capsys.readouterr().out.strip() == printed[1]
 
 
 TUTORIALS = sorted(ROOT.glob("docs/tutorials/*.py"))

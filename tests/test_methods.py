@@ -47,18 +47,18 @@ def shares(names: list[str]) -> dict[str, float]:
 def test_per_frame_schedule_draws_each_frame_separately():
     schedule = Schedule("per_frame", 0.6, clean_share=0.25, names=NAMES)
     (names,) = draws(schedule, 1, FRAMES)
-    wanted = {"clean": 0.25, **dict.fromkeys(NAMES, 0.75 / 4)}
-    assert shares(names) == pytest.approx(wanted, abs=0.03)
+    expected = {"clean": 0.25, **dict.fromkeys(NAMES, 0.75 / 4)}
+    assert shares(names) == pytest.approx(expected, abs=0.03)
     repeated = sum(a == b for a, b in zip(names, names[1:], strict=False)) / FRAMES
-    assert repeated == pytest.approx(sum(p**2 for p in wanted.values()), abs=0.03)
+    assert repeated == pytest.approx(sum(p**2 for p in expected.values()), abs=0.03)
 
 
 def test_per_episode_schedule_keeps_one_corruption_for_the_episode():
     schedule = Schedule("per_episode", 0.6, clean_share=0.25, names=NAMES)
     episodes = draws(schedule, FRAMES, 2)
     assert all(len(set(names)) == 1 for names in episodes)
-    wanted = {"clean": 0.25, **dict.fromkeys(NAMES, 0.75 / 4)}
-    assert shares([names[0] for names in episodes]) == pytest.approx(wanted, abs=0.03)
+    expected = {"clean": 0.25, **dict.fromkeys(NAMES, 0.75 / 4)}
+    assert shares([names[0] for names in episodes]) == pytest.approx(expected, abs=0.03)
 
 
 def test_success_distributed_schedule_draws_harder_corruptions_more_often():
@@ -66,10 +66,10 @@ def test_success_distributed_schedule_draws_harder_corruptions_more_often():
     schedule = Schedule(
         "success_distributed", 0.6, clean_share=0.0, names=NAMES, floor=0.0, success=success
     )
-    found = shares([names[0] for names in draws(schedule, FRAMES, 1)])
+    result = shares([names[0] for names in draws(schedule, FRAMES, 1)])
     total = sum(1 - rate for rate in success.values())
-    assert found == pytest.approx({n: (1 - s) / total for n, s in success.items()}, abs=0.03)
-    assert sorted(found, key=success.__getitem__) == sorted(found, key=lambda name: -found[name])
+    assert result == pytest.approx({n: (1 - s) / total for n, s in success.items()}, abs=0.03)
+    assert sorted(result, key=success.__getitem__) == sorted(result, key=lambda name: -result[name])
 
 
 def test_policy_kl_is_zero_for_equal_policies_only():

@@ -99,9 +99,9 @@ def shaken(model: nn.Module) -> nn.Module:
 
 def test_insert_keeps_outputs_bit_identical(encoder):
     model, targets, x, count = encoder
-    wanted, before = model(x), weights_sha(model)
+    expected, before = model(x), weights_sha(model)
     assert len(insert_adapters(model, targets)) == count
-    assert torch.equal(model(x), wanted) and adapters.backbone_sha(model) == before
+    assert torch.equal(model(x), expected) and adapters.backbone_sha(model) == before
 
 
 def test_training_changes_only_adapters(encoder):
@@ -252,10 +252,10 @@ def test_failed_insertion_keeps_the_model():
 def test_insert_rejects_an_existing_child_adapter():
     model = nn.Sequential(nn.Conv2d(3, 8, 3))
     model[0].add_module("adapter", nn.Conv2d(8, 8, 1))
-    own = model[0].adapter
+    own_value = model[0].adapter
     with pytest.raises(ValueError, match="already has an attribute 'adapter'"):
         insert_adapters(model, ["0"])
-    assert model[0].adapter is own and all(p.requires_grad for p in model.parameters())
+    assert model[0].adapter is own_value and all(p.requires_grad for p in model.parameters())
 
 
 def test_ring_reads_only_neighbours():

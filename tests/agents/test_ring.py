@@ -51,9 +51,9 @@ def test_ring_restores_a_lost_view(panorama):
         adapter.share.bias.fill_(10.0)
     lost = panorama.clone()
     lost[4] = 0
-    found = adapter(lost)[4]
+    matches = adapter(lost)[4]
     known = (neighbour_grid(64, 64, VIEW_STEP_DEGREES, HFOV_DEGREES).abs() <= 1).all(-1).any(0)
-    error = (found - panorama[4]).abs().mean(0)[known]
+    error = (matches - panorama[4]).abs().mean(0)[known]
     assert error.median() < 3 and error.mean() < 0.2 * panorama[4].mean()
 
 

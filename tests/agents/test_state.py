@@ -21,10 +21,10 @@ from mitigate.agents.state import read_state
 
 
 def net(weight: float = 1.0) -> nn.Linear:
-    made = nn.Linear(1, 1)
-    nn.init.constant_(made.weight, weight)
-    nn.init.zeros_(made.bias)
-    return made
+    model = nn.Linear(1, 1)
+    nn.init.constant_(model.weight, weight)
+    nn.init.zeros_(model.bias)
+    return model
 
 
 PLACES = {
@@ -55,9 +55,9 @@ def test_fingerprint_changes_with_weights_anywhere(place, kinds):
 
 def test_fingerprint_counts_lists_of_networks():
     def agent(weight: float) -> nn.Module:
-        made = net()
-        made.further = [net(weight)]
-        return made
+        model = net()
+        model.further = [net(weight)]
+        return model
 
     assert fingerprint(agent(1), {}) == fingerprint(agent(1), {}) != fingerprint(agent(2), {})
 
@@ -119,7 +119,7 @@ def test_read_state_accepts_standard_library_objects():
 
 class Anything:
     def __getattr__(self, name):
-        return lambda *given: None
+        return lambda *arguments: None
 
 
 def test_read_state_reports_unreadable_values():

@@ -12,11 +12,11 @@ def refused(call: Callable[[], Any], words: str = "") -> str:
     """Call it; it must raise ValueError or FileNotFoundError with one paragraph that holds
     ``words``. Any other error is a failure of the test, as it would be a traceback for a user."""
     try:
-        found = call()
+        matches = call()
     except (ValueError, FileNotFoundError) as error:
-        said = str(error)
+        message = str(error)
     else:
-        raise AssertionError(f"was not refused: {found!r:.200}")
-    assert said and "\n" not in said and len(said) < LONGEST, said[:2000]
-    assert words in said, said
-    return said
+        raise AssertionError(f"was not refused: {matches!r:.200}")
+    assert message and "\n" not in message and len(message) < LONGEST, message[:2000]
+    assert words in message, message
+    return message

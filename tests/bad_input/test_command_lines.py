@@ -26,11 +26,11 @@ def said_by(call, capsys) -> tuple[int, str]:
         status = call()
     except SystemExit as stop:
         status = stop.code
-    told = capsys.readouterr().err
+    printed = capsys.readouterr().err
     if isinstance(status, str):
-        status, told = 1, told + status
-    assert "Traceback" not in told and len(told) < LONGEST, told
-    return status or 0, told
+        status, printed = 1, printed + status
+    assert "Traceback" not in printed and len(printed) < LONGEST, printed
+    return status or 0, printed
 
 
 HUGE = "9" * 400
@@ -120,8 +120,8 @@ def test_wrong_option_is_named_before_anything_is_written(
             return evaluate.main()
         return conf.main(train.hydra_main if option in THROUGH_HYDRA else composed, name)
 
-    status, told = said_by(run, capsys)
-    assert status == 1 and words in told, told
+    status, printed = said_by(run, capsys)
+    assert status == 1 and words in printed, printed
     assert not list(tmp_path.rglob("*.safetensors")) and not list(tmp_path.rglob("*.pt"))
 
 
@@ -138,20 +138,20 @@ ROWS = {
 @pytest.mark.parametrize("raw", ROWS.values(), ids=ROWS)
 def test_table_refuses_what_is_no_rows(tmp_path, capsys, raw):
     (tmp_path / "rows.jsonl").write_bytes(raw)
-    given = [str(tmp_path / "rows.jsonl"), "--out", str(tmp_path / "out")]
-    status, told = said_by(lambda: table.main(given), capsys)
-    assert status == 2 and told.startswith("table: ")
+    arguments = [str(tmp_path / "rows.jsonl"), "--out", str(tmp_path / "out")]
+    status, printed = said_by(lambda: table.main(arguments), capsys)
+    assert status == 2 and printed.startswith("table: ")
     assert not (tmp_path / "out" / "table.md").exists()
 
 
 @pytest.mark.parametrize(
-    ("given", "missing"), [([], "run, name"), (["runs/a"], "name"), (["--onnx"], "run, name")]
+    ("value", "missing"), [([], "run, name"), (["runs/a"], "name"), (["--onnx"], "run, name")]
 )
-def test_export_asks_for_what_it_needs_and_no_more(monkeypatch, capsys, given, missing):
-    monkeypatch.setattr(sys, "argv", ["mitigate export", *given])
-    status, told = said_by(export_command.main, capsys)
+def test_export_asks_for_what_it_needs_and_no_more(monkeypatch, capsys, value, missing):
+    monkeypatch.setattr(sys, "argv", ["mitigate export", *value])
+    status, printed = said_by(export_command.main, capsys)
     assert status == 2
-    assert told.splitlines()[-1].endswith(f"the following arguments are required: {missing}")
+    assert printed.splitlines()[-1].endswith(f"the following arguments are required: {missing}")
 
 
 FOLDERS = [
@@ -177,8 +177,8 @@ FOLDERS = [
 @pytest.mark.parametrize("line", FOLDERS, ids=lambda line: " ".join(line)[-40:] or "nothing")
 def test_corrupt_refuses_a_wrong_line(tmp_path, monkeypatch, capsys, line):
     monkeypatch.chdir(tmp_path)
-    status, told = said_by(lambda: frames_command.main(line), capsys)
-    assert status == 2 and (told or not line)
+    status, printed = said_by(lambda: frames_command.main(line), capsys)
+    assert status == 2 and (printed or not line)
     assert not list(tmp_path.iterdir())
 
 
@@ -203,8 +203,8 @@ def test_corrupt_episodes_refuses_a_wrong_line(tmp_path, monkeypatch, capsys, li
     monkeypatch.chdir(tmp_path)
     (tmp_path / "in.json").write_text(json.dumps({"episodes": [GOOD]}))
     before = (tmp_path / "in.json").read_bytes()
-    status, told = said_by(lambda: episodes_command.main(line), capsys)
-    assert status == 2 and told.startswith("corrupt_episodes: ")
+    status, printed = said_by(lambda: episodes_command.main(line), capsys)
+    assert status == 2 and printed.startswith("corrupt_episodes: ")
     assert [p.name for p in tmp_path.iterdir()] == ["in.json"]
     assert (tmp_path / "in.json").read_bytes() == before
 
@@ -218,8 +218,8 @@ def test_export_refuses_a_name_that_is_no_folder(tmp_path, name):
 
 @pytest.mark.parametrize("name", ["trian", "../train", "--x", "train=1", "\0", "x" * 1000])
 def test_unknown_command_is_named(capsys, name):
-    status, told = said_by(lambda: cli.main([name[:99]]), capsys)
-    assert status == 1 and "no command" in told
+    status, printed = said_by(lambda: cli.main([name[:99]]), capsys)
+    assert status == 1 and "no command" in printed
 
 
 @FAST

@@ -77,8 +77,8 @@ def write(path, *episodes):
 @pytest.mark.parametrize(("key", "value", "words"), CHANGES.values(), ids=CHANGES)
 def test_read_episodes_names_wrong_value(tmp_path, key, value, words):
     path = write(tmp_path / "e.json", GOOD, {**copy.deepcopy(GOOD), key: value})
-    said = refused(lambda: list(read_episodes(path)), words)
-    assert str(path) in said and ("episode 1 of the list" in said or "whole JSON" in said)
+    message = refused(lambda: list(read_episodes(path)), words)
+    assert str(path) in message and ("episode 1 of the list" in message or "whole JSON" in message)
 
 
 FILES = {

@@ -108,8 +108,8 @@ def test_corrupt_reports_invalid_frames_and_writes_none(tmp_path, capsys, corrup
         (source / name).write_bytes(raw)
     (source / "good.png").write_bytes(GOOD_PNG)
     np.save(source / "good.npy", np.ones((8, 8), np.float32))
-    given = [str(source), str(out), f"corruption={corruption}", "severity=0.5"]
-    assert frames_command.main(given) == 1
+    arguments = [str(source), str(out), f"corruption={corruption}", "severity=0.5"]
+    assert frames_command.main(arguments) == 1
     assert "left out" in capsys.readouterr().err
     assert {p.name for p in out.rglob("*") if p.suffix != ".json"} <= {"good.png", "good.npy"}
 

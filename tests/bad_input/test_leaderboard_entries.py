@@ -65,9 +65,9 @@ def test_valid_entry_is_accepted(good, tmp_path):
 def test_invalid_value_is_rejected_by_its_key(good, tmp_path, key, value):
     path = tmp_path / "entry.json"
     path.write_text(json.dumps(good | {key: value}), encoding="utf-8")
-    with pytest.raises(ValueError, match=rf"entry\.json: {key} must be .*, not ") as told:
+    with pytest.raises(ValueError, match=rf"entry\.json: {key} must be .*, not ") as caught:
         load(path)
-    assert "\n" not in str(told.value) and len(str(told.value)) < 600
+    assert "\n" not in str(caught.value) and len(str(caught.value)) < 600
 
 
 def test_other_file_format_is_rejected(good, tmp_path):

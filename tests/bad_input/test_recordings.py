@@ -43,12 +43,12 @@ def read(path: Path) -> list:
     return [load(one, views=1, size=SIZE, step=Step()) for one in open_recording(path)]
 
 
-def refused(path: Path, said: str | None = None) -> None:
+def refused(path: Path, message: str | None = None) -> None:
     """``path`` is refused in one short paragraph that names it, soon and in little memory."""
     began = time.monotonic()
     tracemalloc.start()
     try:
-        with pytest.raises(ValueError, match=said) as error:
+        with pytest.raises(ValueError, match=message) as error:
             read(path)
         assert tracemalloc.get_traced_memory()[1] < MOST
     finally:
@@ -101,7 +101,7 @@ def tum(folder: Path) -> Path:
 
 
 @pytest.mark.parametrize(
-    ("name", "text", "said"),
+    ("name", "text", "message"),
     [
         ("rgb.txt", "0 ../../outside.png\n", "outside"),
         ("rgb.txt", "0 /etc/hostname\n", "outside"),
@@ -113,11 +113,11 @@ def tum(folder: Path) -> Path:
         ("groundtruth.txt", "# nothing\n", "no pose"),
     ],
 )
-def test_tum_folder_with_false_values_is_rejected(tmp_path, name, text, said):
+def test_tum_folder_with_false_values_is_rejected(tmp_path, name, text, message):
     folder = tum(tmp_path / "drive")
     assert len(read(folder)) == 1
     (folder / name).write_text(text)
-    refused(folder, said)
+    refused(folder, message)
 
 
 def test_long_list_is_rejected_before_it_is_read(tmp_path, monkeypatch):
@@ -134,9 +134,9 @@ def recording(folder: Path) -> Path:
     episode = folder / "drive" / "scene" / "1"
     episode.mkdir(parents=True)
     (folder / "made" / "rgb").rename(episode / "rgb")
-    told = {"rgb": {"kind": "rgb", "hfov": 90, "yaw": 0}}
-    for name, held in (("episode.json", {"text": "go"}), ("cameras.json", told)):
-        (episode / name).write_text(json.dumps(held))
+    description = {"rgb": {"kind": "rgb", "hfov": 90, "yaw": 0}}
+    for name, content in (("episode.json", {"text": "go"}), ("cameras.json", description)):
+        (episode / name).write_text(json.dumps(content))
     lines = [json.dumps({"position": [0, 0, n], "heading": 0}) for n in range(3)]
     (episode / "steps.jsonl").write_text("\n".join(lines))
     (folder / "drive" / "recording.json").write_text(json.dumps({"unit": 0.001}))
@@ -195,10 +195,10 @@ def chunk(kind: str, packed: bytes, size: int) -> bytes:
     def text(value: str) -> bytes:
         return struct.pack("<I", len(value)) + value.encode()
 
-    held = struct.pack("<QQQI", 0, 1, size, 0) + text(kind) + struct.pack("<Q", len(packed))
+    contents = struct.pack("<QQQI", 0, 1, size, 0) + text(kind) + struct.pack("<Q", len(packed))
     magic = b"\x89MCAP0\r\n"
     end = record(2, struct.pack("<QQI", 0, 0, 0))
-    return magic + record(1, text("ros2") + text("")) + record(6, held + packed) + end + magic
+    return magic + record(1, text("ros2") + text("")) + record(6, contents + packed) + end + magic
 
 
 @pytest.fixture(scope="module")
@@ -307,8 +307,8 @@ class Message:
 
 
 def picture(**changes) -> Message:
-    held = {"height": 4, "width": 4, "encoding": "rgb8", "step": 12, "is_bigendian": 0}
-    return Message(**{**held, "data": np.zeros(48, np.uint8), **changes})
+    content = {"height": 4, "width": 4, "encoding": "rgb8", "step": 12, "is_bigendian": 0}
+    return Message(**{**content, "data": np.zeros(48, np.uint8), **changes})
 
 
 @pytest.mark.parametrize(

@@ -176,9 +176,9 @@ def test_load_rejects_invalid_safetensors(tmp_path, raw):
 
 
 def card(**changes) -> dict:
-    made = {"format": 1, "files": {}, "adapters_only": False, "base": None, "vocabulary": None}
-    made |= {"commit": "0", "agent": "0", **changes}
-    return made | {"sha256": older_folders.card_sha(made)}
+    output = {"format": 1, "files": {}, "adapters_only": False, "base": None, "vocabulary": None}
+    output |= {"commit": "0", "agent": "0", **changes}
+    return output | {"sha256": older_folders.card_sha(output)}
 
 
 OTHER = "../../../etc/passwd"
@@ -205,9 +205,9 @@ CARDS = {
 }
 
 
-@pytest.mark.parametrize("made", CARDS.values(), ids=CARDS)
-def test_load_hardened_rejects_invalid_card(tmp_path, made):
-    raw = made if isinstance(made, bytes) else json.dumps(made).encode()
+@pytest.mark.parametrize("output", CARDS.values(), ids=CARDS)
+def test_load_hardened_rejects_invalid_card(tmp_path, output):
+    raw = output if isinstance(output, bytes) else json.dumps(output).encode()
     (tmp_path / agents.CARD).write_bytes(raw)
     assert str(tmp_path) in refused(lambda: agents.load_hardened(tmp_path))
 
@@ -253,13 +253,13 @@ ADAPTERS = {
 }
 
 
-@pytest.mark.parametrize("made", ADAPTERS.values(), ids=ADAPTERS)
-def test_adapters_that_do_not_fit_are_rejected(tmp_path, made):
+@pytest.mark.parametrize("output", ADAPTERS.values(), ids=ADAPTERS)
+def test_adapters_that_do_not_fit_are_rejected(tmp_path, output):
     network = nn.Sequential(nn.Conv2d(3, 3, 3))
-    if isinstance(made, dict):
-        made = {"backbone_sha256": adapters.backbone_sha(network), **made}
+    if isinstance(output, dict):
+        output = {"backbone_sha256": adapters.backbone_sha(network), **output}
     (tmp_path / adapters.SETTINGS).write_bytes(
-        made if isinstance(made, bytes) else json.dumps(made).encode()
+        output if isinstance(output, bytes) else json.dumps(output).encode()
     )
     checkpoint.save_weights(nn.Linear(1, 1), tmp_path / adapters.WEIGHTS)
     refused(lambda: adapters.load_adapters(network, tmp_path))
@@ -287,12 +287,14 @@ PEFT_BAD = {
 }
 
 
-@pytest.mark.parametrize(("name", "made"), PEFT_BAD.values(), ids=PEFT_BAD)
-def test_lora_rejects_invalid_folder(tmp_path, name, made):
+@pytest.mark.parametrize(("name", "output"), PEFT_BAD.values(), ids=PEFT_BAD)
+def test_lora_rejects_invalid_folder(tmp_path, name, output):
     (tmp_path / adapter_folder.ADAPTER).write_bytes(b"")
     for file, good in ((adapter_folder.CARD, PEFT_CARD), (adapter_folder.CONFIG, PEFT)):
         (tmp_path / file).write_text(json.dumps(good))
-    (tmp_path / name).write_bytes(made if isinstance(made, bytes) else json.dumps(made).encode())
+    (tmp_path / name).write_bytes(
+        output if isinstance(output, bytes) else json.dumps(output).encode()
+    )
     assert str(tmp_path / name) in refused(lambda: adapter_folder.read_adapter(tmp_path))
 
 
@@ -309,9 +311,9 @@ ENCODER_BAD = {
 }
 
 
-@pytest.mark.parametrize("made", ENCODER_BAD.values(), ids=ENCODER_BAD)
-def test_encoder_rejects_invalid_folder(tmp_path, made):
-    raw = made if isinstance(made, bytes) else json.dumps(made).encode()
+@pytest.mark.parametrize("output", ENCODER_BAD.values(), ids=ENCODER_BAD)
+def test_encoder_rejects_invalid_folder(tmp_path, output):
+    raw = output if isinstance(output, bytes) else json.dumps(output).encode()
     (tmp_path / encoder_folder.CARD).write_bytes(raw)
     refused(lambda: encoder_folder.card(tmp_path), encoder_folder.CARD)
 
@@ -325,11 +327,11 @@ def test_flipped_and_cut_bytes_are_noticed(tmp_path, data):
     path = tmp_path / "step-00000003.pt"
     path.write_bytes(raw)
     try:
-        found = states.load(path)
+        loaded = states.load(path)
     except ValueError as error:
         assert str(path) in str(error) and "\n" not in str(error)
     else:
-        assert torch.equal(found["model"]["w"], torch.arange(100.0))
+        assert torch.equal(loaded["model"]["w"], torch.arange(100.0))
 
 
 @FAST
@@ -352,9 +354,9 @@ def test_loading_a_hardened_folder_does_not_open_its_program(tmp_path, monkeypat
     shutil.copytree(ROOT / "checkpoints/hardened/ts_distill", tmp_path / "mine")
     program, file = tmp_path / "mine" / agents.PROGRAM, tmp_path / "mine" / agents.CARD
     program.write_bytes(pickle.dumps(Code(tmp_path / "ran")))
-    held = json.loads(file.read_text())
-    held["files"][agents.PROGRAM] = agents.sha256(program)
-    file.write_text(json.dumps(held | {"sha256": older_folders.card_sha(held)}))
+    content = json.loads(file.read_text())
+    content["files"][agents.PROGRAM] = agents.sha256(program)
+    file.write_text(json.dumps(content | {"sha256": older_folders.card_sha(content)}))
     monkeypatch.chdir(ROOT)
     assert not agents.load_hardened(tmp_path / "mine").training
     assert not (tmp_path / "ran").exists()

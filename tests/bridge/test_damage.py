@@ -37,18 +37,18 @@ def finished(run, place):
 
     The first test measures them; each test gets the folder as it was then.
     """
-    out, kept = place / "o", place / "kept"
+    out, remaining = place / "o", place / "kept"
 
     def again(options="conditions=[low_light]"):
         return run(out, options, f"{sys.executable} {place / 'nav.py'}")
 
-    if not kept.exists():
+    if not remaining.exists():
         (place / "nav.py").write_text(PROGRAM)
         assert not again().stderr
-        shutil.copytree(out, kept)
+        shutil.copytree(out, remaining)
     else:
         shutil.rmtree(out)
-        shutil.copytree(kept, out)
+        shutil.copytree(remaining, out)
     return out, again
 
 
@@ -196,11 +196,11 @@ def test_run_compares_counts_of_a_marker_without_a_checksum(finished):
 
 def test_run_measures_a_moved_condition_again(finished, tmp_path):
     out, again = finished
-    held = rows.read(out / "rows.jsonl")
+    content = rows.read(out / "rows.jsonl")
     (out / CONDITION).rename(tmp_path / "aside")
     result = again()
     assert not result.stderr and "low_light-s0.6: started" in result.stdout
-    assert rows.read(out / "rows.jsonl") == held
+    assert rows.read(out / "rows.jsonl") == content
 
 
 def test_run_keeps_rows_without_a_finished_condition(finished, tmp_path):
@@ -225,13 +225,13 @@ def test_run_copies_rows_that_leave_the_table(finished):
 @pytest.mark.parametrize("other", [{"agent": "abc"}, {"seed": 9}, {"split": "elsewhere"}])
 def test_run_copies_rows_of_another_agent_seed_or_split(finished, other):
     out, again = finished
-    held = rows.read(out / "rows.jsonl")
-    rows.write(out / "rows.jsonl", [*held, held[-1] | other])
+    content = rows.read(out / "rows.jsonl")
+    rows.write(out / "rows.jsonl", [*content, content[-1] | other])
     before = (out / "rows.jsonl").read_bytes()
     result = again()
     assert not result.stderr and f"another {next(iter(other))}" in result.stdout
     assert (out / "rows.jsonl.before").read_bytes() == before
-    assert rows.read(out / "rows.jsonl") == held
+    assert rows.read(out / "rows.jsonl") == content
 
 
 def test_run_judges_the_same_episodes_by_another_rule(finished):

@@ -64,14 +64,14 @@ def sleeper(tmp_path):
 
 def running(folder):
     """Return the processes whose command line names the program in ``folder``."""
-    found = []
+    matches = []
     for entry in Path("/proc").glob("[0-9]*"):
         with suppress(OSError):
             words = (entry / "cmdline").read_bytes().split(b"\0")
             named = str(folder / "nav.py").encode() in words
             if named and b"--" not in words and SUPERVISOR not in words:
-                found.append(int(entry.name))
-    return [pid for pid in found if pid != os.getpid()]
+                matches.append(int(entry.name))
+    return [pid for pid in matches if pid != os.getpid()]
 
 
 @pytest.mark.parametrize("how", DETACHED)

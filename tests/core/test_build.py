@@ -45,8 +45,8 @@ def test_maker_results_share_nothing():
 
 def test_partial_entry_becomes_a_function():
     cfg = OmegaConf.create({"doors": 3, "garage": {"_target_": f"{__name__}.Garage", "car": CAR}})
-    made = build.build(cfg.garage, size=2)
-    assert made.cars[0].engine is not made.cars[1].engine and made.cars[1].doors == 3
+    output = build.build(cfg.garage, size=2)
+    assert output.cars[0].engine is not output.cars[1].engine and output.cars[1].doors == 3
 
 
 def test_non_partial_entry_is_built():
@@ -77,9 +77,9 @@ def test_settings_of_weights_apply_unless_overridden(overrides, gain, tmp_path):
     """A config chosen by ``agent=mine`` names the class: its own values are of another agent."""
     target = f"{__name__}.Gained"
     checkpoint.save_weights(Gained(-1.0), tmp_path)
-    own = {"agent": {"_target_": target, "gain": -1.0, "width": 2}}
-    (tmp_path / "config.yaml").write_text(yaml.safe_dump(own))
+    settings = {"agent": {"_target_": target, "gain": -1.0, "width": 2}}
+    (tmp_path / "config.yaml").write_text(yaml.safe_dump(settings))
     here = 2.0 if "agent.gain=2.0" in overrides else 1.0
     node = OmegaConf.create({"_target_": target, "gain": here, "width": 2})
-    found = building.settings_of(node, str(tmp_path), overrides)
-    assert building.build_agent(found, weights=str(tmp_path), seed=0).gain == gain
+    matches = building.settings_of(node, str(tmp_path), overrides)
+    assert building.build_agent(matches, weights=str(tmp_path), seed=0).gain == gain

@@ -135,8 +135,8 @@ def test_floats_of_any_width_are_read(tmp_path, width):
 )
 def test_numbers_of_another_kind_are_refused_by_name(tmp_path, name, kind):
     module = nn.BatchNorm1d(3)
-    held = module.state_dict()
-    save_file({**held, name: held[name].to(kind)}, tmp_path / "model.safetensors")
+    content = module.state_dict()
+    save_file({**content, name: content[name].to(kind)}, tmp_path / "model.safetensors")
     with pytest.raises(ValueError, match=rf"of another shape or type \({name} "):
         checkpoint.load_weights(module, tmp_path)
 
@@ -199,8 +199,8 @@ def test_infinite_mask_is_not_damage(tmp_path):
 
 
 def test_full_disk_is_named_and_files_stay(tmp_path):
-    made = torch.nn.Linear(2, 2)
-    before = checkpoint.save_weights(made, tmp_path).read_bytes()
+    model = torch.nn.Linear(2, 2)
+    before = checkpoint.save_weights(model, tmp_path).read_bytes()
     limit = resource.getrlimit(resource.RLIMIT_FSIZE)
     before_signal = signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
     state = {k: {} for k in states.REQUIRED} | {"step": 1, "model": {"w": torch.zeros(99999)}}

@@ -64,24 +64,24 @@ def test_checkpoint_detects_every_flipped_bit(tmp_path):
         path.write_bytes(changed)
         with pytest.raises(states.Damaged, match="step-00000002.pt"):
             states.load(path)
-        newest, found = states.load_newest(tmp_path)
-        assert newest.name == "step-00000001.pt" and found["step"] == 1
+        newest, loaded = states.load_newest(tmp_path)
+        assert newest.name == "step-00000001.pt" and loaded["step"] == 1
 
 
 def test_load_detects_flipped_bits_without_a_sidecar(tmp_path):
     """Its zip file holds sums of the contents: a flip outside of them is harmless."""
     path = states.save(tmp_path, state(1))
     note_of(path).unlink()
-    wanted, sound, refused = states.load(path), path.read_bytes(), 0
+    expected, sound, refused = states.load(path), path.read_bytes(), 0
     for changed in flips(sound, "no sidecar"):
         path.write_bytes(changed)
         try:
-            found = states.load(path)
+            loaded = states.load(path)
         except states.Damaged:
             refused += 1
             continue
-        assert str(found) == str(wanted)
-        assert torch.equal(found["model"]["w"], wanted["model"]["w"])
+        assert str(loaded) == str(expected)
+        assert torch.equal(loaded["model"]["w"], expected["model"]["w"])
     assert refused > FLIPS / 2
     path.write_bytes(sound)
     at = sound.index(STATE["model"]["w"].numpy().tobytes())
@@ -99,8 +99,8 @@ def test_truncated_checkpoint_is_skipped(tmp_path, share, noted, capsys):
     if not noted:
         note_of(path).unlink()
     assert states.load_newest(tmp_path)[0].name == "step-00000001.pt"
-    said = capsys.readouterr().out
-    assert said == f"{path} is damaged; resuming from step-00000001.pt\n"
+    printed = capsys.readouterr().out
+    assert printed == f"{path} is damaged; resuming from step-00000001.pt\n"
 
 
 @pytest.mark.parametrize("text", ["", "\n", "0" * 64, "0" * 64 + "  other\n", "\xff", "x  model"])
@@ -113,8 +113,8 @@ def test_damaged_sidecar_is_named_and_may_be_deleted(tmp_path, text):
     note_of(path).write_bytes(text.encode("latin-1"))
     with pytest.raises(states.Damaged, match=r"If only their \.sha256 files are damaged"):
         states.load_newest(tmp_path)
-    for kept in (file, path):
-        note_of(kept).unlink()
+    for remaining in (file, path):
+        note_of(remaining).unlink()
     checkpoint.load_weights(nn.Linear(3, 2), tmp_path)
     assert states.load_newest(tmp_path)[1]["step"] == 1
 

@@ -30,8 +30,8 @@ GROUPS = [path for path in YAMLS if len(path.parts) > 1]
 
 def targets(node) -> list[str]:
     if isinstance(node, dict):
-        own = [node["_target_"]] if "_target_" in node else []
-        return own + [name for value in node.values() for name in targets(value)]
+        own_value = [node["_target_"]] if "_target_" in node else []
+        return own_value + [name for value in node.values() for name in targets(value)]
     return []
 
 
@@ -60,9 +60,9 @@ def composed(path) -> dict:
 @pytest.mark.parametrize("path", YAMLS, ids=str)
 def test_every_yaml_composes_and_its_targets_import(path):
     assert len(path.parts) == 2 or path.stem in conf.TYPES
-    made = composed(path)
-    assert made
-    for name in targets(made):
+    output = composed(path)
+    assert output
+    for name in targets(output):
         assert callable(get_object(name))
 
 
@@ -89,8 +89,8 @@ def test_full_suite_is_clean_and_all_corruptions():
 
 
 def test_conditions_take_the_severity_of_their_modality():
-    made = evaluate.conditions(["clean", "flare", "multipath"], 0.9, 0.8)
-    assert [(c.name, c.severity) for c in made] == [
+    records = evaluate.conditions(["clean", "flare", "multipath"], 0.9, 0.8)
+    assert [(c.name, c.severity) for c in records] == [
         ("clean", 0),
         ("flare", 0.9),
         ("multipath", 0.8),
@@ -98,9 +98,9 @@ def test_conditions_take_the_severity_of_their_modality():
 
 
 def test_severity_out_of_range_is_rejected_with_any_condition():
-    for given in ((1.2, None), (0.5, 1.2)):
+    for value in ((1.2, None), (0.5, 1.2)):
         with pytest.raises(ValueError, match="from 0 .clean. to 1 .worst., got 1.2"):
-            evaluate.conditions(["clean"], *given)
+            evaluate.conditions(["clean"], *value)
 
 
 def test_weights_are_named_after_their_folder_or_run():
@@ -192,8 +192,8 @@ def test_evaluate_takes_agent_settings_from_the_command_line(monkeypatch, tmp_pa
         [],
         ["agent.blind=[rgb]", "agent.planner={fusion: {rate: 4, cap: 3}}", "env.size=32"],
     ):
-        given = ["checkpoint=checkpoints/hardened/ts_distill", f"out={tmp_path}", *options]
-        monkeypatch.setattr(sys, "argv", ["evaluate", *given])
+        arguments = ["checkpoint=checkpoints/hardened/ts_distill", f"out={tmp_path}", *options]
+        monkeypatch.setattr(sys, "argv", ["evaluate", *arguments])
         conf.main(evaluate.hydra_main, "evaluate")
     (plain, agent), (name, changed) = met.items()
     assert plain == "ts_distill" and agent.blind == () and agent.planner.fusion is None
@@ -297,8 +297,8 @@ def test_error_lists_alternatives_of_the_chosen_group(monkeypatch, capsys, optio
 def test_own_configs_count_for_what_there_is_instead(monkeypatch, capsys, tmp_path):
     (tmp_path / "agent").mkdir()
     (tmp_path / "agent" / "mine.yaml").write_text("_target_: my.Agent\nbreadth: 3\n")
-    given = ("--config-dir", str(tmp_path), "agent=mine", "agent.bredth=4")
-    assert "Did you mean agent.breadth?" in complaint(monkeypatch, capsys, *given)
+    arguments = ("--config-dir", str(tmp_path), "agent=mine", "agent.bredth=4")
+    assert "Did you mean agent.breadth?" in complaint(monkeypatch, capsys, *arguments)
 
 
 def test_nested_program_ends_in_one_paragraph(monkeypatch, tmp_path, capsys):
@@ -322,20 +322,20 @@ def test_nested_program_ends_in_one_paragraph(monkeypatch, tmp_path, capsys):
 
 @pytest.mark.parametrize("primary", conf.TYPES)
 def test_help_says_what_every_option_and_group_means(primary):
-    shown, cfg = conf.options_text(primary), conf.load_config(primary)
-    own = {"name", "report", "init", "init_parts", "rollouts"} if primary == "train" else set()
+    printed, cfg = conf.options_text(primary), conf.load_config(primary)
+    settings = {"name", "report", "init", "init_parts", "rollouts"} if primary == "train" else set()
     plain = {name for name in cfg if not isinstance(cfg[name], DictConfig)}  # the recipe sets own
-    assert plain - own <= {line.partition(":")[0] for line in shown.splitlines()}
+    assert plain - settings <= {line.partition(":")[0] for line in printed.splitlines()}
     for group in ("suite", "launcher"):
         if group in cfg:
-            assert f"{group}: " in shown and ", " in shown.partition(f"{group}: ")[2]
+            assert f"{group}: " in printed and ", " in printed.partition(f"{group}: ")[2]
 
 
 def test_deprecated_option_warns_once_on_stderr(monkeypatch, capsys):
     monkeypatch.setattr(sys, "argv", ["mitigate table1", "+columns.recurrent=[agent=recurrent]"])
     conf.main(lambda: None, "table1")
-    said = capsys.readouterr().err
-    assert said.count("columns.recurrent already exists, and +columns.recurrent= replaces") == 1
+    printed = capsys.readouterr().err
+    assert printed.count("columns.recurrent already exists, and +columns.recurrent= replaces") == 1
 
 
 AGENTS = sorted(path.stem for path in (conf.CONF / "agent").glob("*.yaml"))
@@ -344,19 +344,19 @@ AGENTS = sorted(path.stem for path in (conf.CONF / "agent").glob("*.yaml"))
 @pytest.mark.parametrize("name", AGENTS)
 def test_help_lists_agents_per_command(name):
     agent = get_object(conf.load_config("train", [f"agent={name}"]).agent._target_)
-    (shown,) = re.findall(r"^agent: topological  # (.*)$", conf.options_text("evaluate"), re.M)
+    (printed,) = re.findall(r"^agent: topological  # (.*)$", conf.options_text("evaluate"), re.M)
     (training,) = re.findall(r"^agent: topological  # (.*)$", conf.options_text("train"), re.M)
     walking, others = training.split("; cannot run episodes, have their own recipes: ")
     able = hasattr(agent, "reset") and hasattr(agent, "act")
-    assert shown == walking and (name in walking.split(", ")) == able
+    assert printed == walking and (name in walking.split(", ")) == able
     assert (name in others.split(", ")) == (not able)
 
 
 def test_help_needs_no_config_to_compose(monkeypatch, capsys):
     monkeypatch.setattr(sys, "argv", ["mitigate train", "--help", "sevrity=1"])
     train.main()
-    shown = capsys.readouterr().out
-    assert "Train an agent with a recipe" in shown and "severity: 0.6  # " in shown
+    printed = capsys.readouterr().out
+    assert "Train an agent with a recipe" in printed and "severity: 0.6  # " in printed
 
 
 def test_hydras_own_line_goes_before_no_paragraph(monkeypatch, capsys, tmp_path):
@@ -370,15 +370,15 @@ def test_hydras_own_line_goes_before_no_paragraph(monkeypatch, capsys, tmp_path)
 
 def test_missing_reference_of_an_entry_is_named():
     cfg = OmegaConf.create({"first": "${stages.mine.teacher}", "stages": {}})
-    with pytest.raises(OmegaConfBaseException) as found:
+    with pytest.raises(OmegaConfBaseException) as caught:
         OmegaConf.resolve(cfg)
     assert "refers to stages.mine.teacher, which does not exist" in conf.explain(
-        found.value, "train"
+        caught.value, "train"
     )
 
 
 @pytest.mark.parametrize(
-    ("option", "said"),
+    ("option", "message"),
     [
         ("stages.episodes.recipe.temperature=3", "To add it, write +stages.episodes.recipe.temp"),
         ("stages.episodes.recipe.temperatur=3", "Did you mean +stages.episodes.recipe.temperature"),
@@ -386,8 +386,8 @@ def test_missing_reference_of_an_entry_is_named():
         ("stages.episodes.recipe.episods=3", "Did you mean stages.episodes.recipe.episodes?"),
     ],
 )
-def test_missing_arguments_of_a_recipe_are_named(option, said):
-    with pytest.raises(ValueError, match="(?i)" + re.escape(said)):
+def test_missing_arguments_of_a_recipe_are_named(option, message):
+    with pytest.raises(ValueError, match="(?i)" + re.escape(message)):
         conf.composed("train", ["recipe=ts_distill", option])
 
 

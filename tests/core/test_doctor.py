@@ -70,15 +70,15 @@ def test_report_has_a_line_per_check(capsys):
         assert re.search(r"^processor +AVX2", out, re.MULTILINE)
 
 
-@pytest.mark.parametrize(("given", "status"), [("--help", 0), ("foo", 2), ("--fix", 2)])
-def test_doctor_rejects_options(given, status, monkeypatch, capsys):
-    monkeypatch.setattr(sys, "argv", ["mitigate doctor", given])
+@pytest.mark.parametrize(("value", "status"), [("--help", 0), ("foo", 2), ("--fix", 2)])
+def test_doctor_rejects_options(value, status, monkeypatch, capsys):
+    monkeypatch.setattr(sys, "argv", ["mitigate doctor", value])
     with pytest.raises(SystemExit) as ended:
         doctor.main()
-    shown = capsys.readouterr()
-    assert ended.value.code == status and "processor" not in shown.out
-    assert "usage: mitigate doctor" in (shown.err if status else shown.out)
-    assert status == 0 or given in shown.err
+    printed = capsys.readouterr()
+    assert ended.value.code == status and "processor" not in printed.out
+    assert "usage: mitigate doctor" in (printed.err if status else printed.out)
+    assert status == 0 or value in printed.err
 
 
 @pytest.mark.parametrize(

@@ -144,8 +144,8 @@ def test_file_mode_follows_the_umask(tmp_path, write, umask):
         write(tmp_path / "made")
     finally:
         os.umask(before)
-    made = [*tmp_path.iterdir()]
-    assert made and {path.stat().st_mode & 0o777 for path in made} == {0o666 & ~umask}
+    output = [*tmp_path.iterdir()]
+    assert output and {path.stat().st_mode & 0o777 for path in output} == {0o666 & ~umask}
 
 
 @pytest.mark.parametrize("write", WRITERS.values(), ids=WRITERS)

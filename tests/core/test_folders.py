@@ -34,7 +34,7 @@ def names(folder: Path) -> set[str]:
     return {file.name for file in folder.iterdir()}
 
 
-def written(folder: Path, **files: str) -> Path:
+def write_files(folder: Path, **files: str) -> Path:
     with folders.write_folder(folder, "agent") as draft:
         for name, text in files.items():
             (draft / name).write_text(text)
@@ -48,7 +48,7 @@ def older(module: nn.Module, folder: Path) -> Path:
 
 
 def test_write_folder_lists_size_and_sha256_of_every_file(tmp_path):
-    folder = written(tmp_path / "a", one="1", two="22")
+    folder = write_files(tmp_path / "a", one="1", two="22")
     manifest = json.loads((folder / folders.MANIFEST).read_text())
     assert manifest["format"] == 1 and manifest["kind"] == "agent"
     assert manifest["files"]["two"] == {"bytes": 2, "sha256": sha256(folder / "two")}
@@ -57,15 +57,15 @@ def test_write_folder_lists_size_and_sha256_of_every_file(tmp_path):
 
 
 def test_write_folder_deletes_listed_files_alone(tmp_path):
-    folder = written(tmp_path, one="1", two="2")
+    folder = write_files(tmp_path, one="1", two="2")
     (folder / "mine.txt").write_text("notes")
-    written(folder, two="3")
+    write_files(folder, two="3")
     assert names(folder) == {"two", "mine.txt", folders.MANIFEST}
     assert folders.check(folder).files.keys() == {"two"}
 
 
 def test_write_folder_keeps_the_old_folder_after_an_error(tmp_path):
-    folder = written(tmp_path, one="1")
+    folder = write_files(tmp_path, one="1")
     with pytest.raises(RuntimeError), folders.write_folder(folder, "agent") as draft:
         (draft / "one").write_text("2")
         raise RuntimeError
@@ -91,7 +91,7 @@ def test_shipped_weights_with_a_flipped_bit_are_refused(tmp_path):
 
 
 def test_file_of_another_size_is_not_read(tmp_path, monkeypatch):
-    folder = written(tmp_path, one="1")
+    folder = write_files(tmp_path, one="1")
     (folder / "one").write_text("10")
 
     def read(path):
@@ -129,18 +129,18 @@ def test_kill_leaves_the_old_or_the_new_file(tmp_path, monkeypatch, when, earlie
     else:
         checkpoint.save_weights(new, tmp_path)
     monkeypatch.undo()
-    found = nn.Linear(3, 2)
-    checkpoint.load_weights(found, tmp_path)
-    assert torch.equal(found.weight, (old if when < 2 else new).weight)
+    loaded = nn.Linear(3, 2)
+    checkpoint.load_weights(loaded, tmp_path)
+    assert torch.equal(loaded.weight, (old if when < 2 else new).weight)
     checkpoint.save_weights(new, tmp_path)
-    checkpoint.load_weights(found, tmp_path)
-    assert torch.equal(found.weight, new.weight)
+    checkpoint.load_weights(loaded, tmp_path)
+    assert torch.equal(loaded.weight, new.weight)
     assert names(tmp_path) == {checkpoint.WEIGHTS, folders.MANIFEST}
     assert "replaced" not in json.loads((tmp_path / folders.MANIFEST).read_text())
 
 
 def test_mixture_of_old_and_new_folder_is_rejected(tmp_path, monkeypatch):
-    folder = written(tmp_path, one="1", two="1")
+    folder = write_files(tmp_path, one="1", two="1")
     replace = os.replace
 
     def replace_one(source, target):
@@ -150,11 +150,11 @@ def test_mixture_of_old_and_new_folder_is_rejected(tmp_path, monkeypatch):
 
     monkeypatch.setattr(os, "replace", replace_one)
     with pytest.raises(Killed):
-        written(folder, one="2", two="2")
+        write_files(folder, one="2", two="2")
     with pytest.raises(ValueError, match="changed or cut short"):
         folders.check(folder)
     monkeypatch.undo()
-    assert folders.check(written(folder, one="2", two="2"))
+    assert folders.check(write_files(folder, one="2", two="2"))
 
 
 def test_damaged_file_stays_invalid_after_replacement(tmp_path, monkeypatch):
@@ -163,11 +163,11 @@ def test_damaged_file_stays_invalid_after_replacement(tmp_path, monkeypatch):
     file.write_bytes(damaged)
     write, calls = folders._write_manifest, []
 
-    def write_once(*given):
-        calls.append(given)
+    def write_once(*arguments):
+        calls.append(arguments)
         if len(calls) > 1:
             raise Killed
-        write(*given)
+        write(*arguments)
 
     monkeypatch.setattr(folders, "_write_manifest", write_once)
     checkpoint.save_weights(nn.Linear(3, 2), tmp_path)
@@ -202,10 +202,10 @@ DAMAGED = {
 }
 
 
-@pytest.mark.parametrize("made", DAMAGED.values(), ids=DAMAGED)
-def test_damaged_manifest_is_rejected(tmp_path, made):
+@pytest.mark.parametrize("output", DAMAGED.values(), ids=DAMAGED)
+def test_damaged_manifest_is_rejected(tmp_path, output):
     file = checkpoint.save_weights(nn.Linear(3, 2), tmp_path)
-    raw = made if isinstance(made, bytes) else json.dumps(made).encode()
+    raw = output if isinstance(output, bytes) else json.dumps(output).encode()
     (tmp_path / folders.MANIFEST).write_bytes(raw)
     for read in (
         lambda: folders.check(tmp_path),
@@ -223,13 +223,13 @@ def test_older_folders_are_read_and_upgraded_when_written(tmp_path):
     module = nn.Linear(3, 2)
     file = older(module, tmp_path)
     (tmp_path / "config.yaml").write_text("agent: {}\n")
-    found = nn.Linear(3, 2)
-    checkpoint.load_weights(found, tmp_path)
-    assert torch.equal(found.weight, module.weight)
+    loaded = nn.Linear(3, 2)
+    checkpoint.load_weights(loaded, tmp_path)
+    assert torch.equal(loaded.weight, module.weight)
     note = file.with_name(f"{file.name}.sha256")
     note.write_text(f"{'0' * 64}  {file.name}\n")
     with pytest.raises(ValueError, match="does not have the sha256"):
-        checkpoint.load_weights(found, tmp_path)
+        checkpoint.load_weights(loaded, tmp_path)
     checkpoint.save_agent(module, tmp_path, "agent: {width: 2}\n")
     assert names(tmp_path) == {folders.MANIFEST, "config.yaml", checkpoint.WEIGHTS}
     assert folders.check(tmp_path).files.keys() == {"config.yaml", checkpoint.WEIGHTS}

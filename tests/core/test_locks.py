@@ -28,8 +28,8 @@ def other(tmp_path):
     """Another process that holds ``tmp_path / "run"``."""
     command = [sys.executable, "-c", HOLD, str(tmp_path / "run")]
     environment = {**os.environ, "PYTHONPATH": str(Path(__file__).parents[2])}
-    given = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "env": environment}
-    with subprocess.Popen(command, **given) as process:
+    options = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "env": environment}
+    with subprocess.Popen(command, **options) as process:
         assert process.stdout.readline() == b"in\n"
         yield process
         process.kill()
@@ -77,11 +77,20 @@ def test_worker_does_not_inherit_the_lock(tmp_path):
 def test_cleanup_deletes_only_partial_files(tmp_path):
     dead, alive = DEAD, os.getppid()
     left = [f".step-00000100.pt.{dead}.tmp", f"agent/.model.safetensors.{dead}.tmp"]
-    kept = ["step-00000050.pt", ".step-00000100.pt", "notes.tmp", ".mine.tmp", "agent/.x.tmp.5"]
-    kept += [f".rows.jsonl.{alive}.tmp", f"agent/.model.safetensors.{alive}.tmp"]  # being written
-    kept += [f"mine/.notes.{dead}.tmp", f"agent/b/.x.{dead}.tmp"]  # of others
-    kept += ["locked/.lock", f"locked/.rows.jsonl.{dead}.tmp"]
-    for name in (*left, *kept):
+    remaining = [
+        "step-00000050.pt",
+        ".step-00000100.pt",
+        "notes.tmp",
+        ".mine.tmp",
+        "agent/.x.tmp.5",
+    ]
+    remaining += [
+        f".rows.jsonl.{alive}.tmp",
+        f"agent/.model.safetensors.{alive}.tmp",
+    ]  # being written
+    remaining += [f"mine/.notes.{dead}.tmp", f"agent/b/.x.{dead}.tmp"]  # of others
+    remaining += ["locked/.lock", f"locked/.rows.jsonl.{dead}.tmp"]
+    for name in (*left, *remaining):
         (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
         (tmp_path / name).write_text("x")
     (tmp_path / ".adapter-abc.0.tmp").mkdir()
@@ -89,7 +98,7 @@ def test_cleanup_deletes_only_partial_files(tmp_path):
     within = ("agent", "locked", "not there")
     with FolderLock(tmp_path, within):
         pass
-    assert all((tmp_path / name).is_file() for name in kept)
+    assert all((tmp_path / name).is_file() for name in remaining)
     assert not any((tmp_path / name).exists() for name in left)
     assert not delete_leftovers(tmp_path, within) and (tmp_path / "agent").is_dir()
 
@@ -132,9 +141,9 @@ def test_rejected_second_lock_keeps_the_first(tmp_path):
 def test_cleanup_deletes_files_of_a_reused_process_id(tmp_path):
     """In a container that is started anew every process has the number it had before."""
     (tmp_path / "walks").mkdir()
-    own, other = (tmp_path / f".{n}.pt.{n}.tmp" for n in (os.getpid(), os.getppid()))
+    settings, other = (tmp_path / f".{n}.pt.{n}.tmp" for n in (os.getpid(), os.getppid()))
     dead = tmp_path / "walks" / ".x.pt.4194300.tmp"
-    for file in (own, other, dead):
+    for file in (settings, other, dead):
         file.touch()
     with FolderLock(tmp_path, ("walks",)):
-        assert not own.exists() and not dead.exists() and other.exists()
+        assert not settings.exists() and not dead.exists() and other.exists()

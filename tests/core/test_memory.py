@@ -12,7 +12,7 @@ import pytest
 from mitigate.core.memory import Memory, give_back
 
 
-def made(memory, key, log, size=8):
+def compute(memory, key, log, size=8):
     def make():
         log.append(key)
         return (np.zeros(size, np.uint8),)
@@ -22,34 +22,34 @@ def made(memory, key, log, size=8):
 
 def test_cache_returns_the_stored_result():
     memory, log = Memory(100), []
-    assert made(memory, "a", log)[0] is made(memory, "a", log)[0] and log == ["a"]
+    assert compute(memory, "a", log)[0] is compute(memory, "a", log)[0] and log == ["a"]
 
 
 def test_cache_drops_least_recently_used_first():
     memory, log = Memory(24), []
     for key in "abcad":
-        made(memory, key, log)
+        compute(memory, key, log)
     assert len(memory) == 3 and memory.bytes == 24
     for key in "acdb":
-        made(memory, key, log)
+        compute(memory, key, log)
     assert "".join(log) == "abcdb"
 
 
 def test_cache_keeps_a_single_large_result():
     memory, log = Memory(4), []
-    made(memory, "a", log)
-    made(memory, "b", log)
+    compute(memory, "a", log)
+    compute(memory, "b", log)
     assert len(memory) == 1 and memory.bytes == 8
 
 
 @pytest.mark.skipif("glibc" not in platform.libc_ver(), reason="of glibc alone")
 def test_freed_memory_returns_to_the_system():
     pieces = [bytearray(60_000) for _ in range(3000)]  # below the size that is mapped by itself
-    kept = pieces[::100]
+    remaining = pieces[::100]
     del pieces
     before = resident()
     give_back()
-    assert resident() < before - 100_000_000 and len(kept) == 30
+    assert resident() < before - 100_000_000 and len(remaining) == 30
 
 
 def resident() -> int:

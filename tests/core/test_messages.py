@@ -46,8 +46,8 @@ def evaluation(monkeypatch, tmp_path, weights, capsys):
     monkeypatch.delenv("HYDRA_FULL_ERROR", raising=False)
 
     def run(*options: str) -> str:
-        given = (f"checkpoint={weights}", f"out={tmp_path / 'out'}", "episodes=1", *options)
-        monkeypatch.setattr(sys, "argv", ["evaluate", *given])
+        arguments = (f"checkpoint={weights}", f"out={tmp_path / 'out'}", "episodes=1", *options)
+        monkeypatch.setattr(sys, "argv", ["evaluate", *arguments])
         text = complaint(evaluate.hydra_main, "evaluate")
         assert capsys.readouterr().out == ""
         return text
@@ -133,13 +133,13 @@ def test_weights_of_another_agent(evaluation, tmp_path):
 
 def test_run_without_valid_checkpoint_is_named(tmp_path):
     train.run(config(tmp_path))
-    kept = states.checkpoints(tmp_path / "second")
-    for path in kept:
+    saved = states.checkpoints(tmp_path / "second")
+    for path in saved:
         os.truncate(path, path.stat().st_size // 2)
     text = complaint(lambda: train.run(config(tmp_path)))
-    for part in (str(tmp_path / "second"), *(path.name for path in kept), "none was deleted"):
+    for part in (str(tmp_path / "second"), *(path.name for path in saved), "none was deleted"):
         assert part in text
-    assert states.checkpoints(tmp_path / "second") == kept
+    assert states.checkpoints(tmp_path / "second") == saved
 
 
 def test_nan_loss_is_named(tmp_path):

@@ -90,8 +90,8 @@ def test_older_run_loads(tmp_path):
     text = (ROOT / "checkpoints/frontier/base/config.yaml").read_text()
     checkpoint.save_agent(agent, tmp_path, text)
     as_before(tmp_path)
-    found = mitigate.load(tmp_path)
-    assert checkpoint.weights_sha(found) == checkpoint.weights_sha(agent)
+    loaded = mitigate.load(tmp_path)
+    assert checkpoint.weights_sha(loaded) == checkpoint.weights_sha(agent)
     (tmp_path / "model.safetensors.sha256").unlink()  # the first versions wrote none
     assert torch.equal(next(mitigate.load(tmp_path).parameters()), next(iter(agent.parameters())))
 
@@ -110,8 +110,8 @@ def test_older_hardened_folder_is_upgraded(tmp_path):
     folder = Path(shutil.copytree(ROOT / "checkpoints/hardened/stacked", tmp_path / "mine"))
     card = json.loads((folder / "card.json").read_text())
     assert older_folders.card_files(folder, "").keys() == card["files"].keys()
-    kept = older_folders.without_sums(card)
-    assert card.keys() - kept.keys() == {"files", "sha256"}
+    remaining = older_folders.without_sums(card)
+    assert card.keys() - remaining.keys() == {"files", "sha256"}
     (folder / "card.json").write_text(json.dumps(card | {"seed": 99}))
     with pytest.raises(ValueError, match="does not have the sha256 that it states"):
         folders.check(folder)

@@ -15,7 +15,7 @@ CPU = torch.device("cpu")
 
 
 @pytest.mark.parametrize(
-    ("capabilities", "cap", "wanted"),
+    ("capabilities", "cap", "expected"),
     [
         ({"avx2": True}, "", False),
         ({"avx512_f": True}, "", False),  # AVX-512 alone would emulate it
@@ -28,15 +28,15 @@ CPU = torch.device("cpu")
         ({"amx_bf16": True}, "ALL", True),
     ],
 )
-def test_bf16_is_native_with_its_instructions_and_no_lower_cap(capabilities, cap, wanted):
-    assert native(capabilities, cap) is wanted
+def test_bf16_is_native_with_its_instructions_and_no_lower_cap(capabilities, cap, expected):
+    assert native(capabilities, cap) is expected
 
 
-@pytest.mark.parametrize(("is_native", "wanted"), [(False, "fp32"), (True, "bf16")])
-def test_choose_auto_depends_on_the_instructions_alone(is_native, wanted, monkeypatch):
+@pytest.mark.parametrize(("is_native", "expected"), [(False, "fp32"), (True, "bf16")])
+def test_choose_auto_depends_on_the_instructions_alone(is_native, expected, monkeypatch):
     monkeypatch.setattr(precision, "native", lambda: is_native)
     monkeypatch.setattr(precision, "probe", lambda: pytest.fail("a timing differs between runs"))
-    assert choose("auto", CPU) == wanted
+    assert choose("auto", CPU) == expected
     assert choose("fp32", CPU) == "fp32" and choose("bf16", CPU) == "bf16"
 
 
@@ -84,9 +84,9 @@ def test_preparation_batches_and_networks_obey_the_trainers_precision(kind, tmp_
 def test_run_keeps_its_precision_on_another_machine(tmp_path, monkeypatch, capsys):
     monkeypatch.setattr(precision, "native", lambda: True)
     Trainer(TinyRecipe(), steps=4, save_every=2, folder=tmp_path).fit()
-    kept = states.checkpoints(tmp_path)
-    assert states.load(kept[-1])["config"]["trainer"]["precision"] == "bf16"
-    kept[-1].unlink()
+    saved = states.checkpoints(tmp_path)
+    assert states.load(saved[-1])["config"]["trainer"]["precision"] == "bf16"
+    saved[-1].unlink()
     monkeypatch.setattr(precision, "native", lambda: False)
     resumed = Trainer(TinyRecipe(), steps=4, save_every=2, folder=tmp_path)
     resumed.fit()

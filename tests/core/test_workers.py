@@ -78,8 +78,8 @@ class Lines:
 
 def run(task, groups, count=2):
     lines = Lines()
-    found = [item for item in results(task, groups, count, lines) if item is not None]
-    return dict(found), lines.said
+    matches = [item for item in results(task, groups, count, lines) if item is not None]
+    return dict(matches), lines.said
 
 
 def groups(*actions):
@@ -91,24 +91,28 @@ def groups(*actions):
 
 @pytest.mark.parametrize("count", [1, 2])
 def test_results_are_numbered_by_job(count, tmp_path):
-    found, said = run(Squares(tmp_path), [*groups("", "", ""), []], count)
-    assert found == {n: n**2 for n in range(9)} and not said
+    matches, message = run(Squares(tmp_path), [*groups("", "", ""), []], count)
+    assert matches == {n: n**2 for n in range(9)} and not message
 
 
 @pytest.mark.parametrize("how", ["die once", "die in a message"])
 def test_results_replace_the_first_dead_worker(how, tmp_path):
     began = time.monotonic()
-    found, said = run(Squares(tmp_path), groups("", how, ""))
-    assert found == {n: n**2 for n in range(9)} and time.monotonic() - began < 10
-    assert len(said) == 1 and "SIGKILL" in said[0] and "jobs (2) start again in a new" in said[0]
+    matches, message = run(Squares(tmp_path), groups("", how, ""))
+    assert matches == {n: n**2 for n in range(9)} and time.monotonic() - began < 10
+    assert (
+        len(message) == 1
+        and "SIGKILL" in message[0]
+        and "jobs (2) start again in a new" in message[0]
+    )
 
 
 def test_results_raise_workers_died_after_a_second_death(tmp_path):
-    began, found = time.monotonic(), {}
+    began, matches = time.monotonic(), {}
     with pytest.raises(WorkersDied, match=r"of 6 jobs are finished.*workers=1.*memory"):
         for item in results(Squares(tmp_path), groups("", "die"), 2, Lines()):
-            found |= dict([item]) if item else {}
-    assert {n for n in found if n >= 3} == {3} and time.monotonic() - began < 10
+            matches |= dict([item]) if item else {}
+    assert {n for n in matches if n >= 3} == {3} and time.monotonic() - began < 10
 
 
 @pytest.mark.parametrize("count", [1, 2])
@@ -120,10 +124,10 @@ def test_job_error_keeps_its_type(count, tmp_path):
 def test_idle_worker_is_reported_and_not_killed(tmp_path, monkeypatch):
     monkeypatch.setattr(workers, "STUCK", 0.5)
     monkeypatch.setattr(workers, "SECOND", 0.1)
-    found, said = run(Squares(tmp_path), groups("wait", ""))
-    assert found == {n: n**2 for n in range(6)}
+    matches, message = run(Squares(tmp_path), groups("wait", ""))
+    assert matches == {n: n**2 for n in range(6)}
     # Others may be, under load.
-    assert any("has been running number 1 for 1 s" in line for line in said)
+    assert any("has been running number 1 for 1 s" in line for line in message)
 
 
 ENDLESS = """
@@ -220,11 +224,11 @@ def test_results_finish_a_started_job_before_a_signal(tmp_path):
                 time.sleep(0.01)
                 yield job
 
-    found = []
+    matches = []
     with pytest.raises(Ended) as ended:
         for item in results(Ending(tmp_path), [["one", "two"]], 1, Lines()):
-            found.append(item)
-    assert found == [(0, "one")] and ended.value.status == 143
+            matches.append(item)
+    assert matches == [(0, "one")] and ended.value.status == 143
 
 
 def test_unpicklable_job_is_reported_with_a_way_out(tmp_path):

@@ -86,21 +86,21 @@ ALLOWED = {
 
 def imported(tree: ast.AST) -> set[str]:
     """Return the names that a module imports from ``mitigate/core/files.py``."""
-    found = [n for n in ast.walk(tree) if isinstance(n, ast.ImportFrom) and n.module == FILES]
-    return {alias.asname or alias.name for node in found for alias in node.names}
+    matches = [n for n in ast.walk(tree) if isinstance(n, ast.ImportFrom) and n.module == FILES]
+    return {alias.asname or alias.name for node in matches for alias in node.names}
 
 
 def mode_of(call: ast.Call, place: int) -> str:
     """Return the mode that is passed to ``open``, empty for reading."""
     named = [key.value for key in call.keywords if key.arg == "mode"]
-    given = [*named, *call.args[place : place + 1]]
-    return str(given[0].value) if given and isinstance(given[0], ast.Constant) else ""
+    arguments = [*named, *call.args[place : place + 1]]
+    return str(arguments[0].value) if arguments and isinstance(arguments[0], ast.Constant) else ""
 
 
 def writes(source: str) -> Counter[str]:
     """Return the calls in ``source`` that write to a path, by name."""
     tree = ast.parse(source)
-    ours, found = imported(tree), Counter()
+    ours, matches = imported(tree), Counter()
     for node in ast.walk(tree):
         if not isinstance(node, ast.Call):
             continue
@@ -109,24 +109,24 @@ def writes(source: str) -> Counter[str]:
         if name in ("os.open", "builtins.open", "io.open", "gzip.open", "open") or last == "open":
             place = 0 if "." in name and name.split(".")[0] not in ("io", "gzip", "builtins") else 1
             if name == "os.open" or set(mode_of(node, place)) & set("wax+"):
-                found[name if name == "os.open" else "open"] += 1
+                matches[name if name == "os.open" else "open"] += 1
         elif name in QUALIFIED:
-            found[name] += 1
+            matches[name] += 1
         elif last in WRITERS and not (name in ours or name.startswith("files.")):
-            found[last] += 1
-    return found
+            matches[last] += 1
+    return matches
 
 
 SOURCES = sorted(path for folder in FOLDERS for path in (ROOT / folder).rglob("*.py"))
 
 
 def test_writes_go_through_the_opener():
-    found = set()
+    matches = set()
     for path in SOURCES:
         name = str(path.relative_to(ROOT))
-        found |= {(name, call) for call in writes(path.read_text(encoding="utf-8"))}
-    assert not found - ALLOWED.keys(), "use mitigate/core/output.py or files.py"
-    assert not ALLOWED.keys() - found, "these are no longer there"
+        matches |= {(name, call) for call in writes(path.read_text(encoding="utf-8"))}
+    assert not matches - ALLOWED.keys(), "use mitigate/core/output.py or files.py"
+    assert not ALLOWED.keys() - matches, "these are no longer there"
 
 
 @pytest.mark.parametrize(

@@ -33,27 +33,27 @@ def test_broad_keeps_shape_dtype_and_input(name, panorama):
     before = frame.copy()
     assert corrupt(frame, name, 0.0, key=KEYS[0]).tobytes() == frame.tobytes()
     for key in KEYS:
-        made = corrupt(frame, name, 0.9, key=key)
-        assert made.shape == frame.shape and made.dtype == frame.dtype
-        assert np.isfinite(made[np.isfinite(frame)]).all()
+        output = corrupt(frame, name, 0.9, key=key)
+        assert output.shape == frame.shape and output.dtype == frame.dtype
+        assert np.isfinite(output[np.isfinite(frame)]).all()
     assert frame.tobytes() == before.tobytes()
 
 
 def test_equal_keys_give_equal_pixels(name, panorama):
     frame = frame_for(name, panorama)
-    made = [corrupt(frame, name, 0.8, key=key).tobytes() for key in KEYS]
-    assert made == [corrupt(frame, name, 0.8, key=key).tobytes() for key in KEYS]
-    assert len(set(made)) == len(made)
+    output = [corrupt(frame, name, 0.8, key=key).tobytes() for key in KEYS]
+    assert output == [corrupt(frame, name, 0.8, key=key).tobytes() for key in KEYS]
+    assert len(set(output)) == len(output)
 
 
 def test_composition_is_constant_within_an_episode(panorama):
     """Where nothing is drawn for each frame, another frame number changes nothing."""
-    kept = [
+    remaining = [
         corrupt(panorama[0], "broad_rgb", 0.8, key=Key(0, f"e{i}", 0)).tobytes()
         == corrupt(panorama[0], "broad_rgb", 0.8, key=Key(0, f"e{i}", 1)).tobytes()
         for i in range(40)
     ]
-    assert 5 < sum(kept) < 35
+    assert 5 < sum(remaining) < 35
 
 
 def test_higher_severity_corrupts_more_on_average(name, panorama):
@@ -61,8 +61,8 @@ def test_higher_severity_corrupts_more_on_average(name, panorama):
     valid = (frame > 0) & (frame < 100)
 
     def change(severity):
-        made = [corrupt(frame, name, severity, key=key)[valid] for key in KEYS]
-        return np.mean([np.abs(m - frame[valid].astype(np.float64)).mean() for m in made])
+        output = [corrupt(frame, name, severity, key=key)[valid] for key in KEYS]
+        return np.mean([np.abs(m - frame[valid].astype(np.float64)).mean() for m in output])
 
     assert change(0.2) < change(0.5) < change(1.0)
 
@@ -71,9 +71,9 @@ def test_draw_follows_its_composition(name, panorama, monkeypatch):
     called = []
 
     def noted(primitive):
-        def change(*given):
+        def change(*arguments):
             called.append(primitive.__name__.replace("_", " "))
-            return primitive(*given)
+            return primitive(*arguments)
 
         change.__name__ = primitive.__name__
         return change
@@ -89,18 +89,18 @@ def test_draw_follows_its_composition(name, panorama, monkeypatch):
 @pytest.mark.parametrize("primitive", rgb.PRIMITIVES, ids=lambda p: p.__name__)
 def test_rgb_primitive_changes_views_within_their_range(primitive):
     views = np.random.default_rng(0).random((3, 20, 28, 3), np.float32)
-    made = [primitive(views.copy(), 0.8, stream(i), stream(100 + i)) for i in range(12)]
-    assert all(m.shape == views.shape and m.min() >= 0 and m.max() <= 1 for m in made)
-    assert sum(not np.array_equal(m, views) for m in made) >= 8
+    output = [primitive(views.copy(), 0.8, stream(i), stream(100 + i)) for i in range(12)]
+    assert all(m.shape == views.shape and m.min() >= 0 and m.max() <= 1 for m in output)
+    assert sum(not np.array_equal(m, views) for m in output) >= 8
 
 
 @pytest.mark.parametrize("primitive", depth.PRIMITIVES, ids=lambda p: p.__name__)
 def test_depth_primitive_changes_views_that_have_holes(primitive):
     views = np.random.default_rng(0).uniform(0.05, 0.7, (3, 20, 28)).astype(np.float32)
     views[:, 3:5, 3:5] = np.nan
-    made = [primitive(views.copy(), 0.8, stream(i), stream(100 + i)) for i in range(12)]
-    assert all(m.shape == views.shape for m in made)
-    assert sum(not np.array_equal(m, views, equal_nan=True) for m in made) >= 6
+    output = [primitive(views.copy(), 0.8, stream(i), stream(100 + i)) for i in range(12)]
+    assert all(m.shape == views.shape for m in output)
+    assert sum(not np.array_equal(m, views, equal_nan=True) for m in output) >= 6
 
 
 def test_depth_keeps_invalid_pixels_and_stays_in_range(panorama):
@@ -108,10 +108,10 @@ def test_depth_keeps_invalid_pixels_and_stays_in_range(panorama):
     frame = panorama[1].copy()
     frame[0, :4], frame[1, :2] = 0.0, np.nan
     for key in KEYS:
-        made = corrupt(frame, "broad_depth", 1.0, key=key, sensor=sensor)
+        output = corrupt(frame, "broad_depth", 1.0, key=key, sensor=sensor)
         valid = (frame > 0) & np.isfinite(frame)
-        assert made[~valid].tobytes() == frame[~valid].tobytes()
-        assert (((made[valid] > 0) & (made[valid] <= 5.0)) | (made[valid] == 7.0)).all()
+        assert output[~valid].tobytes() == frame[~valid].tobytes()
+        assert (((output[valid] > 0) & (output[valid] <= 5.0)) | (output[valid] == 7.0)).all()
 
 
 @pytest.mark.parametrize("size", [(1, 1), (3, 5), (48, 31)])

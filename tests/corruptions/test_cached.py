@@ -37,14 +37,14 @@ def test_dropped_mask_is_made_again_to_the_bit(memory, name):
 
 
 def test_cached_keeps_the_last_used_and_one_large_result(memory):
-    made = []
+    output = []
 
     @keying.cached
     def zeros(count):
-        made.append(count)
+        output.append(count)
         return np.zeros(count, np.uint8)
 
     zeros(400_000), zeros(500_000), zeros(400_000)  # the second is longest unused
     zeros(300_000), zeros(400_000)
-    assert made == [400_000, 500_000, 300_000]
+    assert output == [400_000, 500_000, 300_000]
     assert zeros(2_000_000) is zeros(2_000_000) and len(memory) == 1

@@ -27,10 +27,10 @@ def test_depth_beyond_the_range_is_clipped_first(name, metres):
     far, end = near.copy(), near.copy()
     far[:, :8], end[:, :8] = metres, 10.0
     for episode in "abcdefgh":
-        made = corrupt(far, name, 1.0, key=Key(0, episode))
-        assert np.array_equal(made, corrupt(end, name, 1.0, key=Key(0, episode)))
+        output = corrupt(far, name, 1.0, key=Key(0, episode))
+        assert np.array_equal(output, corrupt(end, name, 1.0, key=Key(0, episode)))
     if name == "gaussian_noise":
-        assert made[:, :8].min() > 1.0
+        assert output[:, :8].min() > 1.0
 
 
 def test_noise_is_new_for_every_frame_and_view():
@@ -167,8 +167,8 @@ def test_few_extreme_readings_do_not_change_the_unit():
 @pytest.mark.parametrize("depth", [12.0, 0.0, np.nan, np.inf])
 def test_far_wall_and_frame_without_readings_are_valid(depth):
     out = corrupt(np.full((8, 8), depth, np.float32), "multipath", 0.6, key=1)
-    wanted = np.full((8, 8), 10.0 if depth == 12.0 else depth)
-    assert np.array_equal(out, wanted, equal_nan=True)
+    expected = np.full((8, 8), 10.0 if depth == 12.0 else depth)
+    assert np.array_equal(out, expected, equal_nan=True)
 
 
 @pytest.mark.parametrize(

@@ -50,7 +50,7 @@ def levels(name: str) -> list[float]:
     """The mean of each of 24 compositions: OpenCV does not give every machine the same bits."""
     frame = frames()[modality(name) != "rgb"]
     drawn = [corrupt(frame, name, 0.6, key=Key(2024, f"golden {i}", 13)) for i in range(24)]
-    return [round(float(made.mean(dtype=np.float64)), 3) for made in drawn]
+    return [round(float(output.mean(dtype=np.float64)), 3) for output in drawn]
 
 
 def current() -> dict:
@@ -68,16 +68,16 @@ def test_pixels_are_those_of_the_suite_version(name):
     golden = json.loads(GOLDEN.read_text())
     assert golden["suite"] == SUITE_VERSION, "SUITE_VERSION changed: regenerate (see the docstring)"
     for severity in SEVERITIES:
-        found = fingerprint(name, severity)
-        assert found == golden["pixels"][name][str(severity)], (name, severity, __doc__)
+        matches = fingerprint(name, severity)
+        assert matches == golden["pixels"][name][str(severity)], (name, severity, __doc__)
 
 
 @pytest.mark.parametrize("name", UNSEEN)
 def test_unseen_pixels_match_their_version(name):
     golden = json.loads(GOLDEN.read_text())["unseen"][name]
     assert golden.pop("version") == record(name).version, "regenerate (see the docstring)"
-    for severity, wanted in golden.items():
-        assert fingerprint(name, float(severity)) == wanted, (name, severity, __doc__)
+    for severity, expected in golden.items():
+        assert fingerprint(name, float(severity)) == expected, (name, severity, __doc__)
 
 
 @pytest.mark.parametrize("name", BROAD)

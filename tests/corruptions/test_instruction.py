@@ -163,11 +163,13 @@ def test_masks_never_hide_a_word_that_says_where(chosen):
     ],
 )
 def test_masks_keep_negations_compass_words_and_choices(text):
-    kept = words.bag("isn't won't doesn't aren't shouldn't neither nor nothing same previous only")
-    kept |= words.bag("northward southward eastward westward preceding following")
+    remaining = words.bag(
+        "isn't won't doesn't aren't shouldn't neither nor nothing same previous only"
+    )
+    remaining |= words.bag("northward southward eastward westward preceding following")
     masked = tokens(corrupt_instruction(text, "mask", 1.0, KEY))
     for old, new in zip(tokens(text), masked, strict=True):
-        assert new.text == old.text or old.lower not in kept
+        assert new.text == old.text or old.lower not in remaining
     assert "[MASK]" in [token.text for token in masked]
 
 
@@ -183,7 +185,7 @@ def test_text_is_equal_in_another_process():
         "from mitigate.corruptions import *;"
         f"print([corrupt_instruction({TEXT!r}, n, 0.7, Key(3, '17')) for n in {SPOKEN!r}])"
     )
-    said = {
+    message = {
         subprocess.run(
             [sys.executable, "-c", program],
             env=os.environ | {"PYTHONHASHSEED": seed},
@@ -193,7 +195,7 @@ def test_text_is_equal_in_another_process():
         ).stdout
         for seed in ("1", "2")
     }
-    assert said == {f"{[corrupt_instruction(TEXT, name, 0.7, KEY) for name in SPOKEN]}\n"}
+    assert message == {f"{[corrupt_instruction(TEXT, name, 0.7, KEY) for name in SPOKEN]}\n"}
 
 
 @pytest.mark.parametrize("text", ["", "  \n", "...", "🙂", "\x00\x07"])
@@ -234,8 +236,8 @@ def test_wrong_options_name_the_right_ones():
 @pytest.mark.parametrize(("short", "key"), [(7, Key(7, "0")), ("kitchen", Key(0, "kitchen"))])
 def test_number_or_text_is_a_valid_key(short, key):
     for name in SPOKEN:
-        made = corrupt_instruction(TEXT, name, 0.6, short)
-        assert made == corrupt_instruction(TEXT, name, 0.6, key)
+        output = corrupt_instruction(TEXT, name, 0.6, short)
+        assert output == corrupt_instruction(TEXT, name, 0.6, key)
     prompt = "Do: {task}"
     assert inject_system_prompt(prompt, 0.6, short) == inject_system_prompt(prompt, 0.6, key)
     with pytest.raises(ValueError, match="key must be a Key"):
@@ -267,11 +269,11 @@ def test_words_match_the_suite_version():
     """A change here changes results: raise SUITE_VERSION with it."""
     path = Path(__file__).parents[1] / "guards/text/handwritten.txt"
     texts = [line for line in path.read_text().splitlines() if not line.startswith("#")]
-    said = [
+    lines_of_text = [
         corrupt_instruction(text, name, severity, Key(0, str(index)))
         for name in SPOKEN
         for severity in (0.5, 1.0)
         for index, text in enumerate(texts)
     ]
     assert SUITE_VERSION == "1.1"
-    assert sha256("\n".join(said).encode()).hexdigest()[:16] == "b3888f3e739f9bda"
+    assert sha256("\n".join(lines_of_text).encode()).hexdigest()[:16] == "b3888f3e739f9bda"

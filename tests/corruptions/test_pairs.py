@@ -34,11 +34,11 @@ def test_pair_of_two_sensors_corrupts_each_separately(panorama):
 
 def test_pair_of_one_sensor_applies_the_first_first(panorama):
     obs = {"rgb": panorama[0]}
-    made = corrupt_observation(obs, Corruption("overexposure+spatter", 0.6), KEY)["rgb"]
+    output = corrupt_observation(obs, Corruption("overexposure+spatter", 0.6), KEY)["rgb"]
     bright = corrupt(panorama[0], "overexposure", 0.6, key=KEY)
-    assert (made == corrupt(bright, "spatter", 0.6, key=KEY)).all()
+    assert (output == corrupt(bright, "spatter", 0.6, key=KEY)).all()
     other = corrupt_observation(obs, Corruption("spatter+overexposure", 0.6), KEY)["rgb"]
-    assert (made != other).any()
+    assert (output != other).any()
 
 
 def test_pair_lists_its_parts():
@@ -61,7 +61,7 @@ def test_pair_row_has_the_version_of_its_unseen_parts():
 
 
 @pytest.mark.parametrize(
-    ("name", "said"),
+    ("name", "message"),
     [
         ("spatter+fogg", "There is no corruption 'fogg'"),
         ("spatter+clean", "must not contain 'clean'"),
@@ -71,8 +71,8 @@ def test_pair_row_has_the_version_of_its_unseen_parts():
         ("spatter+", "There is no corruption ''"),
     ],
 )
-def test_pair_rejects_invalid_names(name, said):
-    with pytest.raises(ValueError, match=said):
+def test_pair_rejects_invalid_names(name, message):
+    with pytest.raises(ValueError, match=message):
         Corruption(name, 0.5)
 
 
@@ -94,12 +94,12 @@ def test_missing_sensor_names_the_part_that_needs_it(panorama):
 def test_normalised_depth_and_habitat_take_pairs(panorama):
     pair = Corruption("spatter+missing_data", 0.6)
     obs = {"rgb": panorama[0], "depth": np.clip(panorama[1] / 10, 0, 1)}
-    made = corrupt_normalised(obs, pair, KEY)
-    assert np.nanmax(made["depth"][1:]) <= 1.0 and (made["depth"] == 0).mean() > 0.1
+    output = corrupt_normalised(obs, pair, KEY)
+    assert np.nanmax(output["depth"][1:]) <= 1.0 and (output["depth"] == 0).mean() > 0.1
     cameras = {"rgb": panorama[0][0], "depth": obs["depth"][0]}
     seen = corrupt_habitat(cameras, pair, KEY)
-    assert (seen["rgb"] == made["rgb"][0]).all()
-    assert seen["depth"].tobytes() == made["depth"][0].tobytes()
+    assert (seen["rgb"] == output["rgb"][0]).all()
+    assert seen["depth"].tobytes() == output["depth"][0].tobytes()
 
 
 def test_suite_pairs_has_eight_of_the_standard_suite():
@@ -111,8 +111,8 @@ def test_suite_pairs_has_eight_of_the_standard_suite():
 
 
 def test_evaluation_accepts_pairs_at_one_severity():
-    found = evaluate.conditions(["clean", "haze+flare", "multipath+ripple"], 0.9, 0.8)
-    assert [(c.name, c.severity) for c in found] == [
+    result = evaluate.conditions(["clean", "haze+flare", "multipath+ripple"], 0.9, 0.8)
+    assert [(c.name, c.severity) for c in result] == [
         ("clean", 0),
         ("haze+flare", 0.9),
         ("multipath+ripple", 0.8),
@@ -129,5 +129,5 @@ def test_command_line_accepts_a_pair():
 
 
 def test_repeated_condition_runs_once():
-    found = evaluate.conditions(["clean", "spatter+flare", "clean", "spatter+flare"], 0.6, None)
-    assert found == [CLEAN, Corruption("spatter+flare", 0.6)]
+    result = evaluate.conditions(["clean", "spatter+flare", "clean", "spatter+flare"], 0.6, None)
+    assert result == [CLEAN, Corruption("spatter+flare", 0.6)]

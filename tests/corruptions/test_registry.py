@@ -46,12 +46,12 @@ def test_wrong_record_is_rejected():
     def same(views, *_):
         return views
 
-    for wrong, said in (
+    for wrong, message in (
         ({"modality": "sonar"}, "rgb, depth, instruction"),
         ({"name": "Heavy Rain"}, "lower case letters"),
         ({"apply": None}, "must be a function"),
     ):
-        with pytest.raises(ValueError, match=said):
+        with pytest.raises(ValueError, match=message):
             Record(**{"name": "rain", "modality": "rgb", "apply": same, "severity": "s", **wrong})
 
 
@@ -78,7 +78,7 @@ def installed(package) -> dict[str, str]:
 
 
 @pytest.fixture
-def found(package, monkeypatch):
+def installed(package, monkeypatch):
     """Lets this process find the package; when called, as it is now."""
 
     def forget():
@@ -101,19 +101,19 @@ def run(installed: dict[str, str], folder: Path, *command: str) -> str:
     return done.stdout
 
 
-def test_external_corruption_joins_a_suite_and_a_schedule(found, tmp_path, monkeypatch, capsys):
+def test_external_corruption_joins_a_suite_and_a_schedule(installed, tmp_path, monkeypatch, capsys):
     monkeypatch.setattr(simulator, "MAX_STEPS", 40)
     options = ["episodes=1", "conditions=[clean,rain,flare]", "env.size=32", "workers=1"]
     monkeypatch.setattr(sys, "argv", ["mitigate evaluate", *options, f"out={tmp_path}/out"])
     evaluate.main()
-    said = capsys.readouterr().out
-    assert "| Rain |" in said and "PRS-SR (Other)" in said
+    printed = capsys.readouterr().out
+    assert "| Rain |" in printed and "PRS-SR (Other)" in printed
     rows = [json.loads(x) for x in (tmp_path / "out/rows.jsonl").read_text().splitlines()]
     assert {row["corruption"] for row in rows} == {"clean", "rain", "flare"}
     assert {row.get("version") for row in rows if row["corruption"] == "rain"} == {"1"}
     changed = (tmp_path / "rain.py").read_text().replace('version="1"', 'version="2"')
     (tmp_path / "rain.py").write_text(changed)
-    found()
+    installed()
     evaluate.main()
     assert len((tmp_path / "out/rows.jsonl").read_text().splitlines()) == 4
     drawn, _ = Schedule.always("rain", 0.5).draw(0, "e", 1)
@@ -150,5 +150,5 @@ def test_broken_package_is_skipped_with_a_warning(installed, tmp_path):
         "assert {*known} == ours, known\n"
         "print(said[0].message)"
     )
-    said = run(installed, tmp_path, "-c", code)
-    assert "rain = rain:RAIN of rain is left out" in said and "no cloud" in said
+    message = run(installed, tmp_path, "-c", code)
+    assert "rain = rain:RAIN of rain is left out" in message and "no cloud" in message

@@ -28,8 +28,8 @@ class Model:
 def test_answer_is_asked_once_and_cached(tmp_path):
     model, cache = Model(), tmp_path / "sub/cache.jsonl"
     rewriter = Rewriter(model, "m", cache)
-    said = [rewriter(TEXT, "friendly") for _ in range(2)]
-    assert said == [model.answer] * 2
+    texts = [rewriter(TEXT, "friendly") for _ in range(2)]
+    assert texts == [model.answer] * 2
     assert model.asked == [(PROMPT.format(tone=TONES["friendly"]), TEXT)]
     silent = Model("never asked")
     assert Rewriter(silent, "m", cache)(TEXT, "friendly") == model.answer and not silent.asked
@@ -86,8 +86,8 @@ def test_cache_lines_without_answer_are_skipped(tmp_path):
 
 def test_gate_checks_the_model(tmp_path):
     liar = Rewriter(Model("Turn right and walk 5 metres."), "liar", tmp_path / "cache.jsonl")
-    said = corrupt_instruction(TEXT, "formal", 1.0, Key(0, "1"), rewrite=liar)
-    assert "left" in said and "right" not in said
+    message = corrupt_instruction(TEXT, "formal", 1.0, Key(0, "1"), rewrite=liar)
+    assert "left" in message and "right" not in message
     with pytest.raises(ValueError, match="friendly, novice"):
         liar(TEXT, "rude")
     assert set(TONES) == set(MANNERS)

@@ -84,9 +84,9 @@ def test_mean_absolute_depth_error_never_falls(name, episode, scene):
 
 @pytest.mark.parametrize("size", [(48, 64), pytest.param((96, 96), marks=pytest.mark.slow)])
 def test_strength_on_fine_grid_decreases_within_the_bound(size, scene):
-    found = curves(scene.draw(*size)[0][None], scene.draw(*size)[1][None, ..., None])
-    assert list(found) == list(NAMES)
-    for name, curve in found.items():
+    matches = curves(scene.draw(*size)[0][None], scene.draw(*size)[1][None, ..., None])
+    assert list(matches) == list(NAMES)
+    for name, curve in matches.items():
         assert curve.slip <= max(SLIPS.get(name, 0.0), 1e-6), (name, curve.slip)
 
 
@@ -97,11 +97,11 @@ def test_invalid_depth_is_kept_and_valid_depth_stays_valid(name, severity, panor
     invalid = ~(np.isfinite(depth) & (depth > 0))
     out = corrupt(depth, name, severity, key=KEY)
     assert out[invalid].tobytes() == depth[invalid].tobytes()
-    kept = out[~invalid]
-    assert np.isfinite(kept).all() and kept.max() <= 10.0
+    remaining = out[~invalid]
+    assert np.isfinite(remaining).all() and remaining.max() <= 10.0
     if name == "missing_data":
-        kept = kept[kept != 0]
-    assert kept.min() >= np.float32(1e-3)
+        remaining = remaining[remaining != 0]
+    assert remaining.min() >= np.float32(1e-3)
 
 
 @pytest.mark.parametrize("name", DEPTH)
@@ -215,8 +215,8 @@ def test_heading_that_is_not_finite_is_rejected(panorama, name, heading):
 @pytest.mark.parametrize("hurt", [corrupt_observation, corrupt_normalised])
 def test_observation_takes_a_short_key(panorama, hurt):
     obs = {"rgb": panorama[0]}
-    made = hurt(obs, Corruption("spatter", 0.5), 7)["rgb"]
-    assert same(made, corrupt(panorama[0], "spatter", 0.5, key=7))
+    output = hurt(obs, Corruption("spatter", 0.5), 7)["rgb"]
+    assert same(output, corrupt(panorama[0], "spatter", 0.5, key=7))
     for wrong in ("spatter", ("spatter", 0.5), None):
         with pytest.raises(ValueError, match=r"Corruption\('spatter', 0.6\)"):
             hurt(obs, wrong, 7)

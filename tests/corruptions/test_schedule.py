@@ -23,16 +23,16 @@ def test_clean_hurts_nothing():
 
 @pytest.mark.parametrize("mode, frames", [("per_frame", 10), ("per_episode", 1)])
 def test_shares_are_those_asked_for(mode, frames):
-    found = names_of(Schedule(mode, 0.6, clean_share=0.4), frames=frames)
-    assert found["clean"] / 6000 == pytest.approx(0.4, abs=0.03)
+    result = names_of(Schedule(mode, 0.6, clean_share=0.4), frames=frames)
+    assert result["clean"] / 6000 == pytest.approx(0.4, abs=0.03)
     for name in NAMES:
-        assert found[name] / 6000 == pytest.approx(0.6 / 12, abs=0.012)
+        assert result[name] / 6000 == pytest.approx(0.6 / 12, abs=0.012)
 
 
 @pytest.mark.parametrize("share", [0.0, 1.0])
 def test_clean_share_can_be_zero_or_one(share):
-    found = names_of(Schedule("per_frame", 0.6, clean_share=share), 500, frames=5)
-    assert found["clean"] == 500 * share
+    result = names_of(Schedule("per_frame", 0.6, clean_share=share), 500, frames=5)
+    assert result["clean"] == 500 * share
 
 
 def test_per_episode_keeps_corruption_and_episode_state():
@@ -85,8 +85,8 @@ def test_severity_range_draws_the_same_corruptions_and_keys():
 
 
 def test_names_restrict_the_draw():
-    found = names_of(Schedule("per_frame", 0.6, names=("flare", "multipath")), 400, frames=4)
-    assert set(found) == {"clean", "flare", "multipath"}
+    matches = names_of(Schedule("per_frame", 0.6, names=("flare", "multipath")), 400, frames=4)
+    assert set(matches) == {"clean", "flare", "multipath"}
 
 
 def test_weights_follow_one_minus_success():
@@ -94,9 +94,9 @@ def test_weights_follow_one_minus_success():
     raw = {name: (1 - SUCCESS[name]) ** 2 + 0.1 for name in NAMES}
     total = sum(raw.values())
     assert schedule.weights == pytest.approx({name: w / total for name, w in raw.items()})
-    found = names_of(schedule, 12000)
+    matches = names_of(schedule, 12000)
     for name in NAMES:
-        assert found[name] / 12000 == pytest.approx(0.75 * schedule.weights[name], abs=0.012)
+        assert matches[name] / 12000 == pytest.approx(0.75 * schedule.weights[name], abs=0.012)
 
 
 def test_weights_are_uniform_before_a_refresh():

@@ -15,15 +15,15 @@ CONTENT = {"NOUN", "PROPN", "VERB", "ADP"}
 
 def pairs(text: str, tag) -> list[tuple[str, str, str]]:
     """(word, label, tag) of every word; marks are left out."""
-    found = []
+    matches = []
     for line in text.splitlines():
         if "/" not in line:
             continue
         words = [pair.rsplit("/", 1) for pair in line.split()]
         tags = tag(" ".join(word for word, _ in words))
         assert [token.text for token in tags] == [word for word, _ in words]
-        found += [(*pair, token.tag) for pair, token in zip(words, tags, strict=True)]
-    return [triple for triple in found if triple[1] != "PUNCT"]
+        matches += [(*pair, token.tag) for pair, token in zip(words, tags, strict=True)]
+    return [triple for triple in matches if triple[1] != "PUNCT"]
 
 
 def accuracy(triples: list[tuple[str, str, str]]) -> float:
@@ -48,8 +48,8 @@ def test_installed_spacy_pipeline_is_used_with_overrides():
 
 def test_tokens_cover_every_word_of_any_text():
     text = "Don't go to [MASK]—the café’s 2nd room 🙂\x07!"
-    found = tagger.tokens(text)
-    assert all(text[t.start : t.end] == t.text for t in found)
-    assert [t.text for t in found if t.is_word] == [
+    matches = tagger.tokens(text)
+    assert all(text[t.start : t.end] == t.text for t in matches)
+    assert [t.text for t in matches if t.is_word] == [
         *("Don't", "go", "to", "the", "café’s", "2nd", "room"),
     ]

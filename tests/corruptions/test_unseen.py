@@ -44,11 +44,11 @@ def test_unseen_halves_are_separate_from_the_suite():
 
 @pytest.mark.parametrize("name", UNSEEN_NAMES)
 def test_record_is_described_in_the_docs(name):
-    found = record(name)
-    assert found.severity and found.source and all(DESCRIPTIONS[name])
-    assert found.version and version(name) == {"version": found.version}
+    matches = record(name)
+    assert matches.severity and matches.source and all(DESCRIPTIONS[name])
+    assert matches.version and version(name) == {"version": matches.version}
     (line,) = (line for line in table().splitlines() if line.split()[0] == name)
-    assert line.endswith({VALIDATION: "unseen_val", TEST: "unseen_test"}[found.half])
+    assert line.endswith({VALIDATION: "unseen_val", TEST: "unseen_test"}[matches.half])
 
 
 def test_unknown_half_is_rejected():
@@ -77,42 +77,42 @@ def test_unseen_corruptions_are_in_their_suites_only():
 def schedules(node) -> list[dict]:
     """All schedules in a config, wherever they stand."""
     if isinstance(node, list):
-        return [found for value in node for found in schedules(value)]
+        return [matches for value in node for matches in schedules(value)]
     if not isinstance(node, dict):
         return []
-    own = [node] if str(node.get("_target_", "")).endswith(".Schedule") else []
-    return own + [found for value in node.values() for found in schedules(value)]
+    own_value = [node] if str(node.get("_target_", "")).endswith(".Schedule") else []
+    return own_value + [matches for value in node.values() for matches in schedules(value)]
 
 
 def drawn(node: dict) -> set[str]:
     schedule = build.build(OmegaConf.create(node))
-    found = {schedule.draw(seed, "e", frame)[0].name for seed in range(40) for frame in range(10)}
-    return found | set(schedule.names)
+    matches = {schedule.draw(seed, "e", frame)[0].name for seed in range(40) for frame in range(10)}
+    return matches | set(schedule.names)
 
 
 @pytest.mark.parametrize("option", [f"recipe={r}" for r in RECIPES])
 def test_recipes_draw_no_unseen_corruption(option):
     cfg = OmegaConf.to_container(conf.load_config("train", [option]), resolve=True)
-    found = schedules(cfg)
-    assert found
-    assert not set().union(*map(drawn, found)) & set(UNSEEN_NAMES)
+    matches = schedules(cfg)
+    assert matches
+    assert not set().union(*map(drawn, matches)) & set(UNSEEN_NAMES)
 
 
 @pytest.mark.parametrize("name", SCHEDULES)
 def test_schedules_draw_unseen_corruptions_only_by_name(name):
     options = [f"schedule={name}", "recipe=imitation"]
-    found = schedules(OmegaConf.to_container(conf.load_config("train", options), resolve=True))
-    assert not set().union(*map(drawn, found)) & set(UNSEEN_NAMES)
+    loaded = schedules(OmegaConf.to_container(conf.load_config("train", options), resolve=True))
+    assert not set().union(*map(drawn, loaded)) & set(UNSEEN_NAMES)
     named = conf.load_config("train", ["recipe=da_per_frame", "schedule.names=[haze,flare]"])
-    found = schedules(OmegaConf.to_container(named, resolve=True))
-    assert set().union(*map(drawn, found)) == {"clean", "haze", "flare"}
+    loaded = schedules(OmegaConf.to_container(named, resolve=True))
+    assert set().union(*map(drawn, loaded)) == {"clean", "haze", "flare"}
 
 
 def test_configs_name_no_unseen_corruption():
     for path in conf.CONF.rglob("*.yaml"):
         words = str(yaml.safe_load(path.read_text(encoding="utf-8"))).replace("+", " ").split()
-        held = {word.strip("'[]{},:") for word in words}
-        assert not held & set(UNSEEN_NAMES), path
+        content = {word.strip("'[]{},:") for word in words}
+        assert not content & set(UNSEEN_NAMES), path
 
 
 def test_python_schedule_draws_unseen_corruptions_only_by_name():
@@ -158,8 +158,8 @@ def test_mean_absolute_depth_error_never_falls(name, scene):
 def test_strength_on_finer_grid_decreases_within_the_bound(scene):
     rgb, depth = scene.draw(40, 52)
     grid = np.linspace(0.5, 0.7, 21)
-    found = curves(rgb[None], depth[None, ..., None], grid, UNSEEN_NAMES)
-    for name, curve in found.items():
+    matches = curves(rgb[None], depth[None, ..., None], grid, UNSEEN_NAMES)
+    for name, curve in matches.items():
         assert curve.slip <= max(SLIPS.get(name, 0.0), 1e-6), (name, curve.slip)
 
 
@@ -171,9 +171,9 @@ def test_invalid_depth_is_kept_and_valid_depth_stays_valid(name, sensor, panoram
     for severity in (0.1, 0.6, 1.0):
         out = corrupt(depth, name, severity, key=KEY, sensor=sensor)
         assert out[~valid].tobytes() == depth[~valid].tobytes()
-        kept = out[valid]
-        kept = kept[kept != sensor.missing] if name in LOSE else kept
-        assert ((kept >= np.float32(1e-3)) & (kept <= sensor.z_max)).all()
+        remaining = out[valid]
+        remaining = remaining[remaining != sensor.missing] if name in LOSE else remaining
+        assert ((remaining >= np.float32(1e-3)) & (remaining <= sensor.z_max)).all()
     nothing = np.array([[0.0, np.nan], [np.inf, -2.0]], np.float32)
     assert same(corrupt(nothing, name, 1.0, key=KEY), nothing)
 
@@ -192,15 +192,15 @@ def test_view_is_corrupted_by_its_place_only(name, panorama):
 
 @pytest.mark.parametrize("name", UNSEEN_NAMES)
 def test_draws_per_frame_match_the_record(name, panorama):
-    frame, found = frame_for(name, panorama), record(name)
+    frame, matches = frame_for(name, panorama), record(name)
 
     def seen(**changed):
         return corrupt(frame, name, 0.7, key=Key(**{**vars(KEY), **changed}))
 
     assert same(seen(), seen())
-    assert same(seen(frame=5), seen()) == (found.frame == "-")
+    assert same(seen(frame=5), seen()) == (matches.frame == "-")
     others = [seen(episode=str(n)) for n in range(4)]
-    random = (found.episode, found.frame) != ("-", "-")
+    random = (matches.episode, matches.frame) != ("-", "-")
     assert any(not same(other, others[0]) for other in others) == random or name == "glossy_floor"
 
 

@@ -57,8 +57,8 @@ class Bottleneck(nn.Module):
             )
 
     def forward(self, x: Tensor) -> Tensor:
-        kept = x if self.downsample is None else self.downsample(x)
-        return self.relu(self.convs(x) + kept)
+        remaining = x if self.downsample is None else self.downsample(x)
+        return self.relu(self.convs(x) + remaining)
 
 
 class DdppoDepth(nn.Module):

@@ -8,7 +8,7 @@ from typing import Any
 
 def row(episode: int | str, success: float, **changes: Any) -> dict[str, Any]:
     """A clean row of agent ``base``; SPL is half the success."""
-    made = {
+    output = {
         "agent": "0123456789ab",
         "name": "base",
         "corruption": "clean",
@@ -21,7 +21,7 @@ def row(episode: int | str, success: float, **changes: Any) -> dict[str, Any]:
         "success": int(success),
         "spl": success / 2,
     }
-    return made | changes
+    return output | changes
 
 
 def cell(wins: int, count: int = 10, **changes: Any) -> list[dict[str, Any]]:
@@ -35,4 +35,4 @@ def column(clean: int, corrupted: dict[str, int], severity: float = 0.6, **chang
         cell(wins, corruption=name, severity=severity, **changes)
         for name, wins in corrupted.items()
     )
-    return cell(clean, **changes) + [made for rows in cells for made in rows]
+    return cell(clean, **changes) + [records for rows in cells for records in rows]

@@ -100,11 +100,11 @@ def test_measures_may_be_numbers_of_numpy_or_torch(tmp_path):
     assert [type(measured[n]) for n in ("success", "spl", "m")] == [int, float, float]
 
 
-@pytest.mark.parametrize("shown", [{"rgb": np.zeros((4, 4, 3), np.uint8)}, (0, 1.0, False, {})])
-def test_run_episode_rejects_invalid_observations(shown):
+@pytest.mark.parametrize("displayed", [{"rgb": np.zeros((4, 4, 3), np.uint8)}, (0, 1.0, False, {})])
+def test_run_episode_rejects_invalid_observations(displayed):
     cell = Cell()
-    cell.look = lambda: shown
-    name = type(shown).__name__
+    cell.look = lambda: displayed
+    name = type(displayed).__name__
     with pytest.raises(ValueError, match=f"of Cell must return an Observation, got {name}"):
         run_episode(Answers(0), cell, EPISODE, CLEAN, 0)
 
@@ -141,8 +141,8 @@ def broken():
 
 
 def test_run_episode_error_names_line_and_episode():
-    own = rf"raised in {Path(__file__)}, line \d+, broken\(\)"
-    with pytest.raises(ValueError, match=rf"Episode e7, clean, step 2: matmul.* \({own}\)"):
+    settings = rf"raised in {Path(__file__)}, line \d+, broken\(\)"
+    with pytest.raises(ValueError, match=rf"Episode e7, clean, step 2: matmul.* \({settings}\)"):
         run_episode(Answers(1, broken), Cell(), EPISODE, CLEAN, 0)
     with pytest.raises(ValueError, match="matmul") as caught:
         broken()

@@ -134,16 +134,16 @@ class Won(ApartmentsWorld):
 def test_row_stores_boolean_success_as_number(tmp_path):
     episodes = load_episodes("val_seen")[:1]
     options = {"name": "test", "out": tmp_path / "rows.jsonl", "split": "val_seen"}
-    (made,) = evaluate(Straight(1), partial(Won, SIZE), episodes, [CLEAN], **options)
-    assert made["success"] == 1 and type(made["success"]) is int
+    (records,) = evaluate(Straight(1), partial(Won, SIZE), episodes, [CLEAN], **options)
+    assert records["success"] == 1 and type(records["success"]) is int
 
 
 def test_progress_counts_one_rollout_per_condition(tmp_path, capsys):
     episodes, met = load_episodes("val_seen")[:1], [CLEAN, Corruption("flare", 0.6)]
     options = {"name": "test", "out": tmp_path / "rows.jsonl", "split": "val_seen"}
     evaluate(Straight(1), partial(Won, SIZE), episodes, met, **options)
-    shown = capsys.readouterr().out
-    assert "test, val_seen: 2 walks" in shown and "walk 2/2, done in" in shown
+    printed = capsys.readouterr().out
+    assert "test, val_seen: 2 walks" in printed and "walk 2/2, done in" in printed
     evaluate(Straight(1), partial(Won, SIZE), episodes, [*met, Corruption("flare", 0.3)], **options)
     assert "3 walks, 2 already done" in capsys.readouterr().out
 
@@ -179,10 +179,10 @@ def test_result_does_not_depend_on_earlier_episodes(finished, tmp_path):
 
 def test_row_of_a_pair_holds_its_version(tmp_path):
     names = ("low_light+missing_data", "spatter+mask", "haze", "ripple+flare")
-    made = run(tmp_path, episodes=1, conditions=[CLEAN, *(Corruption(n, 0.6) for n in names)])
-    versions = {row["corruption"]: row.get("version") for row in made}
+    records = run(tmp_path, episodes=1, conditions=[CLEAN, *(Corruption(n, 0.6) for n in names)])
+    versions = {row["corruption"]: row.get("version") for row in records}
     assert versions == dict(zip(("clean", *names), (None, None, None, "1", "1"), strict=True))
-    assert run(tmp_path, episodes=1, conditions=[Corruption("haze", 0.6)]) == made[3:4]
+    assert run(tmp_path, episodes=1, conditions=[Corruption("haze", 0.6)]) == records[3:4]
 
 
 def test_pair_corrupts_sensors_and_instruction():
@@ -298,12 +298,12 @@ def test_evaluate_warns_about_other_languages(tmp_path):
         assert instruction(hindi, met, 0) == hindi.instruction.text
         assert instruction(english, met, 0) != english.instruction.text
         assert instruction(untold, met, 0) != untold.instruction.text
-    with pytest.warns(UserWarning, match="passed through unchanged: 1 in hi-IN$") as told:
+    with pytest.warns(UserWarning, match="passed through unchanged: 1 in hi-IN$") as caught:
         evaluate(
             Listener(), partial(ApartmentsWorld, SIZE), [hindi, english], conditions,
             name="test", out=tmp_path / "rows.jsonl", split="made",
         )  # fmt: skip
-    assert len(told) == 1
+    assert len(caught) == 1
 
 
 def test_weights_that_are_no_numbers_are_not_evaluated(tmp_path):

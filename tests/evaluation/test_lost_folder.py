@@ -80,9 +80,9 @@ def config(tmp_path, monkeypatch):
         (mine / "own.yaml").write_text(f"# @package _global_\n{node}\n")
         OUT[:] = [tmp_path / "out"]
         Breaking.resets = 0
-        given = [f"--config-dir={mine.parent}", "agent=own", f"out={OUT[0]}", "env.size=16"]
-        given += [f"episodes={EPISODES}", "conditions=[clean]", "workers=1", *options]
-        return conf.load_config("evaluate", given)
+        arguments = [f"--config-dir={mine.parent}", "agent=own", f"out={OUT[0]}", "env.size=16"]
+        arguments += [f"episodes={EPISODES}", "conditions=[clean]", "workers=1", *options]
+        return conf.load_config("evaluate", arguments)
 
     return compose
 

@@ -17,12 +17,12 @@ NAMES = ("one", "two", "three")
 def grid(*falls: tuple[int, int]):
     """A column for each of ``falls``: of 10 episodes 8 are won clean, so many under missing data
     at 0.3 and at 0.6."""
-    made = []
+    output = []
     for name, at in zip(NAMES, falls, strict=False):
-        own = {"name": name, "agent": name.ljust(12, "0")}
-        made += column(8, {"missing_data": at[0]}, 0.3, **own)
-        made += cell(at[1], corruption="missing_data", severity=0.6, **own)
-    return sections(made)[0].grid
+        settings = {"name": name, "agent": name.ljust(12, "0")}
+        output += column(8, {"missing_data": at[0]}, 0.3, **settings)
+        output += cell(at[1], corruption="missing_data", severity=0.6, **settings)
+    return sections(output)[0].grid
 
 
 def seen(picture: np.ndarray, index: int) -> int:

@@ -48,9 +48,9 @@ def around(name: str | None = None, **kwargs) -> SimpleNamespace:
     return SimpleNamespace(rule="there", sensors={}, env=env)
 
 
-def of_config(**given):
+def of_config(**options):
     target = f"{__name__}.Maze"
-    return maker(OmegaConf.create({"_target_": target, "_partial_": True, **given}))
+    return maker(OmegaConf.create({"_target_": target, "_partial_": True, **options}))
 
 
 def in_two_layers(env) -> SimpleNamespace:
@@ -91,7 +91,7 @@ class Builder:
 
 
 @pytest.mark.parametrize(
-    ("first", "second", "told"),
+    ("first", "second", "reported"),
     [
         (partial(Maze, 9), partial(Maze, 3), "argument.0 was '9' and is '3'"),
         (partial(Maze, cells=9), partial(Maze, cells=3), "argument.cells was '9' and is '3'"),
@@ -116,10 +116,10 @@ class Builder:
         (lambda: Maze(), lambda: Other(), "its class was"),
     ],
 )
-def test_keep_rejects_rows_of_another_world(tmp_path, first, second, told):
+def test_keep_rejects_rows_of_another_world(tmp_path, first, second, reported):
     for _ in range(2):
         keep(tmp_path, first)
-    with pytest.raises(ValueError, match=re.escape(told)) as refused:
+    with pytest.raises(ValueError, match=re.escape(reported)) as refused:
         keep(tmp_path, second)
     assert "rows of another world" in str(refused.value) and "out=" in str(refused.value)
 
@@ -132,11 +132,11 @@ class Odd:
 
 
 def test_first_world_accepts_values_that_change(tmp_path):
-    made, circle, numbers, odd = {}, {}, [*range(100_000)], Odd()
+    output, circle, numbers, odd = {}, {}, [*range(100_000)], Odd()
     circle["itself"] = circle
 
     def make() -> Maze:
-        made[len(made)] = (numbers, circle, {(0, 1): 2}, odd)
+        output[len(output)] = (numbers, circle, {(0, 1): 2}, odd)
         return Maze()
 
     for _ in range(3):

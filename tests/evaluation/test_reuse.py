@@ -122,13 +122,13 @@ class Mortal(torch.nn.Module):
 
 
 def run(agent, out, count):
-    given = {"name": "test", "out": out, "split": "val_seen", "workers": count}
+    options = {"name": "test", "out": out, "split": "val_seen", "workers": count}
     return evaluate(
         agent,
         partial(ApartmentsWorld, SIZE),
         load_episodes("val_seen")[:3],
         CONDITIONS[:4],
-        **given,
+        **options,
     )
 
 
@@ -145,6 +145,6 @@ def test_second_killed_worker_keeps_finished_rows(tmp_path):
         workers.WorkersDied, match=r"finished rows are in .*rows.jsonl. Run the same"
     ):
         run(Mortal(tmp_path, deaths=9), out, 2)
-    kept = rows.read(out)
-    assert kept and len(kept) < 12
+    remaining = rows.read(out)
+    assert remaining and len(remaining) < 12
     assert len(run(Mortal(tmp_path, deaths=0), out, 1)) == 12

@@ -101,8 +101,8 @@ def test_files_and_folders_are_gathered(tmp_path):
     (tmp_path / "a/chat.jsonl").write_text('{"messages": []}\n')
     (tmp_path / "a/empty.jsonl").write_text("")
     rows.append(tmp_path / "c.jsonl", [row(0, False)])
-    found = rows.gather([tmp_path / "a", tmp_path / "c.jsonl"])
-    assert {r["episode_id"]: r["success"] for r in found} == {"0": 0, "1": 0, "2": 1}
+    records = rows.gather([tmp_path / "a", tmp_path / "c.jsonl"])
+    assert {r["episode_id"]: r["success"] for r in records} == {"0": 0, "1": 0, "2": 1}
 
 
 def test_gather_names_a_path_without_rows(tmp_path):

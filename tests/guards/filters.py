@@ -58,8 +58,8 @@ def broken(frames):
 class Returns:
     """Return an entry as it is given to the constructor."""
 
-    def __init__(self, **made):
-        self.made = made
+    def __init__(self, **output):
+        self.made = output
 
     def __call__(self, frames):
         return self.made

@@ -53,10 +53,10 @@ def test_prior_needs_the_evaluation_of_one_agent(tmp_path):
         schedule=schedule,
         prior=str(tmp_path / "one.jsonl"),
     )
-    for other, said in (({"name": "trained"}, "agents"), ({"severity": 0.2}, "severities")):
+    for other, message in (({"name": "trained"}, "agents"), ({"severity": 0.2}, "severities")):
         mixed = [{**row, **other} for row in hard]
         rows.write(tmp_path / "two.jsonl", hard + mixed)
-        with pytest.raises(ValueError, match=f"several {said}"):
+        with pytest.raises(ValueError, match=f"several {message}"):
             assemble(
                 Imitate,
                 TopologicalAgent(16),
@@ -109,7 +109,7 @@ def test_step_needs_an_episode():
 
 def test_rollouts_measure_missing_success_rates_once():
     schedule = Schedule("success_distributed", 0.6, names=("flare",))
-    made = assemble(
+    objective = assemble(
         Imitate,
         TopologicalAgent(16, SMALL),
         **SOURCES,
@@ -117,15 +117,15 @@ def test_rollouts_measure_missing_success_rates_once():
         episodes=1,
         refresh_episodes=1,
     )
-    assert made.jobs(0)[0][-1]["success"].keys() == {"flare"}
+    assert objective.jobs(0)[0][-1]["success"].keys() == {"flare"}
     before = schedule.success = {"flare": 0.25}
-    assert made.jobs(1)[0][-1] == {"success": before}
+    assert objective.jobs(1)[0][-1] == {"success": before}
 
 
 def test_measuring_success_leaves_the_agent_in_training_mode():
     """Or all that follows would train without dropout."""
     schedule = Schedule("success_distributed", 0.6, names=("flare",))
-    made = assemble(
+    objective = assemble(
         Imitate,
         TopologicalAgent(16, SMALL),
         **SOURCES,
@@ -135,8 +135,8 @@ def test_measuring_success_leaves_the_agent_in_training_mode():
         refresh_every=1,
         refresh_episodes=1,
     ).train()
-    assert made.jobs(0)[0][-1] == {"success": {"flare": schedule.success["flare"]}}
-    assert all(module.training for module in made.modules())
+    assert objective.jobs(0)[0][-1] == {"success": {"flare": schedule.success["flare"]}}
+    assert all(module.training for module in objective.modules())
 
 
 def test_nan_logits_give_nan_loss():
@@ -145,8 +145,8 @@ def test_nan_logits_give_nan_loss():
     decisions = SimpleNamespace(target=target, weight=weight)
 
     def loss(*logits, mask=None):
-        found = imitation(Output(torch.tensor([logits]), mask), decisions, {})["loss"]
-        return float(found)
+        matches = imitation(Output(torch.tensor([logits]), mask), decisions, {})["loss"]
+        return float(matches)
 
     nan, far = float("nan"), float("-inf")
     assert loss(nan, nan, nan) != loss(nan, nan, nan)
@@ -184,11 +184,11 @@ def test_every_step_and_piece_draws_other_episodes_and_keys():
 
     schedule = Schedule("per_frame", 0.6)
     how = {"episodes": 8, "follow_oracle": 1.0, "seed": 7}
-    made = Rollouts(Kept(), SOURCES["world"], Listed(2), schedule, **how)
+    output = Rollouts(Kept(), SOURCES["world"], Listed(2), schedule, **how)
     for step in (0, 1):
-        for job in made.jobs(step):
-            made.work(job)
+        for job in output.jobs(step):
+            output.work(job)
     assert len(drawn) == len({*drawn}) == len(keys) == len({*keys}) == 16
     first = [*keys]
-    made.work(made.jobs(0)[0])
+    output.work(output.jobs(0)[0])
     assert keys[len(first) :] == first[: len(keys) - len(first)]

@@ -116,11 +116,11 @@ class StandIn(torch.nn.Module):
 
 def stand_in_programs(agent: TopologicalAgent, size: int) -> dict:
     """Replace ``programs.export_programs``; its own tests are slow."""
-    given = programs.probe(agent, size)
+    value = programs.probe(agent, size)
     return {
         name: torch.export.export(
             StandIn(names),
-            tuple(given[key] for key in programs.INPUTS[name]),
+            tuple(value[key] for key in programs.INPUTS[name]),
             dynamic_shapes=(programs.free_dimensions(name),),
         )
         for name, names in programs.OUTPUTS.items()
@@ -151,9 +151,9 @@ def place(tmp_path_factory) -> Path:
     base = checkpoint.save_weights(agent, place / "base", half=True)
     run = finished_run(place / "runs/whole", agent, TINY, init=str(base.parent))
     sha = checkpoint.weights_sha(agent)
-    found = [a_row(ROWS, e, c, float(e > 1)) for e in range(8) for c in ("clean", "spatter")]
-    found = [{**row, "weights": sha} for row in found]
-    rows.write(run / "rows.jsonl", [*found, a_row("0123456789ab", 0, "clean", 0.0)])
+    matches = [a_row(ROWS, e, c, float(e > 1)) for e in range(8) for c in ("clean", "spatter")]
+    matches = [{**row, "weights": sha} for row in matches]
+    rows.write(run / "rows.jsonl", [*matches, a_row("0123456789ab", 0, "clean", 0.0)])
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(programs, "TIMED", 2)
         patch.setattr(programs, "export_programs", stand_in_programs)
@@ -319,22 +319,22 @@ print(json.dumps([waypoints.sum().item(), logits[0].tolist()]))
     import numpy as np
 
     agent = loading.load_hardened(traced)
-    given = programs.probe(agent, SIZE)
+    value = programs.probe(agent, SIZE)
     first = {  # the first decision of an episode: one panorama, one node, two ghosts
-        **{name: given[name][:1] for name in ("rgb", "depth", "tokens", "episode")},
+        **{name: value[name][:1] for name in ("rgb", "depth", "tokens", "episode")},
         "panorama": torch.tensor([0]),
         "nodes": torch.tensor([[0]]),
         "sightings": torch.tensor([[[3, -1, -1, -1], [7, 8, -1, -1]]]),
-        "geometry": given["geometry"][:1, :4],
+        "geometry": value["geometry"][:1, :4],
         "valid": torch.ones(1, 4, dtype=torch.bool),
         "allowed": torch.tensor([[True, False, True, True]]),
     }
     np.savez(tmp_path / "given.npz", **{name: t.numpy() for name, t in first.items()})
     printed = python(code, traced, tmp_path / "given.npz", cwd=tmp_path)
     waypoints, logits = json.loads(printed)
-    wanted = programs.outputs(programs.networks(agent), first)
-    assert waypoints == pytest.approx(wanted["waypoints"].sum().item(), abs=1e-2)
-    assert logits == pytest.approx(wanted["logits"][0].tolist(), abs=1e-4)
+    expected = programs.outputs(programs.networks(agent), first)
+    assert waypoints == pytest.approx(expected["waypoints"].sum().item(), abs=1e-2)
+    assert logits == pytest.approx(expected["logits"][0].tolist(), abs=1e-4)
 
 
 @pytest.mark.parametrize(
@@ -446,8 +446,10 @@ def test_folder_of_another_agent_than_its_card_is_rejected(copied):
     resign(copied, agent="0123456789ab")
     with pytest.raises(ValueError, match="'0123456789ab'"):
         loading.load_hardened(copied)
-    own = TopologicalAgent(**TINY).eval()
-    assert loading.fill(own, copied) is own  # to train from: with adapters it is another one
+    own_value = TopologicalAgent(**TINY).eval()
+    assert (
+        loading.fill(own_value, copied) is own_value
+    )  # to train from: with adapters it is another one
 
 
 @pytest.mark.parametrize(
@@ -455,9 +457,9 @@ def test_folder_of_another_agent_than_its_card_is_rejected(copied):
 )
 def test_card_lists_only_valid_file_names(copied, name):
     relist(copied, lambda files: files.update({name: files["config.yaml"]}))
-    with pytest.raises(ValueError, match="not a plain file name") as told:
+    with pytest.raises(ValueError, match="not a plain file name") as caught:
         loading.load_hardened(copied)
-    assert str(told.value).isprintable() and len(str(told.value)) < 500
+    assert str(caught.value).isprintable() and len(str(caught.value)) < 500
 
 
 @pytest.mark.parametrize(
@@ -544,9 +546,9 @@ def test_export_writes_nothing_if_reload_differs(place, exported, tmp_path, monk
 def test_check_detects_other_outputs(place, tmp_path):
     """The same outputs passed it when the fixture exported ``whole``."""
     agent = loading.load_hardened(place / "hardened/whole")
-    wanted = programs.outputs(programs.networks(agent), programs.probe(agent, SIZE))
-    wanted["logits"] = wanted["logits"] + 0.01
-    save_file({k: v.contiguous() for k, v in wanted.items()}, tmp_path / "other.safetensors")
+    expected = programs.outputs(programs.networks(agent), programs.probe(agent, SIZE))
+    expected["logits"] = expected["logits"] + 0.01
+    save_file({k: v.contiguous() for k, v in expected.items()}, tmp_path / "other.safetensors")
     with pytest.raises(ValueError, match="agent differs by 0.01"):
         export.check_outputs(str(place / "hardened/whole"), str(tmp_path / "other.safetensors"))
 
@@ -555,10 +557,10 @@ def test_check_detects_other_outputs(place, tmp_path):
 @pytest.mark.parametrize("fusion", [{"rate": 4.0, "cap": 3.0}, {"learned": True}], ids=str)
 def test_programs_weigh_views_as_the_agent_does(fusion):
     agent = TopologicalAgent(**{**TINY, "planner": {**TINY["planner"], "fusion": fusion}}).eval()
-    made = {name: p.module() for name, p in programs.export_programs(agent, SIZE).items()}
-    given = programs.probe(agent, SIZE)
-    wanted = programs.outputs(programs.networks(agent), given)
-    assert programs.difference(wanted, programs.outputs(made, given)) < 1e-5
+    output = {name: p.module() for name, p in programs.export_programs(agent, SIZE).items()}
+    value = programs.probe(agent, SIZE)
+    expected = programs.outputs(programs.networks(agent), value)
+    assert programs.difference(expected, programs.outputs(output, value)) < 1e-5
 
 
 def test_rows_of_another_agent_are_not_metrics(place, tmp_path):
@@ -734,10 +736,10 @@ def test_export_compares_the_programs_in_a_new_process(traced):
     card = loading.read_card(traced)
     assert card["checked"]["program_tolerance"] == export.EXPORTED
     agent = loading.load_hardened(traced)
-    given = programs.probe(agent, SIZE)
+    value = programs.probe(agent, SIZE)
     program = programs.load_programs(traced / loading.PROGRAM)
-    wanted = programs.outputs(programs.networks(agent), given)
-    assert programs.difference(wanted, programs.outputs(program, given)) <= export.EXPORTED
+    expected = programs.outputs(programs.networks(agent), value)
+    assert programs.difference(expected, programs.outputs(program, value)) <= export.EXPORTED
 
 
 SHIPPED = sorted(p.name for p in (ROOT / "checkpoints/hardened").glob("[!.]*"))
@@ -763,10 +765,10 @@ def test_export_writes_the_program_of_a_shipped_folder(name, tmp_path, monkeypat
     card = loading.read_card(folder)
     assert card["agent"] == before["agent"]
     assert loading.PROGRAM in folders.check(folder).files
-    given = programs.probe(agent, SIZE)
+    value = programs.probe(agent, SIZE)
     program = programs.load_programs(folder / loading.PROGRAM)
-    wanted = programs.outputs(programs.networks(agent), given)
-    assert programs.difference(wanted, programs.outputs(program, given)) <= export.EXPORTED
+    expected = programs.outputs(programs.networks(agent), value)
+    assert programs.difference(expected, programs.outputs(program, value)) <= export.EXPORTED
 
 
 def base_of(card):

@@ -25,8 +25,8 @@ def card_of(folder: Path) -> dict:
 
 @pytest.mark.parametrize("folder", SHIPPED, ids=lambda folder: folder.name)
 def test_shipped_folder_is_a_model_repository(folder):
-    card, found = card_of(folder), ModelCard.load(folder / "README.md")
-    data = found.data
+    card, loaded = card_of(folder), ModelCard.load(folder / "README.md")
+    data = loaded.data
     assert (data.library_name, data.license, data.pipeline_tag) == (
         "mitigate",
         "apache-2.0",
@@ -42,7 +42,7 @@ def test_shipped_folder_is_a_model_repository(folder):
     clean = results["Clean SR"]
     assert clean.metric_value == entry["clean"]["SR"][0] and clean.dataset_split == "val_unseen"
     assert clean.dataset_args["episodes"] in (100, 300) and clean.metric_args["level"] == 0.95
-    assert found.text.strip().startswith(f"# {card['name']}")
+    assert loaded.text.strip().startswith(f"# {card['name']}")
     assert (folder / "README.md").read_text(encoding="utf-8") == readme(card)
 
 
@@ -57,10 +57,14 @@ def test_card_without_metrics_or_with_odd_names_is_valid():
     card = card_of(SHIPPED[0]) | {"metrics": []}
     assert ModelCard(front_matter(card)).data.eval_results is None
     strange = 'a: [b\n---\n"x": !!python/object:os.system'
-    own = card_of(SHIPPED[0])
-    own["name"] = strange
-    own["metrics"][0] |= {"rule": strange, "split": strange, "PRS": {"PRS-SR (RGB)": [None] * 3}}
-    data = ModelCard(front_matter(own)).data
+    own_value = card_of(SHIPPED[0])
+    own_value["name"] = strange
+    own_value["metrics"][0] |= {
+        "rule": strange,
+        "split": strange,
+        "PRS": {"PRS-SR (RGB)": [None] * 3},
+    }
+    data = ModelCard(front_matter(own_value)).data
     assert data.model_name == strange and data.eval_results[0].dataset_split == strange
     assert "PRS-SR (RGB)" not in {result.metric_name for result in data.eval_results}
 
@@ -89,8 +93,8 @@ def test_renew_changes_the_readme_and_the_manifest_alone(tmp_path):
     assert page.read_text(encoding="utf-8") == "# old\n"  # as it was
     page.write_text(readme(before), encoding="utf-8")
     renew(folder)
-    kept = older_folders.without_sums(before)
-    assert loading.check_hardened(folder) == {**kept, "format": loading.FORMAT}
+    remaining = older_folders.without_sums(before)
+    assert loading.check_hardened(folder) == {**remaining, "format": loading.FORMAT}
     assert folders.read_manifest(folder).files.keys() == {*before["files"], "card.json"}
     assert [p.name for p in tmp_path.iterdir()] == ["mine"]
 

@@ -71,9 +71,9 @@ def test_evaluate_takes_world_needs_from_the_checkpoint(monkeypatch):
     for words in (["checkpoint=checkpoints/frontier/base"], ["checkpoint=checkpoints/base"]):
         monkeypatch.setattr("sys.argv", ["evaluate", *words])
         evaluate.main()
-    (found, options), (usual, _) = seen
-    assert found == conf.load_config("evaluate", ["agent=frontier", *options])
-    assert found.split == "val_unseen_ogn" and found.env.views == 1
+    (matches, options), (usual, _) = seen
+    assert matches == conf.load_config("evaluate", ["agent=frontier", *options])
+    assert matches.split == "val_unseen_ogn" and matches.env.views == 1
     assert usual.split == "val_unseen"
 
 

@@ -18,11 +18,11 @@ def rows(agent: str, wins: bool) -> list[dict]:
 
 
 def test_run_rows_identify_agents_of_equal_weights():
-    own, blind = rows("a" * 12, True), rows("b" * 12, False)
-    found = list(_of_one_agent(own[:1], own + blind, {"w" * 12}))
-    assert {r["agent"] for r in found} == {"a" * 12} and len(found) == 3
+    own_rows, blind = rows("a" * 12, True), rows("b" * 12, False)
+    matches = list(_of_one_agent(own_rows[:1], own_rows + blind, {"w" * 12}))
+    assert {r["agent"] for r in matches} == {"a" * 12} and len(matches) == 3
     with pytest.raises(ValueError, match="several agents with these weights"):
-        list(_of_one_agent([], own + blind, {"w" * 12}))
+        list(_of_one_agent([], own_rows + blind, {"w" * 12}))
 
 
 def test_rows_of_before_are_known_by_their_weights():
@@ -31,9 +31,9 @@ def test_rows_of_before_are_known_by_their_weights():
 
 
 def test_card_names_the_agent_of_its_rows():
-    found = [*rows("a" * 12, True), *rows("b" * 12, True)]
-    assert rows_agent(found, {"w" * 12}) == ["a" * 12, "b" * 12]
-    assert rows_agent(found, {"v" * 12}) == []
+    matches = [*rows("a" * 12, True), *rows("b" * 12, True)]
+    assert rows_agent(matches, {"w" * 12}) == ["a" * 12, "b" * 12]
+    assert rows_agent(matches, {"v" * 12}) == []
 
 
 class Mine:
@@ -93,6 +93,6 @@ def test_attributes_are_compared_without_settings(tmp_path):
         check_same(agent, config, "")
     give_settings(agent, config, "")
     assert agent.settings() == {"gain": 1, "net": "a"}
-    told = Mine(2.0)
-    give_settings(told, config, "")
-    assert told.settings() == {"gain": 2.0}
+    reported = Mine(2.0)
+    give_settings(reported, config, "")
+    assert reported.settings() == {"gain": 2.0}

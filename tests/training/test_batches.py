@@ -76,8 +76,8 @@ def trained(folder, workers: Workers | None, lag: int = 0, save_every: int = 2, 
     return checkpoint.weights_sha(recipe.agent)
 
 
-def counted(order, given: dict[int, int], number: int, job) -> None:
-    given[number] += 1
+def counted(order, value: dict[int, int], number: int, job) -> None:
+    value[number] += 1
     order(job)
 
 
@@ -98,12 +98,12 @@ def test_two_workers_train_the_same_weights_as_zero(ahead, two, tmp_path):
 @pytest.mark.parametrize("ahead,busy", [(True, 6), (False, 3)])
 def test_many_workers_work_on_several_steps_at_once(ahead, busy, tmp_path):
     with Workers(7) as workers:
-        given = dict.fromkeys(range(7), 0)
+        options = dict.fromkeys(range(7), 0)
         for worker in workers._all:
-            worker.order = partial(counted, worker.order, given, worker.number)
-        found = trained(tmp_path / "seven", workers, ahead=ahead)
-    assert found == trained(tmp_path / "alone", None, ahead=ahead)
-    assert [given[n] for n in range(7)] == [18 // busy] * busy + [0] * (7 - busy)
+            worker.order = partial(counted, worker.order, options, worker.number)
+        matches = trained(tmp_path / "seven", workers, ahead=ahead)
+    assert matches == trained(tmp_path / "alone", None, ahead=ahead)
+    assert [options[n] for n in range(7)] == [18 // busy] * busy + [0] * (7 - busy)
 
 
 def test_batches_with_lag_do_not_depend_on_workers(two, tmp_path):
@@ -130,9 +130,9 @@ def test_lagging_weights_are_so_many_updates_old(tmp_path):
     recipe.work = lambda job: (
         seen.append(float(recipe.agent.body[0].weight.sum())) or np.ones((3, 4), np.float32)
     )
-    made = Batches(recipe, None, 6, "fp32", torch.device("cpu"), lag=2, save_every=4)
+    objective = Batches(recipe, None, 6, "fp32", torch.device("cpu"), lag=2, save_every=4)
     for step in range(6):
-        made.batch(step)
+        objective.batch(step)
         with torch.no_grad():
             recipe.agent.body[0].weight += 1.0
     updates = [
@@ -152,8 +152,8 @@ def test_killed_worker_is_replaced_and_nothing_is_lost(how, where, tmp_path, cap
     mark = tmp_path / where
     mark.touch()
     with Workers(2) as workers:
-        found = trained(tmp_path / "killed", workers, fatal=str(mark), **how)
-    assert found == trained(tmp_path / "whole", None, **how)
+        matches = trained(tmp_path / "killed", workers, fatal=str(mark), **how)
+    assert matches == trained(tmp_path / "whole", None, **how)
     assert "ended with code -9; a new one repeats its work" in capsys.readouterr().out
 
 
@@ -191,7 +191,7 @@ def _no_job():
 
 
 @pytest.mark.parametrize(
-    ("fatal", "kind", "said"),
+    ("fatal", "kind", "message"),
     [
         ("piece", ValueError, "A piece of a batch cannot be sent .* workers=0"),
         ("pickled", ValueError, "A job of this objective cannot be sent .* workers=0"),
@@ -199,9 +199,9 @@ def _no_job():
         ("unpickled", OSError, "no job can be made"),
     ],
 )
-def test_unpicklable_result_is_reported(fatal, kind, said, tmp_path):
+def test_unpicklable_result_is_reported(fatal, kind, message, tmp_path):
     """Not as a want of memory, and nobody waits for it."""
-    with Workers(1) as workers, pytest.raises(kind, match=said) as raised:
+    with Workers(1) as workers, pytest.raises(kind, match=message) as raised:
         Trainer(Unpackable(fatal=fatal), steps=2, folder=tmp_path, workers=workers).fit()
     assert not isinstance(raised.value, WorkersDied)
 
@@ -225,11 +225,11 @@ def test_unpicklable_recipe_is_rejected_with_a_way_out(two, tmp_path):
 def test_stopped_worker_is_reported_until_it_continues(tmp_path, monkeypatch, capsys):
     monkeypatch.setattr(workers, "STUCK", 0.2)
     with Workers(1) as pool:
-        wanted = trained(tmp_path / "whole", pool)
+        expected = trained(tmp_path / "whole", pool)
         process = pool._all[0].process.pid
         os.kill(process, signal.SIGSTOP)
         going_on = threading.Timer(0.7, os.kill, (process, signal.SIGCONT))
         going_on.start()
-        assert trained(tmp_path / "stopped", pool) == wanted
+        assert trained(tmp_path / "stopped", pool) == expected
         going_on.join()
     assert f"worker 0 ({process}) has been silent for" in capsys.readouterr().out

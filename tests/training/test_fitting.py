@@ -48,10 +48,10 @@ def no_recipe(agent):
 
 def refusal(folder, *options: str) -> str:
     cfg = conf.load_config("train", ["debug=smoke", "workers=0", f"folder={folder}", *options])
-    with pytest.raises(ValueError) as found:
+    with pytest.raises(ValueError) as caught:
         train.run(cfg)
     assert not list(folder.glob("*/step-*.pt"))
-    return str(found.value)
+    return str(caught.value)
 
 
 @pytest.mark.parametrize(
@@ -67,16 +67,16 @@ def refusal(folder, *options: str) -> str:
     ],
 )
 def test_recipe_for_other_agents_names_them(tmp_path, recipe, agent, words):
-    said = refusal(tmp_path, f"recipe={recipe}", f"agent={agent}", OFF)
-    assert all(word in said for word in words), said
+    message = refusal(tmp_path, f"recipe={recipe}", f"agent={agent}", OFF)
+    assert all(word in message for word in words), message
 
 
 @pytest.mark.parametrize(
     "recipe", [Dagger, HardenEncoder, Imitate, ImitateStored, Pretrain, Restore]
 )
 def test_recipe_names_what_the_agent_lacks(recipe):
-    said = recipe.misfit(TinyAgent())
-    assert said.startswith("it has no ") and len(said.split(". ")) > 1
+    message = recipe.misfit(TinyAgent())
+    assert message.startswith("it has no ") and len(message.split(". ")) > 1
     assert not TinyRecipe.misfit(TinyAgent())
 
 
@@ -103,9 +103,11 @@ def test_plan_warns_about_unused_severity(recipe, capsys):
     cfg = conf.load_config("train", options)
     assert build(cfg.schedule) == build(conf.load_config("train", options[:1]).schedule)
     plan.warn_unused_schedule(read(cfg))
-    said = capsys.readouterr().out
-    assert "severity=0.9 affects only the evaluation" in said and "which is [0.3, 1.0]" in said
-    assert "severity_depth=0.8 affects only the evaluation" in said
+    printed = capsys.readouterr().out
+    assert (
+        "severity=0.9 affects only the evaluation" in printed and "which is [0.3, 1.0]" in printed
+    )
+    assert "severity_depth=0.8 affects only the evaluation" in printed
     plan.warn_unused_schedule(load(*options[:1]))
     plan.warn_unused_schedule(load("recipe=da_per_frame", *options[1:]))
     assert not capsys.readouterr().out
@@ -119,9 +121,9 @@ def test_oracle_share_falls_over_the_actual_steps(recipe):
         ([], None),
     ):
         stage = "policy" if recipe == "dagger" else "planner"
-        given = [option.format(stage) for option in options]
-        own = conf.load_config("train", [f"recipe={recipe}", *given]).stages[stage]
-        assert own.recipe.steps == (steps or own.trainer.steps)
+        arguments = [option.format(stage) for option in options]
+        settings = conf.load_config("train", [f"recipe={recipe}", *arguments]).stages[stage]
+        assert settings.recipe.steps == (steps or settings.trainer.steps)
 
 
 def test_plan_warns_about_stages_shorter_than_the_warmup(capsys):
@@ -198,11 +200,12 @@ def test_blinded_agent_without_stages_is_evaluated(tmp_path, monkeypatch, capsys
 
 
 @pytest.mark.parametrize(
-    ("agent", "views", "taken"), [("recurrent", 12, 1), ("frontier", 12, 1), ("topological", 1, 12)]
+    ("agent", "views", "record_action"),
+    [("recurrent", 12, 1), ("frontier", 12, 1), ("topological", 1, 12)],
 )
-def test_world_with_another_number_of_views_is_rejected(tmp_path, agent, views, taken):
-    said = refusal(tmp_path, f"agent={agent}", f"env.views={views}", OFF)
-    assert f"takes {taken}" in said and f"env.views={taken}" in said
+def test_world_with_another_number_of_views_is_rejected(tmp_path, agent, views, record_action):
+    message = refusal(tmp_path, f"agent={agent}", f"env.views={views}", OFF)
+    assert f"takes {record_action}" in message and f"env.views={record_action}" in message
 
 
 def tiny(folder, name: str, *stages: str, width: int = 8):
@@ -310,9 +313,9 @@ def test_smoke_run_measures_success_without_workers(tmp_path, monkeypatch, optio
 
 
 def test_invalid_agent_setting_names_allowed_values(tmp_path):
-    said = refusal(tmp_path, "agent=recurrent", "agent.blind=[sonar]", OFF)
-    assert "agent.blind" in said and "a list of rgb, depth, instruction" in said
-    assert "agent.size" not in said
+    message = refusal(tmp_path, "agent=recurrent", "agent.blind=[sonar]", OFF)
+    assert "agent.blind" in message and "a list of rgb, depth, instruction" in message
+    assert "agent.size" not in message
 
 
 def test_missing_weights_name_the_recipe_that_makes_them(tmp_path):
@@ -345,8 +348,8 @@ def test_agent_gets_corruptions_of_its_sensors_only(recipe, agent, read, capsys)
         assert set(met) == {"clean", *read}
         assert met["clean"] / 2000 == pytest.approx(0.25, abs=0.03)  # the clean share, and no more
     lost = ", ".join(DEPTH if read is RGB else RGB)
-    said = capsys.readouterr().out
-    assert said.count("reads no") == 1 and said.endswith(f"the schedule leaves out {lost}\n")
+    printed = capsys.readouterr().out
+    assert printed.count("reads no") == 1 and printed.endswith(f"the schedule leaves out {lost}\n")
 
 
 def test_unread_corruptions_are_dropped_from_a_list():
@@ -379,8 +382,8 @@ def test_clean_schedules_stay_as_they_are():
 )
 def test_schedule_without_read_corruptions_is_rejected(tmp_path, sensor, names, words):
     options = ["agent=recurrent", f"agent.sensors=[{sensor}]", "init=null", OFF]
-    said = refusal(tmp_path, *options, f"schedule.names=[{names}]")
-    assert all(word in said for word in words) and "schedule.names=[...]" in said
+    message = refusal(tmp_path, *options, f"schedule.names=[{names}]")
+    assert all(word in message for word in words) and "schedule.names=[...]" in message
 
 
 def test_run_trains_on_and_records_the_drawn_corruptions(tmp_path, monkeypatch):
@@ -393,8 +396,8 @@ def test_run_trains_on_and_records_the_drawn_corruptions(tmp_path, monkeypatch):
     monkeypatch.setattr(stages, "train_stage", trained)
     train.run(conf.load_config("train", ["agent=recurrent_rgb", OFF, f"folder={tmp_path}"]))
     assert met == {"perception_rgb": list(RGB), "imitation": list(RGB)}
-    written = OmegaConf.load(tmp_path / "config.yaml")
-    assert written.stages.imitation.recipe.schedule.names == list(RGB)
+    saved = OmegaConf.load(tmp_path / "config.yaml")
+    assert saved.stages.imitation.recipe.schedule.names == list(RGB)
 
 
 def test_plan_rejects_an_unused_teacher(tmp_path):

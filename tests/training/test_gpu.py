@@ -42,28 +42,30 @@ def trained(folder, device, *options):
     return train.run(settings(folder, device, *options))
 
 
-def losses(said):
-    return [float(value) for value in re.findall(r"step \d+/\d+  loss (\S+)", said)]
+def losses(message):
+    return [float(value) for value in re.findall(r"step \d+/\d+  loss (\S+)", message)]
 
 
 @pytest.mark.parametrize("agent,recipe", KINDS)
 def test_loss_on_gpu_equals_loss_on_cpu(tmp_path, capfd, agent, recipe):
-    found = []
+    matches = []
     for place, device in (("processor", "cpu"), ("gpu", GPU)):
         trained(tmp_path / place, device, f"agent={agent}", f"recipe={recipe}")
-        found.append(losses("".join(capfd.readouterr())))
-    assert len(found[0]) >= 2 and found[1] == pytest.approx(found[0], rel=DROPOUT)
-    assert found[1][:2] == pytest.approx(found[0][:2], rel=0.01)  # of the first stage: no dropout
+        matches.append(losses("".join(capfd.readouterr())))
+    assert len(matches[0]) >= 2 and matches[1] == pytest.approx(matches[0], rel=DROPOUT)
+    assert matches[1][:2] == pytest.approx(
+        matches[0][:2], rel=0.01
+    )  # of the first stage: no dropout
 
 
 @pytest.mark.parametrize("recipe", ["harden", "ts_distill", "restore"])
 def test_workers_feed_every_stage_as_the_training_itself_does(tmp_path, capfd, recipe):
-    found = []
+    matches = []
     for count in (0, 2):  # no CUDA may be begun where the second stage's workers come from
         options = [f"recipe={recipe}", f"workers={count}"]
         trained(tmp_path / str(count), GPU, *options)
-        found.append(losses("".join(capfd.readouterr())))
-    assert found[0] and found[1] == pytest.approx(found[0], rel=0.02, abs=1e-3)
+        matches.append(losses("".join(capfd.readouterr())))
+    assert matches[0] and matches[1] == pytest.approx(matches[0], rel=0.02, abs=1e-3)
 
 
 @pytest.mark.parametrize("computed", ["fp32", "bf16"])

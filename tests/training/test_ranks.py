@@ -54,10 +54,10 @@ class Regression(Objective):
 
 
 def train(folder: Path, ranks: Ranks, steps: int = 6) -> torch.Tensor:
-    made = Regression()
+    output = Regression()
     options = {"lr": 0.05, "weight_decay": 0.5, "save_every": 2, "log_every": 1}
-    Trainer(made, steps=steps, folder=folder, ranks=ranks, **options).fit()
-    return torch.cat([made.line.weight, made.unused.weight]).detach()
+    Trainer(output, steps=steps, folder=folder, ranks=ranks, **options).fit()
+    return torch.cat([output.line.weight, output.unused.weight]).detach()
 
 
 def torchrun(folder: Path, count: int) -> subprocess.CompletedProcess:

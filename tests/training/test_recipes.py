@@ -74,8 +74,8 @@ def test_int8_language_model_trains_without_log_spam(tmp_path, capfd):
     options += [f"runs={tmp_path}", f"agent.base={base}", "agent.precision=int8"]
     cfg = conf.load_config("train", [*options, "trainer.eval_every=1"])
     folder = train.run(cfg)
-    said = "".join(capfd.readouterr())
-    assert "evaluated at step 2" in said and "MatMul8bitLt" not in said
+    printed = "".join(capfd.readouterr())
+    assert "evaluated at step 2" in printed and "MatMul8bitLt" not in printed
     checkpoint.load_agent(build(cfg.agent), folder / "agent")
 
 

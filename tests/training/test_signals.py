@@ -82,9 +82,9 @@ def end_within_another_block():
 def train(folder: Path, number: int) -> torch.Tensor:
     torch.manual_seed(0)
     folder.mkdir(parents=True, exist_ok=True)
-    made = Slow(folder, number)
-    Trainer(made, steps=6, folder=folder / "run", lr=0.1, save_every=5, precision="fp32").fit()
-    return made.line.weight.detach()
+    output = Slow(folder, number)
+    Trainer(output, steps=6, folder=folder / "run", lr=0.1, save_every=5, precision="fp32").fit()
+    return output.line.weight.detach()
 
 
 def run(folder: Path, number: int) -> subprocess.CompletedProcess:
@@ -110,8 +110,8 @@ def test_interrupted_training_saves_and_resumes_to_the_same_result(tmp_path, num
     assert "To resume:" in ended.stderr and "program.py" in ended.stderr
     assert "Traceback" not in ended.stderr
     assert [path.name for path in (tmp_path / "run").glob("step-*.pt")] == ["step-00000004.pt"]
-    found = train(tmp_path, 0)
-    assert torch.equal(found, train(tmp_path / "unbroken", 0))
+    matches = train(tmp_path, 0)
+    assert torch.equal(matches, train(tmp_path / "unbroken", 0))
 
 
 def test_signal_during_evaluation_loses_no_step(tmp_path):

@@ -35,8 +35,8 @@ KINDS = ["topological", "recurrent", "recurrent_rgb", "frontier"]
     ids=lambda x: type(x).__name__,
 )
 def test_stage_without_trainable_parts_explains_why(agent, left):
-    said = [stage for stage in (RGB, DEPTH, POLICY, STORED) if nothing_to_train(stage, agent)]
-    assert said == left
+    texts = [stage for stage in (RGB, DEPTH, POLICY, STORED) if nothing_to_train(stage, agent)]
+    assert texts == left
     if left:
         assert type(agent).__name__ in nothing_to_train(left[0], agent)
 

@@ -22,9 +22,9 @@ ALL = dict.fromkeys((*RGB, *DEPTH), 4)
 KEPT = ("topological", "recurrent")  # columns of Table I where more would say the same
 
 
-def less(table: str, kept: Collection[str]) -> list[str]:
+def less(table: str, remaining: Collection[str]) -> list[str]:
     """Options that leave these columns of a table alone."""
-    return [f"~columns.{name}" for name in conf.load_config(table).columns if name not in kept]
+    return [f"~columns.{name}" for name in conf.load_config(table).columns if name not in remaining]
 
 
 def load(table: str, *options: str) -> cells.TablesConfig:
@@ -42,8 +42,8 @@ def finished(cfg) -> None:
     """Rows of every cell, as an evaluation leaves them; seed 1 fares worse than seed 0."""
     for cell in tables.cells(cfg):
         agent = "base" if not cell.options else f"{cell.column}{cell.seed}"
-        made = column(8 - 2 * cell.seed, ALL, name=cell.column, seed=cell.seed, agent=agent)
-        rows.write(cell.folder / "evaluation" / "rows.jsonl", made)
+        records = column(8 - 2 * cell.seed, ALL, name=cell.column, seed=cell.seed, agent=agent)
+        rows.write(cell.folder / "evaluation" / "rows.jsonl", records)
 
 
 @pytest.fixture(autouse=True)
@@ -79,9 +79,9 @@ def test_cell_trains_and_evaluates_in_its_own_folder(tmp_path):
 def test_table1_evaluates_and_trains_agents(tmp_path):
     more = '+columns.recurrent_mine=["agent=recurrent","recipe=ts_distill"]'
     cfg = load("table1", f"out={tmp_path}", "split=val_unseen_ogn", more)
-    made = {cell.column: [args for _, args in cell.commands(cfg)] for cell in tables.cells(cfg)}
-    (plain,), (shipped,) = made["recurrent"], made["recurrent_da"]
-    train, hardened = made["recurrent_mine"]
+    records = {cell.column: [args for _, args in cell.commands(cfg)] for cell in tables.cells(cfg)}
+    (plain,), (shipped,) = records["recurrent"], records["recurrent_da"]
+    train, hardened = records["recurrent_mine"]
     assert "checkpoint=checkpoints/recurrent/teacher" in shipped
     assert "agent=recurrent" in plain and not any(a.startswith("checkpoint=") for a in plain)
     assert {"agent=recurrent", "recipe=ts_distill"} <= set(train)
@@ -100,7 +100,7 @@ def test_evaluations_can_be_selected(tmp_path, option):
 
 
 @pytest.mark.parametrize(
-    ("option", "said"),
+    ("option", "message"),
     [
         ('+evaluations.mine=["suite=unsen"]', "Evaluation mine: .*unseen"),
         ('+evaluations.mine=["conditions=[hase]"]', "Evaluation mine: .*Did you mean haze?"),
@@ -142,10 +142,10 @@ def test_evaluations_can_be_selected(tmp_path, option):
         ("conditions=[clen]", "no condition 'clen'. Did you mean clean?"),
     ],
 )
-def test_error_is_reported_once_before_any_cell_runs(tmp_path, monkeypatch, option, said):
-    monkeypatch.setattr(tables, "make", lambda made, cfg: pytest.fail("cells are run"))
+def test_error_is_reported_once_before_any_cell_runs(tmp_path, monkeypatch, option, message):
+    monkeypatch.setattr(tables, "make", lambda output, cfg: pytest.fail("cells are run"))
     cfg = load("table1", f"out={tmp_path / 'out'}", option, *less("table1", KEPT))
-    with pytest.raises(ValueError, match=said):
+    with pytest.raises(ValueError, match=message):
         tables.make_table(cfg)
     assert not (tmp_path / "out").exists()
 
@@ -230,8 +230,8 @@ def test_program_without_work_costs_nothing(tmp_path, monkeypatch):
     def chain(self, cfg):
         words = {kind: (add, str(left.get(kind, tmp_path / "other"))) for kind in todo}
         kinds = ("train", "evaluate", "evaluate more")
-        made = ((kind, (sys.executable, "-c", *words.get(kind, ("pass",)))) for kind in kinds)
-        return programs.Chain("mine", tuple(made), self.folder / "log.txt", Path.cwd())
+        output = ((kind, (sys.executable, "-c", *words.get(kind, ("pass",)))) for kind in kinds)
+        return programs.Chain("mine", tuple(output), self.folder / "log.txt", Path.cwd())
 
     def cost() -> dict[str, float]:
         assert tables.make([cell], config(tmp_path)) == []
@@ -274,9 +274,9 @@ def test_further_evaluations_are_measured_and_reported_apart(tmp_path, quick, mo
     assert (node.name, node.restore, node.episodes) == ("base", "checkpoints/restorer", 7)
 
     for cell, name in ((plain, "base"), (restored, "base+restorer")):
-        made = column(8, ALL, name=name, agent=cell.column)
-        rows.write(cell.evaluation / "rows.jsonl", made)
-        rows.write(cell.further("severity_02") / "rows.jsonl", made[: len(made) // 2])
+        records = column(8, ALL, name=name, agent=cell.column)
+        rows.write(cell.evaluation / "rows.jsonl", records)
+        rows.write(cell.further("severity_02") / "rows.jsonl", records[: len(records) // 2])
     report = tables.make_table(cfg).read_text(encoding="utf-8")
     apart = (tmp_path / "severity_02" / "table.md").read_text(encoding="utf-8")
     assert "| base | base+restorer |" in report and "| base | base+restorer |" in apart
@@ -287,12 +287,12 @@ def test_further_evaluations_are_measured_and_reported_apart(tmp_path, quick, mo
 
 
 @pytest.mark.parametrize(
-    ("table", "asked", "walked"),
+    ("table", "requests", "walked"),
     [(3, "150", 3), (200, "150", 150), (3, "null", 3), (None, "150", 150), (None, "null", None)],
 )
-def test_additional_evaluation_limits_episodes(tmp_path, table, asked, walked):
+def test_additional_evaluation_limits_episodes(tmp_path, table, requests, walked):
     cfg = config(tmp_path, episodes=table)
-    measured = tables.cells(cfg)[0].measurement(cfg, "mine", [f"episodes={asked}"])
+    measured = tables.cells(cfg)[0].measurement(cfg, "mine", [f"episodes={requests}"])
     assert conf.load_config("evaluate", measured).episodes == walked
 
 
@@ -300,13 +300,13 @@ def test_null_column_or_evaluation_is_left_out(tmp_path):
     null = ["columns.base=null", "evaluations.pairs=null", "+evaluations.mine=null"]
     columns = less("table2", ["base", "da_per_frame"])  # each is composed and checked
     cfg = load("table2", f"out={tmp_path}", "evaluations=beyond", *null, *columns)
-    made = tables.cells(cfg)
-    cells.check(made, cfg)
-    assert "base" not in {cell.column for cell in made}
-    kinds = [kind for kind, _ in made[0].commands(cfg)]
+    output = tables.cells(cfg)
+    cells.check(output, cfg)
+    assert "base" not in {cell.column for cell in output}
+    kinds = [kind for kind, _ in output[0].commands(cfg)]
     assert "evaluate unseen" in kinds and not {"evaluate pairs", "evaluate mine"} & {*kinds}
-    rows.write(made[0].further("pairs") / "rows.jsonl", column(8, ALL))
-    assert tables.write_further(made, cfg, tmp_path) == []
+    rows.write(output[0].further("pairs") / "rows.jsonl", column(8, ALL))
+    assert tables.write_further(output, cfg, tmp_path) == []
     with pytest.raises(ValueError, match="columns.* must not be empty"):
         tables.cells(replace(cfg, columns=dict.fromkeys(cfg.columns)))
 
@@ -373,13 +373,13 @@ def test_trajectories_show_episodes_won_back_by_the_last_agent(tmp_path, quick, 
         for episode in tables.episodes(conf.load_config("evaluate").env, cfg.split, 2)
     ]
     for cell, wins in zip(tables.cells(cfg), ("10", "11"), strict=True):
-        made = [
+        output = [
             row(i, won == "1", name=cell.column, corruption=c, severity=0.6 * (c != "clean"))
             for c in ("clean", "flare")
             for i, won in zip(ids, wins, strict=True)
         ]
         others = row("of-a-longer-run", True, name=cell.column)
-        rows.write(cell.folder / "evaluation" / "rows.jsonl", [*made, others])
+        rows.write(cell.folder / "evaluation" / "rows.jsonl", [*output, others])
     tables.make_table(cfg)
     assert [p.name for p in (tmp_path / "pictures").iterdir()] == [f"{ids[1]}-flare.png"]
 
@@ -394,8 +394,10 @@ def test_trajectories_use_the_input_guard_of_the_table(tmp_path, monkeypatch):
     for cell, name in zip(tables.cells(cfg), names, strict=True):
         for corruption in ("clean", "flare", "black_box"):
             at = {"corruption": corruption, "severity": 0.6 * (corruption != "clean")}
-            made = row(episode.episode_id, name != "base" or corruption == "flare", name=name, **at)
-            rows.append(cell.evaluation / "rows.jsonl", [made])
+            output = row(
+                episode.episode_id, name != "base" or corruption == "flare", name=name, **at
+            )
+            rows.append(cell.evaluation / "rows.jsonl", [output])
     walked = []
 
     def run_episode(agent, world, episode, met, seed, guards):

@@ -27,8 +27,8 @@ def stage(**trainer) -> options.StageConfig:
     return options.StageConfig(recipe=TINY, trainer=options.TrainerConfig(**trainer))
 
 
-def config(folder, *given: str, stages: dict | None = None) -> DictConfig:
-    cfg = conf.load_config("train", ["evaluation.enabled=false", f"folder={folder}", *given])
+def config(folder, *arguments: str, stages: dict | None = None) -> DictConfig:
+    cfg = conf.load_config("train", ["evaluation.enabled=false", f"folder={folder}", *arguments])
     with open_dict(cfg):
         cfg.name, cfg.init = "tiny", None
         cfg.agent = {"_target_": "tests.tiny.TinyAgent"}
@@ -123,12 +123,12 @@ def test_rejected_resume_leaves_the_folder_unchanged(tmp_path):
 
 def test_train_skips_a_damaged_checkpoint(tmp_path, capsys):
     train.run(config(tmp_path))
-    wanted = weights(tmp_path)
+    expected = weights(tmp_path)
     newest = states.checkpoints(tmp_path / "second")[-1]
     os.truncate(newest, newest.stat().st_size // 2)
     train.run(config(tmp_path))
     assert f"{newest} is damaged; resuming from step-00000004.pt" in capsys.readouterr().out
-    assert same(wanted, weights(tmp_path)) and states.load(newest)["step"] == 6
+    assert same(expected, weights(tmp_path)) and states.load(newest)["step"] == 6
 
 
 def test_train_rewrites_damaged_final_weights(tmp_path):
@@ -175,8 +175,8 @@ def test_run_reports_its_plan_and_duration_first(tmp_path, capsys):
     cfg = config(tmp_path)
     cfg.stages.first.cost, cfg.stages.second.cost = 60.0, 60.0
     train.run(cfg)
-    said = capsys.readouterr().out.splitlines()[1]  # the first is of a schedule that none draws
-    assert said.startswith("tiny: first 4 steps, second 6 steps: about ") and "min" in said
+    printed = capsys.readouterr().out.splitlines()[1]  # the first is of a schedule that none draws
+    assert printed.startswith("tiny: first 4 steps, second 6 steps: about ") and "min" in printed
     train.run(cfg)  # what is done takes no time
     assert "about 0 s" in capsys.readouterr().out.splitlines()[1]
 
@@ -221,8 +221,8 @@ def test_default_folder_ignores_options_without_effect(option, monkeypatch):
     """More episodes to report on must not train again."""
     met = []
     monkeypatch.setattr(train, "run", lambda cfg: met.append(cfg.folder))
-    for given in ([], [option]):
-        monkeypatch.setattr(sys, "argv", ["train", "recipe=da_success", *given])
+    for value in ([], [option]):
+        monkeypatch.setattr(sys, "argv", ["train", "recipe=da_success", *value])
         conf.main(train.hydra_main, "train")
     assert met == ["runs/da_success-s0.6-seed0"] * 2
 

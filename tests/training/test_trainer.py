@@ -42,18 +42,18 @@ def recipe(**settings) -> TinyRecipe:
 
 
 def trained(folder: Path, **settings) -> dict[str, torch.Tensor]:
-    made = recipe()
-    Trainer(made, folder=folder, **{"steps": 20, "save_every": 5, **settings}).fit()
-    return {name: value.clone() for name, value in made.agent.state_dict().items()}
+    objective = recipe()
+    Trainer(objective, folder=folder, **{"steps": 20, "save_every": 5, **settings}).fit()
+    return {name: value.clone() for name, value in objective.agent.state_dict().items()}
 
 
 def test_trainer_notices_a_lost_folder(tmp_path, monkeypatch):
     save = states.save
 
     def save_and_lose(folder, state, **options):
-        written = save(folder, state, **options)
+        saved = save(folder, state, **options)
         shutil.rmtree(folder)
-        return written
+        return saved
 
     monkeypatch.setattr(states, "save", save_and_lose)
     with pytest.raises(FolderLostError, match="run was removed or replaced"):
@@ -143,8 +143,8 @@ def test_flipped_bit_falls_back_to_the_older_checkpoint(tmp_path, capsys):
     draw = seeding.generator(0, "flipped bits of a trainer's checkpoint")
     for bit in draw.integers(0, 8 * len(sound), FLIPS):
         newest.write_bytes(flipped(sound, int(bit)))
-        made = recipe()
-        assert Trainer(made, steps=20, save_every=5, folder=tmp_path)._resume() == 15
+        objective = recipe()
+        assert Trainer(objective, steps=20, save_every=5, folder=tmp_path)._resume() == 15
         assert f"{newest} is damaged; resuming from step-00000015.pt" in capsys.readouterr().out
     assert same(whole, trained(tmp_path)) and states.load(newest)["step"] == 20
 
@@ -167,11 +167,11 @@ def test_extra_state_is_resumed(tmp_path):
 
 
 def test_frozen_weights_stay_and_are_not_in_the_optimiser(tmp_path):
-    made = recipe()
-    before = made.agent.frozen.weight.clone()
-    trainer = Trainer(made, steps=3, folder=tmp_path, weight_decay=0.5)
+    objective = recipe()
+    before = objective.agent.frozen.weight.clone()
+    trainer = Trainer(objective, steps=3, folder=tmp_path, weight_decay=0.5)
     trainer.fit()
-    assert torch.equal(made.agent.frozen.weight, before)
+    assert torch.equal(objective.agent.frozen.weight, before)
     assert all(p.requires_grad for p in trainer.trained) and len(trainer.trained) == 4
 
 
@@ -212,12 +212,12 @@ def test_scalars_and_pictures_are_in_tensorboard(tmp_path):
 
 
 def test_nan_loss_stops_with_step_recipe_and_episodes(tmp_path):
-    made = recipe(bad_step=7)
+    objective = recipe(bad_step=7)
     with pytest.raises(LossNotFinite) as error:
-        Trainer(made, steps=20, folder=tmp_path, save_every=5).fit()
+        Trainer(objective, steps=20, folder=tmp_path, save_every=5).fit()
     for part in ("step 7", "TinyRecipe", "episode-7", "step-00000005.pt"):
         assert part in str(error.value)
-    assert all(torch.isfinite(p).all() for p in made.parameters())
+    assert all(torch.isfinite(p).all() for p in objective.parameters())
     assert states.checkpoints(tmp_path)[-1].name == "step-00000005.pt"
 
 
@@ -226,11 +226,11 @@ def test_infinite_gradient_stops_before_the_update(tmp_path):
         def forward(self, batch):
             return {"loss": (self.agent.body(batch["inputs"]) * 0).sqrt().sum()}  # d sqrt(0) = inf
 
-    made = Overflow()
-    before = {name: value.clone() for name, value in made.agent.state_dict().items()}
+    output = Overflow()
+    before = {name: value.clone() for name, value in output.agent.state_dict().items()}
     with pytest.raises(LossNotFinite, match="gradient norm nan"):
-        Trainer(made, steps=3, folder=tmp_path).fit()
-    assert same(before, made.agent.state_dict())
+        Trainer(output, steps=3, folder=tmp_path).fit()
+    assert same(before, output.agent.state_dict())
 
 
 def test_trainer_rejects_the_folder_of_another_run(tmp_path):

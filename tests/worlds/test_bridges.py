@@ -168,17 +168,17 @@ def test_gym_world_passes_the_ending_to_success():
 NO_TRUTH = [float("nan"), "False", {"s": False}, 0.3, -1, "no", [0, 2], [[1], [0, 1]]]
 
 
-@pytest.mark.parametrize("told", NO_TRUTH, ids=str)
-def test_gym_world_rejects_invalid_success_values(told):
+@pytest.mark.parametrize("reported", NO_TRUTH, ids=str)
+def test_gym_world_rejects_invalid_success_values(reported):
     from mitigate.worlds.gym import GymWorld
 
-    world = GymWorld(Room(), success=lambda end: told, rule="anything")
+    world = GymWorld(Room(), success=lambda end: reported, rule="anything")
     with pytest.raises(ValueError, match=r"must be a truth value, 0 or 1"):
         run_episode(Brightness(), world, episode(3), CLEAN, 0)
 
 
 @pytest.mark.parametrize(
-    ("told", "won"),
+    ("reported", "won"),
     [
         *((value, 0) for value in (None, [], [False], False, 0, 0.0, np.bool_(False))),
         *((value, 1) for value in (1, 1.0, np.float32(1), np.uint8(1), [0, 1], np.ones((1, 1)))),
@@ -187,10 +187,10 @@ def test_gym_world_rejects_invalid_success_values(told):
     ],
     ids=str,
 )
-def test_gym_world_accepts_truth_values(told, won):
+def test_gym_world_accepts_truth_values(reported, won):
     from mitigate.worlds.gym import GymWorld
 
-    world = GymWorld(Room(), success=lambda end: told, rule="anything")
+    world = GymWorld(Room(), success=lambda end: reported, rule="anything")
     assert run_episode(Brightness(), world, episode(3), CLEAN, 0)["success"] == won
 
 

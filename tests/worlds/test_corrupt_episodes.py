@@ -333,7 +333,7 @@ def test_main_explains_invalid_arguments(tmp_path, capsys):
 
 def test_module_runs_as_a_program(tmp_path):
     source = write(tmp_path / "in.json.gz", episode(1))
-    told = subprocess.run(
+    printed = subprocess.run(
         [
             *(
                 sys.executable,
@@ -348,7 +348,7 @@ def test_module_runs_as_a_program(tmp_path):
         text=True,
         check=True,
     )
-    assert json.loads(told.stdout)["changed"] == 1 and "notice" in told.stderr
+    assert json.loads(printed.stdout)["changed"] == 1 and "notice" in printed.stderr
 
 
 @needs_r2r_ce

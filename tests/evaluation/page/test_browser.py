@@ -19,9 +19,9 @@ EVIL = "<img src=x onerror=\"document.title='bad'\"></script><script>document.ti
 
 @pytest.fixture(scope="module")
 def page(tmp_path_factory):
-    shown = Page(tmp_path_factory.mktemp("profile"))
-    yield shown
-    shown.close()
+    page_shown = Page(tmp_path_factory.mktemp("profile"))
+    yield page_shown
+    page_shown.close()
 
 
 def made_rows() -> list[dict]:
@@ -64,8 +64,8 @@ def agents(page: Page) -> list[str]:
 
 
 def lines(page: Page) -> list[list[str]]:
-    found = "[...document.querySelectorAll('dialog tbody tr')]"
-    return page.ask(f"{found}.map(r => [...r.children].map(c => c.textContent))")
+    matches = "[...document.querySelectorAll('dialog tbody tr')]"
+    return page.ask(f"{matches}.map(r => [...r.children].map(c => c.textContent))")
 
 
 def test_table_sorts_and_shows_differences(page, report):
@@ -78,8 +78,8 @@ def test_table_sorts_and_shows_differences(page, report):
         "(s => { s.value = 0; s.dispatchEvent(new Event('change')); })"
         "([...document.querySelectorAll('select')].find(s => s.value === '-1'))"
     )
-    shown = page.ask("document.querySelector('.agents .change').textContent")
-    assert shown.startswith("\u221220.0 [\u2212")
+    displayed = page.ask("document.querySelector('.agents .change').textContent")
+    assert displayed.startswith("\u221220.0 [\u2212")
     assert "baseline=0" in page.ask("location.hash")
 
 
@@ -99,8 +99,8 @@ def test_interval_without_width_is_hidden(page, tmp_path):
     rows = [row(0, 1), row(0, 0, name="hard", agent="ba9876543210")]
     rows += [{**one, "corruption": "spatter", "severity": 0.6} for one in rows]
     page.open(document.write(report_of(rows), tmp_path / "page.html"), "#section=0&baseline=0")
-    found = page.ask("document.querySelector('.agents .change').textContent")
-    assert found.strip() == "\u2212100.0 [\u2013]"
+    result = page.ask("document.querySelector('.agents .change').textContent")
+    assert result.strip() == "\u2212100.0 [\u2013]"
     assert page.ask("document.querySelector('.agents .change').className") == "change same"
     assert page.errors == []
 
@@ -149,10 +149,12 @@ def test_cell_summary_averages_seeds_per_episode(page, tmp_path):
     page.open(
         document.write(report_of(rows), tmp_path / "page.html"), "#agent=0&corruption=spatter"
     )
-    shown = page.ask("document.querySelector('[data-at=\"0/1\"]').textContent")
-    said = page.ask("document.querySelector('dialog .readout').textContent")
-    assert shown == "50.0*"
-    assert said == ("19 walks of 10 episodes: SR 50.0 %, SPL 0.25, over the 9 that each seed has")
+    displayed = page.ask("document.querySelector('[data-at=\"0/1\"]').textContent")
+    message = page.ask("document.querySelector('dialog .readout').textContent")
+    assert displayed == "50.0*"
+    assert message == (
+        "19 walks of 10 episodes: SR 50.0 %, SPL 0.25, over the 9 that each seed has"
+    )
 
 
 def test_ties_are_rounded_as_the_table_rounds_them(page, tmp_path):
@@ -160,21 +162,24 @@ def test_ties_are_rounded_as_the_table_rounds_them(page, tmp_path):
     page.open(document.write(report_of(rows), tmp_path / "page.html"))
     values = page.ask("[...document.querySelectorAll('.agents .value')].map(v => v.textContent)")
     assert values[:3] == ["31.2", "0.16", "18.8 \u2020 1/8"]  # of 31.25, 0.15625 and 18.75
-    shown = page.ask("[...document.querySelectorAll('[data-at]')].map(v => v.textContent)")
-    assert shown == ["31.2", "18.8"]
-    assert [f"{100 * wins / 16:.1f}" for wins in (5, 3)] == shown
+    displayed = page.ask("[...document.querySelectorAll('[data-at]')].map(v => v.textContent)")
+    assert displayed == ["31.2", "18.8"]
+    assert [f"{100 * wins / 16:.1f}" for wins in (5, 3)] == displayed
 
 
 def test_share_uses_common_episodes(page, tmp_path):
     rows = [r for r in column(9, {"spatter": 9}) if (r["episode_id"], r["severity"]) != ("9", 0.6)]
     page.open(document.write(report_of(rows), tmp_path / "page.html"))
     page.click(".chip", "share of own clean")
-    shown = page.ask("[...document.querySelectorAll('[data-at]')].map(v => v.textContent)")
-    assert shown == ["1.00", "1.00*"]  # not 1.0 / 0.9
+    displayed = page.ask("[...document.querySelectorAll('[data-at]')].map(v => v.textContent)")
+    assert displayed == ["1.00", "1.00*"]  # not 1.0 / 0.9
 
 
 def test_episodes_are_searched_as_they_are_typed(page, tmp_path):
-    rows = [made | {"episode_id": f"1{made['episode_id']}"} for made in column(8, {"spatter": 2})]
+    rows = [
+        records | {"episode_id": f"1{records['episode_id']}"}
+        for records in column(8, {"spatter": 2})
+    ]
     page.open(
         document.write(report_of(rows), tmp_path / "page.html"), "#agent=0&corruption=spatter"
     )

@@ -37,8 +37,8 @@ def test_clean_frame_is_returned_as_the_same_object(untrained, sensor):
     opened(untrained, 1e9)
     frame = frames(sensor, 12, 64, 64)
     before = frame.copy()
-    made = untrained({sensor: frame, "pose": "as it came"})
-    assert made[sensor] is frame and made["pose"] == "as it came"
+    output = untrained({sensor: frame, "pose": "as it came"})
+    assert output[sensor] is frame and output["pose"] == "as it came"
     assert np.array_equal(frame, before)
 
 
@@ -47,18 +47,18 @@ def test_clean_frame_is_returned_as_the_same_object(untrained, sensor):
 def test_untrained_restorer_hardly_changes_a_frame(untrained, sensor, shape):
     for full in (shape, (1, *shape), (3, *shape)):
         frame = frames(sensor, *full)
-        made = untrained.restore(sensor, frame)
-        assert made.shape == frame.shape and made.dtype == frame.dtype and made is not frame
-        moved = np.abs(made.astype(float) - frame).mean()
+        output = untrained.restore(sensor, frame)
+        assert output.shape == frame.shape and output.dtype == frame.dtype and output is not frame
+        moved = np.abs(output.astype(float) - frame).mean()
         assert moved <= (3.0 if sensor == RGB else 0.1)
 
 
 def wall(metres: float, hole: bool = False) -> np.ndarray:
     """A camera before a wall, with a sensor's noise of 2 cm; ``hole``: 4 % of it reads nothing."""
     noise = np.random.default_rng(0).normal(0, 0.02, (96, 96))
-    made = (metres + noise).astype(np.float32)
-    made[40:60, 40:60] *= not hole
-    return made
+    output = (metres + noise).astype(np.float32)
+    output[40:60, 40:60] *= not hole
+    return output
 
 
 @pytest.mark.filterwarnings("ignore:More than")
@@ -71,8 +71,8 @@ def test_far_wall_gets_no_invented_obstacle(metres, hole):
 
 
 def test_near_wall_with_a_hole_is_filled():
-    made = load_restorer(SHIPPED).restore(DEPTH, wall(3.0, hole=True))
-    assert np.abs(made - 3).max() < 0.5
+    output = load_restorer(SHIPPED).restore(DEPTH, wall(3.0, hole=True))
+    assert np.abs(output - 3).max() < 0.5
 
 
 def test_depth_mostly_out_of_range_is_kept_with_a_warning(untrained):
@@ -93,9 +93,9 @@ def test_restorer_leaves_frames_without_a_reading(untrained):
 def test_depth_may_lack_its_last_axis_and_gets_no_holes(untrained):
     frame = frames(DEPTH, 40, 48)[..., 0]
     frame[10:20, 10:20], frame[0, 0], frame[1, 1] = 0.0, np.nan, np.inf
-    made = untrained.restore(DEPTH, frame)
-    assert made.shape == (40, 48) and np.isfinite(made).all() and (made > 0).all()
-    assert 0.5 < made[10:20, 10:20].mean() < 9.0
+    output = untrained.restore(DEPTH, frame)
+    assert output.shape == (40, 48) and np.isfinite(output).all() and (output > 0).all()
+    assert 0.5 < output[10:20, 10:20].mean() < 9.0
 
 
 @pytest.mark.parametrize(
@@ -124,8 +124,8 @@ def test_large_frame_keeps_its_detail():
         net.net.head.bias.view(-1, 4)[:3] = np.log(2.0)  # every gain is 2
         net.net.head.bias.view(-1, 4)[6:] = -100.0  # nothing is lost
     frame = frames(RGB, 128, 128) // 2
-    made = restorer.restore(RGB, frame)
-    assert np.abs(made.astype(int) - 2 * frame.astype(int)).max() <= 1
+    output = restorer.restore(RGB, frame)
+    assert np.abs(output.astype(int) - 2 * frame.astype(int)).max() <= 1
 
 
 @pytest.mark.parametrize("sensor", [RGB, DEPTH])
@@ -149,10 +149,10 @@ def test_inconsistent_view_of_a_panorama_is_detected(panorama, sensor):
     wrong = values.clone()
     wrong[3, :, 20:40, 20:40] = (wrong[3, :, 20:40, 20:40] + 0.5) % 1
 
-    def outside(shown):
-        low, high, seen = ring.compared(shown, valid, sensor == DEPTH)
+    def outside(displayed):
+        low, high, seen = ring.compared(displayed, valid, sensor == DEPTH)
         assert seen.mean() > 0.95
-        return (low - shown).clamp(min=0) + (shown - high).clamp(min=0)
+        return (low - displayed).clamp(min=0) + (displayed - high).clamp(min=0)
 
     before, after = outside(values), outside(wrong)
     assert before.mean() < (0.04 if sensor == RGB else 0.002)
@@ -167,8 +167,8 @@ def test_speck_in_one_view_is_removed_by_untrained_restorer(untrained, panorama,
     specks = rng.random(clean.shape[:3]) < 0.05
     frames = clean.copy()
     frames[specks] = np.where(clean[specks] > clean.max() / 2, clean.max() * 0.02, clean.max())
-    made = untrained.restore(sensor, frames)
-    before, after = (np.abs(f.astype(float) - clean)[specks].mean() for f in (frames, made))
+    output = untrained.restore(sensor, frames)
+    before, after = (np.abs(f.astype(float) - clean)[specks].mean() for f in (frames, output))
     assert after < 0.35 * before
     alone = untrained.restore(sensor, frames[4])
     assert np.abs(alone.astype(float) - frames[4])[specks[4]].mean() < 0.1 * before
@@ -197,21 +197,21 @@ def test_world_is_restored_when_its_frames_are_read(untrained, panorama):
         reads = 0
 
         def reset(self, episode):
-            def made():
+            def output():
                 self.reads += 1
                 return {RGB: panorama[RGB]}
 
-            return Observation({"pose": panorama["pose"]}, made, (RGB,))
+            return Observation({"pose": panorama["pose"]}, output, (RGB,))
 
     class Episode:
         episode_id = "1"
 
     still = Still()
     met = Corrupted(still, Corruption("foreign_object", 0.6), 0)
-    shown = Guarded(met, untrained).reset(Episode())
-    assert still.reads == 0 and shown["pose"] is panorama["pose"]
-    assert not np.array_equal(shown[RGB], met.last[RGB]) and still.reads == 1
-    assert np.array_equal(shown.clean[RGB], panorama[RGB])
+    observed = Guarded(met, untrained).reset(Episode())
+    assert still.reads == 0 and observed["pose"] is panorama["pose"]
+    assert not np.array_equal(observed[RGB], met.last[RGB]) and still.reads == 1
+    assert np.array_equal(observed.clean[RGB], panorama[RGB])
 
 
 # folders -----------------------------------------------------------------------------------------
@@ -296,11 +296,11 @@ def test_restorer_of_a_missing_sensor_is_rejected(tmp_path):
 
 
 def test_single_sensor_gives_another_restorer(tmp_path):
-    made = Restorer(width=4, depth_width=4)
-    made.save(tmp_path / "mine")
+    model = Restorer(width=4, depth_width=4)
+    model.save(tmp_path / "mine")
     whole = open_restorer(str(tmp_path / "mine"))
     alone = open_restorer(f"{tmp_path / 'mine'}:rgb")
-    assert list(alone.nets) == ["rgb"] and alone.hash not in (whole.hash, made.hash)
+    assert list(alone.nets) == ["rgb"] and alone.hash not in (whole.hash, model.hash)
     depth = np.zeros((8, 8, 1), np.float32)
     rgb = np.zeros((8, 8, 3), np.uint8)
     assert alone({"rgb": rgb, "depth": depth})["depth"] is depth
@@ -334,8 +334,8 @@ def test_restorer_report_rejects_a_count_below_one(tmp_path, capsys):
 
 
 def test_shipped_restorer_keeps_a_clean_panorama(shipped, panorama):
-    made = shipped(panorama)
-    assert made[RGB] is panorama[RGB] and made[DEPTH] is panorama[DEPTH]
+    output = shipped(panorama)
+    assert output[RGB] is panorama[RGB] and output[DEPTH] is panorama[DEPTH]
 
 
 @pytest.mark.parametrize(
@@ -349,11 +349,11 @@ def test_shipped_restorer_keeps_a_clean_panorama(shipped, panorama):
 )
 def test_shipped_restorer_removes_part_of_a_corruption(shipped, panorama, name, sensor, left):
     frames = corrupt_observation(panorama, Corruption(name, 0.6), Key(0, "test"))
-    made = shipped(frames)
-    errors = [np.abs(f[sensor].astype(float) - panorama[sensor]).mean() for f in (frames, made)]
+    output = shipped(frames)
+    errors = [np.abs(f[sensor].astype(float) - panorama[sensor]).mean() for f in (frames, output)]
     assert errors[1] < left * errors[0]
     other = DEPTH if sensor == RGB else RGB
-    assert made[other] is panorama[other]
+    assert output[other] is panorama[other]
 
 
 def test_clean_is_no_corruption_to_the_shipped_one(shipped, panorama):

@@ -18,7 +18,7 @@ def test_rewrite_refused_accepts_the_same_route_in_plain_words():
 
 
 @pytest.mark.parametrize(
-    ("said", "reason"),
+    ("message", "reason"),
     [
         (SAID.replace("left", "right"), "directions"),
         (SAID.replace(", and stop by the lamp", ""), "directions"),
@@ -33,8 +33,8 @@ def test_rewrite_refused_accepts_the_same_route_in_plain_words():
         (None, "no answer"),
     ],
 )
-def test_rewrite_refused_names_what_changed(said, reason):
-    assert reason in rewrite_refused(HEARD, said)
+def test_rewrite_refused_names_what_changed(message, reason):
+    assert reason in rewrite_refused(HEARD, message)
 
 
 def test_rewrite_refused_keeps_conditions_and_the_last_stop():
