@@ -48,7 +48,7 @@ def imported(source: str) -> set[str]:
 
 
 def climbing(module: str, names: set[str]) -> set[str]:
-    """Return the imported ``names`` that are above the package of ``module``, or beside it."""
+    """Return the imported ``names`` above the package of ``module``, or on its level."""
     own_value = package_of(module)
     others = {name for name in names if package_of(name) in RANK and package_of(name) != own_value}
     return {name for name in others if RANK[package_of(name)] >= RANK[own_value]}

@@ -20,7 +20,7 @@ from mitigate.core.checkpoint import weights_sha
 from mitigate.training.config import read
 from mitigate.training.plan import leave_out_stages
 
-# one worker of pytest trains, not each its own
+# one worker of pytest trains, instead of each
 pytestmark = pytest.mark.xdist_group("bring your own")
 
 ROOT = Path(__file__).parent.parent
@@ -104,7 +104,7 @@ def test_run_folder_fills_an_agent_built_by_the_user(folder):
     row = json.loads((folder / "again/rows.jsonl").read_text().splitlines()[0])
     agent = mitigate.load(place, agent=mine(adapters=True))
     assert weights_sha(agent) == row["weights"] and not agent.training
-    for reported in (mitigate.load, mitigate.load_hardened):  # each names what does it
+    for reported in (mitigate.load, mitigate.load_hardened):  # the error names the call to use
         with pytest.raises((ValueError, FileNotFoundError), match=r"mitigate\.load.*agent=\.\.\."):
             reported(place)
     with pytest.raises(ValueError, match="do not fit this Policy"):

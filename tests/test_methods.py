@@ -150,7 +150,7 @@ def test_multirun_trains_one_run_per_combination(runs):
 
 def test_export_reloads_to_the_same_outputs(runs, tmp_path, monkeypatch):
     monkeypatch.setattr(export, "WALKS", 1)
-    (option,) = export_command._own_kind(runs[0])  # what the command takes without options
+    (option,) = export_command._own_kind(runs[0])  # the command's default
     assert option == "agent=frontier"
     with pytest.raises(ValueError, match=option):
         export.export(runs[0], "tiny", out=tmp_path)

@@ -205,7 +205,8 @@ USUAL = {"weight": 1.0, "limit": 3, "answer": 0}
 def _notebook(tmp_path, name, **changes):
     (tmp_path / f"{name}.py").write_text(NOTEBOOK.format(**{**USUAL, **changes}))
     module = importlib.import_module(name)
-    for kind in (module.Named, module.Given):  # its own name is the file's: make them alike
+    # the file gives the class its name: make the names equal
+    for kind in (module.Named, module.Given):
         kind.__module__ = "notebook"
     return module
 
@@ -502,7 +503,7 @@ def test_contents_reads_adapters_completely(target):
 
 
 class Scale(nn.Module):
-    """A layer of the user's."""
+    """A layer defined by the user."""
 
     def __init__(self, by: int) -> None:
         super().__init__()
@@ -513,7 +514,7 @@ class Scale(nn.Module):
 
 
 class Own:
-    """An agent of plain parts."""
+    """An agent with plain attributes only."""
 
     def act(self, observation):
         return helpers.decide(observation) + helpers.LEVEL + Config.LEVEL
@@ -538,11 +539,11 @@ class Biased(Described):
 
 
 class BiasedPlanner(TopologicalAgent):
-    """The same of a shipped agent."""
+    """The same for a shipped agent."""
 
 
 class Wrapper:
-    """Delegates what it does not define."""
+    """Delegates undefined attributes."""
 
     def __init__(self, bias: int) -> None:
         self.agent, self.bias = Described(), bias

@@ -35,7 +35,7 @@ def test_reliability_gives_outliers_the_smallest_weight(views, factor):
     assert torch.isclose(weights.sum(), torch.tensor(1.0))
     size = damaged.norm(dim=-1)
     deviation = (size - size.mean()).abs() / size.mean()
-    assert RATE * deviation[3] > CAP  # so far off that the cap holds it, and no further
+    assert RATE * deviation[3] > CAP  # so far away that the cap limits it
     expected = CAP - RATE * deviation[torch.arange(12) != 3]
     assert torch.allclose(torch.log(others / weights[3]), expected, atol=1e-4)
 

@@ -39,7 +39,7 @@ def gate_of(model: nn.Module) -> FrameGate:
 
 
 def centred(model: nn.Module, frames: torch.Tensor) -> torch.Tensor:
-    """Open the gate for half the ``frames``; return for which it is open."""
+    """Open the gate for half of the ``frames``; return which."""
     model(frames)
     gate = gate_of(model)
     with torch.no_grad():

@@ -109,4 +109,4 @@ def test_check_fits_rejects_missing_sensors(agent):
     alone = {name: sensor for name, sensor in observed.items() if name != DEPTH}
     with pytest.raises(ValueError, match="reads depth, which the world Hall does not have: .*rgb"):
         check_fits(agent, alone, "Hall")
-    check_fits(nn.Linear(1, 1), alone, "Hall")  # it does not say what it reads
+    check_fits(nn.Linear(1, 1), alone, "Hall")  # it does not declare its sensors

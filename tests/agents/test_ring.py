@@ -36,7 +36,7 @@ def test_aligned_warps_neighbours_into_the_view(panorama):
 def test_ring_keeps_cells_that_no_neighbour_sees():
     torch.manual_seed(0)
     adapter = RingAdapter(8, views=3)  # 120 degrees apart: views of 90 degrees do not meet
-    torch.nn.init.constant_(adapter.share.bias, 3.0)  # take all that there is to take
+    torch.nn.init.constant_(adapter.share.bias, 3.0)  # use the full budget
     x = torch.randn(6, 8, 4, 4)
     assert torch.allclose(adapter(x), x, atol=1e-6)
 

@@ -1,16 +1,16 @@
-"""What every refusal has in common."""
+"""A check that all tests of rejected files share."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from typing import Any
 
-LONGEST = 1500  # characters of a message (ours)
+LONGEST = 1500  # limit for the length of a message (heuristic)
 
 
 def refused(call: Callable[[], Any], words: str = "") -> str:
-    """Call it; it must raise ValueError or FileNotFoundError with one paragraph that holds
-    ``words``. Any other error is a failure of the test, as it would be a traceback for a user."""
+    """Call ``call``; it must raise ValueError or FileNotFoundError with one paragraph that contains
+    ``words``. Any other error fails the test, because a user would see a traceback."""
     try:
         matches = call()
     except (ValueError, FileNotFoundError) as error:

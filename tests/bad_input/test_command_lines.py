@@ -1,4 +1,5 @@
-"""Command lines: a mistake ends in one paragraph and a status, no traceback, nothing written."""
+"""Command lines: a mistake ends in one paragraph and an exit status, without a traceback or
+files."""
 
 from __future__ import annotations
 
@@ -21,7 +22,7 @@ from tests.bad_input.test_episode_files import GOOD
 
 
 def said_by(call, capsys) -> tuple[int, str]:
-    """Status and what went to standard error of a command."""
+    """Return the exit status and the standard error of a command."""
     try:
         status = call()
     except SystemExit as stop:
@@ -96,7 +97,7 @@ WRONG = {
         ("launcher=nothing", "no launcher"),
     ],
 }
-# lines that go through all of Hydra, which takes three times as long as a composition
+# these lines run through Hydra, which takes three times as long as a composition
 THROUGH_HYDRA = {"trainer.lr=inf", "severity=2", "recipe=", "agent=hello", "a b", "x=[1,2"}
 LINES = [(name, *line) for name, lines in WRONG.items() for line in lines]
 IDS = [f"{name} {option[:40]}" for name, option, _ in LINES]

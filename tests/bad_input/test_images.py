@@ -1,4 +1,4 @@
-"""Frames of anybody: decoded whole, or left out with a reason; nothing half written, no bomb."""
+"""Untrusted frames: decoded completely, or skipped with a reason; no partial output, no bomb."""
 
 from __future__ import annotations
 

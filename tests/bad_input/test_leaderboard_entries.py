@@ -1,4 +1,4 @@
-"""Entries of the leaderboard that are no entries: each is refused, file and key named."""
+"""Invalid entries of the leaderboard are rejected; the message names file and key."""
 
 from __future__ import annotations
 

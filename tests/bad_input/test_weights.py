@@ -1,4 +1,4 @@
-"""Checkpoints, weights and folders of anybody: data that fit, or one paragraph; no code runs."""
+"""Untrusted checkpoints, weights and folders: valid data, or one paragraph; no code runs."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ FAST = settings(
 
 
 class Code:
-    """Makes the file ``ran`` where it is unpickled."""
+    """Creates the file ``ran`` when it is unpickled."""
 
     def __init__(self, ran: Path) -> None:
         self.ran = ran
@@ -44,7 +44,7 @@ class Code:
 
 
 class Builds:
-    """As ``Code``, by the state that an unpickler sets."""
+    """Like ``Code``, through the state that an unpickler sets."""
 
     def __reduce__(self):
         return dict, (), None, None, iter([("a", Code(Path("ran")))])
@@ -72,7 +72,7 @@ NETWORK = nn.Linear(3, 2)
 
 
 def trapped(ran: Path) -> dict[str, bytes]:
-    """Files that would run code in a careless reader, in ways of ``torch.load`` and pickle."""
+    """Files that would run code in an unsafe reader, by means of ``torch.load`` and pickle."""
     code = Code(ran)
     return {
         "a pickle": pickle.dumps(code),
@@ -321,7 +321,7 @@ def test_encoder_rejects_invalid_folder(tmp_path, output):
 @FAST
 @given(st.data())
 def test_flipped_and_cut_bytes_are_noticed(tmp_path, data):
-    """Of a file without a sum beside it: of the file's own checksums."""
+    """A file without a checksum file is checked by the checksums that it contains."""
     at = data.draw(st.integers(0, len(SOUND) - 1))
     raw = SOUND[:at] + data.draw(st.binary(max_size=4)) + SOUND[at + data.draw(st.integers(0, 9)) :]
     path = tmp_path / "step-00000003.pt"
@@ -350,7 +350,8 @@ def test_sound_files_of_before_are_still_read(tmp_path):
 
 
 def test_loading_a_hardened_folder_does_not_open_its_program(tmp_path, monkeypatch):
-    """Who writes the card can write its sums too: what it lists must not run either."""
+    """The author of the card can also write its checksums, so the listed files must not run
+    code."""
     shutil.copytree(ROOT / "checkpoints/hardened/ts_distill", tmp_path / "mine")
     program, file = tmp_path / "mine" / agents.PROGRAM, tmp_path / "mine" / agents.CARD
     program.write_bytes(pickle.dumps(Code(tmp_path / "ran")))

@@ -116,9 +116,9 @@ def test_hook_reports_results(command):
 
 def test_hook_reports_an_unended_episode_at_the_next_reset(command):
     reports = command(condition(), "--no-stop").reports
-    assert len(reports.ends) == 4  # the last one as the Env is closed
+    assert len(reports.ends) == 4  # the last one when the Env is closed
     end = reports.ends["s0/0"]
-    assert end["distance"] == pytest.approx(0.5)  # of the end, not of the next start
+    assert end["distance"] == pytest.approx(0.5)  # frames of the end, not of the next start
     assert end["stopped"] is False
 
 

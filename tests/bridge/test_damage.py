@@ -35,7 +35,7 @@ def place(tmp_path_factory):
 def finished(run, place):
     """A finished run of two conditions: its folder, and a function that runs it again.
 
-    The first test measures them; each test gets the folder as it was then.
+    The first test measures the run; each test gets a copy of the folder.
     """
     out, remaining = place / "o", place / "kept"
 
@@ -305,7 +305,7 @@ def test_run_keeps_finished_condition_that_cannot_be_moved(finished, tmp_path, k
     entries = json.loads(clean.read_text()) | {"episodes_told": 4, "events": seal}
     clean.write_text(json.dumps(entries))
     before = contents(out / CONDITION)
-    result = again()  # it lacks an episode of clean now, and is measured again
+    result = again()  # it lacks an episode of clean now, so the condition runs again
     assert result.returncode == 1 and str(aside) in result.stderr
     assert contents(out / CONDITION) == before
 

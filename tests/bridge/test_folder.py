@@ -108,7 +108,7 @@ def test_run_reports_the_episode_of_a_background_process(run, tmp_path, monkeypa
 
     monkeypatch.setattr(
         attempt, "DISCONNECT_TIME", 0.5
-    )  # who has a session of its own is waited for
+    )  # the command waits for processes in a separate session
     file = tmp_path / "nav.py"
     file.write_text(BACKGROUND % session)
     result = run(tmp_path / "o", "conditions=[clean]", f"{sys.executable} {file}")
@@ -294,7 +294,7 @@ def test_run_does_not_write_through_a_link(run, program, tmp_path, name):
     assert (tmp_path / "thesis.txt").read_text() == "mine"
     if name == "lock":
         assert result.returncode == 1 and "lock must be a regular file" in result.stderr
-    else:  # what an earlier attempt left is put aside
+    else:  # results of an earlier attempt are moved away
         assert result.returncode == 0 and (folder / name).is_file()
 
 

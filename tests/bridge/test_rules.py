@@ -79,7 +79,7 @@ def test_run_rejects_a_rule_that_judges_only_some_episodes(run, tmp_path, first)
     file = tmp_path / "nav.py"
     known = "stopped=True if name == 'a' or 'clean' in __import__('sys').argv else None"
     file.write_text(LOOP % f"episode.finish(success=True, distance_to_goal=0.05, {known})")
-    for options in (first, "rule=objectnav"):  # not measured, and measured without the rule
+    for options in (first, "rule=objectnav"):  # not measured, or measured without the rule
         options = f"conditions=[spatter] {options}"
         result = run(tmp_path / "o", options, f"{sys.executable} {file} {{condition}}")
     assert (
@@ -147,7 +147,7 @@ def test_run_warns_about_depth_and_missing_paths(run, tmp_path):
 def test_run_rejects_a_rule_without_distances(run, tmp_path, rule):
     file, out = tmp_path / "nav.py", tmp_path / "o"
     file.write_text(LOOP % "episode.finish(success=True)")
-    for before in ("", "conditions=[clean]"):  # not measured, and measured without the rule
+    for before in ("", "conditions=[clean]"):  # not measured, or measured without the rule
         if before:
             assert run(out, before, f"{sys.executable} {file}").returncode == 0
         result = run(out, f"conditions=[clean] rule={rule}", f"{sys.executable} {file}")

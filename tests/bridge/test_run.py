@@ -345,7 +345,7 @@ def test_run_says_how_to_resume_after_a_signal(tmp_path):
         if events.is_file():
             break
         time.sleep(0.05)
-    for _ in range(10):  # Python drops one that comes in the middle of a fork: it is pressed again
+    for _ in range(10):  # Python drops a signal that arrives during a fork: send it again
         process.send_signal(signal.SIGINT)
         try:
             printed = process.communicate(timeout=4)[1]

@@ -18,7 +18,7 @@ from mitigate.core.signals import Ended, raise_ended
 
 pytestmark = pytest.mark.xdist_group("launchers")  # as tests/cluster/test_launchers.py
 
-# Appends the rows that are missing to a file; with a note's name, it kills its worker after two.
+# Append the missing rows to a file; with the name of a note, kill the worker after two.
 ROWS = """
 import os, pathlib, signal, sys, time
 file, note = map(pathlib.Path, sys.argv[1:])

@@ -1,4 +1,4 @@
-"""The sha256 beside a training's state, beside a file of weights and in folders of before."""
+"""The sha256 of a training's state, of a file of weights and of older folders."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ STATE = {
 
 
 class Killed(BaseException):
-    """What a kill looks like from inside: nothing after it runs but ``finally``."""
+    """Simulate a kill: after it only ``finally`` runs."""
 
 
 def state(step: int) -> dict:
@@ -33,14 +33,14 @@ def state(step: int) -> dict:
 
 
 def flipped(data: bytes, bit: int) -> bytes:
-    """``data`` with one other bit."""
+    """Return ``data`` with one flipped bit."""
     changed = bytearray(data)
     changed[bit // 8] ^= 1 << bit % 8
     return bytes(changed)
 
 
 def flips(data: bytes, name: str) -> list[bytes]:
-    """``data`` with one flipped bit, at ``FLIPS`` places drawn for ``name``."""
+    """Return ``data`` with one flipped bit, at ``FLIPS`` places that depend on ``name``."""
     places = seeding.generator(0, "flipped bits", name).integers(0, 8 * len(data), FLIPS)
     return [flipped(data, int(bit)) for bit in places]
 
@@ -50,7 +50,7 @@ def note_of(path: Path) -> Path:
 
 
 def checked(folder: Path) -> int:
-    """The exit status of ``sha256sum -c`` over all sidecars in ``folder``."""
+    """Return the exit status of ``sha256sum -c`` over all sidecars in ``folder``."""
     names = sorted(path.name for path in folder.glob("*.sha256"))
     assert names
     command = ["sha256sum", "--strict", "--status", "-c", *names]
@@ -69,7 +69,7 @@ def test_checkpoint_detects_every_flipped_bit(tmp_path):
 
 
 def test_load_detects_flipped_bits_without_a_sidecar(tmp_path):
-    """Its zip file holds sums of the contents: a flip outside of them is harmless."""
+    """Its zip file contains checksums of the contents: a flip outside of them is harmless."""
     path = states.save(tmp_path, state(1))
     note_of(path).unlink()
     expected, sound, refused = states.load(path), path.read_bytes(), 0

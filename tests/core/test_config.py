@@ -1,4 +1,4 @@
-"""Every YAML in conf/ composes, names what exists, and a wrong option is explained."""
+"""Every YAML in conf/ composes and names existing targets, and a wrong option is explained."""
 
 from __future__ import annotations
 
@@ -178,8 +178,8 @@ def test_frozen_fits_only_recipes_with_its_stages():
 
 
 def test_evaluate_takes_agent_settings_from_the_command_line(monkeypatch, tmp_path):
-    """The weights bring settings of their own; what the command names goes before them, and the
-    table's column says so, because the weights' hash does not."""
+    """The weights bring their settings; the command line overrides them. The table's column states
+    this, because the hash of the weights does not change."""
     met = {}
 
     def meet(agent, world, episodes, conditions, *, name, out, **others):
@@ -217,7 +217,7 @@ def test_rows_of_an_edited_episode_list_are_not_resumed(monkeypatch, tmp_path):
     evaluate.run(cfg)
     evaluate.run(cfg)
     seen = conf.load_config("evaluate", ["split=val_seen", f"out={tmp_path}"])
-    evaluate.run(seen)  # another list in one folder is no trouble: rows carry their split
+    evaluate.run(seen)  # another list in the same folder is valid: rows carry their split
     shutil.copy(cfg.env.episodes.val_unseen, mine)
     with pytest.raises(ValueError, match="rows of another"):
         evaluate.run(cfg)

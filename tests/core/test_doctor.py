@@ -1,4 +1,4 @@
-"""The doctor says what the processor can do and whether there is a compiler."""
+"""The doctor reports the features of the processor and whether there is a compiler."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Files of anybody: gzip that is damaged or a bomb, JSON that no reader can hold."""
+"""Untrusted files: damaged gzip, gzip bombs, JSON too deep or large for a reader."""
 
 from __future__ import annotations
 
@@ -44,11 +44,11 @@ def test_damaged_gzip_gives_one_named_error(packed):
     for data in damaged:
         packed.write_bytes(data)
         with pytest.raises(gzip.BadGzipFile):
-            assert read(packed) == TEXT  # a flipped bit may leave the text, not the checksum
+            assert read(packed) == TEXT  # a flipped bit may keep the text, but not the checksum
 
 
 def bomb(path, size):
-    """A gzip file of ``size`` spaces, made without holding them."""
+    """A gzip file of ``size`` spaces, written without holding them in memory."""
     packer, block = zlib.compressobj(1, wbits=31), b" " * (1 << 22)
     with open(path, "wb") as file:
         for _ in range(size // len(block)):
@@ -123,7 +123,7 @@ def text_to(path):
 
 
 def private(path):
-    """As safetensors writes: a file of mode 0600 takes the place of what was there."""
+    """safetensors does the same: it replaces the existing file by one of mode 0600."""
     path.unlink(missing_ok=True)
     os.close(os.open(path, os.O_CREAT | os.O_WRONLY, 0o600))
 

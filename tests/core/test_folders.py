@@ -1,4 +1,4 @@
-"""A folder is the old one or the new one, and every change to it is found before it is used."""
+"""A folder is completely old or completely new, and every change to it is detected before use."""
 
 from __future__ import annotations
 
@@ -20,11 +20,11 @@ FLIPS = 50
 
 
 class Killed(BaseException):
-    """What a kill looks like from inside: nothing after it runs but ``finally``."""
+    """Simulate a kill: after it only ``finally`` runs."""
 
 
 def flipped(data: bytes, bit: int) -> bytes:
-    """``data`` with one other bit."""
+    """Return ``data`` with one flipped bit."""
     changed = bytearray(data)
     changed[bit // 8] ^= 1 << bit % 8
     return bytes(changed)
@@ -105,7 +105,8 @@ def test_file_of_another_size_is_not_read(tmp_path, monkeypatch):
 @pytest.mark.parametrize("earlier", ["manifest", "sidecar", "nothing"])
 @pytest.mark.parametrize("when", range(4))
 def test_kill_leaves_the_old_or_the_new_file(tmp_path, monkeypatch, when, earlier):
-    """A file is replaced in three steps: the manifest with both files, itself, the manifest."""
+    """A file is replaced in three steps: the manifest with both files, the file, the final
+    manifest."""
     old = nn.Linear(3, 2)
     new = nn.Linear(3, 2)
     if earlier == "manifest":

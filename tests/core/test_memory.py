@@ -1,4 +1,4 @@
-"""Results are kept up to a limit; what was freed is given back."""
+"""Results are cached up to a limit; freed memory is returned."""
 
 from __future__ import annotations
 
@@ -44,7 +44,8 @@ def test_cache_keeps_a_single_large_result():
 
 @pytest.mark.skipif("glibc" not in platform.libc_ver(), reason="of glibc alone")
 def test_freed_memory_returns_to_the_system():
-    pieces = [bytearray(60_000) for _ in range(3000)]  # below the size that is mapped by itself
+    # below the size at which malloc maps memory separately
+    pieces = [bytearray(60_000) for _ in range(3000)]
     remaining = pieces[::100]
     del pieces
     before = resident()
@@ -53,5 +54,5 @@ def test_freed_memory_returns_to_the_system():
 
 
 def resident() -> int:
-    """Bytes of memory that this process holds."""
+    """Return the bytes of memory that this process holds."""
     return int(Path("/proc/self/statm").read_text().split()[1]) * os.sysconf("SC_PAGE_SIZE")

@@ -1,7 +1,7 @@
 """A user's mistake ends a program in one paragraph: the cause, the allowed values, the fix.
 
-What options may be is in ``test_config.py``, an unknown recipe among them; here are mistakes that
-show only when files and weights are at hand, as a user meets them.
+``test_config.py`` checks the values of options and unknown recipes; these mistakes show only with
+files and weights.
 """
 
 from __future__ import annotations
@@ -41,8 +41,8 @@ def weights(tmp_path_factory):
 
 @pytest.fixture
 def evaluation(monkeypatch, tmp_path, weights, capsys):
-    """Run ``python -m mitigate.evaluate`` with options and return its complaint, before which
-    nothing else is said."""
+    """Run ``python -m mitigate.evaluate`` with options and return its error message, which must be
+    the only output."""
     monkeypatch.delenv("HYDRA_FULL_ERROR", raising=False)
 
     def run(*options: str) -> str:

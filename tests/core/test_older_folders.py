@@ -1,4 +1,4 @@
-"""Folders that earlier versions wrote are read, and every change to them is still found."""
+"""Folders of earlier versions are read, and every change to them is detected."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ READERS = {
 
 
 def as_before(folder: Path) -> Path:
-    """Turn a folder into what the version before the manifest wrote: a sidecar beside weights."""
+    """Turn a folder into the format before the manifest: one sidecar per file of weights."""
     (folder / folders.MANIFEST).unlink()
     for file in folder.glob("*.safetensors"):
         file.with_name(f"{file.name}.sha256").write_text(f"{sha256(file)}  {file.name}\n")
@@ -50,7 +50,7 @@ def flip(file: Path) -> None:
 
 @pytest.mark.parametrize("name", SHIPPED)
 def test_shipped_folder_loads_and_detects_flipped_bits(name, tmp_path, monkeypatch):
-    monkeypatch.chdir(ROOT)  # the base of adapters is named from here
+    monkeypatch.chdir(ROOT)  # the base of adapters is relative to this folder
     folder = Path(shutil.copytree(ROOT / "checkpoints" / name, tmp_path / "mine"))
     assert not (folder / folders.MANIFEST).exists()
     assert READERS[SHIPPED[name]](folder) is not None

@@ -1,4 +1,4 @@
-"""Files are opened for writing only if they are ours; a folder that vanishes is noticed."""
+"""Output files are opened only if they belong to the run; a folder that vanishes is noticed."""
 
 from __future__ import annotations
 
@@ -212,7 +212,7 @@ def test_writes_notice_a_lost_inner_folder(tmp_path, write):
         shutil.rmtree(tmp_path / "out" / "in")
         with pytest.raises(FolderLostError, match="in was removed or replaced"):
             write(tmp_path / "out" / "in" / "other", "new")
-        output.forget(tmp_path / "out" / "in")  # by a caller that deleted it itself
+        output.forget(tmp_path / "out" / "in")  # by a caller that deleted the folder itself
         files.write_text(tmp_path / "out" / "in" / "other", "new")
 
 

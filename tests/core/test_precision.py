@@ -1,4 +1,5 @@
-"""bf16 only where the processor computes it; the choice is made once and obeyed by all."""
+"""bf16 only where the processor supports it; all processes use the precision that was chosen
+once."""
 
 from __future__ import annotations
 
@@ -18,7 +19,7 @@ CPU = torch.device("cpu")
     ("capabilities", "cap", "expected"),
     [
         ({"avx2": True}, "", False),
-        ({"avx512_f": True}, "", False),  # AVX-512 alone would emulate it
+        ({"avx512_f": True}, "", False),  # with AVX-512 only, bf16 would be emulated
         ({"avx512_bf16": True}, "", True),
         ({"amx_bf16": True}, "", True),
         ({"bf16": True}, "", True),  # Arm
@@ -56,7 +57,7 @@ def test_context_reports_its_precision():
 
 
 class Watching(TinyRecipe):
-    """Keeps in which precision each part of it ran."""
+    """Records the precision in which each part of it ran."""
 
     def __init__(self) -> None:
         super().__init__()

@@ -30,13 +30,13 @@ from mitigate.shipping.export import finished
 
 ROOT = Path(__file__).parents[2]
 WORDS = "do not use this folder"
-# As it came in: OmegaConf puts `_target_` together, Hydra then builds it.
+# Earlier weights stored it so: OmegaConf composes `_target_`, then Hydra builds it.
 LITERAL = "${oc.create:${oc.decode:'{_tar${oc.decode:get}_: torch.hub.load, ...}'}}"
 HIDDEN = "${{oc.create:${{oc.decode:'{{_tar${{oc.decode:get}}_: {target}, {given}}}'}}}}"
 
 
 class Wide(nn.Module):
-    """An agent that is not the reference agent."""
+    """An agent of another class than the reference agent."""
 
     def __init__(self, width: int = 2, parts: dict | None = None) -> None:
         super().__init__()
@@ -66,7 +66,7 @@ def node() -> DictConfig:
 
 
 def refusals(folder: Path) -> list[str]:
-    """What each reader of a folder's settings says; all must refuse it."""
+    """Return the message of each reader of a folder's settings; all must reject it."""
     texts = []
     for read in (
         lambda: building.stored_settings(node(), str(folder)),
@@ -84,7 +84,7 @@ def refusals(folder: Path) -> list[str]:
 
 @pytest.fixture
 def traps(tmp_path) -> dict[str, str]:
-    """Strings that make the file ``sentinel`` where they are resolved and built."""
+    """Strings that create the file ``sentinel`` if they are resolved and built."""
     sentinel = tmp_path / "sentinel"
     hub = tmp_path / "hub"
     hub.mkdir()
@@ -357,7 +357,7 @@ def test_every_config_makes_settings_that_are_read_again(tmp_path):
         if cfg.agent._target_ != loading.TARGET:
             continue
         if "encoder" in cfg.agent:
-            cfg.agent.encoder = "own"  # another comes with an extra
+            cfg.agent.encoder = "own"  # another one needs an extra
         file = tmp_path / loading.CONFIG
         OmegaConf.save(cfg, file, resolve=True)
         own_value = loading.agent_settings(file)

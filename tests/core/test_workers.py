@@ -1,4 +1,5 @@
-"""Worker processes: results from any number of them, and deaths that are noticed and made good."""
+"""Worker processes: results for any number of workers, and deaths that are noticed and
+recovered."""
 
 from __future__ import annotations
 
@@ -23,7 +24,8 @@ from tests.deaths import die_in_a_message
 
 @dataclass
 class Squares:
-    """Squares numbers; a job's action may be to die, to fail, to wait or to tell its process."""
+    """Squares numbers; the action of a job may be to die, to fail, to wait or to signal its
+    process."""
 
     folder: Path
     preload = "mitigate.core.workers"
@@ -67,7 +69,7 @@ def _unreadable():
 
 
 class Lines:
-    """Stands in for a Progress and keeps what it is told."""
+    """A replacement of Progress that records its messages."""
 
     def __init__(self):
         self.said = []
@@ -126,7 +128,7 @@ def test_idle_worker_is_reported_and_not_killed(tmp_path, monkeypatch):
     monkeypatch.setattr(workers, "SECOND", 0.1)
     matches, message = run(Squares(tmp_path), groups("wait", ""))
     assert matches == {n: n**2 for n in range(6)}
-    # Others may be, under load.
+    # Under load, other jobs may be lost.
     assert any("has been running number 1 for 1 s" in line for line in message)
 
 
@@ -138,7 +140,7 @@ list(results(Squares(Path({folder!r})), groups("tell", "tell"), 2, Lines()))
 
 
 def stopped_by(how, folder):
-    """Start two workers in a process of its own, send it the signal; return the workers' ids."""
+    """Start two workers in a new process, send it the signal, and return the workers' ids."""
     process = subprocess.Popen(
         [sys.executable, "-c", ENDLESS.format(folder=str(folder))],
         cwd=Path(__file__).parents[2],
@@ -170,7 +172,8 @@ print("ended by", ending.number)
 
 
 def test_signal_to_all_processes_is_handled_by_the_parent(tmp_path):
-    """As SLURM and ``timeout`` send it: workers that it killed looked like a lack of memory."""
+    """SLURM and ``timeout`` send it to all processes; the killed workers looked like a lack of
+    memory."""
     ended = subprocess.run(
         [sys.executable, "-c", GROUP.format(folder=str(tmp_path))],
         cwd=Path(__file__).parents[2],
@@ -207,7 +210,7 @@ def test_worker_count_is_cores_or_none_for_few_jobs(monkeypatch):
 
 
 def test_signal_ends_many_jobs_within_a_training(tmp_path):
-    """Which holds signals until its step is done: measuring success rates takes minutes."""
+    """It holds signals until its step is done: measuring success rates takes minutes."""
     (tmp_path / "long").touch()
     began = time.monotonic()
     Timer(0.5, os.kill, (os.getpid(), signal.SIGTERM)).start()
@@ -233,14 +236,14 @@ def test_results_finish_a_started_job_before_a_signal(tmp_path):
 
 def test_unpicklable_job_is_reported_with_a_way_out(tmp_path):
     class Local(Squares):
-        """Of a function, which another process cannot find."""
+        """Defined in a function, so another process cannot import it."""
 
     with pytest.raises(ValueError, match=r"cannot be sent to other processes.*workers=1"):
         list(results(Local(tmp_path), groups(1, 2), 2, Lines()))
 
 
 class Guarded(Squares):
-    """As a class below ``if __name__ == "__main__":``, which a worker does not find."""
+    """Like a class below ``if __name__ == "__main__":``, which a worker cannot import."""
 
     def __reduce__(self):
         return resolve_name, ("os:Guarded",)
@@ -303,7 +306,7 @@ def test_ctrl_c_during_worker_imports_prints_one_message(tmp_path):
         preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler),
     )
     seen = 0
-    while seen < 2:  # by the command itself, and by the process that workers are forked from
+    while seen < 2:  # from the command itself, and from the process that forks the workers
         assert process.poll() is None
         time.sleep(0.02)
         if (tmp_path / "importing").exists():

@@ -13,7 +13,7 @@ import pytest
 
 ROOT = Path(__file__).parents[2]
 FOLDERS = ("mitigate", "recipes", "tools")
-WRITERS = {  # names of functions and methods that write to a path, whatever they belong to
+WRITERS = {  # names of functions and methods that write to a path, on any object
     *("write_text", "write_bytes", "touch", "mkdir", "makedirs", "symlink_to", "hardlink_to"),
     *("imwrite", "savefig", "savez", "savez_compressed", "save_file", "save_pretrained", "memmap"),
     *("copy2", "copyfile", "copytree", "copymode", "FileHandler", "SummaryWriter", "Writer1"),
@@ -28,7 +28,7 @@ QUALIFIED = {
     "os.link",
     "sqlite3.connect",
 }
-FILES = "mitigate.core.files"  # its functions have some of these names
+FILES = "mitigate.core.files"  # its functions share some of these names
 DRAFT = "writes a file with a random name that write_atomically made, or a file in memory"
 OWN = "writes into a private temporary folder that it has just made"
 ALLOWED = {

@@ -47,7 +47,7 @@ def test_equal_keys_give_equal_pixels(name, panorama):
 
 
 def test_composition_is_constant_within_an_episode(panorama):
-    """Where nothing is drawn for each frame, another frame number changes nothing."""
+    """Compositions are not drawn per frame, so another frame number changes nothing."""
     remaining = [
         corrupt(panorama[0], "broad_rgb", 0.8, key=Key(0, f"e{i}", 0)).tobytes()
         == corrupt(panorama[0], "broad_rgb", 0.8, key=Key(0, f"e{i}", 1)).tobytes()

@@ -1,4 +1,4 @@
-"""What each depth corruption does to metres."""
+"""The effect of each depth corruption in metres."""
 
 import numpy as np
 import pytest
@@ -59,7 +59,7 @@ def test_holes_are_blobs_that_move_every_five_frames():
     views = frames[0] != 4
     assert (views[0] != views[1]).any()
     rolls = {np.sort(view.sum(0)).tobytes() for view in views}
-    assert len(rolls) == 1  # one field for the episode, placed anew for each view
+    assert len(rolls) == 1  # one field per episode, placed separately for each view
 
 
 def test_sentinel_of_the_sensor_is_written():
@@ -185,7 +185,7 @@ def test_normalised_sensor_is_converted_to_metres_and_back():
     assert sensor.to_metres(unit).tolist() == pytest.approx([0.0, 1.4, 5.0])
     assert sensor.from_metres(sensor.to_metres(unit)) == pytest.approx(unit)
     near = sensor.from_metres(np.array([0.0, sensor.z_min / 2, sensor.z_min]))
-    assert near[0] == 0 and (near[1:] > 0).all()  # a reading is no hole
+    assert near[0] == 0 and (near[1:] > 0).all()  # a reading is not a hole
     assert sensor.to_metres(unit).dtype == np.float32
 
 

@@ -105,7 +105,7 @@ def test_low_light_differs_from_low_light_noise_by_noise_only(scene):
     dark = corrupt(frame, "low_light", 0.5, key=Key(0, "a")).astype(float)
     noisy = corrupt(frame, "low_light_noise", 0.5, key=Key(0, "a")).astype(float)
     mean = noisy.mean(0)
-    bright = dark[0] > 40  # clipping at zero lifts deep shadows
+    bright = dark[0] > 40  # clipping at zero brightens deep shadows
     assert abs((mean - dark[0])[bright].mean()) < 0.8
     assert np.corrcoef(mean.ravel(), dark[0].ravel())[0, 1] > 0.995
 

@@ -1,4 +1,4 @@
-"""The fidelity check: what it reads, what it lets pass, and what it catches."""
+"""The fidelity check: what it reads, accepts and rejects."""
 
 from __future__ import annotations
 

@@ -105,7 +105,7 @@ def test_sheet_of_unseen_corruptions_has_a_row_for_each(tmp_path, scene, monkeyp
 
 
 def test_documented_formulas_match_the_code():
-    """After a change of a constant: ``python -m tools.pages.gallery --page``."""
+    """After changing a constant: ``python -m tools.pages.gallery --page``."""
     text = (gallery.DOCS / "corruptions.md").read_text()
     assert gallery.page.formulas() in text and gallery.page.suites() in text
     text = (gallery.DOCS / "unseen-corruptions.md").read_text()

@@ -1,4 +1,5 @@
-"""The instruction families: identity at 0, nested in s, keyed, and what each may never change."""
+"""The instruction families: identity at 0, nested in s, keyed, and which words they never
+change."""
 
 from __future__ import annotations
 
@@ -266,7 +267,7 @@ def test_suite_lists_the_families():
 
 
 def test_words_match_the_suite_version():
-    """A change here changes results: raise SUITE_VERSION with it."""
+    """A change here changes results and needs a new SUITE_VERSION."""
     path = Path(__file__).parents[1] / "guards/text/handwritten.txt"
     texts = [line for line in path.read_text().splitlines() if not line.startswith("#")]
     lines_of_text = [

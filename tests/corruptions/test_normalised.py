@@ -1,4 +1,4 @@
-"""Normalised depth: to metres, corrupted and back, and what comes back bit for bit."""
+"""Normalised depth: to metres, corrupted and back, and which values return bit for bit."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,5 @@
-"""Two corruptions at once: what is applied first, whose draws, and who knows the notation."""
+"""Two corruptions at once: their order, their random draws, and the places that accept the
+notation."""
 
 from __future__ import annotations
 

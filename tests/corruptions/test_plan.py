@@ -1,4 +1,4 @@
-"""Which files of a folder are frames: links are followed, whatever they lead to."""
+"""The files of a folder that count as frames: links are followed to files and folders."""
 
 import os
 import shutil
@@ -32,7 +32,7 @@ def walk(tmp_path):
 
 
 def test_links_are_followed_except_cycles_and_results(walk):
-    for saved in (7, 0):  # the second run meets the results of the first behind a link
+    for saved in (7, 0):  # the second run reaches the results of the first through a link
         matches = run(walk / "in", walk / "out", Settings("spatter", 0.6))
         assert matches["written"] == saved and matches["there"] == 7 - saved
         assert {name: e["frames"] for name, e in matches["episodes"].items()} == {

@@ -1,4 +1,4 @@
-"""What holds for any frame, severity and key (hypothesis draws them)."""
+"""Properties that hold for any frame, severity and key (hypothesis draws them)."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""One record a corruption, and a corruption from another package in a suite."""
+"""One record per corruption, and a corruption from another package in a suite."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ def test_wrong_record_is_rejected():
 
 @pytest.fixture
 def package(tmp_path) -> Path:
-    """Where the page's package is installed."""
+    """The folder with the installed package of the page."""
     (tmp_path / "rain.py").write_text(MINE)
     group, line = POINT.strip().splitlines()
     folder = tmp_path / "rain-1.0.dist-info"
@@ -73,13 +73,13 @@ def package(tmp_path) -> Path:
 
 @pytest.fixture
 def installed(package) -> dict[str, str]:
-    """The environment of a process where it is found."""
+    """Return the environment of a process that can import the package."""
     return {**os.environ, "PYTHONPATH": f"{package}{os.pathsep}{ROOT}"}
 
 
 @pytest.fixture
-def installed(package, monkeypatch):
-    """Lets this process find the package; when called, as it is now."""
+def add_to_path(package, monkeypatch):
+    """Return a function that lets this process import the package in its current state."""
 
     def forget():
         registry.plugin_records.cache_clear()
@@ -87,7 +87,7 @@ def installed(package, monkeypatch):
         importlib.invalidate_caches()
 
     monkeypatch.syspath_prepend(package)
-    monkeypatch.setattr(sys, "dont_write_bytecode", True)  # a change within a second is one, too
+    monkeypatch.setattr(sys, "dont_write_bytecode", True)  # a change within a second counts, too
     forget()
     yield forget
     forget()
@@ -101,7 +101,9 @@ def run(installed: dict[str, str], folder: Path, *command: str) -> str:
     return done.stdout
 
 
-def test_external_corruption_joins_a_suite_and_a_schedule(installed, tmp_path, monkeypatch, capsys):
+def test_external_corruption_joins_a_suite_and_a_schedule(
+    add_to_path, tmp_path, monkeypatch, capsys
+):
     monkeypatch.setattr(simulator, "MAX_STEPS", 40)
     options = ["episodes=1", "conditions=[clean,rain,flare]", "env.size=32", "workers=1"]
     monkeypatch.setattr(sys, "argv", ["mitigate evaluate", *options, f"out={tmp_path}/out"])
@@ -113,7 +115,7 @@ def test_external_corruption_joins_a_suite_and_a_schedule(installed, tmp_path, m
     assert {row.get("version") for row in rows if row["corruption"] == "rain"} == {"1"}
     changed = (tmp_path / "rain.py").read_text().replace('version="1"', 'version="2"')
     (tmp_path / "rain.py").write_text(changed)
-    installed()
+    add_to_path()
     evaluate.main()
     assert len((tmp_path / "out/rows.jsonl").read_text().splitlines()) == 4
     drawn, _ = Schedule.always("rain", 0.5).draw(0, "e", 1)

@@ -1,4 +1,4 @@
-"""What each RGB corruption does to pixels, sizes and panoramas."""
+"""The effect of each RGB corruption on pixels, sizes and panoramas."""
 
 import numpy as np
 import pytest
@@ -221,7 +221,7 @@ def test_black_out_is_drawn_for_each_frame_and_view():
 
 @pytest.mark.parametrize("heading", [float("nan"), float("inf")])
 def test_flare_rejects_heading_that_is_not_a_number(scene, heading):
-    """A light that is nowhere would pass for a clean frame."""
+    """A light outside of all views would look like a clean frame."""
     rgb, _ = scene.draw(24, 32)
     with pytest.raises(ValueError, match="heading must be in finite radians"):
         corrupt(rgb, "flare", 1.0, key=Key(0, "a"), heading=heading)

@@ -1,4 +1,4 @@
-"""Which frame is corrupted by what."""
+"""Schedules: which corruption a frame gets."""
 
 import json
 from collections import Counter

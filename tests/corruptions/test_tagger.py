@@ -1,4 +1,4 @@
-"""Our tagger on words labelled by hand; spaCy's, where an English pipeline is installed."""
+"""Our tagger on hand-labelled words; spaCy's if an English pipeline is installed."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ CONTENT = {"NOUN", "PROPN", "VERB", "ADP"}
 
 
 def pairs(text: str, tag) -> list[tuple[str, str, str]]:
-    """(word, label, tag) of every word; marks are left out."""
+    """Return (word, label, tag) of every word; punctuation is left out."""
     matches = []
     for line in text.splitlines():
         if "/" not in line:

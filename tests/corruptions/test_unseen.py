@@ -1,4 +1,4 @@
-"""The unseen corruptions: the suite's rules, their halves, and that nobody trains on them."""
+"""The unseen corruptions: the suite's rules, their halves, and that no training uses them."""
 
 from __future__ import annotations
 
@@ -75,7 +75,7 @@ def test_unseen_corruptions_are_in_their_suites_only():
 
 
 def schedules(node) -> list[dict]:
-    """All schedules in a config, wherever they stand."""
+    """Return all schedules in a config, at any depth."""
     if isinstance(node, list):
         return [matches for value in node for matches in schedules(value)]
     if not isinstance(node, dict):
@@ -226,7 +226,7 @@ def test_frame_and_half_size_copy_are_corrupted_alike(name):
 
 
 def room(height: int, width: int, wall: float = 4.0, tall: float = 1.2) -> np.ndarray:
-    """Depth [H, W] before a wall, with the floor ``tall`` metres under a level camera."""
+    """Return the depth [H, W] of a wall, with the floor ``tall`` metres under a level camera."""
     down = (np.arange(height) + 0.5 - 0.5 * height) / (0.5 * width)
     floor = np.where(down > 0, tall / np.maximum(down, 1e-6), np.inf)
     return np.repeat(np.minimum(floor, wall)[:, None], width, axis=1).astype(np.float32)

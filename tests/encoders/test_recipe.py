@@ -164,14 +164,14 @@ def test_training_of_a_file_with_a_network(tmp_path, pictures, kind, tune):
 
 def test_report_compares_with_the_initial_encoder(tmp_path, pictures):
     own_value = ["agent=encoder", "agent.model=tests.encoders.shapes:TinyNet", "agent.output=pool"]
-    own_value += ["agent.tune=all", "trainer.lr=1e-9"]  # weights drawn anew, and hardly trained
+    own_value += ["agent.tune=all", "trainer.lr=1e-9"]  # weights are resampled, and hardly trained
     out = train.run(config(tmp_path, pictures, *own_value))
     rows = [json.loads(line) for line in (out / "features.jsonl").read_text().splitlines()]
     clean = next(row for row in rows if (row["measure"], row["condition"]) == ("cosine", "clean"))
     assert clean["before"][0] == pytest.approx(1) and clean["after"][0] == pytest.approx(
         1, abs=0.01
     )
-    assert clean["before"][1:] == [None, None]  # of six folders one is unseen
+    assert clean["before"][1:] == [None, None]  # one of six folders is held out
     assert "[–] |" in (out / "features.md").read_text()
 
 

@@ -1,4 +1,4 @@
-"""Result rows made by hand for the tests of rows, tables and reports."""
+"""Hand-made result rows for the tests of rows, tables and reports."""
 
 from __future__ import annotations
 
@@ -25,12 +25,12 @@ def row(episode: int | str, success: float, **changes: Any) -> dict[str, Any]:
 
 
 def cell(wins: int, count: int = 10, **changes: Any) -> list[dict[str, Any]]:
-    """Rows of ``count`` episodes, the first ``wins`` of them successes."""
+    """Return rows of ``count`` episodes; the first ``wins`` are successes."""
     return [row(episode, episode < wins, **changes) for episode in range(count)]
 
 
 def column(clean: int, corrupted: dict[str, int], severity: float = 0.6, **changes: Any) -> list:
-    """A clean cell and one cell a corruption, ten episodes each."""
+    """Return a clean cell and one cell per corruption, ten episodes each."""
     cells: Iterable = (
         cell(wins, corruption=name, severity=severity, **changes)
         for name, wins in corrupted.items()

@@ -1,4 +1,4 @@
-"""The bootstrap is paired, seeded, and as wide as theory says."""
+"""The bootstrap is paired and seeded, and its intervals have the theoretical width."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from mitigate.evaluation.bootstrap import (
 
 @pytest.fixture
 def results():
-    """Clean [300] and corrupted [8, 300] successes that share how hard an episode is."""
+    """Clean [300] and corrupted [8, 300] successes with a shared difficulty of each episode."""
     generator = np.random.default_rng(1)
     hard = generator.random(300)
     return (hard < 0.65).astype(float), (hard < generator.normal(0.4, 0.03, (8, 1))).astype(float)

@@ -1,4 +1,4 @@
-"""The oracle and the random walker that frame every result."""
+"""The oracle and the random agent, which bound every result."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ def test_random_agent_differs_between_episodes_of_one_text(monkeypatch, tmp_path
 
 @pytest.fixture
 def walked(monkeypatch):
-    """The ids of the episodes that were walked, each of them a success."""
+    """Return the ids of the episodes of a run, all of which must be successes."""
     ids: list[str] = []
 
     def walk(agent, world, episode, *others):

@@ -1,4 +1,4 @@
-"""What an agent answers is an action, or the episode, the step and the user's line are named."""
+"""The answer of an agent must be an action; otherwise the error names episode, step and line."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ EPISODE = Episode("e7", "0", "room", (0, 0, 0), (0, 0, 0, 1), (), Instruction("G
 
 
 class Cell:
-    """A dark cell, in which STOP is right."""
+    """A dark cell, in which STOP is correct."""
 
     rule, sensors = "STOP", {}
 
@@ -48,7 +48,7 @@ class Cell:
 
 
 class Answers:
-    """Gives ``answers``, one after the other; what is callable is asked."""
+    """Returns ``answers`` one after the other; callables are called."""
 
     together = 1
 
@@ -146,7 +146,7 @@ def test_run_episode_error_names_line_and_episode():
         run_episode(Answers(1, broken), Cell(), EPISODE, CLEAN, 0)
     with pytest.raises(ValueError, match="matmul") as caught:
         broken()
-    error, _ = portable(caught.value)  # as a worker process gives it back
+    error, _ = portable(caught.value)  # as a worker process returns it
     assert error_message(pickle.loads(pickle.dumps(error))).endswith("broken())")
 
 

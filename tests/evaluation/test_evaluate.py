@@ -1,4 +1,4 @@
-"""The command that evaluates an agent, around the walks themselves."""
+"""The command that evaluates an agent, without long episodes."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from tests.evaluation.straight import Straight
 
 
 def test_evaluate_prints_the_requested_rows(tmp_path, capsys):
-    """Three episodes lie there; two of them are asked for."""
+    """The list has three episodes; two of them are requested."""
 
     all_rows = cell(2, 3)
     rows.write(tmp_path / "rows.jsonl", all_rows)
@@ -56,7 +56,7 @@ def test_evaluate_rejects_options_of_trainings(tmp_path, option):
 
 @pytest.fixture
 def policies(tmp_path):
-    """Options for agents of one's own, of the class that is named."""
+    """Return options for a user's agent of the named class."""
 
     def options(target, *more, settings=""):
         folder = tmp_path / "mine" / "agent"
@@ -91,7 +91,7 @@ def test_walks_of_an_agent_without_weights_are_drawn(policies, tmp_path):
 
 
 class Slots:
-    """It takes no further attributes."""
+    """It accepts no further attributes."""
 
     __slots__ = ()
 
@@ -112,12 +112,12 @@ def remote() -> Straight:
 
 
 def make_network() -> nn.Module:
-    """What a config may name in place of a class."""
+    """A function that a config may name instead of a class."""
     return Net()
 
 
 class Net(nn.Linear):
-    """A policy that somebody trained elsewhere."""
+    """A policy that was trained elsewhere."""
 
     def __init__(self) -> None:
         super().__init__(1, 4)
@@ -143,7 +143,8 @@ def test_load_accepts_foreign_safetensors(policies, tmp_path):
     assert len(rows.read(evaluate.run(by_function) / "rows.jsonl")) == 2
     with pytest.raises(ValueError, match="checkpoint is not set"):
         evaluate.run(policies(f"{__name__}.make_network"))
-    remote = policies(f"{__name__}.remote", "conditions=[clean,flare]")  # a function of no network
+    # a function that returns no network
+    remote = policies(f"{__name__}.remote", "conditions=[clean,flare]")
     assert len(rows.read(evaluate.run(remote) / "rows.jsonl")) == 2
     torch.save(net.state_dict(), tmp_path / "w.pt")
     with pytest.raises(FileNotFoundError, match="may run code.*safetensors.torch.save_file"):

@@ -1,4 +1,4 @@
-"""Rows do not depend on the number of processes, and an interrupted evaluation goes on."""
+"""Rows do not depend on the number of processes, and an interrupted evaluation resumes."""
 
 from __future__ import annotations
 
@@ -89,7 +89,7 @@ def test_rows_behind_a_restorer_are_of_another_agent(tmp_path):
     alone = run(tmp_path, episodes=1, conditions=conditions)
     restorer = Noted(width=4, depth_width=4)
     for net in restorer.parts().values():
-        net.threshold.fill_(1e9)  # it takes every frame for clean
+        net.threshold.fill_(1e9)  # it classifies every frame as clean
     behind = run(tmp_path, episodes=1, conditions=conditions, guards=Guards([restorer]))
     assert len(seen) == sum(row["decisions"] for row in behind) > 0
     assert {row["agent"] for row in alone}.isdisjoint(row["agent"] for row in behind)
@@ -121,11 +121,11 @@ def test_row_identifies_its_measurement(finished):
         assert row["success"] in (0, 1) and 0 <= row["spl"] <= row["success"]
         assert 0 <= row["ndtw"] <= 1 and row["decisions"] <= 15 and row["steps"] <= 500
         assert "STOP" in row["rule"] and "2.0 m" in row["rule"]
-        assert row["scene"] == row["episode_id"].partition("-")[0]  # as older rows say it
+        assert row["scene"] == row["episode_id"].partition("-")[0]  # in the words of older rows
 
 
 class Won(ApartmentsWorld):
-    """Says that it went well by true."""
+    """Reports success as the value true."""
 
     def measures(self) -> dict:
         return super().measures() | {"success": True, "spl": 1.0}
@@ -217,7 +217,7 @@ def test_frames_are_rendered_only_if_they_are_read():
 
 
 class Watcher:
-    """Looks at every step, turns twice, stops; keeps what it saw."""
+    """Reads every frame, turns twice, stops; stores its observations."""
 
     def reset(self, instruction: str) -> None:
         self.seen = []
@@ -242,7 +242,7 @@ def test_corruption_changes_every_observation(name, hurt, whole):
 
 
 class Listener:
-    """Keeps what it was told and what its prompt was, and stops at once."""
+    """Stores its instruction and its prompt, and stops at once."""
 
     def __init__(self, prompt: str | None = None) -> None:
         self.told: list[tuple[str, str | None]] = []
@@ -316,7 +316,7 @@ def test_weights_that_are_no_numbers_are_not_evaluated(tmp_path):
 
 
 class Prompted(Straight):
-    """Walks side by side; notes the prompt that it has at every step."""
+    """Runs episodes side by side; records its prompt at every step."""
 
     system_prompt, together = "You follow routes. {task}", 2
 
@@ -332,7 +332,7 @@ class Prompted(Straight):
 
 
 class Own(ApartmentsWorld):
-    """A world of one's own, made of a shipped one, with a constructor and a state of its own."""
+    """A user's world that wraps a shipped one, with its own constructor and state."""
 
     def __init__(self, dark: float) -> None:
         super().__init__(16)
@@ -340,7 +340,7 @@ class Own(ApartmentsWorld):
 
 
 class Around:
-    """What passes on all that it does not do itself."""
+    """Delegates undefined attributes."""
 
     def __init__(self) -> None:
         self.world = ApartmentsWorld(16)

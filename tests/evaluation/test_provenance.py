@@ -1,4 +1,4 @@
-"""Rows of one world are not taken for another's."""
+"""Rows of one world do not count for another one."""
 
 from __future__ import annotations
 
@@ -157,7 +157,7 @@ def test_keep_accepts_two_paths_of_one_file(tmp_path, monkeypatch):
 
 
 def test_keep_accepts_worlds_with_other_sensors_or_rules(tmp_path):
-    """Their rows say so: a table of agents with one camera and with twelve is one folder."""
+    """The rows record this: a table of agents with one camera and with twelve is one folder."""
     for kind in ({}, {"size": 16}, {"rule": "near"}, {}):
         keep(tmp_path, of_config(**kind))
     with pytest.raises(ValueError, match=r"env\.world\.cells"):
@@ -166,7 +166,7 @@ def test_keep_accepts_worlds_with_other_sensors_or_rules(tmp_path):
 
 @pytest.mark.parametrize("wrapped", [False, True])
 def test_keep_rejects_an_edited_world(tmp_path, monkeypatch, wrapped):
-    """Also one inside an environment's wrappers."""
+    """This includes a world inside the wrappers of an environment."""
     monkeypatch.syspath_prepend(tmp_path)
     source = "class Edited:\n    rule, sensors = 'there', {}\n    won = True\n"
     for text in (source, source, source.replace("True", "False")):

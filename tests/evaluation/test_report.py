@@ -1,4 +1,4 @@
-"""The table holds the paper's numbers for known rows, and says what is missing or doubtful."""
+"""The table holds the paper's numbers for known rows, and states missing and uncertain values."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ HARD = {"agent": "ffff00000000", "name": "da_per_episode"}
 
 
 def lines(output) -> dict[str, list[str]]:
-    """The table's cells by the first cell of their line; the first line of a name counts."""
+    """Return the table's cells by the first cell of their line; the first line of a name counts."""
     text = markdown(sections(output))
     table_lines = [line for line in text.splitlines() if line.startswith("| ")]
     matches: dict[str, list[str]] = {}
@@ -60,7 +60,7 @@ def test_heading_states_the_conditions():
 
 @pytest.mark.parametrize("says", [True, False])
 def test_intervals_may_be_of_scenes(says):
-    """Two scenes of five episodes, which the rows or the apartments' ids name."""
+    """Rows of two scenes with five episodes, named by the rows or by the apartments' ids."""
 
     def placed(output: dict) -> dict:
         scene, number = divmod(int(output["episode_id"]), 5)
@@ -145,7 +145,7 @@ def test_partial_table_lists_its_gaps():
 
 
 def test_unfinished_episode_is_left_out():
-    """The evaluator goes by episode: the last one may lack some of its conditions."""
+    """The evaluator runs episode by episode: the last one may lack some of its conditions."""
     records = column(8, ALL)
     cut = [r for r in records if r["episode_id"] != "9" or r["corruption"] in ("clean", "flare")]
     (section,) = sections(cut)
@@ -193,7 +193,7 @@ def test_agents_of_one_name_are_distinguished():
 
 
 def test_agents_with_distinct_seeds_share_a_column():
-    """They are the training seeds of one recipe."""
+    """The columns are the training seeds of one recipe."""
     records = column(8, ALL) + column(4, ALL, agent="ba9876543210", seed=1)
     (section,) = sections(records)
     assert section.columns == ("base",)
@@ -225,7 +225,7 @@ def test_table_lists_values_seed_by_seed():
 
 
 def test_columns_are_compared_over_common_seeds():
-    """Only these met corruptions of the same keys."""
+    """Only these rows used the same corruption keys."""
     base = column(8, ALL) + column(2, dict.fromkeys(NAMES, 1), seed=1)
     matches = sections(base + column(6, ALL, **HARD))[0]
     alone = sections(column(8, ALL) + column(6, ALL, **HARD))[0]
@@ -237,7 +237,7 @@ def test_columns_are_compared_over_common_seeds():
 
 
 def test_unfinished_seed_is_left_out_with_a_note():
-    """What another seed has measured in full must not shrink to what a new one has so far."""
+    """A complete seed must not be reduced to the episodes that a new seed has so far."""
     part = [r for r in column(2, ALL, seed=1) if int(r["episode_id"]) < 2]
     (section,) = sections(column(8, ALL) + part)
     assert section.value("base", "clean") == pytest.approx(0.8)
@@ -256,7 +256,7 @@ def test_seed_counts_only_at_its_severities():
 
 
 def test_heading_names_the_agents():
-    """Another training counts at the severities that it was measured at alone."""
+    """Another training counts only at the severities at which it was measured."""
     other = column(4, ALL, 0.6, seed=1, agent="eeee00000000")
     mild, strong = sections(column(8, ALL, 0.2) + column(8, ALL, 0.6) + other)
     assert "eeee00000000" not in markdown([mild]) and "eeee00000000" in markdown([strong])
@@ -365,7 +365,7 @@ def test_unseen_corruptions_have_a_table_of_their_own():
 
 
 def test_suite_figures_ignore_other_corruptions():
-    """Other seeds, gaps and agents of the unseen rows included."""
+    """This includes other seeds, gaps and agents of the unseen rows."""
     suite = column(8, ALL) + column(6, ALL, seed=1) + column(5, ALL, **HARD)
     other = column(8, dict.fromkeys(UNSEEN, 2)) + column(5, {"spatter+haze": 1}, **HARD)
     other += column(3, {"haze": 1}, agent="eeee00000000", name="third")
@@ -421,7 +421,7 @@ def test_plain_names_are_not_escaped():
 
 
 def other_list(output, **changes):
-    """The same rows over other episodes."""
+    """Return the same rows for other episodes."""
     return [r | changes | {"episode_id": f"{r['episode_id']}-other"} for r in output]
 
 
@@ -451,7 +451,8 @@ def test_lists_with_common_episodes_share_a_table():
 
 
 def test_rows_at_severity_zero_are_not_clean_rows():
-    """A corruption may be run at 0; which of the two was shown hung on the order of a set."""
+    """A corruption may run at severity 0; which of the two was shown depended on the order of a
+    set."""
     rows = column(8, {"flare": 0}) + [
         output | {"corruption": "flare", "severity": 0.0} for output in cell(8)
     ]

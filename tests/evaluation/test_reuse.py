@@ -1,4 +1,5 @@
-"""What is rendered and encoded once for all conditions of an episode, and that no row sees it."""
+"""Frames that are rendered and encoded once for all conditions of an episode; rows do not
+change."""
 
 from __future__ import annotations
 
@@ -39,7 +40,7 @@ def test_measures_do_not_depend_on_the_cache():
 
 
 class Scribbler:
-    """Looks, writes into what it saw, and keeps a copy of what it saw first."""
+    """Modifies its observation, and stores a copy of the first one."""
 
     def reset(self, instruction):
         self.seen = []
@@ -63,7 +64,7 @@ def test_agent_cannot_change_cached_frames():
 
 
 def encoded(agent):
-    """Frames given to the RGB encoder from now on: a list that grows."""
+    """Return a growing list of the frames that the RGB encoder gets from now on."""
     calls = []
     agent.rgb_encoder.register_forward_hook(lambda *_: calls.append(1))
     return calls
@@ -102,7 +103,7 @@ def test_cache_is_cleared_when_weights_change():
 class Mortal(torch.nn.Module):
     """Stops at once; kills its process in one episode, if another process has not done so."""
 
-    settings = dict  # where it dies makes it no other agent
+    settings = dict  # the place of the death does not change the agent
 
     def __init__(self, folder, deaths=1):
         super().__init__()

@@ -1,4 +1,4 @@
-"""Whose success rule it is: each paper's own, by name, and in every row."""
+"""Success rules: the rule of each paper, by name, and in every row."""
 
 from __future__ import annotations
 
@@ -98,7 +98,7 @@ def test_ndtw_threshold_follows_the_rule():
 
 
 def test_expert_of_the_default_rule_is_unchanged():
-    """Shipped rows and weights are of these walks."""
+    """Shipped rows and weights belong to these episodes."""
     world, message = ApartmentsWorld(), []
     for episode in load_episodes("val_seen")[::60]:
         world.reset(episode)

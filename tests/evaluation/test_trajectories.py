@@ -1,4 +1,4 @@
-"""Pictures of walks show what the rows say, of episodes chosen by rule."""
+"""Pictures of episodes agree with their rows; the episodes are chosen by a rule."""
 
 from __future__ import annotations
 
@@ -70,7 +70,7 @@ def test_draw_trajectories_draws_clean_and_corrupted_runs(tmp_path, monkeypatch,
 
 
 class Shows(ApartmentsWorld):
-    """An apartment in which one kind of frame shows, or none."""
+    """An apartment in which one kind of frame shows, or no frame."""
 
     only: tuple[str, ...] = ()
 

@@ -56,7 +56,7 @@ def broken(frames):
 
 
 class Returns:
-    """Return an entry as it is given to the constructor."""
+    """Return an entry in the form that the constructor gets."""
 
     def __init__(self, **output):
         self.made = output

@@ -1,4 +1,4 @@
-"""What recipes say to an agent that keeps the contract by halves."""
+"""The messages of recipes to an agent that implements only part of the contract."""
 
 from __future__ import annotations
 

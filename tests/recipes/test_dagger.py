@@ -1,4 +1,4 @@
-"""DAgger learns from fresh walks and from ones that it kept; a resumed run draws the same."""
+"""DAgger learns from fresh and stored rollouts; a resumed run draws the same."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def recipe(folder, **settings) -> Dagger:
 
 
 def walks(batch: dict) -> list[str]:
-    """The episodes of a batch, each walk once."""
+    """Return the episodes of a batch, one per rollout."""
     ids, rows = batch["episode_ids"], batch["decisions"].walk.tolist()
     return [ids[rows.index(walk)] for walk in range(max(rows) + 1)]
 

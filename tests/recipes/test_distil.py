@@ -1,4 +1,4 @@
-"""Distillation leaves the teacher alone, moves the student, and asks both the same question."""
+"""Distillation keeps the teacher, trains the student, and gives both the same observations."""
 
 from __future__ import annotations
 
@@ -71,7 +71,7 @@ def batch(recipe) -> dict:
 
 
 def gradients(recipe: Distil, loss: torch.Tensor) -> set[str]:
-    """The agent's parts that ``loss`` reaches; the teacher must never be one."""
+    """Return the agent's parts that get a gradient from ``loss``; the teacher must never be one."""
     recipe.zero_grad()
     loss.backward(retain_graph=True)
     assert all(p.grad is None for p in recipe.teacher.parameters())
@@ -115,13 +115,13 @@ def test_matched_features_count_in_units_of_the_teachers_variance():
 def test_policy_kl_is_that_of_softened_policies():
     student, teacher = torch.tensor([[2.0, 0.0]]), torch.tensor([[0.0, 4.0]])
     p = torch.tensor([1.0, np.e**2]) / (1 + np.e**2)
-    q = torch.tensor([np.e, 1.0]) / (1 + np.e)  # the KL of q and p is another number
+    q = torch.tensor([np.e, 1.0]) / (1 + np.e)  # the KL of q and p has another value
     expected = float((p * (p / q).log()).sum())  # at temperature 2
     assert float(policy_kl(student, teacher, 2.0)) == pytest.approx(expected, abs=1e-6)
 
 
 def test_teacher_and_student_answer_over_the_same_candidates(recipe, batch):
-    """The teacher's own waypoints, from clean depth, would be others."""
+    """The teacher's waypoints, from clean depth, would differ."""
     decisions = batch["decisions"]
     student = recipe.agent.decide(decisions).logits
     with torch.no_grad():
@@ -260,7 +260,7 @@ def test_gate_threshold_is_set_on_held_out_clean_views():
 
 
 def with_statistics(**options) -> TopologicalAgent:
-    """An agent whose encoders normalise by running statistics, with and without weights."""
+    """An agent whose encoders normalise with running statistics, with and without weights."""
     agent = small(**options)
     for encoder, affine in ((agent.rgb_encoder, True), (agent.depth_encoder, False)):
         block = encoder.stages[0]

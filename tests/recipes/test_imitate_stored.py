@@ -1,4 +1,4 @@
-"""Planner training on stored features: what is stored does not depend on who is blind."""
+"""Planner training on stored features: the stored features do not depend on blind sensors."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def recipe(
 
 @pytest.fixture(autouse=True, scope="module")
 def few_poses():
-    """A sixteenth of those that a training stores."""
+    """A sixteenth of the poses that a training stores."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(stored, "SPACING", 2.0)
         yield
@@ -53,7 +53,7 @@ def folder(tmp_path_factory):
 
 
 def spread(output: ImitateStored) -> tuple[float, float]:
-    """How much the RGB and the depth features of the stored poses differ."""
+    """Return how much the stored RGB and depth features differ."""
     views, depth = (
         output.rollouts.store.features(SCENE).views.astype(np.float32),
         output.agent.planner.widths[-1],
@@ -62,7 +62,7 @@ def spread(output: ImitateStored) -> tuple[float, float]:
 
 
 def test_blind_run_stores_whole_features_for_the_next(folder):
-    """The blind one comes first and fills the cache."""
+    """The blind run comes first and fills the cache."""
     assert spread(recipe(folder, ("rgb",)))[0] == 0.0
     seeing, deaf = recipe(folder), recipe(folder, ("instruction",))
     assert seeing.rollouts.store.folder == deaf.rollouts.store.folder and min(spread(seeing)) > 0
@@ -88,7 +88,7 @@ def test_batch_trains_the_planner_only(folder):
 
 
 def test_variants_are_corrupted_scenes_beside_the_clean_one(tmp_path):
-    """Each is stored once, under its own corruption; walks see the clean scene as often as the
+    """Each is stored once, under one corruption; rollouts see the clean scene as often as the
     schedule says."""
     seeding.seed_everything(0, "agent")
     agent = TopologicalAgent(16, SMALL)
@@ -104,7 +104,7 @@ def test_variants_are_corrupted_scenes_beside_the_clean_one(tmp_path):
     output = [path for path in tmp_path.rglob("*") if path.is_dir()]
     assert (
         len({path.stat().st_mode for path in output}) == 1
-    )  # all that may read one read the others
+    )  # the cached features may serve all sensors
     variants = [stores[1].features(SCENE, v) for v in (1, 2)]
     assert all(not np.array_equal(v.views, clean) for v in variants)
     assert not np.array_equal(variants[0].views, variants[1].views)

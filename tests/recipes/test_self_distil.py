@@ -1,4 +1,4 @@
-"""Self-distillation: the loss is zero for equal answers, and what happens in each step."""
+"""Self-distillation: the loss is zero for equal answers, and the order of each step."""
 
 import numpy as np
 import pytest
@@ -56,7 +56,7 @@ def test_self_distil_trains_the_student_only(tmp_path):
 
 
 class Counting(nn.Module):
-    """Counts the frames that it has seen, so that its memory is visible."""
+    """Counts its frames, so that its memory is visible."""
 
     def __init__(self):
         super().__init__()

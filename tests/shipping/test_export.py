@@ -1,4 +1,5 @@
-"""A hardened checkpoint reloads to the same outputs, or it was not written, or it is refused."""
+"""A hardened checkpoint reloads to the same outputs; otherwise it is not written, or is
+rejected."""
 
 from __future__ import annotations
 
@@ -32,7 +33,7 @@ from mitigate.shipping import card as cards
 from mitigate.shipping import export, export_command, programs
 from mitigate.shipping.card import metrics
 
-# one worker of pytest exports, not each its own
+# one worker of pytest exports, instead of each
 pytestmark = pytest.mark.xdist_group("export")
 
 ROOT = Path(__file__).parents[2]
@@ -91,7 +92,7 @@ def observation() -> dict:
 
 
 def python(code: str, *arguments: object, cwd: Path = ROOT) -> str:
-    """What ``code`` prints in a process of its own."""
+    """Return the output of ``code`` in a separate process."""
     done = subprocess.run(
         [sys.executable, "-c", code, *map(str, arguments)],
         cwd=cwd,
@@ -104,7 +105,7 @@ def python(code: str, *arguments: object, cwd: Path = ROOT) -> str:
 
 
 class StandIn(torch.nn.Module):
-    """A network that is traced at once: tracing those of an agent takes half a minute."""
+    """A network that is traced quickly: tracing the networks of an agent takes half a minute."""
 
     def __init__(self, names: tuple[str, ...]) -> None:
         super().__init__()
@@ -191,19 +192,19 @@ def exported(place) -> dict:
 
 @pytest.fixture
 def copied(place, tmp_path) -> Path:
-    """A copy of the folder `whole`, to spoil."""
+    """A copy of the folder `whole`, for tests that damage it."""
     return Path(shutil.copytree(place / "hardened/whole", tmp_path / "whole"))
 
 
 def resign(folder: Path, **changes) -> None:
-    """Change the card and list it with a fitting sha256 again."""
+    """Change the card and update its sha256 in the manifest."""
     card = json.loads((folder / "card.json").read_text())
     (folder / "card.json").write_text(json.dumps({**card, **changes}))
     folders.seal(folder, "hardened")
 
 
 def relist(folder: Path, change) -> None:
-    """Change what the manifest lists."""
+    """Change the manifest's list."""
     manifest = json.loads((folder / folders.MANIFEST).read_text())
     change(manifest["files"])
     (folder / folders.MANIFEST).write_text(json.dumps(manifest))
@@ -260,7 +261,7 @@ def test_adapter_folder_holds_no_backbone_and_needs_its_base(place, tmp_path):
     folder = place / "hardened/adapted"
     assert loading.check_hardened(folder)["adapters_only"]
     assert not (folder / "model.safetensors").exists()
-    assert not list((place / "hardened").rglob("*.sha256"))  # the cards have the sums
+    assert not list((place / "hardened").rglob("*.sha256"))  # the cards contain the checksums
     other = checkpoint.save_weights(TopologicalAgent(**TINY), tmp_path / "other")
     with pytest.raises(ValueError, match="another"):
         loading.load_hardened(folder, base=other)
@@ -412,7 +413,7 @@ def test_other_vocabulary_is_rejected(copied):
 @pytest.mark.parametrize("name", ["adapters.safetensors", "adapters.json", "decide.onnx"])
 def test_known_file_missing_from_the_card_is_rejected(copied, name):
     (copied / name).write_bytes(b"x")
-    (copied / ".gitattributes").touch()  # as the hub adds it
+    (copied / ".gitattributes").touch()  # the hub adds it so
     for read in (
         lambda: loading.load_hardened(copied),
         lambda: loading.fill(TopologicalAgent(**TINY), copied),
@@ -422,7 +423,7 @@ def test_known_file_missing_from_the_card_is_rejected(copied, name):
 
 
 def test_adapters_missing_from_the_card_are_ignored(place, copied):
-    """They are other weights than those that the card's sums are of."""
+    """The weights differ from those that the card's checksums describe."""
     resign(copied, base=None)
     for name in (adapters.WEIGHTS, adapters.SETTINGS):
         shutil.copy(place / "hardened/adapted" / name, copied)
@@ -447,9 +448,7 @@ def test_folder_of_another_agent_than_its_card_is_rejected(copied):
     with pytest.raises(ValueError, match="'0123456789ab'"):
         loading.load_hardened(copied)
     own_value = TopologicalAgent(**TINY).eval()
-    assert (
-        loading.fill(own_value, copied) is own_value
-    )  # to train from: with adapters it is another one
+    assert loading.fill(own_value, copied) is own_value  # for training: adapters would change it
 
 
 @pytest.mark.parametrize(
@@ -544,7 +543,7 @@ def test_export_writes_nothing_if_reload_differs(place, exported, tmp_path, monk
 
 
 def test_check_detects_other_outputs(place, tmp_path):
-    """The same outputs passed it when the fixture exported ``whole``."""
+    """The fixture exported ``whole`` with the same outputs and passed the check."""
     agent = loading.load_hardened(place / "hardened/whole")
     expected = programs.outputs(programs.networks(agent), programs.probe(agent, SIZE))
     expected["logits"] = expected["logits"] + 0.01
@@ -599,12 +598,12 @@ def test_commit_is_of_this_checkout_or_not_stated(monkeypatch, tmp_path):
     assert cards.commit() is None  # no git
     monkeypatch.undo()
     monkeypatch.setattr(cards, "ROOT", tmp_path)
-    assert cards.commit() is None  # installed below a repository that is another's
+    assert cards.commit() is None  # installed inside the repository of another project
 
 
 @contextmanager
 def files_of_at_most(size: int) -> Iterator[None]:
-    """No file of this process may grow beyond ``size`` bytes."""
+    """Limit the files of this process to ``size`` bytes."""
     soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
     resource.setrlimit(resource.RLIMIT_FSIZE, (size, hard))
     try:
@@ -617,7 +616,7 @@ def files_of_at_most(size: int) -> Iterator[None]:
 def test_full_disk_is_reported_and_leaves_nothing(
     place, exported, tmp_path, monkeypatch, capfd, full
 ):
-    """As ``export`` says it when neither weights nor programs may grow beyond some size."""
+    """Return the error of ``export`` if weights and programs may not exceed some size."""
     weights = (place / "hardened/whole" / checkpoint.WEIGHTS).stat().st_size
     most = weights // 2 if full == "weights" else weights + 1000
     command = ["export", str(place / "runs/whole"), "mine", "--out", str(tmp_path)]
@@ -727,7 +726,7 @@ def test_export_writes_no_path_of_this_machine(place, name):
 
 @pytest.mark.slow
 def test_programs_hold_no_path_of_this_machine(traced):
-    """As their traces once did."""
+    """Their traces once contained such paths."""
     assert places_in(traced / loading.PROGRAM) == []
 
 

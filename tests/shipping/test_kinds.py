@@ -1,4 +1,4 @@
-"""Every kind of agent of ours is exported, and reloads without being built by the user."""
+"""Every kind of shipped agent is exported, and reloads without being built by the user."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def test_run_is_exported_and_loads_again(tmp_path, kind, monkeypatch):
     cfg = conf.load_config("train", ["recipe=imitation", "debug=smoke", *options])
     cfg.runs = str(tmp_path)
     run = train.run(cfg)
-    (option,) = export_command._own_kind(run)  # what the command takes unless told
+    (option,) = export_command._own_kind(run)  # the command's default
     assert option == f"agent={kind.partition('_')[0]}"
     with pytest.raises(ValueError, match=option):
         export.export(run, "mine", out=tmp_path)

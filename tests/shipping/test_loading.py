@@ -1,4 +1,4 @@
-"""One call loads an agent from whatever wrote its folder, and tools take its kind from there."""
+"""One call loads an agent from any kind of folder, and tools infer its kind from the folder."""
 
 from __future__ import annotations
 

@@ -1,4 +1,5 @@
-"""Rows of one agent alone enter a card, and a folder fills only an agent like the exported one."""
+"""A card gets the rows of one agent only, and a folder loads only into an agent like the exported
+one."""
 
 from __future__ import annotations
 
@@ -75,14 +76,14 @@ def test_values_that_cannot_be_loaded_are_named(filled):
 
 
 class Silent:
-    """Without settings(); its ``net`` is no plain value."""
+    """Has no settings(); its ``net`` is not a plain value."""
 
     def __init__(self, gain: float) -> None:
         self.gain, self.net = gain, object()
 
 
 def test_attributes_are_compared_without_settings(tmp_path):
-    """So an evaluation and ``benchmark(load_hardened(...))`` have one hash for it."""
+    """An evaluation and ``benchmark(load_hardened(...))`` then give it the same hash."""
     config = tmp_path / "config.yaml"
     config.write_text(yaml.safe_dump({"agent": {"_target_": "mine.Silent", "gain": 1, "net": "a"}}))
     with pytest.warns(UserWarning, match=r"with gain=1, but the given agent has 5\.0"):

@@ -1,4 +1,5 @@
-"""Worker processes make the same batches as none, survive a death, and pass errors on."""
+"""Worker processes make the same batches as the main process, survive deaths, and pass errors
+on."""
 
 from __future__ import annotations
 
@@ -24,7 +25,7 @@ from tests.tiny import TinyRecipe
 
 
 class Shared(TinyRecipe):
-    """Its batches are made of three pieces that depend on the seed and on the weights."""
+    """Its batches consist of three pieces that depend on the seed and on the weights."""
 
     def __init__(self, ahead: bool = False, fatal: str = "") -> None:
         super().__init__()
@@ -37,7 +38,7 @@ class Shared(TinyRecipe):
         if job == (2, 1) and self.fatal == "raise":
             raise ValueError("no such pose")
         if job == (2, 1) and os.path.exists(self.fatal):
-            os.unlink(self.fatal)  # the next one that comes here lives
+            os.unlink(self.fatal)  # the next process that arrives here survives
             if self.fatal.endswith("message"):
                 die_in_a_message()
             os.kill(os.getpid(), signal.SIGKILL)
@@ -56,7 +57,7 @@ class Shared(TinyRecipe):
 
 
 class Bulky(Shared):
-    """Its weights and its pieces are larger than what a pipe holds."""
+    """Its weights and its pieces are larger than the buffer of a pipe."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -170,7 +171,7 @@ def test_worker_error_is_raised_unchanged(two, tmp_path):
 
 
 class Unpackable(Shared):
-    """Its pieces, or its jobs, cannot be sent from one process to the other."""
+    """Its pieces, or its jobs, cannot be pickled."""
 
     def jobs(self, step: int) -> list:
         pointer = ctypes.pointer(ctypes.c_int(step))
@@ -200,7 +201,7 @@ def _no_job():
     ],
 )
 def test_unpicklable_result_is_reported(fatal, kind, message, tmp_path):
-    """Not as a want of memory, and nobody waits for it."""
+    """The error must not mention memory, and no process waits for the job."""
     with Workers(1) as workers, pytest.raises(kind, match=message) as raised:
         Trainer(Unpackable(fatal=fatal), steps=2, folder=tmp_path, workers=workers).fit()
     assert not isinstance(raised.value, WorkersDied)

@@ -1,4 +1,4 @@
-"""How long a training takes is said before it begins, as near as it was timed."""
+"""The duration of a training is estimated before it begins, within the error of the measurement."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ TIMED = [
 
 @pytest.fixture
 def reference(monkeypatch):
-    """The machine that the costs were measured on."""
+    """The machine on which the costs were measured."""
     monkeypatch.setattr(precision, "probe", lambda: precision.REFERENCE)
     monkeypatch.setattr(estimate, "cores", lambda: 2)
 
@@ -86,7 +86,7 @@ def test_estimate_scales_by_the_machines_probe(monkeypatch, reference, tmp_path)
 
 
 def test_base_without_evaluation_is_not_counted(tmp_path):
-    """swap_encoder starts from parts of an agent, which are none by themselves."""
+    """swap_encoder starts from parts of an agent, which are not an agent."""
     cfg = read(conf.load_config("train", ["recipe=swap_encoder"]))
     assert ", 1 x 40 episodes x 13 conditions: about " in estimate.describe(cfg, tmp_path)
     assert ", 2 x 40 episodes x 13 conditions: about " in estimate.describe(

@@ -1,4 +1,4 @@
-"""What does not fit together is refused before the first step, in one paragraph."""
+"""Invalid combinations are rejected before the first step, in one paragraph."""
 
 from __future__ import annotations
 
@@ -149,7 +149,7 @@ def test_plan_rejects_runs_without_stages(tmp_path, options):
 
 
 class Walker(StepwiseAgent):
-    """Learns on episodes, and shows no encoders."""
+    """Trains on episodes, and has no encoders."""
 
     def __init__(self):
         super().__init__()
@@ -324,7 +324,7 @@ def test_missing_weights_name_the_recipe_that_makes_them(tmp_path):
 
 
 def fitted(agent, *options: str):
-    """The stages of a training of ``agent``, by name."""
+    """Return the stages of a training of ``agent``, by name."""
     cfg = load(*options)
     before = copy.deepcopy(cfg.stages)
     plan.drop_unread_corruptions(cfg, agent)
@@ -346,7 +346,7 @@ def test_agent_gets_corruptions_of_its_sensors_only(recipe, agent, read, capsys)
         schedule = build(stage.recipe["schedule"])
         met = Counter(schedule.draw(0, f"e{i}", 0)[0].name for i in range(2000))
         assert set(met) == {"clean", *read}
-        assert met["clean"] / 2000 == pytest.approx(0.25, abs=0.03)  # the clean share, and no more
+        assert met["clean"] / 2000 == pytest.approx(0.25, abs=0.03)  # only the clean share
     lost = ", ".join(DEPTH if read is RGB else RGB)
     printed = capsys.readouterr().out
     assert printed.count("reads no") == 1 and printed.endswith(f"the schedule leaves out {lost}\n")
@@ -361,7 +361,7 @@ def test_unread_corruptions_are_dropped_from_a_list():
     "agent", [TopologicalAgent(16), RecurrentAgent(), FrontierAgent(), TinyAgent()]
 )
 def test_agent_with_both_sensors_draws_the_whole_schedule(agent, capsys):
-    """To the letter: what it was trained under is part of a run's identity."""
+    """Compared as text: the training corruptions are part of a run's fingerprint."""
     for recipe in ("da_per_episode", "stacked"):
         stages, before = fitted(agent, f"recipe={recipe}")
         assert stages == before

@@ -1,4 +1,5 @@
-"""On a GPU: losses of the processor's, weights that go both ways, the shipped agent's walks."""
+"""On a GPU: the losses of the CPU, weights that load on both devices, the shipped agent's
+actions."""
 
 from __future__ import annotations
 
@@ -23,7 +24,7 @@ pytestmark = [
     pytest.mark.skipif(not torch.cuda.is_available(), reason="no CUDA here"),
 ]
 GPU = "cuda"
-DROPOUT = 0.1  # each device draws its own: losses of stages that have it differed by 7 %
+DROPOUT = 0.1  # each device has its own random numbers: losses of such stages differed by 7 %
 KINDS = [
     (agent, recipe)
     for agent in ("topological", "recurrent", "recurrent_rgb", "frontier")
@@ -38,7 +39,7 @@ def settings(folder, device, *options):
 
 
 def trained(folder, device, *options):
-    """Train two steps a stage on a device; return the run's folder."""
+    """Train two steps per stage on a device; return the run's folder."""
     return train.run(settings(folder, device, *options))
 
 
@@ -53,15 +54,13 @@ def test_loss_on_gpu_equals_loss_on_cpu(tmp_path, capfd, agent, recipe):
         trained(tmp_path / place, device, f"agent={agent}", f"recipe={recipe}")
         matches.append(losses("".join(capfd.readouterr())))
     assert len(matches[0]) >= 2 and matches[1] == pytest.approx(matches[0], rel=DROPOUT)
-    assert matches[1][:2] == pytest.approx(
-        matches[0][:2], rel=0.01
-    )  # of the first stage: no dropout
+    assert matches[1][:2] == pytest.approx(matches[0][:2], rel=0.01)  # first stage: no dropout
 
 
 @pytest.mark.parametrize("recipe", ["harden", "ts_distill", "restore"])
 def test_workers_feed_every_stage_as_the_training_itself_does(tmp_path, capfd, recipe):
     matches = []
-    for count in (0, 2):  # no CUDA may be begun where the second stage's workers come from
+    for count in (0, 2):  # CUDA must not start in the process that forks the second stage's workers
         options = [f"recipe={recipe}", f"workers={count}"]
         trained(tmp_path / str(count), GPU, *options)
         matches.append(losses("".join(capfd.readouterr())))
@@ -108,4 +107,4 @@ def test_shipped_agent_acts_as_on_cpu(tmp_path):
         )
         rows.append(walked)
     same = [a["success"] == b["success"] for a, b in zip(*rows, strict=True)]
-    assert sum(same) >= len(same) - 1  # a choice of equals may turn out otherwise
+    assert sum(same) >= len(same) - 1  # ties may be resolved differently

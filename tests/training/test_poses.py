@@ -1,4 +1,4 @@
-"""Views of random poses: what is learned, and what a corruption is shown."""
+"""Views at random poses: the training targets, and the input of a corruption."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from mitigate.worlds.apartments.world import ApartmentsWorld
 
 
 def test_corruption_gets_a_picture_in_every_view(monkeypatch):
-    """It may put another view's picture in the place of one."""
+    """It may return another view's picture."""
     displayed = []
 
     def look(frames, *_):

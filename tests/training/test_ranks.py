@@ -21,8 +21,8 @@ PIECES = 4
 
 
 class Regression(Objective):
-    """Pieces of different lengths, a weight that nothing but the first rank's pieces use, and one
-    that none uses, which must not decay."""
+    """Pieces of different lengths, a weight that only the first rank's pieces use, and an unused
+    weight, which must not decay."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -66,7 +66,7 @@ def torchrun(folder: Path, count: int) -> subprocess.CompletedProcess:
         "import os, sys, torch\nfrom pathlib import Path\n"
         "from mitigate.training import trainer\n"
         "from mitigate.training.ranks import Ranks\nfrom tests.training.test_ranks import train\n"
-        # bf16 may be the faster one on one rank alone: all take the first one's choice
+        # bf16 may be faster on one rank only: all ranks take the choice of the first
         "trainer.choose = lambda *_: ('fp32', 'bf16')[int(os.environ['RANK'])]\n"
         "folder = Path(sys.argv[1])\n"
         "with Ranks.of_environment() as ranks:\n"

@@ -1,4 +1,5 @@
-"""A training that is ended by a signal saves, says how to go on, and ends as if it never was."""
+"""A signal ends a training: it saves, names the command to resume, and resumes to the same
+result."""
 
 from __future__ import annotations
 
@@ -35,7 +36,7 @@ conf.main(program, "train")
 
 
 class Slow(Objective):
-    """A line that is fitted; at step 3 it sends itself a signal, once."""
+    """Fits a line; at step 3 it sends itself a signal, once."""
 
     def __init__(self, folder: Path, number: int) -> None:
         super().__init__()
@@ -55,7 +56,7 @@ class Slow(Objective):
 
 
 class Calibrated(Slow):
-    """``finish`` sets a threshold by the weights, and may do something ``before``."""
+    """``finish`` sets a threshold from the weights, and may call ``before`` first."""
 
     def __init__(self, folder: Path, before=lambda: None) -> None:
         super().__init__(folder, 0)
@@ -72,7 +73,7 @@ class Calibrated(Slow):
 
 
 def end_within_another_block():
-    """As a signal does that comes while workers measure something for a training."""
+    """Simulates a signal that arrives while workers measure for a training."""
     with delay_signals():
         os.kill(os.getpid(), signal.SIGTERM)
         time.sleep(0.01)
@@ -213,7 +214,7 @@ def test_second_signal_ends_at_once(tmp_path):
 
 
 def test_signal_during_success_measurement_keeps_earlier_steps(tmp_path):
-    """Success rates are measured by workers that end at once, in the middle of a step."""
+    """Success rates are measured by workers that end at once, during a step."""
 
     class Measured(Slow):
         def batch(self, step):

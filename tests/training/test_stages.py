@@ -1,4 +1,4 @@
-"""One recipe serves agents of all kinds: what one has not to learn is left out."""
+"""One recipe trains agents of all kinds: stages without trainable parts are left out."""
 
 from __future__ import annotations
 

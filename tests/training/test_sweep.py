@@ -1,4 +1,4 @@
-"""A sweep runs every combination of options in a folder of its own and ends in one table."""
+"""A sweep runs every combination of options in a separate folder and ends in one table."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ def config(runs, *options):
 
 @pytest.fixture
 def fake(monkeypatch):
-    """Runs that take no time: each leaves rows, but those with ``seed=1``, which fail."""
+    """Runs that take no time: each leaves rows, except those with ``seed=1``, which fail."""
     ran = []
 
     def run(chains, jobs, launcher, progress, reported):
@@ -51,7 +51,7 @@ def test_list_is_one_value_and_not_a_sweep():
 
 @pytest.mark.parametrize("value", [[], ["runs=sweeps/default"], ["command=evaluate", "jobs=2"]])
 def test_sweep_without_combinations_shows_help_and_runs_nothing(value, monkeypatch, fake, capsys):
-    """``make sweep`` alone gives it ``runs=``."""
+    """Only ``make sweep`` passes ``runs=``."""
     monkeypatch.setattr(sys, "argv", ["mitigate sweep", *value])
     assert sweep.main() == 2 and not fake
     printed = capsys.readouterr()
@@ -141,7 +141,7 @@ def test_impossible_options_are_reported_before_any_run(
 
 
 def test_sweep_infers_the_agent_from_weights(tmp_path, fake):
-    """``rgb_width`` is a setting of the recurrent agent, and not of the usual one."""
+    """``rgb_width`` is a setting of the recurrent agent, and not of the default one."""
     cfg = config(tmp_path, "command=evaluate")
     options = ["checkpoint=checkpoints/recurrent/base", "agent.rgb_width=1,2"]
     sweep.run_all(cfg, options)

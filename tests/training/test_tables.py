@@ -1,4 +1,4 @@
-"""The table of all methods is made cell by cell, goes on where it stopped, and counts its cost."""
+"""The table of all methods runs cell by cell, resumes where it stopped, and counts its cost."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ from mitigate.training import cells, tables
 from tests.evaluation.made_rows import column, row
 
 ALL = dict.fromkeys((*RGB, *DEPTH), 4)
-KEPT = ("topological", "recurrent")  # columns of Table I where more would say the same
+KEPT = ("topological", "recurrent")  # columns of Table I; more columns would test the same
 
 
 def less(table: str, remaining: Collection[str]) -> list[str]:
-    """Options that leave these columns of a table alone."""
+    """Return options that keep only these columns of a table."""
     return [f"~columns.{name}" for name in conf.load_config(table).columns if name not in remaining]
 
 
@@ -39,7 +39,7 @@ def config(out: Path, **changes) -> cells.TablesConfig:
 
 
 def finished(cfg) -> None:
-    """Rows of every cell, as an evaluation leaves them; seed 1 fares worse than seed 0."""
+    """Rows of every cell, as an evaluation writes them; seed 1 has lower success than seed 0."""
     for cell in tables.cells(cfg):
         agent = "base" if not cell.options else f"{cell.column}{cell.seed}"
         records = column(8 - 2 * cell.seed, ALL, name=cell.column, seed=cell.seed, agent=agent)
@@ -224,7 +224,7 @@ def test_program_without_work_costs_nothing(tmp_path, monkeypatch):
         "train": cell.folder / "run" / "imitation" / "step-00000001.pt",
         "evaluate": cell.evaluation / "rows.jsonl",
     }
-    todo = {*left, "evaluate more"}  # of which the last fails to leave rows
+    todo = {*left, "evaluate more"}  # the last cell fails to leave rows
     add = "import sys; open(sys.argv[1], 'a').write('x')"
 
     def chain(self, cfg):
@@ -261,7 +261,7 @@ def test_report_can_be_rebuilt_from_rows_only(tmp_path, quick):
 
 
 def test_further_evaluations_are_measured_and_reported_apart(tmp_path, quick, monkeypatch):
-    """Each takes what the table says and its own options, and none mixes with the table's rows."""
+    """Each evaluation takes the table's options and its own ones, and its rows stay separate."""
     measured = tables.Cell.measurement
     cfg = load("table2", f"out={tmp_path}", "seeds=[0]", "evaluations=beyond", "episodes=7")
     cfg.columns = {name: cfg.columns[name] for name in ("base", "restored")}
@@ -322,7 +322,7 @@ def test_failed_cell_does_not_lose_the_others(tmp_path, quick, monkeypatch):
     cfg = config(tmp_path)
     finished(cfg)
     broken = tables.cells(cfg)[-1]
-    (broken.evaluation / "rows.jsonl").unlink()  # its training fails before there are any
+    (broken.evaluation / "rows.jsonl").unlink()  # its training fails before there are rows
     monkeypatch.setattr(
         tables.Cell,
         "commands",
@@ -350,7 +350,7 @@ def test_rows_of_another_severity_are_told(tmp_path):
 
 
 def test_clean_rows_alone_make_a_report(tmp_path):
-    """As of the ablations, whatever the severity is that nothing was measured at."""
+    """Like the ablations, at any severity without measurements."""
     rows.write(tmp_path / "rows.jsonl", column(8, {}))
     cfg = config(tmp_path / "out", rows=[str(tmp_path / "rows.jsonl")])
     report = tables.make_table(cfg).read_text(encoding="utf-8")
@@ -365,7 +365,8 @@ def test_paper_figures_appear_only_at_their_severity(tmp_path):
 
 
 def test_trajectories_show_episodes_won_back_by_the_last_agent(tmp_path, quick, monkeypatch):
-    """Every cell's weights are the base agent's, so a test takes seconds; the rows say who won."""
+    """Every cell has the base agent's weights, so a test takes seconds; the rows define the
+    winner."""
     monkeypatch.setattr(tables.Cell, "agent", ())
     cfg = config(tmp_path, walks=["base", "da_per_frame"], episodes=2, seeds=[0])
     ids = [
@@ -385,7 +386,7 @@ def test_trajectories_show_episodes_won_back_by_the_last_agent(tmp_path, quick, 
 
 
 def test_trajectories_use_the_input_guard_of_the_table(tmp_path, monkeypatch):
-    """And known by the name that their rows have."""
+    """The agent has the name of its rows."""
     cfg = config(tmp_path, seeds=[0], episodes=1, walks=["base", "restored"])
     restored = ["name=base", "restore=checkpoints/restorer:rgb", "safeguard=rules"]
     cfg.columns = {"base": [], "restored": restored}

@@ -146,7 +146,7 @@ def test_train_rewrites_damaged_final_weights(tmp_path):
 def test_negative_number_of_workers_is_rejected(tmp_path):
     with pytest.raises(ValueError, match="null uses one per core"):
         train.run(config(tmp_path, "workers=-1"))
-    for wrong in (0, -3):  # which showed only after the training
+    for wrong in (0, -3):  # an error that showed only after the training
         with pytest.raises(
             ValueError, match=f"evaluation.workers must be from 1 to 256, got {wrong}"
         ):
@@ -175,9 +175,10 @@ def test_run_reports_its_plan_and_duration_first(tmp_path, capsys):
     cfg = config(tmp_path)
     cfg.stages.first.cost, cfg.stages.second.cost = 60.0, 60.0
     train.run(cfg)
-    printed = capsys.readouterr().out.splitlines()[1]  # the first is of a schedule that none draws
+    # the first line is about a schedule that draws nothing
+    printed = capsys.readouterr().out.splitlines()[1]
     assert printed.startswith("tiny: first 4 steps, second 6 steps: about ") and "min" in printed
-    train.run(cfg)  # what is done takes no time
+    train.run(cfg)  # finished work takes no time
     assert "about 0 s" in capsys.readouterr().out.splitlines()[1]
 
 
@@ -203,7 +204,7 @@ def test_default_folder_contains_changed_options():
     name = options.default_folder(cfg, "init=checkpoints/mine,debug=smoke")
     assert name == "runs/da_success-s0.9-d0.8-seed3-init-checkpoints_mine_debug-smoke"
     swept, single = (options.default_folder(cfg, f"a.b={value}") for value in ("False", "false"))
-    assert swept == single  # Hydra writes a sweep's values in Python's words
+    assert swept == single  # Hydra writes the values of a sweep in Python's syntax
 
 
 def test_column_name_contains_training_options():
@@ -218,7 +219,7 @@ def test_column_name_contains_training_options():
 
 @pytest.mark.parametrize("option", ["evaluation.episodes=null", "trainer.figure_every=7"])
 def test_default_folder_ignores_options_without_effect(option, monkeypatch):
-    """More episodes to report on must not train again."""
+    """More reported episodes must not cause another training."""
     met = []
     monkeypatch.setattr(train, "run", lambda cfg: met.append(cfg.folder))
     for value in ([], [option]):

@@ -295,7 +295,7 @@ def test_wrong_forward_result_is_explained(tmp_path, returned, words):
 def test_weights_that_are_no_numbers_are_not_saved(tmp_path):
     class Poisoned(TinyRecipe):
         def forward(self, batch):
-            if self.count == 8:  # after the gradient is known, as an overflow in the update does
+            if self.count == 8:  # after the gradient is computed, like an overflow in the update
                 self.agent.body[2].bias.register_hook(self._poison)
             return super().forward(batch)
 

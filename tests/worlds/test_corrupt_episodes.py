@@ -114,7 +114,7 @@ def test_run_uses_a_named_tokenizer(tmp_path):
     assert tokens[: len(tokenizer(text)["input_ids"])] == tokenizer(text)["input_ids"]
     spoken = {"instruction_text": "Gehe links.", "language": "de-DE"}
     source = write(tmp_path / "in.json.gz", *(episode(i) for i in range(8)), episode(8, **spoken))
-    for severity in (0.0, 0.5):  # what the draw leaves as it is has the agent's tokens, too
+    for severity in (0.0, 0.5):  # an unchanged draw has the agent's tokens, too
         run(source, tmp_path / "o.json", "formal", severity, tokenizer=str(tmp_path / "named"))
         for got in json.loads((tmp_path / "o.json").read_text())["episodes"]:
             text, tokens = (got["instruction"][f"instruction_{x}"] for x in ("text", "tokens"))

@@ -40,7 +40,7 @@ def test_checkpoint_leaves_out_public_weights(tmp_path):
     again = agent()
     with torch.no_grad():
         for parameter in again.parameters():
-            parameter.add_(0.1)  # also the borrowed ones: loading brings them back
+            parameter.add_(0.1)  # also the shared ones: loading restores them
     checkpoint.load_weights(again, tmp_path)
     assert torch.equal(features(new_agent), features(again))
     assert torch.equal(features(new_agent), features(copy.deepcopy(new_agent)))

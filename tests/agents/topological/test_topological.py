@@ -42,7 +42,8 @@ def test_act_reads_frames_only_to_decide(simulator):
     agent = wanderer()
     actions, looks = drive(agent, simulator)
     assert len(looks) == agent.decisions > 3
-    assert len(set(looks)) == len(looks) < len(actions) / 2  # once a decision, with walks between
+    # once per decision, with movements between
+    assert len(set(looks)) == len(looks) < len(actions) / 2
 
 
 def test_act_stops_at_the_limit_of_decisions(simulator, monkeypatch):

@@ -16,7 +16,7 @@ from habitat.core.env import Env, make_dataset
 
 
 def walk(out, worker, options):
-    """Walk this worker's episodes and write what was seen to a file of its own."""
+    """Run this worker's episodes and write the observations to a separate file."""
     dataset = make_dataset(options["episodes"], [4, 5, 6] if options["tokens"] else None)
     dataset.episodes = dataset.episodes[worker :: max(1, options["workers"])]
     env, seen = Env(config={"cameras": options["cameras"]}, dataset=dataset), []

@@ -1,4 +1,4 @@
-"""Entries say what their rows say; one that was shipped is walked again and says the same."""
+"""Entries repeat the figures of their rows; a shipped agent runs again with the same figures."""
 
 from __future__ import annotations
 
@@ -321,7 +321,7 @@ def test_add_writes_only_valid_entries(rows, tmp_path, monkeypatch, capsys):
 
 
 class Pupil(Straight):
-    """Its weights are in a network that it holds."""
+    """Its weights are in a network attribute."""
 
     def __init__(self, weight: float) -> None:
         self.net = torch.nn.Linear(1, 1)
@@ -357,7 +357,7 @@ class Dark(ApartmentsWorld):
 
 @pytest.mark.slow
 def test_benchmark_runs_the_script_of_the_page(tmp_path):
-    """Without a guard around the call, of an agent that the script defines, or that is typed in."""
+    """No guard around the call; the agent is defined in the script or typed in."""
     script = (
         "import mitigate\n"
         f"{inspect.getsource(Straight)}"
@@ -425,7 +425,7 @@ def test_entry_of_rejects_an_unfinished_seed(rows):
 
 
 def test_entry_of_requires_all_rows_of_each_seed(rows):
-    """Else its figures are of other seeds than it says."""
+    """Otherwise its figures would come from other seeds than it states."""
     second = [r | {"seed": 1, "agent": "cccccc"} for r in rows]
     assert len(entry_of(rows + second, "base", severity=0.6).agents) == 2
     clean = [r for r in second if r["corruption"] == "clean"]
@@ -443,7 +443,7 @@ def test_benchmark_reuses_only_rows_of_one_world(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     options = {"suite": ["flare"], "workers": 1, "out": "rows", "options": ["env.size=16"]}
     mitigate.benchmark(Straight(), episodes=1, **options)
-    mitigate.benchmark(Straight(), episodes=2, **options)  # more of the same list
+    mitigate.benchmark(Straight(), episodes=2, **options)  # more episodes of the same list
     some = load_episodes("val_unseen")[::150]
     other = [replace(episode, trajectory_id="another") for episode in some]
     with pytest.raises(ValueError, match="rows of episode .* of another list"):
@@ -451,7 +451,7 @@ def test_benchmark_reuses_only_rows_of_one_world(tmp_path, monkeypatch):
 
 
 def test_benchmark_goes_on_whatever_else_episodes_carry(tmp_path, monkeypatch):
-    """What looks otherwise in another process, as sets and objects do, is no other episode."""
+    """Values that differ between processes, such as sets and objects, do not change an episode."""
     monkeypatch.chdir(tmp_path)
     options = {"suite": ["flare"], "workers": 1, "out": "rows", "options": ["env.size=16"]}
     (episode,) = load_episodes("val_unseen")[:1]

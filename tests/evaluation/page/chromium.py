@@ -19,8 +19,8 @@ SECONDS = 20.0  # for any answer
 
 
 class Page:
-    """One page of a browser of its own; ``requests`` are the addresses that it was let ask for, by
-    the request, and ``errors`` what its scripts threw or its policy refused."""
+    """One page in a separate browser; ``requests`` are the addresses that it requested, and
+    ``errors`` the exceptions of its scripts and the violations of its policy."""
 
     def __init__(self, profile: Path) -> None:
         assert PROGRAM is not None
@@ -51,7 +51,7 @@ class Page:
             self.call(f"{domain}.enable")
 
     def open(self, file: Path, address: str = "") -> None:
-        """Show ``file``, with what stands behind ``#``."""
+        """Open ``file`` with a fragment after ``#``."""
         self.requests.clear()
         self.errors.clear()
         self.call("Page.navigate", url="about:blank")
@@ -59,7 +59,7 @@ class Page:
         self.until("document.readyState === 'complete' && location.protocol === 'file:'")
 
     def ask(self, expression: str) -> Any:
-        """The value of a JavaScript expression in the page."""
+        """Return the value of a JavaScript expression in the page."""
         result = self.call("Runtime.evaluate", expression=expression, returnByValue=True)
         assert "exceptionDetails" not in result, result["exceptionDetails"]
         return result["result"].get("value")
@@ -79,7 +79,7 @@ class Page:
             self.call("Input.dispatchKeyEvent", type=kind, **options)
 
     def type(self, text: str) -> None:
-        """Type into what has the keyboard, a letter at a time."""
+        """Type into the focused element, one letter at a time."""
         for letter in text:
             self.call("Input.insertText", text=letter)
 
@@ -91,7 +91,7 @@ class Page:
             time.sleep(0.02)
 
     def call(self, method: str, **options: Any) -> dict[str, Any]:
-        """The result of a command of the protocol."""
+        """Return the result of a command of the protocol."""
         self._number += 1
         requests: dict[str, Any] = {"id": self._number, "method": method, "params": options}
         if self._session:

@@ -1,4 +1,5 @@
-"""The page in a browser: it sorts, compares, opens cells, and nothing in rows can run or ask."""
+"""The page in a browser: it sorts, compares and opens cells; no text of a row runs or loads
+anything."""
 
 from __future__ import annotations
 
@@ -31,7 +32,7 @@ def made_rows() -> list[dict]:
 
 
 def made_walk(rows: list[dict]) -> dict:
-    """base walks the first episode clean and under spatter."""
+    """base runs the first episode clean and under spatter."""
     walk = {
         "episode": "0",
         "instruction": EVIL,
@@ -142,7 +143,7 @@ def test_cells_open_at_any_severity(page, tmp_path, severity):
 
 
 def test_cell_summary_averages_seeds_per_episode(page, tmp_path):
-    """Seed 1 lacks the last episode, which seed 0 won, and so has no part in the grid's mean."""
+    """Seed 1 lacks the last episode, which seed 0 won, so it does not count in the grid's mean."""
     first = column(10, {"spatter": 10})
     second = column(10, {"spatter": 0}, seed=1)
     rows = first + [r for r in second if r["episode_id"] != "9"]
@@ -309,7 +310,7 @@ def test_see_links_only_walks_of_the_row(page, tmp_path, other):
     assert page.ask("document.querySelector('dialog .link')") is None
     page.open(out, "#agent=0&corruption=clean")
     seen = page.ask("document.querySelectorAll('dialog .link').length")
-    assert seen == ("severity" in other)  # which a clean walk has none of
+    assert seen == ("severity" in other)  # a clean episode has no such entry
 
 
 def test_names_and_ids_of_strangers_do_nothing(page, tmp_path):
@@ -324,7 +325,7 @@ def test_names_and_ids_of_strangers_do_nothing(page, tmp_path):
 
 
 def _addresses(page):
-    """Return what the page requested, without the pictures that it holds."""
+    """Return the requests of the page, without its embedded pictures."""
     return [url for url in page.requests.values() if not url.startswith("data:image")]
 
 

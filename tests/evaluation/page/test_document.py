@@ -1,4 +1,4 @@
-"""The page holds the rows' numbers, their episodes as far as it may, and nothing from outside."""
+"""The page holds the numbers of the rows and their episodes up to a limit, and loads nothing."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ from tests.evaluation.straight import Straight
 
 
 def page_data(text: str) -> tuple[dict, np.ndarray]:
-    """The data of a page, and its episodes [cell, field, ...] as one array."""
+    """Return the data of a page, and its episodes [cell, field, ...] as one array."""
     data = re.search(r'id="data">(.*?)</script>', text, re.S)
     packed = re.search(r'id="packed">(.*?)</script>', text, re.S)
     assert data and packed
@@ -115,7 +115,7 @@ def test_cell_is_packed_with_all_seeds_or_none(rows):
 
 
 def test_page_share_uses_common_episodes(rows):
-    """As a PRS is: sure kept all that it was measured to have."""
+    """Like a PRS: the retained share of the measured success."""
     sure = column(10, {"spatter": 10}, name="sure", agent="cccccccccccc", spl=0.4)
     lost = [r | {"success": 0, "spl": 0.1} if r["episode_id"] == "9" else r for r in sure]
     fewer = [r for r in lost if (r["episode_id"], r["corruption"]) != ("9", "spatter")]
@@ -165,7 +165,7 @@ def test_page_escapes_texts_and_names_no_address(rows):
     assert len(re.findall(r"<script", text)) == 3 and len(re.findall(r"</script", text)) == 3
     assert "<!--" not in text and page_data(text)[0]["sections"][0]["columns"][0]["label"] == evil
     addresses = set(re.findall(r"https?://[^\"'\s)]+", text))
-    assert addresses == {"http://www.w3.org/2000/svg"}  # a name, not an address that is asked
+    assert addresses == {"http://www.w3.org/2000/svg"}  # a name, not an address to load
 
 
 def test_choose_alternates_outcomes_and_corruptions():
@@ -184,7 +184,7 @@ def test_choose_alternates_outcomes_and_corruptions():
 
 
 def walked_rows(agents: dict, world: ApartmentsWorld, episode: Episode) -> list[dict]:
-    """What agents measure clean and in low light, by their hashes."""
+    """Clean and low-light results of agents, by their hashes."""
     output = []
     for name, agent in agents.items():
         for met in (Corruption("clean", 0.0), Corruption("low_light", 0.6)):
@@ -199,7 +199,7 @@ def test_walk_again_compares_with_the_row():
     world, (episode,) = ApartmentsWorld(16), load_episodes("val_seen")[:1]
     agents = {"base": Straight(1), "hard": Straight(3)}
     records = walked_rows(agents, world, episode)
-    records[-1]["steps"] += 1  # a row that says otherwise
+    records[-1]["steps"] += 1  # a row that differs
     (drawn,) = walk_again(agents, world, [episode], records, most=3, seed=0)
     assert [walk["agrees"] for walk in drawn["walks"]] == [True, True, False]
     assert drawn["picture"].startswith("data:image/png;base64,")

@@ -1,4 +1,5 @@
-"""Frames taken for clean pass as they are; others are corrected, filled, and keep their form."""
+"""Frames that the gate accepts are unchanged; others are corrected and filled, and keep their
+form."""
 
 from __future__ import annotations
 
@@ -54,7 +55,8 @@ def test_untrained_restorer_hardly_changes_a_frame(untrained, sensor, shape):
 
 
 def wall(metres: float, hole: bool = False) -> np.ndarray:
-    """A camera before a wall, with a sensor's noise of 2 cm; ``hole``: 4 % of it reads nothing."""
+    """A camera in front of a wall, with sensor noise of 2 cm; ``hole``: 4 % of it has no
+    reading."""
     noise = np.random.default_rng(0).normal(0, 0.02, (96, 96))
     output = (metres + noise).astype(np.float32)
     output[40:60, 40:60] *= not hole
@@ -65,7 +67,7 @@ def wall(metres: float, hole: bool = False) -> np.ndarray:
 @pytest.mark.parametrize("metres", [9.0, 9.9, 11.0, 20.0])
 @pytest.mark.parametrize("hole", [False, True])
 def test_far_wall_gets_no_invented_obstacle(metres, hole):
-    """The shipped network, which knows apartments, would put one at 1.2 m."""
+    """The shipped network, trained in apartments, would predict a wall at 1.2 m."""
     frame = wall(metres, hole)
     assert load_restorer(SHIPPED).restore(DEPTH, frame) is frame
 
@@ -375,7 +377,7 @@ def test_report_corrupts_depth_up_to_the_world_range(panorama):
 
 @pytest.mark.parametrize("met", [[CLEAN], [CLEAN, Corruption("flare", 0.6)]])
 def test_report_without_fitting_corruption_has_no_picture(tmp_path, panorama, met):
-    """As at the end of a training with suite=clean, or of RGB alone for a restorer of depth."""
+    """As after a training with suite=clean, or with RGB corruptions only for a depth restorer."""
     only = opened(Restorer([DEPTH], depth_width=4).eval())
     report.write(only, report.Instants([panorama]), met, 0, tmp_path, "one")
     assert [path.name for path in tmp_path.iterdir()] == ["restoration.md"]
