@@ -44,7 +44,7 @@ def load_config(primary: str, words: Iterable[str] = ()) -> DictConfig:
     return cfg
 
 
-gc.disable()  # until the tests are collected: nothing of what they import is garbage
+gc.disable()  # until the tests are collected, imported objects are not garbage
 conf.load_config = load_config
 SLOW_FIXTURES = {"cluster"}  # a Ray cluster takes long to start
 for command in ("train", "evaluate", "table1", "table2", "sweep", "run", "replay", "export_drive"):
@@ -67,8 +67,8 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 def compile_kernels(share: int, workers: int) -> None:
     """Compile a share of the corruptions' kernels, which takes a minute in a new checkout.
 
-    No test starts before all workers have compiled their share. Each reads those of the others from
-    numba's cache, instead of compiling all of them.
+    No test starts before all workers have compiled their share. Each worker reads the kernels of
+    the others from numba's cache and does not compile them.
     """
     frames = {
         "rgb": np.full((12, 32, 32, 3), 90, np.uint8),

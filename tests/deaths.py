@@ -1,4 +1,4 @@
-"""Ways for a process to die that tests make happen."""
+"""Ways in which processes die, for tests."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from multiprocessing.connection import Connection
 
 
 def die_in_a_message() -> None:
-    """Kill this process when its pipes have told the length of a message and not all of it."""
+    """Kill this process when its pipes have sent the length of a message, but not all of it."""
     for pipe in gc.get_objects():
         if isinstance(pipe, Connection) and not pipe.closed and pipe.writable:
             os.write(pipe.fileno(), struct.pack("!i", 1000) + b"cut off")

@@ -1,4 +1,4 @@
-"""Where the real R2R-CE episodes are, for tests that read them; they are never shipped."""
+"""The place of the real R2R-CE episodes, for tests that read them; they are never shipped."""
 
 from __future__ import annotations
 

@@ -48,10 +48,10 @@ def imported(source: str) -> set[str]:
 
 
 def climbing(module: str, names: set[str]) -> set[str]:
-    """Return the imported ``names`` that are above the package of ``module``, or beside it."""
-    own = package_of(module)
-    others = {name for name in names if package_of(name) in RANK and package_of(name) != own}
-    return {name for name in others if RANK[package_of(name)] >= RANK[own]}
+    """Return the imported ``names`` above the package of ``module``, or on its level."""
+    own_value = package_of(module)
+    others = {name for name in names if package_of(name) in RANK and package_of(name) != own_value}
+    return {name for name in others if RANK[package_of(name)] >= RANK[own_value]}
 
 
 def test_layers_name_every_package():
@@ -80,7 +80,7 @@ def test_climbing_finds_an_upward_import():
     assert not climbing("mitigate.training.train", {"mitigate.core.names"})
 
 
-def test_package_names_no_concrete_agent_and_agent_no_concrete_world():
+def test_package_names_no_concrete_agent_or_world():
     concrete = re.compile(r"mitigate\.worlds\.(apartments|habitat_world|recorded)\b")
     agents = re.compile(r"mitigate\.agents\.(topological|recurrent|frontier)\b")
     for path in SOURCES:

@@ -20,7 +20,7 @@ from mitigate.core.checkpoint import weights_sha
 from mitigate.training.config import read
 from mitigate.training.plan import leave_out_stages
 
-# one worker of pytest trains, not each its own
+# one worker of pytest trains, instead of each
 pytestmark = pytest.mark.xdist_group("bring your own")
 
 ROOT = Path(__file__).parent.parent
@@ -67,13 +67,13 @@ def folder(files) -> Path:
 
 
 def success(file: Path) -> dict[str, float]:
-    found: dict[str, list[int]] = {}
+    matches: dict[str, list[int]] = {}
     for row in map(json.loads, file.read_text().splitlines()):
-        found.setdefault(row["corruption"], []).append(row["success"])
-    return {name: sum(won) / len(won) for name, won in found.items()}
+        matches.setdefault(row["corruption"], []).append(row["success"])
+    return {name: sum(won) / len(won) for name, won in matches.items()}
 
 
-def test_a_world_and_an_agent_fit_on_a_page():
+def test_world_and_agent_fit_on_a_page():
     assert len(CODE.splitlines()) < LONGEST and len(CONFIGS) == 3 == len(COMMANDS)
 
 
@@ -87,7 +87,7 @@ def test_own_agent_trains_with_every_kind_of_recipe(folder):
 
 
 @pytest.mark.slow
-def test_the_saved_agent_is_the_one_that_was_trained(folder):
+def test_saved_agent_equals_the_trained_one(folder):
     """Its settings come with its weights: the command names no adapters."""
     rows = "rows.jsonl"
     trained = folder / "runs/corridor-s0.6-seed0" / rows
@@ -99,19 +99,19 @@ def test_the_saved_agent_is_the_one_that_was_trained(folder):
 
 
 @pytest.mark.slow
-def test_the_folder_of_the_run_fills_an_agent_that_its_user_built(folder):
+def test_run_folder_fills_an_agent_built_by_the_user(folder):
     place, mine = "runs/corridor-s0.6-seed0/agent", sys.modules["corridor"].Policy
     row = json.loads((folder / "again/rows.jsonl").read_text().splitlines()[0])
     agent = mitigate.load(place, agent=mine(adapters=True))
     assert weights_sha(agent) == row["weights"] and not agent.training
-    for told in (mitigate.load, mitigate.load_hardened):  # each names what does it
+    for reported in (mitigate.load, mitigate.load_hardened):  # the error names the call to use
         with pytest.raises((ValueError, FileNotFoundError), match=r"mitigate\.load.*agent=\.\.\."):
-            told(place)
+            reported(place)
     with pytest.raises(ValueError, match="do not fit this Policy"):
         mitigate.load(place, agent=mine(width=4, adapters=True))
 
 
-def test_recipes_take_the_agent_and_the_world_of_the_page(files):
+def test_recipes_take_the_page_agent_and_world(files):
     options = ["--config-dir=mine", "recipe=imitation", "agent=policy", "env=corridor"]
     config = read(conf.load_config("train", options))
     leave_out_stages(config, sys.modules["corridor"].Policy())
@@ -119,7 +119,7 @@ def test_recipes_take_the_agent_and_the_world_of_the_page(files):
 
 
 @pytest.mark.slow
-def test_benchmark_takes_the_agent_and_the_world_of_the_page(folder):
+def test_benchmark_takes_the_page_agent_and_world(folder):
     entry = mitigate.benchmark(
         "runs/corridor-s0.6-seed0/agent",
         options=["--config-dir=mine", "agent=policy", "env=corridor"],
@@ -131,7 +131,7 @@ def test_benchmark_takes_the_agent_and_the_world_of_the_page(folder):
 
 
 @pytest.mark.slow
-def test_the_exported_folder_fills_an_agent_that_its_user_built(folder):
+def test_exported_folder_fills_an_agent_built_by_the_user(folder):
     mine = sys.modules["corridor"].Policy(adapters=True)
     assert mitigate.load_hardened("hardened/corridor", agent=mine) is mine
     with pytest.raises(ValueError, match=r"belongs to the agent corridor\.Policy"):

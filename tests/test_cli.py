@@ -1,4 +1,4 @@
-"""The command ``mitigate``: what it lists, and what it says where something is missing."""
+"""The command ``mitigate``: its list of commands, and its messages about missing parts."""
 
 from __future__ import annotations
 
@@ -17,20 +17,20 @@ ROOT = Path(__file__).parent.parent
 
 @pytest.fixture(autouse=True)
 def own_command_line(monkeypatch):
-    """A command sets ``sys.argv``; it is put back."""
+    """A command sets ``sys.argv``; it is restored."""
     monkeypatch.setattr(sys, "argv", [*sys.argv])
 
 
 def test_help_lists_every_command_with_an_example(capsys):
     with pytest.raises(SystemExit) as ended:
         cli.main(["--help"])
-    shown = capsys.readouterr().out
+    printed = capsys.readouterr().out
     assert ended.value.code == 0
     for name, command in cli.COMMANDS.items():
-        assert command.about in shown and f"mitigate {name}" in shown
+        assert command.about in printed and f"mitigate {name}" in printed
 
 
-def test_an_unknown_command_names_the_nearest():
+def test_unknown_command_names_the_nearest():
     with pytest.raises(SystemExit, match="Did you mean train"):
         cli.main(["trian"])
 
@@ -50,7 +50,7 @@ def test_modules_are_those_that_the_documentation_runs():
 
 
 def test_options_are_read_before_torch_is_imported():
-    """``--help`` and mistakes are answered at once; to import torch takes seconds."""
+    """``--help`` and mistakes are answered at once, because importing torch takes seconds."""
     modules = [command.module for command in cli.COMMANDS.values()]
     code = (
         f"import sys, importlib; [importlib.import_module(name) for name in {modules}]\n"
@@ -64,7 +64,7 @@ def test_options_are_read_before_torch_is_imported():
 
 
 @pytest.mark.parametrize("command", [["-m", "mitigate"], ["-m", "mitigate.table"]])
-def test_both_ways_of_running_reach_the_program(command, tmp_path):
+def test_both_command_forms_reach_the_program(command, tmp_path):
     options = ["table", "nowhere"] if command[-1] == "mitigate" else ["nowhere"]
     done = subprocess.run(
         [sys.executable, *command, *options], cwd=ROOT, capture_output=True, text=True
@@ -72,7 +72,7 @@ def test_both_ways_of_running_reach_the_program(command, tmp_path):
     assert done.returncode == 2 and "nowhere" in done.stderr and "Traceback" not in done.stderr
 
 
-def test_a_command_that_is_stopped_says_so_in_one_line(monkeypatch, capsys):
+def test_interrupted_command_ends_in_one_line(monkeypatch, capsys):
     def stopped(rows, *_):
         raise KeyboardInterrupt
 
@@ -82,7 +82,7 @@ def test_a_command_that_is_stopped_says_so_in_one_line(monkeypatch, capsys):
     assert ended.value.code == 130 and capsys.readouterr().err == "\nmitigate table: stopped.\n"
 
 
-def test_a_missing_package_says_what_to_install(monkeypatch):
+def test_missing_package_names_the_install_command(monkeypatch):
     monkeypatch.setitem(sys.modules, "tqdm", None)
     for module in list(sys.modules):
         if module.startswith("mitigate.corruptions.f"):
@@ -91,7 +91,7 @@ def test_a_missing_package_says_what_to_install(monkeypatch):
         cli.main(["corrupt", "--list"])
 
 
-def test_a_package_that_is_missing_later_is_told_too(monkeypatch, tmp_path):
+def test_package_missing_later_is_reported(monkeypatch, tmp_path):
     def main():
         raise ModuleNotFoundError("No module named 'matplotlib'", name="matplotlib.figure")
 
@@ -100,7 +100,7 @@ def test_a_package_that_is_missing_later_is_told_too(monkeypatch, tmp_path):
         cli.main(["table", "rows.jsonl"])
 
 
-def test_a_module_of_ones_own_that_is_missing_is_no_such_package(monkeypatch):
+def test_missing_user_module_is_not_called_a_package(monkeypatch):
     def main():
         raise ModuleNotFoundError("No module named 'mine'", name="mine")
 
@@ -109,20 +109,20 @@ def test_a_module_of_ones_own_that_is_missing_is_no_such_package(monkeypatch):
         cli.main(["table", "rows.jsonl"])
 
 
-def test_what_the_package_offers_says_what_it_needs(monkeypatch):
+def test_package_attributes_name_what_they_need(monkeypatch):
     monkeypatch.setitem(sys.modules, "torch", None)
     monkeypatch.delitem(sys.modules, "mitigate.agents.loading", raising=False)
     with pytest.raises(ImportError, match=r"mitigate.load needs torch, which is not installed"):
         mitigate.load  # noqa: B018
 
 
-def test_a_dash_in_a_command_is_an_underscore(capsys):
+def test_dash_in_a_command_is_an_underscore(capsys):
     with pytest.raises(SystemExit) as ended:
         cli.main(["export-scene", "--help"])
     assert ended.value.code == 0 and "OUT/scenes/apartments" in capsys.readouterr().out
 
 
-def test_a_reader_that_has_read_enough_ends_it_without_a_word():
+def test_closed_pipe_ends_the_command_silently():
     command = [sys.executable, "-m", "mitigate.table1", "--help"]
     process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
     process.stdout.close()

@@ -24,28 +24,28 @@ LARGEST_PICTURE = 300_000  # bytes (ours)
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(ROOT)))
-def test_every_link_and_picture_is_there(page):
+def test_every_link_and_picture_exists(page):
     for target in re.findall(r"\]\(([^)#]+)", page.read_text(encoding="utf-8")):
         if "://" not in target:
             assert (page.parent / target).exists(), f"{page.name} names {target}"
 
 
 def anchors(page: Path) -> set[str]:
-    """What GitHub calls the headings of a page."""
+    """Return the anchors that GitHub gives to the headings of a page."""
     text = re.sub(r"```.*?```", "", page.read_text(encoding="utf-8"), flags=re.S)
     titles = re.findall(r"^#+ (.*?)\s*$", text, re.M)
     return {re.sub(r"[^\w\- ]", "", title.lower()).replace(" ", "-") for title in titles}
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(ROOT)))
-def test_every_heading_that_a_link_names_is_there(page):
+def test_every_linked_heading_exists(page):
     links = re.findall(r"\]\(([^)#:]*)#([^)]+)\)", page.read_text(encoding="utf-8"))
     for target, heading in links:
         assert heading in anchors(page.parent / target if target else page), f"{target}#{heading}"
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(ROOT)))
-def test_every_source_file_named_is_there(page):
+def test_every_named_source_file_exists(page):
     text = page.read_text(encoding="utf-8")
     for name in re.findall(r"`((?:mitigate|recipes|conf|tests)/[\w/.]+)`", text):
         assert (ROOT / name).exists(), f"{page.name} names {name}"
@@ -121,8 +121,8 @@ def test_corrupt_frames_tutorial_prints_what_it_shows(monkeypatch, tmp_path, cap
     names: dict[str, object] = {}
     for block in python_blocks(page):
         exec(block, names)
-    shown = re.search(r"```text\n(.*?)\n```", page.read_text(encoding="utf-8"), re.S)
-    assert capsys.readouterr().out.strip() == shown[1]
+    printed = re.search(r"```text\n(.*?)\n```", page.read_text(encoding="utf-8"), re.S)
+    assert capsys.readouterr().out.strip() == printed[1]
 
 
 TUTORIALS = sorted(ROOT.glob("docs/tutorials/*.py"))

@@ -39,16 +39,16 @@ def test_every_entry_point_has_a_short_example():
 
 
 @pytest.mark.parametrize("code", blocks("python"))
-def test_the_python_examples_run(code, tmp_path, monkeypatch):
+def test_python_examples_run(code, tmp_path, monkeypatch):
     if "gymnasium" in code:
         pytest.importorskip("gymnasium")
     monkeypatch.chdir(tmp_path)
-    assert "assert " in code  # an example that shows nothing is none
+    assert "assert " in code  # an example without output does not count
     exec(compile(code, "example", "exec"), {"__name__": "example"})
 
 
 @pytest.mark.parametrize("code", blocks("bash"))
-def test_the_commands_run(code, tmp_path):
+def test_commands_run(code, tmp_path):
     rng = np.random.default_rng(0)
     (tmp_path / "recorded/depth").mkdir(parents=True)
     for number in range(3):
@@ -70,12 +70,12 @@ def test_the_commands_run(code, tmp_path):
     assert "motion_blur" in done.stdout
 
 
-def test_the_options_named_are_those_there_are():
+def test_named_options_match_the_code():
     listed = re.search(r"Options \(`CorruptObservationConfig`\): (.*?)\. An", PAGE, re.DOTALL)
     assert listed is not None
     names = re.findall(r"`(\w+)`", listed[1])
     assert names == [n for n in CorruptObservationConfig.__dataclass_fields__ if n != "type"]
 
 
-def test_the_schedule_that_the_page_names_for_evaluation():
+def test_evaluation_schedule_of_the_page_is_valid():
     assert Schedule.always("spatter", 0.6).draw(0, "x", 9)[0] == Corruption("spatter", 0.6)

@@ -47,18 +47,18 @@ def shares(names: list[str]) -> dict[str, float]:
 def test_per_frame_schedule_draws_each_frame_separately():
     schedule = Schedule("per_frame", 0.6, clean_share=0.25, names=NAMES)
     (names,) = draws(schedule, 1, FRAMES)
-    wanted = {"clean": 0.25, **dict.fromkeys(NAMES, 0.75 / 4)}
-    assert shares(names) == pytest.approx(wanted, abs=0.03)
+    expected = {"clean": 0.25, **dict.fromkeys(NAMES, 0.75 / 4)}
+    assert shares(names) == pytest.approx(expected, abs=0.03)
     repeated = sum(a == b for a, b in zip(names, names[1:], strict=False)) / FRAMES
-    assert repeated == pytest.approx(sum(p**2 for p in wanted.values()), abs=0.03)
+    assert repeated == pytest.approx(sum(p**2 for p in expected.values()), abs=0.03)
 
 
 def test_per_episode_schedule_keeps_one_corruption_for_the_episode():
     schedule = Schedule("per_episode", 0.6, clean_share=0.25, names=NAMES)
     episodes = draws(schedule, FRAMES, 2)
     assert all(len(set(names)) == 1 for names in episodes)
-    wanted = {"clean": 0.25, **dict.fromkeys(NAMES, 0.75 / 4)}
-    assert shares([names[0] for names in episodes]) == pytest.approx(wanted, abs=0.03)
+    expected = {"clean": 0.25, **dict.fromkeys(NAMES, 0.75 / 4)}
+    assert shares([names[0] for names in episodes]) == pytest.approx(expected, abs=0.03)
 
 
 def test_success_distributed_schedule_draws_harder_corruptions_more_often():
@@ -66,19 +66,19 @@ def test_success_distributed_schedule_draws_harder_corruptions_more_often():
     schedule = Schedule(
         "success_distributed", 0.6, clean_share=0.0, names=NAMES, floor=0.0, success=success
     )
-    found = shares([names[0] for names in draws(schedule, FRAMES, 1)])
+    result = shares([names[0] for names in draws(schedule, FRAMES, 1)])
     total = sum(1 - rate for rate in success.values())
-    assert found == pytest.approx({n: (1 - s) / total for n, s in success.items()}, abs=0.03)
-    assert sorted(found, key=success.__getitem__) == sorted(found, key=lambda name: -found[name])
+    assert result == pytest.approx({n: (1 - s) / total for n, s in success.items()}, abs=0.03)
+    assert sorted(result, key=success.__getitem__) == sorted(result, key=lambda name: -result[name])
 
 
-def test_policy_kl_of_equal_policies_is_zero_and_else_positive():
+def test_policy_kl_is_zero_for_equal_policies_only():
     logits = torch.randn(64, 5, generator=torch.Generator().manual_seed(0))
     assert float(policy_kl(logits, logits.clone(), 2.0)) == pytest.approx(0, abs=1e-6)
     assert float(policy_kl(logits.flip(0), logits, 2.0)) > 0.01
 
 
-def test_feature_mse_of_equal_features_is_zero_and_else_positive():
+def test_feature_mse_is_zero_for_equal_features_only():
     features = torch.randn(64, 12, generator=torch.Generator().manual_seed(0))
     assert float(feature_loss(features, features.clone())) == 0
     assert float(feature_loss(features + 0.1, features)) > 0
@@ -101,7 +101,7 @@ def test_fresh_conv_adapter_changes_no_bit_and_has_gradients():
 
 
 @pytest.mark.parametrize("factor", [0.0, 3.0])
-def test_fusion_weights_sum_to_one_and_are_lower_for_a_less_reliable_view(factor):
+def test_fusion_weights_sum_to_one_and_follow_reliability(factor):
     views = torch.randn(4, 12, 32, generator=torch.Generator().manual_seed(0))
     views = views / views.norm(dim=-1, keepdim=True)
     views[:, 5] *= factor  # a blank or an overexposed view
@@ -111,7 +111,7 @@ def test_fusion_weights_sum_to_one_and_are_lower_for_a_less_reliable_view(factor
     assert (weights[:, 5] < others_.min(1).values).all()
 
 
-def test_lora_on_an_8_bit_llama_trains_only_the_adapter(tmp_path):
+def test_lora_on_8_bit_llama_trains_only_the_adapter(tmp_path):
     pytest.importorskip("bitsandbytes", reason="needs bitsandbytes: pip install -e '.[safeguard]'")
     from mitigate.guards.text.language_models.model import LanguageModel
     from mitigate.recipes.safeguard_lora import SafeguardLora
@@ -150,7 +150,7 @@ def test_multirun_trains_one_run_per_combination(runs):
 
 def test_export_reloads_to_the_same_outputs(runs, tmp_path, monkeypatch):
     monkeypatch.setattr(export, "WALKS", 1)
-    (option,) = export_command._own_kind(runs[0])  # what the command takes without options
+    (option,) = export_command._own_kind(runs[0])  # the command's default
     assert option == "agent=frontier"
     with pytest.raises(ValueError, match=option):
         export.export(runs[0], "tiny", out=tmp_path)

@@ -41,8 +41,8 @@ TARGETS = {
 
 
 def test_make_help_lists_every_target_and_comes_first():
-    shown = subprocess.run(["make"], cwd=ROOT, capture_output=True, text=True, check=True).stdout
-    assert set(re.findall(r"make ([\w-]+)", shown)) >= TARGETS
+    printed = subprocess.run(["make"], cwd=ROOT, capture_output=True, text=True, check=True).stdout
+    assert set(re.findall(r"make ([\w-]+)", printed)) >= TARGETS
 
 
 def test_doctor_names_versions_cores_and_the_renderer(capsys):
@@ -75,12 +75,12 @@ def test_doctor_says_what_to_do_with_an_older_python(capsys, monkeypatch):
     assert "Python 3.10 or newer is needed: make PYTHON=python3.10" in capsys.readouterr().out
 
 
-@pytest.mark.parametrize(("told", "wanted"), [(None, "PASSIVE"), ("ACTIVE", "ACTIVE")])
-def test_waiting_threads_leave_their_core_to_others_unless_told(told, wanted):
+@pytest.mark.parametrize(("reported", "expected"), [(None, "PASSIVE"), ("ACTIVE", "ACTIVE")])
+def test_waiting_threads_leave_their_core_to_others_unless_told(reported, expected):
     """Set before torch is imported, or OpenMP does not read it."""
     code = "import mitigate, os, sys; print(os.environ['OMP_WAIT_POLICY'], 'torch' in sys.modules)"
     environment = {k: v for k, v in os.environ.items() if k != "OMP_WAIT_POLICY"}
-    environment |= {} if told is None else {"OMP_WAIT_POLICY": told}
+    environment |= {} if reported is None else {"OMP_WAIT_POLICY": reported}
     command = [sys.executable, "-c", code]
     done = subprocess.run(command, env=environment, cwd=ROOT, capture_output=True, text=True)
-    assert done.stdout.split() == [wanted, "False"]
+    assert done.stdout.split() == [expected, "False"]

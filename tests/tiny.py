@@ -58,7 +58,7 @@ class TinyRecipe(Objective):
 def assemble(kind: type[Objective], agent: Any, **arguments: Any) -> Any:
     """Build an objective and its source from built arguments, split as in a recipe."""
     parameter = next((name for name in kind.sources if name not in arguments), "")
-    own, others = split_arguments(kind, parameter, arguments, kind.__qualname__)
+    own_value, others = split_arguments(kind, parameter, arguments, kind.__qualname__)
     if parameter:
-        own[parameter] = kind.sources[parameter](agent=agent, **others)
-    return kind(agent=agent, **own)
+        own_value[parameter] = kind.sources[parameter](agent=agent, **others)
+    return kind(agent=agent, **own_value)

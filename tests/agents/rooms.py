@@ -1,4 +1,4 @@
-"""Small worlds for the agents' tests: an empty room and an untrained agent that walks."""
+"""Small worlds for the agents' tests: an empty room, and an untrained agent that can move."""
 
 from __future__ import annotations
 
@@ -31,20 +31,20 @@ class Brief(ApartmentsWorld):
 
 
 class Corner(ApartmentsWorld):
-    """Apartments of which only the first places count, so that few features are stored."""
+    """Apartments with only the first few places, so that few features are stored."""
 
     def points(self) -> np.ndarray:
         return super().points()[:400]
 
 
 def sure(space: FreeSpace, xy: np.ndarray, heading: float) -> np.ndarray:
-    """Logits [120, 12] of a waypoint predictor that is right about everything."""
+    """Logits [120, 12] of a waypoint predictor without errors."""
     return np.where(free_directions(space, xy, heading) > 0.5, 20.0, -20.0)
 
 
 def wanderer(*blind: str, stop: float = -50.0) -> TopologicalAgent:
-    """An untrained agent that sees free space everywhere. ``stop`` is the bias of its stop score:
-    at -50 it stops only at the limit of decisions, near 0 it depends on what it sees."""
+    """An untrained agent that sees free space everywhere. ``stop`` is the bias of the stop score:
+    at -50 the agent stops only at the limit of decisions, near 0 it depends on what it sees."""
     seeding.seed_everything(0, "wanderer")
     small = {"heads": 2, "text_layers": 1, "layers": 1}
     agent = TopologicalAgent(16, small, blind, size=16).eval()

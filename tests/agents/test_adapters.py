@@ -99,9 +99,9 @@ def shaken(model: nn.Module) -> nn.Module:
 
 def test_insert_keeps_outputs_bit_identical(encoder):
     model, targets, x, count = encoder
-    wanted, before = model(x), weights_sha(model)
+    expected, before = model(x), weights_sha(model)
     assert len(insert_adapters(model, targets)) == count
-    assert torch.equal(model(x), wanted) and adapters.backbone_sha(model) == before
+    assert torch.equal(model(x), expected) and adapters.backbone_sha(model) == before
 
 
 def test_training_changes_only_adapters(encoder):
@@ -168,7 +168,7 @@ def test_scale_covers_every_kind(kind):
 
 def test_find_sites_restores_modes():
     model = nn.Sequential(nn.Conv2d(3, 8, 3), nn.BatchNorm2d(8)).train()
-    model[1].eval()  # as someone has it who trains around a frozen encoder
+    model[1].eval()  # a setup of users who train around a frozen encoder
     insert_adapters(model, ["0"], run=lambda n: model(torch.zeros(n, 3, 8, 8)))
     assert model.training and model[0].training and not model[1].training
 
@@ -215,7 +215,7 @@ def test_documented_example_loads_without_this_package(tmp_path, monkeypatch):
     exec(train.replace("save_adapters(encoder", "shake(encoder); save_adapters(encoder"),
          {"encoder": model, "torch": torch, "shake": shaken})  # fmt: skip
     assert "mitigate" not in load
-    monkeypatch.syspath_prepend(Path(plain_adapters.__file__).parent)  # as if it was copied
+    monkeypatch.syspath_prepend(Path(plain_adapters.__file__).parent)  # as if it were copied
     exec(load, {"encoder": twin})
     assert torch.equal(twin(x), model(x)) and adapters.adapted(model) and not adapters.adapted(twin)
 
@@ -252,10 +252,10 @@ def test_failed_insertion_keeps_the_model():
 def test_insert_rejects_an_existing_child_adapter():
     model = nn.Sequential(nn.Conv2d(3, 8, 3))
     model[0].add_module("adapter", nn.Conv2d(8, 8, 1))
-    own = model[0].adapter
+    own_value = model[0].adapter
     with pytest.raises(ValueError, match="already has an attribute 'adapter'"):
         insert_adapters(model, ["0"])
-    assert model[0].adapter is own and all(p.requires_grad for p in model.parameters())
+    assert model[0].adapter is own_value and all(p.requires_grad for p in model.parameters())
 
 
 def test_ring_reads_only_neighbours():
@@ -347,7 +347,7 @@ def test_load_rejects_invalid_folders(tmp_path, spoil):
         settings.write_text(json.dumps({"adapters": 3}), encoding="utf-8")
     elif spoil == "levels":
         settings.write_text("[" * 100_000, encoding="utf-8")
-    elif spoil == "memory":  # a kernel of a hundred gigabytes
+    elif spoil == "memory":  # a kernel of 100 GB
         text = settings.read_text(encoding="utf-8")
         settings.write_text(text.replace('"kernel": 3', '"kernel": 30001'), encoding="utf-8")
     elif spoil == "shapes":

@@ -66,7 +66,7 @@ def test_agent_is_not_changed_by_the_contract():
     assert contents(agent) == contents(Prompted())
 
 
-def test_as_agent_returns_an_agent_as_it_is():
+def test_as_agent_returns_an_agent_unchanged():
     class Mine(Agent):
         pass
 

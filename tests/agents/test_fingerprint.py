@@ -73,15 +73,15 @@ def test_fingerprint_changes_with_code_without_settings(tmp_path, monkeypatch):
 
 def _hashes(folder, agent, sources):
     """Return the hash of the class ``agent`` for each source of its module."""
-    found = []
+    matches = []
     for number, source in enumerate(sources):
         (folder / "own_agent.py").write_text(source + "#" * 9 * number)  # of other lengths
         sys.modules.pop("own_agent", None)
         importlib.invalidate_caches()
         linecache.clearcache()
-        found.append(fingerprint(getattr(importlib.import_module("own_agent"), agent)(), {}))
+        matches.append(fingerprint(getattr(importlib.import_module("own_agent"), agent)(), {}))
     sys.modules.pop("own_agent")
-    return found
+    return matches
 
 
 def test_fingerprint_ignores_later_edits_of_the_file(tmp_path, monkeypatch):
@@ -205,7 +205,8 @@ USUAL = {"weight": 1.0, "limit": 3, "answer": 0}
 def _notebook(tmp_path, name, **changes):
     (tmp_path / f"{name}.py").write_text(NOTEBOOK.format(**{**USUAL, **changes}))
     module = importlib.import_module(name)
-    for kind in (module.Named, module.Given):  # its own name is the file's: make them alike
+    # the file gives the class its name: make the names equal
+    for kind in (module.Named, module.Given):
         kind.__module__ = "notebook"
     return module
 
@@ -280,9 +281,9 @@ class Vouched(Owner):
 def owner(kind=Owner):
     seeding.seed_everything(0, "owner")
     layers = nn.Linear(4, 4), nn.ReLU(), nn.BatchNorm1d(4), nn.LeakyReLU(0.1), nn.Conv2d(4, 4, 1)
-    made = kind(nn.Sequential(*layers))
-    made.net.register_buffer("scratch", torch.zeros(2), persistent=False)
-    return made.net.eval() and made
+    output = kind(nn.Sequential(*layers))
+    output.net.register_buffer("scratch", torch.zeros(2), persistent=False)
+    return output.net.eval() and output
 
 
 def _patched(agent):
@@ -355,7 +356,7 @@ def _enclosing(agent):
 
 UNREADABLE = {
     "a forward hook": lambda agent: agent.net[0].register_forward_hook(forward),
-    "a forward pre-hook": lambda agent: agent.net.register_forward_pre_hook(lambda m, given: given),
+    "a forward pre-hook": lambda agent: agent.net.register_forward_pre_hook(lambda m, value: value),
     "a replaced method": _enclosing,
     "TorchScript": lambda agent: setattr(agent, "net", torch.jit.script(agent.net)),
 }
@@ -373,7 +374,7 @@ def test_contents_reports_what_cannot_be_read(change, kind):
 
 
 def test_contents_reports_global_hooks():
-    handle = nn.modules.module.register_module_forward_hook(lambda *given: None)
+    handle = nn.modules.module.register_module_forward_hook(lambda *arguments: None)
     try:
         assert "registered for all modules" in contents(owner()).explain()
     finally:
@@ -425,8 +426,8 @@ SHIPPED = {
 
 def shipped(kind: str) -> nn.Module:
     seeding.seed_everything(0, "shipped")
-    made, settings, _ = SHIPPED[kind]
-    return made(**settings)
+    output, settings, _ = SHIPPED[kind]
+    return output(**settings)
 
 
 def _other_activation(agent, part):
@@ -488,9 +489,11 @@ def test_shipped_fingerprint_is_stable_while_running(kind):
 @pytest.mark.parametrize("target", ["rgb_encoder.stages.0", "rgb_encoder.stem"])
 def test_contents_reads_adapters_completely(target):
     settings = {"adapters": {"target_modules": [target]}}
-    made = [agent(**settings) for _ in range(2)]
-    assert not contents(made[0]).unreadable
-    assert fingerprint(made[0], {}) == fingerprint(made[1], {}) != fingerprint(agent(), {})
+    new_agent = [agent(**settings) for _ in range(2)]
+    assert not contents(new_agent[0]).unreadable
+    assert (
+        fingerprint(new_agent[0], {}) == fingerprint(new_agent[1], {}) != fingerprint(agent(), {})
+    )
     users = [owner() for _ in range(2)]
     for one in users:
         seeding.seed_everything(0, "adapters")
@@ -500,7 +503,7 @@ def test_contents_reads_adapters_completely(target):
 
 
 class Scale(nn.Module):
-    """A layer of the user's."""
+    """A layer defined by the user."""
 
     def __init__(self, by: int) -> None:
         super().__init__()
@@ -511,7 +514,7 @@ class Scale(nn.Module):
 
 
 class Own:
-    """An agent of plain parts."""
+    """An agent with plain attributes only."""
 
     def act(self, observation):
         return helpers.decide(observation) + helpers.LEVEL + Config.LEVEL
@@ -536,11 +539,11 @@ class Biased(Described):
 
 
 class BiasedPlanner(TopologicalAgent):
-    """The same of a shipped agent."""
+    """The same for a shipped agent."""
 
 
 class Wrapper:
-    """Delegates what it does not define."""
+    """Delegates undefined attributes."""
 
     def __init__(self, bias: int) -> None:
         self.agent, self.bias = Described(), bias
@@ -574,9 +577,9 @@ helpers.decide, helpers.LEVEL = first, 0
 
 
 def _own_act(act):
-    made = Own()
-    made.act = act
-    return made
+    output = Own()
+    output.act = act
+    return output
 
 
 def _enclosed(action):
@@ -584,44 +587,46 @@ def _enclosed(action):
 
 
 def _scaled(by):
-    made = agent()
-    made.rgb_encoder.stages.append(Scale(by))
-    return made
+    new_agent = agent()
+    new_agent.rgb_encoder.stages.append(Scale(by))
+    return new_agent
 
 
 def _parametrized(by):
-    made = agent()
-    nn.utils.parametrize.register_parametrization(made.rgb_encoder.stem[0], "weight", Scale(by))
-    return made
+    new_agent = agent()
+    nn.utils.parametrize.register_parametrization(
+        new_agent.rgb_encoder.stem[0], "weight", Scale(by)
+    )
+    return new_agent
 
 
 def _adapted(removed):
-    made = agent(adapters={"target_modules": ["rgb_encoder.stages.0"]})
+    new_agent = agent(adapters={"target_modules": ["rgb_encoder.stages.0"]})
     if removed:
-        made.rgb_encoder.stages[0].adapter.hook.remove()
-    return made
+        new_agent.rgb_encoder.stages[0].adapter.hook.remove()
+    return new_agent
 
 
 def _biased_planner(bias):
-    made = BiasedPlanner(16, planner=SMALL)
-    made.bias = bias
-    return made
+    model = BiasedPlanner(16, planner=SMALL)
+    model.bias = bias
+    return model
 
 
-def _with(owner, name, value, made):
+def _with(owner, name, value, output):
     """Replace an attribute of a class or module during the test, and return an agent."""
 
     def make(number, patch):
         patch.setattr(owner, name, value(number), raising=False)
-        return made()
+        return output()
 
     return make
 
 
 def _network(weight):
-    made = nn.Linear(1, 1)
-    nn.init.constant_(made.weight, weight)
-    return nn.init.zeros_(made.bias) is not None and made
+    model = nn.Linear(1, 1)
+    nn.init.constant_(model.weight, weight)
+    return nn.init.zeros_(model.bias) is not None and model
 
 
 def _cached(action):
@@ -673,8 +678,8 @@ REPLACED |= {
 def test_fingerprint_changes_with_replaced_code_and_data(what, monkeypatch):
     hashes, unreadable = [], False
     for number in (0, 0, 1):
-        made = REPLACED[what](number, monkeypatch)
-        hashes.append(fingerprint(made, {}))
-        unreadable |= bool(contents(made).unreadable)
+        output = REPLACED[what](number, monkeypatch)
+        hashes.append(fingerprint(output, {}))
+        unreadable |= bool(contents(output).unreadable)
     assert hashes[0] == hashes[1] and (hashes[0] != hashes[2] or unreadable)
     assert not unreadable

@@ -35,7 +35,7 @@ def test_reliability_gives_outliers_the_smallest_weight(views, factor):
     assert torch.isclose(weights.sum(), torch.tensor(1.0))
     size = damaged.norm(dim=-1)
     deviation = (size - size.mean()).abs() / size.mean()
-    assert RATE * deviation[3] > CAP  # so far off that the cap holds it, and no further
+    assert RATE * deviation[3] > CAP  # so far away that the cap limits it
     expected = CAP - RATE * deviation[torch.arange(12) != 3]
     assert torch.allclose(torch.log(others / weights[3]), expected, atol=1e-4)
 
@@ -96,20 +96,20 @@ def test_learned_reliability_learns_beyond_magnitudes():
         mixed = torch.randn(32, 1, 64) + 0.5 * torch.randn(32, 12, 64)
         clean = torch.nn.functional.normalize(mixed, dim=-1)
         broken = torch.rand(32, 12) < 0.25
-        shown = torch.where(broken[..., None], marks[torch.randint(8, (32, 12))], clean)
-        return shown, clean.mean(1), broken
+        observed = torch.where(broken[..., None], marks[torch.randint(8, (32, 12))], clean)
+        return observed, clean.mean(1), broken
 
     learned = LearnedReliability(64)
     optimiser = torch.optim.Adam(learned.parameters(), lr=1e-2)
     for _ in range(150):
-        shown, wanted, _ = draw()
-        fused = (shown * learned(shown).unsqueeze(-1)).sum(1)
+        observed, expected, _ = draw()
+        fused = (observed * learned(observed).unsqueeze(-1)).sum(1)
         optimiser.zero_grad()
-        (fused - wanted).square().sum(-1).mean().backward()
+        (fused - expected).square().sum(-1).mean().backward()
         optimiser.step()
-    shown, _, broken = draw()
+    observed, _, broken = draw()
     with torch.no_grad():
-        weights, ruled = learned(shown), reliability(shown)
+        weights, ruled = learned(observed), reliability(observed)
     assert weights[broken].mean() < 0.2 * weights[~broken].mean()
     assert ruled[broken].mean() > 0.9 * ruled[~broken].mean()
     least, most = weights.min(-1).values, weights.max(-1).values
@@ -132,21 +132,21 @@ def planner(fusion: dict | None) -> Planner:
 @torch.no_grad()
 def ghosts(fusion: dict | None, features: torch.Tensor, sightings: torch.Tensor) -> torch.Tensor:
     """Return the tokens of ghosts that the flat views ``sightings`` [G, 4] faced."""
-    made, batch = planner(fusion), collate([decision(4)], [0], [0])
+    model, batch = planner(fusion), collate([decision(4)], [0], [0])
     batch.sightings[0, : len(sightings)] = sightings
-    tokens = made.look(features)
+    tokens = model.look(features)
     weights = None if fusion is None else tokens[..., -1:]
     first = 1 + batch.nodes.shape[1]
-    return made._tokens(tokens[..., :16], weights, batch)[0, first : first + len(sightings)]
+    return model._tokens(tokens[..., :16], weights, batch)[0, first : first + len(sightings)]
 
 
 @pytest.fixture
 def features() -> torch.Tensor:
     """Return four panoramas in which every third view is inflated."""
     torch.manual_seed(0)
-    made = torch.rand(4, VIEWS, sum(planner(None).widths))
-    made[:, ::3] *= 3.0
-    return made
+    model = torch.rand(4, VIEWS, sum(planner(None).widths))
+    model[:, ::3] *= 3.0
+    return model
 
 
 def test_planner_with_equal_weights_takes_means(features):
@@ -177,18 +177,18 @@ def test_planner_output_is_unchanged_by_untrained_reliability(features):
 
 
 def test_planner_trains_its_learned_reliability():
-    made, step = planner({"learned": True}), decision(3)
-    looked = made.look(torch.rand(3, VIEWS, sum(made.widths)))
-    out = made(made.read(torch.tensor([[2, 3, 4]])), looked, collate([step], [0], [0]))
+    model, step = planner({"learned": True}), decision(3)
+    looked = model.look(torch.rand(3, VIEWS, sum(model.widths)))
+    out = model(model.read(torch.tensor([[2, 3, 4]])), looked, collate([step], [0], [0]))
     out["nodes"].square().sum().backward()
-    assert made.fusion.score.weight.grad.abs().sum() > 0
+    assert model.fusion.score.weight.grad.abs().sum() > 0
 
 
 def test_planner_with_fusion_gives_finite_scores():
-    made, step = planner({}), decision(3)
+    model, step = planner({}), decision(3)
     tokens = torch.tensor([[2, 3, 4]])
     with torch.no_grad():
-        looked = made.look(torch.rand(3, VIEWS, sum(made.widths)))
-        out = made(made.read(tokens), looked, collate([step], [0], [0]))
+        looked = model.look(torch.rand(3, VIEWS, sum(model.widths)))
+        out = model(model.read(tokens), looked, collate([step], [0], [0]))
     assert looked.shape == (3, VIEWS, 17)
     assert torch.isfinite(out["logits"][0, 0]) and torch.isfinite(out["nodes"]).all()

@@ -39,7 +39,7 @@ def gate_of(model: nn.Module) -> FrameGate:
 
 
 def centred(model: nn.Module, frames: torch.Tensor) -> torch.Tensor:
-    """Open the gate for half the ``frames``; return for which it is open."""
+    """Open the gate for half of the ``frames``; return which."""
     model(frames)
     gate = gate_of(model)
     with torch.no_grad():
@@ -52,8 +52,8 @@ def test_closed_gate_keeps_features_without_adapters(encoder, frames):
     plain = encoder(frames)[0]
     insert_adapters(encoder, **PLACES)
     opened = centred(trained(encoder), frames)
-    made = encoder(frames)[0]
-    same = (made == plain).all(1)
+    model = encoder(frames)[0]
+    same = (model == plain).all(1)
     assert 0 < opened.sum() < len(frames)
     assert torch.equal(same, ~opened)
 
@@ -134,15 +134,15 @@ def test_textures_change_with_corruptions():
 def test_folder_and_copy_keep_the_gate(encoder, frames, tmp_path):
     insert_adapters(encoder, **PLACES)
     centred(trained(encoder), frames)
-    wanted = encoder(frames)[0]
+    expected = encoder(frames)[0]
     copied = copy.deepcopy(encoder)
     save_adapters(encoder, tmp_path)
     remove_adapters(encoder)
     assert load_adapters(encoder, tmp_path) == ["stem", "stages.0", "stages.1", "stages.2"]
-    assert torch.equal(encoder.eval()(frames)[0], wanted)
+    assert torch.equal(encoder.eval()(frames)[0], expected)
     with torch.no_grad():
         gate_of(encoder).judge.bias += 100  # the copy has a separate gate
-    assert torch.equal(copied(frames)[0], wanted)
+    assert torch.equal(copied(frames)[0], expected)
 
 
 def test_each_encoder_has_a_separate_gate(frames):

@@ -89,9 +89,9 @@ def topological() -> list[dict[str, np.ndarray]]:
 
 @pytest.mark.parametrize("walked", [stepwise, recurrent, topological])
 def test_collect_copies_frames(walked: Callable) -> None:
-    kept = walked()
-    assert len(kept) == 3
-    for number, frames in enumerate(kept):
+    remaining = walked()
+    assert len(remaining) == 3
+    for number, frames in enumerate(remaining):
         assert {RGB, DEPTH, f"clean_{RGB}", f"clean_{DEPTH}"} <= {*frames}
         for name, frame in frames.items():
             assert np.all(frame == number + (DEPTH in name)), name

@@ -95,16 +95,18 @@ def test_agents_resize_views_of_any_size():
     depth[..., :4, :, :] = 0  # a hole keeps its edge
     large = [x.repeat_interleave(3, 2).repeat_interleave(3, 3) for x in (rgb, depth)]
     with torch.no_grad():
-        for own, other in zip(agent.perceive(rgb, depth), agent.perceive(*large), strict=True):
-            torch.testing.assert_close(own, other)
+        for own_value, other in zip(
+            agent.perceive(rgb, depth), agent.perceive(*large), strict=True
+        ):
+            torch.testing.assert_close(own_value, other)
     with pytest.raises(ValueError, match="multiple of 16"):
         TopologicalAgent(size=50)
 
 
 def test_check_fits_rejects_missing_sensors(agent):
-    shown = cameras(64)
-    check_fits(agent, shown, "Hall")
-    alone = {name: sensor for name, sensor in shown.items() if name != DEPTH}
+    observed = cameras(64)
+    check_fits(agent, observed, "Hall")
+    alone = {name: sensor for name, sensor in observed.items() if name != DEPTH}
     with pytest.raises(ValueError, match="reads depth, which the world Hall does not have: .*rgb"):
         check_fits(agent, alone, "Hall")
-    check_fits(nn.Linear(1, 1), alone, "Hall")  # it does not say what it reads
+    check_fits(nn.Linear(1, 1), alone, "Hall")  # it does not declare its sensors

@@ -36,7 +36,7 @@ def test_aligned_warps_neighbours_into_the_view(panorama):
 def test_ring_keeps_cells_that_no_neighbour_sees():
     torch.manual_seed(0)
     adapter = RingAdapter(8, views=3)  # 120 degrees apart: views of 90 degrees do not meet
-    torch.nn.init.constant_(adapter.share.bias, 3.0)  # take all that there is to take
+    torch.nn.init.constant_(adapter.share.bias, 3.0)  # use the full budget
     x = torch.randn(6, 8, 4, 4)
     assert torch.allclose(adapter(x), x, atol=1e-6)
 
@@ -51,9 +51,9 @@ def test_ring_restores_a_lost_view(panorama):
         adapter.share.bias.fill_(10.0)
     lost = panorama.clone()
     lost[4] = 0
-    found = adapter(lost)[4]
+    matches = adapter(lost)[4]
     known = (neighbour_grid(64, 64, VIEW_STEP_DEGREES, HFOV_DEGREES).abs() <= 1).all(-1).any(0)
-    error = (found - panorama[4]).abs().mean(0)[known]
+    error = (matches - panorama[4]).abs().mean(0)[known]
     assert error.median() < 3 and error.mean() < 0.2 * panorama[4].mean()
 
 

@@ -21,10 +21,10 @@ from mitigate.agents.state import read_state
 
 
 def net(weight: float = 1.0) -> nn.Linear:
-    made = nn.Linear(1, 1)
-    nn.init.constant_(made.weight, weight)
-    nn.init.zeros_(made.bias)
-    return made
+    model = nn.Linear(1, 1)
+    nn.init.constant_(model.weight, weight)
+    nn.init.zeros_(model.bias)
+    return model
 
 
 PLACES = {
@@ -55,9 +55,9 @@ def test_fingerprint_changes_with_weights_anywhere(place, kinds):
 
 def test_fingerprint_counts_lists_of_networks():
     def agent(weight: float) -> nn.Module:
-        made = net()
-        made.further = [net(weight)]
-        return made
+        model = net()
+        model.further = [net(weight)]
+        return model
 
     assert fingerprint(agent(1), {}) == fingerprint(agent(1), {}) != fingerprint(agent(2), {})
 
@@ -70,7 +70,7 @@ def test_fingerprint_counts_arrays_without_settings():
     assert fingerprint(first, {}) == fingerprint(other, {})
 
 
-def test_read_state_follows_cycles_and_reports_what_it_cannot_read():
+def test_read_state_follows_cycles_and_reports_unreadable_values():
     agent = SimpleNamespace(itself=None, session=iter(()), deep=SimpleNamespace())
     agent.itself = agent
     place = agent.deep
@@ -94,7 +94,7 @@ def test_in_eval_mode_restores_every_mode():
     assert [module.training for module in nested.modules()] == [True, True, False]
 
 
-def test_read_state_reports_too_many_values_and_loads_no_lazy_mapping(monkeypatch):
+def test_read_state_limits_values_and_loads_no_lazy_mapping(monkeypatch):
     class Lazy(Mapping):
         def __getitem__(self, key):
             raise AssertionError("loaded")
@@ -119,7 +119,7 @@ def test_read_state_accepts_standard_library_objects():
 
 class Anything:
     def __getattr__(self, name):
-        return lambda *given: None
+        return lambda *arguments: None
 
 
 def test_read_state_reports_unreadable_values():

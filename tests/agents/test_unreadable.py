@@ -27,13 +27,13 @@ class Level(enum.Enum):
 
 
 class Table(dict):
-    """A mapping of the user's, with attributes for keys."""
+    """A mapping class of the user, with attributes for keys."""
 
     __getattr__ = dict.get
 
 
 class Steps(list):
-    """A list of the user's."""
+    """A list class of the user."""
 
 
 class Slotted:
@@ -44,7 +44,7 @@ class Slotted:
 
 
 class Pickled:
-    """Leaves out of its pickles what it does."""
+    """Leaves its behaviour out of its pickles."""
 
     def __init__(self, level: int) -> None:
         self.level = level
@@ -54,7 +54,7 @@ class Pickled:
 
 
 class Numbers(np.ndarray):
-    """An array of the user's."""
+    """An array class of the user."""
 
 
 class Answer:

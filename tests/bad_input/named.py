@@ -1,22 +1,22 @@
-"""What every refusal has in common."""
+"""A check that all tests of rejected files share."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from typing import Any
 
-LONGEST = 1500  # characters of a message (ours)
+LONGEST = 1500  # limit for the length of a message (heuristic)
 
 
 def refused(call: Callable[[], Any], words: str = "") -> str:
-    """Call it; it must raise ValueError or FileNotFoundError with one paragraph that holds
-    ``words``. Any other error is a failure of the test, as it would be a traceback for a user."""
+    """Call ``call``; it must raise ValueError or FileNotFoundError with one paragraph that contains
+    ``words``. Any other error fails the test, because a user would see a traceback."""
     try:
-        found = call()
+        matches = call()
     except (ValueError, FileNotFoundError) as error:
-        said = str(error)
+        message = str(error)
     else:
-        raise AssertionError(f"was not refused: {found!r:.200}")
-    assert said and "\n" not in said and len(said) < LONGEST, said[:2000]
-    assert words in said, said
-    return said
+        raise AssertionError(f"was not refused: {matches!r:.200}")
+    assert message and "\n" not in message and len(message) < LONGEST, message[:2000]
+    assert words in message, message
+    return message

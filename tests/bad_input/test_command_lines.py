@@ -1,4 +1,5 @@
-"""Command lines: a mistake ends in one paragraph and a status, no traceback, nothing written."""
+"""Command lines: a mistake ends in one paragraph and an exit status, without a traceback or
+files."""
 
 from __future__ import annotations
 
@@ -21,16 +22,16 @@ from tests.bad_input.test_episode_files import GOOD
 
 
 def said_by(call, capsys) -> tuple[int, str]:
-    """Status and what went to standard error of a command."""
+    """Return the exit status and the standard error of a command."""
     try:
         status = call()
     except SystemExit as stop:
         status = stop.code
-    told = capsys.readouterr().err
+    printed = capsys.readouterr().err
     if isinstance(status, str):
-        status, told = 1, told + status
-    assert "Traceback" not in told and len(told) < LONGEST, told
-    return status or 0, told
+        status, printed = 1, printed + status
+    assert "Traceback" not in printed and len(printed) < LONGEST, printed
+    return status or 0, printed
 
 
 HUGE = "9" * 400
@@ -96,7 +97,7 @@ WRONG = {
         ("launcher=nothing", "no launcher"),
     ],
 }
-# lines that go through all of Hydra, which takes three times as long as a composition
+# these lines run through Hydra, which takes three times as long as a composition
 THROUGH_HYDRA = {"trainer.lr=inf", "severity=2", "recipe=", "agent=hello", "a b", "x=[1,2"}
 LINES = [(name, *line) for name, lines in WRONG.items() for line in lines]
 IDS = [f"{name} {option[:40]}" for name, option, _ in LINES]
@@ -106,7 +107,7 @@ FAST = settings(
 
 
 @pytest.mark.parametrize(("name", "option", "words"), LINES, ids=IDS)
-def test_a_wrong_option_is_named_before_anything_is_made(
+def test_wrong_option_is_named_before_anything_is_written(
     tmp_path, monkeypatch, capsys, name, option, words
 ):
     monkeypatch.delenv("HYDRA_FULL_ERROR", raising=False)
@@ -120,8 +121,8 @@ def test_a_wrong_option_is_named_before_anything_is_made(
             return evaluate.main()
         return conf.main(train.hydra_main if option in THROUGH_HYDRA else composed, name)
 
-    status, told = said_by(run, capsys)
-    assert status == 1 and words in told, told
+    status, printed = said_by(run, capsys)
+    assert status == 1 and words in printed, printed
     assert not list(tmp_path.rglob("*.safetensors")) and not list(tmp_path.rglob("*.pt"))
 
 
@@ -138,20 +139,20 @@ ROWS = {
 @pytest.mark.parametrize("raw", ROWS.values(), ids=ROWS)
 def test_table_refuses_what_is_no_rows(tmp_path, capsys, raw):
     (tmp_path / "rows.jsonl").write_bytes(raw)
-    given = [str(tmp_path / "rows.jsonl"), "--out", str(tmp_path / "out")]
-    status, told = said_by(lambda: table.main(given), capsys)
-    assert status == 2 and told.startswith("table: ")
+    arguments = [str(tmp_path / "rows.jsonl"), "--out", str(tmp_path / "out")]
+    status, printed = said_by(lambda: table.main(arguments), capsys)
+    assert status == 2 and printed.startswith("table: ")
     assert not (tmp_path / "out" / "table.md").exists()
 
 
 @pytest.mark.parametrize(
-    ("given", "missing"), [([], "run, name"), (["runs/a"], "name"), (["--onnx"], "run, name")]
+    ("value", "missing"), [([], "run, name"), (["runs/a"], "name"), (["--onnx"], "run, name")]
 )
-def test_export_asks_for_what_it_needs_and_no_more(monkeypatch, capsys, given, missing):
-    monkeypatch.setattr(sys, "argv", ["mitigate export", *given])
-    status, told = said_by(export_command.main, capsys)
+def test_export_asks_for_what_it_needs_and_no_more(monkeypatch, capsys, value, missing):
+    monkeypatch.setattr(sys, "argv", ["mitigate export", *value])
+    status, printed = said_by(export_command.main, capsys)
     assert status == 2
-    assert told.splitlines()[-1].endswith(f"the following arguments are required: {missing}")
+    assert printed.splitlines()[-1].endswith(f"the following arguments are required: {missing}")
 
 
 FOLDERS = [
@@ -177,8 +178,8 @@ FOLDERS = [
 @pytest.mark.parametrize("line", FOLDERS, ids=lambda line: " ".join(line)[-40:] or "nothing")
 def test_corrupt_refuses_a_wrong_line(tmp_path, monkeypatch, capsys, line):
     monkeypatch.chdir(tmp_path)
-    status, told = said_by(lambda: frames_command.main(line), capsys)
-    assert status == 2 and (told or not line)
+    status, printed = said_by(lambda: frames_command.main(line), capsys)
+    assert status == 2 and (printed or not line)
     assert not list(tmp_path.iterdir())
 
 
@@ -203,8 +204,8 @@ def test_corrupt_episodes_refuses_a_wrong_line(tmp_path, monkeypatch, capsys, li
     monkeypatch.chdir(tmp_path)
     (tmp_path / "in.json").write_text(json.dumps({"episodes": [GOOD]}))
     before = (tmp_path / "in.json").read_bytes()
-    status, told = said_by(lambda: episodes_command.main(line), capsys)
-    assert status == 2 and told.startswith("corrupt_episodes: ")
+    status, printed = said_by(lambda: episodes_command.main(line), capsys)
+    assert status == 2 and printed.startswith("corrupt_episodes: ")
     assert [p.name for p in tmp_path.iterdir()] == ["in.json"]
     assert (tmp_path / "in.json").read_bytes() == before
 
@@ -217,14 +218,14 @@ def test_export_refuses_a_name_that_is_no_folder(tmp_path, name):
 
 
 @pytest.mark.parametrize("name", ["trian", "../train", "--x", "train=1", "\0", "x" * 1000])
-def test_a_command_that_is_none_is_named(capsys, name):
-    status, told = said_by(lambda: cli.main([name[:99]]), capsys)
-    assert status == 1 and "no command" in told
+def test_unknown_command_is_named(capsys, name):
+    status, printed = said_by(lambda: cli.main([name[:99]]), capsys)
+    assert status == 1 and "no command" in printed
 
 
 @FAST
 @given(st.lists(st.text(max_size=12), max_size=4))
-def test_any_words_are_refused_or_read_as_folders(tmp_path, monkeypatch, capsys, words):
+def test_parse_reads_any_words_as_folders_or_fails(tmp_path, monkeypatch, capsys, words):
     monkeypatch.chdir(tmp_path)
     for main in (frames_command.main, table.main):
         if not any(word.startswith("-") for word in words):

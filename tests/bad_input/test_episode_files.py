@@ -1,4 +1,4 @@
-"""Episode files of anybody: read whole, or refused with file, place and what is needed."""
+"""Untrusted episode files: read completely, or rejected with file, entry and requirement."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ GOOD = {
     "reference_path": [[0.0, 0.0, 0.0], [1.0, 0.0, 1.0]],
 }
 NAN, HUGE = float("nan"), 10**400
-CHANGES = {  # key (dotted) and value -> what is said
+CHANGES = {  # key (dotted) and value -> expected message
     "a huge integer": ("start_position", [HUGE, 0, 0], "'start_position'"),
     "far away": ("start_position", [1e300, 0, 0], "'start_position'"),
     "not a number": ("start_position", [NAN, 0, 0], "'start_position'"),
@@ -75,10 +75,10 @@ def write(path, *episodes):
 
 
 @pytest.mark.parametrize(("key", "value", "words"), CHANGES.values(), ids=CHANGES)
-def test_an_episode_with_a_wrong_value_is_named(tmp_path, key, value, words):
+def test_read_episodes_names_wrong_value(tmp_path, key, value, words):
     path = write(tmp_path / "e.json", GOOD, {**copy.deepcopy(GOOD), key: value})
-    said = refused(lambda: list(read_episodes(path)), words)
-    assert str(path) in said and ("episode 1 of the list" in said or "whole JSON" in said)
+    message = refused(lambda: list(read_episodes(path)), words)
+    assert str(path) in message and ("episode 1 of the list" in message or "whole JSON" in message)
 
 
 FILES = {
@@ -109,7 +109,7 @@ FILES = {
 
 
 @pytest.mark.parametrize("raw", FILES.values(), ids=FILES)
-def test_a_file_that_is_no_list_of_episodes_is_refused(tmp_path, raw):
+def test_read_episodes_rejects_other_files(tmp_path, raw):
     path = tmp_path / "e.json.gz"
     path.write_bytes(raw)
     assert str(path) in refused(lambda: list(read_episodes(path)))
@@ -138,7 +138,7 @@ FAST = settings(
 
 @FAST
 @given(st.sampled_from(sorted(GOOD)), JSON)
-def test_any_value_in_any_place_is_read_or_named(tmp_path, key, value):
+def test_read_episodes_reads_or_names_any_value(tmp_path, key, value):
     path = write(tmp_path / "e.json", {**GOOD, key: value})
     try:
         list(read_episodes(path, hidden_goals=True))
@@ -148,7 +148,7 @@ def test_any_value_in_any_place_is_read_or_named(tmp_path, key, value):
 
 @FAST
 @given(st.binary(max_size=200), st.booleans())
-def test_any_bytes_are_read_or_named(tmp_path, raw, packed):
+def test_read_episodes_reads_or_names_any_bytes(tmp_path, raw, packed):
     path = tmp_path / "e.json"
     path.write_bytes(gzip.compress(raw) if packed else raw)
     for read in (read_episodes, read_chats):
@@ -172,7 +172,7 @@ CHATS = {
 
 
 @pytest.mark.parametrize("line", CHATS.values(), ids=CHATS)
-def test_a_chat_that_is_none_is_named(tmp_path, line):
+def test_read_chats_names_invalid_chat(tmp_path, line):
     path = tmp_path / "chats.jsonl"
     path.write_text(line + "\n")
     refused(lambda: list(read_chats(path)), "line 1")

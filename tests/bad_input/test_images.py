@@ -1,4 +1,4 @@
-"""Frames of anybody: decoded whole, or left out with a reason; nothing half written, no bomb."""
+"""Untrusted frames: decoded completely, or skipped with a reason; no partial output, no bomb."""
 
 from __future__ import annotations
 
@@ -88,7 +88,7 @@ FRAMES = {
 
 
 @pytest.mark.parametrize("name", FRAMES)
-def test_a_frame_that_is_none_is_left_out_with_a_reason(tmp_path, name):
+def test_corrupt_skips_invalid_frames_with_a_reason(tmp_path, name):
     path = tmp_path / name
     path.write_bytes(FRAMES[name])
     for take in (
@@ -101,15 +101,15 @@ def test_a_frame_that_is_none_is_left_out_with_a_reason(tmp_path, name):
 
 
 @pytest.mark.parametrize("corruption", ["spatter", "missing_data"])
-def test_a_folder_of_them_is_reported_and_nothing_is_half_written(tmp_path, capsys, corruption):
+def test_corrupt_reports_invalid_frames_and_writes_none(tmp_path, capsys, corruption):
     source, out = tmp_path / "in", tmp_path / "out"
     source.mkdir()
     for name, raw in FRAMES.items():
         (source / name).write_bytes(raw)
     (source / "good.png").write_bytes(GOOD_PNG)
     np.save(source / "good.npy", np.ones((8, 8), np.float32))
-    given = [str(source), str(out), f"corruption={corruption}", "severity=0.5"]
-    assert frames_command.main(given) == 1
+    arguments = [str(source), str(out), f"corruption={corruption}", "severity=0.5"]
+    assert frames_command.main(arguments) == 1
     assert "left out" in capsys.readouterr().err
     assert {p.name for p in out.rglob("*") if p.suffix != ".json"} <= {"good.png", "good.npy"}
 
@@ -129,7 +129,7 @@ def test_flipped_and_cut_frames_are_read_or_left_out(tmp_path, name, data):
         assert "\n" not in str(error)
 
 
-def test_an_archive_is_not_opened_for_what_is_in_it(tmp_path):
+def test_load_image_rejects_archives_unopened(tmp_path):
     with zipfile.ZipFile(tmp_path / "a.npy", "w") as archive:
         archive.writestr("../../outside.npy", b"x")
     with pytest.raises(LeftOutError):

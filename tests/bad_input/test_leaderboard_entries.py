@@ -1,4 +1,4 @@
-"""Entries of the leaderboard that are no entries: each is refused, file and key named."""
+"""Invalid entries of the leaderboard are rejected; the message names file and key."""
 
 from __future__ import annotations
 
@@ -55,22 +55,22 @@ def good() -> dict[str, Any]:
     return json.loads(json.dumps(entry.__dict__))
 
 
-def test_the_good_one_is_good(good, tmp_path):
+def test_valid_entry_is_accepted(good, tmp_path):
     path = tmp_path / "entry.json"
     path.write_text(json.dumps(good), encoding="utf-8")
     assert load(path).name == "base"
 
 
 @pytest.mark.parametrize(("key", "value"), WRONG)
-def test_a_wrong_value_is_refused_by_its_key(good, tmp_path, key, value):
+def test_invalid_value_is_rejected_by_its_key(good, tmp_path, key, value):
     path = tmp_path / "entry.json"
     path.write_text(json.dumps(good | {key: value}), encoding="utf-8")
-    with pytest.raises(ValueError, match=rf"entry\.json: {key} must be .*, not ") as told:
+    with pytest.raises(ValueError, match=rf"entry\.json: {key} must be .*, not ") as caught:
         load(path)
-    assert "\n" not in str(told.value) and len(str(told.value)) < 600
+    assert "\n" not in str(caught.value) and len(str(caught.value)) < 600
 
 
-def test_another_form_of_file_is_refused(good, tmp_path):
+def test_other_file_format_is_rejected(good, tmp_path):
     path = tmp_path / "entry.json"
     fewer = {key: value for key, value in good.items() if key != "rows"}
     nested = "[" * 100_000

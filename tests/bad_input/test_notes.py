@@ -1,4 +1,4 @@
-"""Notes of our own that were damaged: the error names the file, and the file stays."""
+"""Damaged notes of this project: the error names the file, and the file stays."""
 
 import pytest
 

@@ -1,4 +1,4 @@
-"""Recorded drives of anybody: read, or refused by name, within bounded memory and time."""
+"""Untrusted recordings: read, or rejected by name, within bounded memory and time."""
 
 from __future__ import annotations
 
@@ -24,8 +24,8 @@ from mitigate.worlds.recorded import messages as ros
 from mitigate.worlds.recorded.source import Lens
 
 SIZE = 16
-SLOWEST = 20.0  # seconds for a refusal (on a busy machine)
-MOST = 64 << 20  # bytes of Python's and NumPy's memory for a refusal
+SLOWEST = 20.0  # seconds for a rejection (on a busy machine)
+MOST = 64 << 20  # bytes of Python's and NumPy's memory for a rejection
 
 
 def steps(count: int = 3) -> list[dict[str, np.ndarray]]:
@@ -43,12 +43,13 @@ def read(path: Path) -> list:
     return [load(one, views=1, size=SIZE, step=Step()) for one in open_recording(path)]
 
 
-def refused(path: Path, said: str | None = None) -> None:
-    """``path`` is refused in one short paragraph that names it, soon and in little memory."""
+def refused(path: Path, message: str | None = None) -> None:
+    """Check that ``path`` is rejected in one short paragraph that names it, quickly and in little
+    memory."""
     began = time.monotonic()
     tracemalloc.start()
     try:
-        with pytest.raises(ValueError, match=said) as error:
+        with pytest.raises(ValueError, match=message) as error:
             read(path)
         assert tracemalloc.get_traced_memory()[1] < MOST
     finally:
@@ -76,13 +77,13 @@ def plain(tmp_path):
         ("instruction.txt", "go " * 40_000),
     ],
 )
-def test_a_plain_folder_with_lies_is_refused(plain, name, text):
+def test_plain_folder_with_false_values_is_rejected(plain, name, text):
     assert len(read(plain)) == 1
     (plain / name).write_text(text)
     refused(plain)
 
 
-def test_a_frame_of_absurd_size_is_refused_before_it_is_decoded(plain):
+def test_huge_frame_is_rejected_before_decoding(plain):
     first = sorted((plain / "rgb").iterdir())[0]
     raw = bytearray(first.read_bytes())
     raw[16:24] = struct.pack(">II", 1 << 16, 1 << 16)
@@ -101,7 +102,7 @@ def tum(folder: Path) -> Path:
 
 
 @pytest.mark.parametrize(
-    ("name", "text", "said"),
+    ("name", "text", "message"),
     [
         ("rgb.txt", "0 ../../outside.png\n", "outside"),
         ("rgb.txt", "0 /etc/hostname\n", "outside"),
@@ -113,30 +114,30 @@ def tum(folder: Path) -> Path:
         ("groundtruth.txt", "# nothing\n", "no pose"),
     ],
 )
-def test_a_tum_folder_with_lies_is_refused(tmp_path, name, text, said):
+def test_tum_folder_with_false_values_is_rejected(tmp_path, name, text, message):
     folder = tum(tmp_path / "drive")
     assert len(read(folder)) == 1
     (folder / name).write_text(text)
-    refused(folder, said)
+    refused(folder, message)
 
 
-def test_a_list_that_is_too_long_is_refused_before_it_is_read_whole(tmp_path, monkeypatch):
+def test_long_list_is_rejected_before_it_is_read(tmp_path, monkeypatch):
     folder = tum(tmp_path / "drive")
     with open(folder / "rgb.txt", "wb") as file:
-        file.truncate(1 << 30)  # sparse: one line without an end
+        file.truncate(1 << 30)  # sparse: one line that never ends
     monkeypatch.setattr("mitigate.worlds.recorded.folders.read_text.__defaults__", (1 << 20,))
     refused(folder, "must have at most 1048576 bytes")
 
 
 def recording(folder: Path) -> Path:
-    """What ``mitigate run record=`` writes, of one episode of one camera."""
+    """The files that ``mitigate run record=`` writes for one episode with one camera."""
     write_frames(folder / "made", steps(), "")
     episode = folder / "drive" / "scene" / "1"
     episode.mkdir(parents=True)
     (folder / "made" / "rgb").rename(episode / "rgb")
-    told = {"rgb": {"kind": "rgb", "hfov": 90, "yaw": 0}}
-    for name, held in (("episode.json", {"text": "go"}), ("cameras.json", told)):
-        (episode / name).write_text(json.dumps(held))
+    description = {"rgb": {"kind": "rgb", "hfov": 90, "yaw": 0}}
+    for name, content in (("episode.json", {"text": "go"}), ("cameras.json", description)):
+        (episode / name).write_text(json.dumps(content))
     lines = [json.dumps({"position": [0, 0, n], "heading": 0}) for n in range(3)]
     (episode / "steps.jsonl").write_text("\n".join(lines))
     (folder / "drive" / "recording.json").write_text(json.dumps({"unit": 0.001}))
@@ -159,7 +160,7 @@ def recording(folder: Path) -> Path:
         ("scene/1/steps.jsonl", '{"position": \n{}\n{}\n'),
     ],
 )
-def test_a_recording_with_lies_is_refused(tmp_path, name, text):
+def test_bag_with_false_values_is_rejected(tmp_path, name, text):
     folder = recording(tmp_path)
     assert len(read(folder)) == 1
     (folder / name).write_text(text)
@@ -167,7 +168,7 @@ def test_a_recording_with_lies_is_refused(tmp_path, name, text):
 
 
 @pytest.mark.parametrize("position", ["[1e400, 0, 0]", f"[{'9' * 400}, 0, 0]", "[[], 0, 0]", '"x"'])
-def test_a_place_that_is_none_leaves_a_recording_without_poses_or_is_refused(tmp_path, position):
+def test_invalid_position_drops_poses_or_is_rejected(tmp_path, position):
     folder = recording(tmp_path)
     lines = [f'{{"position": {position}, "heading": 0}}'] * 3
     (folder / "scene/1/steps.jsonl").write_text("\n".join(lines))
@@ -195,10 +196,10 @@ def chunk(kind: str, packed: bytes, size: int) -> bytes:
     def text(value: str) -> bytes:
         return struct.pack("<I", len(value)) + value.encode()
 
-    held = struct.pack("<QQQI", 0, 1, size, 0) + text(kind) + struct.pack("<Q", len(packed))
+    contents = struct.pack("<QQQI", 0, 1, size, 0) + text(kind) + struct.pack("<Q", len(packed))
     magic = b"\x89MCAP0\r\n"
     end = record(2, struct.pack("<QQI", 0, 0, 0))
-    return magic + record(1, text("ros2") + text("")) + record(6, held + packed) + end + magic
+    return magic + record(1, text("ros2") + text("")) + record(6, contents + packed) + end + magic
 
 
 @pytest.fixture(scope="module")
@@ -215,16 +216,16 @@ def bombs():
 
 
 @pytest.mark.parametrize("kind", ["zstd", "lz4"])
-def test_a_bomb_in_a_chunk_is_refused(tmp_path, bombs, kind):
+def test_chunk_bomb_is_rejected(tmp_path, bombs, kind):
     (tmp_path / "robot.mcap").write_bytes(chunk(kind, bombs[kind], BOMB))
     if kind == "zstd":
         refused(tmp_path / "robot.mcap", "robot.*unpacks to more than")
-    else:  # lz4 packs 255 times at most: it is stopped half way
+    else:  # lz4 compresses at most 255 times: reading stops half way
         with pytest.raises(ValueError, match="unpacks to more than"):
             read(tmp_path / "robot.mcap")
 
 
-def test_a_file_that_is_packed_whole_is_counted_before_it_is_unpacked_to_the_disk(tmp_path, bombs):
+def test_compressed_file_is_counted_before_it_is_unpacked(tmp_path, bombs):
     bag = write_bag(tmp_path / "robot", steps(), "mcap")
     note, file = bag / "metadata.yaml", mcap(bag)
     (bag / f"{file.name}.zstd").write_bytes(bombs["zstd"])
@@ -235,7 +236,7 @@ def test_a_file_that_is_packed_whole_is_counted_before_it_is_unpacked_to_the_dis
     refused(bag, "unpacks to more than")
 
 
-def test_what_is_unpacked_in_all_is_bounded_and_streams_are_joined():
+def test_unpacked_size_is_bounded_and_streams_are_joined():
     for make, pack in (
         (bz2.BZ2Decompressor, bz2.compress),
         (lz4.frame.LZ4FrameDecompressor, lz4.frame.compress),
@@ -260,7 +261,7 @@ def test_what_is_unpacked_in_all_is_bounded_and_streams_are_joined():
         "CREATE TABLE t(a); CREATE TRIGGER x AFTER INSERT ON t BEGIN DELETE FROM t; END",
     ],
 )
-def test_a_data_base_that_computes_is_refused(tmp_path, script):
+def test_database_with_computation_is_rejected(tmp_path, script):
     file = tmp_path / "robot.db3"
     base = sqlite3.connect(file)
     base.executescript("CREATE TABLE messages(id); CREATE TABLE topics(id);" + script)
@@ -269,7 +270,7 @@ def test_a_data_base_that_computes_is_refused(tmp_path, script):
 
 
 @pytest.mark.parametrize("raw", [b"", b"SQLite format 3\0" + bytes(50), b"\0" * 5000])
-def test_what_is_no_data_base_is_refused(tmp_path, raw):
+def test_file_that_is_no_database_is_rejected(tmp_path, raw):
     (tmp_path / "robot.db3").write_bytes(raw)
     refused(tmp_path / "robot.db3", "robot")
 
@@ -300,15 +301,15 @@ def test_metadata_name_no_file_outside_of_the_bag(tmp_path):
 
 
 class Message:
-    """A ROS message of these fields."""
+    """A ROS message with these fields."""
 
     def __init__(self, **fields) -> None:
         self.__dict__.update(fields)
 
 
 def picture(**changes) -> Message:
-    held = {"height": 4, "width": 4, "encoding": "rgb8", "step": 12, "is_bigendian": 0}
-    return Message(**{**held, "data": np.zeros(48, np.uint8), **changes})
+    content = {"height": 4, "width": 4, "encoding": "rgb8", "step": 12, "is_bigendian": 0}
+    return Message(**{**content, "data": np.zeros(48, np.uint8), **changes})
 
 
 @pytest.mark.parametrize(
@@ -323,18 +324,18 @@ def picture(**changes) -> Message:
         {"encoding": "x" * 10_000},
     ],
 )
-def test_an_image_whose_header_lies_is_refused(changes):
+def test_image_with_false_header_is_rejected(changes):
     with pytest.raises(ValueError, match="bag"):
         ros.read_image(picture(**changes), RGB, Path("bag"))
 
 
-def test_a_row_whose_step_lies_takes_no_memory():
+def test_row_with_false_step_takes_no_memory():
     row = ros.read_image(picture(height=1, step=1 << 31), RGB, Path("bag"))
     assert row.shape == (1, 4, 3)
 
 
 @pytest.mark.parametrize("size", [(1 << 15, 1 << 15), (1 << 20, 1)])
-def test_a_compressed_image_of_absurd_size_is_not_decoded(monkeypatch, size):
+def test_huge_compressed_image_is_not_decoded(monkeypatch, size):
     def record(kind: bytes, data: bytes) -> bytes:
         return (
             struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
@@ -352,7 +353,7 @@ def test_a_compressed_image_of_absurd_size_is_not_decoded(monkeypatch, size):
 @pytest.mark.parametrize(
     ("focal", "centre"), [((8, 1e-300), (8, 8)), ((8, 1e300), (8, 8)), ((8, 8), (1e300, 8))]
 )
-def test_a_lens_that_sees_nothing_is_refused(focal, centre):
+def test_lens_without_field_of_view_is_rejected(focal, centre):
     assert Lens(RGB, focal=(8, 8), centre=(8, 8), size=(16, 16))
     with pytest.raises(ValueError, match="must be"):
         Lens(RGB, focal=focal, centre=centre, size=(16, 16))

@@ -1,4 +1,4 @@
-"""Checkpoints, weights and folders of anybody: data that fit, or one paragraph; no code runs."""
+"""Untrusted checkpoints, weights and folders: valid data, or one paragraph; no code runs."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ FAST = settings(
 
 
 class Code:
-    """Makes the file ``ran`` where it is unpickled."""
+    """Creates the file ``ran`` when it is unpickled."""
 
     def __init__(self, ran: Path) -> None:
         self.ran = ran
@@ -44,7 +44,7 @@ class Code:
 
 
 class Builds:
-    """As ``Code``, by the state that an unpickler sets."""
+    """Like ``Code``, through the state that an unpickler sets."""
 
     def __reduce__(self):
         return dict, (), None, None, iter([("a", Code(Path("ran")))])
@@ -72,7 +72,7 @@ NETWORK = nn.Linear(3, 2)
 
 
 def trapped(ran: Path) -> dict[str, bytes]:
-    """Files that would run code in a careless reader, in ways of ``torch.load`` and pickle."""
+    """Files that would run code in an unsafe reader, by means of ``torch.load`` and pickle."""
     code = Code(ran)
     return {
         "a pickle": pickle.dumps(code),
@@ -112,7 +112,7 @@ DAMAGED = {
 
 
 @pytest.mark.parametrize("raw", DAMAGED.values(), ids=DAMAGED)
-def test_a_checkpoint_or_foreign_weights_that_are_none_are_refused(tmp_path, raw):
+def test_load_rejects_invalid_checkpoints_and_foreign_weights(tmp_path, raw):
     path = tmp_path / "step-00000003.pt"
     path.write_bytes(raw)
     assert str(path) in refused(lambda: states.load(path))
@@ -121,7 +121,7 @@ def test_a_checkpoint_or_foreign_weights_that_are_none_are_refused(tmp_path, raw
     assert [p.name for p in tmp_path.iterdir()] == [path.name]
 
 
-def test_no_file_of_weights_runs_code(tmp_path, monkeypatch):
+def test_load_runs_no_code_from_weights(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     for name, raw in trapped(tmp_path / "ran").items():
         path = tmp_path / "step-00000003.pt"
@@ -164,7 +164,7 @@ SAFETENSORS = {
 
 
 @pytest.mark.parametrize("raw", SAFETENSORS.values(), ids=SAFETENSORS)
-def test_a_safetensors_file_that_is_none_is_refused(tmp_path, raw):
+def test_load_rejects_invalid_safetensors(tmp_path, raw):
     path = tmp_path / checkpoint.WEIGHTS
     path.write_bytes(raw)
     for read in (
@@ -176,9 +176,9 @@ def test_a_safetensors_file_that_is_none_is_refused(tmp_path, raw):
 
 
 def card(**changes) -> dict:
-    made = {"format": 1, "files": {}, "adapters_only": False, "base": None, "vocabulary": None}
-    made |= {"commit": "0", "agent": "0", **changes}
-    return made | {"sha256": older_folders.card_sha(made)}
+    output = {"format": 1, "files": {}, "adapters_only": False, "base": None, "vocabulary": None}
+    output |= {"commit": "0", "agent": "0", **changes}
+    return output | {"sha256": older_folders.card_sha(output)}
 
 
 OTHER = "../../../etc/passwd"
@@ -205,21 +205,21 @@ CARDS = {
 }
 
 
-@pytest.mark.parametrize("made", CARDS.values(), ids=CARDS)
-def test_a_hardened_folder_whose_card_is_none_is_refused(tmp_path, made):
-    raw = made if isinstance(made, bytes) else json.dumps(made).encode()
+@pytest.mark.parametrize("output", CARDS.values(), ids=CARDS)
+def test_load_hardened_rejects_invalid_card(tmp_path, output):
+    raw = output if isinstance(output, bytes) else json.dumps(output).encode()
     (tmp_path / agents.CARD).write_bytes(raw)
     assert str(tmp_path) in refused(lambda: agents.load_hardened(tmp_path))
 
 
 @pytest.mark.parametrize("folder", [None, 3, True])
-def test_a_hardened_folder_that_is_no_path_is_refused(folder):
+def test_load_hardened_rejects_values_that_are_no_path(folder):
     with pytest.raises(TypeError, match=f"path of a hardened checkpoint, got {folder}. Name one"):
         agents.load_hardened(folder)
 
 
 @pytest.mark.parametrize("name", [OTHER, "/etc/passwd", "..", "", ".", "a/b", "./x", "a\\..\\/b"])
-def test_a_card_reads_no_file_outside_its_folder(tmp_path, name):
+def test_card_reads_no_file_outside_its_folder(tmp_path, name):
     needed = (*agents.FILES, checkpoint.WEIGHTS)
     for each in needed:
         (tmp_path / each).write_text("x")
@@ -253,13 +253,13 @@ ADAPTERS = {
 }
 
 
-@pytest.mark.parametrize("made", ADAPTERS.values(), ids=ADAPTERS)
-def test_a_folder_of_adapters_that_does_not_fit_is_refused(tmp_path, made):
+@pytest.mark.parametrize("output", ADAPTERS.values(), ids=ADAPTERS)
+def test_adapters_that_do_not_fit_are_rejected(tmp_path, output):
     network = nn.Sequential(nn.Conv2d(3, 3, 3))
-    if isinstance(made, dict):
-        made = {"backbone_sha256": adapters.backbone_sha(network), **made}
+    if isinstance(output, dict):
+        output = {"backbone_sha256": adapters.backbone_sha(network), **output}
     (tmp_path / adapters.SETTINGS).write_bytes(
-        made if isinstance(made, bytes) else json.dumps(made).encode()
+        output if isinstance(output, bytes) else json.dumps(output).encode()
     )
     checkpoint.save_weights(nn.Linear(1, 1), tmp_path / adapters.WEIGHTS)
     refused(lambda: adapters.load_adapters(network, tmp_path))
@@ -287,12 +287,14 @@ PEFT_BAD = {
 }
 
 
-@pytest.mark.parametrize(("name", "made"), PEFT_BAD.values(), ids=PEFT_BAD)
-def test_a_lora_folder_that_is_none_is_refused(tmp_path, name, made):
+@pytest.mark.parametrize(("name", "output"), PEFT_BAD.values(), ids=PEFT_BAD)
+def test_lora_rejects_invalid_folder(tmp_path, name, output):
     (tmp_path / adapter_folder.ADAPTER).write_bytes(b"")
     for file, good in ((adapter_folder.CARD, PEFT_CARD), (adapter_folder.CONFIG, PEFT)):
         (tmp_path / file).write_text(json.dumps(good))
-    (tmp_path / name).write_bytes(made if isinstance(made, bytes) else json.dumps(made).encode())
+    (tmp_path / name).write_bytes(
+        output if isinstance(output, bytes) else json.dumps(output).encode()
+    )
     assert str(tmp_path / name) in refused(lambda: adapter_folder.read_adapter(tmp_path))
 
 
@@ -309,9 +311,9 @@ ENCODER_BAD = {
 }
 
 
-@pytest.mark.parametrize("made", ENCODER_BAD.values(), ids=ENCODER_BAD)
-def test_a_folder_of_an_encoder_that_is_none_is_refused(tmp_path, made):
-    raw = made if isinstance(made, bytes) else json.dumps(made).encode()
+@pytest.mark.parametrize("output", ENCODER_BAD.values(), ids=ENCODER_BAD)
+def test_encoder_rejects_invalid_folder(tmp_path, output):
+    raw = output if isinstance(output, bytes) else json.dumps(output).encode()
     (tmp_path / encoder_folder.CARD).write_bytes(raw)
     refused(lambda: encoder_folder.card(tmp_path), encoder_folder.CARD)
 
@@ -319,22 +321,22 @@ def test_a_folder_of_an_encoder_that_is_none_is_refused(tmp_path, made):
 @FAST
 @given(st.data())
 def test_flipped_and_cut_bytes_are_noticed(tmp_path, data):
-    """Of a file without a sum beside it: of the file's own checksums."""
+    """A file without a checksum file is checked by the checksums that it contains."""
     at = data.draw(st.integers(0, len(SOUND) - 1))
     raw = SOUND[:at] + data.draw(st.binary(max_size=4)) + SOUND[at + data.draw(st.integers(0, 9)) :]
     path = tmp_path / "step-00000003.pt"
     path.write_bytes(raw)
     try:
-        found = states.load(path)
+        loaded = states.load(path)
     except ValueError as error:
         assert str(path) in str(error) and "\n" not in str(error)
     else:
-        assert torch.equal(found["model"]["w"], torch.arange(100.0))
+        assert torch.equal(loaded["model"]["w"], torch.arange(100.0))
 
 
 @FAST
 @given(st.dictionaries(st.text(max_size=9), st.none() | st.integers() | st.text(max_size=9)))
-def test_any_header_of_safetensors_is_refused_or_fits(tmp_path, header):
+def test_safetensors_header_is_rejected_or_fits(tmp_path, header):
     path = tmp_path / checkpoint.WEIGHTS
     path.write_bytes(tensors(header, bytes(16)))
     refused(lambda: checkpoint.load_weights(NETWORK, path))
@@ -348,13 +350,14 @@ def test_sound_files_of_before_are_still_read(tmp_path):
 
 
 def test_loading_a_hardened_folder_does_not_open_its_program(tmp_path, monkeypatch):
-    """Who writes the card can write its sums too: what it lists must not run either."""
+    """The author of the card can also write its checksums, so the listed files must not run
+    code."""
     shutil.copytree(ROOT / "checkpoints/hardened/ts_distill", tmp_path / "mine")
     program, file = tmp_path / "mine" / agents.PROGRAM, tmp_path / "mine" / agents.CARD
     program.write_bytes(pickle.dumps(Code(tmp_path / "ran")))
-    held = json.loads(file.read_text())
-    held["files"][agents.PROGRAM] = agents.sha256(program)
-    file.write_text(json.dumps(held | {"sha256": older_folders.card_sha(held)}))
+    content = json.loads(file.read_text())
+    content["files"][agents.PROGRAM] = agents.sha256(program)
+    file.write_text(json.dumps(content | {"sha256": older_folders.card_sha(content)}))
     monkeypatch.chdir(ROOT)
     assert not agents.load_hardened(tmp_path / "mine").training
     assert not (tmp_path / "ran").exists()

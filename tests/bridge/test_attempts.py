@@ -51,7 +51,7 @@ def test_attempt_begins_in_an_empty_folder(run, skips, tmp_path):
     assert (aside / "events.jsonl").exists()
 
 
-def test_attempt_keeps_a_finished_result_until_the_next_one_finishes(run, skips, tmp_path):
+def test_attempt_keeps_finished_result_until_next_one_finishes(run, skips, tmp_path):
     out, recorded = tmp_path / "o", tmp_path / "recorded"
     options, fails = f"conditions=[clean] record={recorded}", tmp_path / "fails"
     guard = f"import os, sys\nif os.path.exists({str(fails)!r}): sys.exit(3)\n"
@@ -77,8 +77,8 @@ def test_run_explains_results_of_an_earlier_run(run, skips, tmp_path):
 def test_run_measures_other_conditions_if_one_is_locked(run, skips, tmp_path):
     folder = tmp_path / "o/conditions/spatter-s0.6"
     folder.mkdir(parents=True)
-    with open(folder / "lock", "w") as held:
-        fcntl.flock(held, fcntl.LOCK_EX)
+    with open(folder / "lock", "w") as handle:
+        fcntl.flock(handle, fcntl.LOCK_EX)
         result = run(tmp_path / "o", "conditions=[spatter,flare]", f"{skips} {{out}}/results.json")
     assert (
         "spatter-s0.6: Another run is at work in" in result.stderr and "flare" not in result.stderr
@@ -126,7 +126,7 @@ def test_connection_names_a_write_error_of_the_run(tmp_path):
     assert f"Cannot write {tmp_path}/recorded" in problem and "mitigate_hook.py" not in problem
 
 
-def made(folder, *options):
+def make_attempt(folder, *options):
     """Return the first condition of a run with options, and its default folder."""
     typed = config("conditions=[clean]", *options)
     return make_cells(Plan(typed, ("nav",), "nav", folder))[0], default_folder(typed, "nav")
@@ -135,16 +135,16 @@ def made(folder, *options):
 def test_watch_changes_agent_and_folder(tmp_path, monkeypatch):
     file = tmp_path / "policy.yaml"
     file.write_text("good")
-    plain, folder = made(tmp_path)
+    plain, folder = make_attempt(tmp_path)
     assert plain.settings["watch"] is None and folder.name == "nav-s0.6"
     option = f"watch=[CKPT,{file}]"
     monkeypatch.setenv("CKPT", "good")
-    known = [made(tmp_path, option)]
+    known = [make_attempt(tmp_path, option)]
     assert known[0][0].settings["watch"]["CKPT"] == "good"
     monkeypatch.setenv("CKPT", "bad")
-    known.append(made(tmp_path, option))
+    known.append(make_attempt(tmp_path, option))
     file.write_text("bad")
-    known.append(made(tmp_path, option))
+    known.append(make_attempt(tmp_path, option))
     for part in (lambda one: one[0].label["agent"], lambda one: one[1].name):
         assert len({part(one) for one in [(plain, folder), *known]}) == 4
 
@@ -185,8 +185,8 @@ def test_wanted_sends_names_in_parts(tmp_path):
     keep = Subset(4, tmp_path, settled=0.0).keep
     with Listener(condition(keep=keep), tmp_path / "told") as listener:
         printed = python(listener, code).stdout
-    wanted = keep([f"x.glb/{n}" for n in range(20)])
-    assert printed.strip() == str(wanted) and len(wanted) == 4
+    expected = keep([f"x.glb/{n}" for n in range(20)])
+    assert printed.strip() == str(expected) and len(expected) == 4
     assert json.loads((tmp_path / "episodes.json").read_text())["of"] == 20
 
 

@@ -36,11 +36,11 @@ def test_hook_gives_the_pixels_of_corrupt_habitat(command, tmp_path):
         result = command(condition(name), "--cameras", 12, "--episodes", 1, "--steps", 2)
         assert result.status == 0, result.output
         for number, instant in enumerate(clean):
-            wanted = corrupt_habitat(
+            expected = corrupt_habitat(
                 instant, Corruption(name, 0.6), Key(0, "s0.glb/0", number), heading=0.0
             )
             seen = result.seen()["0", number]["frames"]
-            for camera, frame in wanted.items():
+            for camera, frame in expected.items():
                 assert seen[camera] == hashlib.sha256(frame.tobytes()).hexdigest(), camera
 
 
@@ -116,9 +116,9 @@ def test_hook_reports_results(command):
 
 def test_hook_reports_an_unended_episode_at_the_next_reset(command):
     reports = command(condition(), "--no-stop").reports
-    assert len(reports.ends) == 4  # the last one as the Env is closed
+    assert len(reports.ends) == 4  # the last one when the Env is closed
     end = reports.ends["s0/0"]
-    assert end["distance"] == pytest.approx(0.5)  # of the end, not of the next start
+    assert end["distance"] == pytest.approx(0.5)  # frames of the end, not of the next start
     assert end["stopped"] is False
 
 
@@ -126,13 +126,13 @@ def test_rig_groups_cameras_of_a_panorama():
     from mitigate.bridge.cameras import Rig
 
     def camera(name, yaw, size=8, pitch=0.0):
-        told = {"name": name, "type": "rgb", "shape": [size, size, 3], "dtype": "uint8"}
-        return {**told, "hfov": 90, "orientation": [pitch, np.radians(yaw), 0.0]}
+        description = {"name": name, "type": "rgb", "shape": [size, size, 3], "dtype": "uint8"}
+        return {**description, "hfov": 90, "orientation": [pitch, np.radians(yaw), 0.0]}
 
     rig = Rig([camera("rgb", 0), camera("rgb_30", 30), camera("rgbdown", 0, pitch=-0.5),
                camera("rgbback", 180, size=16)])  # fmt: skip
-    found = {group.suffix: (len(group.cameras), group.views) for group in rig.groups}
-    assert found == {"": (2, (0, 11)), "rgbdown": (1, (0,)), "rgbback": (1, (6,))}
+    matches = {group.suffix: (len(group.cameras), group.views) for group in rig.groups}
+    assert matches == {"": (2, (0, 11)), "rgbdown": (1, (0,)), "rgbback": (1, (6,))}
     offsets, size = rig.lay_out(["rgb"])
     assert len(set(offsets.values())) == 4 and size >= 12 * 192 + 192 + 7 * 768
 
@@ -140,9 +140,14 @@ def test_rig_groups_cameras_of_a_panorama():
 def test_rig_separates_normalised_and_metric_depth():
     from mitigate.bridge.cameras import Rig
 
-    told = {"type": "depth", "shape": [8, 8, 1], "dtype": "float32", "min_depth": 0}
-    told |= {"max_depth": 10, "hfov": 90}
-    rig = Rig([{"name": "depth", **told}, {"name": "depth_30", **told, "normalize_depth": True}])
+    description = {"type": "depth", "shape": [8, 8, 1], "dtype": "float32", "min_depth": 0}
+    description |= {"max_depth": 10, "hfov": 90}
+    rig = Rig(
+        [
+            {"name": "depth", **description},
+            {"name": "depth_30", **description, "normalize_depth": True},
+        ]
+    )
     assert sorted(len(group.cameras) for group in rig.groups) == [1, 1]
 
 
@@ -158,9 +163,9 @@ def test_rig_separates_normalised_and_metric_depth():
 def test_rig_rejects_unsupported_cameras(change, words):
     from mitigate.bridge.cameras import Rig
 
-    told = {"name": "rgb", "type": "rgb", "shape": [4, 4, 3], "dtype": "uint8", **change}
+    description = {"name": "rgb", "type": "rgb", "shape": [4, 4, 3], "dtype": "uint8", **change}
     with pytest.raises(ValueError, match=words):
-        Rig([told])
+        Rig([description])
 
 
 def test_hook_does_nothing_outside_a_run(tmp_path):

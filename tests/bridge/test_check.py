@@ -19,11 +19,11 @@ def test_check_describes_and_draws_a_program(tmp_path, monkeypatch, capsys):
     monkeypatch.setenv("PYTHONPATH", str(LAB))
     typed = config(f"out={tmp_path}", "conditions=[spatter,multipath,white_box]")
     sheet = check(typed, shlex.split(f"{AGENT} --cameras 2"))
-    said = capsys.readouterr().out
-    assert "rgb: rgb, rgb_30; 32 x 32 x 3 uint8, hfov 90, 2 as one panorama" in said
-    assert "depth: depth, depth_30" in said and "0 to 1 for 0 to 10 m" in said
-    assert "instruction 'Walk to the door 0.'" in said
-    assert "white_box-s0.6: not applicable" in said and "spatter-s0.6: applies" in said
+    printed = capsys.readouterr().out
+    assert "rgb: rgb, rgb_30; 32 x 32 x 3 uint8, hfov 90, 2 as one panorama" in printed
+    assert "depth: depth, depth_30" in printed and "0 to 1 for 0 to 10 m" in printed
+    assert "instruction 'Walk to the door 0.'" in printed
+    assert "white_box-s0.6: not applicable" in printed and "spatter-s0.6: applies" in printed
     assert cv2.imread(str(sheet)).shape[0] == 4 * 164  # clean of each kind, and two corruptions
 
 
@@ -101,7 +101,7 @@ def test_check_reports_the_range_of_depth(tmp_path, capsys, depth, words):
     assert words in capsys.readouterr().out
 
 
-def test_draw_sheet_draws_a_call_in_which_a_corruption_acts(monkeypatch):
+def test_draw_sheet_draws_a_corrupted_call(monkeypatch):
     named = []
     rig = Rig([{"name": "left", "type": "rgb", "shape": [8, 8, 3], "dtype": "uint8"}])
 

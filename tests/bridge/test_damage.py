@@ -35,20 +35,20 @@ def place(tmp_path_factory):
 def finished(run, place):
     """A finished run of two conditions: its folder, and a function that runs it again.
 
-    The first test measures them; each test gets the folder as it was then.
+    The first test measures the run; each test gets a copy of the folder.
     """
-    out, kept = place / "o", place / "kept"
+    out, remaining = place / "o", place / "kept"
 
     def again(options="conditions=[low_light]"):
         return run(out, options, f"{sys.executable} {place / 'nav.py'}")
 
-    if not kept.exists():
+    if not remaining.exists():
         (place / "nav.py").write_text(PROGRAM)
         assert not again().stderr
-        shutil.copytree(out, kept)
+        shutil.copytree(out, remaining)
     else:
         shutil.rmtree(out)
-        shutil.copytree(kept, out)
+        shutil.copytree(remaining, out)
     return out, again
 
 
@@ -66,7 +66,7 @@ def with_damaged_line(data, number):
 
 
 @pytest.mark.parametrize("number", [1, 4, -1])
-def test_run_rejects_a_damaged_line_of_events_and_changes_nothing(finished, number):
+def test_run_rejects_damaged_event_line_and_changes_nothing(finished, number):
     out, again = finished
     events = out / CONDITION / "events.jsonl"
     count = len(events.read_bytes().splitlines())
@@ -79,7 +79,7 @@ def test_run_rejects_a_damaged_line_of_events_and_changes_nothing(finished, numb
 
 
 @pytest.mark.parametrize("cut", [1, 40])
-def test_run_rejects_events_that_were_cut_after_the_condition_finished(finished, cut):
+def test_run_rejects_events_cut_after_the_condition_finished(finished, cut):
     out, again = finished
     events = out / CONDITION / "events.jsonl"
     events.write_bytes(events.read_bytes()[:-cut])
@@ -196,11 +196,11 @@ def test_run_compares_counts_of_a_marker_without_a_checksum(finished):
 
 def test_run_measures_a_moved_condition_again(finished, tmp_path):
     out, again = finished
-    held = rows.read(out / "rows.jsonl")
+    content = rows.read(out / "rows.jsonl")
     (out / CONDITION).rename(tmp_path / "aside")
     result = again()
     assert not result.stderr and "low_light-s0.6: started" in result.stdout
-    assert rows.read(out / "rows.jsonl") == held
+    assert rows.read(out / "rows.jsonl") == content
 
 
 def test_run_keeps_rows_without_a_finished_condition(finished, tmp_path):
@@ -225,13 +225,13 @@ def test_run_copies_rows_that_leave_the_table(finished):
 @pytest.mark.parametrize("other", [{"agent": "abc"}, {"seed": 9}, {"split": "elsewhere"}])
 def test_run_copies_rows_of_another_agent_seed_or_split(finished, other):
     out, again = finished
-    held = rows.read(out / "rows.jsonl")
-    rows.write(out / "rows.jsonl", [*held, held[-1] | other])
+    content = rows.read(out / "rows.jsonl")
+    rows.write(out / "rows.jsonl", [*content, content[-1] | other])
     before = (out / "rows.jsonl").read_bytes()
     result = again()
     assert not result.stderr and f"another {next(iter(other))}" in result.stdout
     assert (out / "rows.jsonl.before").read_bytes() == before
-    assert rows.read(out / "rows.jsonl") == held
+    assert rows.read(out / "rows.jsonl") == content
 
 
 def test_run_judges_the_same_episodes_by_another_rule(finished):
@@ -291,7 +291,7 @@ def test_run_names_a_folder_in_place_of_its_files(finished, name):
 
 
 @pytest.mark.parametrize("kind", ["link", "file"])
-def test_run_keeps_a_finished_condition_that_cannot_be_put_aside(finished, tmp_path, kind):
+def test_run_keeps_finished_condition_that_cannot_be_moved(finished, tmp_path, kind):
     out, again = finished
     aside = out / "conditions/low_light-s0.6.finished"
     if kind == "link":
@@ -305,7 +305,7 @@ def test_run_keeps_a_finished_condition_that_cannot_be_put_aside(finished, tmp_p
     entries = json.loads(clean.read_text()) | {"episodes_told": 4, "events": seal}
     clean.write_text(json.dumps(entries))
     before = contents(out / CONDITION)
-    result = again()  # it lacks an episode of clean now, and is measured again
+    result = again()  # it lacks an episode of clean now, so the condition runs again
     assert result.returncode == 1 and str(aside) in result.stderr
     assert contents(out / CONDITION) == before
 

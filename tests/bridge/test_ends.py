@@ -203,9 +203,9 @@ print(*(one.instruction.instruction_text for one in episodes[:2]), sep="|")
 
 def test_hook_corrupts_a_shared_instruction_once(tmp_path):
     _, printed = run_env(tmp_path, HEARD, condition("friendly", 1.0))
-    first, again, second, same, still, *own = printed.strip().split("|")
-    assert first == again != own[0] == "Walk to the door 0."
-    assert second == same == still != own[1] == "Walk to the door 1."
+    first, again, second, same, still, *own_value = printed.strip().split("|")
+    assert first == again != own_value[0] == "Walk to the door 0."
+    assert second == same == still != own_value[1] == "Walk to the door 1."
 
 
 def test_hook_restores_an_instruction_that_the_program_changed(tmp_path):
@@ -222,9 +222,9 @@ env.close()
 print(*(one.instruction.instruction_text for one in episodes[:2]), sep="|")
 """
     _, printed = run_env(tmp_path, code, condition("friendly", 1.0))
-    first, second, again, beside, *own = printed.strip().split("|")
-    assert own == ["Walk to the door 0.", "Walk to the door 1."]
-    assert first == again == beside != own[0] and second != own[1]
+    first, second, again, beside, *own_value = printed.strip().split("|")
+    assert own_value == ["Walk to the door 0.", "Walk to the door 1."]
+    assert first == again == beside != own_value[0] and second != own_value[1]
 
 
 @pytest.mark.parametrize("copied", ["copy.deepcopy(one)", "pickle.loads(pickle.dumps(one))"])
@@ -241,8 +241,12 @@ b.close()
 print(one.instruction.instruction_text, vars(one.instruction))
 """
     _, printed = run_env(tmp_path, code, condition("friendly", 1.0))
-    first, same, own = printed.strip().split("|")
-    assert first == same and own.startswith("Walk to the door 0. {") and "_mitigate" not in own
+    first, same, own_value = printed.strip().split("|")
+    assert (
+        first == same
+        and own_value.startswith("Walk to the door 0. {")
+        and "_mitigate" not in own_value
+    )
 
 
 @pytest.mark.parametrize("how", ["later", ["over"]])

@@ -106,11 +106,11 @@ def test_hook_cannot_be_caught_by_the_agent(tmp_path):
 def test_server_removes_its_folders(command):
     command(condition("spatter"), "--episodes", 1)
     with Listener(condition("spatter"), command.__closure__[0].cell_contents / "x") as listener:
-        held = (listener.socket_folder, listener.memory)
-        assert all(place.is_dir() for place in held)
+        content = (listener.socket_folder, listener.memory)
+        assert all(place.is_dir() for place in content)
         assert oct(os.stat(listener.address).st_mode & 0o777) == "0o600"
         assert oct(os.stat(listener.socket_folder).st_mode & 0o777) == "0o700"
-    assert not any(place.exists() for place in held)
+    assert not any(place.exists() for place in content)
 
 
 @pytest.fixture

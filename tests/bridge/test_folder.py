@@ -66,8 +66,10 @@ def test_run_repeats_a_condition_that_lacks_episodes_of_clean(run, program, tmp_
     out = tmp_path / "o"
     assert run(out, "conditions=[low_light]", program).returncode == 0
     events = out / "conditions" / "low_light-s0.6" / "events.jsonl"
-    kept = [line for line in events.read_text().splitlines() if '"end"' not in line or "b" in line]
-    events.write_text("\n".join(line for line in kept if '"episode": "a"' not in line) + "\n")
+    remaining = [
+        line for line in events.read_text().splitlines() if '"end"' not in line or "b" in line
+    ]
+    events.write_text("\n".join(line for line in remaining if '"episode": "a"' not in line) + "\n")
     finish_again(events.parent)
     again = run(out, "conditions=[low_light]", program)
     assert again.returncode == 0 and "of clean's 4 episodes" in again.stdout
@@ -106,7 +108,7 @@ def test_run_reports_the_episode_of_a_background_process(run, tmp_path, monkeypa
 
     monkeypatch.setattr(
         attempt, "DISCONNECT_TIME", 0.5
-    )  # who has a session of its own is waited for
+    )  # the command waits for processes in a separate session
     file = tmp_path / "nav.py"
     file.write_text(BACKGROUND % session)
     result = run(tmp_path / "o", "conditions=[clean]", f"{sys.executable} {file}")
@@ -135,8 +137,8 @@ def test_table_holds_all_finished_conditions(run, program, tmp_path):
     result = run(out, "conditions=[flare] severity=0.3", program)
     assert result.returncode == 0, result.stderr
     assert "measured before: low_light-s0.6, spatter-s0.6" in result.stdout
-    wanted = {("clean", 0.0), ("low_light", 0.6), ("spatter", 0.6), ("flare", 0.3)}
-    assert measured(out) == wanted and (out / "severity.png").exists()
+    expected = {("clean", 0.0), ("low_light", 0.6), ("spatter", 0.6), ("flare", 0.3)}
+    assert measured(out) == expected and (out / "severity.png").exists()
 
 
 def test_table_leaves_out_other_settings(run, program, tmp_path):
@@ -227,15 +229,15 @@ def test_run_names_conditions_of_an_older_version(run, program, tmp_path):
     assert "flare-s0.6: measured before, but not in the table: by an older version" in result.stdout
 
 
-def made(options, folder):
+def make_attempt(options, folder):
     """Return the first condition of a run with options, and the default folder."""
     typed = config(*options)
     return make_cells(Plan(typed, ("nav",), "nav", folder))[0], default_folder(typed, "nav")
 
 
 def test_safeguard_changes_agent_and_folder(tmp_path):
-    plain, folder = made(["conditions=[clean]"], tmp_path)
-    guarded, other = made(["conditions=[clean]", "safeguard=rules"], tmp_path)
+    plain, folder = make_attempt(["conditions=[clean]"], tmp_path)
+    guarded, other = make_attempt(["conditions=[clean]", "safeguard=rules"], tmp_path)
     assert (
         plain.label["agent"] != guarded.label["agent"] and guarded.label["name"] == "nav+classifier"
     )
@@ -243,7 +245,7 @@ def test_safeguard_changes_agent_and_folder(tmp_path):
         "safeguard"
     ]
     assert folder.name == "nav-s0.6" and other.name == "nav-classifier-s0.6"
-    assert made(["conditions=[clean]", "episodes=60"], tmp_path)[1].name == "nav-s0.6-e60"
+    assert make_attempt(["conditions=[clean]", "episodes=60"], tmp_path)[1].name == "nav-s0.6-e60"
 
 
 LOSE = """
@@ -292,7 +294,7 @@ def test_run_does_not_write_through_a_link(run, program, tmp_path, name):
     assert (tmp_path / "thesis.txt").read_text() == "mine"
     if name == "lock":
         assert result.returncode == 1 and "lock must be a regular file" in result.stderr
-    else:  # what an earlier attempt left is put aside
+    else:  # results of an earlier attempt are moved away
         assert result.returncode == 0 and (folder / name).is_file()
 
 

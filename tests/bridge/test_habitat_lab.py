@@ -25,10 +25,10 @@ PROGRAM = Path(__file__).parent / "real" / "lab_agent.py"
 @pytest.fixture(scope="module")
 def lab():
     """Return a Python with habitat-lab."""
-    found = Path(os.environ.get("MITIGATE_PYTHONS", "")) / "lab" / "bin" / "python"
-    if "MITIGATE_PYTHONS" not in os.environ or not found.is_file():
+    matches = Path(os.environ.get("MITIGATE_PYTHONS", "")) / "lab" / "bin" / "python"
+    if "MITIGATE_PYTHONS" not in os.environ or not matches.is_file():
         pytest.skip("no environment with habitat-lab: tools/pythons.sh makes one")
-    return str(found)
+    return str(matches)
 
 
 @pytest.fixture(scope="module")
@@ -63,8 +63,10 @@ def test_hook_corrupts_and_measures_a_lab_task(lab, episodes, tmp_path):
     assert len(reports.ends) == 10 and not reports.dropped
     assert reports.cameras[1]["max_depth"] == 10.0 and reports.cameras[1]["normalize_depth"] is True
     label = {"agent": "a", "name": "n", "split": "s", "seed": 0}
-    own = [r for r in rows(reports, Corruption("low_light", 0.6), label, None) if r["rule"] == OWN]
-    for row, end in zip(own, reports.ends.values(), strict=True):
+    own_rows = [
+        r for r in rows(reports, Corruption("low_light", 0.6), label, None) if r["rule"] == OWN
+    ]
+    for row, end in zip(own_rows, reports.ends.values(), strict=True):
         metrics = end["metrics"]
         assert row["success"] == metrics["success"] and row["spl"] == metrics["spl"]
         assert end["distance"] == pytest.approx(metrics["distance_to_goal"], abs=1e-5)

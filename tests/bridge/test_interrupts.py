@@ -136,7 +136,7 @@ def test_fork_does_not_end_the_episode_of_its_parent(tmp_path):
     assert not reports.repeated and not reports.problems
 
 
-def test_fork_stops_if_it_continues_the_episode_of_its_parent(tmp_path):
+def test_fork_stops_if_it_continues_its_parents_episode(tmp_path):
     _, reports = run_loop(tmp_path, FORK.replace("CHILD", "env.step(1)"))
     assert (
         len(reports.problems) == 1 and "Reset the environment in the process" in reports.problems[0]
@@ -201,23 +201,23 @@ def test_server_drops_the_episode_of_a_dead_worker(tmp_path):
 
 def test_server_ends_if_its_answer_is_not_received(tmp_path, monkeypatch):
     """The other side closed before the answer was sent."""
-    made = Peer(tmp_path)
+    output = Peer(tmp_path)
     for message in (HELLO, SPEC, EPISODE, {"kind": "frame", "call": 0}):
-        assert "error" not in made.ask(message)
+        assert "error" not in output.ask(message)
 
     def broken(*_):
         raise BrokenPipeError
 
     monkeypatch.setattr(connection, "send", broken)
-    mitigate_hook.send(made.channel, {"kind": "frame", "call": 1})
-    made.thread.join(5.0)
+    mitigate_hook.send(output.channel, {"kind": "frame", "call": 1})
+    output.thread.join(5.0)
     reports = read(tmp_path)
     assert reports.lost == ["a/1"] and reports.connected == 0
-    made.close()
+    output.close()
 
 
 def test_answer_repeats_the_number_of_its_message(tmp_path):
-    made = Peer(tmp_path)
-    assert made.ask(HELLO | {"number": 7}) == {"number": 7}
-    assert made.ask({"kind": "dataset", "keys": [], "number": 8}) == {"keep": None, "number": 8}
-    made.close()
+    output = Peer(tmp_path)
+    assert output.ask(HELLO | {"number": 7}) == {"number": 7}
+    assert output.ask({"kind": "dataset", "keys": [], "number": 8}) == {"keep": None, "number": 8}
+    output.close()

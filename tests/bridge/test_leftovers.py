@@ -64,14 +64,14 @@ def sleeper(tmp_path):
 
 def running(folder):
     """Return the processes whose command line names the program in ``folder``."""
-    found = []
+    matches = []
     for entry in Path("/proc").glob("[0-9]*"):
         with suppress(OSError):
             words = (entry / "cmdline").read_bytes().split(b"\0")
             named = str(folder / "nav.py").encode() in words
             if named and b"--" not in words and SUPERVISOR not in words:
-                found.append(int(entry.name))
-    return [pid for pid in found if pid != os.getpid()]
+                matches.append(int(entry.name))
+    return [pid for pid in matches if pid != os.getpid()]
 
 
 @pytest.mark.parametrize("how", DETACHED)
@@ -103,7 +103,7 @@ def test_run_fails_if_fewer_episodes_end_than_wanted_returned(run, tmp_path):
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGKILL])
-def test_run_leaves_no_process_behind_when_a_signal_ends_it(sleeper, tmp_path, number):
+def test_run_leaves_no_process_after_a_signal(sleeper, tmp_path, number):
     command = sleeper("setsid").split()
     (tmp_path / "nav.py").write_text((tmp_path / "nav.py").read_text() + "time.sleep(60)\n")
     out = tmp_path / "o"

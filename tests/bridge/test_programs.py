@@ -34,8 +34,8 @@ def test_wmnav_is_corrupted_and_measured_without_a_lab(tmp_path):
     assert sorted(reports.ends) == ["x0/0", "x0/1", "x1/2"]
     label = {"agent": "a", "name": "wmnav", "split": "s", "seed": 0}
     result_rows = rows(reports, Corruption("low_light", 0.6), label, None)
-    own = [row for row in result_rows if row["rule"] == OWN]
-    assert [(row["success"], row["spl"]) for row in own] == [(1.0, 0.75)] * 3
+    own_rows = [row for row in result_rows if row["rule"] == OWN]
+    assert [(row["success"], row["spl"]) for row in own_rows] == [(1.0, 0.75)] * 3
     common = {row["rule"] for row in result_rows} - {OWN}
     assert common == {str(RULES["wmnav"])}  # its goals are categories, passed as words
 

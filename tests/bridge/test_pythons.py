@@ -1,7 +1,7 @@
 """The hook under the Python versions that agents use.
 
-``tools/pythons.sh FOLDER`` makes an environment with numpy of each that is installed; the tests
-find them by the variable ``MITIGATE_PYTHONS`` (CI sets it). Without it they are skipped.
+``tools/pythons.sh FOLDER`` makes an environment with numpy for each installed version; the tests
+find them through the variable ``MITIGATE_PYTHONS`` (CI sets it). Without it they are skipped.
 """
 
 import os
@@ -22,7 +22,7 @@ HOOK = Path("mitigate/bridge/hook").resolve()
 
 @pytest.fixture(params=VERSIONS)
 def python(request):
-    """The interpreter of a version."""
+    """Return the interpreter of a version."""
     folder = os.environ.get("MITIGATE_PYTHONS")
     if folder is None:
         pytest.skip("MITIGATE_PYTHONS is not set: tools/pythons.sh makes what it names")

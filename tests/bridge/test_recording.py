@@ -43,29 +43,29 @@ def test_recorder_writes_clean_frames_poses_actions_and_measures(command, tmp_pa
 
 @pytest.mark.parametrize("name", ["../../etc/passwd", "..", "a/b", "", "x\n.y"])
 def test_path_part_stays_in_the_folder(name):
-    made = path_part(name)
-    assert made and "/" not in made and not made.startswith(".") and "\n" not in made
+    output = path_part(name)
+    assert output and "/" not in output and not output.startswith(".") and "\n" not in output
 
 
 def test_unique_part_distinguishes_similar_names():
     names = ["left-door", "left door", "left/door", "日本", "中国", "-", ".x", "x", "", "a" * 400]
     names.append("a" * 399)
-    made = [unique_part(name) for name in names]
-    assert len({*made}) == len(names) and max(map(len, made)) < 200
-    assert made[0] == "left-door" and made[1].startswith("left-door-") and made[7] == "x"
-    assert all("/" not in name and not name.startswith(".") for name in made)
+    output = [unique_part(name) for name in names]
+    assert len({*output}) == len(names) and max(map(len, output)) < 200
+    assert output[0] == "left-door" and output[1].startswith("left-door-") and output[7] == "x"
+    assert all("/" not in name and not name.startswith(".") for name in output)
 
 
 def test_recorder_writes_the_cameras_of_all_calls(tmp_path):
     recorder, memory = Recorder(tmp_path), bytearray(4096)
     recorder.episode({"scene": "k.glb", "id": "left door"})
-    for call, told in enumerate(
+    for call, description in enumerate(
         [
             {"name": "rgb", "type": "rgb", "shape": [4, 4, 3], "dtype": "uint8"},
             {"name": "depth", "type": "depth", "shape": [4, 4, 1], "dtype": "float32"},
         ]
     ):
-        rig = Rig([told])
+        rig = Rig([description])
         recorder.frame({"call": call}, rig, memory, rig.lay_out(["rgb", "depth"])[0])
     recorder.end({"kind": "end"})
     (file,) = tmp_path.glob("k/left-door-*/cameras.json")
@@ -73,9 +73,9 @@ def test_recorder_writes_the_cameras_of_all_calls(tmp_path):
 
 
 def test_png_holds_millimetres_and_holes():
-    told = {"name": "depth", "type": "depth", "shape": [2, 2, 1], "dtype": "float32"}
-    told |= {"min_depth": 0.5, "max_depth": 5.0, "normalize_depth": True}
-    camera = read_camera(told, DepthSensor())
+    description = {"name": "depth", "type": "depth", "shape": [2, 2, 1], "dtype": "float32"}
+    description |= {"min_depth": 0.5, "max_depth": 5.0, "normalize_depth": True}
+    camera = read_camera(description, DepthSensor())
     frame = np.array([[0.0, 1.0], [0.5, np.nan]], np.float32)[:, :, None]
     counts = cv2.imdecode(np.frombuffer(png(camera, frame), np.uint8), cv2.IMREAD_UNCHANGED)
     assert counts.tolist() == [[0, 5000], [2750, 0]]
@@ -102,10 +102,10 @@ def test_run_deletes_drafts_of_ended_processes(run, tmp_path):
 
 def test_recorder_keeps_a_recording_until_the_next_end(tmp_path):
     """Habitat loops reset once more after the last episode, to the first episode."""
-    recorder, told = Recorder(tmp_path), {"scene": "k.glb", "id": "1"}
-    recorder.episode(told)
+    recorder, description = Recorder(tmp_path), {"scene": "k.glb", "id": "1"}
+    recorder.episode(description)
     recorder.end({"kind": "end", "steps": 3})
-    recorder.episode(told)
+    recorder.episode(description)
     assert is_whole(tmp_path, [{"scene": "k.glb", "episode": "1"}])
     recorder.end({"kind": "end", "steps": 4})
     assert json.loads((tmp_path / "k" / "1" / "end.json").read_text())["steps"] == 4
@@ -117,9 +117,9 @@ TOLD = {"scene": "k.glb", "id": "1"}
 
 @pytest.mark.parametrize("inner", ["r", "r/clean", "r/clean/k", "r/clean/k/1"])
 def test_recorder_deletes_nothing_behind_a_link(tmp_path, inner):
-    kept = tmp_path / "v" / Path("r/clean/k/1").relative_to(inner) / "keep.txt"
-    kept.parent.mkdir(parents=True)
-    kept.write_text("mine")
+    remaining = tmp_path / "v" / Path("r/clean/k/1").relative_to(inner) / "keep.txt"
+    remaining.parent.mkdir(parents=True)
+    remaining.write_text("mine")
     link = tmp_path / inner
     link.parent.mkdir(parents=True, exist_ok=True)
     link.symlink_to(tmp_path / "v")
@@ -133,20 +133,20 @@ def test_recorder_deletes_nothing_behind_a_link(tmp_path, inner):
         recorder.episode(TOLD)
         recorder.end({"kind": "end"})
     recorder.leave()
-    assert kept.read_text() == "mine" and len(list((tmp_path / "v").rglob("*.*"))) == 1
+    assert remaining.read_text() == "mine" and len(list((tmp_path / "v").rglob("*.*"))) == 1
 
 
 @pytest.mark.parametrize("plant", [lambda path: path.symlink_to("../../v"), os.mkfifo])
-def test_run_rejects_a_link_or_a_fifo_in_its_recording(run, tmp_path, plant):
-    kept = tmp_path / "v" / "0" / "keep.txt"
-    kept.parent.mkdir(parents=True)
-    kept.write_text("mine")
+def test_run_rejects_link_or_fifo_in_recording(run, tmp_path, plant):
+    remaining = tmp_path / "v" / "0" / "keep.txt"
+    remaining.parent.mkdir(parents=True)
+    remaining.write_text("mine")
     scene = tmp_path / "r" / "clean" / "s0"
     scene.parent.mkdir(parents=True)
     plant(scene)
     options = f"conditions=[clean] record={tmp_path / 'r'}"
     assert "s0 must be a folder, got a " in run(tmp_path / "out", options).stderr
-    assert kept.read_text() == "mine" and len(list((tmp_path / "v").rglob("*"))) == 2
+    assert remaining.read_text() == "mine" and len(list((tmp_path / "v").rglob("*"))) == 2
 
 
 @pytest.mark.parametrize("kind", ["unfinished", "finished"])

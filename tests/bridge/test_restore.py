@@ -25,29 +25,29 @@ FILTERS = "tests.guards.filters"
 @pytest.fixture
 def restorer():
     """A restorer that changes every frame: twice the brightness or depth."""
-    made = Restorer(width=4, depth_width=4).eval()
+    model = Restorer(width=4, depth_width=4).eval()
     with torch.no_grad():
-        for sensor, net in made.parts().items():
+        for sensor, net in model.parts().items():
             channels = 3 if sensor == RGB else 1
             net.threshold.fill_(-1e9)
             bias = net.net.head.bias.view(-1, 4)
             bias[:channels], bias[2 * channels] = np.log(2.0), -100.0
-    return made
+    return model
 
 
 def camera(name, kind=RGB, yaw=0.0, **more):
     shape, dtype = ([16, 16, 3], "uint8") if kind == RGB else ([16, 16, 1], "float32")
-    told = {"name": name, "type": kind, "shape": shape, "dtype": dtype, "hfov": 90}
-    return {**told, "orientation": [0.0, np.radians(yaw), 0.0], **more}
+    description = {"name": name, "type": kind, "shape": shape, "dtype": dtype, "hfov": 90}
+    return {**description, "orientation": [0.0, np.radians(yaw), 0.0], **more}
 
 
 def filled(rig, value):
     offsets, size = rig.lay_out([RGB, DEPTH])
     memory = bytearray(size)
-    for shown in rig.cameras:
-        frame = np.full(shown.shape, value[shown.kind], shown.dtype)
-        at = offsets[shown.name]
-        memory[at : at + shown.bytes] = frame.tobytes()
+    for observed in rig.cameras:
+        frame = np.full(observed.shape, value[observed.kind], observed.dtype)
+        at = offsets[observed.name]
+        memory[at : at + observed.bytes] = frame.tobytes()
     return memory, offsets
 
 
@@ -57,10 +57,10 @@ def test_guard_restores_frames_in_place(restorer):
     rig = Rig([*ring, camera("front", yaw=7.0), camera("depth", DEPTH, **far)])
     memory, offsets = filled(rig, {RGB: 60, DEPTH: 0.04})
     changed = rig.guard(memory, offsets, Guards([restorer]))
-    assert sorted(changed) == sorted(shown.name for shown in rig.cameras)
-    for shown in rig.cameras:
-        frame = shown.read(memory, offsets)
-        assert frame.mean() == pytest.approx(120 if shown.kind == RGB else 0.08, rel=0.03)
+    assert sorted(changed) == sorted(observed.name for observed in rig.cameras)
+    for observed in rig.cameras:
+        frame = observed.read(memory, offsets)
+        assert frame.mean() == pytest.approx(120 if observed.kind == RGB else 0.08, rel=0.03)
 
 
 def test_guard_leaves_clean_frames_unchanged(restorer):
@@ -79,8 +79,8 @@ def test_hook_restores_frames_of_the_clean_condition(command, restorer):
     plain, restored = (result.seen() for result in results)
     assert plain.keys() == restored.keys()
     for look, entry in plain.items():
-        shown = entry["frames"]
-        assert any(restored[look]["frames"][name] != digest for name, digest in shown.items())
+        observed = entry["frames"]
+        assert any(restored[look]["frames"][name] != digest for name, digest in observed.items())
 
 
 def test_run_rejects_a_restorer_without_a_camera(run, tmp_path):
@@ -120,13 +120,15 @@ def test_guard_gets_rgb_and_depth_of_one_view_together():
     assert sorted(rig.guard(memory, offsets, Notes())) == ["depth", "other"]
     both, colour, depth = {RGB: (16, 16, 3), DEPTH: (16, 16, 1)}, (16, 16, 3), (16, 16, 1)
     assert sorted(seen, key=len) == [{RGB: colour}, {DEPTH: depth}, both]
-    depths = [shown.read(memory, offsets).mean() for shown in rig.cameras if shown.kind == DEPTH]
+    depths = [
+        observed.read(memory, offsets).mean() for observed in rig.cameras if observed.kind == DEPTH
+    ]
     assert depths == pytest.approx([0.5, 0.5])
     not_level = [camera("rgb", orientation=[0.3, 0.0, 0.0]), camera("depth", DEPTH)]
     seen.clear()
     rig = Rig(not_level)
     rig.guard(*filled(rig, {RGB: 60, DEPTH: 0.25}), Notes())
-    assert [len(shown) for shown in seen] == [1, 1]
+    assert [len(observed) for observed in seen] == [1, 1]
 
 
 def test_hook_gives_the_frames_of_a_callable(command):
@@ -146,8 +148,8 @@ def test_callable_changes_the_agent_in_rows(run, tmp_path):
     for number, choice in enumerate(("null", f"{FILTERS}:median", f"{FILTERS}:median@2")):
         ended = run(tmp_path / str(number), f"{options} restore={choice}")
         assert ended.returncode == 0, ended.stdout + ended.stderr
-        found = rows.read(tmp_path / str(number) / "rows.jsonl")
-        agents |= {row["name"]: row["agent"] for row in found}
+        records = rows.read(tmp_path / str(number) / "rows.jsonl")
+        agents |= {row["name"]: row["agent"] for row in records}
     assert [*agents] == ["stand", "stand+filters.median", "stand+filters.median@2"]
     assert len(set(agents.values())) == 3
     again = run(tmp_path / "1", f"{options} restore={FILTERS}:median")

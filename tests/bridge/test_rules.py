@@ -79,7 +79,7 @@ def test_run_rejects_a_rule_that_judges_only_some_episodes(run, tmp_path, first)
     file = tmp_path / "nav.py"
     known = "stopped=True if name == 'a' or 'clean' in __import__('sys').argv else None"
     file.write_text(LOOP % f"episode.finish(success=True, distance_to_goal=0.05, {known})")
-    for options in (first, "rule=objectnav"):  # not measured, and measured without the rule
+    for options in (first, "rule=objectnav"):  # not measured, or measured without the rule
         options = f"conditions=[spatter] {options}"
         result = run(tmp_path / "o", options, f"{sys.executable} {file} {{condition}}")
     assert (
@@ -88,13 +88,13 @@ def test_run_rejects_a_rule_that_judges_only_some_episodes(run, tmp_path, first)
     assert "1 of 2 episodes did not report. Pass finish(stopped=...)" in result.stderr
 
 
-def test_rows_leave_out_a_common_rule_that_judges_only_some_episodes(tmp_path):
+def test_rows_omit_common_rule_without_all_episodes(tmp_path):
     known = "distance_to_goal=0.05 if name == 'a' else None"
     judged, _, _ = judge(tmp_path, f"episode.finish(success=True, {known})", None)
     assert list(judged) == [OWN]
 
 
-def test_rows_judge_failures_without_a_distance_if_clean_reports_one(tmp_path):
+def test_rows_judge_failures_if_clean_reports_distance(tmp_path):
     _, clean, _ = judge(tmp_path / "c", "episode.finish(success=True, distance_to_goal=1)", None)
     _, reports, _ = judge(tmp_path / "t", "episode.finish(success=False)", None)
     common = str(COMMON["words"])
@@ -147,7 +147,7 @@ def test_run_warns_about_depth_and_missing_paths(run, tmp_path):
 def test_run_rejects_a_rule_without_distances(run, tmp_path, rule):
     file, out = tmp_path / "nav.py", tmp_path / "o"
     file.write_text(LOOP % "episode.finish(success=True)")
-    for before in ("", "conditions=[clean]"):  # not measured, and measured without the rule
+    for before in ("", "conditions=[clean]"):  # not measured, or measured without the rule
         if before:
             assert run(out, before, f"{sys.executable} {file}").returncode == 0
         result = run(out, f"conditions=[clean] rule={rule}", f"{sys.executable} {file}")

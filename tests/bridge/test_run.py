@@ -39,13 +39,15 @@ def test_run_is_a_command(tmp_path):
 def test_run_measures_a_program_and_resumes(run, tmp_path):
     first = run(tmp_path / "o", "corruption=spatter name=stand split=toy")
     assert first.returncode == 0, first.stdout + first.stderr
-    found = rows.read(tmp_path / "o" / "rows.jsonl")
-    assert len(found) == 2 * 4 * 2  # conditions x episodes x rules
-    own = [row for row in found if row["rule"].startswith("own")]
-    assert {row["corruption"] for row in own} == {"clean", "spatter"}
-    assert {row["episode_id"] for row in own} == {"s0/0", "s0/2", "s1/1", "s1/3"}
-    assert sum(row["success"] for row in own) == 4
-    assert {row["name"] for row in own} == {"stand"} and {row["split"] for row in own} == {"toy"}
+    records = rows.read(tmp_path / "o" / "rows.jsonl")
+    assert len(records) == 2 * 4 * 2  # conditions x episodes x rules
+    own_rows = [row for row in records if row["rule"].startswith("own")]
+    assert {row["corruption"] for row in own_rows} == {"clean", "spatter"}
+    assert {row["episode_id"] for row in own_rows} == {"s0/0", "s0/2", "s1/1", "s1/3"}
+    assert sum(row["success"] for row in own_rows) == 4
+    assert {row["name"] for row in own_rows} == {"stand"} and {
+        row["split"] for row in own_rows
+    } == {"toy"}
     assert "PRS-SR (RGB)" in (tmp_path / "o" / "table.md").read_text()
     again = run(tmp_path / "o", "conditions=[spatter,flare] name=stand split=toy")
     assert "clean: done before" in again.stdout and "spatter-s0.6: done before" in again.stdout
@@ -59,9 +61,9 @@ def test_run_chooses_equal_episodes_in_every_condition(run, tmp_path):
         tmp_path / "o", "corruption=spatter episodes=5", f"{AGENT} --episodes 24 --workers 2"
     )
     assert result.returncode == 0, result.stdout + result.stderr
-    found = rows.read(tmp_path / "o" / "rows.jsonl")
+    records = rows.read(tmp_path / "o" / "rows.jsonl")
     by = {}
-    for row in found:
+    for row in records:
         by.setdefault(row["corruption"], set()).add(row["episode_id"])
     assert by["clean"] == by["spatter"] and 4 <= len(by["clean"]) <= 6
     assert json.loads((tmp_path / "o" / "episodes.json").read_text())["of"] == 24
@@ -93,8 +95,8 @@ def test_run_skips_conditions_that_do_not_apply(run, tmp_path):
     assert "multipath-s0.6: not applicable, the agent has no depth camera" in result.stdout
     assert "mask-s0.6: not applicable, the program passes no instruction" in result.stdout
     assert "white_box-s0.6: not applicable" in result.stdout
-    found = rows.read(tmp_path / "o" / "rows.jsonl")
-    assert {row["corruption"] for row in found} == {"clean", "spatter"} and len(found) == 4
+    records = rows.read(tmp_path / "o" / "rows.jsonl")
+    assert {row["corruption"] for row in records} == {"clean", "spatter"} and len(records) == 4
 
 
 @pytest.mark.parametrize(
@@ -144,8 +146,8 @@ def test_run_ends_a_command_when_interrupted_at_its_start(run, tmp_path, monkeyp
     started = []
 
     class Interrupted(subprocess.Popen):
-        def __init__(self, *given, **options):
-            super().__init__(*given, **options)
+        def __init__(self, *arguments, **options):
+            super().__init__(*arguments, **options)
             started.append(self)
             os.kill(os.getpid(), signal.SIGINT)
 
@@ -169,9 +171,9 @@ def test_run_accepts_separate_calls_for_rgb_and_depth(run, tmp_path):
     out = tmp_path / "o"
     result = run(out, "conditions=[low_light,missing_data]", f"{sys.executable} {program}")
     assert result.returncode == 0 and "not applicable" not in result.stdout, result.stderr
-    shown = [(out / f"conditions/{n}-s0.6/output.txt").read_text()
+    printed = [(out / f"conditions/{n}-s0.6/output.txt").read_text()
              for n in ("low_light", "missing_data")]  # fmt: skip
-    assert shown == ["True False\n" * 2, "False True\n" * 2]
+    assert printed == ["True False\n" * 2, "False True\n" * 2]
     assert (out / "conditions/clean/events.jsonl").read_text().count('"spec"') == 2
 
 
@@ -194,7 +196,7 @@ def test_run_chooses_episodes_again_after_a_failed_run(run, tmp_path, monkeypatc
     assert json.loads((out / "episodes.json").read_text())["of"] == 90
 
 
-def test_run_does_not_finish_a_condition_that_lost_an_episode(run, tmp_path):
+def test_run_does_not_finish_condition_that_lost_an_episode(run, tmp_path):
     """The command ends with status 0, but one of its workers was killed."""
     out = tmp_path / "o"
     result = run(out, "conditions=[clean]", f"{AGENT} --workers 4 --die-at 1 --die-worker 2")
@@ -205,8 +207,8 @@ def test_run_does_not_finish_a_condition_that_lost_an_episode(run, tmp_path):
 def test_run_rejects_the_folder_of_a_running_run(run, tmp_path):
     folder = tmp_path / "o" / "conditions" / "clean"
     folder.mkdir(parents=True)
-    with open(folder / "lock", "w") as held:
-        fcntl.flock(held, fcntl.LOCK_EX)
+    with open(folder / "lock", "w") as handle:
+        fcntl.flock(handle, fcntl.LOCK_EX)
         result = run(tmp_path / "o", "conditions=[clean]")
     assert result.returncode == 1 and "Another run is at work in" in result.stderr
 
@@ -257,10 +259,10 @@ def test_run_leaves_nothing_behind_when_terminated(tmp_path):
 def test_run_skips_instruction_conditions_without_a_tokenizer(run, tmp_path):
     result = run(tmp_path / "o", "conditions=[capitalize,low_light,mask]", f"{AGENT} --tokens")
     assert result.returncode == 1 and "Without a tokenizer" in result.stderr
-    refused, begun = (
+    refused, started = (
         result.stdout.index(text) for text in ("capitalize-s0.6, mask", "low_light-s0.6: s")
     )
-    assert refused < begun and not (tmp_path / "o/conditions/mask-s0.6").exists()
+    assert refused < started and not (tmp_path / "o/conditions/mask-s0.6").exists()
     measured = {row["corruption"] for row in rows.read(tmp_path / "o" / "rows.jsonl")}
     assert measured == {"clean", "low_light"}
 
@@ -279,8 +281,8 @@ def test_select_applicable_counts_instructions_in_other_languages(tmp_path, caps
         for met in (CLEAN, Corruption("mask", 0.6))
     ]
     assert run_module._select_applicable(cells) == (cells[1:], [])
-    said = "run: instructions in other languages passed through unchanged: 2 in hi-IN\n"
-    assert capsys.readouterr().out == said
+    message = "run: instructions in other languages passed through unchanged: 2 in hi-IN\n"
+    assert capsys.readouterr().out == message
     assert run_module._select_applicable(cells[:1]) == ([], []) and not capsys.readouterr().out
 
 
@@ -293,8 +295,8 @@ def test_hook_runs_the_sitecustomize_that_it_hides(run, tmp_path):
 
 
 def test_help_explains_every_option():
-    shown = options_text("run")
-    assert shown.count("\n") > 20 and "tokenizer: null  # for agents" in shown
+    printed = options_text("run")
+    assert printed.count("\n") > 20 and "tokenizer: null  # for agents" in printed
 
 
 def test_split_command_separates_options_and_command():
@@ -343,15 +345,15 @@ def test_run_says_how_to_resume_after_a_signal(tmp_path):
         if events.is_file():
             break
         time.sleep(0.05)
-    for _ in range(10):  # Python drops one that comes in the middle of a fork: it is pressed again
+    for _ in range(10):  # Python drops a signal that arrives during a fork: send it again
         process.send_signal(signal.SIGINT)
         try:
-            said = process.communicate(timeout=4)[1]
+            printed = process.communicate(timeout=4)[1]
             break
         except subprocess.TimeoutExpired:
             continue
-    assert process.returncode == 130 and "SIGINT: stopped. To resume: " in said
-    assert f"suite=clean -- {shlex.join(agent)}" in said
+    assert process.returncode == 130 and "SIGINT: stopped. To resume: " in printed
+    assert f"suite=clean -- {shlex.join(agent)}" in printed
 
 
 def test_run_lists_the_launchers():

@@ -85,10 +85,10 @@ episode = mitigate_hook.connect("a")
     ],
 )  # fmt: skip
 def test_habitat_sim_corrupts_the_acting_agent_once(tmp_path, call, acting, goal):
-    shown = f"seen{acting}[..., :3].mean()" if acting else "0"
+    displayed = f"seen{acting}[..., :3].mean()" if acting else "0"
     other = f"seen{goal}[0, 0, 0]" if goal else "130"
     process, _ = run_loop(
-        tmp_path, f"{SIM}seen = {call}\nprint({shown}, {other})", condition("low_light")
+        tmp_path, f"{SIM}seen = {call}\nprint({displayed}, {other})", condition("low_light")
     )
     mean, clean = map(float, process.stdout.split())
     assert clean == 130 and (mean == 0 if acting is None else 40 < mean < 110)

@@ -9,11 +9,11 @@ import pytest
 
 from mitigate.cluster.launcher import RayConfig, SlurmConfig
 
-# a worker that dies while it starts is noticed so soon (Ray's own default is a minute)
+# a worker that dies at its start is noticed after this time (Ray's default is a minute)
 HEAD = {
     "num_cpus": 1,
     "include_dashboard": False,
-    # and workers get their share of a busy machine (Ray's own niceness is 15)
+    # and workers get their share of a busy machine (Ray's default niceness is 15)
     "_system_config": {"worker_register_timeout_seconds": 15, "worker_niceness": 0},
 }
 
@@ -45,7 +45,7 @@ def slurm_launcher(tmp_path, monkeypatch):
     pytest.importorskip("submitit", reason="submitit is not installed (the extra cluster)")
     from submitit.core.core import Job
 
-    # where a job that ended left no result: its file system is this machine's, which is never late
+    # a finished job without a result is noticed at once: its file system is local
     monkeypatch.setattr(Job, "_results_timeout_s", 1)
 
     def make(**settings):

@@ -23,8 +23,8 @@ GROUPS = [[(g, i) for i in range(3)] for g in range(6)]
 
 
 class Squares:
-    """Job (g, i) gives 10 g + i, after a while; ``deadly`` jobs kill their process the first time,
-    leaving a note in ``folder``; ``always`` every time."""
+    """Job (g, i) returns 10 g + i after a while; ``deadly`` jobs kill their process the first time
+    and leave a note in ``folder``; ``always`` jobs kill it every time."""
 
     preload: ClassVar[str] = "mitigate.core.workers"
 

@@ -18,7 +18,7 @@ from mitigate.core.signals import Ended, raise_ended
 
 pytestmark = pytest.mark.xdist_group("launchers")  # as tests/cluster/test_launchers.py
 
-# Appends the rows that are missing to a file; with a note's name, it kills its worker after two.
+# Append the missing rows to a file; with the name of a note, kill the worker after two.
 ROWS = """
 import os, pathlib, signal, sys, time
 file, note = map(pathlib.Path, sys.argv[1:])
@@ -43,10 +43,10 @@ def chain(folder: Path, name: str, deadly: bool = False, code: str = ROWS) -> pr
         str(folder / name),
         str(folder / ("died" if deadly else "none")),
     )
-    told = (sys.executable, "-c", "import os; print(os.environ['PYTHON_CPU_COUNT'])")
+    reported = (sys.executable, "-c", "import os; print(os.environ['PYTHON_CPU_COUNT'])")
     return programs.Chain(
         name,
-        (("train", words), ("evaluate", told)),
+        (("train", words), ("evaluate", reported)),
         folder / f"{name}.txt",
         folder,
         {"PYTHON_CPU_COUNT": "1"},
@@ -57,12 +57,12 @@ def run(chains, launcher, jobs=2) -> dict[int, programs.Outcome]:
     """Return the outcome of each chain, each reported once."""
     results: dict[int, programs.Outcome] = {}
 
-    def told(number, outcome):
+    def reported(number, outcome):
         assert number not in results
         results[number] = outcome
 
     with Progress("cells", len(chains), unit="cell") as progress:
-        programs.run(chains, jobs, launcher, progress, told)
+        programs.run(chains, jobs, launcher, progress, reported)
     return results
 
 

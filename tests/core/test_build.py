@@ -1,4 +1,4 @@
-"""What a config makes, and how often."""
+"""Objects built from a config, and how often they are built."""
 
 from __future__ import annotations
 
@@ -35,21 +35,21 @@ CAR = {
 }
 
 
-def test_what_a_maker_makes_shares_nothing_with_what_it_made_before():
-    """As worlds do that are walked in lockstep: each has an environment of its own."""
+def test_maker_results_share_nothing():
+    """Worlds that run in lockstep do the same: each has its own environment."""
     cfg = OmegaConf.create({"doors": 2, "car": CAR})
     make = pickle.loads(pickle.dumps(build.maker(cfg.car)))
     first, second = make(), make()
     assert first.doors == second.doors == 2 and first.engine is not second.engine
 
 
-def test_an_entry_marked_partial_arrives_as_such_a_function():
+def test_partial_entry_becomes_a_function():
     cfg = OmegaConf.create({"doors": 3, "garage": {"_target_": f"{__name__}.Garage", "car": CAR}})
-    made = build.build(cfg.garage, size=2)
-    assert made.cars[0].engine is not made.cars[1].engine and made.cars[1].doors == 3
+    output = build.build(cfg.garage, size=2)
+    assert output.cars[0].engine is not output.cars[1].engine and output.cars[1].doors == 3
 
 
-def test_an_entry_that_is_marked_not_partial_is_made():
+def test_non_partial_entry_is_built():
     engine = {"_target_": f"{__name__}.Engine", "_partial_": False}
     cfg = OmegaConf.create({"_target_": f"{__name__}.Car", "engine": engine})
     assert isinstance(build.build(cfg).engine, Engine)
@@ -63,7 +63,7 @@ def test_build_names_unimportable_targets(target):
 
 
 class Gained(torch.nn.Module):
-    """Settings that no weight shows, one of them without a default."""
+    """Settings that the weights do not contain, one of them without a default."""
 
     def __init__(self, gain: float, width: int = 2) -> None:
         super().__init__()
@@ -73,15 +73,14 @@ class Gained(torch.nn.Module):
 @pytest.mark.parametrize(
     ("overrides", "gain"), [([], -1.0), (["agent=mine"], -1.0), (["agent.gain=2.0"], 2.0)]
 )
-def test_settings_that_lie_beside_the_weights_count_unless_the_command_sets_them(
-    overrides, gain, tmp_path
-):
-    """A config chosen by ``agent=mine`` names the class: its own values are of another agent."""
+def test_settings_of_weights_apply_unless_overridden(overrides, gain, tmp_path):
+    """``agent=mine`` names a class in a config; the values of the config belong to another
+    agent."""
     target = f"{__name__}.Gained"
     checkpoint.save_weights(Gained(-1.0), tmp_path)
-    own = {"agent": {"_target_": target, "gain": -1.0, "width": 2}}
-    (tmp_path / "config.yaml").write_text(yaml.safe_dump(own))
+    settings = {"agent": {"_target_": target, "gain": -1.0, "width": 2}}
+    (tmp_path / "config.yaml").write_text(yaml.safe_dump(settings))
     here = 2.0 if "agent.gain=2.0" in overrides else 1.0
     node = OmegaConf.create({"_target_": target, "gain": here, "width": 2})
-    found = building.settings_of(node, str(tmp_path), overrides)
-    assert building.build_agent(found, weights=str(tmp_path), seed=0).gain == gain
+    matches = building.settings_of(node, str(tmp_path), overrides)
+    assert building.build_agent(matches, weights=str(tmp_path), seed=0).gain == gain

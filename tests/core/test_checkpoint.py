@@ -1,4 +1,4 @@
-"""Checkpoints are whole or refused, rotate, and hold no code."""
+"""Checkpoints are complete or rejected, rotate, and contain no code."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ STATE = {
 }
 
 
-def test_what_is_saved_is_loaded(tmp_path):
+def test_save_and_load_round_trip(tmp_path):
     path = states.save(tmp_path, STATE)
     loaded = states.load(path)
     assert loaded["step"] == 3 and torch.equal(loaded["model"]["w"], STATE["model"]["w"])
@@ -35,7 +35,7 @@ def test_what_is_saved_is_loaded(tmp_path):
     assert names == ["step-00000003.pt", "step-00000003.pt.sha256"]
 
 
-def test_only_the_newest_are_kept(tmp_path):
+def test_save_keeps_only_the_newest(tmp_path):
     for step in (1, 2, 10, 100):
         states.save(tmp_path, {**STATE, "step": step}, keep=2)
     names = [path.name for path in states.checkpoints(tmp_path)]
@@ -44,7 +44,7 @@ def test_only_the_newest_are_kept(tmp_path):
     assert sums == [f"{name}.sha256" for name in names]
 
 
-def test_a_failed_write_leaves_the_old_file(tmp_path):
+def test_failed_write_keeps_the_old_file(tmp_path):
     path = states.save(tmp_path, STATE)
     before = path.read_bytes()
 
@@ -59,7 +59,7 @@ def test_a_failed_write_leaves_the_old_file(tmp_path):
 
 
 @pytest.mark.parametrize("share", [0.0, 0.3, 0.9, 0.99])
-def test_a_truncated_checkpoint_is_named_with_the_older_one(tmp_path, share):
+def test_truncated_checkpoint_is_named_with_the_older_one(tmp_path, share):
     states.save(tmp_path, {**STATE, "step": 1})
     path = states.save(tmp_path, {**STATE, "step": 2})
     os.truncate(path, int(path.stat().st_size * share))
@@ -68,7 +68,7 @@ def test_a_truncated_checkpoint_is_named_with_the_older_one(tmp_path, share):
     assert "resume from step-00000001.pt" in str(error.value) and "\n" not in str(error.value)
 
 
-def test_a_foreign_file_is_named_and_runs_no_code(tmp_path):
+def test_foreign_file_is_named_and_runs_no_code(tmp_path):
     class Evil:
         def __reduce__(self):
             return (os.mkdir, (str(tmp_path / "owned"),))
@@ -84,7 +84,7 @@ def test_a_foreign_file_is_named_and_runs_no_code(tmp_path):
     assert not (tmp_path / "owned").exists()
 
 
-def test_a_missing_checkpoint_is_named(tmp_path):
+def test_missing_checkpoint_is_named(tmp_path):
     with pytest.raises(FileNotFoundError, match="step-7"):
         states.load(tmp_path / "step-7.pt")
 
@@ -135,8 +135,8 @@ def test_floats_of_any_width_are_read(tmp_path, width):
 )
 def test_numbers_of_another_kind_are_refused_by_name(tmp_path, name, kind):
     module = nn.BatchNorm1d(3)
-    held = module.state_dict()
-    save_file({**held, name: held[name].to(kind)}, tmp_path / "model.safetensors")
+    content = module.state_dict()
+    save_file({**content, name: content[name].to(kind)}, tmp_path / "model.safetensors")
     with pytest.raises(ValueError, match=rf"of another shape or type \({name} "):
         checkpoint.load_weights(module, tmp_path)
 
@@ -148,7 +148,7 @@ def test_truncated_weights_are_refused(tmp_path):
         checkpoint.load_weights(nn.Linear(3, 2), tmp_path)
 
 
-def test_weights_that_may_not_be_read_are_not_called_damaged(tmp_path, monkeypatch):
+def test_unreadable_weights_are_not_called_damaged(tmp_path, monkeypatch):
     checkpoint.save_weights(nn.Linear(3, 2), tmp_path)
 
     def refused(path):
@@ -164,13 +164,13 @@ def test_missing_weights_say_what_to_train(tmp_path):
         checkpoint.load_weights(nn.Linear(3, 2), tmp_path)
 
 
-def test_a_part_alone_is_read_from_whole_weights(tmp_path):
+def test_load_reads_one_part_of_whole_weights(tmp_path):
     whole = nn.ModuleDict({"a": nn.Linear(2, 2), "b": nn.Linear(2, 3)})
     file = checkpoint.save_weights(whole, tmp_path)
     part = nn.Linear(2, 3)
     checkpoint.load_part(part, "b", tmp_path)
     assert torch.equal(part.weight, whole["b"].weight)
-    smaller = nn.Linear(2, 3, bias=False)  # what it lacks is left out
+    smaller = nn.Linear(2, 3, bias=False)  # missing entries are left out
     checkpoint.load_part(smaller, "b", tmp_path)
     assert torch.equal(smaller.weight, whole["b"].weight)
     with pytest.raises(ValueError, match="no part 'c'"):
@@ -190,7 +190,7 @@ def test_weights_that_are_no_numbers_are_refused(tmp_path, value):
     assert checkpoint.not_finite(torch.nn.Linear(2, 2)) == []
 
 
-def test_a_mask_of_infinity_is_no_damage(tmp_path):
+def test_infinite_mask_is_not_damage(tmp_path):
     module = torch.nn.Linear(2, 2)
     module.register_buffer("mask", torch.full((2, 2), -float("inf")))
     checkpoint.load_weights(module, checkpoint.save_weights(module, tmp_path))
@@ -198,13 +198,13 @@ def test_a_mask_of_infinity_is_no_damage(tmp_path):
     assert checkpoint.not_finite(module) == ["mask"]
 
 
-def test_a_full_disk_is_named_and_leaves_what_was_there(tmp_path):
-    made = torch.nn.Linear(2, 2)
-    before = checkpoint.save_weights(made, tmp_path).read_bytes()
+def test_full_disk_is_named_and_files_stay(tmp_path):
+    model = torch.nn.Linear(2, 2)
+    before = checkpoint.save_weights(model, tmp_path).read_bytes()
     limit = resource.getrlimit(resource.RLIMIT_FSIZE)
     before_signal = signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
     state = {k: {} for k in states.REQUIRED} | {"step": 1, "model": {"w": torch.zeros(99999)}}
-    resource.setrlimit(resource.RLIMIT_FSIZE, (20_000, limit[1]))  # as a disk that fills up
+    resource.setrlimit(resource.RLIMIT_FSIZE, (20_000, limit[1]))  # like a disk that fills up
     try:
         with pytest.raises(OSError, match="could not be written|too large"):
             states.save(tmp_path, state)

@@ -1,4 +1,4 @@
-"""The sha256 beside a training's state, beside a file of weights and in folders of before."""
+"""The sha256 of a training's state, of a file of weights and of older folders."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ STATE = {
 
 
 class Killed(BaseException):
-    """What a kill looks like from inside: nothing after it runs but ``finally``."""
+    """Simulate a kill: after it only ``finally`` runs."""
 
 
 def state(step: int) -> dict:
@@ -33,14 +33,14 @@ def state(step: int) -> dict:
 
 
 def flipped(data: bytes, bit: int) -> bytes:
-    """``data`` with one other bit."""
+    """Return ``data`` with one flipped bit."""
     changed = bytearray(data)
     changed[bit // 8] ^= 1 << bit % 8
     return bytes(changed)
 
 
 def flips(data: bytes, name: str) -> list[bytes]:
-    """``data`` with one flipped bit, at ``FLIPS`` places drawn for ``name``."""
+    """Return ``data`` with one flipped bit, at ``FLIPS`` places that depend on ``name``."""
     places = seeding.generator(0, "flipped bits", name).integers(0, 8 * len(data), FLIPS)
     return [flipped(data, int(bit)) for bit in places]
 
@@ -50,38 +50,38 @@ def note_of(path: Path) -> Path:
 
 
 def checked(folder: Path) -> int:
-    """The exit status of ``sha256sum -c`` over all sidecars in ``folder``."""
+    """Return the exit status of ``sha256sum -c`` over all sidecars in ``folder``."""
     names = sorted(path.name for path in folder.glob("*.sha256"))
     assert names
     command = ["sha256sum", "--strict", "--status", "-c", *names]
     return subprocess.run(command, cwd=folder).returncode
 
 
-def test_every_flipped_bit_of_a_checkpoint_is_found(tmp_path):
+def test_checkpoint_detects_every_flipped_bit(tmp_path):
     states.save(tmp_path, state(1))
     path = states.save(tmp_path, state(2))
     for changed in flips(path.read_bytes(), "step"):
         path.write_bytes(changed)
         with pytest.raises(states.Damaged, match="step-00000002.pt"):
             states.load(path)
-        newest, found = states.load_newest(tmp_path)
-        assert newest.name == "step-00000001.pt" and found["step"] == 1
+        newest, loaded = states.load_newest(tmp_path)
+        assert newest.name == "step-00000001.pt" and loaded["step"] == 1
 
 
 def test_load_detects_flipped_bits_without_a_sidecar(tmp_path):
-    """Its zip file holds sums of the contents: a flip outside of them is harmless."""
+    """Its zip file contains checksums of the contents: a flip outside of them is harmless."""
     path = states.save(tmp_path, state(1))
     note_of(path).unlink()
-    wanted, sound, refused = states.load(path), path.read_bytes(), 0
+    expected, sound, refused = states.load(path), path.read_bytes(), 0
     for changed in flips(sound, "no sidecar"):
         path.write_bytes(changed)
         try:
-            found = states.load(path)
+            loaded = states.load(path)
         except states.Damaged:
             refused += 1
             continue
-        assert str(found) == str(wanted)
-        assert torch.equal(found["model"]["w"], wanted["model"]["w"])
+        assert str(loaded) == str(expected)
+        assert torch.equal(loaded["model"]["w"], expected["model"]["w"])
     assert refused > FLIPS / 2
     path.write_bytes(sound)
     at = sound.index(STATE["model"]["w"].numpy().tobytes())
@@ -92,19 +92,19 @@ def test_load_detects_flipped_bits_without_a_sidecar(tmp_path):
 
 @pytest.mark.parametrize("share", [0.0, 0.3, 0.99])
 @pytest.mark.parametrize("noted", [True, False])
-def test_a_truncated_checkpoint_is_passed_over(tmp_path, share, noted, capsys):
+def test_truncated_checkpoint_is_skipped(tmp_path, share, noted, capsys):
     states.save(tmp_path, state(1))
     path = states.save(tmp_path, state(2))
     os.truncate(path, int(path.stat().st_size * share))
     if not noted:
         note_of(path).unlink()
     assert states.load_newest(tmp_path)[0].name == "step-00000001.pt"
-    said = capsys.readouterr().out
-    assert said == f"{path} is damaged; resuming from step-00000001.pt\n"
+    printed = capsys.readouterr().out
+    assert printed == f"{path} is damaged; resuming from step-00000001.pt\n"
 
 
 @pytest.mark.parametrize("text", ["", "\n", "0" * 64, "0" * 64 + "  other\n", "\xff", "x  model"])
-def test_a_damaged_sidecar_is_named_and_may_be_deleted(tmp_path, text):
+def test_damaged_sidecar_is_named_and_may_be_deleted(tmp_path, text):
     file = checkpoint.save_weights(nn.Linear(3, 2), tmp_path / "model.safetensors")
     note_of(file).write_bytes(text.encode("latin-1"))
     with pytest.raises(ValueError, match="only model.safetensors.sha256 is damaged, delete it"):
@@ -113,13 +113,13 @@ def test_a_damaged_sidecar_is_named_and_may_be_deleted(tmp_path, text):
     note_of(path).write_bytes(text.encode("latin-1"))
     with pytest.raises(states.Damaged, match=r"If only their \.sha256 files are damaged"):
         states.load_newest(tmp_path)
-    for kept in (file, path):
-        note_of(kept).unlink()
+    for remaining in (file, path):
+        note_of(remaining).unlink()
     checkpoint.load_weights(nn.Linear(3, 2), tmp_path)
     assert states.load_newest(tmp_path)[1]["step"] == 1
 
 
-def test_if_every_checkpoint_is_damaged_none_is_deleted(tmp_path):
+def test_damaged_checkpoints_are_not_deleted(tmp_path):
     for step in (1, 2):
         path = states.save(tmp_path, state(step))
         path.write_bytes(flipped(path.read_bytes(), 4000))
@@ -138,7 +138,7 @@ def test_sidecars_are_what_sha256sum_checks(tmp_path):
     assert checked(tmp_path) != 0
 
 
-def test_rotation_deletes_sidecars_too_and_those_that_a_kill_left(tmp_path):
+def test_rotation_deletes_sidecars_and_orphans(tmp_path):
     (tmp_path / "step-00000001.pt.sha256").write_text("left by a kill")
     for step in (2, 3, 4, 5):
         states.save(tmp_path, state(step), keep=2)

@@ -1,4 +1,4 @@
-"""Every YAML in conf/ composes, names what exists, and a wrong option is explained."""
+"""Every YAML in conf/ composes and names existing targets, and a wrong option is explained."""
 
 from __future__ import annotations
 
@@ -30,8 +30,8 @@ GROUPS = [path for path in YAMLS if len(path.parts) > 1]
 
 def targets(node) -> list[str]:
     if isinstance(node, dict):
-        own = [node["_target_"]] if "_target_" in node else []
-        return own + [name for value in node.values() for name in targets(value)]
+        own_value = [node["_target_"]] if "_target_" in node else []
+        return own_value + [name for value in node.values() for name in targets(value)]
     return []
 
 
@@ -58,49 +58,49 @@ def composed(path) -> dict:
 
 
 @pytest.mark.parametrize("path", YAMLS, ids=str)
-def test_every_yaml_composes_and_resolves_and_its_targets_can_be_imported(path):
+def test_every_yaml_composes_and_its_targets_import(path):
     assert len(path.parts) == 2 or path.stem in conf.TYPES
-    made = composed(path)
-    assert made
-    for name in targets(made):
+    output = composed(path)
+    assert output
+    for name in targets(output):
         assert callable(get_object(name))
 
 
-def test_load_config_asks_for_the_module_that_registers_the_options():
+def test_load_config_imports_the_module_of_the_options():
     code = "from mitigate.core import conf; conf.load_config('train')"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
     assert "import the module of the command first" in done.stderr
 
 
 @pytest.mark.parametrize("path", YAMLS, ids=str)
-def test_every_yaml_says_what_it_is_for(path):
+def test_every_yaml_states_its_purpose(path):
     assert "# " in (conf.CONF / path).read_text(encoding="utf-8")
 
 
 @pytest.mark.parametrize("path", [p for p in GROUPS if p.parts[0] == "recipe"], ids=str)
-def test_a_recipe_is_named_after_its_file_and_has_stages(path):
+def test_recipe_is_named_after_its_file_and_has_stages(path):
     cfg = conf.load_config("train", [f"recipe={path.stem}"])
     assert cfg.name == path.stem and len(cfg.stages) >= 1
 
 
-def test_the_full_suite_is_clean_and_all_corruptions():
+def test_full_suite_is_clean_and_all_corruptions():
     cfg = conf.load_config("evaluate")
     assert list(cfg.suite.conditions) == ["clean", *NAMES]
 
 
 def test_conditions_take_the_severity_of_their_modality():
-    made = evaluate.conditions(["clean", "flare", "multipath"], 0.9, 0.8)
-    assert [(c.name, c.severity) for c in made] == [
+    records = evaluate.conditions(["clean", "flare", "multipath"], 0.9, 0.8)
+    assert [(c.name, c.severity) for c in records] == [
         ("clean", 0),
         ("flare", 0.9),
         ("multipath", 0.8),
     ]
 
 
-def test_a_severity_out_of_range_is_refused_with_any_condition():
-    for given in ((1.2, None), (0.5, 1.2)):
+def test_severity_out_of_range_is_rejected_with_any_condition():
+    for value in ((1.2, None), (0.5, 1.2)):
         with pytest.raises(ValueError, match="from 0 .clean. to 1 .worst., got 1.2"):
-            evaluate.conditions(["clean"], *given)
+            evaluate.conditions(["clean"], *value)
 
 
 def test_weights_are_named_after_their_folder_or_run():
@@ -116,14 +116,14 @@ def test_weights_are_named_after_their_folder_or_run():
     assert evaluate.name_of("runs/da-s0.6-seed0/agent") == "da-s0.6-seed0"
 
 
-def test_an_unknown_condition_or_split_names_the_nearest():
+def test_unknown_condition_or_split_names_the_nearest():
     with pytest.raises(ValueError, match="Did you mean flare"):
         evaluate.conditions(["flair"], 0.5, None)
     with pytest.raises(ValueError, match="Did you mean val_seen"):
         evaluate.episodes(conf.load_config("evaluate").env, "val_sen", 1)
 
 
-def test_a_few_episodes_come_from_many_layouts_and_count_towards_more():
+def test_few_episodes_come_from_many_layouts():
     env = conf.load_config("evaluate").env
     chosen = {
         count: [e.episode_id for e in evaluate.episodes(env, "val_unseen", count)]
@@ -144,7 +144,7 @@ def test_a_few_episodes_come_from_many_layouts_and_count_towards_more():
         (lambda listed: [replace(listed[0], instruction=Instruction(" "))], "has no instruction"),
     ],
 )
-def test_a_list_that_cannot_be_scored_is_refused(tmp_path, change, text):
+def test_list_without_scores_is_rejected(tmp_path, change, text):
     cfg = conf.load_config("evaluate", [f"+env.episodes.mine={tmp_path / 'mine.json'}"])
     listed = list(read_episodes(cfg.env.episodes.val_seen))[:2]
     write_episodes(tmp_path / "mine.json", change(listed))
@@ -152,13 +152,13 @@ def test_a_list_that_cannot_be_scored_is_refused(tmp_path, change, text):
         evaluate.episodes(cfg.env, "mine", None)
 
 
-def test_the_experiment_harsh_is_the_papers_stronger_setting():
+def test_experiment_harsh_is_the_papers_stronger_setting():
     cfg = conf.load_config("train", ["experiment=harsh"])
     assert (cfg.schedule.severity, cfg.schedule.severity_depth) == (0.9, 0.8)
 
 
 @pytest.mark.parametrize("recipe", ["da_per_frame", "ts_distill", "conv_adapter"])
-def test_the_experiment_broad_draws_what_harden_draws(recipe):
+def test_experiment_broad_draws_what_harden_draws(recipe):
     broad = conf.load_config("train", [f"recipe={recipe}", "experiment=broad"]).schedule
     harden = conf.load_config("train", ["recipe=harden"]).schedule
     assert broad.broad_share == harden.broad_share > 0
@@ -177,9 +177,9 @@ def test_frozen_fits_only_recipes_with_its_stages():
             check([f"recipe={recipe}", "experiment=frozen"])
 
 
-def test_an_evaluation_takes_the_agents_settings_of_the_command_line(monkeypatch, tmp_path):
-    """The weights bring settings of their own; what the command names goes before them, and the
-    table's column says so, because the weights' hash does not."""
+def test_evaluate_takes_agent_settings_from_the_command_line(monkeypatch, tmp_path):
+    """The weights bring their settings; the command line overrides them. The table's column states
+    this, because the hash of the weights does not change."""
     met = {}
 
     def meet(agent, world, episodes, conditions, *, name, out, **others):
@@ -192,8 +192,8 @@ def test_an_evaluation_takes_the_agents_settings_of_the_command_line(monkeypatch
         [],
         ["agent.blind=[rgb]", "agent.planner={fusion: {rate: 4, cap: 3}}", "env.size=32"],
     ):
-        given = ["checkpoint=checkpoints/hardened/ts_distill", f"out={tmp_path}", *options]
-        monkeypatch.setattr(sys, "argv", ["evaluate", *given])
+        arguments = ["checkpoint=checkpoints/hardened/ts_distill", f"out={tmp_path}", *options]
+        monkeypatch.setattr(sys, "argv", ["evaluate", *arguments])
         conf.main(evaluate.hydra_main, "evaluate")
     (plain, agent), (name, changed) = met.items()
     assert plain == "ts_distill" and agent.blind == () and agent.planner.fusion is None
@@ -201,7 +201,7 @@ def test_an_evaluation_takes_the_agents_settings_of_the_command_line(monkeypatch
     assert changed.blind == ("rgb",) and changed.planner.fusion.keywords == {"rate": 4, "cap": 3}
 
 
-def test_options_of_the_agent_and_its_views_are_in_the_name():
+def test_agent_name_holds_its_options_and_views():
     options = ["agent=topological", "++env.size=32", "agent.blind=[rgb]", "split=val_seen"]
     assert evaluate.changed(options) == ["env.size-32", "blind-rgb"]
 
@@ -217,20 +217,20 @@ def test_rows_of_an_edited_episode_list_are_not_resumed(monkeypatch, tmp_path):
     evaluate.run(cfg)
     evaluate.run(cfg)
     seen = conf.load_config("evaluate", ["split=val_seen", f"out={tmp_path}"])
-    evaluate.run(seen)  # another list in one folder is no trouble: rows carry their split
+    evaluate.run(seen)  # another list in the same folder is valid: rows carry their split
     shutil.copy(cfg.env.episodes.val_unseen, mine)
     with pytest.raises(ValueError, match="rows of another"):
         evaluate.run(cfg)
 
 
-def test_what_a_recipe_sets_counts_and_the_command_line_counts_more():
+def test_command_line_overrides_recipe_and_recipe_overrides_defaults():
     encoder = ["recipe=encoder", "agent=encoder"]
     assert conf.load_config("train", encoder).workers == 0
     assert conf.load_config("train", [*encoder, "workers=2"]).workers == 2
     assert conf.load_config("train", ["recipe=harden"]).workers is None
 
 
-def test_an_ablation_blanks_something():
+def test_ablation_blanks_a_sensor():
     for agent in ("topological", "recurrent_rgb", "frontier"):
         cfg = conf.load_config("train", ["recipe=ablation", f"agent={agent}"])
         assert cfg.agent.blind == ["rgb"] and cfg.suite.conditions == ["clean"]
@@ -239,7 +239,7 @@ def test_an_ablation_blanks_something():
 
 
 @pytest.mark.parametrize("count", [0, -1])
-def test_no_episodes_are_refused_before_a_training(count):
+def test_zero_episodes_are_rejected_before_training(count):
     with pytest.raises(ValueError, match=f"episodes must be a whole number .* got {count}"):
         check(["recipe=da_per_episode", f"evaluation.episodes={count}"])
 
@@ -272,7 +272,7 @@ def complaint(monkeypatch, capsys, *options: str) -> str:
         ("init=nowhere", ["nowhere", "make train RECIPE=base"]),
     ],
 )
-def test_a_wrong_option_is_explained_in_one_paragraph(monkeypatch, capsys, option, words):
+def test_wrong_option_is_explained_in_one_paragraph(monkeypatch, capsys, option, words):
     text = complaint(monkeypatch, capsys, option)
     for word in words:
         assert word in text
@@ -288,7 +288,7 @@ def test_a_wrong_option_is_explained_in_one_paragraph(monkeypatch, capsys, optio
         (["stages.imitation=nul"], ["it holds recipe, trainer, cost"]),
     ],
 )
-def test_what_there_is_instead_is_said_of_what_was_chosen(monkeypatch, capsys, options, words):
+def test_error_lists_alternatives_of_the_chosen_group(monkeypatch, capsys, options, words):
     text = complaint(monkeypatch, capsys, *options)
     for word in words:
         assert word in text
@@ -297,11 +297,11 @@ def test_what_there_is_instead_is_said_of_what_was_chosen(monkeypatch, capsys, o
 def test_own_configs_count_for_what_there_is_instead(monkeypatch, capsys, tmp_path):
     (tmp_path / "agent").mkdir()
     (tmp_path / "agent" / "mine.yaml").write_text("_target_: my.Agent\nbreadth: 3\n")
-    given = ("--config-dir", str(tmp_path), "agent=mine", "agent.bredth=4")
-    assert "Did you mean agent.breadth?" in complaint(monkeypatch, capsys, *given)
+    arguments = ("--config-dir", str(tmp_path), "agent=mine", "agent.bredth=4")
+    assert "Did you mean agent.breadth?" in complaint(monkeypatch, capsys, *arguments)
 
 
-def test_a_program_that_another_one_starts_ends_in_a_paragraph_too(monkeypatch, tmp_path, capsys):
+def test_nested_program_ends_in_one_paragraph(monkeypatch, tmp_path, capsys):
     monkeypatch.setattr(sys, "argv", ["sweep"])
     monkeypatch.delenv("HYDRA_FULL_ERROR", raising=False)
     chain = programs.Chain(
@@ -322,41 +322,41 @@ def test_a_program_that_another_one_starts_ends_in_a_paragraph_too(monkeypatch, 
 
 @pytest.mark.parametrize("primary", conf.TYPES)
 def test_help_says_what_every_option_and_group_means(primary):
-    shown, cfg = conf.options_text(primary), conf.load_config(primary)
-    own = {"name", "report", "init", "init_parts", "rollouts"} if primary == "train" else set()
+    printed, cfg = conf.options_text(primary), conf.load_config(primary)
+    settings = {"name", "report", "init", "init_parts", "rollouts"} if primary == "train" else set()
     plain = {name for name in cfg if not isinstance(cfg[name], DictConfig)}  # the recipe sets own
-    assert plain - own <= {line.partition(":")[0] for line in shown.splitlines()}
+    assert plain - settings <= {line.partition(":")[0] for line in printed.splitlines()}
     for group in ("suite", "launcher"):
         if group in cfg:
-            assert f"{group}: " in shown and ", " in shown.partition(f"{group}: ")[2]
+            assert f"{group}: " in printed and ", " in printed.partition(f"{group}: ")[2]
 
 
-def test_what_is_replaced_is_said_once_on_standard_error(monkeypatch, capsys):
+def test_deprecated_option_warns_once_on_stderr(monkeypatch, capsys):
     monkeypatch.setattr(sys, "argv", ["mitigate table1", "+columns.recurrent=[agent=recurrent]"])
     conf.main(lambda: None, "table1")
-    said = capsys.readouterr().err
-    assert said.count("columns.recurrent already exists, and +columns.recurrent= replaces") == 1
+    printed = capsys.readouterr().err
+    assert printed.count("columns.recurrent already exists, and +columns.recurrent= replaces") == 1
 
 
 AGENTS = sorted(path.stem for path in (conf.CONF / "agent").glob("*.yaml"))
 
 
 @pytest.mark.parametrize("name", AGENTS)
-def test_help_of_evaluate_lists_the_agents_that_walk_and_that_of_train_says_who_does_not(name):
+def test_help_lists_agents_per_command(name):
     agent = get_object(conf.load_config("train", [f"agent={name}"]).agent._target_)
-    (shown,) = re.findall(r"^agent: topological  # (.*)$", conf.options_text("evaluate"), re.M)
+    (printed,) = re.findall(r"^agent: topological  # (.*)$", conf.options_text("evaluate"), re.M)
     (training,) = re.findall(r"^agent: topological  # (.*)$", conf.options_text("train"), re.M)
     walking, others = training.split("; cannot run episodes, have their own recipes: ")
     able = hasattr(agent, "reset") and hasattr(agent, "act")
-    assert shown == walking and (name in walking.split(", ")) == able
+    assert printed == walking and (name in walking.split(", ")) == able
     assert (name in others.split(", ")) == (not able)
 
 
 def test_help_needs_no_config_to_compose(monkeypatch, capsys):
     monkeypatch.setattr(sys, "argv", ["mitigate train", "--help", "sevrity=1"])
     train.main()
-    shown = capsys.readouterr().out
-    assert "Train an agent with a recipe" in shown and "severity: 0.6  # " in shown
+    printed = capsys.readouterr().out
+    assert "Train an agent with a recipe" in printed and "severity: 0.6  # " in printed
 
 
 def test_hydras_own_line_goes_before_no_paragraph(monkeypatch, capsys, tmp_path):
@@ -368,17 +368,17 @@ def test_hydras_own_line_goes_before_no_paragraph(monkeypatch, capsys, tmp_path)
     assert "Error executing job" not in capsys.readouterr().err
 
 
-def test_what_an_entry_refers_to_and_is_not_there_is_named():
+def test_missing_reference_of_an_entry_is_named():
     cfg = OmegaConf.create({"first": "${stages.mine.teacher}", "stages": {}})
-    with pytest.raises(OmegaConfBaseException) as found:
+    with pytest.raises(OmegaConfBaseException) as caught:
         OmegaConf.resolve(cfg)
     assert "refers to stages.mine.teacher, which does not exist" in conf.explain(
-        found.value, "train"
+        caught.value, "train"
     )
 
 
 @pytest.mark.parametrize(
-    ("option", "said"),
+    ("option", "message"),
     [
         ("stages.episodes.recipe.temperature=3", "To add it, write +stages.episodes.recipe.temp"),
         ("stages.episodes.recipe.temperatur=3", "Did you mean +stages.episodes.recipe.temperature"),
@@ -386,11 +386,11 @@ def test_what_an_entry_refers_to_and_is_not_there_is_named():
         ("stages.episodes.recipe.episods=3", "Did you mean stages.episodes.recipe.episodes?"),
     ],
 )
-def test_arguments_of_a_recipe_that_its_config_leaves_out_are_named(option, said):
-    with pytest.raises(ValueError, match="(?i)" + re.escape(said)):
+def test_missing_arguments_of_a_recipe_are_named(option, message):
+    with pytest.raises(ValueError, match="(?i)" + re.escape(message)):
         conf.composed("train", ["recipe=ts_distill", option])
 
 
-def test_no_class_of_others_is_imported_for_a_message(monkeypatch):
+def test_message_imports_no_class_of_other_packages(monkeypatch):
     monkeypatch.setattr(conf, "get_object", lambda target: pytest.fail(f"{target} was imported"))
     assert not conf._arguments(OmegaConf.create({"_target_": "mine.Recipe", "a": 1}))

@@ -1,4 +1,4 @@
-"""The doctor says what the processor can do and whether there is a compiler."""
+"""The doctor reports the features of the processor and whether there is a compiler."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def test_processor_names_the_instruction_sets(flags, words):
     assert doctor.processor(flags) == words
 
 
-def test_compiler_is_found_on_the_path_or_named_by_cxx(tmp_path, monkeypatch):
+def test_compiler_comes_from_path_or_cxx(tmp_path, monkeypatch):
     monkeypatch.setenv("PATH", str(tmp_path))
     monkeypatch.delenv("CXX", raising=False)
     assert doctor.compiler() is None
@@ -45,7 +45,7 @@ def test_compiler_is_found_on_the_path_or_named_by_cxx(tmp_path, monkeypatch):
     assert doctor.compiler() == str(tmp_path / "mine")
 
 
-def test_a_missing_compiler_is_no_problem(capsys, monkeypatch):
+def test_missing_compiler_is_not_a_problem(capsys, monkeypatch):
     monkeypatch.setattr(doctor, "compiler", lambda: None)
     problems = doctor._machine()
     out = capsys.readouterr().out
@@ -60,7 +60,7 @@ def test_cores_are_those_that_this_process_may_use(monkeypatch):
     assert doctor._cores() == "2 of 8"
 
 
-def test_the_report_has_a_line_for_each(capsys):
+def test_report_has_a_line_per_check(capsys):
     doctor.main([])
     out = capsys.readouterr().out
     for name in ("cores", "processor", r"C\+\+ compiler", "torch and CUDA"):
@@ -70,15 +70,15 @@ def test_the_report_has_a_line_for_each(capsys):
         assert re.search(r"^processor +AVX2", out, re.MULTILINE)
 
 
-@pytest.mark.parametrize(("given", "status"), [("--help", 0), ("foo", 2), ("--fix", 2)])
-def test_it_takes_no_options_and_says_so_in_place_of_a_report(given, status, monkeypatch, capsys):
-    monkeypatch.setattr(sys, "argv", ["mitigate doctor", given])
+@pytest.mark.parametrize(("value", "status"), [("--help", 0), ("foo", 2), ("--fix", 2)])
+def test_doctor_rejects_options(value, status, monkeypatch, capsys):
+    monkeypatch.setattr(sys, "argv", ["mitigate doctor", value])
     with pytest.raises(SystemExit) as ended:
         doctor.main()
-    shown = capsys.readouterr()
-    assert ended.value.code == status and "processor" not in shown.out
-    assert "usage: mitigate doctor" in (shown.err if status else shown.out)
-    assert status == 0 or given in shown.err
+    printed = capsys.readouterr()
+    assert ended.value.code == status and "processor" not in printed.out
+    assert "usage: mitigate doctor" in (printed.err if status else printed.out)
+    assert status == 0 or value in printed.err
 
 
 @pytest.mark.parametrize(

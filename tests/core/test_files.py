@@ -1,4 +1,4 @@
-"""Files of anybody: gzip that is damaged or a bomb, JSON that no reader can hold."""
+"""Untrusted files: damaged gzip, gzip bombs, JSON too deep or large for a reader."""
 
 from __future__ import annotations
 
@@ -38,18 +38,18 @@ def test_gzip_is_read_whole_by_lines_and_in_pieces(packed):
         assert "".join(iter(lambda: file.read(1000), "")) == TEXT
 
 
-def test_gzip_that_is_cut_or_damaged_is_one_named_error(packed):
+def test_damaged_gzip_gives_one_named_error(packed):
     raw = packed.read_bytes()
     damaged = [raw[: len(raw) // 2], raw[:-4], raw[:12], raw[:2]]
     damaged += [raw[:n] + bytes([raw[n] ^ 0x5A]) + raw[n + 1 :] for n in range(20, len(raw), 997)]
     for data in damaged:
         packed.write_bytes(data)
         with pytest.raises(gzip.BadGzipFile):
-            assert read(packed) == TEXT  # a flipped bit may leave the text, not the checksum
+            assert read(packed) == TEXT  # a flipped bit may keep the text, but not the checksum
 
 
 def bomb(path, size):
-    """A gzip file of ``size`` spaces, made without holding them."""
+    """A gzip file of ``size`` spaces, written without holding them in memory."""
     packer, block = zlib.compressobj(1, wbits=31), b" " * (1 << 22)
     with open(path, "wb") as file:
         for _ in range(size // len(block)):
@@ -58,7 +58,7 @@ def bomb(path, size):
     return path
 
 
-def test_a_gzip_bomb_is_refused_before_it_is_unpacked(tmp_path):
+def test_gzip_bomb_is_rejected_before_unpacking(tmp_path):
     path = bomb(tmp_path / "bomb.gz", 1 << 28)
     before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
     for take in (read, lambda p: list(files.open_text(p)), lambda p: files.open_text(p).readline()):
@@ -84,7 +84,7 @@ JSON = {
 
 
 @pytest.mark.parametrize("raw", JSON.values(), ids=JSON)
-def test_json_of_anybody_is_plain_data_or_a_value_error(tmp_path, raw):
+def test_json_is_plain_data_or_value_error(tmp_path, raw):
     path = tmp_path / "card.json"
     path.write_bytes(raw)
     with pytest.raises(ValueError, match="is cut short or damaged .* Fetch it again") as error:
@@ -94,7 +94,7 @@ def test_json_of_anybody_is_plain_data_or_a_value_error(tmp_path, raw):
     assert json_files.read_json(path, "") == {"a": [1, 0.5, None, True, "x"]}
 
 
-def test_the_byte_order_mark_of_an_editor_is_passed_over(tmp_path):
+def test_byte_order_mark_is_skipped(tmp_path):
     path = tmp_path / "a.json"
     for raw in (b'\xef\xbb\xbf{"a": 1}', gzip.compress(b'\xef\xbb\xbf{"a": 1}')):
         path.write_bytes(raw)
@@ -104,7 +104,7 @@ def test_the_byte_order_mark_of_an_editor_is_passed_over(tmp_path):
     assert json_files.read_json(path, "") == {"a": 1}
 
 
-def test_a_folder_takes_the_place_of_another_or_that_stays(tmp_path):
+def test_folder_replaces_another_or_the_old_one_stays(tmp_path):
     draft, target, old = (tmp_path / name for name in ("draft", "target", "old"))
     target.mkdir()
     (target / "a").write_text("before")
@@ -124,7 +124,7 @@ def text_to(path):
 
 
 def private(path):
-    """As safetensors writes: a file of mode 0600 takes the place of what was there."""
+    """safetensors does the same: it replaces the existing file by one of mode 0600."""
     path.unlink(missing_ok=True)
     os.close(os.open(path, os.O_CREAT | os.O_WRONLY, 0o600))
 
@@ -139,14 +139,14 @@ WRITERS = {
 
 @pytest.mark.parametrize("umask", [0o022, 0o027])
 @pytest.mark.parametrize("write", WRITERS.values(), ids=WRITERS)
-def test_a_file_has_the_mode_that_the_umask_gives(tmp_path, write, umask):
+def test_file_mode_follows_the_umask(tmp_path, write, umask):
     before = os.umask(umask)
     try:
         write(tmp_path / "made")
     finally:
         os.umask(before)
-    made = [*tmp_path.iterdir()]
-    assert made and {path.stat().st_mode & 0o777 for path in made} == {0o666 & ~umask}
+    output = [*tmp_path.iterdir()]
+    assert output and {path.stat().st_mode & 0o777 for path in output} == {0o666 & ~umask}
 
 
 @pytest.mark.parametrize("write", WRITERS.values(), ids=WRITERS)
@@ -159,7 +159,7 @@ def test_write_error_names_the_target_not_the_draft(tmp_path, write):
     assert [*tmp_path.iterdir()] == [tmp_path / "file"]
 
 
-def test_an_error_of_what_is_read_meanwhile_stays_as_it_is(tmp_path):
+def test_reader_error_passes_unchanged(tmp_path):
     with (
         pytest.raises(FileNotFoundError, match="No such file .*/gone'"),
         files.atomic_text(tmp_path / "made"),

@@ -1,4 +1,4 @@
-"""A folder is the old one or the new one, and every change to it is found before it is used."""
+"""A folder is completely old or completely new, and every change to it is detected before use."""
 
 from __future__ import annotations
 
@@ -20,11 +20,11 @@ FLIPS = 50
 
 
 class Killed(BaseException):
-    """What a kill looks like from inside: nothing after it runs but ``finally``."""
+    """Simulate a kill: after it only ``finally`` runs."""
 
 
 def flipped(data: bytes, bit: int) -> bytes:
-    """``data`` with one other bit."""
+    """Return ``data`` with one flipped bit."""
     changed = bytearray(data)
     changed[bit // 8] ^= 1 << bit % 8
     return bytes(changed)
@@ -34,7 +34,7 @@ def names(folder: Path) -> set[str]:
     return {file.name for file in folder.iterdir()}
 
 
-def written(folder: Path, **files: str) -> Path:
+def write_files(folder: Path, **files: str) -> Path:
     with folders.write_folder(folder, "agent") as draft:
         for name, text in files.items():
             (draft / name).write_text(text)
@@ -48,7 +48,7 @@ def older(module: nn.Module, folder: Path) -> Path:
 
 
 def test_write_folder_lists_size_and_sha256_of_every_file(tmp_path):
-    folder = written(tmp_path / "a", one="1", two="22")
+    folder = write_files(tmp_path / "a", one="1", two="22")
     manifest = json.loads((folder / folders.MANIFEST).read_text())
     assert manifest["format"] == 1 and manifest["kind"] == "agent"
     assert manifest["files"]["two"] == {"bytes": 2, "sha256": sha256(folder / "two")}
@@ -57,22 +57,22 @@ def test_write_folder_lists_size_and_sha256_of_every_file(tmp_path):
 
 
 def test_write_folder_deletes_listed_files_alone(tmp_path):
-    folder = written(tmp_path, one="1", two="2")
+    folder = write_files(tmp_path, one="1", two="2")
     (folder / "mine.txt").write_text("notes")
-    written(folder, two="3")
+    write_files(folder, two="3")
     assert names(folder) == {"two", "mine.txt", folders.MANIFEST}
     assert folders.check(folder).files.keys() == {"two"}
 
 
-def test_write_folder_leaves_the_folder_as_it_was_after_an_error(tmp_path):
-    folder = written(tmp_path, one="1")
+def test_write_folder_keeps_the_old_folder_after_an_error(tmp_path):
+    folder = write_files(tmp_path, one="1")
     with pytest.raises(RuntimeError), folders.write_folder(folder, "agent") as draft:
         (draft / "one").write_text("2")
         raise RuntimeError
     assert (folder / "one").read_text() == "1" and names(folder) == {"one", folders.MANIFEST}
 
 
-def test_every_flipped_bit_of_weights_is_found(tmp_path):
+def test_weights_detect_every_flipped_bit(tmp_path):
     path = checkpoint.save_weights(nn.Linear(30, 20), tmp_path)
     sound = path.read_bytes()
     places = seeding.generator(0, "flipped bits", "weights").integers(0, 8 * len(sound), FLIPS)
@@ -90,8 +90,8 @@ def test_shipped_weights_with_a_flipped_bit_are_refused(tmp_path):
         checkpoint.load_weights(TopologicalAgent(), folder)
 
 
-def test_a_file_of_another_size_is_not_read(tmp_path, monkeypatch):
-    folder = written(tmp_path, one="1")
+def test_file_of_another_size_is_not_read(tmp_path, monkeypatch):
+    folder = write_files(tmp_path, one="1")
     (folder / "one").write_text("10")
 
     def read(path):
@@ -104,10 +104,9 @@ def test_a_file_of_another_size_is_not_read(tmp_path, monkeypatch):
 
 @pytest.mark.parametrize("earlier", ["manifest", "sidecar", "nothing"])
 @pytest.mark.parametrize("when", range(4))
-def test_a_kill_at_any_moment_leaves_the_old_file_or_the_new_one(
-    tmp_path, monkeypatch, when, earlier
-):
-    """A file is replaced in three steps: the manifest with both files, itself, the manifest."""
+def test_kill_leaves_the_old_or_the_new_file(tmp_path, monkeypatch, when, earlier):
+    """A file is replaced in three steps: the manifest with both files, the file, the final
+    manifest."""
     old = nn.Linear(3, 2)
     new = nn.Linear(3, 2)
     if earlier == "manifest":
@@ -131,18 +130,18 @@ def test_a_kill_at_any_moment_leaves_the_old_file_or_the_new_one(
     else:
         checkpoint.save_weights(new, tmp_path)
     monkeypatch.undo()
-    found = nn.Linear(3, 2)
-    checkpoint.load_weights(found, tmp_path)
-    assert torch.equal(found.weight, (old if when < 2 else new).weight)
+    loaded = nn.Linear(3, 2)
+    checkpoint.load_weights(loaded, tmp_path)
+    assert torch.equal(loaded.weight, (old if when < 2 else new).weight)
     checkpoint.save_weights(new, tmp_path)
-    checkpoint.load_weights(found, tmp_path)
-    assert torch.equal(found.weight, new.weight)
+    checkpoint.load_weights(loaded, tmp_path)
+    assert torch.equal(loaded.weight, new.weight)
     assert names(tmp_path) == {checkpoint.WEIGHTS, folders.MANIFEST}
     assert "replaced" not in json.loads((tmp_path / folders.MANIFEST).read_text())
 
 
-def test_a_mixture_of_the_old_and_the_new_folder_is_refused(tmp_path, monkeypatch):
-    folder = written(tmp_path, one="1", two="1")
+def test_mixture_of_old_and_new_folder_is_rejected(tmp_path, monkeypatch):
+    folder = write_files(tmp_path, one="1", two="1")
     replace = os.replace
 
     def replace_one(source, target):
@@ -152,24 +151,24 @@ def test_a_mixture_of_the_old_and_the_new_folder_is_refused(tmp_path, monkeypatc
 
     monkeypatch.setattr(os, "replace", replace_one)
     with pytest.raises(Killed):
-        written(folder, one="2", two="2")
+        write_files(folder, one="2", two="2")
     with pytest.raises(ValueError, match="changed or cut short"):
         folders.check(folder)
     monkeypatch.undo()
-    assert folders.check(written(folder, one="2", two="2"))
+    assert folders.check(write_files(folder, one="2", two="2"))
 
 
-def test_a_damaged_file_that_is_replaced_does_not_become_a_sound_one(tmp_path, monkeypatch):
+def test_damaged_file_stays_invalid_after_replacement(tmp_path, monkeypatch):
     file = checkpoint.save_weights(nn.Linear(3, 2), tmp_path)
     damaged = flipped(file.read_bytes(), 700)
     file.write_bytes(damaged)
     write, calls = folders._write_manifest, []
 
-    def write_once(*given):
-        calls.append(given)
+    def write_once(*arguments):
+        calls.append(arguments)
         if len(calls) > 1:
             raise Killed
-        write(*given)
+        write(*arguments)
 
     monkeypatch.setattr(folders, "_write_manifest", write_once)
     checkpoint.save_weights(nn.Linear(3, 2), tmp_path)
@@ -204,10 +203,10 @@ DAMAGED = {
 }
 
 
-@pytest.mark.parametrize("made", DAMAGED.values(), ids=DAMAGED)
-def test_a_damaged_manifest_is_refused(tmp_path, made):
+@pytest.mark.parametrize("output", DAMAGED.values(), ids=DAMAGED)
+def test_damaged_manifest_is_rejected(tmp_path, output):
     file = checkpoint.save_weights(nn.Linear(3, 2), tmp_path)
-    raw = made if isinstance(made, bytes) else json.dumps(made).encode()
+    raw = output if isinstance(output, bytes) else json.dumps(output).encode()
     (tmp_path / folders.MANIFEST).write_bytes(raw)
     for read in (
         lambda: folders.check(tmp_path),
@@ -221,17 +220,17 @@ def test_a_damaged_manifest_is_refused(tmp_path, made):
     checkpoint.load_weights(nn.Linear(3, 2), file)
 
 
-def test_folders_of_earlier_versions_are_read_and_become_ours_when_written(tmp_path):
+def test_older_folders_are_read_and_upgraded_when_written(tmp_path):
     module = nn.Linear(3, 2)
     file = older(module, tmp_path)
     (tmp_path / "config.yaml").write_text("agent: {}\n")
-    found = nn.Linear(3, 2)
-    checkpoint.load_weights(found, tmp_path)
-    assert torch.equal(found.weight, module.weight)
+    loaded = nn.Linear(3, 2)
+    checkpoint.load_weights(loaded, tmp_path)
+    assert torch.equal(loaded.weight, module.weight)
     note = file.with_name(f"{file.name}.sha256")
     note.write_text(f"{'0' * 64}  {file.name}\n")
     with pytest.raises(ValueError, match="does not have the sha256"):
-        checkpoint.load_weights(found, tmp_path)
+        checkpoint.load_weights(loaded, tmp_path)
     checkpoint.save_agent(module, tmp_path, "agent: {width: 2}\n")
     assert names(tmp_path) == {folders.MANIFEST, "config.yaml", checkpoint.WEIGHTS}
     assert folders.check(tmp_path).files.keys() == {"config.yaml", checkpoint.WEIGHTS}

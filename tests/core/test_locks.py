@@ -1,4 +1,4 @@
-"""One process at a time in a folder; what a killed one left is cleaned away and blocks nobody."""
+"""One process at a time in a folder; leftovers of a killed process are deleted and do not block."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from mitigate.core.locks import NAME, FolderLock, delete_leftovers
 from mitigate.evaluation import evaluate
 from mitigate.training import train
 
-DEAD = 2**30  # above any process id (Linux: at most 2**22)
+DEAD = 2**30  # larger than any process id (Linux: at most 2**22)
 HOLD = (
     "import sys; from mitigate.core.locks import FolderLock; lock = FolderLock(sys.argv[1])\n"
     "lock.__enter__(); print('in', flush=True); sys.stdin.read()"
@@ -25,24 +25,24 @@ HOLD = (
 
 @pytest.fixture
 def other(tmp_path):
-    """Another process that holds ``tmp_path / "run"``."""
+    """Start another process that holds ``tmp_path / "run"``."""
     command = [sys.executable, "-c", HOLD, str(tmp_path / "run")]
     environment = {**os.environ, "PYTHONPATH": str(Path(__file__).parents[2])}
-    given = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "env": environment}
-    with subprocess.Popen(command, **given) as process:
+    options = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "env": environment}
+    with subprocess.Popen(command, **options) as process:
         assert process.stdout.readline() == b"in\n"
         yield process
         process.kill()
 
 
-def test_a_second_process_is_refused_and_told_of_the_first(tmp_path, other):
+def test_second_process_is_rejected_and_names_the_first(tmp_path, other):
     with pytest.raises(ValueError, match=rf"is in use: process {other.pid} on .* Wait for it"):
         FolderLock(tmp_path / "run").__enter__()
     with FolderLock(tmp_path / "another"):
         pass
 
 
-def test_the_lock_of_a_killed_process_does_not_block(tmp_path, other):
+def test_lock_of_a_killed_process_does_not_block(tmp_path, other):
     other.send_signal(signal.SIGKILL)
     other.wait()
     assert (tmp_path / "run" / NAME).is_file()  # stale
@@ -52,7 +52,7 @@ def test_the_lock_of_a_killed_process_does_not_block(tmp_path, other):
 
 
 @pytest.mark.parametrize("note", ["", "{", "[]", '{"pid": "x"}', "[" * 9999, "\x00"])
-def test_a_damaged_note_of_a_lock_blocks_nobody(tmp_path, note):
+def test_damaged_lock_note_does_not_block(tmp_path, note):
     (tmp_path / NAME).write_text(note)
     with FolderLock(tmp_path):
         with pytest.raises(ValueError, match=f"process {os.getpid()} on"):
@@ -61,7 +61,7 @@ def test_a_damaged_note_of_a_lock_blocks_nobody(tmp_path, note):
             FolderLock(tmp_path).__enter__()
 
 
-def test_a_worker_does_not_inherit_the_lock(tmp_path):
+def test_worker_does_not_inherit_the_lock(tmp_path):
     with FolderLock(tmp_path):
         child = os.fork()
         if child == 0:
@@ -74,14 +74,23 @@ def test_a_worker_does_not_inherit_the_lock(tmp_path):
         os.waitpid(child, 0)
 
 
-def test_what_was_not_yet_whole_is_deleted_and_nothing_else(tmp_path):
+def test_cleanup_deletes_only_partial_files(tmp_path):
     dead, alive = DEAD, os.getppid()
     left = [f".step-00000100.pt.{dead}.tmp", f"agent/.model.safetensors.{dead}.tmp"]
-    kept = ["step-00000050.pt", ".step-00000100.pt", "notes.tmp", ".mine.tmp", "agent/.x.tmp.5"]
-    kept += [f".rows.jsonl.{alive}.tmp", f"agent/.model.safetensors.{alive}.tmp"]  # being written
-    kept += [f"mine/.notes.{dead}.tmp", f"agent/b/.x.{dead}.tmp"]  # of others
-    kept += ["locked/.lock", f"locked/.rows.jsonl.{dead}.tmp"]
-    for name in (*left, *kept):
+    remaining = [
+        "step-00000050.pt",
+        ".step-00000100.pt",
+        "notes.tmp",
+        ".mine.tmp",
+        "agent/.x.tmp.5",
+    ]
+    remaining += [
+        f".rows.jsonl.{alive}.tmp",
+        f"agent/.model.safetensors.{alive}.tmp",
+    ]  # being written
+    remaining += [f"mine/.notes.{dead}.tmp", f"agent/b/.x.{dead}.tmp"]  # of others
+    remaining += ["locked/.lock", f"locked/.rows.jsonl.{dead}.tmp"]
+    for name in (*left, *remaining):
         (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
         (tmp_path / name).write_text("x")
     (tmp_path / ".adapter-abc.0.tmp").mkdir()
@@ -89,13 +98,13 @@ def test_what_was_not_yet_whole_is_deleted_and_nothing_else(tmp_path):
     within = ("agent", "locked", "not there")
     with FolderLock(tmp_path, within):
         pass
-    assert all((tmp_path / name).is_file() for name in kept)
+    assert all((tmp_path / name).is_file() for name in remaining)
     assert not any((tmp_path / name).exists() for name in left)
     assert not delete_leftovers(tmp_path, within) and (tmp_path / "agent").is_dir()
 
 
 @pytest.mark.parametrize("name", ["train", "evaluate"])
-def test_a_second_training_or_evaluation_in_a_folder_is_refused(tmp_path, name):
+def test_second_run_in_a_folder_is_rejected(tmp_path, name):
     place = {"train": "folder", "evaluate": "out"}[name]
     small = ["debug=smoke"] if name == "train" else ["episodes=1", "conditions=[clean]"]
     cfg = load_config(name, [*small, f"{place}={tmp_path}"])
@@ -104,14 +113,14 @@ def test_a_second_training_or_evaluation_in_a_folder_is_refused(tmp_path, name):
     assert not list(tmp_path.iterdir())
 
 
-def test_a_folder_that_cannot_be_made_is_named_with_what_to_do(tmp_path):
+def test_folder_that_cannot_be_created_is_named(tmp_path):
     (tmp_path / "file").write_text("x")
     for place in (tmp_path / "file/under", Path("/proc/under")):
         with pytest.raises(OSError, match=f"Cannot write {place}: .* choose another folder"):
             FolderLock(place).__enter__()
 
 
-def test_a_refused_second_lock_does_not_end_the_first(tmp_path):
+def test_rejected_second_lock_keeps_the_first(tmp_path):
     code = "import sys; from mitigate.core.locks import FolderLock\n"
     code += "FolderLock(sys.argv[1]).__enter__()"
     with FolderLock(tmp_path):
@@ -129,12 +138,12 @@ def test_a_refused_second_lock_does_not_end_the_first(tmp_path):
     assert "is in use: process" in other.stderr
 
 
-def test_what_a_process_of_the_same_number_left_is_deleted_too(tmp_path):
-    """In a container that is started anew every process has the number it had before."""
+def test_cleanup_deletes_files_of_a_reused_process_id(tmp_path):
+    """In a restarted container every process has the same number as before."""
     (tmp_path / "walks").mkdir()
-    own, other = (tmp_path / f".{n}.pt.{n}.tmp" for n in (os.getpid(), os.getppid()))
+    settings, other = (tmp_path / f".{n}.pt.{n}.tmp" for n in (os.getpid(), os.getppid()))
     dead = tmp_path / "walks" / ".x.pt.4194300.tmp"
-    for file in (own, other, dead):
+    for file in (settings, other, dead):
         file.touch()
     with FolderLock(tmp_path, ("walks",)):
-        assert not own.exists() and not dead.exists() and other.exists()
+        assert not settings.exists() and not dead.exists() and other.exists()

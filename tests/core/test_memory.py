@@ -1,4 +1,4 @@
-"""Results are kept up to a limit; what was freed is given back."""
+"""Results are cached up to a limit; freed memory is returned."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ import pytest
 from mitigate.core.memory import Memory, give_back
 
 
-def made(memory, key, log, size=8):
+def compute(memory, key, log, size=8):
     def make():
         log.append(key)
         return (np.zeros(size, np.uint8),)
@@ -20,38 +20,39 @@ def made(memory, key, log, size=8):
     return memory.recall(key, make)
 
 
-def test_what_is_kept_is_not_made_again():
+def test_cache_returns_the_stored_result():
     memory, log = Memory(100), []
-    assert made(memory, "a", log)[0] is made(memory, "a", log)[0] and log == ["a"]
+    assert compute(memory, "a", log)[0] is compute(memory, "a", log)[0] and log == ["a"]
 
 
-def test_what_was_not_used_longest_goes_first_when_the_bytes_are_used_up():
+def test_cache_drops_least_recently_used_first():
     memory, log = Memory(24), []
     for key in "abcad":
-        made(memory, key, log)
+        compute(memory, key, log)
     assert len(memory) == 3 and memory.bytes == 24
     for key in "acdb":
-        made(memory, key, log)
+        compute(memory, key, log)
     assert "".join(log) == "abcdb"
 
 
-def test_a_result_larger_than_the_limit_is_kept_alone():
+def test_cache_keeps_a_single_large_result():
     memory, log = Memory(4), []
-    made(memory, "a", log)
-    made(memory, "b", log)
+    compute(memory, "a", log)
+    compute(memory, "b", log)
     assert len(memory) == 1 and memory.bytes == 8
 
 
 @pytest.mark.skipif("glibc" not in platform.libc_ver(), reason="of glibc alone")
-def test_what_was_freed_between_what_is_kept_goes_back_to_the_system():
-    pieces = [bytearray(60_000) for _ in range(3000)]  # below the size that is mapped by itself
-    kept = pieces[::100]
+def test_freed_memory_returns_to_the_system():
+    # below the size at which malloc maps memory separately
+    pieces = [bytearray(60_000) for _ in range(3000)]
+    remaining = pieces[::100]
     del pieces
     before = resident()
     give_back()
-    assert resident() < before - 100_000_000 and len(kept) == 30
+    assert resident() < before - 100_000_000 and len(remaining) == 30
 
 
 def resident() -> int:
-    """Bytes of memory that this process holds."""
+    """Return the bytes of memory that this process holds."""
     return int(Path("/proc/self/statm").read_text().split()[1]) * os.sysconf("SC_PAGE_SIZE")

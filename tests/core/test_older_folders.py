@@ -1,4 +1,4 @@
-"""Folders that earlier versions wrote are read, and every change to them is still found."""
+"""Folders of earlier versions are read, and every change to them is detected."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ READERS = {
 
 
 def as_before(folder: Path) -> Path:
-    """Turn a folder into what the version before the manifest wrote: a sidecar beside weights."""
+    """Turn a folder into the format before the manifest: one sidecar per file of weights."""
     (folder / folders.MANIFEST).unlink()
     for file in folder.glob("*.safetensors"):
         file.with_name(f"{file.name}.sha256").write_text(f"{sha256(file)}  {file.name}\n")
@@ -49,8 +49,8 @@ def flip(file: Path) -> None:
 
 
 @pytest.mark.parametrize("name", SHIPPED)
-def test_a_shipped_folder_is_read_and_a_flipped_bit_is_found(name, tmp_path, monkeypatch):
-    monkeypatch.chdir(ROOT)  # the base of adapters is named from here
+def test_shipped_folder_loads_and_detects_flipped_bits(name, tmp_path, monkeypatch):
+    monkeypatch.chdir(ROOT)  # the base of adapters is relative to this folder
     folder = Path(shutil.copytree(ROOT / "checkpoints" / name, tmp_path / "mine"))
     assert not (folder / folders.MANIFEST).exists()
     assert READERS[SHIPPED[name]](folder) is not None
@@ -75,7 +75,7 @@ def test_adapters_of_before_are_read(tmp_path):
     }
 
 
-def test_a_restorer_of_before_is_read_and_needs_its_sum(tmp_path):
+def test_older_restorer_loads_and_needs_its_checksum(tmp_path):
     restorer = Restorer(width=4, depth_width=4, size=32)
     restorer.save(tmp_path)
     as_before(tmp_path)
@@ -85,18 +85,18 @@ def test_a_restorer_of_before_is_read_and_needs_its_sum(tmp_path):
         load_restorer(tmp_path)
 
 
-def test_the_agent_of_a_run_of_before_is_read(tmp_path):
+def test_older_run_loads(tmp_path):
     agent = mitigate.load(ROOT / "checkpoints/frontier/base")
     text = (ROOT / "checkpoints/frontier/base/config.yaml").read_text()
     checkpoint.save_agent(agent, tmp_path, text)
     as_before(tmp_path)
-    found = mitigate.load(tmp_path)
-    assert checkpoint.weights_sha(found) == checkpoint.weights_sha(agent)
+    loaded = mitigate.load(tmp_path)
+    assert checkpoint.weights_sha(loaded) == checkpoint.weights_sha(agent)
     (tmp_path / "model.safetensors.sha256").unlink()  # the first versions wrote none
     assert torch.equal(next(mitigate.load(tmp_path).parameters()), next(iter(agent.parameters())))
 
 
-def test_a_changed_config_is_found_since_the_manifest(tmp_path):
+def test_changed_config_is_detected_since_the_manifest(tmp_path):
     agent = mitigate.load(ROOT / "checkpoints/frontier/base")
     text = (ROOT / "checkpoints/frontier/base/config.yaml").read_text()
     checkpoint.save_agent(agent, tmp_path, text)
@@ -106,12 +106,12 @@ def test_a_changed_config_is_found_since_the_manifest(tmp_path):
         mitigate.load(tmp_path)
 
 
-def test_a_hardened_folder_of_before_becomes_one_of_today_without_its_sums(tmp_path):
+def test_older_hardened_folder_is_upgraded(tmp_path):
     folder = Path(shutil.copytree(ROOT / "checkpoints/hardened/stacked", tmp_path / "mine"))
     card = json.loads((folder / "card.json").read_text())
     assert older_folders.card_files(folder, "").keys() == card["files"].keys()
-    kept = older_folders.without_sums(card)
-    assert card.keys() - kept.keys() == {"files", "sha256"}
+    remaining = older_folders.without_sums(card)
+    assert card.keys() - remaining.keys() == {"files", "sha256"}
     (folder / "card.json").write_text(json.dumps(card | {"seed": 99}))
     with pytest.raises(ValueError, match="does not have the sha256 that it states"):
         folders.check(folder)

@@ -11,7 +11,7 @@ REPLACES = "{0} already exists, and +{0}= replaces it."
 
 
 @pytest.mark.parametrize(
-    ("primary", "given", "keys"),
+    ("primary", "value", "keys"),
     [
         ("table1", ["+columns.recurrent_ts=[agent=recurrent]"], ["columns.recurrent_ts"]),
         ("table1", ["+columns.mine=[agent=recurrent]", "jobs=1"], []),
@@ -23,25 +23,27 @@ REPLACES = "{0} already exists, and +{0}= replaces it."
         ("evaluate", ["+severity=1", "sevrity=2"], []),  # is refused anyway
     ],
 )
-def test_an_option_that_is_added_in_the_place_of_another_is_told(primary, given, keys):
-    told = conf.notices(primary, given)
-    assert [text.partition(" To add one")[0] for text in told] == [REPLACES.format(k) for k in keys]
+def test_added_option_that_replaces_another_is_reported(primary, value, keys):
+    reported = conf.notices(primary, value)
+    assert [text.partition(" To add one")[0] for text in reported] == [
+        REPLACES.format(k) for k in keys
+    ]
 
 
-def test_an_added_option_that_no_program_reads_is_told_with_what_was_meant():
-    (told,) = conf.notices("evaluate", ["+episode=9", "++seed=3", "split=val_seen"])
-    assert told.startswith("+episode= adds an option that only your own configs can use.")
-    assert told.endswith("Did you mean episodes=...?")
+def test_added_option_that_nothing_reads_names_the_nearest():
+    (reported,) = conf.notices("evaluate", ["+episode=9", "++seed=3", "split=val_seen"])
+    assert reported.startswith("+episode= adds an option that only your own configs can use.")
+    assert reported.endswith("Did you mean episodes=...?")
 
 
-def test_an_added_file_of_a_group_is_no_such_option(tmp_path):
+def test_added_group_file_is_rejected(tmp_path):
     (tmp_path / "mine").mkdir()
-    given = [f"--config-dir={tmp_path}", "+experiment=frozen", "+mine=one"]
-    assert not conf.notices("train", given)
+    arguments = [f"--config-dir={tmp_path}", "+experiment=frozen", "+mine=one"]
+    assert not conf.notices("train", arguments)
 
 
 @pytest.mark.parametrize(
-    ("line", "shown"),
+    ("line", "displayed"),
     [
         (["--out", "x"], "out=x"),
         (["--out=x", "seed=1"], "out=x"),
@@ -49,8 +51,8 @@ def test_an_added_file_of_a_group_is_no_such_option(tmp_path):
         (["--severity", "seed=1"], "severity=VALUE"),
     ],
 )
-def test_check_dashes_shows_the_valid_form(line, shown):
-    with pytest.raises(ValueError, match=f"Write {shown}, without dashes"):
+def test_check_dashes_shows_the_valid_form(line, displayed):
+    with pytest.raises(ValueError, match=f"Write {displayed}, without dashes"):
         options.check_dashes(line)
 
 
@@ -59,9 +61,9 @@ def test_hydras_own_flags_and_values_with_dashes_pass():
 
 
 @pytest.mark.parametrize("flag", ["-m", "--multirun"])
-def test_many_runs_may_be_asked_for_behind_other_options(flag):
-    given = ["recipe=stacked", flag, "seed=0,1", "--config-dir", "mine"]
-    assert options.flags_first(given) == [
+def test_multirun_flag_may_follow_other_options(flag):
+    arguments = ["recipe=stacked", flag, "seed=0,1", "--config-dir", "mine"]
+    assert options.flags_first(arguments) == [
         flag,
         "--config-dir",
         "mine",
@@ -77,7 +79,7 @@ def test_many_runs_may_be_asked_for_behind_other_options(flag):
 
 
 @pytest.mark.parametrize(
-    ("given", "wanted"),
+    ("value", "expected"),
     [
         (["checkpoint=a/b"], ["a/b"]),
         (["++checkpoint=a", "seed=1", "checkpoint='b c'"], ["b c"]),
@@ -86,8 +88,8 @@ def test_many_runs_may_be_asked_for_behind_other_options(flag):
         (["checkpointer=a", "name=checkpoint=b", "checkpoint=~/x"], []),  # the last is unreadable
     ],
 )
-def test_what_an_option_is_set_to_is_read_as_hydra_reads_it(given, wanted):
-    assert options.values(given, "checkpoint") == wanted
+def test_option_value_is_parsed_as_hydra_does(value, expected):
+    assert options.values(value, "checkpoint") == expected
 
 
 @pytest.mark.parametrize("name", ["mine (2)", "a,b", 'say "hi"', "it's", "ü = x"])
@@ -95,15 +97,15 @@ def test_config_folder_may_have_any_name(tmp_path, name):
     folder = tmp_path / name
     (folder / "suite").mkdir(parents=True)
     (folder / "suite" / "own.yaml").write_text("conditions: [clean, flare]\n")
-    given = [f"--config-dir={folder}", "suite=own"]
-    assert list(conf.load_config("evaluate", given).suite.conditions) == ["clean", "flare"]
+    arguments = [f"--config-dir={folder}", "suite=own"]
+    assert list(conf.load_config("evaluate", arguments).suite.conditions) == ["clean", "flare"]
 
 
 def test_paths_and_options_may_stand_in_any_order():
-    found = paths_and_options(
+    matches = paths_and_options(
         ["severity=0.5", "in", "a=b=c", "./x=y"], ("IN", "OUT"), ("severity", "a")
     )
-    assert found == (["in", "./x=y"], {"severity": "0.5", "a": "b=c"})
+    assert matches == (["in", "./x=y"], {"severity": "0.5", "a": "b=c"})
 
 
 @pytest.mark.parametrize(
@@ -116,16 +118,16 @@ def test_paths_and_options_may_stand_in_any_order():
         (["a", "--seed"], "There is no option --seed"),
     ],
 )
-def test_what_cannot_be_read_is_explained(arguments, words):
+def test_unreadable_option_is_explained(arguments, words):
     with pytest.raises(ValueError, match=words):
         paths_and_options(arguments, ("IN",), ("seed",))
 
 
-def test_nothing_and_a_wish_show_the_help():
+def test_empty_line_and_help_flag_show_the_help():
     assert asks_help([]) and asks_help(["a", "--help"]) and not asks_help(["a"])
 
 
-def test_an_option_among_paths_is_answered_with_how_options_are_written(tmp_path, monkeypatch):
+def test_option_among_paths_explains_the_syntax(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     with pytest.raises(ValueError, match=r"no file out=report. Write options here as --out DIR"):
         check_paths(["runs/a", "out=report"], "--out DIR")

@@ -1,4 +1,4 @@
-"""Files are opened for writing only if they are ours; a folder that vanishes is noticed."""
+"""Output files are opened only if they belong to the run; a folder that vanishes is noticed."""
 
 from __future__ import annotations
 
@@ -66,7 +66,7 @@ def test_open_output_rejects_a_device():
         open_output("/dev/null", "w")
 
 
-def test_open_output_rejects_a_link_that_appears_after_the_first_check(tmp_path, monkeypatch):
+def test_open_output_rejects_link_that_appears_late(tmp_path, monkeypatch):
     monkeypatch.setattr(output, "_check_file", lambda path: None)
     link(tmp_path / "file")
     with pytest.raises(OSError, match="symbolic link"):
@@ -212,11 +212,11 @@ def test_writes_notice_a_lost_inner_folder(tmp_path, write):
         shutil.rmtree(tmp_path / "out" / "in")
         with pytest.raises(FolderLostError, match="in was removed or replaced"):
             write(tmp_path / "out" / "in" / "other", "new")
-        output.forget(tmp_path / "out" / "in")  # by a caller that deleted it itself
+        output.forget(tmp_path / "out" / "in")  # by a caller that deleted the folder itself
         files.write_text(tmp_path / "out" / "in" / "other", "new")
 
 
-def test_a_write_in_progress_notices_a_lost_folder(tmp_path):
+def test_write_in_progress_notices_a_lost_folder(tmp_path):
     with output_folder(tmp_path / "out") as root:
         with pytest.raises(FolderLostError):
             files.write_atomically(

@@ -1,4 +1,4 @@
-"""Where shipped weights are looked for."""
+"""The places that are searched for shipped weights."""
 
 import sys
 from pathlib import Path
@@ -10,7 +10,7 @@ from mitigate.core import files
 
 @pytest.fixture
 def nowhere(tmp_path, monkeypatch):
-    """An empty folder, without a checkout, the weights' package and the variable."""
+    """An empty folder, without a checkout, the weights' package or the variable."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(files, "ROOT", tmp_path / "site-packages")
     monkeypatch.setattr(files, "PACKAGE", tmp_path / "site-packages" / "mitigate")
@@ -24,9 +24,7 @@ def make(folder: Path) -> Path:
     return folder / "base"
 
 
-def test_find_prefers_here_then_the_package_then_the_checkout_then_the_variable(
-    nowhere, monkeypatch
-):
+def test_find_searches_cwd_package_checkout_then_variable(nowhere, monkeypatch):
     named = make(nowhere / "named")
     monkeypatch.setenv(files.WEIGHTS_VARIABLE, str(nowhere / "named"))
     assert files.find("checkpoints/base") == named

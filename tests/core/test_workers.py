@@ -1,4 +1,5 @@
-"""Worker processes: results from any number of them, and deaths that are noticed and made good."""
+"""Worker processes: results for any number of workers, and deaths that are noticed and
+recovered."""
 
 from __future__ import annotations
 
@@ -23,7 +24,8 @@ from tests.deaths import die_in_a_message
 
 @dataclass
 class Squares:
-    """Squares numbers; a job's action may be to die, to fail, to wait or to tell its process."""
+    """Squares numbers; the action of a job may be to die, to fail, to wait or to signal its
+    process."""
 
     folder: Path
     preload = "mitigate.core.workers"
@@ -67,7 +69,7 @@ def _unreadable():
 
 
 class Lines:
-    """Stands in for a Progress and keeps what it is told."""
+    """A replacement of Progress that records its messages."""
 
     def __init__(self):
         self.said = []
@@ -81,8 +83,8 @@ class Lines:
 
 def run(task, groups, count=2):
     lines = Lines()
-    found = [item for item in results(task, groups, count, lines) if item is not None]
-    return dict(found), lines.said
+    matches = [item for item in results(task, groups, count, lines) if item is not None]
+    return dict(matches), lines.said
 
 
 def groups(*actions):
@@ -93,40 +95,44 @@ def groups(*actions):
 
 
 @pytest.mark.parametrize("count", [1, 2])
-def test_every_job_has_its_result_under_its_number(count, tmp_path):
-    found, said = run(Squares(tmp_path), [*groups("", "", ""), []], count)
-    assert found == {n: n**2 for n in range(9)} and not said
+def test_results_are_numbered_by_job(count, tmp_path):
+    matches, message = run(Squares(tmp_path), [*groups("", "", ""), []], count)
+    assert matches == {n: n**2 for n in range(9)} and not message
 
 
 @pytest.mark.parametrize("how", ["die once", "die in a message"])
 def test_results_replace_the_first_dead_worker(how, tmp_path):
     began = time.monotonic()
-    found, said = run(Squares(tmp_path), groups("", how, ""))
-    assert found == {n: n**2 for n in range(9)} and time.monotonic() - began < 10
-    assert len(said) == 1 and "SIGKILL" in said[0] and "jobs (2) start again in a new" in said[0]
+    matches, message = run(Squares(tmp_path), groups("", how, ""))
+    assert matches == {n: n**2 for n in range(9)} and time.monotonic() - began < 10
+    assert (
+        len(message) == 1
+        and "SIGKILL" in message[0]
+        and "jobs (2) start again in a new" in message[0]
+    )
 
 
 def test_results_raise_workers_died_after_a_second_death(tmp_path):
-    began, found = time.monotonic(), {}
+    began, matches = time.monotonic(), {}
     with pytest.raises(WorkersDied, match=r"of 6 jobs are finished.*workers=1.*memory"):
         for item in results(Squares(tmp_path), groups("", "die"), 2, Lines()):
-            found |= dict([item]) if item else {}
-    assert {n for n in found if n >= 3} == {3} and time.monotonic() - began < 10
+            matches |= dict([item]) if item else {}
+    assert {n for n in matches if n >= 3} == {3} and time.monotonic() - began < 10
 
 
 @pytest.mark.parametrize("count", [1, 2])
-def test_what_a_job_raises_is_raised_here_with_its_own_type(count, tmp_path):
+def test_job_error_keeps_its_type(count, tmp_path):
     with pytest.raises(FileNotFoundError, match="no file 4"):
         run(Squares(tmp_path), groups("", "fail"), count)
 
 
-def test_a_worker_without_progress_is_reported_and_not_killed(tmp_path, monkeypatch):
+def test_idle_worker_is_reported_and_not_killed(tmp_path, monkeypatch):
     monkeypatch.setattr(workers, "STUCK", 0.5)
     monkeypatch.setattr(workers, "SECOND", 0.1)
-    found, said = run(Squares(tmp_path), groups("wait", ""))
-    assert found == {n: n**2 for n in range(6)}
-    # Others may be, under load.
-    assert any("has been running number 1 for 1 s" in line for line in said)
+    matches, message = run(Squares(tmp_path), groups("wait", ""))
+    assert matches == {n: n**2 for n in range(6)}
+    # Under load, other jobs may be lost.
+    assert any("has been running number 1 for 1 s" in line for line in message)
 
 
 ENDLESS = """
@@ -137,7 +143,7 @@ list(results(Squares(Path({folder!r})), groups("tell", "tell"), 2, Lines()))
 
 
 def stopped_by(how, folder):
-    """Start two workers in a process of its own, send it the signal; return the workers' ids."""
+    """Start two workers in a new process, send it the signal, and return the workers' ids."""
     process = subprocess.Popen(
         [sys.executable, "-c", ENDLESS.format(folder=str(folder))],
         cwd=Path(__file__).parents[2],
@@ -168,8 +174,9 @@ print("ended by", ending.number)
 """
 
 
-def test_a_signal_to_all_processes_is_the_parents_to_answer(tmp_path):
-    """As SLURM and ``timeout`` send it: workers that it killed looked like a lack of memory."""
+def test_signal_to_all_processes_is_handled_by_the_parent(tmp_path):
+    """SLURM and ``timeout`` send it to all processes; the killed workers looked like a lack of
+    memory."""
     ended = subprocess.run(
         [sys.executable, "-c", GROUP.format(folder=str(tmp_path))],
         cwd=Path(__file__).parents[2],
@@ -185,7 +192,7 @@ def alive(pids):
     return [pid for pid in pids if Path(f"/proc/{pid}").exists()]
 
 
-def test_ctrl_c_ends_workers_in_the_middle_of_a_job(tmp_path):
+def test_ctrl_c_ends_workers_during_a_job(tmp_path):
     (tmp_path / "long").touch()
     assert not alive(stopped_by(signal.SIGINT, tmp_path))
 
@@ -197,7 +204,7 @@ def test_workers_whose_parent_was_killed_end_after_their_job(tmp_path):
         time.sleep(0.05)
 
 
-def test_as_many_workers_as_cores_but_none_for_a_few_jobs(monkeypatch):
+def test_worker_count_is_cores_or_none_for_few_jobs(monkeypatch):
     monkeypatch.setattr(workers, "cores", lambda: 4)
     assert [workers.count(None, jobs, 10) for jobs in (0, 9, 29, 1000)] == [1, 1, 2, 4]
     assert workers.count(3, 1, 10) == 3
@@ -205,8 +212,8 @@ def test_as_many_workers_as_cores_but_none_for_a_few_jobs(monkeypatch):
         workers.count(0, 100, 10)
 
 
-def test_a_signal_ends_many_jobs_at_once_within_a_training(tmp_path):
-    """Which holds signals until its step is done: measuring success rates takes minutes."""
+def test_signal_ends_many_jobs_within_a_training(tmp_path):
+    """It holds signals until its step is done: measuring success rates takes minutes."""
     (tmp_path / "long").touch()
     began = time.monotonic()
     Timer(0.5, os.kill, (os.getpid(), signal.SIGTERM)).start()
@@ -223,23 +230,23 @@ def test_results_finish_a_started_job_before_a_signal(tmp_path):
                 time.sleep(0.01)
                 yield job
 
-    found = []
+    matches = []
     with pytest.raises(Ended) as ended:
         for item in results(Ending(tmp_path), [["one", "two"]], 1, Lines()):
-            found.append(item)
-    assert found == [(0, "one")] and ended.value.status == 143
+            matches.append(item)
+    assert matches == [(0, "one")] and ended.value.status == 143
 
 
-def test_what_cannot_be_sent_to_workers_is_told_with_a_way_out(tmp_path):
+def test_unpicklable_job_is_reported_with_a_way_out(tmp_path):
     class Local(Squares):
-        """Of a function, which another process cannot find."""
+        """Defined in a function, so another process cannot import it."""
 
     with pytest.raises(ValueError, match=r"cannot be sent to other processes.*workers=1"):
         list(results(Local(tmp_path), groups(1, 2), 2, Lines()))
 
 
 class Guarded(Squares):
-    """As a class below ``if __name__ == "__main__":``, which a worker does not find."""
+    """Like a class below ``if __name__ == "__main__":``, which a worker cannot import."""
 
     def __reduce__(self):
         return resolve_name, ("os:Guarded",)
@@ -302,7 +309,7 @@ def test_ctrl_c_during_worker_imports_prints_one_message(tmp_path):
         preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler),
     )
     seen = 0
-    while seen < 2:  # by the command itself, and by the process that workers are forked from
+    while seen < 2:  # from the command itself, and from the process that forks the workers
         assert process.poll() is None
         time.sleep(0.02)
         if (tmp_path / "importing").exists():

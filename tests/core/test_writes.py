@@ -13,7 +13,7 @@ import pytest
 
 ROOT = Path(__file__).parents[2]
 FOLDERS = ("mitigate", "recipes", "tools")
-WRITERS = {  # names of functions and methods that write to a path, whatever they belong to
+WRITERS = {  # names of functions and methods that write to a path, on any object
     *("write_text", "write_bytes", "touch", "mkdir", "makedirs", "symlink_to", "hardlink_to"),
     *("imwrite", "savefig", "savez", "savez_compressed", "save_file", "save_pretrained", "memmap"),
     *("copy2", "copyfile", "copytree", "copymode", "FileHandler", "SummaryWriter", "Writer1"),
@@ -28,7 +28,7 @@ QUALIFIED = {
     "os.link",
     "sqlite3.connect",
 }
-FILES = "mitigate.core.files"  # its functions have some of these names
+FILES = "mitigate.core.files"  # its functions share some of these names
 DRAFT = "writes a file with a random name that write_atomically made, or a file in memory"
 OWN = "writes into a private temporary folder that it has just made"
 ALLOWED = {
@@ -89,21 +89,21 @@ ALLOWED = {
 
 def imported(tree: ast.AST) -> set[str]:
     """Return the names that a module imports from ``mitigate/core/files.py``."""
-    found = [n for n in ast.walk(tree) if isinstance(n, ast.ImportFrom) and n.module == FILES]
-    return {alias.asname or alias.name for node in found for alias in node.names}
+    matches = [n for n in ast.walk(tree) if isinstance(n, ast.ImportFrom) and n.module == FILES]
+    return {alias.asname or alias.name for node in matches for alias in node.names}
 
 
 def mode_of(call: ast.Call, place: int) -> str:
     """Return the mode that is passed to ``open``, empty for reading."""
     named = [key.value for key in call.keywords if key.arg == "mode"]
-    given = [*named, *call.args[place : place + 1]]
-    return str(given[0].value) if given and isinstance(given[0], ast.Constant) else ""
+    arguments = [*named, *call.args[place : place + 1]]
+    return str(arguments[0].value) if arguments and isinstance(arguments[0], ast.Constant) else ""
 
 
 def writes(source: str) -> Counter[str]:
     """Return the calls in ``source`` that write to a path, by name."""
     tree = ast.parse(source)
-    ours, found = imported(tree), Counter()
+    ours, matches = imported(tree), Counter()
     for node in ast.walk(tree):
         if not isinstance(node, ast.Call):
             continue
@@ -112,24 +112,24 @@ def writes(source: str) -> Counter[str]:
         if name in ("os.open", "builtins.open", "io.open", "gzip.open", "open") or last == "open":
             place = 0 if "." in name and name.split(".")[0] not in ("io", "gzip", "builtins") else 1
             if name == "os.open" or set(mode_of(node, place)) & set("wax+"):
-                found[name if name == "os.open" else "open"] += 1
+                matches[name if name == "os.open" else "open"] += 1
         elif name in QUALIFIED:
-            found[name] += 1
+            matches[name] += 1
         elif last in WRITERS and not (name in ours or name.startswith("files.")):
-            found[last] += 1
-    return found
+            matches[last] += 1
+    return matches
 
 
 SOURCES = sorted(path for folder in FOLDERS for path in (ROOT / folder).rglob("*.py"))
 
 
 def test_writes_go_through_the_opener():
-    found = set()
+    matches = set()
     for path in SOURCES:
         name = str(path.relative_to(ROOT))
-        found |= {(name, call) for call in writes(path.read_text(encoding="utf-8"))}
-    assert not found - ALLOWED.keys(), "use mitigate/core/output.py or files.py"
-    assert not ALLOWED.keys() - found, "these are no longer there"
+        matches |= {(name, call) for call in writes(path.read_text(encoding="utf-8"))}
+    assert not matches - ALLOWED.keys(), "use mitigate/core/output.py or files.py"
+    assert not ALLOWED.keys() - matches, "these are no longer there"
 
 
 @pytest.mark.parametrize(

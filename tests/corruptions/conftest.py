@@ -7,7 +7,8 @@ from tools.pages.curves import psnr, ssim
 
 
 def draw(height: int, width: int, view: int = 0) -> tuple[np.ndarray, np.ndarray]:
-    """uint8 [H, W, 3] and float32 metres [H, W]: two boxes before a sloping wall, all chequered."""
+    """Return uint8 [H, W, 3] and float32 metres [H, W]: two boxes in front of a sloping wall, all
+    chequered."""
     v = ((np.arange(height) + 0.5) / height)[:, None]
     u = ((np.arange(width) + 0.5) / width)[None, :]
     shift = 0.7 * view

@@ -23,57 +23,57 @@ def frame_for(name, panorama):
     return panorama[0] if modality(name) == "rgb" else panorama[1]
 
 
-def test_it_is_of_no_suite_and_has_a_version_of_its_own(name):
+def test_broad_is_in_no_suite_and_has_a_version(name):
     assert name not in names("rgb", "depth") + unseen_names("rgb", "depth")
     assert version(name) == {"version": BROAD[name].version}
 
 
-def test_shape_dtype_and_input_stay_and_severity_zero_changes_no_bit(name, panorama):
+def test_broad_keeps_shape_dtype_and_input(name, panorama):
     frame = frame_for(name, panorama)
     before = frame.copy()
     assert corrupt(frame, name, 0.0, key=KEYS[0]).tobytes() == frame.tobytes()
     for key in KEYS:
-        made = corrupt(frame, name, 0.9, key=key)
-        assert made.shape == frame.shape and made.dtype == frame.dtype
-        assert np.isfinite(made[np.isfinite(frame)]).all()
+        output = corrupt(frame, name, 0.9, key=key)
+        assert output.shape == frame.shape and output.dtype == frame.dtype
+        assert np.isfinite(output[np.isfinite(frame)]).all()
     assert frame.tobytes() == before.tobytes()
 
 
-def test_equal_keys_give_equal_pixels_and_other_episodes_other_ones(name, panorama):
+def test_equal_keys_give_equal_pixels(name, panorama):
     frame = frame_for(name, panorama)
-    made = [corrupt(frame, name, 0.8, key=key).tobytes() for key in KEYS]
-    assert made == [corrupt(frame, name, 0.8, key=key).tobytes() for key in KEYS]
-    assert len(set(made)) == len(made)
+    output = [corrupt(frame, name, 0.8, key=key).tobytes() for key in KEYS]
+    assert output == [corrupt(frame, name, 0.8, key=key).tobytes() for key in KEYS]
+    assert len(set(output)) == len(output)
 
 
-def test_the_composition_is_kept_through_an_episode(panorama):
-    """Where nothing is drawn for each frame, another frame number changes nothing."""
-    kept = [
+def test_composition_is_constant_within_an_episode(panorama):
+    """Compositions are not drawn per frame, so another frame number changes nothing."""
+    remaining = [
         corrupt(panorama[0], "broad_rgb", 0.8, key=Key(0, f"e{i}", 0)).tobytes()
         == corrupt(panorama[0], "broad_rgb", 0.8, key=Key(0, f"e{i}", 1)).tobytes()
         for i in range(40)
     ]
-    assert 5 < sum(kept) < 35
+    assert 5 < sum(remaining) < 35
 
 
-def test_a_severer_composition_corrupts_more_on_average(name, panorama):
+def test_higher_severity_corrupts_more_on_average(name, panorama):
     frame = frame_for(name, panorama)
     valid = (frame > 0) & (frame < 100)
 
     def change(severity):
-        made = [corrupt(frame, name, severity, key=key)[valid] for key in KEYS]
-        return np.mean([np.abs(m - frame[valid].astype(np.float64)).mean() for m in made])
+        output = [corrupt(frame, name, severity, key=key)[valid] for key in KEYS]
+        return np.mean([np.abs(m - frame[valid].astype(np.float64)).mean() for m in output])
 
     assert change(0.2) < change(0.5) < change(1.0)
 
 
-def test_what_a_draw_is_told_to_do_is_what_it_does(name, panorama, monkeypatch):
+def test_draw_follows_its_composition(name, panorama, monkeypatch):
     called = []
 
     def noted(primitive):
-        def change(*given):
+        def change(*arguments):
             called.append(primitive.__name__.replace("_", " "))
-            return primitive(*given)
+            return primitive(*arguments)
 
         change.__name__ = primitive.__name__
         return change
@@ -87,31 +87,31 @@ def test_what_a_draw_is_told_to_do_is_what_it_does(name, panorama, monkeypatch):
 
 
 @pytest.mark.parametrize("primitive", rgb.PRIMITIVES, ids=lambda p: p.__name__)
-def test_a_primitive_of_rgb_changes_views_within_their_range(primitive):
+def test_rgb_primitive_changes_views_within_their_range(primitive):
     views = np.random.default_rng(0).random((3, 20, 28, 3), np.float32)
-    made = [primitive(views.copy(), 0.8, stream(i), stream(100 + i)) for i in range(12)]
-    assert all(m.shape == views.shape and m.min() >= 0 and m.max() <= 1 for m in made)
-    assert sum(not np.array_equal(m, views) for m in made) >= 8
+    output = [primitive(views.copy(), 0.8, stream(i), stream(100 + i)) for i in range(12)]
+    assert all(m.shape == views.shape and m.min() >= 0 and m.max() <= 1 for m in output)
+    assert sum(not np.array_equal(m, views) for m in output) >= 8
 
 
 @pytest.mark.parametrize("primitive", depth.PRIMITIVES, ids=lambda p: p.__name__)
-def test_a_primitive_of_depth_changes_views_that_have_holes(primitive):
+def test_depth_primitive_changes_views_that_have_holes(primitive):
     views = np.random.default_rng(0).uniform(0.05, 0.7, (3, 20, 28)).astype(np.float32)
     views[:, 3:5, 3:5] = np.nan
-    made = [primitive(views.copy(), 0.8, stream(i), stream(100 + i)) for i in range(12)]
-    assert all(m.shape == views.shape for m in made)
-    assert sum(not np.array_equal(m, views, equal_nan=True) for m in made) >= 6
+    output = [primitive(views.copy(), 0.8, stream(i), stream(100 + i)) for i in range(12)]
+    assert all(m.shape == views.shape for m in output)
+    assert sum(not np.array_equal(m, views, equal_nan=True) for m in output) >= 6
 
 
-def test_depth_keeps_invalid_pixels_writes_the_sentinel_and_stays_in_range(panorama):
+def test_depth_keeps_invalid_pixels_and_stays_in_range(panorama):
     sensor = DepthSensor(z_max=5.0, missing=7.0)
     frame = panorama[1].copy()
     frame[0, :4], frame[1, :2] = 0.0, np.nan
     for key in KEYS:
-        made = corrupt(frame, "broad_depth", 1.0, key=key, sensor=sensor)
+        output = corrupt(frame, "broad_depth", 1.0, key=key, sensor=sensor)
         valid = (frame > 0) & np.isfinite(frame)
-        assert made[~valid].tobytes() == frame[~valid].tobytes()
-        assert (((made[valid] > 0) & (made[valid] <= 5.0)) | (made[valid] == 7.0)).all()
+        assert output[~valid].tobytes() == frame[~valid].tobytes()
+        assert (((output[valid] > 0) & (output[valid] <= 5.0)) | (output[valid] == 7.0)).all()
 
 
 @pytest.mark.parametrize("size", [(1, 1), (3, 5), (48, 31)])
@@ -123,7 +123,7 @@ def test_odd_and_tiny_frames_work(name, size):
     assert all(corrupt(frame, name, 1.0, key=key).shape == frame.shape for key in KEYS)
 
 
-def test_a_schedule_draws_it_in_place_of_its_share_of_the_corruptions():
+def test_schedule_draws_broad_for_its_share():
     schedule = Schedule("per_episode", 0.6, clean_share=0.25, broad_share=0.4)
     drawn = [schedule.draw(0, f"e{i}", 0)[0] for i in range(4000)]
     broad = [c for c in drawn if c.name in BROAD]
@@ -134,12 +134,12 @@ def test_a_schedule_draws_it_in_place_of_its_share_of_the_corruptions():
     assert all(a == b for a, b in zip(drawn, same, strict=True) if a.name not in BROAD)
 
 
-def test_without_a_share_none_draws_it_and_a_wrong_share_is_refused():
+def test_schedule_without_a_share_draws_no_broad():
     schedule = Schedule("per_frame", 0.6)
     assert {schedule.draw(0, "e", i)[0].name for i in range(500)} <= {"clean", *NAMES}
     with pytest.raises(ValueError, match="broad_share must be in"):
         Schedule("per_frame", 0.6, broad_share=1.5)
 
 
-def test_each_modality_has_one():
+def test_each_modality_has_one_broad():
     assert {broad_name(m) for m in ("rgb", "depth")} == set(BROAD)

@@ -1,4 +1,4 @@
-"""The cache of masks is bounded by bytes, and a mask that is computed again is the same."""
+"""The cache of masks is bounded by bytes, and a recomputed mask is equal."""
 
 from __future__ import annotations
 
@@ -36,15 +36,15 @@ def test_dropped_mask_is_made_again_to_the_bit(memory, name):
     assert np.array_equal(corrupt(rgb, name, 0.6, key=Key(0, "a")), first)
 
 
-def test_cached_keeps_the_last_used_and_a_large_result_alone(memory):
-    made = []
+def test_cached_keeps_the_last_used_and_one_large_result(memory):
+    output = []
 
     @keying.cached
     def zeros(count):
-        made.append(count)
+        output.append(count)
         return np.zeros(count, np.uint8)
 
-    zeros(400_000), zeros(500_000), zeros(400_000)  # the second is longest unused
+    zeros(400_000), zeros(500_000), zeros(400_000)  # the second is the least recently used
     zeros(300_000), zeros(400_000)
-    assert made == [400_000, 500_000, 300_000]
+    assert output == [400_000, 500_000, 300_000]
     assert zeros(2_000_000) is zeros(2_000_000) and len(memory) == 1

@@ -71,28 +71,30 @@ def summary(folder: Path) -> dict:
     return json.loads((folder / "corrupt.json").read_text())
 
 
-def test_every_frame_is_what_the_suite_makes_of_it(run, walk):
+def test_every_frame_equals_the_suites_output(run, walk):
     status, out, err = run("corruption=low_light_noise", "severity=0.7", "seed=3")
     assert status == 0 and "13 frames written" in out
     for number in range(12):  # frame10 is number 10, not number 2
         key = Key(3, "a", number)
-        wanted = corrupt(RGB[number], "low_light_noise", 0.7, key=key)
-        assert np.array_equal(read(walk / f"out/a/frame{number}.png"), wanted)
-    wanted = corrupt(RGB[0], "low_light_noise", 0.7, key=Key(3, "b/c", 0))
-    assert np.array_equal(read(walk / "out/b/c/0.png"), wanted)
-    found = summary(walk / "out")
-    assert found["written"] == 13 and found["left_out"] == []
-    assert found["settings"]["corruption"] == "low_light_noise" and found["settings"]["seed"] == 3
-    assert found["episodes"]["a"]["frames"] == 12
+        expected = corrupt(RGB[number], "low_light_noise", 0.7, key=key)
+        assert np.array_equal(read(walk / f"out/a/frame{number}.png"), expected)
+    expected = corrupt(RGB[0], "low_light_noise", 0.7, key=Key(3, "b/c", 0))
+    assert np.array_equal(read(walk / "out/b/c/0.png"), expected)
+    matches = summary(walk / "out")
+    assert matches["written"] == 13 and matches["left_out"] == []
+    assert (
+        matches["settings"]["corruption"] == "low_light_noise" and matches["settings"]["seed"] == 3
+    )
+    assert matches["episodes"]["a"]["frames"] == 12
 
 
 def test_all_frames_can_be_one_episode(run, walk):
     assert run("corruption=low_light_noise", "severity=0.7", "episode=all")[0] == 0
-    wanted = corrupt(RGB[0], "low_light_noise", 0.7, key=Key(0, "all", 12))
-    assert np.array_equal(read(walk / "out/b/c/0.png"), wanted)
+    expected = corrupt(RGB[0], "low_light_noise", 0.7, key=Key(0, "all", 12))
+    assert np.array_equal(read(walk / "out/b/c/0.png"), expected)
 
 
-def test_the_same_command_goes_on_and_new_frames_join_at_the_end(run, walk):
+def test_same_command_resumes_and_appends_new_frames(run, walk):
     run(*SPATTER)
     again = walk / "out/b/c/0.png"
     whole = again.read_bytes()
@@ -101,11 +103,11 @@ def test_the_same_command_goes_on_and_new_frames_join_at_the_end(run, walk):
     status, out, _ = run(*SPATTER)
     assert status == 0 and "2 frames written" in out and "12 already existed" in out
     assert again.read_bytes() == whole
-    wanted = corrupt(RGB[3], "spatter", 0.6, key=Key(0, "a", 12))
-    assert np.array_equal(read(walk / "out/a/frame12.png"), wanted)
+    expected = corrupt(RGB[3], "spatter", 0.6, key=Key(0, "a", 12))
+    assert np.array_equal(read(walk / "out/a/frame12.png"), expected)
 
 
-def test_other_settings_or_frames_in_the_same_folder_are_refused(run, walk):
+def test_other_settings_or_frames_in_a_folder_are_rejected(run, walk):
     run(*SPATTER)
     text = complaint(run("corruption=spatter", "severity=0.5"))
     assert "severity=0.6 there, severity=0.5 now" in text and "Name another folder" in text
@@ -126,10 +128,10 @@ def test_16_bit_depth_is_in_millimetres_unless_said_otherwise(run, tmp_path):
     for number, counts in enumerate(COUNTS):
         out = read(tmp_path / f"out/{number}.png")
         metres = (counts * 0.001).astype(np.float32)
-        wanted = corrupt(metres, "gaussian_noise", 0.8, key=Key(0, ".", number))
+        expected = corrupt(metres, "gaussian_noise", 0.8, key=Key(0, ".", number))
         assert out.dtype == np.uint16 and out.shape == counts.shape
         assert (out[counts == 0] == 0).all() and (out[counts > 0] > 0).all()
-        np.testing.assert_allclose(out * 0.001, wanted, atol=0.00051)
+        np.testing.assert_allclose(out * 0.001, expected, atol=0.00051)
         assert not np.array_equal(out, counts)
     assert run("corruption=quantization", "severity=1", "unit=0.00025", out="fine")[0] == 0
     assert set(np.unique(read(tmp_path / "fine/0.png"))) <= {0, 4} | {2000 * n for n in range(9)}
@@ -144,26 +146,26 @@ def test_npy_depth_is_in_metres_and_keeps_its_kind(run, tmp_path, dtype):
     out = read(tmp_path / "out/x.npy")
     sensor = DepthSensor(z_max=9.5, missing=10.0)
     metres = depth.astype(np.float32)
-    wanted = corrupt(metres, "missing_data", 1.0, key=Key(0, ".", 0), sensor=sensor)
+    expected = corrupt(metres, "missing_data", 1.0, key=Key(0, ".", 0), sensor=sensor)
     assert out.dtype == depth.dtype and out.shape == depth.shape
-    assert np.array_equal(out.astype(np.float32), wanted, equal_nan=True)
+    assert np.array_equal(out.astype(np.float32), expected, equal_nan=True)
     assert out[0, :5].tobytes() == depth[0, :5].tobytes()
-    assert np.array_equal(out[wanted == metres], depth[wanted == metres])
+    assert np.array_equal(out[expected == metres], depth[expected == metres])
 
 
-def test_a_jpeg_becomes_png_or_stays_jpeg(run, tmp_path):
+def test_jpeg_becomes_png_or_stays_jpeg(run, tmp_path):
     save(tmp_path / "in/x.JPG", RGB[0])
     decoded = read(tmp_path / "in/x.JPG")
-    wanted = corrupt(decoded, "spatter", 0.6, key=Key(0, ".", 0))
+    expected = corrupt(decoded, "spatter", 0.6, key=Key(0, ".", 0))
     assert run(*SPATTER)[0] == 0
-    assert np.array_equal(read(tmp_path / "out/x.png"), wanted)
+    assert np.array_equal(read(tmp_path / "out/x.png"), expected)
     assert run(*SPATTER, "format=same", out="same")[0] == 0
     with Image.open(tmp_path / "same/x.JPG") as image:
         assert image.format == "JPEG"
-        assert np.abs(np.array(image).astype(int) - wanted).mean() < 8
+        assert np.abs(np.array(image).astype(int) - expected).mean() < 8
 
 
-def test_a_jpeg_is_turned_upright_as_its_exif_data_say(run, tmp_path):
+def test_jpeg_is_rotated_by_its_exif_data(run, tmp_path):
     (tmp_path / "in").mkdir()
     exif = Image.Exif()
     exif[0x0112] = 6  # turned by 90 degrees
@@ -173,7 +175,7 @@ def test_a_jpeg_is_turned_upright_as_its_exif_data_say(run, tmp_path):
     assert np.array_equal(read(tmp_path / "out/x.png"), np.rot90(decoded, -1))
 
 
-def test_two_files_never_become_one(run, tmp_path):
+def test_two_files_never_share_an_output(run, tmp_path):
     save(tmp_path / "in/x.png", RGB[0])
     save(tmp_path / "in/x.jpg", RGB[1])
     status, _, err = run(*SPATTER)
@@ -183,7 +185,7 @@ def test_two_files_never_become_one(run, tmp_path):
     )
 
 
-def test_corrupt_reports_a_png_that_is_added_beside_a_jpeg(run, tmp_path):
+def test_corrupt_reports_a_png_added_next_to_a_jpeg(run, tmp_path):
     save(tmp_path / "in/x.jpg", RGB[1])
     run(*SPATTER)
     save(tmp_path / "in/x.png", RGB[0])
@@ -202,7 +204,7 @@ def test_files_that_are_left_alone_are_counted_by_suffix(run, walk):
     assert "no rgb frame" in text and "not read: 1 .tif" in text and "PNG or JPEG" in text
 
 
-def test_bad_files_are_left_out_with_the_reason_and_keep_their_number(run, tmp_path):
+def test_bad_files_are_skipped_and_keep_their_number(run, tmp_path):
     folder = tmp_path / "in"
     save(folder / "0.png", RGB[0])
     save(folder / "1.png", RGB[1])
@@ -221,8 +223,8 @@ def test_bad_files_are_left_out_with_the_reason_and_keep_their_number(run, tmp_p
     status, out, err = run("corruption=low_light_noise", "severity=0.5")
     assert status == 1 and "2 frames written" in out and "1 of the other modality" in out
     assert "7 files left out" in err
-    found = summary(tmp_path / "out")
-    reasons = {entry["file"]: entry["reason"] for entry in found["left_out"]}
+    matches = summary(tmp_path / "out")
+    reasons = {entry["file"]: entry["reason"] for entry in matches["left_out"]}
     for name, part in {
         "1.png": "cannot be decoded",
         "2.png": "8-bit RGB with alpha PNG: RGB must be 8-bit RGB without alpha",
@@ -233,11 +235,11 @@ def test_bad_files_are_left_out_with_the_reason_and_keep_their_number(run, tmp_p
         "8.png": "cannot be read",
     }.items():
         assert part in reasons.pop(name)
-    assert not reasons and found["other_modality"] == 1 and found["other_files"] == {".txt": 1}
-    wanted = corrupt(RGB[7], "low_light_noise", 0.5, key=Key(0, ".", 7))
-    assert np.array_equal(read(tmp_path / "out/7.png"), wanted)
-    made = sorted(path.name for path in (tmp_path / "out").iterdir())
-    assert made == ["0.png", "7.png", "corrupt.json"]
+    assert not reasons and matches["other_modality"] == 1 and matches["other_files"] == {".txt": 1}
+    expected = corrupt(RGB[7], "low_light_noise", 0.5, key=Key(0, ".", 7))
+    assert np.array_equal(read(tmp_path / "out/7.png"), expected)
+    output = sorted(path.name for path in (tmp_path / "out").iterdir())
+    assert output == ["0.png", "7.png", "corrupt.json"]
 
 
 def test_bad_depth_is_left_out_and_never_unpickled(run, tmp_path):
@@ -268,7 +270,7 @@ def test_depth_in_another_unit_is_left_out(run, tmp_path):
     assert not (tmp_path / "out/0.png").exists()
 
 
-def test_a_run_that_is_cut_off_leaves_whole_files_only(run, walk, monkeypatch):
+def test_interrupted_run_leaves_whole_files_only(run, walk, monkeypatch):
     real, calls = os.replace, []
 
     def full(source, target):
@@ -332,13 +334,13 @@ def test_wrong_options_are_explained(run, walk, options, part):
     assert not (walk / "out").exists()
 
 
-def test_a_unit_too_small_for_the_range_is_refused(run, tmp_path):
+def test_unit_too_small_for_the_range_is_rejected(run, tmp_path):
     save(tmp_path / "in/0.png", COUNTS[0])
     text = complaint(run("corruption=multipath", "severity=1", "unit=0.0001"))
     assert "to fit into a 16-bit PNG" in text and "z_max=6.5535" in text
 
 
-def test_the_list_names_every_corruption(capsys):
+def test_list_names_every_corruption(capsys):
     assert program.main(["--list"]) == 0
     lines = capsys.readouterr().out.splitlines()
     assert [line.split()[0] for line in lines[1:]] == list(registry.known("rgb", "depth"))
@@ -353,7 +355,7 @@ def test_help_names_every_option(capsys):
     assert program.main([]) == 2
 
 
-def test_it_starts_without_torch():
+def test_corrupt_starts_without_torch():
     code = (
         "import sys, mitigate.corruptions.frames_command as c; c.main(['--list']); "
         "sys.exit(any(m in sys.modules for m in ('torch', 'hydra', 'torchrl')))"
@@ -365,8 +367,8 @@ def test_it_starts_without_torch():
 def test_corrupt_rejects_a_fifo_in_place_of_its_summary(run, walk):
     (walk / "out").mkdir()
     os.mkfifo(walk / "out" / "corrupt.json")
-    said = complaint(run("corruption=spatter", "severity=0.5"))
-    assert "corrupt.json must be a regular file, got a FIFO" in said
+    message = complaint(run("corruption=spatter", "severity=0.5"))
+    assert "corrupt.json must be a regular file, got a FIFO" in message
 
 
 def damage_by_truncation(walk: Path) -> None:
@@ -406,9 +408,9 @@ def test_corrupt_writes_changed_output_frames_again(run, walk, damage, earlier):
     run(*SPATTER)
     whole = contents(walk / "out")
     if earlier == "without checksums":  # summaries of earlier versions
-        held = summary(walk / "out")
-        del held["checksums"], held["replaced"]
-        (walk / "out/corrupt.json").write_text(json.dumps(held))
+        content = summary(walk / "out")
+        del content["checksums"], content["replaced"]
+        (walk / "out/corrupt.json").write_text(json.dumps(content))
     damage(walk)
     count = 2 if damage is damage_by_swapping else 1
     status, out, err = run(*SPATTER)
@@ -416,8 +418,8 @@ def test_corrupt_writes_changed_output_frames_again(run, walk, damage, earlier):
     assert f"{count} frames written" in out and f"{13 - count} already existed" in out
     assert f"{count} frames differed from the results of this command" in err
     assert "a/frame3.png" in err
-    found = summary(walk / "out")
-    assert len(found["replaced"]) == count and len(found["checksums"]) == 13
+    matches = summary(walk / "out")
+    assert len(matches["replaced"]) == count and len(matches["checksums"]) == 13
     assert run(*SPATTER)[1].startswith("0 frames written")
 
 
@@ -425,8 +427,8 @@ def test_corrupt_writes_a_frame_again_whose_input_changed(run, walk):
     run(*SPATTER)
     save(walk / "in/a/frame3.png", RGB[7])
     assert "1 frames written" in run(*SPATTER)[1]
-    wanted = corrupt(RGB[7], "spatter", 0.6, key=Key(0, "a", 3))
-    assert np.array_equal(read(walk / "out/a/frame3.png"), wanted)
+    expected = corrupt(RGB[7], "spatter", 0.6, key=Key(0, "a", 3))
+    assert np.array_equal(read(walk / "out/a/frame3.png"), expected)
 
 
 def test_corrupt_keeps_the_checksums_of_an_interrupted_run(run, walk, monkeypatch):
@@ -448,8 +450,8 @@ def test_corrupt_keeps_the_checksums_of_an_interrupted_run(run, walk, monkeypatc
 
 def test_corrupt_rejects_checksums_of_another_form(run, walk):
     run(*SPATTER)
-    held = summary(walk / "out")
-    (walk / "out/corrupt.json").write_text(json.dumps({**held, "checksums": ["x"]}))
+    content = summary(walk / "out")
+    (walk / "out/corrupt.json").write_text(json.dumps({**content, "checksums": ["x"]}))
     assert "corrupt.json is damaged" in complaint(run(*SPATTER))
 
 

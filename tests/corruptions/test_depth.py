@@ -1,4 +1,4 @@
-"""What each depth corruption does to metres."""
+"""The effect of each depth corruption in metres."""
 
 import numpy as np
 import pytest
@@ -22,15 +22,15 @@ def test_noise_grows_with_the_square_of_depth(metres, severity):
 
 @pytest.mark.parametrize("name", ["gaussian_noise", "ripple", "broad_depth"])
 @pytest.mark.parametrize("metres", [11.0, 65.5, 3.4e38])
-def test_depth_beyond_the_range_is_corrupted_as_depth_at_its_end(name, metres):
+def test_depth_beyond_the_range_is_clipped_first(name, metres):
     near = np.full((4, 24, 32), 4.0, np.float32)
     far, end = near.copy(), near.copy()
     far[:, :8], end[:, :8] = metres, 10.0
     for episode in "abcdefgh":
-        made = corrupt(far, name, 1.0, key=Key(0, episode))
-        assert np.array_equal(made, corrupt(end, name, 1.0, key=Key(0, episode)))
+        output = corrupt(far, name, 1.0, key=Key(0, episode))
+        assert np.array_equal(output, corrupt(end, name, 1.0, key=Key(0, episode)))
     if name == "gaussian_noise":
-        assert made[:, :8].min() > 1.0
+        assert output[:, :8].min() > 1.0
 
 
 def test_noise_is_new_for_every_frame_and_view():
@@ -59,10 +59,10 @@ def test_holes_are_blobs_that_move_every_five_frames():
     views = frames[0] != 4
     assert (views[0] != views[1]).any()
     rolls = {np.sort(view.sum(0)).tobytes() for view in views}
-    assert len(rolls) == 1  # one field for the episode, placed anew for each view
+    assert len(rolls) == 1  # one field per episode, placed separately for each view
 
 
-def test_the_sentinel_of_the_sensor_is_written():
+def test_sentinel_of_the_sensor_is_written():
     out = corrupt(
         WALL, "missing_data", 0.6, key=Key(0, "a"), sensor=DepthSensor(0.5, 5.0, missing=-1.0)
     )
@@ -87,7 +87,7 @@ def test_multipath_overestimates_beside_a_farther_surface_only():
     assert 0.2 < expected < 1.0
 
 
-def test_an_echo_is_never_beyond_the_farther_surface(scene):
+def test_echo_is_never_beyond_the_farther_surface(scene):
     gaps = np.linspace(0, 2.5, 500)
     assert (echo_shift(gaps, 1.0) <= gaps + 1e-9).all()
     depth = scene.draw(96, 128)[1]
@@ -96,7 +96,7 @@ def test_an_echo_is_never_beyond_the_farther_surface(scene):
 
 
 @pytest.mark.parametrize("severity", [1e-3, 0.1, 0.6, 1.0])
-def test_the_echo_polynomial_is_the_phasor_sum_to_a_hundredth_of_a_millimetre(severity):
+def test_echo_polynomial_matches_the_phasor_sum(severity):
     gaps = np.linspace(0, 2.5, 5001)
     coefficients = echo_polynomial(severity)
     assert coefficients.dtype == np.float32
@@ -112,7 +112,7 @@ def test_invalid_neighbours_cast_no_echo(hole):
     assert out.tobytes() == depth.tobytes()
 
 
-def test_an_echo_window_matches_a_plain_dilation(scene):
+def test_echo_window_matches_a_plain_dilation(scene):
     depth = scene.draw(77, 90)[1]
     reach = round(0.03 * 77)
     padded = np.pad(depth, reach)
@@ -136,7 +136,7 @@ def test_quantization_rounds_to_its_step(severity):
 
 
 @pytest.mark.parametrize("name", ["gaussian_noise", "missing_data", "multipath", "quantization"])
-def test_valid_depth_is_clipped_to_the_range_of_the_sensor(name):
+def test_valid_depth_is_clipped_to_the_sensor_range(name):
     depth = np.array([[1e-5, 4.9, 7.0]] * 20, np.float32)
     out = corrupt(depth, name, 0.05, key=Key(0, "a"), sensor=DepthSensor(0.5, 5.0))
     assert out.max() <= 5.0 and out[out != 0].min() >= np.float32(1e-3)
@@ -153,7 +153,7 @@ def test_millimetres_are_refused(name, severity):
     corrupt(depth, name, severity, key=1, sensor=DepthSensor(z_max=3000.0))
 
 
-def test_a_few_small_counts_do_not_make_metres_of_millimetres_nor_a_far_sky_the_reverse():
+def test_few_extreme_readings_do_not_change_the_unit():
     depth = np.full((48, 64), 2500, np.float32)
     depth[-3:] = 12.0  # one in sixteen
     for frame in (depth, depth[::-1]):
@@ -165,31 +165,31 @@ def test_a_few_small_counts_do_not_make_metres_of_millimetres_nor_a_far_sky_the_
 
 
 @pytest.mark.parametrize("depth", [12.0, 0.0, np.nan, np.inf])
-def test_a_far_wall_and_a_frame_without_readings_are_fine(depth):
+def test_far_wall_and_frame_without_readings_are_valid(depth):
     out = corrupt(np.full((8, 8), depth, np.float32), "multipath", 0.6, key=1)
-    wanted = np.full((8, 8), 10.0 if depth == 12.0 else depth)
-    assert np.array_equal(out, wanted, equal_nan=True)
+    expected = np.full((8, 8), 10.0 if depth == 12.0 else depth)
+    assert np.array_equal(out, expected, equal_nan=True)
 
 
 @pytest.mark.parametrize(
     "ends", [(5.0, 0.5), (0.0, 0.0), (0.0, -5.0), (0.0, np.inf), (0.0, np.nan)]
 )
-def test_a_sensor_without_a_range_is_refused(ends):
+def test_sensor_without_a_range_is_rejected(ends):
     with pytest.raises(ValueError, match="must be 0 <= z_min < z_max"):
         DepthSensor(*ends)
 
 
-def test_a_normalised_sensor_goes_through_metres_and_back():
+def test_normalised_sensor_is_converted_to_metres_and_back():
     sensor = DepthSensor(0.5, 5.0)
     unit = np.array([0.0, 0.2, 1.0], np.float32)
     assert sensor.to_metres(unit).tolist() == pytest.approx([0.0, 1.4, 5.0])
     assert sensor.from_metres(sensor.to_metres(unit)) == pytest.approx(unit)
     near = sensor.from_metres(np.array([0.0, sensor.z_min / 2, sensor.z_min]))
-    assert near[0] == 0 and (near[1:] > 0).all()  # a reading is no hole
+    assert near[0] == 0 and (near[1:] > 0).all()  # a reading is not a hole
     assert sensor.to_metres(unit).dtype == np.float32
 
 
-def test_half_size_depth_is_hurt_alike(scene):
+def test_half_size_depth_is_corrupted_alike(scene):
     full = scene.draw(256, 320)[1]
     half = full[::2, ::2]
     for name in ("missing_data", "multipath", "quantization", "gaussian_noise"):

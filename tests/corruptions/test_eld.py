@@ -19,7 +19,7 @@ from mitigate.corruptions.masks import light_loss
     "severity, gain, read, row",
     [(0.5, 0.751, 1.54, 0.48), (0.6, 1.139, 1.87, 0.59), (1.0, 6.011, 4.03, 1.43)],
 )
-def test_the_parameters_of_the_sony_are_the_published_ones(severity, gain, read, row):
+def test_sony_parameters_are_the_published_ones(severity, gain, read, row):
     noise = noise_at(severity)
     assert noise.gain == pytest.approx(gain, rel=2e-3)
     assert noise.read == pytest.approx(read, abs=0.006)
@@ -50,7 +50,7 @@ def slow_sample(levels, gain, severity, rng):
 
 @pytest.mark.parametrize("severity", [0.1, 0.3, 0.6, 0.8, 1.0])
 @pytest.mark.parametrize("level", [0, 12, 90, 220])
-def test_the_tables_sample_what_the_slow_sampler_samples(severity, level):
+def test_tables_match_the_slow_sampler(severity, level):
     views = np.full((96, 64, 64, 3), level, np.uint8)
     key = Key(0, "a")
     slow = slow_sample(
@@ -70,7 +70,7 @@ def test_the_tables_sample_what_the_slow_sampler_samples(severity, level):
 
 @pytest.mark.parametrize("severity", [0.3, 0.6, 1.0])
 @pytest.mark.parametrize("level", [12, 90, 220])
-def test_the_distribution_is_that_of_the_slow_sampler(severity, level):
+def test_distribution_matches_the_slow_sampler(severity, level):
     from scipy import stats
 
     views = np.full((48, 64, 64, 3), level, np.uint8)
@@ -85,7 +85,7 @@ def test_the_distribution_is_that_of_the_slow_sampler(severity, level):
 
 
 @pytest.mark.parametrize("severity, decibel", [(0.5, 31.4), (0.6, 27.0), (1.0, 11.9)])
-def test_the_noise_is_as_strong_as_the_suite_says(severity, decibel, scene):
+def test_noise_has_the_strength_of_the_suite(severity, decibel, scene):
     fast, slow = [], []
     for i in range(6):
         frame = np.rint(0.6 * scene.draw(120, 160, view=i)[0]).astype(np.uint8)  # mean 74
@@ -100,12 +100,12 @@ def test_the_noise_is_as_strong_as_the_suite_says(severity, decibel, scene):
     assert np.mean(fast) == pytest.approx(decibel, abs=1.0)  # the level depends on the picture
 
 
-def test_low_light_with_and_without_noise_are_a_controlled_pair(scene):
+def test_low_light_differs_from_low_light_noise_by_noise_only(scene):
     frame = np.stack([scene.draw(96, 96)[0]] * 12)
     dark = corrupt(frame, "low_light", 0.5, key=Key(0, "a")).astype(float)
     noisy = corrupt(frame, "low_light_noise", 0.5, key=Key(0, "a")).astype(float)
     mean = noisy.mean(0)
-    bright = dark[0] > 40  # clipping at zero lifts deep shadows
+    bright = dark[0] > 40  # clipping at zero brightens deep shadows
     assert abs((mean - dark[0])[bright].mean()) < 0.8
     assert np.corrcoef(mean.ravel(), dark[0].ravel())[0, 1] > 0.995
 

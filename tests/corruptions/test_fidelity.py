@@ -1,4 +1,4 @@
-"""The fidelity check: what it reads, what it lets pass, and what it catches."""
+"""The fidelity check: what it reads, accepts and rejects."""
 
 from __future__ import annotations
 
@@ -51,10 +51,10 @@ def test_directions_are_read_in_order(text, directions):
 
 
 def test_landmarks_numbers_and_the_rest_are_read():
-    said = facts("Don't enter the first room; take two steps past the grey couches, 3 m north.")
-    assert said.landmarks == ("room", "sofa")
-    assert said.numbers == ("first", "two step", "three meter")
-    assert (said.compass, said.attributes, said.denials) == (("north",), ("grey",), 1)
+    message = facts("Don't enter the first room; take two steps past the grey couches, 3 m north.")
+    assert message.landmarks == ("room", "sofa")
+    assert message.numbers == ("first", "two step", "three meter")
+    assert (message.compass, message.attributes, message.denials) == (("north",), ("grey",), 1)
     assert facts("First, turn left. Then take a right.").numbers == ()
     assert facts("Turn left, take a right, then turn around.").turns == 3
 
@@ -69,7 +69,7 @@ def test_landmarks_numbers_and_the_rest_are_read():
         ("Exit the room.", "Kindly leave the room."),
     ],
 )
-def test_what_says_the_same_passes(old, new):
+def test_faithful_text_passes(old, new):
     assert check(old, new) == []
 
 
@@ -91,7 +91,7 @@ def test_what_says_the_same_passes(old, new):
         ("Turn left at the second sofa, go past the red lamp and stop.", "number invented"),
     ],
 )
-def test_what_says_something_else_is_caught(new, kind):
+def test_changed_meaning_is_detected(new, kind):
     problems = check("Turn left at the sofa, go past the red lamp and stop.", new)
     assert any(problem.startswith(kind) for problem in problems)
 
@@ -107,7 +107,7 @@ CORPORA = ["handwritten", "ours", pytest.param("r2r", marks=[needs_r2r_ce, pytes
 
 
 @pytest.mark.parametrize("name", CORPORA)
-def test_every_text_is_itself_and_no_single_flip_or_invention_passes(name):
+def test_identical_text_passes_and_single_changes_do_not(name):
     flips = missed = 0
     for text in corpus(name):
         assert check(text, text) == []
@@ -122,17 +122,17 @@ def test_every_text_is_itself_and_no_single_flip_or_invention_passes(name):
 
 @pytest.mark.parametrize("manner", MANNERS)
 @pytest.mark.parametrize("name", CORPORA)
-def test_nearly_every_rewrite_passes_and_all_that_is_given_does(manner, name):
-    found = [(t, restyle(t, manner, Key(0, str(i)))) for i, t in enumerate(corpus(name))]
-    assert all(check(text, r.text) == [] for text, r in found)
-    assert sum(r.passed for _, r in found) >= 0.98 * len(found)
-    assert all(r.text != text for text, r in found if r.passed)
-    kept, count = (sum(getattr(r, k) for _, r in found) for k in ("plain", "clauses"))
-    assert kept <= 0.3 * count
+def test_most_rewrites_pass_and_all_returned_ones_do(manner, name):
+    matches = [(t, restyle(t, manner, Key(0, str(i)))) for i, t in enumerate(corpus(name))]
+    assert all(check(text, r.text) == [] for text, r in matches)
+    assert sum(r.passed for _, r in matches) >= 0.98 * len(matches)
+    assert all(r.text != text for text, r in matches if r.passed)
+    remaining, count = (sum(getattr(r, k) for _, r in matches) for k in ("plain", "clauses"))
+    assert remaining <= 0.3 * count
 
 
 @pytest.mark.parametrize("manner", MANNERS)
-def test_the_frames_of_a_manner_say_nothing_by_themselves(manner):
+def test_style_frames_add_no_facts(manner):
     voice = phrases.VOICES[manner]
     frames = [frame for group in voice.frames.values() for frame in group]
     frames += [f"{opener} {{}}." for opener in voice.openers]
@@ -144,7 +144,7 @@ def test_the_frames_of_a_manner_say_nothing_by_themselves(manner):
         assert check(f"go to the {noun}", f"go to the {other}") == []
 
 
-def test_a_language_model_that_lies_is_replaced_and_reported():
+def test_false_model_answer_is_replaced_and_reported():
     text = "Turn left at the sofa and stop."
     liar = restyle(text, "formal", Key(0, "1"), lambda text, manner: text.replace("left", "right"))
     assert "left" in liar.text and liar.tries == 2 and liar.refused[0].startswith("directions")

@@ -7,7 +7,7 @@ import pytest
 from tools.pages import gallery
 
 
-def test_a_sheet_shows_twelve_rows_and_a_column_for_each_severity(tmp_path, scene):
+def test_sheet_has_twelve_rows_and_a_column_per_severity(tmp_path, scene):
     rgb, depth = scene.panorama_of(3, 24, 32)
     path = tmp_path / "deep" / "sheet.png"
     sheet = gallery.contact_sheet(rgb, depth, path, (0.0, 0.6), views=(0, 2))
@@ -17,7 +17,7 @@ def test_a_sheet_shows_twelve_rows_and_a_column_for_each_severity(tmp_path, scen
     assert (first == np.hstack(rgb[[0, 2]])).all()
 
 
-def test_the_command_reads_files(tmp_path, scene, capsys):
+def test_gallery_command_reads_files(tmp_path, scene, capsys):
     rgb, depth = scene.draw(24, 32)
     cv2.imwrite(str(tmp_path / "rgb.png"), rgb)
     np.save(tmp_path / "depth.npy", depth)
@@ -27,7 +27,7 @@ def test_the_command_reads_files(tmp_path, scene, capsys):
 
 
 @pytest.mark.parametrize("suffix", [".png", ".jpg", ".JPEG"])
-def test_a_sheet_is_written_without_a_warning(suffix, tmp_path, scene, capfd):
+def test_sheet_is_written_without_a_warning(suffix, tmp_path, scene, capfd):
     gallery.contact_sheet(*scene.draw(24, 32), tmp_path / f"sheet{suffix}", (0.0,))
     assert (tmp_path / f"sheet{suffix}").is_file() and "key" not in capfd.readouterr().err
 
@@ -42,7 +42,7 @@ def test_a_sheet_is_written_without_a_warning(suffix, tmp_path, scene, capfd):
         ("depth.npy", "sheet.gif", "must end in .png"),
     ],
 )
-def test_a_mistake_ends_the_command_in_one_line(depth, out, part, tmp_path, scene, capsys):
+def test_gallery_error_ends_in_one_line(depth, out, part, tmp_path, scene, capsys):
     rgb, metres = scene.draw(24, 32)
     cv2.imwrite(str(tmp_path / "rgb.png"), rgb)
     np.save(tmp_path / "depth.npy", metres)
@@ -74,7 +74,7 @@ def test_bad_files_are_named(tmp_path, scene):
 
 
 @pytest.mark.slow
-def test_the_page_holds_every_corruption_and_its_pictures(tmp_path, monkeypatch):
+def test_page_holds_every_corruption_and_its_pictures(tmp_path, monkeypatch):
     monkeypatch.setattr(gallery, "PAGE_SIZE", 32)
     gallery.write_page(tmp_path, np.array([0.0, 0.5, 1.0]))
     text = (tmp_path / "corruptions.md").read_text()
@@ -89,7 +89,7 @@ def test_the_page_holds_every_corruption_and_its_pictures(tmp_path, monkeypatch)
         assert cv2.imread(str(tmp_path / "pictures" / picture)) is not None
 
 
-def test_a_sheet_of_the_unseen_ones_has_a_row_for_each(tmp_path, scene, monkeypatch):
+def test_sheet_of_unseen_corruptions_has_a_row_for_each(tmp_path, scene, monkeypatch):
     frames = tuple(np.stack([frame]) for frame in scene.draw(24, 32))
     monkeypatch.setattr(
         gallery, "rendered_frame", lambda seed, size: (frames[0], frames[1][..., None])
@@ -104,8 +104,8 @@ def test_a_sheet_of_the_unseen_ones_has_a_row_for_each(tmp_path, scene, monkeypa
         assert height == 24 + 28 * len(gallery.SHEETS[suite])
 
 
-def test_the_formulas_in_the_documentation_are_those_of_the_code():
-    """After a change of a constant: ``python -m tools.pages.gallery --page``."""
+def test_documented_formulas_match_the_code():
+    """After changing a constant: ``python -m tools.pages.gallery --page``."""
     text = (gallery.DOCS / "corruptions.md").read_text()
     assert gallery.page.formulas() in text and gallery.page.suites() in text
     text = (gallery.DOCS / "unseen-corruptions.md").read_text()

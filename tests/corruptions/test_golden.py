@@ -1,4 +1,4 @@
-"""Pixels are pinned: a change here is a new SUITE_VERSION, or a new version of an unseen one.
+"""Pixels are pinned: a change needs a new SUITE_VERSION, or a new version of an unseen corruption.
 
 To accept new pixels: raise ``SUITE_VERSION`` in ``mitigate/corruptions/suite.py`` (of an unseen
 or a broad one: ``version`` in its record), look at the
@@ -27,7 +27,7 @@ SEVERITIES = (0.05, 0.5, 0.6, 1.0)
 
 
 def frames():
-    """An integer-made panorama, so that no maths library decides the input."""
+    """A panorama made from integers, so that the input does not depend on a maths library."""
     k, y, x = np.mgrid[:12, :48, :64]
     rgb = np.stack([(x * 5 + y * c + 40 * k + (x // 9) * (y // 7)) % 256 for c in (3, 4, 6)], -1)
     depth = 0.5 + ((x // 8) * 7 + (y // 6) * 11 + k * 5) % 37 / 4 + x / 256
@@ -36,7 +36,7 @@ def frames():
 
 
 def fingerprint(name: str, severity: float) -> str:
-    """Hash of the pixels; depth is rounded to 0.1 mm first."""
+    """Return the hash of the pixels; depth is rounded to 0.1 mm first."""
     rgb, depth = frames()
     key = Key(2024, "golden", 13)
     seen = modality(name) == "rgb"
@@ -47,10 +47,11 @@ def fingerprint(name: str, severity: float) -> str:
 
 
 def levels(name: str) -> list[float]:
-    """The mean of each of 24 compositions: OpenCV does not give every machine the same bits."""
+    """Return the mean of each of 24 compositions: OpenCV gives different bits on different
+    machines."""
     frame = frames()[modality(name) != "rgb"]
     drawn = [corrupt(frame, name, 0.6, key=Key(2024, f"golden {i}", 13)) for i in range(24)]
-    return [round(float(made.mean(dtype=np.float64)), 3) for made in drawn]
+    return [round(float(output.mean(dtype=np.float64)), 3) for output in drawn]
 
 
 def current() -> dict:
@@ -68,20 +69,20 @@ def test_pixels_are_those_of_the_suite_version(name):
     golden = json.loads(GOLDEN.read_text())
     assert golden["suite"] == SUITE_VERSION, "SUITE_VERSION changed: regenerate (see the docstring)"
     for severity in SEVERITIES:
-        found = fingerprint(name, severity)
-        assert found == golden["pixels"][name][str(severity)], (name, severity, __doc__)
+        matches = fingerprint(name, severity)
+        assert matches == golden["pixels"][name][str(severity)], (name, severity, __doc__)
 
 
 @pytest.mark.parametrize("name", UNSEEN)
-def test_pixels_of_an_unseen_one_are_those_of_its_version(name):
+def test_unseen_pixels_match_their_version(name):
     golden = json.loads(GOLDEN.read_text())["unseen"][name]
     assert golden.pop("version") == record(name).version, "regenerate (see the docstring)"
-    for severity, wanted in golden.items():
-        assert fingerprint(name, float(severity)) == wanted, (name, severity, __doc__)
+    for severity, expected in golden.items():
+        assert fingerprint(name, float(severity)) == expected, (name, severity, __doc__)
 
 
 @pytest.mark.parametrize("name", BROAD)
-def test_compositions_of_a_broad_one_are_those_of_its_version(name):
+def test_broad_compositions_match_their_version(name):
     golden = json.loads(GOLDEN.read_text())["broad"][name]
     assert golden["version"] == record(name).version, "regenerate (see the docstring)"
     near = 0.5 if modality(name) == "rgb" else 0.02

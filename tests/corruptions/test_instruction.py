@@ -1,4 +1,5 @@
-"""The instruction families: identity at 0, nested in s, keyed, and what each may never change."""
+"""The instruction families: identity at 0, nested in s, keyed, and which words they never
+change."""
 
 from __future__ import annotations
 
@@ -61,14 +62,14 @@ def test_severity_zero_changes_nothing_and_any_unicode_passes(text, name, episod
     manner=st.sampled_from(MANNERS),
 )
 @settings(max_examples=300, deadline=None)
-def test_no_pile_of_words_breaks_the_rewriter_or_slips_through_its_gate(chosen, manner):
+def test_rewriter_and_gate_accept_any_words(chosen, manner):
     text = " ".join(chosen)
     assert check(text, text) == []
     assert check(text, corrupt_instruction(text, manner, 1.0, KEY)) == []
 
 
 @pytest.mark.parametrize("name", SPOKEN)
-def test_full_severity_changes_the_text_and_the_key_decides_how(name):
+def test_full_severity_changes_text_by_its_key(name):
     changed = {corrupt_instruction(TEXT, name, 1.0, Key(0, str(i))) for i in range(8)}
     assert TEXT not in changed
     assert len(changed) == (1 if name in ("capitalize", "mask") else len(changed)) and changed
@@ -77,7 +78,7 @@ def test_full_severity_changes_the_text_and_the_key_decides_how(name):
 
 
 @pytest.mark.parametrize("name", ["capitalize", "mask"])
-def test_what_a_severity_changes_a_higher_one_changes_too(name):
+def test_changes_are_nested_in_severity(name):
     before: set[int] = set()
     for severity in SEVERITIES:
         got = tokens(corrupt_instruction(TEXT, name, severity, KEY))
@@ -89,7 +90,7 @@ def test_what_a_severity_changes_a_higher_one_changes_too(name):
     assert len(before) > 5
 
 
-def test_styles_reach_the_share_of_episodes_that_severity_says_and_keep_them():
+def test_styles_reach_their_share_and_stay():
     for manner in MANNERS:
         hit: set[int] = set()
         for severity in (0.2, 0.5, 0.8, 1.0):
@@ -119,7 +120,7 @@ def test_prefixes_stack_in_front_and_leave_the_instruction_alone(split):
     assert sum(s in least for s in bank) == 1
 
 
-def test_no_family_and_no_sentence_is_in_two_splits():
+def test_families_and_sentences_are_in_one_split():
     banks = [prefixes(split) for split in SPLITS]
     families = [family for bank in banks for family in bank]
     sentences = [s for bank in banks for group in bank.values() for s in group]
@@ -162,12 +163,14 @@ def test_masks_never_hide_a_word_that_says_where(chosen):
         "Take the same door as on the previous floor, only the preceding one, and the following.",
     ],
 )
-def test_masks_never_hide_a_denial_a_compass_word_or_which_one(text):
-    kept = words.bag("isn't won't doesn't aren't shouldn't neither nor nothing same previous only")
-    kept |= words.bag("northward southward eastward westward preceding following")
+def test_masks_keep_negations_compass_words_and_choices(text):
+    remaining = words.bag(
+        "isn't won't doesn't aren't shouldn't neither nor nothing same previous only"
+    )
+    remaining |= words.bag("northward southward eastward westward preceding following")
     masked = tokens(corrupt_instruction(text, "mask", 1.0, KEY))
     for old, new in zip(tokens(text), masked, strict=True):
-        assert new.text == old.text or old.lower not in kept
+        assert new.text == old.text or old.lower not in remaining
     assert "[MASK]" in [token.text for token in masked]
 
 
@@ -178,12 +181,12 @@ def test_masks_write_the_tokenizers_own_mask_token():
         corrupt_instruction(TEXT, "mask", 1.0, KEY, mask_token=" ")
 
 
-def test_the_same_text_in_another_process_and_with_another_hash_seed():
+def test_text_is_equal_in_another_process():
     program = (
         "from mitigate.corruptions import *;"
         f"print([corrupt_instruction({TEXT!r}, n, 0.7, Key(3, '17')) for n in {SPOKEN!r}])"
     )
-    said = {
+    message = {
         subprocess.run(
             [sys.executable, "-c", program],
             env=os.environ | {"PYTHONHASHSEED": seed},
@@ -193,24 +196,24 @@ def test_the_same_text_in_another_process_and_with_another_hash_seed():
         ).stdout
         for seed in ("1", "2")
     }
-    assert said == {f"{[corrupt_instruction(TEXT, name, 0.7, KEY) for name in SPOKEN]}\n"}
+    assert message == {f"{[corrupt_instruction(TEXT, name, 0.7, KEY) for name in SPOKEN]}\n"}
 
 
 @pytest.mark.parametrize("text", ["", "  \n", "...", "🙂", "\x00\x07"])
 @pytest.mark.parametrize("name", SPOKEN)
-def test_an_instruction_without_a_word_is_refused(text, name):
+def test_instruction_without_a_word_is_rejected(text, name):
     with pytest.raises(ValueError, match="The instruction is empty"):
         corrupt_instruction(text, name, 0.5, KEY)
 
 
 @pytest.mark.parametrize("name", SPOKEN)
-def test_a_very_long_instruction_with_emoji_and_control_characters_is_corrupted(name):
+def test_long_instruction_with_emoji_and_controls_is_corrupted(name):
     text = "Turn left 🙂 at the\x07 sofa and go\u200b on. " * 1100
     assert corrupt_instruction(text, name, 1.0, KEY) != text
 
 
 @pytest.mark.parametrize("space", [" ", "\n", "\t "])
-def test_a_long_run_of_white_space_takes_no_time(space):
+def test_long_white_space_takes_no_time(space):
     text = "Turn left{0}at the sofa,{0}then{0},{0}now{0}walk{0}and stop.".format(space * 1500)
     start = time.process_time()
     for manner in MANNERS:
@@ -232,22 +235,22 @@ def test_wrong_options_name_the_right_ones():
 
 
 @pytest.mark.parametrize(("short", "key"), [(7, Key(7, "0")), ("kitchen", Key(0, "kitchen"))])
-def test_a_number_or_a_text_will_do_for_a_key(short, key):
+def test_number_or_text_is_a_valid_key(short, key):
     for name in SPOKEN:
-        made = corrupt_instruction(TEXT, name, 0.6, short)
-        assert made == corrupt_instruction(TEXT, name, 0.6, key)
+        output = corrupt_instruction(TEXT, name, 0.6, short)
+        assert output == corrupt_instruction(TEXT, name, 0.6, key)
     prompt = "Do: {task}"
     assert inject_system_prompt(prompt, 0.6, short) == inject_system_prompt(prompt, 0.6, key)
     with pytest.raises(ValueError, match="key must be a Key"):
         inject_system_prompt(prompt, 0.6, 1.5)
 
 
-def test_a_style_of_a_text_without_a_word_is_refused():
+def test_style_of_text_without_a_word_is_rejected():
     with pytest.raises(ValueError, match="The instruction is empty"):
         restyle(" ... ", "formal", KEY)
 
 
-def test_white_box_goes_before_the_task_slot_and_never_runs_clean():
+def test_white_box_precedes_the_task_and_never_runs_clean():
     prompt = "You are a robot.\nTask: {instruction}\nAnswer."
     got = inject_system_prompt(prompt, 0.5, KEY)
     front = corrupt_instruction("x", "black_box", 0.5, KEY).removesuffix(" x")
@@ -258,20 +261,20 @@ def test_white_box_goes_before_the_task_slot_and_never_runs_clean():
         assert isinstance(inject_system_prompt(None, severity, KEY), NotApplicable)
 
 
-def test_the_suite_knows_the_families():
+def test_suite_lists_the_families():
     assert Corruption("black_box", 0.5).modality == "instruction"
     assert len(INSTRUCTION) == 8 and set(MANNERS) < set(INSTRUCTION)
 
 
-def test_the_words_of_this_suite_version():
-    """A change here changes results: raise SUITE_VERSION with it."""
+def test_words_match_the_suite_version():
+    """A change here changes results and needs a new SUITE_VERSION."""
     path = Path(__file__).parents[1] / "guards/text/handwritten.txt"
     texts = [line for line in path.read_text().splitlines() if not line.startswith("#")]
-    said = [
+    lines_of_text = [
         corrupt_instruction(text, name, severity, Key(0, str(index)))
         for name in SPOKEN
         for severity in (0.5, 1.0)
         for index, text in enumerate(texts)
     ]
     assert SUITE_VERSION == "1.1"
-    assert sha256("\n".join(said).encode()).hexdigest()[:16] == "b3888f3e739f9bda"
+    assert sha256("\n".join(lines_of_text).encode()).hexdigest()[:16] == "b3888f3e739f9bda"

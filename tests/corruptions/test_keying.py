@@ -51,14 +51,14 @@ def test_order_and_neighbours_in_a_batch_do_not_matter(name, panorama):
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_the_first_views_do_not_depend_on_how_many_follow(name, panorama):
+def test_first_views_do_not_depend_on_later_ones(name, panorama):
     frame = panorama[0] if name in RGB else panorama[1]
     whole = corrupt(frame, name, 0.6, key=Key(0, "e"), heading=0.1)
     some = corrupt(frame[:5], name, 0.6, key=Key(0, "e"), heading=0.1)
     assert whole[:5].tobytes() == some.tobytes()
 
 
-def test_every_part_of_a_key_counts():
+def test_key_depends_on_every_part():
     keys = [Key(0, "a"), Key(1, "a"), Key(0, "b"), Key(0, "a", 1), Key(0, "1:a"), Key(1, "")]
     digests = {keying.digest(key, "x", frame=True) for key in keys}
     digests |= {keying.scramble(keying.digest(Key(0, "a"), "x", frame=True), k) for k in range(12)}
@@ -72,25 +72,25 @@ def test_parts_cannot_run_into_each_other():
     assert keying.digest(Key(0, "a"), "bc") != keying.digest(Key(0, "ab"), "c")
 
 
-def test_any_string_and_integer_is_a_key():
+def test_key_accepts_any_string_and_integer():
     for episode in ("", "ü\n", "\ud800", "x" * 10_000):
         assert keying.digest(Key(-5, episode), "x") >= 0
     assert keying.digest(Key(np.int64(3), "a"), "x") == keying.digest(Key(3, "a"), "x")
 
 
 @pytest.mark.parametrize("parts", [(0, "17", None), ("a", "1"), (1.9, "x"), (0, "x", 2.0)])
-def test_a_seed_or_frame_that_is_no_whole_number_is_refused(parts):
+def test_key_rejects_seed_or_frame_that_is_not_an_integer(parts):
     with pytest.raises(ValueError, match="seed and the frame of a key must be whole numbers"):
         Key(*parts)
 
 
-def test_the_digest_is_the_published_one():
+def test_digest_matches_the_published_value():
     text = b"1:3" + b"1:e" + b"4:name" + b"1:7"
     expected = hashlib.blake2b(text, digest_size=8, person=b"mitigate").digest()
     assert keying.digest(Key(3, "e", 7), "name", frame=True) == int.from_bytes(expected, "little")
 
 
-def test_the_compiled_hash_is_splitmix64():
+def test_compiled_hash_is_splitmix64():
     # Reference output of splitmix64 seeded with 1234567 (Vigna's C code).
     assert keying.scramble(1234567, 0) == 6457827717110365317
     assert keying.scramble(1234567, 1) == 3203168211198807973
@@ -110,7 +110,7 @@ def test_normals_are_normal():
     assert abs(np.corrcoef(draws[:-1], draws[1:])[0, 1]) < 0.01
 
 
-def test_a_field_has_unit_spread_and_the_correlation_asked_for():
+def test_field_has_unit_spread_and_the_requested_correlation():
     fields = [keying.field(keying.digest(Key(i, "f"), "x"), 96, 128, 0.025)[0] for i in range(12)]
     cells = np.stack(fields)
     assert abs(cells.mean()) < 0.1 and abs(cells.std() - 1) < 0.05
@@ -119,7 +119,7 @@ def test_a_field_has_unit_spread_and_the_correlation_asked_for():
     assert np.mean(cells * shifted) / cells.var() == pytest.approx(np.exp(-1), abs=0.08)
 
 
-def test_a_narrow_frame_has_a_bounded_field_and_a_usual_one_the_same_cells_as_ever():
+def test_field_of_a_narrow_frame_is_bounded():
     value = keying.digest(Key(0, "f"), "x")
     assert keying.field(value, 30, 120, 0.025)[1].size == 128 * 512
     smooth, cells = keying.field(value, 1, 16_000, 0.025)
@@ -129,7 +129,7 @@ def test_a_narrow_frame_has_a_bounded_field_and_a_usual_one_the_same_cells_as_ev
     assert (corrupt(frame, "missing_data", 0.6, key=Key(0, "a")) != frame).any()
 
 
-def test_a_field_wraps_and_is_the_same_at_half_size():
+def test_field_wraps_and_scales_to_half_size():
     value = keying.digest(Key(0, "f"), "x")
     full, cells = keying.field(value, 256, 320, 0.018)
     half, _ = keying.field(value, 128, 160, 0.018)

@@ -1,4 +1,4 @@
-"""Normalised depth: to metres, corrupted and back, and what comes back bit for bit."""
+"""Normalised depth: to metres, corrupted and back, and which values return bit for bit."""
 
 import numpy as np
 import pytest
@@ -37,18 +37,18 @@ def test_range_dtype_shape_and_invalid_pixels_stay(depth, name, severity, sensor
 
 
 @pytest.mark.parametrize("name", DEPTH)
-def test_it_is_the_metric_corruption(depth, name):
+def test_normalised_depth_equals_the_metric_corruption(depth, name):
     sensor = DepthSensor(0.5, 5.0)
     out = corrupt_normalised({"depth": depth}, Corruption(name, 0.7), KEY, sensor)["depth"]
     valid = (depth > 0) & np.isfinite(depth)
     metres = np.where(valid, 0.5 + 4.5 * depth, 0).astype(np.float32)
-    wanted = corrupt(metres, name, 0.7, key=KEY, sensor=sensor)
-    kept = valid & (wanted > 0.5)
-    np.testing.assert_allclose(0.5 + 4.5 * out[kept], wanted[kept], atol=1e-5)
-    assert (out[valid & (wanted == 0)] == 0).all()
+    expected = corrupt(metres, name, 0.7, key=KEY, sensor=sensor)
+    remaining = valid & (expected > 0.5)
+    np.testing.assert_allclose(0.5 + 4.5 * out[remaining], expected[remaining], atol=1e-5)
+    assert (out[valid & (expected == 0)] == 0).all()
 
 
-def test_the_sentinel_is_the_sensors(depth):
+def test_normalised_depth_uses_the_sensors_sentinel(depth):
     holes = {}
     for missing in (0.0, 10.0):
         sensor = DepthSensor(missing=missing)
@@ -70,7 +70,7 @@ def test_wrong_depth_and_sensors_are_refused(depth):
         corrupt_normalised({"rgb": np.zeros((4, 4, 3), np.uint8)}, hurt, KEY)
 
 
-def test_a_schedule_of_one_corruption_draws_it_always():
+def test_schedule_of_one_corruption_always_draws_it():
     schedule = Schedule.always("spatter", 0.4)
     drawn = {schedule.draw(0, str(e), f)[0] for e in range(20) for f in range(3)}
     assert drawn == {Corruption("spatter", 0.4)}

@@ -1,4 +1,5 @@
-"""Two corruptions at once: what is applied first, whose draws, and who knows the notation."""
+"""Two corruptions at once: their order, their random draws, and the places that accept the
+notation."""
 
 from __future__ import annotations
 
@@ -23,7 +24,7 @@ from mitigate.worlds.habitat import corrupt_habitat
 KEY = Key(3, "episode-7", 4)
 
 
-def test_a_pair_of_two_sensors_is_each_of_them_alone(panorama):
+def test_pair_of_two_sensors_corrupts_each_separately(panorama):
     obs = {"rgb": panorama[0], "depth": panorama[1], "pose": np.array([0, 0, 0.4])}
     both = corrupt_observation(obs, Corruption("flare+missing_data", 0.6), KEY)
     for name, entry in (("flare", "rgb"), ("missing_data", "depth")):
@@ -32,16 +33,16 @@ def test_a_pair_of_two_sensors_is_each_of_them_alone(panorama):
     assert both["pose"] is obs["pose"]
 
 
-def test_of_one_sensor_the_first_is_applied_first(panorama):
+def test_pair_of_one_sensor_applies_the_first_first(panorama):
     obs = {"rgb": panorama[0]}
-    made = corrupt_observation(obs, Corruption("overexposure+spatter", 0.6), KEY)["rgb"]
+    output = corrupt_observation(obs, Corruption("overexposure+spatter", 0.6), KEY)["rgb"]
     bright = corrupt(panorama[0], "overexposure", 0.6, key=KEY)
-    assert (made == corrupt(bright, "spatter", 0.6, key=KEY)).all()
+    assert (output == corrupt(bright, "spatter", 0.6, key=KEY)).all()
     other = corrupt_observation(obs, Corruption("spatter+overexposure", 0.6), KEY)["rgb"]
-    assert (made != other).any()
+    assert (output != other).any()
 
 
-def test_a_pair_says_what_it_consists_of():
+def test_pair_lists_its_parts():
     pair = Corruption("low_light+missing_data", 0.6)
     assert [(part.name, part.severity) for part in pair.parts] == [
         ("low_light", 0.6),
@@ -54,14 +55,14 @@ def test_a_pair_says_what_it_consists_of():
     assert registry.title("low_light_noise+haze") == "L-L w/ noise + Haze"
 
 
-def test_a_rows_version_is_that_of_its_unseen_parts():
+def test_pair_row_has_the_version_of_its_unseen_parts():
     assert registry.version("spatter+flare") == registry.version("clean") == {}
     assert registry.version("spatter+haze") == {"version": "1"}
     assert registry.version("haze+ripple") == {"version": "1+1"}
 
 
 @pytest.mark.parametrize(
-    ("name", "said"),
+    ("name", "message"),
     [
         ("spatter+fogg", "There is no corruption 'fogg'"),
         ("spatter+clean", "must not contain 'clean'"),
@@ -71,12 +72,12 @@ def test_a_rows_version_is_that_of_its_unseen_parts():
         ("spatter+", "There is no corruption ''"),
     ],
 )
-def test_what_is_no_pair_is_refused(name, said):
-    with pytest.raises(ValueError, match=said):
+def test_pair_rejects_invalid_names(name, message):
+    with pytest.raises(ValueError, match=message):
         Corruption(name, 0.5)
 
 
-def test_where_one_is_meant_a_pair_is_refused_with_its_place(panorama):
+def test_pair_is_rejected_where_one_corruption_is_required(panorama):
     for call in (
         lambda: corrupt(panorama[0], "spatter+flare", 0.5, key=0),
         lambda: Schedule("per_frame", 0.6, names=("spatter+flare",)),
@@ -86,7 +87,7 @@ def test_where_one_is_meant_a_pair_is_refused_with_its_place(panorama):
             call()
 
 
-def test_a_missing_sensor_is_told_by_the_part_that_needs_it(panorama):
+def test_missing_sensor_names_the_part_that_needs_it(panorama):
     with pytest.raises(ValueError, match="'missing_data' needs the entry 'depth'"):
         corrupt_observation({"rgb": panorama[0]}, Corruption("flare+missing_data", 0.5), KEY)
 
@@ -94,15 +95,15 @@ def test_a_missing_sensor_is_told_by_the_part_that_needs_it(panorama):
 def test_normalised_depth_and_habitat_take_pairs(panorama):
     pair = Corruption("spatter+missing_data", 0.6)
     obs = {"rgb": panorama[0], "depth": np.clip(panorama[1] / 10, 0, 1)}
-    made = corrupt_normalised(obs, pair, KEY)
-    assert np.nanmax(made["depth"][1:]) <= 1.0 and (made["depth"] == 0).mean() > 0.1
+    output = corrupt_normalised(obs, pair, KEY)
+    assert np.nanmax(output["depth"][1:]) <= 1.0 and (output["depth"] == 0).mean() > 0.1
     cameras = {"rgb": panorama[0][0], "depth": obs["depth"][0]}
     seen = corrupt_habitat(cameras, pair, KEY)
-    assert (seen["rgb"] == made["rgb"][0]).all()
-    assert seen["depth"].tobytes() == made["depth"][0].tobytes()
+    assert (seen["rgb"] == output["rgb"][0]).all()
+    assert seen["depth"].tobytes() == output["depth"][0].tobytes()
 
 
-def test_the_suite_of_pairs_is_eight_of_the_suites_own():
+def test_suite_pairs_has_eight_of_the_standard_suite():
     cfg = conf.load_config("evaluate", ["suite=pairs"])
     clean, *pairs = cfg.suite.conditions
     assert clean == "clean" and len(pairs) == 8
@@ -110,9 +111,9 @@ def test_the_suite_of_pairs_is_eight_of_the_suites_own():
         assert len(pair.parts) == 2 and not registry.version(pair.name)
 
 
-def test_conditions_of_an_evaluation_may_be_pairs_at_one_severity():
-    found = evaluate.conditions(["clean", "haze+flare", "multipath+ripple"], 0.9, 0.8)
-    assert [(c.name, c.severity) for c in found] == [
+def test_evaluation_accepts_pairs_at_one_severity():
+    result = evaluate.conditions(["clean", "haze+flare", "multipath+ripple"], 0.9, 0.8)
+    assert [(c.name, c.severity) for c in result] == [
         ("clean", 0),
         ("haze+flare", 0.9),
         ("multipath+ripple", 0.8),
@@ -123,11 +124,11 @@ def test_conditions_of_an_evaluation_may_be_pairs_at_one_severity():
         evaluate.conditions(["flare+spater"], 0.9, None)
 
 
-def test_the_command_line_takes_a_pair():
+def test_command_line_accepts_a_pair():
     cfg = conf.load_config("evaluate", ["conditions=[clean,low_light+missing_data]"])
     assert list(cfg.conditions) == ["clean", "low_light+missing_data"]
 
 
-def test_a_condition_that_is_named_twice_is_met_once():
-    found = evaluate.conditions(["clean", "spatter+flare", "clean", "spatter+flare"], 0.6, None)
-    assert found == [CLEAN, Corruption("spatter+flare", 0.6)]
+def test_repeated_condition_runs_once():
+    result = evaluate.conditions(["clean", "spatter+flare", "clean", "spatter+flare"], 0.6, None)
+    assert result == [CLEAN, Corruption("spatter+flare", 0.6)]

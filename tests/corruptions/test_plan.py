@@ -1,4 +1,4 @@
-"""Which files of a folder are frames: links are followed, whatever they lead to."""
+"""The files of a folder that count as frames: links are followed to files and folders."""
 
 import os
 import shutil
@@ -31,14 +31,14 @@ def walk(tmp_path):
     return tmp_path
 
 
-def test_links_to_folders_are_followed_but_not_in_a_circle_nor_into_the_results(walk):
-    for written in (7, 0):  # the second run meets the results of the first behind a link
-        found = run(walk / "in", walk / "out", Settings("spatter", 0.6))
-        assert found["written"] == written and found["there"] == 7 - written
-        assert {name: e["frames"] for name, e in found["episodes"].items()} == {
+def test_links_are_followed_except_cycles_and_results(walk):
+    for saved in (7, 0):  # the second run reaches the results of the first through a link
+        matches = run(walk / "in", walk / "out", Settings("spatter", 0.6))
+        assert matches["written"] == saved and matches["there"] == 7 - saved
+        assert {name: e["frames"] for name, e in matches["episodes"].items()} == {
             "a": 2, "again": 2, "b": 1, "linked": 1, "linked/c": 1,
         }  # fmt: skip
-        assert {e["file"]: e["reason"] for e in found["left_out"]} == {
+        assert {e["file"]: e["reason"] for e in matches["left_out"]} == {
             "b/up/": "links back to a folder that contains it",
             "linked/c/round/": "links back to a folder that contains it",
             "results/": "is the folder of the results",
@@ -46,24 +46,24 @@ def test_links_to_folders_are_followed_but_not_in_a_circle_nor_into_the_results(
     assert (walk / "out/linked/c/0.png").is_file() and not (walk / "out/linked").is_symlink()
 
 
-def test_a_pipe_is_left_out_with_the_reason(walk):
+def test_pipe_is_skipped_with_a_reason(walk):
     for name in ("0.5.png", "2.jpg", "3.npy"):
         os.mkfifo(walk / "in/a" / name)
-    found = run(walk / "in/a", walk / "out", Settings("spatter", 0.6))
-    assert found["written"] == 2
-    left_out = {e["file"]: e["reason"] for e in found["left_out"]}
+    matches = run(walk / "in/a", walk / "out", Settings("spatter", 0.6))
+    assert matches["written"] == 2
+    left_out = {e["file"]: e["reason"] for e in matches["left_out"]}
     assert left_out == dict.fromkeys(("0.5.png", "2.jpg", "3.npy"), "is not a regular file")
 
 
 @pytest.mark.parametrize("lost", ["out", "out/a"])
 def test_run_notices_a_lost_folder(walk, monkeypatch, lost):
-    write, written = folders.write_bytes, []
+    write, saved = folders.write_bytes, []
 
     def write_and_lose(path, data):
         if path.name == "0.png" and path.parent.name == "b":
             shutil.rmtree(walk / lost)
         write(path, data)
-        written.append(path)
+        saved.append(path)
 
     monkeypatch.setattr(folders, "write_bytes", write_and_lose)
     with pytest.raises(FolderLostError, match="removed or replaced .* run the same command again"):
@@ -73,9 +73,9 @@ def test_run_notices_a_lost_folder(walk, monkeypatch, lost):
 
 def test_run_rejects_a_link_among_its_results(walk):
     (walk / "out/a").symlink_to(walk / "elsewhere")
-    kept = (walk / "elsewhere/0.png").read_bytes()
+    saved = (walk / "elsewhere/0.png").read_bytes()
     with pytest.raises(
         ValueError, match="out/a must be a folder|must be empty or have a corrupt.json"
     ):
         run(walk / "in", walk / "out", Settings("spatter", 0.6))
-    assert (walk / "elsewhere/0.png").read_bytes() == kept
+    assert (walk / "elsewhere/0.png").read_bytes() == saved

@@ -1,4 +1,4 @@
-"""What holds for any frame, severity and key (hypothesis draws them)."""
+"""Properties that hold for any frame, severity and key (hypothesis draws them)."""
 
 import numpy as np
 import pytest
@@ -73,7 +73,7 @@ def test_invalid_depth_comes_back_bit_for_bit(name, instant, severity, key, sens
 
 @quick
 @given(names, instants(fewest=2), severities, keys, st.data())
-def test_a_batch_of_any_size_gives_the_same_pixels(name, instant, severity, key, data):
+def test_batch_of_any_size_gives_the_same_pixels(name, instant, severity, key, data):
     frame = frame_of(name, instant)
     whole = corrupt(frame, name, severity, key=key, heading=0.4)
     size = data.draw(st.integers(1, len(frame)))
@@ -84,7 +84,7 @@ def test_a_batch_of_any_size_gives_the_same_pixels(name, instant, severity, key,
 
 @quick
 @given(st.sampled_from(sorted({*NAMES} - {"flare"})), instants(), severities, keys, st.data())
-def test_a_view_is_hurt_by_its_place_and_not_by_its_neighbours(name, instant, severity, key, data):
+def test_view_is_corrupted_by_its_place_only(name, instant, severity, key, data):
     frame = frame_of(name, instant)
     view = data.draw(st.integers(0, len(frame) - 1))
     alone = np.repeat(frame[view][None], len(frame), axis=0)
@@ -94,7 +94,7 @@ def test_a_view_is_hurt_by_its_place_and_not_by_its_neighbours(name, instant, se
 
 @quick
 @given(names, instants(), severities, keys)
-def test_a_torch_tensor_seen_as_numpy_gives_the_same_pixels(name, instant, severity, key):
+def test_torch_tensor_as_numpy_gives_the_same_pixels(name, instant, severity, key):
     frame = frame_of(name, instant)
     tensor = torch.from_numpy(frame.copy())
     out = corrupt(frame, name, severity, key=key)
@@ -117,7 +117,7 @@ def test_multipath_on_a_corner_is_the_closed_form(severity, near, gap, side):
 
 @settings(quick, max_examples=10)
 @given(st.floats(0.05, 1.0), keys, st.integers(8, 12))
-def test_masks_of_a_frame_and_of_its_half_size_copy_are_alike(severity, key, side):
+def test_masks_of_frame_and_half_size_copy_are_alike(severity, key, side):
     white = np.full((32 * side, 40 * side, 3), 255, np.uint8)
     for name in ("low_light", "spatter", "foreign_object", "flare"):
         full = corrupt(white // 2, name, severity, key=key).astype(float)

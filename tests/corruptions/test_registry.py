@@ -1,4 +1,4 @@
-"""One record a corruption, and a corruption from another package in a suite."""
+"""One record per corruption, and a corruption from another package in a suite."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def suite(name: str) -> list[str]:
     return list(conf.load_config("evaluate", [f"suite={name}"]).suite.conditions)
 
 
-def test_the_suites_hold_what_the_records_say():
+def test_suites_match_the_records():
     assert suite("full") == ["clean", *NAMES]
     assert suite("rgb") == ["clean", *registry.names("rgb")]
     assert suite("depth") == ["clean", *registry.names("depth")]
@@ -42,22 +42,22 @@ def test_record_is_described_in_the_docs(name):
     assert record.name == name and name in registry.table()
 
 
-def test_a_wrong_record_is_refused():
+def test_wrong_record_is_rejected():
     def same(views, *_):
         return views
 
-    for wrong, said in (
+    for wrong, message in (
         ({"modality": "sonar"}, "rgb, depth, instruction"),
         ({"name": "Heavy Rain"}, "lower case letters"),
         ({"apply": None}, "must be a function"),
     ):
-        with pytest.raises(ValueError, match=said):
+        with pytest.raises(ValueError, match=message):
             Record(**{"name": "rain", "modality": "rgb", "apply": same, "severity": "s", **wrong})
 
 
 @pytest.fixture
 def package(tmp_path) -> Path:
-    """Where the page's package is installed."""
+    """The folder with the installed package of the page."""
     (tmp_path / "rain.py").write_text(MINE)
     group, line = POINT.strip().splitlines()
     folder = tmp_path / "rain-1.0.dist-info"
@@ -73,13 +73,13 @@ def package(tmp_path) -> Path:
 
 @pytest.fixture
 def installed(package) -> dict[str, str]:
-    """The environment of a process where it is found."""
+    """Return the environment of a process that can import the package."""
     return {**os.environ, "PYTHONPATH": f"{package}{os.pathsep}{ROOT}"}
 
 
 @pytest.fixture
-def found(package, monkeypatch):
-    """Lets this process find the package; when called, as it is now."""
+def add_to_path(package, monkeypatch):
+    """Return a function that lets this process import the package in its current state."""
 
     def forget():
         registry.plugin_records.cache_clear()
@@ -87,7 +87,7 @@ def found(package, monkeypatch):
         importlib.invalidate_caches()
 
     monkeypatch.syspath_prepend(package)
-    monkeypatch.setattr(sys, "dont_write_bytecode", True)  # a change within a second is one, too
+    monkeypatch.setattr(sys, "dont_write_bytecode", True)  # a change within a second counts, too
     forget()
     yield forget
     forget()
@@ -101,32 +101,32 @@ def run(installed: dict[str, str], folder: Path, *command: str) -> str:
     return done.stdout
 
 
-def test_a_corruption_of_another_package_joins_a_suite_and_a_schedule(
-    found, tmp_path, monkeypatch, capsys
+def test_external_corruption_joins_a_suite_and_a_schedule(
+    add_to_path, tmp_path, monkeypatch, capsys
 ):
     monkeypatch.setattr(simulator, "MAX_STEPS", 40)
     options = ["episodes=1", "conditions=[clean,rain,flare]", "env.size=32", "workers=1"]
     monkeypatch.setattr(sys, "argv", ["mitigate evaluate", *options, f"out={tmp_path}/out"])
     evaluate.main()
-    said = capsys.readouterr().out
-    assert "| Rain |" in said and "PRS-SR (Other)" in said
+    printed = capsys.readouterr().out
+    assert "| Rain |" in printed and "PRS-SR (Other)" in printed
     rows = [json.loads(x) for x in (tmp_path / "out/rows.jsonl").read_text().splitlines()]
     assert {row["corruption"] for row in rows} == {"clean", "rain", "flare"}
     assert {row.get("version") for row in rows if row["corruption"] == "rain"} == {"1"}
     changed = (tmp_path / "rain.py").read_text().replace('version="1"', 'version="2"')
     (tmp_path / "rain.py").write_text(changed)
-    found()
+    add_to_path()
     evaluate.main()
     assert len((tmp_path / "out/rows.jsonl").read_text().splitlines()) == 4
     drawn, _ = Schedule.always("rain", 0.5).draw(0, "e", 1)
     assert (drawn.name, drawn.modality) == ("rain", "rgb") and "rain" not in NAMES
 
 
-def test_the_list_of_another_process_has_it(installed, tmp_path):
+def test_external_corruption_is_listed_in_another_process(installed, tmp_path):
     assert "rain" in run(installed, tmp_path, "-m", "mitigate.corrupt", "--list")
 
 
-def test_it_changes_frames_by_its_key_and_not_at_severity_0(installed, tmp_path):
+def test_external_corruption_depends_on_key_and_severity(installed, tmp_path):
     code = (
         "import numpy as np\nfrom mitigate.corruptions import corrupt\n"
         "frame = np.full((32, 32, 3), 90, np.uint8)\n"
@@ -137,13 +137,13 @@ def test_it_changes_frames_by_its_key_and_not_at_severity_0(installed, tmp_path)
     run(installed, tmp_path, "-c", code)
 
 
-def test_a_name_that_is_not_installed_is_unknown_here():
+def test_uninstalled_name_is_unknown():
     with pytest.raises(KeyError):
         registry.record("rain")
     assert registry.title("rain_drops") == "Rain drops"
 
 
-def test_a_broken_package_is_left_out_with_a_warning_and_stops_nothing(installed, tmp_path):
+def test_broken_package_is_skipped_with_a_warning(installed, tmp_path):
     (tmp_path / "rain.py").write_text("raise ImportError('no cloud')")
     code = (
         "import warnings\nfrom mitigate.corruptions import registry\n"
@@ -152,5 +152,5 @@ def test_a_broken_package_is_left_out_with_a_warning_and_stops_nothing(installed
         "assert {*known} == ours, known\n"
         "print(said[0].message)"
     )
-    said = run(installed, tmp_path, "-c", code)
-    assert "rain = rain:RAIN of rain is left out" in said and "no cloud" in said
+    message = run(installed, tmp_path, "-c", code)
+    assert "rain = rain:RAIN of rain is left out" in message and "no cloud" in message

@@ -1,4 +1,4 @@
-"""Rewriting by a model: what is asked, what is kept, what survives a cut cache."""
+"""Rewriting by a model: what is asked and cached, and how a truncated cache is read."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ TEXT = "Turn left at the sofa\u2028 and stop."
 
 
 class Model:
-    """Answers with a fixed rewrite and counts how often it is asked."""
+    """Returns a fixed rewrite and counts its calls."""
 
     def __init__(self, answer: str = "Hang a left at the couch, friend, and stop.") -> None:
         self.asked: list[tuple[str, str]] = []
@@ -25,18 +25,18 @@ class Model:
         return self.answer
 
 
-def test_an_answer_is_asked_once_and_read_from_the_file_afterwards(tmp_path):
+def test_answer_is_asked_once_and_cached(tmp_path):
     model, cache = Model(), tmp_path / "sub/cache.jsonl"
     rewriter = Rewriter(model, "m", cache)
-    said = [rewriter(TEXT, "friendly") for _ in range(2)]
-    assert said == [model.answer] * 2
+    texts = [rewriter(TEXT, "friendly") for _ in range(2)]
+    assert texts == [model.answer] * 2
     assert model.asked == [(PROMPT.format(tone=TONES["friendly"]), TEXT)]
     silent = Model("never asked")
     assert Rewriter(silent, "m", cache)(TEXT, "friendly") == model.answer and not silent.asked
 
 
 @pytest.mark.parametrize("change", [{"model": "other"}, {"seed": 1}])
-def test_another_model_seed_manner_or_text_is_asked_again(tmp_path, change):
+def test_changed_model_seed_style_or_text_is_asked_again(tmp_path, change):
     cache = tmp_path / "cache.jsonl"
     Rewriter(Model(), "m", cache)(TEXT, "friendly")
     model = Model()
@@ -47,7 +47,7 @@ def test_another_model_seed_manner_or_text_is_asked_again(tmp_path, change):
     assert len(model.asked) == 3
 
 
-def test_a_cut_last_line_is_passed_over_and_mended(tmp_path):
+def test_cut_last_line_is_skipped_and_fixed(tmp_path):
     cache = tmp_path / "cache.jsonl"
     rewriter = Rewriter(Model(), "m", cache)
     rewriter(TEXT, "friendly")
@@ -61,7 +61,7 @@ def test_a_cut_last_line_is_passed_over_and_mended(tmp_path):
 
 
 @pytest.mark.parametrize("answer", [None, "", " \n", 7, "half \ud83d"])
-def test_an_answer_that_is_no_text_is_told_and_asked_for_again(tmp_path, answer):
+def test_non_text_answer_is_reported_and_asked_again(tmp_path, answer):
     cache, model = tmp_path / "cache.jsonl", Model(answer)
     rewriter = Rewriter(model, "m", cache)
     for _ in range(2):
@@ -72,7 +72,7 @@ def test_an_answer_that_is_no_text_is_told_and_asked_for_again(tmp_path, answer)
     assert rewriter(TEXT, "friendly") == "Hang a left."
 
 
-def test_lines_of_a_cache_that_hold_no_answer_are_passed_over(tmp_path):
+def test_cache_lines_without_answer_are_skipped(tmp_path):
     cache, model = tmp_path / "cache.jsonl", Model()
     Rewriter(model, "m", cache)(TEXT, "friendly")
     whole = json.loads(cache.read_text())
@@ -84,10 +84,10 @@ def test_lines_of_a_cache_that_hold_no_answer_are_passed_over(tmp_path):
         Rewriter(model, "m", tmp_path)
 
 
-def test_the_gate_stands_behind_the_model(tmp_path):
+def test_gate_checks_the_model(tmp_path):
     liar = Rewriter(Model("Turn right and walk 5 metres."), "liar", tmp_path / "cache.jsonl")
-    said = corrupt_instruction(TEXT, "formal", 1.0, Key(0, "1"), rewrite=liar)
-    assert "left" in said and "right" not in said
+    message = corrupt_instruction(TEXT, "formal", 1.0, Key(0, "1"), rewrite=liar)
+    assert "left" in message and "right" not in message
     with pytest.raises(ValueError, match="friendly, novice"):
         liar(TEXT, "rude")
     assert set(TONES) == set(MANNERS)

@@ -1,4 +1,4 @@
-"""What each RGB corruption does to pixels, sizes and panoramas."""
+"""The effect of each RGB corruption on pixels, sizes and panoramas."""
 
 import numpy as np
 import pytest
@@ -19,7 +19,7 @@ def halved(frame):
 
 @pytest.mark.parametrize("name", [n for n in RGB if n != "low_light_noise"])
 @pytest.mark.parametrize("episode", ["a", "b"])
-def test_a_frame_and_its_half_size_copy_are_hurt_alike(name, episode, scene):
+def test_frame_and_half_size_copy_are_corrupted_alike(name, episode, scene):
     full = scene.draw(256, 320)[0]
     key = Key(0, episode)
     big = halved(corrupt(full, name, 0.6, key=key)).astype(int)
@@ -38,7 +38,7 @@ def test_motion_blur_under_one_pixel_is_the_identity(scene):
     "length, angle, step",
     [(1.3, 0.1, 1), (6.4, -0.17, 1), (12.0, 0.1, 2), (38.4, 0.05, 2), (192.0, -0.1, 2)],
 )
-def test_the_blur_line_has_its_length_and_angle(length, angle, step):
+def test_blur_line_has_its_length_and_angle(length, angle, step):
     dy, dx, weights = kernels.line_taps(length, angle, step)
     share = weights / weights.sum()
     assert len(weights) % 4 == 0
@@ -51,7 +51,7 @@ def test_the_blur_line_has_its_length_and_angle(length, angle, step):
 
 @pytest.mark.parametrize("size", [(64, 64), (224, 224), (240, 640), (60, 2000)])
 @pytest.mark.parametrize("severity", [0.6, 1.0])
-def test_motion_blur_is_a_line_filter_to_less_than_half_a_grey_level(size, severity, scene):
+def test_motion_blur_is_a_line_filter_to_half_a_level(size, severity, scene):
     import cv2
 
     frame = scene.draw(*size)[0]
@@ -128,7 +128,7 @@ def flared(key, heading):
 
 
 @pytest.mark.parametrize("episode", ["a", "b", "c", "d", "e"])
-def test_only_views_that_face_the_light_flare(episode):
+def test_only_views_facing_the_light_flare(episode):
     for heading in np.linspace(-3, 7, 9):
         _, views = flared(Key(0, episode), heading)
         assert len(views) == 3  # 90 degrees of view, a camera every 30
@@ -136,7 +136,7 @@ def test_only_views_that_face_the_light_flare(episode):
         assert steps <= {1, 10}
 
 
-def test_the_light_stays_in_the_world_when_the_agent_turns():
+def test_light_stays_in_the_world_when_the_agent_turns():
     key = Key(0, "a")
     before, _ = flared(key, 0.2)
     left, _ = flared(key, 0.2 + TURN)  # a turn to the left: the scene moves one view to the right
@@ -145,7 +145,7 @@ def test_the_light_stays_in_the_world_when_the_agent_turns():
     assert np.abs(around.astype(int) - before).max() <= 1
 
 
-def test_a_view_to_the_right_sees_the_light_further_left():
+def test_view_to_the_right_sees_the_light_further_left():
     centres = masks.flare_centres(digest(Key(0, "a"), "flare"), 12, 64, 64, 0.2)
     seen = [k for k in range(12) if centres[k] is not None]
     ordered = seen if seen[-1] - seen[0] == 2 else sorted(seen, key=lambda k: (k + 6) % 12)
@@ -153,7 +153,7 @@ def test_a_view_to_the_right_sees_the_light_further_left():
     assert columns == sorted(columns, reverse=True)
 
 
-def test_without_a_heading_the_light_is_in_the_first_view_where_it_was_drawn():
+def test_light_without_heading_is_in_its_drawn_view():
     for i in range(50):
         x, y = masks.flare_centres(digest(Key(0, str(i)), "flare"), 1, 50, 100, None)[0]
         assert 10 <= x <= 90 and 0 <= y <= 25
@@ -200,7 +200,7 @@ def test_defocus_leaves_a_plain_frame_as_it_is(sigma, grey):
     assert (out == grey).all()
 
 
-def test_a_foreign_object_is_a_centred_disk():
+def test_foreign_object_is_a_centred_disk():
     out = corrupt(WHITE, "foreign_object", 0.5, key=Key(0, "a"))
     assert (out == 0).mean() == pytest.approx(np.pi * 15**2 / (60 * 80), rel=0.02)
     assert (out == out[::-1]).all() and (out == out[:, ::-1]).all()
@@ -220,8 +220,8 @@ def test_black_out_is_drawn_for_each_frame_and_view():
 
 
 @pytest.mark.parametrize("heading", [float("nan"), float("inf")])
-def test_a_flare_needs_a_heading_that_is_a_number(scene, heading):
-    """A light that is nowhere would pass for a clean frame."""
+def test_flare_rejects_heading_that_is_not_a_number(scene, heading):
+    """A light outside of all views would look like a clean frame."""
     rgb, _ = scene.draw(24, 32)
     with pytest.raises(ValueError, match="heading must be in finite radians"):
         corrupt(rgb, "flare", 1.0, key=Key(0, "a"), heading=heading)

@@ -28,7 +28,7 @@ def same(a, b):
     return a.dtype == b.dtype and a.shape == b.shape and a.tobytes() == b.tobytes()
 
 
-def test_there_are_eight_rgb_and_four_depth_corruptions():
+def test_suite_has_eight_rgb_and_four_depth_corruptions():
     assert len(RGB) == 8 and len(DEPTH) == 4 and NAMES == RGB + DEPTH
 
 
@@ -41,7 +41,7 @@ def test_severity_zero_returns_a_bit_exact_copy(name, panorama):
 
 @pytest.mark.parametrize("name", NAMES)
 @pytest.mark.parametrize("severity", [1e-9, 0.02, 0.6, 1.0])
-def test_the_input_stays_and_the_output_has_its_shape(name, severity, panorama):
+def test_input_is_unchanged_and_output_has_its_shape(name, severity, panorama):
     frame = frame_for(name, panorama)
     before = frame.tobytes()
     out = corrupt(frame, name, severity, key=KEY, heading=0.3)
@@ -83,25 +83,25 @@ def test_mean_absolute_depth_error_never_falls(name, episode, scene):
 
 
 @pytest.mark.parametrize("size", [(48, 64), pytest.param((96, 96), marks=pytest.mark.slow)])
-def test_on_a_fine_grid_strength_slips_by_no_more_than_stated(size, scene):
-    found = curves(scene.draw(*size)[0][None], scene.draw(*size)[1][None, ..., None])
-    assert list(found) == list(NAMES)
-    for name, curve in found.items():
+def test_strength_on_fine_grid_decreases_within_the_bound(size, scene):
+    matches = curves(scene.draw(*size)[0][None], scene.draw(*size)[1][None, ..., None])
+    assert list(matches) == list(NAMES)
+    for name, curve in matches.items():
         assert curve.slip <= max(SLIPS.get(name, 0.0), 1e-6), (name, curve.slip)
 
 
 @pytest.mark.parametrize("name", DEPTH)
 @pytest.mark.parametrize("severity", [0.1, 0.6, 1.0])
-def test_invalid_depth_comes_back_as_it_was_and_valid_depth_stays_valid(name, severity, panorama):
+def test_invalid_depth_is_kept_and_valid_depth_stays_valid(name, severity, panorama):
     depth = panorama[1]
     invalid = ~(np.isfinite(depth) & (depth > 0))
     out = corrupt(depth, name, severity, key=KEY)
     assert out[invalid].tobytes() == depth[invalid].tobytes()
-    kept = out[~invalid]
-    assert np.isfinite(kept).all() and kept.max() <= 10.0
+    remaining = out[~invalid]
+    assert np.isfinite(remaining).all() and remaining.max() <= 10.0
     if name == "missing_data":
-        kept = kept[kept != 0]
-    assert kept.min() >= np.float32(1e-3)
+        remaining = remaining[remaining != 0]
+    assert remaining.min() >= np.float32(1e-3)
 
 
 @pytest.mark.parametrize("name", DEPTH)
@@ -121,14 +121,14 @@ BAD_SEVERITIES = [1.2, -0.1, float("nan"), float("inf"), "much", None, "0.5", Tr
 
 
 @pytest.mark.parametrize("severity", BAD_SEVERITIES)
-def test_a_severity_outside_zero_to_one_is_refused(severity, panorama):
+def test_severity_outside_zero_to_one_is_rejected(severity, panorama):
     with pytest.raises(ValueError, match="from 0 .clean. to 1"):
         corrupt(panorama[0], "flare", severity, key=KEY)
     with pytest.raises(ValueError, match="from 0 .clean. to 1"):
         Corruption("flare", severity)
 
 
-def test_an_unknown_name_is_refused_with_the_nearest_one(panorama):
+def test_unknown_name_is_rejected_with_the_nearest(panorama):
     with pytest.raises(ValueError, match="mean motion_blur"):
         corrupt(panorama[0], "motionblur", 0.5, key=KEY)
     with pytest.raises(ValueError, match="Choose one of: clean, motion_blur"):
@@ -142,7 +142,7 @@ def test_float_rgb_is_refused_with_the_conversion(panorama):
         corrupt(panorama[0] / np.float32(255), "flare", 0.5, key=KEY)
 
 
-def test_millimetres_and_other_depth_types_are_refused_with_the_conversion(panorama):
+def test_wrong_depth_type_is_rejected_with_the_conversion(panorama):
     with pytest.raises(ValueError, match="divided by 1000"):
         corrupt(np.full((4, 4), 900, np.uint16), "multipath", 0.5, key=KEY)
     with pytest.raises(ValueError, match="astype"):
@@ -170,7 +170,7 @@ def test_wrong_depth_shapes_are_refused(shape):
     ],
     ids=["uint8", "panorama", "as 36 views"],
 )
-def test_rgb_is_not_taken_for_depth_and_the_names_that_corrupt_it_are_told(frame):
+def test_rgb_for_depth_is_rejected_with_fitting_names(frame):
     message = "gaussian_noise needs a depth frame.*of RGB: .*low_light_noise.*impulse_noise"
     with pytest.raises(ValueError, match=message):
         corrupt(frame, "gaussian_noise", 0.5, key=KEY)
@@ -181,7 +181,7 @@ def test_rgb_is_not_taken_for_depth_and_the_names_that_corrupt_it_are_told(frame
 @pytest.mark.parametrize(
     "frame", [np.zeros((37, 4, 5, 3), np.uint8), np.ones((64, 4, 5), np.float32)], ids=["rgb", "z"]
 )
-def test_a_batch_is_no_panorama(frame):
+def test_batch_is_not_a_panorama(frame):
     name = "spatter" if frame.dtype == np.uint8 else "missing_data"
     with pytest.raises(ValueError, match="at most 36 views.*share one mask.*one instant at a time"):
         corrupt(frame, name, 0.5, key=KEY)
@@ -189,12 +189,12 @@ def test_a_batch_is_no_panorama(frame):
 
 
 @pytest.mark.parametrize("key", [None, 1.5, True, (0, "a")])
-def test_a_key_that_is_no_key_is_refused(panorama, key):
+def test_invalid_key_is_rejected(panorama, key):
     with pytest.raises(ValueError, match="key must be a Key.*whole number.*text"):
         corrupt(panorama[0], "flare", 0.5, key=key)
 
 
-def test_a_number_or_a_text_will_do_for_a_key(panorama):
+def test_number_or_text_is_a_valid_key(panorama):
     def hurt(key):
         return corrupt(panorama[0][0], "spatter", 0.5, key=key)
 
@@ -207,22 +207,22 @@ def test_a_number_or_a_text_will_do_for_a_key(panorama):
     "heading", ["north", "", True, np.True_, float("nan"), [1.0, 2.0], [], {}], ids=str
 )
 @pytest.mark.parametrize("name", ["flare", "spatter", "multipath"])
-def test_a_heading_that_is_no_finite_number_is_refused(panorama, name, heading):
+def test_heading_that_is_not_finite_is_rejected(panorama, name, heading):
     with pytest.raises(ValueError, match="heading must be in finite radians"):
         corrupt(frame_for(name, panorama), name, 0.5, key=KEY, heading=heading)
 
 
 @pytest.mark.parametrize("hurt", [corrupt_observation, corrupt_normalised])
-def test_an_observation_takes_a_short_key_and_says_what_a_corruption_is(panorama, hurt):
+def test_observation_takes_a_short_key(panorama, hurt):
     obs = {"rgb": panorama[0]}
-    made = hurt(obs, Corruption("spatter", 0.5), 7)["rgb"]
-    assert same(made, corrupt(panorama[0], "spatter", 0.5, key=7))
+    output = hurt(obs, Corruption("spatter", 0.5), 7)["rgb"]
+    assert same(output, corrupt(panorama[0], "spatter", 0.5, key=7))
     for wrong in ("spatter", ("spatter", 0.5), None):
         with pytest.raises(ValueError, match=r"Corruption\('spatter', 0.6\)"):
             hurt(obs, wrong, 7)
 
 
-def test_an_observation_is_hurt_in_the_modality_concerned_only(panorama):
+def test_observation_changes_in_its_modality_only(panorama):
     rgb, depth = panorama
     obs = {"rgb": rgb, "depth": depth, "pose": np.array([1.0, 2.0, 0.5], np.float32), "step": 3}
     for name in NAMES:
@@ -238,12 +238,12 @@ def test_an_observation_is_hurt_in_the_modality_concerned_only(panorama):
 
 
 @pytest.mark.parametrize("pose", [np.zeros(2), np.zeros(7), np.zeros((1, 3)), 0.5], ids=str)
-def test_a_pose_of_another_shape_is_refused(panorama, pose):
+def test_pose_of_another_shape_is_rejected(panorama, pose):
     obs = {"rgb": panorama[0], "pose": pose}
     with pytest.raises(ValueError, match=r"must be \[3\] = \(x, y, heading\)"):
         corrupt_observation(obs, Corruption("flare", 0.6), KEY)
 
 
-def test_an_observation_without_the_modality_is_refused(panorama):
+def test_observation_without_the_modality_is_rejected(panorama):
     with pytest.raises(ValueError, match="lacks"):
         corrupt_observation({"rgb": panorama[0]}, Corruption("multipath", 0.5), KEY)

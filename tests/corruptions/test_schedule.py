@@ -1,4 +1,4 @@
-"""Which frame is corrupted by what."""
+"""Schedules: which corruption a frame gets."""
 
 import json
 from collections import Counter
@@ -23,16 +23,16 @@ def test_clean_hurts_nothing():
 
 @pytest.mark.parametrize("mode, frames", [("per_frame", 10), ("per_episode", 1)])
 def test_shares_are_those_asked_for(mode, frames):
-    found = names_of(Schedule(mode, 0.6, clean_share=0.4), frames=frames)
-    assert found["clean"] / 6000 == pytest.approx(0.4, abs=0.03)
+    result = names_of(Schedule(mode, 0.6, clean_share=0.4), frames=frames)
+    assert result["clean"] / 6000 == pytest.approx(0.4, abs=0.03)
     for name in NAMES:
-        assert found[name] / 6000 == pytest.approx(0.6 / 12, abs=0.012)
+        assert result[name] / 6000 == pytest.approx(0.6 / 12, abs=0.012)
 
 
 @pytest.mark.parametrize("share", [0.0, 1.0])
-def test_the_clean_share_can_be_none_or_all(share):
-    found = names_of(Schedule("per_frame", 0.6, clean_share=share), 500, frames=5)
-    assert found["clean"] == 500 * share
+def test_clean_share_can_be_zero_or_one(share):
+    result = names_of(Schedule("per_frame", 0.6, clean_share=share), 500, frames=5)
+    assert result["clean"] == 500 * share
 
 
 def test_per_episode_keeps_corruption_and_episode_state():
@@ -49,7 +49,7 @@ def test_per_frame_draws_corruption_and_episode_state_anew():
     assert len({corruption.name for corruption, _ in draws}) > 6
 
 
-def test_a_draw_is_a_function_of_its_arguments():
+def test_draw_depends_on_its_arguments_only():
     for mode in ("per_frame", "per_episode", "success_distributed"):
         one, other = Schedule(mode, 0.6), Schedule(mode, 0.6)
         order = [(s, f"e{e}", f) for s in range(2) for e in range(20) for f in range(3)]
@@ -66,7 +66,7 @@ def test_depth_has_its_own_severity():
     assert Schedule("per_frame", 0.9, 0.0, 0.0, DEPTH).draw(0, "e", 0)[0].severity == 0.0
 
 
-def test_a_range_of_severities_is_drawn_from_evenly():
+def test_severity_range_is_sampled_evenly():
     schedule = Schedule("per_episode", [0.2, 1.0], severity_depth=(0.5, 0.5), clean_share=0.0)
     drawn = [schedule.draw(0, f"e{i}", 0)[0] for i in range(3000)]
     rgb = sorted(c.severity for c in drawn if c.name in RGB)
@@ -77,7 +77,7 @@ def test_a_range_of_severities_is_drawn_from_evenly():
     assert schedule.corruption("flare").severity == pytest.approx(0.6)
 
 
-def test_a_range_draws_the_same_corruptions_and_keys_as_one_severity():
+def test_severity_range_draws_the_same_corruptions_and_keys():
     one, range_ = Schedule("per_frame", 0.6), Schedule("per_frame", [0.3, 1.0])
     for i in range(200):
         (a, key), (b, same) = one.draw(5, "e", i), range_.draw(5, "e", i)
@@ -85,8 +85,8 @@ def test_a_range_draws_the_same_corruptions_and_keys_as_one_severity():
 
 
 def test_names_restrict_the_draw():
-    found = names_of(Schedule("per_frame", 0.6, names=("flare", "multipath")), 400, frames=4)
-    assert set(found) == {"clean", "flare", "multipath"}
+    matches = names_of(Schedule("per_frame", 0.6, names=("flare", "multipath")), 400, frames=4)
+    assert set(matches) == {"clean", "flare", "multipath"}
 
 
 def test_weights_follow_one_minus_success():
@@ -94,12 +94,12 @@ def test_weights_follow_one_minus_success():
     raw = {name: (1 - SUCCESS[name]) ** 2 + 0.1 for name in NAMES}
     total = sum(raw.values())
     assert schedule.weights == pytest.approx({name: w / total for name, w in raw.items()})
-    found = names_of(schedule, 12000)
+    matches = names_of(schedule, 12000)
     for name in NAMES:
-        assert found[name] / 12000 == pytest.approx(0.75 * schedule.weights[name], abs=0.012)
+        assert matches[name] / 12000 == pytest.approx(0.75 * schedule.weights[name], abs=0.012)
 
 
-def test_weights_are_uniform_before_a_refresh_and_in_other_modes():
+def test_weights_are_uniform_before_a_refresh():
     uniform = pytest.approx(dict.fromkeys(NAMES, 1 / 12))
     assert Schedule("success_distributed", 0.6).weights == uniform
     schedule = Schedule("per_episode", 0.6)
@@ -107,7 +107,7 @@ def test_weights_are_uniform_before_a_refresh_and_in_other_modes():
     assert schedule.weights == uniform
 
 
-def test_a_refresh_moves_the_weights_and_keeps_rates_that_are_absent():
+def test_refresh_updates_weights_and_keeps_absent_rates():
     schedule = Schedule("success_distributed", 0.6, success=SUCCESS)
     before = schedule.weights["flare"]
     schedule.refresh({"flare": 0.0, "clean": 0.9})
@@ -121,7 +121,7 @@ def test_perfect_success_without_a_floor_leaves_uniform_weights():
     assert schedule.weights == pytest.approx(dict.fromkeys(NAMES, 1 / 12))
 
 
-def test_a_weight_of_zero_is_never_drawn():
+def test_zero_weight_is_never_drawn():
     success = {**dict.fromkeys(NAMES, 1.0), "flare": 0.2}
     schedule = Schedule("success_distributed", 0.6, clean_share=0, floor=0, success=success)
     assert set(names_of(schedule, 500)) == {"flare"}
@@ -167,11 +167,11 @@ def test_wrong_settings_are_refused(arguments, message):
         Schedule(**{"mode": "success_distributed", "severity": 0.6, **arguments})
 
 
-def test_a_foreign_state_is_refused():
+def test_foreign_state_is_rejected():
     with pytest.raises(ValueError, match="must have the entry 'success'"):
         Schedule("clean", 0.6).load_state_dict({"weights": [1]})
 
 
-def test_one_name_instead_of_a_list_is_refused():
+def test_single_name_instead_of_a_list_is_rejected():
     with pytest.raises(ValueError, match=r"names must be a list of .*such as \['spatter'\]"):
         Schedule("per_episode", 0.6, names="spatter")

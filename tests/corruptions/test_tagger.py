@@ -1,4 +1,4 @@
-"""Our tagger on words labelled by hand; spaCy's, where an English pipeline is installed."""
+"""Our tagger on hand-labelled words; spaCy's if an English pipeline is installed."""
 
 from __future__ import annotations
 
@@ -14,29 +14,29 @@ CONTENT = {"NOUN", "PROPN", "VERB", "ADP"}
 
 
 def pairs(text: str, tag) -> list[tuple[str, str, str]]:
-    """(word, label, tag) of every word; marks are left out."""
-    found = []
+    """Return (word, label, tag) of every word; punctuation is left out."""
+    matches = []
     for line in text.splitlines():
         if "/" not in line:
             continue
         words = [pair.rsplit("/", 1) for pair in line.split()]
         tags = tag(" ".join(word for word, _ in words))
         assert [token.text for token in tags] == [word for word, _ in words]
-        found += [(*pair, token.tag) for pair, token in zip(words, tags, strict=True)]
-    return [triple for triple in found if triple[1] != "PUNCT"]
+        matches += [(*pair, token.tag) for pair, token in zip(words, tags, strict=True)]
+    return [triple for triple in matches if triple[1] != "PUNCT"]
 
 
 def accuracy(triples: list[tuple[str, str, str]]) -> float:
     return sum(label == tag for _, label, tag in triples) / len(triples)
 
 
-def test_our_tagger_on_what_it_was_written_with_and_on_what_it_was_not():
+def test_tagger_scores_on_known_and_new_texts():
     tuned, unseen = pairs(TUNED, tagger.tag), pairs(UNSEEN, tagger.tag)
     assert len(tuned) >= 200 and len(unseen) >= 150
     assert round(accuracy(tuned), 3) == 0.99 and round(accuracy(unseen), 3) == 0.96  # docs
 
 
-def test_an_installed_spacy_pipeline_is_used_with_our_overrides():
+def test_installed_spacy_pipeline_is_used_with_overrides():
     try:
         spacy = tagger.named("spacy")
     except ValueError as error:
@@ -48,8 +48,8 @@ def test_an_installed_spacy_pipeline_is_used_with_our_overrides():
 
 def test_tokens_cover_every_word_of_any_text():
     text = "Don't go to [MASK]—the café’s 2nd room 🙂\x07!"
-    found = tagger.tokens(text)
-    assert all(text[t.start : t.end] == t.text for t in found)
-    assert [t.text for t in found if t.is_word] == [
+    matches = tagger.tokens(text)
+    assert all(text[t.start : t.end] == t.text for t in matches)
+    assert [t.text for t in matches if t.is_word] == [
         *("Don't", "go", "to", "the", "café’s", "2nd", "room"),
     ]

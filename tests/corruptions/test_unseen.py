@@ -1,4 +1,4 @@
-"""The unseen corruptions: the suite's rules, their halves, and that nobody trains on them."""
+"""The unseen corruptions: the suite's rules, their halves, and that no training uses them."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def same(a, b):
 # --------------------------------------------------------------------- what they are, and where
 
 
-def test_there_are_two_halves_of_each_modality_and_none_is_of_the_suite():
+def test_unseen_halves_are_separate_from_the_suite():
     assert len(RGB) >= 9 and len(DEPTH) >= 7 and not set(UNSEEN_NAMES) & set(NAMES)
     for modality in ("rgb", "depth"):
         halves = [unseen_names(modality, half=half) for half in (VALIDATION, TEST)]
@@ -44,21 +44,21 @@ def test_there_are_two_halves_of_each_modality_and_none_is_of_the_suite():
 
 @pytest.mark.parametrize("name", UNSEEN_NAMES)
 def test_record_is_described_in_the_docs(name):
-    found = record(name)
-    assert found.severity and found.source and all(DESCRIPTIONS[name])
-    assert found.version and version(name) == {"version": found.version}
+    matches = record(name)
+    assert matches.severity and matches.source and all(DESCRIPTIONS[name])
+    assert matches.version and version(name) == {"version": matches.version}
     (line,) = (line for line in table().splitlines() if line.split()[0] == name)
-    assert line.endswith({VALIDATION: "unseen_val", TEST: "unseen_test"}[found.half])
+    assert line.endswith({VALIDATION: "unseen_val", TEST: "unseen_test"}[matches.half])
 
 
-def test_a_half_that_is_none_is_refused():
+def test_unknown_half_is_rejected():
     with pytest.raises(ValueError, match="no half of the unseen corruptions 'tset'"):
         unseen_names("rgb", half="tset")
     with pytest.raises(ValueError, match="'validation' or 'test'"):
         Record("fog", "rgb", lambda views, *_: views, "s", half="train")
 
 
-def test_the_suites_of_conf_hold_them_and_the_others_do_not():
+def test_unseen_corruptions_are_in_their_suites_only():
     def suite(name: str) -> list[str]:
         return list(conf.load_config("evaluate", [f"suite={name}"]).suite.conditions)
 
@@ -75,47 +75,47 @@ def test_the_suites_of_conf_hold_them_and_the_others_do_not():
 
 
 def schedules(node) -> list[dict]:
-    """All schedules in a config, wherever they stand."""
+    """Return all schedules in a config, at any depth."""
     if isinstance(node, list):
-        return [found for value in node for found in schedules(value)]
+        return [matches for value in node for matches in schedules(value)]
     if not isinstance(node, dict):
         return []
-    own = [node] if str(node.get("_target_", "")).endswith(".Schedule") else []
-    return own + [found for value in node.values() for found in schedules(value)]
+    own_value = [node] if str(node.get("_target_", "")).endswith(".Schedule") else []
+    return own_value + [matches for value in node.values() for matches in schedules(value)]
 
 
 def drawn(node: dict) -> set[str]:
     schedule = build.build(OmegaConf.create(node))
-    found = {schedule.draw(seed, "e", frame)[0].name for seed in range(40) for frame in range(10)}
-    return found | set(schedule.names)
+    matches = {schedule.draw(seed, "e", frame)[0].name for seed in range(40) for frame in range(10)}
+    return matches | set(schedule.names)
 
 
 @pytest.mark.parametrize("option", [f"recipe={r}" for r in RECIPES])
-def test_no_recipe_draws_one(option):
+def test_recipes_draw_no_unseen_corruption(option):
     cfg = OmegaConf.to_container(conf.load_config("train", [option]), resolve=True)
-    found = schedules(cfg)
-    assert found
-    assert not set().union(*map(drawn, found)) & set(UNSEEN_NAMES)
+    matches = schedules(cfg)
+    assert matches
+    assert not set().union(*map(drawn, matches)) & set(UNSEEN_NAMES)
 
 
 @pytest.mark.parametrize("name", SCHEDULES)
-def test_no_schedule_draws_one_unless_it_is_named(name):
+def test_schedules_draw_unseen_corruptions_only_by_name(name):
     options = [f"schedule={name}", "recipe=imitation"]
-    found = schedules(OmegaConf.to_container(conf.load_config("train", options), resolve=True))
-    assert not set().union(*map(drawn, found)) & set(UNSEEN_NAMES)
+    loaded = schedules(OmegaConf.to_container(conf.load_config("train", options), resolve=True))
+    assert not set().union(*map(drawn, loaded)) & set(UNSEEN_NAMES)
     named = conf.load_config("train", ["recipe=da_per_frame", "schedule.names=[haze,flare]"])
-    found = schedules(OmegaConf.to_container(named, resolve=True))
-    assert set().union(*map(drawn, found)) == {"clean", "haze", "flare"}
+    loaded = schedules(OmegaConf.to_container(named, resolve=True))
+    assert set().union(*map(drawn, loaded)) == {"clean", "haze", "flare"}
 
 
-def test_no_config_but_their_suites_and_the_pairs_of_a_user_names_one():
+def test_configs_name_no_unseen_corruption():
     for path in conf.CONF.rglob("*.yaml"):
         words = str(yaml.safe_load(path.read_text(encoding="utf-8"))).replace("+", " ").split()
-        held = {word.strip("'[]{},:") for word in words}
-        assert not held & set(UNSEEN_NAMES), path
+        content = {word.strip("'[]{},:") for word in words}
+        assert not content & set(UNSEEN_NAMES), path
 
 
-def test_a_schedule_of_code_draws_one_only_where_it_is_named():
+def test_python_schedule_draws_unseen_corruptions_only_by_name():
     assert Schedule("per_frame", 0.6).names == NAMES
     assert Schedule.always("haze", 0.6).draw(0, "e", 1)[0] == Corruption("haze", 0.6)
 
@@ -136,7 +136,7 @@ def test_severity_zero_changes_no_bit_and_the_input_stays(name, panorama):
 
 
 @pytest.mark.parametrize("name", RGB)
-def test_psnr_never_rises_and_ssim_by_no_more_than_stated(name, scene):
+def test_psnr_never_rises_and_ssim_within_the_bound(name, scene):
     frame = scene.draw(64, 80)[0]
     for episode in "ab":
         seen = [corrupt(frame, name, s, key=Key(0, episode)) for s in TENTHS]
@@ -155,31 +155,31 @@ def test_mean_absolute_depth_error_never_falls(name, scene):
         assert np.diff(errors).min() >= -10 * SLIPS.get(name, 0.0) and errors[-1] > 0.03, errors
 
 
-def test_on_a_finer_grid_strength_slips_by_no_more_than_stated(scene):
+def test_strength_on_finer_grid_decreases_within_the_bound(scene):
     rgb, depth = scene.draw(40, 52)
     grid = np.linspace(0.5, 0.7, 21)
-    found = curves(rgb[None], depth[None, ..., None], grid, UNSEEN_NAMES)
-    for name, curve in found.items():
+    matches = curves(rgb[None], depth[None, ..., None], grid, UNSEEN_NAMES)
+    for name, curve in matches.items():
         assert curve.slip <= max(SLIPS.get(name, 0.0), 1e-6), (name, curve.slip)
 
 
 @pytest.mark.parametrize("name", DEPTH)
 @pytest.mark.parametrize("sensor", [DepthSensor(), DepthSensor(0.5, 5.0, missing=-1.0)])
-def test_invalid_depth_comes_back_as_it_was_and_valid_depth_stays_valid(name, sensor, panorama):
+def test_invalid_depth_is_kept_and_valid_depth_stays_valid(name, sensor, panorama):
     depth = panorama[1]
     valid = np.isfinite(depth) & (depth > 0)
     for severity in (0.1, 0.6, 1.0):
         out = corrupt(depth, name, severity, key=KEY, sensor=sensor)
         assert out[~valid].tobytes() == depth[~valid].tobytes()
-        kept = out[valid]
-        kept = kept[kept != sensor.missing] if name in LOSE else kept
-        assert ((kept >= np.float32(1e-3)) & (kept <= sensor.z_max)).all()
+        remaining = out[valid]
+        remaining = remaining[remaining != sensor.missing] if name in LOSE else remaining
+        assert ((remaining >= np.float32(1e-3)) & (remaining <= sensor.z_max)).all()
     nothing = np.array([[0.0, np.nan], [np.inf, -2.0]], np.float32)
     assert same(corrupt(nothing, name, 1.0, key=KEY), nothing)
 
 
 @pytest.mark.parametrize("name", UNSEEN_NAMES)
-def test_a_view_is_corrupted_by_its_place_and_not_by_its_neighbours(name, panorama):
+def test_view_is_corrupted_by_its_place_only(name, panorama):
     frame = frame_for(name, panorama)[:4]
     whole = corrupt(frame, name, 0.6, key=KEY)
     assert same(corrupt(frame[:2], name, 0.6, key=KEY), whole[:2])
@@ -191,16 +191,16 @@ def test_a_view_is_corrupted_by_its_place_and_not_by_its_neighbours(name, panora
 
 
 @pytest.mark.parametrize("name", UNSEEN_NAMES)
-def test_what_is_drawn_each_frame_is_what_the_record_says(name, panorama):
-    frame, found = frame_for(name, panorama), record(name)
+def test_draws_per_frame_match_the_record(name, panorama):
+    frame, matches = frame_for(name, panorama), record(name)
 
     def seen(**changed):
         return corrupt(frame, name, 0.7, key=Key(**{**vars(KEY), **changed}))
 
     assert same(seen(), seen())
-    assert same(seen(frame=5), seen()) == (found.frame == "-")
+    assert same(seen(frame=5), seen()) == (matches.frame == "-")
     others = [seen(episode=str(n)) for n in range(4)]
-    random = (found.episode, found.frame) != ("-", "-")
+    random = (matches.episode, matches.frame) != ("-", "-")
     assert any(not same(other, others[0]) for other in others) == random or name == "glossy_floor"
 
 
@@ -212,7 +212,7 @@ def test_odd_and_tiny_frames_work(name, size):
 
 
 @pytest.mark.parametrize("name", ["haze", "scratches", "refraction", "rolling_shutter", "ghosting"])
-def test_a_frame_and_its_half_size_copy_are_corrupted_alike(name):
+def test_frame_and_half_size_copy_are_corrupted_alike(name):
     y, x = np.mgrid[:128, :160]
     smooth = np.stack([100 + 60 * np.sin(x / 40 + c) * np.cos(y / 30) for c in range(3)], -1)
     frame = np.rint(smooth).astype(np.uint8)
@@ -226,7 +226,7 @@ def test_a_frame_and_its_half_size_copy_are_corrupted_alike(name):
 
 
 def room(height: int, width: int, wall: float = 4.0, tall: float = 1.2) -> np.ndarray:
-    """Depth [H, W] before a wall, with the floor ``tall`` metres under a level camera."""
+    """Return the depth [H, W] of a wall, with the floor ``tall`` metres under a level camera."""
     down = (np.arange(height) + 0.5 - 0.5 * height) / (0.5 * width)
     floor = np.where(down > 0, tall / np.maximum(down, 1e-6), np.inf)
     return np.repeat(np.minimum(floor, wall)[:, None], width, axis=1).astype(np.float32)
@@ -238,7 +238,7 @@ def test_haze_thins_contrast_towards_its_own_grey():
     assert (high > low).all() and (high - low).mean() < 160
 
 
-def test_grey_stays_grey_when_hues_turn_and_becomes_coloured_in_a_wrong_light():
+def test_grey_stays_grey_under_hue_and_not_under_light():
     grey = np.full((8, 8, 3), 120, np.uint8)
     assert same(corrupt(grey, "hue_shift", 0.7, key=KEY), grey)
     assert np.ptp(corrupt(grey, "white_balance", 0.7, key=KEY)[0, 0].astype(int)) > 20
@@ -265,14 +265,14 @@ def test_impulses_and_slices_are_nested_in_severity(panorama):
     assert share == pytest.approx(0.3, abs=0.02)
 
 
-def test_a_ghost_is_the_picture_moved_aside():
+def test_ghost_is_the_shifted_picture():
     frame = np.zeros((32, 64, 3), np.uint8)
     frame[12:20, 24:40] = 200
     out = corrupt(frame, "ghosting", 1.0, key=KEY)
     assert sorted(np.unique(out)) == [0, 100, 200]
 
 
-def test_the_shadow_lies_on_one_side_of_the_near_surface_and_on_the_far_one():
+def test_shadow_lies_on_one_side_of_the_near_surface():
     depth = np.full((16, 64), 4.0, np.float32)
     depth[:, 24:40] = 1.5
     out = corrupt(depth, "edge_shadow", 0.6, key=KEY)
@@ -281,7 +281,7 @@ def test_the_shadow_lies_on_one_side_of_the_near_surface_and_on_the_far_one():
     assert lost[-1] == 23 or lost[0] == 40
 
 
-def test_what_is_near_grows_and_flying_pixels_lie_between_the_surfaces():
+def test_near_surface_grows_and_flying_pixels_lie_between():
     depth = np.full((40, 40), 4.0, np.float32)
     depth[:, 20:] = 1.5
     grown = corrupt(depth, "fattening", 1.0, key=KEY)
@@ -291,7 +291,7 @@ def test_what_is_near_grows_and_flying_pixels_lie_between_the_surfaces():
     assert ((flying > 1.6) & (flying < 3.9)).any()
 
 
-def test_a_glossy_floor_reads_as_deep_as_the_room_and_walls_stay():
+def test_glossy_floor_reads_the_room_depth_and_walls_stay():
     depth = room(48, 64)
     out = corrupt(depth, "glossy_floor", 1.0, key=KEY)
     floor = depth < 4.0
@@ -299,7 +299,7 @@ def test_a_glossy_floor_reads_as_deep_as_the_room_and_walls_stay():
     assert same(out[~floor], depth[~floor])
 
 
-def test_what_is_out_of_range_or_in_shadow_reads_the_sentinel():
+def test_out_of_range_or_shadow_reads_the_sentinel():
     depth = np.array([[0.5, 2.0, 4.0, 9.0]], np.float32)
     out = corrupt(depth, "range_limit", 0.5, key=KEY, sensor=DepthSensor(missing=10.0))
     assert out.tolist() == [[0.5, 2.0, 10.0, 10.0]]

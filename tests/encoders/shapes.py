@@ -9,7 +9,7 @@ from torch import Tensor, nn
 
 
 class TinyNet(nn.Module):
-    """Four blocks in a list, features by a module called ``pool``, and a classifier behind it."""
+    """Four blocks in a list, features by a module called ``pool``, then a classifier."""
 
     def __init__(self, channels: int = 3, width: int = 8) -> None:
         super().__init__()
@@ -57,8 +57,8 @@ class Bottleneck(nn.Module):
             )
 
     def forward(self, x: Tensor) -> Tensor:
-        kept = x if self.downsample is None else self.downsample(x)
-        return self.relu(self.convs(x) + kept)
+        remaining = x if self.downsample is None else self.downsample(x)
+        return self.relu(self.convs(x) + remaining)
 
 
 class DdppoDepth(nn.Module):
@@ -163,7 +163,7 @@ def _seeded(make: Callable[[], nn.Module]) -> nn.Module:
         return make()
 
 
-BRANCH = 0.2  # weight of the last normalisation of a residual branch (ours)
+BRANCH = 0.2  # weight of the last normalisation of a residual branch (heuristic)
 
 
 def ddppo() -> nn.Module:
@@ -180,8 +180,8 @@ def ddppo() -> nn.Module:
 
 
 def resnet50() -> nn.Module:
-    """transformers' ResNet-50, random weights, branches as in :func:`ddppo`; its BatchNorms have
-    seen noise, so that no layer's features are far larger than another's."""
+    """transformers' ResNet-50, random weights, branches as in :func:`ddppo`. Its BatchNorms have
+    seen noise, so that the features of all layers have a similar size."""
     from transformers import ResNetConfig, ResNetModel
 
     def make() -> nn.Module:

@@ -73,7 +73,7 @@ def test_encoder_rejects_random_weights_with_adapters(tmp_path):
     file = tmp_path / "weights.safetensors"
     save_file(drawn().state_dict(), file)
     assert encoder(model=path, weights=str(file))
-    assert encoder(model=path, tune="all")  # whose folder holds all weights
+    assert encoder(model=path, tune="all")  # its folder contains all weights
     torch.random.set_rng_state(state)
     encoder()
     after = torch.random.get_rng_state()

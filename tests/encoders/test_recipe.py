@@ -45,25 +45,25 @@ def pictures(tmp_path_factory):
     return path
 
 
-def result(**given) -> Encoder:
-    given = {"model": "tests.encoders.shapes:tiny", "output": "pool", **given}
+def result(**options) -> Encoder:
+    options = {"model": "tests.encoders.shapes:tiny", "output": "pool", **options}
     torch.manual_seed(0)
-    return Encoder(transform={"size": 32, "mean": [0.5] * 3, "std": [0.25] * 3}, **given)
+    return Encoder(transform={"size": 32, "mean": [0.5] * 3, "std": [0.25] * 3}, **options)
 
 
-def recipe_of(encoder: Encoder, pictures, **given) -> HardenEncoder:
+def recipe_of(encoder: Encoder, pictures, **options) -> HardenEncoder:
     schedule = Schedule("per_frame", (0.3, 1.0))
     source = {"world": lambda: FolderFrames(str(pictures)), "schedule": schedule}
     return assemble(
-        HardenEncoder, encoder, **source, frames=40, **{"batch": 12, "micro_batch": 12, **given}
+        HardenEncoder, encoder, **source, frames=40, **{"batch": 12, "micro_batch": 12, **options}
     )
 
 
 def config(tmp_path, pictures, *options: str):
-    own = ["recipe=encoder", "env=frames", f"env.path={pictures}", "env.size=32", *options]
+    settings = ["recipe=encoder", "env=frames", f"env.path={pictures}", "env.size=32", *options]
     small = ["stages.encoder.recipe.frames=40", "stages.encoder.recipe.batch=8"]
     small += ["stages.encoder.recipe.micro_batch=4", "trainer.steps=2", "evaluation.episodes=1"]
-    return conf.load_config("train", [*own, *small, f"runs={tmp_path}", "workers=0"])
+    return conf.load_config("train", [*settings, *small, f"runs={tmp_path}", "workers=0"])
 
 
 @pytest.mark.parametrize("gate", [False, True])
@@ -106,9 +106,10 @@ def test_micro_batches_equal_one_batch(pictures):
 def test_training_writes_a_folder_for_plain_torch(tmp_path, pictures, capsys):
     cfg = config(tmp_path, pictures, *TINY)
     out = train.run(cfg)
-    shown = capsys.readouterr().out
+    printed = capsys.readouterr().out
     assert (
-        "own clean frame retrieved first" in shown and "from plain_adapters import attach" in shown
+        "own clean frame retrieved first" in printed
+        and "from plain_adapters import attach" in printed
     )
     assert (out / "features.png").is_file() and folders.card(out / "agent")["sensor"] == "rgb"
     again = build(cfg.agent)
@@ -125,8 +126,8 @@ def test_training_writes_a_folder_for_plain_torch(tmp_path, pictures, capsys):
 
 def test_training_of_a_torchscript_file(tmp_path, pictures):
     torch.jit.trace(tiny().eval(), torch.randn(2, 3, 32, 32)).save(str(tmp_path / "net.ts"))
-    own = ["agent=encoder", f"agent.model={tmp_path / 'net.ts'}", "agent.adapters.middle=8"]
-    cfg = config(tmp_path, pictures, *own, "evaluation.enabled=false")
+    settings = ["agent=encoder", f"agent.model={tmp_path / 'net.ts'}", "agent.adapters.middle=8"]
+    cfg = config(tmp_path, pictures, *settings, "evaluation.enabled=false")
     out = train.run(cfg)
     script = torch.jit.load(str(tmp_path / "net.ts"))
     again = build(cfg.agent)
@@ -162,15 +163,15 @@ def test_training_of_a_file_with_a_network(tmp_path, pictures, kind, tune):
 
 
 def test_report_compares_with_the_initial_encoder(tmp_path, pictures):
-    own = ["agent=encoder", "agent.model=tests.encoders.shapes:TinyNet", "agent.output=pool"]
-    own += ["agent.tune=all", "trainer.lr=1e-9"]  # weights drawn anew, and hardly trained
-    out = train.run(config(tmp_path, pictures, *own))
+    own_value = ["agent=encoder", "agent.model=tests.encoders.shapes:TinyNet", "agent.output=pool"]
+    own_value += ["agent.tune=all", "trainer.lr=1e-9"]  # weights are resampled, and hardly trained
+    out = train.run(config(tmp_path, pictures, *own_value))
     rows = [json.loads(line) for line in (out / "features.jsonl").read_text().splitlines()]
     clean = next(row for row in rows if (row["measure"], row["condition"]) == ("cosine", "clean"))
     assert clean["before"][0] == pytest.approx(1) and clean["after"][0] == pytest.approx(
         1, abs=0.01
     )
-    assert clean["before"][1:] == [None, None]  # of six folders one is unseen
+    assert clean["before"][1:] == [None, None]  # one of six folders is held out
     assert "[–] |" in (out / "features.md").read_text()
 
 
@@ -183,24 +184,24 @@ def test_report_rejects_changed_initial_weights(tmp_path, pictures, monkeypatch)
 
 
 def test_resume_requires_the_same_frames(tmp_path, pictures):
-    own = tmp_path / "own"
-    shutil.copytree(pictures, own)
-    cfg = config(tmp_path, own, *TINY, "evaluation.enabled=false")
+    own_value = tmp_path / "own"
+    shutil.copytree(pictures, own_value)
+    cfg = config(tmp_path, own_value, *TINY, "evaluation.enabled=false")
     train.run(cfg)
     train.run(cfg)
-    for file in own.glob("*/0.png"):
+    for file in own_value.glob("*/0.png"):
         Image.fromarray(np.zeros((32, 32, 3), np.uint8)).save(file)
     with pytest.raises(ValueError, match="other settings .*frames_sha256"):
         train.run(cfg)
 
 
 def test_training_checks_unseen_frames_first(tmp_path, pictures):
-    own = tmp_path / "own"
-    shutil.copytree(pictures, own)
-    last = own / "s5" / "0.png"
+    own_value = tmp_path / "own"
+    shutil.copytree(pictures, own_value)
+    last = own_value / "s5" / "0.png"
     last.write_bytes(last.read_bytes()[:200])
     with pytest.raises(ValueError, match=rf"{last} cannot be decoded.*remove it from the folder"):
-        train.run(config(tmp_path, own, *TINY))
+        train.run(config(tmp_path, own_value, *TINY))
     assert not list(tmp_path.glob("*/encoder/step-*.pt"))
 
 
@@ -218,10 +219,20 @@ def test_training_tunes_all_weights(tmp_path, pictures):
 
 
 def test_training_of_a_depth_encoder(tmp_path):
-    own = ["recipe=encoder", "debug=smoke", *TINY, "+agent.kwargs.channels=1", "agent.sensor=depth"]
-    own += ["agent.transform.mean=[0.0]", "agent.transform.std=[1.0]", "agent.transform.far=10"]
-    own += ["env.size=32", "stages.encoder.recipe.frames=40", f"runs={tmp_path}", "workers=0"]
-    out = train.run(conf.load_config("train", own))
+    own_value = [
+        "recipe=encoder",
+        "debug=smoke",
+        *TINY,
+        "+agent.kwargs.channels=1",
+        "agent.sensor=depth",
+    ]
+    own_value += [
+        "agent.transform.mean=[0.0]",
+        "agent.transform.std=[1.0]",
+        "agent.transform.far=10",
+    ]
+    own_value += ["env.size=32", "stages.encoder.recipe.frames=40", f"runs={tmp_path}", "workers=0"]
+    out = train.run(conf.load_config("train", own_value))
     assert "Missing data" in (out / "features.md").read_text()
 
 
@@ -250,9 +261,9 @@ def test_load_takes_no_import_path_from_a_folder(tmp_path, pictures):
     out = train.run(cfg) / "agent"
     assert "tests.encoders" not in (out / "config.yaml").read_text()
     assert stored_settings(cfg.agent, str(out))["sensor"] == "rgb"
-    written = OmegaConf.load(out / "config.yaml")
-    written.agent.model = "os:system"
-    OmegaConf.save(written, out / "config.yaml")
+    saved = OmegaConf.load(out / "config.yaml")
+    saved.agent.model = "os:system"
+    OmegaConf.save(saved, out / "config.yaml")
     with pytest.raises(ValueError, match="There is no setting of agent 'model'"):
         stored_settings(cfg.agent, str(out))
 

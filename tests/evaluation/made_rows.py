@@ -1,4 +1,4 @@
-"""Result rows made by hand for the tests of rows, tables and reports."""
+"""Hand-made result rows for the tests of rows, tables and reports."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Any
 
 def row(episode: int | str, success: float, **changes: Any) -> dict[str, Any]:
     """A clean row of agent ``base``; SPL is half the success."""
-    made = {
+    output = {
         "agent": "0123456789ab",
         "name": "base",
         "corruption": "clean",
@@ -21,18 +21,18 @@ def row(episode: int | str, success: float, **changes: Any) -> dict[str, Any]:
         "success": int(success),
         "spl": success / 2,
     }
-    return made | changes
+    return output | changes
 
 
 def cell(wins: int, count: int = 10, **changes: Any) -> list[dict[str, Any]]:
-    """Rows of ``count`` episodes, the first ``wins`` of them successes."""
+    """Return rows of ``count`` episodes; the first ``wins`` are successes."""
     return [row(episode, episode < wins, **changes) for episode in range(count)]
 
 
 def column(clean: int, corrupted: dict[str, int], severity: float = 0.6, **changes: Any) -> list:
-    """A clean cell and one cell a corruption, ten episodes each."""
+    """Return a clean cell and one cell per corruption, ten episodes each."""
     cells: Iterable = (
         cell(wins, corruption=name, severity=severity, **changes)
         for name, wins in corrupted.items()
     )
-    return cell(clean, **changes) + [made for rows in cells for made in rows]
+    return cell(clean, **changes) + [records for rows in cells for records in rows]

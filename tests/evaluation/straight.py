@@ -6,7 +6,7 @@ from mitigate.core.observation import FORWARD, STOP
 
 
 class Straight:
-    """Walks a number of steps ahead, then stops; reads no frame."""
+    """Moves a number of steps ahead, then stops; reads no frame."""
 
     def __init__(self, steps: int) -> None:
         self.steps = steps

@@ -1,4 +1,4 @@
-"""The bootstrap is paired, seeded, and as wide as theory says."""
+"""The bootstrap is paired and seeded, and its intervals have the theoretical width."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from mitigate.evaluation.bootstrap import (
 
 @pytest.fixture
 def results():
-    """Clean [300] and corrupted [8, 300] successes that share how hard an episode is."""
+    """Clean [300] and corrupted [8, 300] successes with a shared difficulty of each episode."""
     generator = np.random.default_rng(1)
     hard = generator.random(300)
     return (hard < 0.65).astype(float), (hard < generator.normal(0.4, 0.03, (8, 1))).astype(float)
@@ -67,16 +67,16 @@ def test_scenes_with_few_episodes_weigh_less():
 
 def test_interval_of_a_rate_is_binomial():
     wins = np.repeat([1.0, 0.0], [240, 160])
-    found, half = mean(wins), 1.96 * math.sqrt(0.6 * 0.4 / 400)
-    assert found.value == 0.6
-    assert found.low == pytest.approx(0.6 - half, abs=0.005)
-    assert found.high == pytest.approx(0.6 + half, abs=0.005)
+    result, half = mean(wins), 1.96 * math.sqrt(0.6 * 0.4 / 400)
+    assert result.value == 0.6
+    assert result.low == pytest.approx(0.6 - half, abs=0.005)
+    assert result.high == pytest.approx(0.6 + half, abs=0.005)
 
 
 @pytest.mark.parametrize(("value", "low", "high"), [(0.0, 0.0, 0.30), (1.0, 0.70, 1.0)])
 def test_nine_equal_outcomes_are_no_certainty(value, low, high):
-    found = share(np.full(9, value))  # Wilson: 3.84 / (9 + 3.84) = 0.30
-    assert (found.value, found.low, found.high) == pytest.approx((value, low, high), abs=0.001)
+    result = share(np.full(9, value))  # Wilson: 3.84 / (9 + 3.84) = 0.30
+    assert (result.value, result.low, result.high) == pytest.approx((value, low, high), abs=0.001)
     varied = np.repeat([1.0, 0.0], [240, 160])
     assert share(varied) == mean(varied)
 
@@ -87,16 +87,16 @@ def test_intervals_have_nominal_coverage():
     for _ in range(200):
         hard = generator.random(200)
         clean, corrupted = (hard < 0.8).astype(float), (hard < 0.4).astype(float)
-        found = prs(clean, corrupted[None], resamples=1000)
-        inside += found.low <= 0.5 <= found.high
+        matches = prs(clean, corrupted[None], resamples=1000)
+        inside += matches.low <= 0.5 <= matches.high
     assert 180 <= inside <= 199
 
 
 def test_prs_is_the_mean_ratio_to_clean(results):
     clean, corrupted = results
-    found = prs(clean, corrupted)
-    assert found.value == pytest.approx(np.mean([row.mean() / clean.mean() for row in corrupted]))
-    assert found.low < found.value < found.high
+    matches = prs(clean, corrupted)
+    assert matches.value == pytest.approx(np.mean([row.mean() / clean.mean() for row in corrupted]))
+    assert matches.low < matches.value < matches.high
 
 
 def test_clean_and_corrupted_vary_together_within_a_prs(results):
@@ -106,9 +106,9 @@ def test_clean_and_corrupted_vary_together_within_a_prs(results):
 
 
 def test_equal_agents_differ_by_exactly_nothing(results):
-    found = prs_difference(results, results)
-    assert (found.value, found.low, found.high) == (0.0, 0.0, 0.0)
-    assert not found.excludes_zero
+    matches = prs_difference(results, results)
+    assert (matches.value, matches.low, matches.high) == (0.0, 0.0, 0.0)
+    assert not matches.excludes_zero
 
 
 def test_pairing_narrows_the_interval_of_a_difference(results):
@@ -122,20 +122,20 @@ def test_pairing_narrows_the_interval_of_a_difference(results):
     assert paired.high - paired.low < 0.7 * (unpaired.high - unpaired.low)
 
 
-def test_without_clean_success_there_is_no_prs():
-    found = prs(np.zeros(20), np.zeros((3, 20)))
-    assert all(math.isnan(x) for x in (found.value, found.low, found.high))
-    assert not found.excludes_zero
+def test_prs_needs_clean_success():
+    matches = prs(np.zeros(20), np.zeros((3, 20)))
+    assert all(math.isnan(x) for x in (matches.value, matches.low, matches.high))
+    assert not matches.excludes_zero
 
 
 @pytest.mark.parametrize("wins", [1.0, 1 / 3])
 @pytest.mark.parametrize("episodes", [1, 7])
 def test_interval_without_width_excludes_nothing(episodes, wins):
     clean, corrupted = np.ones(episodes), np.full((2, episodes), wins)
-    for found in (prs(clean, corrupted), mean(corrupted[0])):
-        assert found.value == pytest.approx(wins)
-        assert not (found.has_width or found.excludes_zero)
-        assert found.interval(".2f") == NO_INTERVAL
+    for result in (prs(clean, corrupted), mean(corrupted[0])):
+        assert result.value == pytest.approx(wins)
+        assert not (result.has_width or result.excludes_zero)
+        assert result.interval(".2f") == NO_INTERVAL
     assert mean([0.1, 0.4]).interval(".1f", 100) == "[10.0, 40.0]"
 
 

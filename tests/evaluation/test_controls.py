@@ -1,4 +1,4 @@
-"""The oracle and the random walker that frame every result."""
+"""The oracle and the random agent, which bound every result."""
 
 from __future__ import annotations
 
@@ -38,15 +38,19 @@ def test_random_agent_differs_between_episodes_of_one_text(monkeypatch, tmp_path
     text = max(episodes, key=lambda e: sum(e.instruction == o.instruction for o in episodes))
     same = [e for e in episodes if e.instruction == text.instruction][:4]
     write_episodes(tmp_path / "same.json", same)
-    given = [f"+env.episodes.same={tmp_path / 'same.json'}", "split=same", f"out={tmp_path / 'o'}"]
-    assert called(monkeypatch, *given) == 0
-    found = [r for r in rows.read(tmp_path / "o" / "rows.jsonl") if r["name"] == "random"]
-    assert len(found) == 4 == len({(r["steps"], r["path_length"]) for r in found})
+    arguments = [
+        f"+env.episodes.same={tmp_path / 'same.json'}",
+        "split=same",
+        f"out={tmp_path / 'o'}",
+    ]
+    assert called(monkeypatch, *arguments) == 0
+    records = [r for r in rows.read(tmp_path / "o" / "rows.jsonl") if r["name"] == "random"]
+    assert len(records) == 4 == len({(r["steps"], r["path_length"]) for r in records})
 
 
 @pytest.fixture
 def walked(monkeypatch):
-    """The ids of the episodes that were walked, each of them a success."""
+    """Return the ids of the episodes of a run, all of which must be successes."""
     ids: list[str] = []
 
     def walk(agent, world, episode, *others):
@@ -57,28 +61,28 @@ def walked(monkeypatch):
     return ids
 
 
-def called(monkeypatch, *given):
-    monkeypatch.setattr("sys.argv", ["controls", *given])
+def called(monkeypatch, *arguments):
+    monkeypatch.setattr("sys.argv", ["controls", *arguments])
     return controls.main()
 
 
 def test_controls_run_only_missing_episodes(monkeypatch, tmp_path, walked, capsys):
-    given = ["split=val_seen_ogn", f"out={tmp_path}"]
-    assert called(monkeypatch, *given, "episodes=1") == 0
-    assert called(monkeypatch, *given, "episodes=2") == 0
+    arguments = ["split=val_seen_ogn", f"out={tmp_path}"]
+    assert called(monkeypatch, *arguments, "episodes=1") == 0
+    assert called(monkeypatch, *arguments, "episodes=2") == 0
     assert len(walked) == 4 and len(set(walked)) == 2
-    found = rows.read(tmp_path / "rows.jsonl")
-    assert len(found) == 4 and {row["split"] for row in found} == {"val_seen_ogn"}
+    records = rows.read(tmp_path / "rows.jsonl")
+    assert len(records) == 4 and {row["split"] for row in records} == {"val_seen_ogn"}
     assert "oracle: SR 100.0 [34.2, 100.0] %, SPL 1.00, 2 episodes" in capsys.readouterr().out
 
 
 def test_controls_warn_of_conflicts_and_report_lost_rows(monkeypatch, tmp_path, walked, capsys):
-    given = ["split=val_seen_ogn", f"out={tmp_path}", "episodes=1"]
+    arguments = ["split=val_seen_ogn", f"out={tmp_path}", "episodes=1"]
     file = tmp_path / "rows.jsonl"
-    assert called(monkeypatch, *given) == 0
+    assert called(monkeypatch, *arguments) == 0
     rows.append(file, [rows.read(file)[0] | {"success": 0, "spl": 0.0}])
     with pytest.warns(UserWarning, match="1 rows have another success"):
-        assert called(monkeypatch, *given) == 0
+        assert called(monkeypatch, *arguments) == 0
 
     def walk(*_):
         file.unlink(missing_ok=True)
@@ -86,7 +90,7 @@ def test_controls_warn_of_conflicts_and_report_lost_rows(monkeypatch, tmp_path, 
 
     monkeypatch.setattr("mitigate.evaluation.evaluator.run_episode", walk)
     monkeypatch.setattr(rows, "append", lambda *_: None)
-    assert called(monkeypatch, *given[:2], "episodes=2") == 2
+    assert called(monkeypatch, *arguments[:2], "episodes=2") == 2
     assert "another program removed or replaced the file" in capsys.readouterr().err
 
 
@@ -120,7 +124,7 @@ def test_controls_reject_rows_of_another_list(monkeypatch, tmp_path, walked, cap
     for name, split in (("a", "val_seen"), ("b", "val_unseen")):
         source = conf.load_config("evaluate").env.episodes[split]
         shutil.copy(find(source), tmp_path / f"{name}.json.gz")
-    given = ["split=mine", "episodes=1", f"out={tmp_path}/out"]
-    assert called(monkeypatch, f"+env.episodes.mine={tmp_path}/a.json.gz", *given) == 0
-    assert called(monkeypatch, f"+env.episodes.mine={tmp_path}/b.json.gz", *given) == 2
+    arguments = ["split=mine", "episodes=1", f"out={tmp_path}/out"]
+    assert called(monkeypatch, f"+env.episodes.mine={tmp_path}/a.json.gz", *arguments) == 0
+    assert called(monkeypatch, f"+env.episodes.mine={tmp_path}/b.json.gz", *arguments) == 2
     assert "holds rows of another list of mine" in capsys.readouterr().err and len(walked) == 2

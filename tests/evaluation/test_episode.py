@@ -1,4 +1,4 @@
-"""What an agent answers is an action, or the episode, the step and the user's line are named."""
+"""The answer of an agent must be an action; otherwise the error names episode, step and line."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ EPISODE = Episode("e7", "0", "room", (0, 0, 0), (0, 0, 0, 1), (), Instruction("G
 
 
 class Cell:
-    """A dark cell, in which STOP is right."""
+    """A dark cell, in which STOP is correct."""
 
     rule, sensors = "STOP", {}
 
@@ -48,7 +48,7 @@ class Cell:
 
 
 class Answers:
-    """Gives ``answers``, one after the other; what is callable is asked."""
+    """Returns ``answers`` one after the other; callables are called."""
 
     together = 1
 
@@ -100,11 +100,11 @@ def test_measures_may_be_numbers_of_numpy_or_torch(tmp_path):
     assert [type(measured[n]) for n in ("success", "spl", "m")] == [int, float, float]
 
 
-@pytest.mark.parametrize("shown", [{"rgb": np.zeros((4, 4, 3), np.uint8)}, (0, 1.0, False, {})])
-def test_run_episode_rejects_invalid_observations(shown):
+@pytest.mark.parametrize("displayed", [{"rgb": np.zeros((4, 4, 3), np.uint8)}, (0, 1.0, False, {})])
+def test_run_episode_rejects_invalid_observations(displayed):
     cell = Cell()
-    cell.look = lambda: shown
-    name = type(shown).__name__
+    cell.look = lambda: displayed
+    name = type(displayed).__name__
     with pytest.raises(ValueError, match=f"of Cell must return an Observation, got {name}"):
         run_episode(Answers(0), cell, EPISODE, CLEAN, 0)
 
@@ -141,12 +141,12 @@ def broken():
 
 
 def test_run_episode_error_names_line_and_episode():
-    own = rf"raised in {Path(__file__)}, line \d+, broken\(\)"
-    with pytest.raises(ValueError, match=rf"Episode e7, clean, step 2: matmul.* \({own}\)"):
+    settings = rf"raised in {Path(__file__)}, line \d+, broken\(\)"
+    with pytest.raises(ValueError, match=rf"Episode e7, clean, step 2: matmul.* \({settings}\)"):
         run_episode(Answers(1, broken), Cell(), EPISODE, CLEAN, 0)
     with pytest.raises(ValueError, match="matmul") as caught:
         broken()
-    error, _ = portable(caught.value)  # as a worker process gives it back
+    error, _ = portable(caught.value)  # as a worker process returns it
     assert error_message(pickle.loads(pickle.dumps(error))).endswith("broken())")
 
 

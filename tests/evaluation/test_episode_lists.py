@@ -1,4 +1,4 @@
-"""Rows of one episode list are not taken for those of another."""
+"""Rows of one episode list do not count for another list."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def test_keep_list_hash_reads_notes_of_older_versions(tmp_path):
         old.write_text(known)
         with pytest.raises(ValueError, match="rows of another list of mine"):
             keep_list_hash(tmp_path, "mine", str(source))
-    keep_list_hash(tmp_path, "another", str(a))  # of which there are no rows
+    keep_list_hash(tmp_path, "another", str(a))  # a list without rows
     old.write_text(f"{sha256(b)}  of/theirs.json\n{sha256(a)}  of/mine.json\n")
     keep_list_hash(tmp_path, "mine", str(a))
     assert (tmp_path / "episodes-mine.sha256").is_file()

@@ -1,4 +1,4 @@
-"""The command that evaluates an agent, around the walks themselves."""
+"""The command that evaluates an agent, without long episodes."""
 
 from __future__ import annotations
 
@@ -16,18 +16,18 @@ from tests.evaluation.straight import Straight
 
 
 def test_evaluate_prints_the_requested_rows(tmp_path, capsys):
-    """Three episodes lie there; two of them are asked for."""
+    """The list has three episodes; two of them are requested."""
 
     all_rows = cell(2, 3)
     rows.write(tmp_path / "rows.jsonl", all_rows)
     evaluate.write_table([tmp_path / "rows.jsonl"], tmp_path, all_rows[:2])
-    told = capsys.readouterr().out
-    assert "N = 2 episodes" in told and "N = 3" not in told
-    assert f"{tmp_path} holds 1 other row, too; {tmp_path / 'table.md'} includes them." in told
+    printed = capsys.readouterr().out
+    assert "N = 2 episodes" in printed and "N = 3" not in printed
+    assert f"{tmp_path} holds 1 other row, too; {tmp_path / 'table.md'} includes them." in printed
     assert "N = 3 episodes" in (tmp_path / "table.md").read_text()
     evaluate.write_table([tmp_path / "rows.jsonl"], tmp_path, all_rows)
-    told = capsys.readouterr().out
-    assert "N = 3 episodes" in told and "other row" not in told
+    printed = capsys.readouterr().out
+    assert "N = 3 episodes" in printed and "other row" not in printed
 
 
 def test_evaluate_checks_the_safeguard_before_writing(tmp_path):
@@ -56,7 +56,7 @@ def test_evaluate_rejects_options_of_trainings(tmp_path, option):
 
 @pytest.fixture
 def policies(tmp_path):
-    """Options for agents of one's own, of the class that is named."""
+    """Return options for a user's agent of the named class."""
 
     def options(target, *more, settings=""):
         folder = tmp_path / "mine" / "agent"
@@ -73,8 +73,8 @@ def policies(tmp_path):
 def test_evaluate_accepts_an_agent_without_weights(policies, tmp_path):
     straight = "tests.evaluation.straight.Straight"
     cfg = policies(straight, "restore=checkpoints/restorer:rgb", settings=", steps: 2")
-    found = rows.read(evaluate.run(cfg) / "rows.jsonl")
-    assert {row["name"] for row in found} == {"Straight+restorer-rgb"} and len(found) == 2
+    records = rows.read(evaluate.run(cfg) / "rows.jsonl")
+    assert {row["name"] for row in records} == {"Straight+restorer-rgb"} and len(records) == 2
     weights = tmp_path / "w.safetensors"
     save_file({"w": torch.zeros(1)}, weights)
     with pytest.raises(ValueError, match=r"Straight is not a torch.nn.Module.*Leave out .*w.safe"):
@@ -82,16 +82,16 @@ def test_evaluate_accepts_an_agent_without_weights(policies, tmp_path):
 
 
 def test_walks_of_an_agent_without_weights_are_drawn(policies, tmp_path):
-    made = evaluate.run(policies("tests.evaluation.straight.Straight", settings=", steps: 2"))
-    given = [str(made / "rows.jsonl"), "--config-dir", str(tmp_path / "mine"), "agent=own"]
-    given += ["env.size=16", "--walks", "1", "--out", str(tmp_path / "report.html"), "--walk"]
-    assert command.main([*given, "Straight="]) == 0
+    records = evaluate.run(policies("tests.evaluation.straight.Straight", settings=", steps: 2"))
+    arguments = [str(records / "rows.jsonl"), "--config-dir", str(tmp_path / "mine"), "agent=own"]
+    arguments += ["env.size=16", "--walks", "1", "--out", str(tmp_path / "report.html"), "--walk"]
+    assert command.main([*arguments, "Straight="]) == 0
     with pytest.raises(ValueError, match="checkpoint is not set"):
         evaluate.load(conf.load_config("evaluate").agent, None)
 
 
 class Slots:
-    """It takes no further attributes."""
+    """It accepts no further attributes."""
 
     __slots__ = ()
 
@@ -111,13 +111,13 @@ def remote() -> Straight:
     return Straight(1)
 
 
-def made() -> nn.Module:
-    """What a config may name in place of a class."""
+def make_network() -> nn.Module:
+    """A function that a config may name instead of a class."""
     return Net()
 
 
 class Net(nn.Linear):
-    """A policy that somebody trained elsewhere."""
+    """A policy that was trained elsewhere."""
 
     def __init__(self) -> None:
         super().__init__(1, 4)
@@ -135,13 +135,16 @@ def test_load_accepts_foreign_safetensors(policies, tmp_path):
     net.bias.data[0] = 9.0
     save_file(net.state_dict(), tmp_path / "w.safetensors")
     cfg = policies(f"{__name__}.Net", f"checkpoint={tmp_path / 'w.safetensors'}")
-    found = rows.read(evaluate.run(cfg) / "rows.jsonl")
-    assert [(row["name"], row["steps"]) for row in found] == [("w", 1), ("w", 1)]
-    by_function = policies(f"{__name__}.made", f"checkpoint={tmp_path / 'w.safetensors'}", "name=f")
+    records = rows.read(evaluate.run(cfg) / "rows.jsonl")
+    assert [(row["name"], row["steps"]) for row in records] == [("w", 1), ("w", 1)]
+    by_function = policies(
+        f"{__name__}.make_network", f"checkpoint={tmp_path / 'w.safetensors'}", "name=f"
+    )
     assert len(rows.read(evaluate.run(by_function) / "rows.jsonl")) == 2
     with pytest.raises(ValueError, match="checkpoint is not set"):
-        evaluate.run(policies(f"{__name__}.made"))
-    remote = policies(f"{__name__}.remote", "conditions=[clean,flare]")  # a function of no network
+        evaluate.run(policies(f"{__name__}.make_network"))
+    # a function that returns no network
+    remote = policies(f"{__name__}.remote", "conditions=[clean,flare]")
     assert len(rows.read(evaluate.run(remote) / "rows.jsonl")) == 2
     torch.save(net.state_dict(), tmp_path / "w.pt")
     with pytest.raises(FileNotFoundError, match="may run code.*safetensors.torch.save_file"):

@@ -1,4 +1,4 @@
-"""Rows do not depend on the number of processes, and an interrupted evaluation goes on."""
+"""Rows do not depend on the number of processes, and an interrupted evaluation resumes."""
 
 from __future__ import annotations
 
@@ -89,7 +89,7 @@ def test_rows_behind_a_restorer_are_of_another_agent(tmp_path):
     alone = run(tmp_path, episodes=1, conditions=conditions)
     restorer = Noted(width=4, depth_width=4)
     for net in restorer.parts().values():
-        net.threshold.fill_(1e9)  # it takes every frame for clean
+        net.threshold.fill_(1e9)  # it classifies every frame as clean
     behind = run(tmp_path, episodes=1, conditions=conditions, guards=Guards([restorer]))
     assert len(seen) == sum(row["decisions"] for row in behind) > 0
     assert {row["agent"] for row in alone}.isdisjoint(row["agent"] for row in behind)
@@ -121,11 +121,11 @@ def test_row_identifies_its_measurement(finished):
         assert row["success"] in (0, 1) and 0 <= row["spl"] <= row["success"]
         assert 0 <= row["ndtw"] <= 1 and row["decisions"] <= 15 and row["steps"] <= 500
         assert "STOP" in row["rule"] and "2.0 m" in row["rule"]
-        assert row["scene"] == row["episode_id"].partition("-")[0]  # as older rows say it
+        assert row["scene"] == row["episode_id"].partition("-")[0]  # in the words of older rows
 
 
 class Won(ApartmentsWorld):
-    """Says that it went well by true."""
+    """Reports success as the value true."""
 
     def measures(self) -> dict:
         return super().measures() | {"success": True, "spl": 1.0}
@@ -134,16 +134,16 @@ class Won(ApartmentsWorld):
 def test_row_stores_boolean_success_as_number(tmp_path):
     episodes = load_episodes("val_seen")[:1]
     options = {"name": "test", "out": tmp_path / "rows.jsonl", "split": "val_seen"}
-    (made,) = evaluate(Straight(1), partial(Won, SIZE), episodes, [CLEAN], **options)
-    assert made["success"] == 1 and type(made["success"]) is int
+    (records,) = evaluate(Straight(1), partial(Won, SIZE), episodes, [CLEAN], **options)
+    assert records["success"] == 1 and type(records["success"]) is int
 
 
 def test_progress_counts_one_rollout_per_condition(tmp_path, capsys):
     episodes, met = load_episodes("val_seen")[:1], [CLEAN, Corruption("flare", 0.6)]
     options = {"name": "test", "out": tmp_path / "rows.jsonl", "split": "val_seen"}
     evaluate(Straight(1), partial(Won, SIZE), episodes, met, **options)
-    shown = capsys.readouterr().out
-    assert "test, val_seen: 2 walks" in shown and "walk 2/2, done in" in shown
+    printed = capsys.readouterr().out
+    assert "test, val_seen: 2 walks" in printed and "walk 2/2, done in" in printed
     evaluate(Straight(1), partial(Won, SIZE), episodes, [*met, Corruption("flare", 0.3)], **options)
     assert "3 walks, 2 already done" in capsys.readouterr().out
 
@@ -179,10 +179,10 @@ def test_result_does_not_depend_on_earlier_episodes(finished, tmp_path):
 
 def test_row_of_a_pair_holds_its_version(tmp_path):
     names = ("low_light+missing_data", "spatter+mask", "haze", "ripple+flare")
-    made = run(tmp_path, episodes=1, conditions=[CLEAN, *(Corruption(n, 0.6) for n in names)])
-    versions = {row["corruption"]: row.get("version") for row in made}
+    records = run(tmp_path, episodes=1, conditions=[CLEAN, *(Corruption(n, 0.6) for n in names)])
+    versions = {row["corruption"]: row.get("version") for row in records}
     assert versions == dict(zip(("clean", *names), (None, None, None, "1", "1"), strict=True))
-    assert run(tmp_path, episodes=1, conditions=[Corruption("haze", 0.6)]) == made[3:4]
+    assert run(tmp_path, episodes=1, conditions=[Corruption("haze", 0.6)]) == records[3:4]
 
 
 def test_pair_corrupts_sensors_and_instruction():
@@ -217,7 +217,7 @@ def test_frames_are_rendered_only_if_they_are_read():
 
 
 class Watcher:
-    """Looks at every step, turns twice, stops; keeps what it saw."""
+    """Reads every frame, turns twice, stops; stores its observations."""
 
     def reset(self, instruction: str) -> None:
         self.seen = []
@@ -242,7 +242,7 @@ def test_corruption_changes_every_observation(name, hurt, whole):
 
 
 class Listener:
-    """Keeps what it was told and what its prompt was, and stops at once."""
+    """Stores its instruction and its prompt, and stops at once."""
 
     def __init__(self, prompt: str | None = None) -> None:
         self.told: list[tuple[str, str | None]] = []
@@ -298,12 +298,12 @@ def test_evaluate_warns_about_other_languages(tmp_path):
         assert instruction(hindi, met, 0) == hindi.instruction.text
         assert instruction(english, met, 0) != english.instruction.text
         assert instruction(untold, met, 0) != untold.instruction.text
-    with pytest.warns(UserWarning, match="passed through unchanged: 1 in hi-IN$") as told:
+    with pytest.warns(UserWarning, match="passed through unchanged: 1 in hi-IN$") as caught:
         evaluate(
             Listener(), partial(ApartmentsWorld, SIZE), [hindi, english], conditions,
             name="test", out=tmp_path / "rows.jsonl", split="made",
         )  # fmt: skip
-    assert len(told) == 1
+    assert len(caught) == 1
 
 
 def test_weights_that_are_no_numbers_are_not_evaluated(tmp_path):
@@ -316,7 +316,7 @@ def test_weights_that_are_no_numbers_are_not_evaluated(tmp_path):
 
 
 class Prompted(Straight):
-    """Walks side by side; notes the prompt that it has at every step."""
+    """Runs episodes side by side; records its prompt at every step."""
 
     system_prompt, together = "You follow routes. {task}", 2
 
@@ -332,7 +332,7 @@ class Prompted(Straight):
 
 
 class Own(ApartmentsWorld):
-    """A world of one's own, made of a shipped one, with a constructor and a state of its own."""
+    """A user's world that wraps a shipped one, with its own constructor and state."""
 
     def __init__(self, dark: float) -> None:
         super().__init__(16)
@@ -340,7 +340,7 @@ class Own(ApartmentsWorld):
 
 
 class Around:
-    """What passes on all that it does not do itself."""
+    """Delegates undefined attributes."""
 
     def __init__(self) -> None:
         self.world = ApartmentsWorld(16)

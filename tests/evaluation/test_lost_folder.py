@@ -13,7 +13,7 @@ from mitigate.evaluation import evaluate, evaluator, rows
 from mitigate.evaluation.rows import ROWS
 from tests.evaluation.straight import Straight
 
-OUT: list[Path] = []  # the folder of the evaluation, for agents that a config makes
+OUT: list[Path] = []  # the folder of the evaluation, for agents built from a config
 EPISODES = 3
 
 
@@ -70,7 +70,7 @@ BREAK = {
 
 @pytest.fixture
 def config(tmp_path, monkeypatch):
-    """Config of an evaluation of one of the classes above, a row at a time."""
+    """Return the config of an evaluation of one of the classes above, one row at a time."""
     monkeypatch.setattr(evaluator, "_PAUSE", 0.0)
 
     def compose(agent, *options):
@@ -80,9 +80,9 @@ def config(tmp_path, monkeypatch):
         (mine / "own.yaml").write_text(f"# @package _global_\n{node}\n")
         OUT[:] = [tmp_path / "out"]
         Breaking.resets = 0
-        given = [f"--config-dir={mine.parent}", "agent=own", f"out={OUT[0]}", "env.size=16"]
-        given += [f"episodes={EPISODES}", "conditions=[clean]", "workers=1", *options]
-        return conf.load_config("evaluate", given)
+        arguments = [f"--config-dir={mine.parent}", "agent=own", f"out={OUT[0]}", "env.size=16"]
+        arguments += [f"episodes={EPISODES}", "conditions=[clean]", "workers=1", *options]
+        return conf.load_config("evaluate", arguments)
 
     return compose
 

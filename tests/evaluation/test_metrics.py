@@ -20,7 +20,8 @@ LINE = [(0.0, 0.0), (1.0, 0.0), (2.0, 0.0), (3.0, 0.0)]
 
 
 def recursive_dtw(path, reference):
-    """The definition, top down: an end is reached from the cheapest of three ends before it."""
+    """The definition, computed recursively: each end follows the cheapest of its three
+    predecessors."""
 
     @cache
     def cost(i, j):
@@ -33,7 +34,7 @@ def recursive_dtw(path, reference):
 
 
 def every_alignment(path, reference, i=0, j=0):
-    """The costs of all monotone alignments, one by one."""
+    """Return the costs of all monotone alignments."""
     here = math.dist(path[i], reference[j])
     if (i, j) == (len(path) - 1, len(reference) - 1):
         yield here
@@ -43,7 +44,7 @@ def every_alignment(path, reference, i=0, j=0):
 
 
 def vlnce_ndtw(path, reference, threshold=3.0):
-    """VLN-CE's measure: a position equal to the last one is not recorded again."""
+    """VLN-CE's measure: a repeated position is not recorded again."""
     recorded = [path[0]] + [b for a, b in pairwise(path) if tuple(a) != tuple(b)]
     recorded, reference = [tuple(map(tuple, points)) for points in (recorded, reference)]
     return math.exp(-recursive_dtw(recorded, reference) / (len(reference) * threshold))
@@ -169,7 +170,7 @@ def test_real_ground_truth_paths_score_as_vlnce_defines(real_paths):
 
 
 def perturbed(path, kind, generator):
-    """A path as an agent might walk it, and whether it still ends at the goal."""
+    """A path that an agent might take, and whether it still ends at the goal."""
     if kind == "noisy":
         return path + generator.normal(0, 0.3, path.shape) * (1, 0, 1)
     if kind == "turning":

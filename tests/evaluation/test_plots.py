@@ -1,4 +1,4 @@
-"""In the severity curves every column is seen, also where another is the same."""
+"""The severity curves show every column, even where two columns are equal."""
 
 from __future__ import annotations
 
@@ -15,18 +15,18 @@ NAMES = ("one", "two", "three")
 
 
 def grid(*falls: tuple[int, int]):
-    """A column for each of ``falls``: of 10 episodes 8 are won clean, so many under missing data
-    at 0.3 and at 0.6."""
-    made = []
+    """Return one column for each of ``falls``: 8 of 10 clean episodes succeed, and so many under
+    missing data at 0.3 and at 0.6."""
+    output = []
     for name, at in zip(NAMES, falls, strict=False):
-        own = {"name": name, "agent": name.ljust(12, "0")}
-        made += column(8, {"missing_data": at[0]}, 0.3, **own)
-        made += cell(at[1], corruption="missing_data", severity=0.6, **own)
-    return sections(made)[0].grid
+        settings = {"name": name, "agent": name.ljust(12, "0")}
+        output += column(8, {"missing_data": at[0]}, 0.3, **settings)
+        output += cell(at[1], corruption="missing_data", severity=0.6, **settings)
+    return sections(output)[0].grid
 
 
 def seen(picture: np.ndarray, index: int) -> int:
-    """How many pixels have the colour of a column's line, above the legend."""
+    """Return how many pixels above the legend have the colour of a column's line."""
     colour = np.round(255 * np.array(plots.LINES[index][2::-1]))
     above = picture[: int(0.8 * len(picture))].astype(int)
     return int((np.abs(above - colour).max(axis=2) < 12).sum())

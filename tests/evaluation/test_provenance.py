@@ -1,4 +1,4 @@
-"""Rows of one world are not taken for another's."""
+"""Rows of one world do not count for another one."""
 
 from __future__ import annotations
 
@@ -48,9 +48,9 @@ def around(name: str | None = None, **kwargs) -> SimpleNamespace:
     return SimpleNamespace(rule="there", sensors={}, env=env)
 
 
-def of_config(**given):
+def of_config(**options):
     target = f"{__name__}.Maze"
-    return maker(OmegaConf.create({"_target_": target, "_partial_": True, **given}))
+    return maker(OmegaConf.create({"_target_": target, "_partial_": True, **options}))
 
 
 def in_two_layers(env) -> SimpleNamespace:
@@ -91,7 +91,7 @@ class Builder:
 
 
 @pytest.mark.parametrize(
-    ("first", "second", "told"),
+    ("first", "second", "reported"),
     [
         (partial(Maze, 9), partial(Maze, 3), "argument.0 was '9' and is '3'"),
         (partial(Maze, cells=9), partial(Maze, cells=3), "argument.cells was '9' and is '3'"),
@@ -116,10 +116,10 @@ class Builder:
         (lambda: Maze(), lambda: Other(), "its class was"),
     ],
 )
-def test_keep_rejects_rows_of_another_world(tmp_path, first, second, told):
+def test_keep_rejects_rows_of_another_world(tmp_path, first, second, reported):
     for _ in range(2):
         keep(tmp_path, first)
-    with pytest.raises(ValueError, match=re.escape(told)) as refused:
+    with pytest.raises(ValueError, match=re.escape(reported)) as refused:
         keep(tmp_path, second)
     assert "rows of another world" in str(refused.value) and "out=" in str(refused.value)
 
@@ -132,11 +132,11 @@ class Odd:
 
 
 def test_first_world_accepts_values_that_change(tmp_path):
-    made, circle, numbers, odd = {}, {}, [*range(100_000)], Odd()
+    output, circle, numbers, odd = {}, {}, [*range(100_000)], Odd()
     circle["itself"] = circle
 
     def make() -> Maze:
-        made[len(made)] = (numbers, circle, {(0, 1): 2}, odd)
+        output[len(output)] = (numbers, circle, {(0, 1): 2}, odd)
         return Maze()
 
     for _ in range(3):
@@ -157,7 +157,7 @@ def test_keep_accepts_two_paths_of_one_file(tmp_path, monkeypatch):
 
 
 def test_keep_accepts_worlds_with_other_sensors_or_rules(tmp_path):
-    """Their rows say so: a table of agents with one camera and with twelve is one folder."""
+    """The rows record this: a table of agents with one camera and with twelve is one folder."""
     for kind in ({}, {"size": 16}, {"rule": "near"}, {}):
         keep(tmp_path, of_config(**kind))
     with pytest.raises(ValueError, match=r"env\.world\.cells"):
@@ -166,7 +166,7 @@ def test_keep_accepts_worlds_with_other_sensors_or_rules(tmp_path):
 
 @pytest.mark.parametrize("wrapped", [False, True])
 def test_keep_rejects_an_edited_world(tmp_path, monkeypatch, wrapped):
-    """Also one inside an environment's wrappers."""
+    """This includes a world inside the wrappers of an environment."""
     monkeypatch.syspath_prepend(tmp_path)
     source = "class Edited:\n    rule, sensors = 'there', {}\n    won = True\n"
     for text in (source, source, source.replace("True", "False")):
@@ -235,7 +235,7 @@ def test_keep_accepts_a_world_whose_class_only_episodes_changed(tmp_path):
         keep(tmp_path, Counted)
 
 
-def test_keep_asks_for_a_version_of_a_world_that_cannot_be_read(tmp_path, capsys):
+def test_keep_requires_a_version_for_unreadable_worlds(tmp_path, capsys):
     class Unreadable(Maze):
         lines = (number for number in range(3))
 

@@ -1,4 +1,4 @@
-"""The table holds the paper's numbers for known rows, and says what is missing or doubtful."""
+"""The table holds the paper's numbers for known rows, and states missing and uncertain values."""
 
 from __future__ import annotations
 
@@ -22,28 +22,28 @@ ALL = dict.fromkeys(NAMES, 4)
 HARD = {"agent": "ffff00000000", "name": "da_per_episode"}
 
 
-def lines(made) -> dict[str, list[str]]:
-    """The table's cells by the first cell of their line; the first line of a name counts."""
-    text = markdown(sections(made))
+def lines(output) -> dict[str, list[str]]:
+    """Return the table's cells by the first cell of their line; the first line of a name counts."""
+    text = markdown(sections(output))
     table_lines = [line for line in text.splitlines() if line.startswith("| ")]
-    found: dict[str, list[str]] = {}
+    matches: dict[str, list[str]] = {}
     for line in table_lines:
         first, *rest = (part.strip() for part in line.strip("|").split("|"))
-        found.setdefault(first, rest)
-    return found
+        matches.setdefault(first, rest)
+    return matches
 
 
 def test_table_has_the_rows_of_the_paper():
-    made = column(8, ALL | {"flare": 8}) + column(5, ALL, **HARD)
-    found = lines(made)
-    assert found["Corruption"] == ["base", "da_per_episode"]
-    assert [x.split(" [")[0] for x in found["Clean SR"]] == ["80.0", "50.0"]
-    assert [x.split(" [")[0] for x in found["Clean SPL"]] == ["0.40", "0.25"]
-    assert [x.split(" [")[0] for x in found["**PRS-SR (RGB)**"]] == ["**0.56**", "**0.80**"]
-    assert [x.split(" [")[0] for x in found["**PRS-SR (Depth)**"]] == ["**0.50**", "**0.80**"]
-    assert found["Flare"] == ["80.0", "40.0"]
-    assert found["L-L w/ noise"] == ["40.0", "40.0"]
-    names = list(found)
+    records = column(8, ALL | {"flare": 8}) + column(5, ALL, **HARD)
+    matches = lines(records)
+    assert matches["Corruption"] == ["base", "da_per_episode"]
+    assert [x.split(" [")[0] for x in matches["Clean SR"]] == ["80.0", "50.0"]
+    assert [x.split(" [")[0] for x in matches["Clean SPL"]] == ["0.40", "0.25"]
+    assert [x.split(" [")[0] for x in matches["**PRS-SR (RGB)**"]] == ["**0.56**", "**0.80**"]
+    assert [x.split(" [")[0] for x in matches["**PRS-SR (Depth)**"]] == ["**0.50**", "**0.80**"]
+    assert matches["Flare"] == ["80.0", "40.0"]
+    assert matches["L-L w/ noise"] == ["40.0", "40.0"]
+    names = list(matches)
     assert names.index("Motion blur") < names.index("**PRS-SR (Depth)**") < names.index("Multipath")
     assert (
         len([n for n in names if "PRS" not in n]) == 1 + 1 + 3 + 2 + 12
@@ -52,8 +52,8 @@ def test_table_has_the_rows_of_the_paper():
 
 def test_heading_states_the_conditions():
     text = markdown(sections(column(8, ALL)))
-    for said in ("val_unseen", "severity 0.6", "N = 10 episodes", "seed 0", "suite 1.0"):
-        assert said in text
+    for message in ("val_unseen", "severity 0.6", "N = 10 episodes", "seed 0", "suite 1.0"):
+        assert message in text
     assert "vln: STOP and geodesic < 2.0 m" in text
     assert "`0123456789ab`" in text
     assert "N = 1 episode, seed 0" in markdown(sections(column(8, ALL)[:1]))
@@ -61,15 +61,17 @@ def test_heading_states_the_conditions():
 
 @pytest.mark.parametrize("says", [True, False])
 def test_intervals_may_be_of_scenes(says):
-    """Two scenes of five episodes, which the rows or the apartments' ids name."""
+    """Rows of two scenes with five episodes, named by the rows or by the apartments' ids."""
 
-    def placed(made: dict) -> dict:
-        scene, number = divmod(int(made["episode_id"]), 5)
-        return made | ({"scene": f"{scene}"} if says else {"episode_id": f"{scene}-vln2-{number}"})
+    def placed(output: dict) -> dict:
+        scene, number = divmod(int(output["episode_id"]), 5)
+        return output | (
+            {"scene": f"{scene}"} if says else {"episode_id": f"{scene}-vln2-{number}"}
+        )
 
-    made = [placed(row) for row in column(5, ALL)]
-    assert {rows.scene_of(row) for row in made} == {"0", "1"}
-    text, plain = markdown(sections(made, drawn="scene")), markdown(sections(made))
+    output = [placed(row) for row in column(5, ALL)]
+    assert {rows.scene_of(row) for row in output} == {"0", "1"}
+    text, plain = markdown(sections(output, drawn="scene")), markdown(sections(output))
     assert "bootstrap over 2 scenes with their episodes" in text and "over episodes" in plain
     assert "| 50.0 [0.0, 100.0] |" in text and "| 50.0 [20.0, 80.0] |" in plain
 
@@ -80,8 +82,8 @@ def test_scene_bootstrap_requires_scenes_in_rows():
 
 
 def test_prs_differences_are_paired_and_against_base():
-    made = column(5, ALL, **HARD) + column(8, ALL)
-    (section,) = sections(made)
+    records = column(5, ALL, **HARD) + column(8, ALL)
+    (section,) = sections(records)
     assert (section.reference, section.columns[0]) == ("base", "base")
     change = section.differences["da_per_episode"].retained["RGB", "SR"].estimate
     assert change.value == pytest.approx(4 / 5 - 4 / 8)
@@ -91,31 +93,31 @@ def test_prs_differences_are_paired_and_against_base():
     assert (nothing.low, nothing.high) == (0.0, 0.0)
 
 
-def test_one_episode_has_no_interval():
+def test_interval_needs_two_episodes():
     def one(wins, **agent):
         return [row(0, wins, **agent), row(0, 1, **agent, corruption="spatter", severity=0.6)]
 
     text = markdown(sections(one(1) + one(0, **HARD)))
-    found = lines(one(1) + one(0, **HARD))
-    assert found["Clean SR against base"] == ["–", "-100.0 [–]"]
-    assert found["**PRS-SR (RGB)**"][0].startswith("**1.00** [–]")
+    matches = lines(one(1) + one(0, **HARD))
+    assert matches["Clean SR against base"] == ["–", "-100.0 [–]"]
+    assert matches["**PRS-SR (RGB)**"][0].startswith("**1.00** [–]")
     assert text.count("[–]: no interval") == 1
     assert "[–]" not in markdown(sections(column(8, ALL)))
 
 
-def test_few_episodes_make_no_difference_sure():
-    def made(count):
+def test_difference_of_few_episodes_is_uncertain():
+    def output(count):
         better = [row(e, 1, **HARD) for e in range(count)]
         return [row(e, 0 if e else 1) for e in range(count)] + better
 
-    few, enough = (markdown(sections(made(count))) for count in (9, 10))
+    few, enough = (markdown(sections(output(count))) for count in (9, 10))
     assert "With fewer than 10 episodes an interval says little" in few and "| **+" not in few
     assert "Differences in bold" in enough and "| **+90.0**" in enough
 
 
 def test_clean_differences_are_paired_and_against_base():
-    found = lines(column(8, ALL) + column(5, ALL, **HARD))
-    first, second = found["Clean SR against base"]
+    matches = lines(column(8, ALL) + column(5, ALL, **HARD))
+    first, second = matches["Clean SR against base"]
     assert first == "–" and second.strip("*").startswith("-30.0")
     (section,) = sections(column(8, ALL) + column(8, ALL, **HARD))
     same = section.differences["da_per_episode"].clean
@@ -124,9 +126,9 @@ def test_clean_differences_are_paired_and_against_base():
 
 def test_mean_sr_covers_all_blocks():
     """PRS divides by an agent's own clean SR; this line does not."""
-    found = lines(column(8, ALL) + column(5, dict.fromkeys(NAMES, 6), **HARD))
-    assert [cell.split(" ")[0] for cell in found["Mean SR of 12 corruptions"]] == ["40.0", "60.0"]
-    assert found["Mean SR against base"][1].strip("*").startswith("+20.0")
+    matches = lines(column(8, ALL) + column(5, dict.fromkeys(NAMES, 6), **HARD))
+    assert [cell.split(" ")[0] for cell in matches["Mean SR of 12 corruptions"]] == ["40.0", "60.0"]
+    assert matches["Mean SR against base"][1].strip("*").startswith("+20.0")
     part = lines(column(8, dict.fromkeys(RGB[:3], 4)))
     assert part["Mean SR of 8 corruptions"][0].endswith("† 3/8")
 
@@ -135,22 +137,22 @@ def test_partial_table_lists_its_gaps():
     whole = column(8, dict.fromkeys(RGB, 4))
     cut = [r for r in whole if r["corruption"] != "flare"]
     cut = [r for r in cut if r["corruption"] != "spatter" or int(r["episode_id"]) < 3]
-    found, text = lines(cut), markdown(sections(cut))
-    assert "Flare" not in found and "Not measured: Flare." in text
-    assert found["Spatter"] == ["100.0\\*"]
-    assert found["**PRS-SR (RGB)**"][0].endswith("† 6/8")
+    matches, text = lines(cut), markdown(sections(cut))
+    assert "Flare" not in matches and "Not measured: Flare." in text
+    assert matches["Spatter"] == ["100.0\\*"]
+    assert matches["**PRS-SR (RGB)**"][0].endswith("† 6/8")
     assert "- base, spatter at 0.6: 3 of 10 episodes" in text
     assert "Depth" not in text
 
 
 def test_unfinished_episode_is_left_out():
-    """The evaluator goes by episode: the last one may lack some of its conditions."""
-    made = column(8, ALL)
-    cut = [r for r in made if r["episode_id"] != "9" or r["corruption"] in ("clean", "flare")]
+    """The evaluator runs episode by episode: the last one may lack some of its conditions."""
+    records = column(8, ALL)
+    cut = [r for r in records if r["episode_id"] != "9" or r["corruption"] in ("clean", "flare")]
     (section,) = sections(cut)
-    found = section.retained["base", "RGB", "SR"]
-    assert (found.corruptions, found.episodes) == (RGB, 9)
-    assert found.estimate.value == pytest.approx(0.5)
+    matches = section.retained["base", "RGB", "SR"]
+    assert (matches.corruptions, matches.episodes) == (RGB, 9)
+    assert matches.estimate.value == pytest.approx(0.5)
     assert lines(cut)["**PRS-SR (RGB)**"][0].endswith("\\*")
 
 
@@ -163,12 +165,12 @@ def test_columns_are_compared_on_common_episodes():
 
 
 def test_prs_near_the_floor_is_marked():
-    made = column(1, dict.fromkeys(NAMES, 1), **HARD) + column(0, dict.fromkeys(NAMES, 0))
-    found = lines(made)
-    assert found["**PRS-SR (RGB)**"][1].endswith("]")  # 0.10 is not below the floor
-    assert "‡" in found["**PRS-SR (RGB)**"][0]
-    assert found["**PRS-SR (RGB)**"][0].startswith("undefined")
-    assert "performance floor" in markdown(sections(made))
+    records = column(1, dict.fromkeys(NAMES, 1), **HARD) + column(0, dict.fromkeys(NAMES, 0))
+    matches = lines(records)
+    assert matches["**PRS-SR (RGB)**"][1].endswith("]")  # 0.10 is not below the floor
+    assert "‡" in matches["**PRS-SR (RGB)**"][0]
+    assert matches["**PRS-SR (RGB)**"][0].startswith("undefined")
+    assert "performance floor" in markdown(sections(records))
 
 
 @pytest.mark.parametrize("key", ["split", "suite", "rule"])
@@ -179,64 +181,64 @@ def test_results_under_other_rules_are_not_mixed(key):
 
 
 def test_each_severity_has_a_table():
-    made = column(8, ALL, 0.3) + column(8, dict.fromkeys(NAMES, 2), 0.9)
-    mild, strong = sections(made)
+    records = column(8, ALL, 0.3) + column(8, dict.fromkeys(NAMES, 2), 0.9)
+    mild, strong = sections(records)
     assert (mild.severity, strong.severity) == (0.3, 0.9)
     assert mild.retained["base", "RGB", "SR"].estimate.value == pytest.approx(0.5)
     assert strong.retained["base", "RGB", "SR"].estimate.value == pytest.approx(0.25)
 
 
-def test_two_agents_of_one_name_are_told_apart():
-    made = column(8, ALL) + column(4, ALL, agent="ba9876543210")
-    assert lines(made)["Corruption"] == ["base (012345)", "base (ba9876)"]
+def test_agents_of_one_name_are_distinguished():
+    records = column(8, ALL) + column(4, ALL, agent="ba9876543210")
+    assert lines(records)["Corruption"] == ["base (012345)", "base (ba9876)"]
 
 
 def test_agents_with_distinct_seeds_share_a_column():
-    """They are the training seeds of one recipe."""
-    made = column(8, ALL) + column(4, ALL, agent="ba9876543210", seed=1)
-    (section,) = sections(made)
+    """The columns are the training seeds of one recipe."""
+    records = column(8, ALL) + column(4, ALL, agent="ba9876543210", seed=1)
+    (section,) = sections(records)
     assert section.columns == ("base",)
     assert section.value("base", "clean") == pytest.approx(0.6)
     assert "`0123456789ab` `ba9876543210`" in markdown([section])
 
 
 def test_seeds_are_averaged_within_an_episode():
-    made = column(8, ALL) + column(4, ALL, seed=1)
-    (section,) = sections(made)
+    records = column(8, ALL) + column(4, ALL, seed=1)
+    (section,) = sections(records)
     assert section.value("base", "clean") == pytest.approx(0.6)
     assert section.clean["base", "SR"].value == pytest.approx(0.6)
     assert "seed 0, 1" in markdown([section])
     gap = row(3, True, seed=1, corruption="flare", severity=0.6)
-    lacking = [r for r in made if rows.identity(r) != rows.identity(gap)]
+    lacking = [r for r in records if rows.identity(r) != rows.identity(gap)]
     (section,) = sections(lacking)
     assert [(gap.corruption, gap.have) for gap in section.gaps] == [("flare", 9)]
 
 
 def test_table_lists_values_seed_by_seed():
-    made = column(8, ALL) + column(5, ALL, seed=1) + column(8, ALL, **HARD)
-    found = lines(made)
-    assert found["Clean SR, seed by seed"] == ["80.0 / 50.0", "–"]
-    assert found["PRS-SR, seed by seed"] == ["0.50 / 0.80", "–"]
+    records = column(8, ALL) + column(5, ALL, seed=1) + column(8, ALL, **HARD)
+    matches = lines(records)
+    assert matches["Clean SR, seed by seed"] == ["80.0 / 50.0", "–"]
+    assert matches["PRS-SR, seed by seed"] == ["0.50 / 0.80", "–"]
     none = dict.fromkeys(("clean", *ALL), 0)
-    found = lines(column(8, ALL) + column(0, none, seed=1))
-    assert found["PRS-SR, seed by seed"] == ["0.50 / undefined"]
+    matches = lines(column(8, ALL) + column(0, none, seed=1))
+    assert matches["PRS-SR, seed by seed"] == ["0.50 / undefined"]
     assert "seed by seed" not in markdown(sections(column(8, ALL)))
 
 
 def test_columns_are_compared_over_common_seeds():
-    """Only these met corruptions of the same keys."""
+    """Only these rows used the same corruption keys."""
     base = column(8, ALL) + column(2, dict.fromkeys(NAMES, 1), seed=1)
-    found = sections(base + column(6, ALL, **HARD))[0]
+    matches = sections(base + column(6, ALL, **HARD))[0]
     alone = sections(column(8, ALL) + column(6, ALL, **HARD))[0]
-    assert found.differences["da_per_episode"].clean.value == pytest.approx(-0.2)
-    assert found.differences == alone.differences
+    assert matches.differences["da_per_episode"].clean.value == pytest.approx(-0.2)
+    assert matches.differences == alone.differences
     apart = sections(base + column(6, ALL, seed=7, **HARD))[0]
     assert apart.differences["da_per_episode"] == Difference(None, None, {})
     assert markdown([apart]).count("in common") == 1
 
 
 def test_unfinished_seed_is_left_out_with_a_note():
-    """What another seed has measured in full must not shrink to what a new one has so far."""
+    """A complete seed must not be reduced to the episodes that a new seed has so far."""
     part = [r for r in column(2, ALL, seed=1) if int(r["episode_id"]) < 2]
     (section,) = sections(column(8, ALL) + part)
     assert section.value("base", "clean") == pytest.approx(0.8)
@@ -245,8 +247,8 @@ def test_unfinished_seed_is_left_out_with_a_note():
 
 
 def test_seed_counts_only_at_its_severities():
-    made = column(8, ALL, 0.2) + column(8, ALL, 0.6) + column(4, ALL, 0.6, seed=1)
-    mild, strong = sections(made)
+    records = column(8, ALL, 0.2) + column(8, ALL, 0.6) + column(4, ALL, 0.6, seed=1)
+    mild, strong = sections(records)
     assert mild.value("base", "clean") == pytest.approx(0.8)  # seed 0 alone, as its corrupted cells
     assert mild.retained["base", "RGB", "SR"].estimate.value == pytest.approx(0.5)
     assert strong.value("base", "clean") == pytest.approx(0.6)
@@ -255,7 +257,7 @@ def test_seed_counts_only_at_its_severities():
 
 
 def test_heading_names_the_agents():
-    """Another training counts at the severities that it was measured at alone."""
+    """Another training counts only at the severities at which it was measured."""
     other = column(4, ALL, 0.6, seed=1, agent="eeee00000000")
     mild, strong = sections(column(8, ALL, 0.2) + column(8, ALL, 0.6) + other)
     assert "eeee00000000" not in markdown([mild]) and "eeee00000000" in markdown([strong])
@@ -263,10 +265,10 @@ def test_heading_names_the_agents():
 
 
 def test_table_accepts_seeds_and_a_reference(tmp_path, capsys):
-    made = column(8, ALL) + column(2, ALL, seed=1) + column(6, ALL, **HARD)
-    (tmp_path / "rows.jsonl").write_text("".join(json.dumps(r) + "\n" for r in made))
-    given = [str(tmp_path / "rows.jsonl"), "--out", str(tmp_path / "out")]
-    assert table.main([*given, "--seed", "0", "--against", "da_per_episode"]) == 0
+    records = column(8, ALL) + column(2, ALL, seed=1) + column(6, ALL, **HARD)
+    (tmp_path / "rows.jsonl").write_text("".join(json.dumps(r) + "\n" for r in records))
+    arguments = [str(tmp_path / "rows.jsonl"), "--out", str(tmp_path / "out")]
+    assert table.main([*arguments, "--seed", "0", "--against", "da_per_episode"]) == 0
     printed = capsys.readouterr().out
     assert "| Corruption | da_per_episode | base |" in printed
     assert "| Clean SR against da_per_episode | – | +20.0" in printed and "seed 0," in printed
@@ -274,7 +276,7 @@ def test_table_accepts_seeds_and_a_reference(tmp_path, capsys):
         ("--seed=4", "seeds must be among 0, 1, got 4"),
         ("--against=bas", "Did you mean"),
     ):
-        assert table.main([*given, wrong]) == 2
+        assert table.main([*arguments, wrong]) == 2
         assert words in capsys.readouterr().err
 
 
@@ -293,12 +295,12 @@ def test_corruptions_outside_the_suite_have_their_own_block():
 
 def test_white_box_is_not_applicable_without_prompt():
     spoken = dict.fromkeys((name for name in INSTRUCTION if name != "white_box"), 4)
-    made = column(8, spoken)
-    (section,) = sections(made)
+    records = column(8, spoken)
+    (section,) = sections(records)
     assert section.blocks == {"Instruction": tuple(spoken)} and section.gaps == []
-    found, text = lines(made), markdown([section])
-    assert found["**PRS-SR (Instruction)**"][0].startswith("**0.50**")
-    assert found["White-box prompt"] == ["n/a"] and found["Black-box prompt"] == ["40.0"]
+    matches, text = lines(records), markdown([section])
+    assert matches["**PRS-SR (Instruction)**"][0].startswith("**0.50**")
+    assert matches["White-box prompt"] == ["n/a"] and matches["Black-box prompt"] == ["40.0"]
     assert "not applicable and not part of the PRS" in text
     prompted = lines(column(8, spoken | {"white_box": 8}))
     assert prompted["White-box prompt"] == ["80.0"]
@@ -306,9 +308,9 @@ def test_white_box_is_not_applicable_without_prompt():
 
 
 def test_pictures_show_what_was_measured(tmp_path):
-    made = column(8, ALL, 0.3) + column(8, ALL, 0.6) + column(6, ALL, 0.6, **HARD)
-    made = [r for r in made if r["corruption"] != "multipath"]
-    paths = write(made, tmp_path)
+    records = column(8, ALL, 0.3) + column(8, ALL, 0.6) + column(6, ALL, 0.6, **HARD)
+    records = [r for r in records if r["corruption"] != "multipath"]
+    paths = write(records, tmp_path)
     names = [path.name for path in paths]
     assert names == ["table.md", "heatmap.png", "severity.png", "heatmap-2.png"]
     for path in paths[1:]:
@@ -338,10 +340,10 @@ def test_table_command_reports_mistakes(tmp_path, capsys):
 
 
 def test_sections_do_not_depend_on_row_order():
-    made = column(8, ALL) + column(5, ALL, **HARD)
-    mixed = [made[i] for i in np.random.default_rng(0).permutation(len(made))]
-    assert sections(mixed)[0].retained == sections(made)[0].retained
-    assert set(DEPTH) | set(RGB) == {r["corruption"] for r in made} - {"clean"}
+    records = column(8, ALL) + column(5, ALL, **HARD)
+    mixed = [records[i] for i in np.random.default_rng(0).permutation(len(records))]
+    assert sections(mixed)[0].retained == sections(records)[0].retained
+    assert set(DEPTH) | set(RGB) == {r["corruption"] for r in records} - {"clean"}
     assert row(0, True)["corruption"] == "clean"
 
 
@@ -349,8 +351,8 @@ UNSEEN = (*unseen_names("rgb"), *unseen_names("depth"))
 
 
 def test_unseen_corruptions_have_a_table_of_their_own():
-    made = column(8, dict.fromkeys(UNSEEN, 2), version="1") + column(8, ALL)
-    suite, unseen = sections(made)
+    records = column(8, dict.fromkeys(UNSEEN, 2), version="1") + column(8, ALL)
+    suite, unseen = sections(records)
     assert (suite.kind, set(suite.blocks)) == ("", {"RGB", "Depth"})
     assert (unseen.kind, set(unseen.blocks)) == (
         "unseen corruptions",
@@ -364,7 +366,7 @@ def test_unseen_corruptions_have_a_table_of_their_own():
 
 
 def test_suite_figures_ignore_other_corruptions():
-    """Other seeds, gaps and agents of the unseen rows included."""
+    """This includes other seeds, gaps and agents of the unseen rows."""
     suite = column(8, ALL) + column(6, ALL, seed=1) + column(5, ALL, **HARD)
     other = column(8, dict.fromkeys(UNSEEN, 2)) + column(5, {"spatter+haze": 1}, **HARD)
     other += column(3, {"haze": 1}, agent="eeee00000000", name="third")
@@ -378,11 +380,11 @@ def test_suite_figures_ignore_other_corruptions():
 
 def test_halves_of_unseen_corruptions_have_a_prs():
     validation, test = (unseen_names("rgb", half=half) for half in ("validation", "test"))
-    made = column(8, dict.fromkeys(validation, 8) | dict.fromkeys(test, 4))
-    found = lines(made)
-    assert found["**PRS-SR (unseen RGB)**"][0].startswith("**0.75**")
-    assert found["PRS-SR (unseen RGB, validation)"][0].startswith("**1.00**")
-    assert found["PRS-SR (unseen RGB, test)"][0].startswith("**0.50**")
+    records = column(8, dict.fromkeys(validation, 8) | dict.fromkeys(test, 4))
+    matches = lines(records)
+    assert matches["**PRS-SR (unseen RGB)**"][0].startswith("**0.75**")
+    assert matches["PRS-SR (unseen RGB, validation)"][0].startswith("**1.00**")
+    assert matches["PRS-SR (unseen RGB, test)"][0].startswith("**0.50**")
     half = lines(column(8, dict.fromkeys(test, 4)))
     assert half["**PRS-SR (unseen RGB)**"][0].endswith("]")  # a whole half: nothing is missing
     assert "PRS-SR (unseen RGB, test)" not in half
@@ -402,10 +404,12 @@ HOSTILE = "a|b`c`<script>x</script>[y](http://z)![p](q)$\\frac$*#"
 
 def test_names_are_escaped_in_tables_and_pictures(tmp_path):
     mine = {"name": HOSTILE, "agent": "ffff00000000", "rule": f"{HOSTILE} |", "split": HOSTILE}
-    made = [r | {"split": HOSTILE, "rule": mine["rule"]} for r in column(8, ALL)]
-    text = write([*made, *column(4, ALL, **mine)], tmp_path)[0].read_text()
-    shown = next(line for line in text.splitlines() if line.startswith("| Corruption"))
-    assert len(re.findall(r"(?<!\\)\|", shown)) == 4  # two columns and the first, no further cell
+    records = [r | {"split": HOSTILE, "rule": mine["rule"]} for r in column(8, ALL)]
+    text = write([*records, *column(4, ALL, **mine)], tmp_path)[0].read_text()
+    displayed = next(line for line in text.splitlines() if line.startswith("| Corruption"))
+    assert (
+        len(re.findall(r"(?<!\\)\|", displayed)) == 4
+    )  # two columns and the first, no further cell
     for mark in ("<script", "</script", "[y](", "![p]", "`c`", "\n#a"):
         assert not re.search(rf"(?<!\\){re.escape(mark)}", text)
     assert (tmp_path / "heatmap.png").is_file() and (tmp_path / "severity.png").is_file()
@@ -417,9 +421,9 @@ def test_plain_names_are_not_escaped():
     assert markdown_of("a\n## b\r\n| c") == "a ## b \\| c"
 
 
-def other_list(made, **changes):
-    """The same rows over other episodes."""
-    return [r | changes | {"episode_id": f"{r['episode_id']}-other"} for r in made]
+def other_list(output, **changes):
+    """Return the same rows for other episodes."""
+    return [r | changes | {"episode_id": f"{r['episode_id']}-other"} for r in output]
 
 
 def test_lists_of_episodes_have_separate_tables():
@@ -427,13 +431,13 @@ def test_lists_of_episodes_have_separate_tables():
     second = other_list(column(6, ALL), agent="aaaa00000000", seed=1) + other_list(
         column(7, ALL, **HARD), agent="bbbb00000000", seed=1
     )
-    made = sections(first + second)
-    assert [part.columns for part in made] == [("base", "da_per_episode")] * 2
-    assert [part.differences["da_per_episode"].clean.value for part in made] == pytest.approx(
+    output = sections(first + second)
+    assert [part.columns for part in output] == [("base", "da_per_episode")] * 2
+    assert [part.differences["da_per_episode"].clean.value for part in output] == pytest.approx(
         [-0.3, 0.1]
     )
-    assert not any(part.gaps for part in made)
-    text = markdown(made)
+    assert not any(part.gaps for part in output)
+    text = markdown(output)
     assert "## val_unseen from 0, severity 0.6" in text
     assert "## val_unseen from 0-other, severity 0.6" in text
     assert "from" not in markdown(sections(first)).splitlines()[0]
@@ -448,9 +452,10 @@ def test_lists_with_common_episodes_share_a_table():
 
 
 def test_rows_at_severity_zero_are_not_clean_rows():
-    """A corruption may be run at 0; which of the two was shown hung on the order of a set."""
+    """A corruption may run at severity 0; which of the two was shown depended on the order of a
+    set."""
     rows = column(8, {"flare": 0}) + [
-        made | {"corruption": "flare", "severity": 0.0} for made in cell(8)
+        output | {"corruption": "flare", "severity": 0.0} for output in cell(8)
     ]
     (part,) = [section for section in sections(rows) if section.severity == 0.6]
     assert part.value("base", "flare") == 0.0 and part.value("base", "clean") == 0.8

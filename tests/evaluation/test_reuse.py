@@ -1,4 +1,5 @@
-"""What is rendered and encoded once for all conditions of an episode, and that no row sees it."""
+"""Frames that are rendered and encoded once for all conditions of an episode; rows do not
+change."""
 
 from __future__ import annotations
 
@@ -39,7 +40,7 @@ def test_measures_do_not_depend_on_the_cache():
 
 
 class Scribbler:
-    """Looks, writes into what it saw, and keeps a copy of what it saw first."""
+    """Modifies its observation, and stores a copy of the first one."""
 
     def reset(self, instruction):
         self.seen = []
@@ -63,7 +64,7 @@ def test_agent_cannot_change_cached_frames():
 
 
 def encoded(agent):
-    """Frames given to the RGB encoder from now on: a list that grows."""
+    """Return a growing list of the frames that the RGB encoder gets from now on."""
     calls = []
     agent.rgb_encoder.register_forward_hook(lambda *_: calls.append(1))
     return calls
@@ -102,7 +103,7 @@ def test_cache_is_cleared_when_weights_change():
 class Mortal(torch.nn.Module):
     """Stops at once; kills its process in one episode, if another process has not done so."""
 
-    settings = dict  # where it dies makes it no other agent
+    settings = dict  # the place of the death does not change the agent
 
     def __init__(self, folder, deaths=1):
         super().__init__()
@@ -122,13 +123,13 @@ class Mortal(torch.nn.Module):
 
 
 def run(agent, out, count):
-    given = {"name": "test", "out": out, "split": "val_seen", "workers": count}
+    options = {"name": "test", "out": out, "split": "val_seen", "workers": count}
     return evaluate(
         agent,
         partial(ApartmentsWorld, SIZE),
         load_episodes("val_seen")[:3],
         CONDITIONS[:4],
-        **given,
+        **options,
     )
 
 
@@ -145,6 +146,6 @@ def test_second_killed_worker_keeps_finished_rows(tmp_path):
         workers.WorkersDied, match=r"finished rows are in .*rows.jsonl. Run the same"
     ):
         run(Mortal(tmp_path, deaths=9), out, 2)
-    kept = rows.read(out)
-    assert kept and len(kept) < 12
+    remaining = rows.read(out)
+    assert remaining and len(remaining) < 12
     assert len(run(Mortal(tmp_path, deaths=0), out, 1)) == 12

@@ -1,4 +1,4 @@
-"""Row files survive kills, join by identity, and name what is wrong with them."""
+"""Row files survive kills, join by identity, and errors name what is wrong."""
 
 from __future__ import annotations
 
@@ -41,7 +41,8 @@ def test_append_repairs_an_interrupted_first_write(tmp_path):
 
 def test_append_keeps_a_last_line_without_newline(tmp_path):
     path = tmp_path / "rows.jsonl"
-    path.write_text(json.dumps(row(0, True) | {"note": "x" * 9000}))  # longer than one look back
+    # longer than one block of the reader
+    path.write_text(json.dumps(row(0, True) | {"note": "x" * 9000}))
     rows.append(path, [row(1, False)])
     assert [r["episode_id"] for r in rows.read(path)] == ["0", "1"]
 
@@ -101,8 +102,8 @@ def test_files_and_folders_are_gathered(tmp_path):
     (tmp_path / "a/chat.jsonl").write_text('{"messages": []}\n')
     (tmp_path / "a/empty.jsonl").write_text("")
     rows.append(tmp_path / "c.jsonl", [row(0, False)])
-    found = rows.gather([tmp_path / "a", tmp_path / "c.jsonl"])
-    assert {r["episode_id"]: r["success"] for r in found} == {"0": 0, "1": 0, "2": 1}
+    records = rows.gather([tmp_path / "a", tmp_path / "c.jsonl"])
+    assert {r["episode_id"]: r["success"] for r in records} == {"0": 0, "1": 0, "2": 1}
 
 
 def test_gather_names_a_path_without_rows(tmp_path):
@@ -150,7 +151,7 @@ def test_read_rejects_booleans_as_numbers(tmp_path):
     (tmp_path / "rows.jsonl").write_text(json.dumps(row(0, True) | {"success": True}))
     with pytest.raises(ValueError, match=r"wrong 'success': True \(a number: 1 for true, 0 for f"):
         rows.read(tmp_path / "rows.jsonl")
-    assert rows._line(row(0, True, fell=True))  # an entry of one's own may be one
+    assert rows._line(row(0, True, fell=True))  # a user's entry may be one
 
 
 BAD_LINES = {
@@ -223,7 +224,7 @@ def test_gather_reads_files_with_a_damaged_first_line(tmp_path):
     file.write_bytes(b"\0\0" + file.read_bytes()[2:])
     with pytest.raises(ValueError, match=r"b/rows\.jsonl, line 1 is not a JSON object"):
         rows.gather([tmp_path])
-    file.write_bytes(b"")  # an evaluation that wrote none yet
+    file.write_bytes(b"")  # an evaluation without rows so far
     assert rows.gather([tmp_path]) == cell(5)
 
 

@@ -1,4 +1,4 @@
-"""Whose success rule it is: each paper's own, by name, and in every row."""
+"""Success rules: the rule of each paper, by name, and in every row."""
 
 from __future__ import annotations
 
@@ -77,9 +77,9 @@ def test_distances_follow_the_rule(rule, within):
     world = ApartmentsWorld(rule=rule)
     for episode in load_episodes("val_seen", "ogn")[:20:5]:
         world.reset(episode)
-        at_once, told = world.measures(), episode.geodesic_distance
+        at_once, reported = world.measures(), episode.geodesic_distance
         assert at_once["geodesic_distance"] == at_once["distance_to_goal"]
-        assert (at_once["geodesic_distance"] == told) == (rule == "apartments")
+        assert (at_once["geodesic_distance"] == reported) == (rule == "apartments")
         while not world.done:
             world.step(world.expert().action())
         assert world.measures()["distance_to_goal"] < within
@@ -87,25 +87,25 @@ def test_distances_follow_the_rule(rule, within):
 
 
 def test_ndtw_threshold_follows_the_rule():
-    episode, found = load_episodes("val_seen")[0], {}
+    episode, loaded = load_episodes("val_seen")[0], {}
     for rule, metres in (("apartments", 2.0), ("vln_ce", 3.0), ("wmnav", 3.0), ("objectnav", 3.0)):
         world = ApartmentsWorld(rule=rule)
         world.reset(episode)
-        found[rule] = -math.log(world.measures()["ndtw"]) * metres
-    assert found["vln_ce"] == pytest.approx(found["apartments"], rel=1e-4)
+        loaded[rule] = -math.log(world.measures()["ndtw"]) * metres
+    assert loaded["vln_ce"] == pytest.approx(loaded["apartments"], rel=1e-4)
     for rule in ("wmnav", "objectnav"):  # VLN-CE's: a view point lies on no path
-        assert found[rule] == pytest.approx(found["apartments"], rel=1e-4)
+        assert loaded[rule] == pytest.approx(loaded["apartments"], rel=1e-4)
 
 
 def test_expert_of_the_default_rule_is_unchanged():
-    """Shipped rows and weights are of these walks."""
-    world, said = ApartmentsWorld(), []
+    """Shipped rows and weights belong to these episodes."""
+    world, message = ApartmentsWorld(), []
     for episode in load_episodes("val_seen")[::60]:
         world.reset(episode)
         expert, actions = world.expert(), []
         while not world.done:
             actions.append(expert.action())
             world.step(actions[-1])
-        said.append("".join(map(str, actions)))
-    assert hashlib.sha256(" ".join(said).encode()).hexdigest()[:12] == "c20e5590c0de"
+        message.append("".join(map(str, actions)))
+    assert hashlib.sha256(" ".join(message).encode()).hexdigest()[:12] == "c20e5590c0de"
     assert all(expert.counts(metres) for metres in (STOP_WITHIN, STOP_BEST))

@@ -1,4 +1,4 @@
-"""Pictures of walks show what the rows say, of episodes chosen by rule."""
+"""Pictures of episodes agree with their rows; the episodes are chosen by a rule."""
 
 from __future__ import annotations
 
@@ -58,14 +58,19 @@ def test_draw_trajectories_draws_clean_and_corrupted_runs(tmp_path, monkeypatch,
     )
     assert cv2.imread(str(out)).std() > 10
     labels = [rest[1].split(":")[0] for _, rest in drawn]
-    shown = trajectories.label(name)
-    assert labels == ["reference path", "base, clean", f"base, {shown}", f"hardened, {shown}"]
+    displayed = trajectories.label(name)
+    assert labels == [
+        "reference path",
+        "base, clean",
+        f"base, {displayed}",
+        f"hardened, {displayed}",
+    ]
     assert [len(path) for path, _ in drawn[1:]] == [2, 2, 4]
     assert all("fail" in rest[1] for _, rest in drawn[1:])
 
 
 class Shows(ApartmentsWorld):
-    """An apartment in which one kind of frame shows, or none."""
+    """An apartment in which one kind of frame shows, or no frame."""
 
     only: tuple[str, ...] = ()
 
@@ -78,8 +83,8 @@ class Shows(ApartmentsWorld):
 def test_first_sight_uses_available_frames(only, entry):
     world, episode = Shows(16, views=1), load_episodes("val_seen")[0]
     world.only = only
-    found, pictures = first_sight(world, episode, Corruption("black_box", 1.0), 0)
-    assert found == entry and [p.shape for p in pictures] == [(16, 16, 3)] * 2 * bool(entry)
+    matches, pictures = first_sight(world, episode, Corruption("black_box", 1.0), 0)
+    assert matches == entry and [p.shape for p in pictures] == [(16, 16, 3)] * 2 * bool(entry)
 
 
 def test_write_pictures_draws_the_episodes_won_back(tmp_path):
@@ -87,8 +92,8 @@ def test_write_pictures_draws_the_episodes_won_back(tmp_path):
     ids = [episode.episode_id for episode in episodes]
     rows = cell("before", "flare", "100", ids) + cell("x", "flare", "111", ids)
     agents = {"before": Straight(1), "x": Straight(2)}
-    written = write_pictures(agents, ApartmentsWorld(64), episodes, rows, tmp_path)
-    assert [p.name for p in written] == [f"{ids[1]}-flare.png"]
+    saved = write_pictures(agents, ApartmentsWorld(64), episodes, rows, tmp_path)
+    assert [p.name for p in saved] == [f"{ids[1]}-flare.png"]
 
 
 def test_write_pictures_draws_a_single_agent(tmp_path):

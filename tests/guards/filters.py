@@ -56,10 +56,10 @@ def broken(frames):
 
 
 class Returns:
-    """Return an entry as it is given to the constructor."""
+    """Return an entry in the form that the constructor gets."""
 
-    def __init__(self, **made):
-        self.made = made
+    def __init__(self, **output):
+        self.made = output
 
     def __call__(self, frames):
         return self.made

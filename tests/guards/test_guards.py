@@ -81,9 +81,9 @@ def test_guard_defaults_change_nothing():
 def test_guards_apply_each_in_turn():
     chain = Guards([Shouts(), Dark(), Dark(), filters.Politely()])
     assert chain.begin(START) == "please GO AHEAD." == chain.begin_all([START])[0]
-    shown = chain.observe({RGB: np.full((2, 2, 3), 200), "pose": 1})
-    assert shown[RGB].max() == 50 and shown["pose"] == 1
-    assert chain.observe_all([shown])[0][RGB].max() == 12
+    observed = chain.observe({RGB: np.full((2, 2, 3), 200), "pose": 1})
+    assert observed[RGB].max() == 50 and observed["pose"] == 1
+    assert chain.observe_all([observed])[0][RGB].max() == 12
     assert chain.label == "shouts+dark+dark" and chain.frames == (RGB,) and chain.adapts
     assert chain.prepared([START]).begin(START) == chain.begin(START)
 
@@ -209,33 +209,33 @@ def test_callable_of_tells_callables_from_folders(tmp_path, monkeypatch):
 
 def test_callable_changes_only_what_it_returns():
     guard = open_restorer(f"{FILTERS}:median", [RGB])
-    shown = frames()
-    made = guard.observe(shown)
-    assert np.array_equal(made[RGB], filters.median({RGB: shown[RGB]})[RGB])
-    assert made[DEPTH] is shown[DEPTH] and made["pose"] == 1
+    observed = frames()
+    output = guard.observe(observed)
+    assert np.array_equal(output[RGB], filters.median({RGB: observed[RGB]})[RGB])
+    assert output[DEPTH] is observed[DEPTH] and output["pose"] == 1
     assert guard.label == "filters.median" and guard.frames == (RGB,)
-    only_depth = {DEPTH: shown[DEPTH]}
+    only_depth = {DEPTH: observed[DEPTH]}
     assert guard.observe(only_depth) is only_depth
 
 
 def test_callable_that_changes_nothing_leaves_the_same_objects():
-    shown = frames()
-    shown[DEPTH][0, 0] = np.nan  # a hole of a real sensor
-    assert open_callable(f"{FILTERS}:unchanged").observe(shown)[RGB] is shown[RGB]
-    before = {name: np.array(frame) for name, frame in shown.items()}
-    made = open_callable(f"{FILTERS}:in_place").observe(shown)
-    assert not made[RGB].any() and np.array_equal(shown[RGB], before[RGB])
+    observed = frames()
+    observed[DEPTH][0, 0] = np.nan  # a hole of a real sensor
+    assert open_callable(f"{FILTERS}:unchanged").observe(observed)[RGB] is observed[RGB]
+    before = {name: np.array(frame) for name, frame in observed.items()}
+    output = open_callable(f"{FILTERS}:in_place").observe(observed)
+    assert not output[RGB].any() and np.array_equal(observed[RGB], before[RGB])
 
 
-def test_callable_class_is_constructed_once_and_a_guard_is_used_as_it_is():
+def test_callable_class_is_built_once_and_guard_is_unchanged():
     guard = open_callable(f"{FILTERS}:Brighter")
     assert isinstance(guard.call, filters.Brighter) and guard.frames == (RGB,)
     for _ in range(2):
         assert guard.observe(frames())[RGB].min() >= 100
     assert guard.call.calls == 2
-    own = open_restorer(f"{FILTERS}:Politely@2")
-    assert isinstance(own, filters.Politely) and own.version == "2"
-    assert own.label == "filters.Politely@2"
+    settings = open_restorer(f"{FILTERS}:Politely@2")
+    assert isinstance(settings, filters.Politely) and settings.version == "2"
+    assert settings.label == "filters.Politely@2"
 
 
 def test_callable_is_imported_again_by_a_worker_process():
@@ -251,9 +251,9 @@ def test_fingerprint_of_a_callable_follows_source_and_version(tmp_path, monkeypa
     for name, text in (("one", source), ("two", source), ("three", source + "#\n")):
         (tmp_path / f"callable_{name}.py").write_text(text)
     choices = ("callable_one:f", "callable_one:g", "callable_one:f@2", "callable_three:f")
-    found = [open_callable(choice).fingerprint() for choice in choices]
-    assert len(set(found)) == 4 and all(part.startswith("restorer-") for part in found)
-    assert open_callable("callable_one:f").fingerprint() == found[0]
+    loaded = [open_callable(choice).fingerprint() for choice in choices]
+    assert len(set(loaded)) == 4 and all(part.startswith("restorer-") for part in loaded)
+    assert open_callable("callable_one:f").fingerprint() == loaded[0]
     assert open_callable(f"{FILTERS}:median").version == "3 pixels"
 
 
@@ -303,5 +303,5 @@ def test_documented_example_runs(tmp_path, monkeypatch):
     code = page.partition("```python\n# filters.py\n")[2].partition("```")[0]
     (tmp_path / "documented_filters.py").write_text(code)
     monkeypatch.syspath_prepend(tmp_path)
-    made = open_restorer("documented_filters:median").observe(frames())
-    assert made[RGB].shape == (4, 4, 3)
+    output = open_restorer("documented_filters:median").observe(frames())
+    assert output[RGB].shape == (4, 4, 3)

@@ -1,4 +1,4 @@
-"""What recipes say to an agent that keeps the contract by halves."""
+"""The messages of recipes to an agent that implements only part of the contract."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def decisions(target: torch.Tensor) -> StepDecisions:
     return StepDecisions({}, {}, [], target, torch.ones(len(target)), [])
 
 
-def test_what_may_not_be_chosen_takes_no_part_in_the_loss():
+def test_masked_choices_do_not_enter_the_loss():
     mask = torch.tensor([[True, True, False, False]])
     target = torch.tensor([[1.0, 0.0, 0.0, 0.0]])
     values = imitation(Output(torch.zeros(1, 4), mask), decisions(target), {})
@@ -47,12 +47,12 @@ def test_parts_must_hold_every_parameter():
         train_only(Forgetful(), ["head"])
 
 
-def test_an_agent_that_is_not_trainable_says_what_it_lacks():
+def test_agent_that_is_not_trainable_names_what_it_lacks():
     with pytest.raises(ValueError, match="parts, collect, join, decide"):
         train_only(nn.Linear(2, 2), None)
 
 
-def test_only_what_is_named_trains_and_a_teacher_is_frozen():
+def test_only_named_parts_train_and_teacher_is_frozen():
     agent = Policy()
     train_only(agent, ["head"])
     assert [n for n, p in agent.named_parameters() if p.requires_grad] == [

@@ -1,4 +1,4 @@
-"""Distillation leaves the teacher alone, moves the student, and asks both the same question."""
+"""Distillation keeps the teacher, trains the student, and gives both the same observations."""
 
 from __future__ import annotations
 
@@ -71,7 +71,7 @@ def batch(recipe) -> dict:
 
 
 def gradients(recipe: Distil, loss: torch.Tensor) -> set[str]:
-    """The agent's parts that ``loss`` reaches; the teacher must never be one."""
+    """Return the agent's parts that get a gradient from ``loss``; the teacher must never be one."""
     recipe.zero_grad()
     loss.backward(retain_graph=True)
     assert all(p.grad is None for p in recipe.teacher.parameters())
@@ -82,7 +82,7 @@ def gradients(recipe: Distil, loss: torch.Tensor) -> set[str]:
     }
 
 
-def test_each_term_reaches_what_it_should_and_nothing_else(recipe, batch):
+def test_each_loss_term_reaches_its_parts_only(recipe, batch):
     values = recipe(batch)
     everything = {"rgb_encoder", "depth_encoder", "planner"}
     assert gradients(recipe, values["kl"]) == everything
@@ -91,7 +91,7 @@ def test_each_term_reaches_what_it_should_and_nothing_else(recipe, batch):
     assert gradients(recipe, values["waypoints"]) == {"depth_encoder", "waypoint_head"}
 
 
-def test_the_loss_is_the_sum_of_its_terms(recipe, batch):
+def test_loss_is_the_sum_of_its_terms(recipe, batch):
     """L = w_il L_il + w_kl T^2 KL + w_feat sum of MSE in units of the teacher's variance."""
     recipe.eval()
     with torch.no_grad():
@@ -112,74 +112,74 @@ def test_matched_features_count_in_units_of_the_teachers_variance():
     assert float(feature_loss(10 * student, 10 * teacher)) == pytest.approx(1.5 / (20 / 3))
 
 
-def test_the_kl_of_two_policies_is_that_of_their_softened_choices():
+def test_policy_kl_is_that_of_softened_policies():
     student, teacher = torch.tensor([[2.0, 0.0]]), torch.tensor([[0.0, 4.0]])
     p = torch.tensor([1.0, np.e**2]) / (1 + np.e**2)
-    q = torch.tensor([np.e, 1.0]) / (1 + np.e)  # the KL of q and p is another number
+    q = torch.tensor([np.e, 1.0]) / (1 + np.e)  # the KL of q and p has another value
     expected = float((p * (p / q).log()).sum())  # at temperature 2
     assert float(policy_kl(student, teacher, 2.0)) == pytest.approx(expected, abs=1e-6)
 
 
 def test_teacher_and_student_answer_over_the_same_candidates(recipe, batch):
-    """The teacher's own waypoints, from clean depth, would be others."""
+    """The teacher's waypoints, from clean depth, would differ."""
     decisions = batch["decisions"]
     student = recipe.agent.decide(decisions).logits
     with torch.no_grad():
-        wanted = recipe.teacher.decide(decisions, clean=True).logits
-    assert torch.equal(torch.isfinite(student), torch.isfinite(wanted))
+        expected = recipe.teacher.decide(decisions, clean=True).logits
+    assert torch.equal(torch.isfinite(student), torch.isfinite(expected))
     assert torch.equal(torch.isfinite(student), decisions.allowed)
     assert not np.allclose(decisions.depth.numpy(), 0) and torch.isfinite(
-        policy_kl(student, wanted, 2.0)
+        policy_kl(student, expected, 2.0)
     )
 
 
-def test_without_teacher_terms_it_is_imitation_bit_for_bit(teacher, tmp_path):
+def test_loss_without_teacher_terms_is_imitation(teacher, tmp_path):
     shas = []
     for kind in ("imitation", "distillation"):
         agent = small()
         common = {"schedule": missing_data(), "seed": 3, **EPISODES}
-        made = (
+        output = (
             assemble(Imitate, agent, **common)
             if kind == "imitation"
             else assemble(Distil, agent, teacher=teacher, w_kl=0.0, w_feat=0.0, **common)
         )
-        Trainer(made, steps=2, folder=tmp_path / kind, seed=3).fit()
+        Trainer(output, steps=2, folder=tmp_path / kind, seed=3).fit()
         shas.append(weights_sha(agent))
     assert shas[0] == shas[1] != weights_sha(small())
 
 
-def test_the_teacher_keeps_every_bit_and_the_student_moves(teacher, tmp_path):
+def test_teacher_stays_equal_and_student_moves(teacher, tmp_path):
     agent = small()
-    made = assemble(Distil, agent, teacher=teacher, schedule=missing_data(), **EPISODES)
-    before, start = weights_sha(made.teacher), weights_sha(agent)
-    made.train()
-    assert not made.teacher.training
-    Trainer(made, steps=2, folder=tmp_path, seed=0).fit()
-    assert weights_sha(made.teacher) == before == made.identity()["teacher_sha256"]
+    objective = assemble(Distil, agent, teacher=teacher, schedule=missing_data(), **EPISODES)
+    before, start = weights_sha(objective.teacher), weights_sha(agent)
+    objective.train()
+    assert not objective.teacher.training
+    Trainer(objective, steps=2, folder=tmp_path, seed=0).fit()
+    assert weights_sha(objective.teacher) == before == objective.identity()["teacher_sha256"]
     assert weights_sha(agent) != start
 
 
-def test_policy_kl_is_zero_for_equal_policies_and_ignores_masked_entries():
+def test_policy_kl_is_zero_for_equal_policies_and_ignores_masks():
     student = torch.tensor([[1.0, 2.0, float("-inf")]], requires_grad=True)
     assert policy_kl(student, student.detach(), 2.0) == 0
     teacher = torch.tensor([[3.0, 1.0, float("-inf")]])
-    found = policy_kl(student, teacher, 1.0)
+    matches = policy_kl(student, teacher, 1.0)
     p = torch.tensor([3.0, 1.0]).softmax(0)
     q = torch.tensor([1.0, 2.0]).softmax(0)
-    assert found.item() == pytest.approx((p * (p / q).log()).sum().item(), rel=1e-5)
-    found.backward()
+    assert matches.item() == pytest.approx((p * (p / q).log()).sum().item(), rel=1e-5)
+    matches.backward()
     assert torch.isfinite(student.grad).all()
 
 
 @pytest.mark.parametrize("modality", ["rgb", "depth"])
 @pytest.mark.parametrize("kind", ["views", "adapters"])
-def test_a_resumed_run_ends_with_the_same_bits(kind, modality, teacher, tmp_path):
-    def made():
+def test_resumed_run_ends_with_the_same_bits(kind, modality, teacher, tmp_path):
+    def output():
         if kind == "views":
             return assemble(DistilViews, small(), modality=modality, teacher=teacher, **VIEWS)
         return assemble(AdaptViews, small(adapters=ADAPTERS), modality=modality, **VIEWS)
 
-    whole, first, second = made(), made(), made()
+    whole, first, second = output(), output(), output()
     Trainer(whole, steps=3, folder=tmp_path / "whole", seed=0).fit()
     Trainer(first, steps=3, folder=tmp_path / "cut", seed=0, save_every=1).fit()
     checkpoints(tmp_path / "cut")[-1].unlink()  # back to step 2
@@ -189,17 +189,17 @@ def test_a_resumed_run_ends_with_the_same_bits(kind, modality, teacher, tmp_path
 
 def test_adapters_train_alone(tmp_path):
     agent = small(adapters=ADAPTERS)
-    made = assemble(AdaptViews, agent, modality="rgb", **VIEWS)
+    objective = assemble(AdaptViews, agent, modality="rgb", **VIEWS)
     start = weights_sha(agent)
-    Trainer(made, steps=2, folder=tmp_path, seed=0).fit()
-    assert made.evaluate(2) == {"backbone_unchanged": 1.0} and weights_sha(agent) != start
+    Trainer(objective, steps=2, folder=tmp_path, seed=0).fit()
+    assert objective.evaluate(2) == {"backbone_unchanged": 1.0} and weights_sha(agent) != start
 
 
 def test_adapt_views_scales_adapters_at_the_end(tmp_path):
     agents = [small(adapters=ADAPTERS) for _ in range(2)]
     for agent, strength in zip(agents, (1.0, 0.25), strict=True):
-        made = assemble(AdaptViews, agent, modality="rgb", **VIEWS, strength=strength)
-        Trainer(made, steps=2, folder=tmp_path / f"{strength}", seed=0, save_every=1).fit()
+        objective = assemble(AdaptViews, agent, modality="rgb", **VIEWS, strength=strength)
+        Trainer(objective, steps=2, folder=tmp_path / f"{strength}", seed=0, save_every=1).fit()
     full, part = (dict(agent.named_parameters()) for agent in agents)
     for name, weight in full.items():
         scaled = ".adapter.up." in name or ".adapter.share." in name
@@ -207,19 +207,19 @@ def test_adapt_views_scales_adapters_at_the_end(tmp_path):
         assert torch.equal(part[name], weight * times), name
     resumed = small(adapters=ADAPTERS)
     checkpoints(tmp_path / "0.25")[-1].unlink()  # back to step 1
-    made = assemble(AdaptViews, resumed, modality="rgb", **VIEWS, strength=0.25)
-    Trainer(made, steps=2, folder=tmp_path / "0.25", seed=0, save_every=1).fit()
+    objective = assemble(AdaptViews, resumed, modality="rgb", **VIEWS, strength=0.25)
+    Trainer(objective, steps=2, folder=tmp_path / "0.25", seed=0, save_every=1).fit()
     assert weights_sha(resumed) == weights_sha(agents[1]) != weights_sha(agents[0])
     with pytest.raises(ValueError, match="strength must be above 0 and at most 1, got 0"):
         assemble(AdaptViews, resumed, modality="rgb", **VIEWS, strength=0)
 
 
-def test_a_gate_learns_which_views_are_corrupted(tmp_path):
+def test_gate_learns_which_views_are_corrupted(tmp_path):
     agent = small(adapters={**ADAPTERS, "gates": ["rgb_encoder.stem"]})
-    made = assemble(AdaptViews, agent, modality="rgb", **VIEWS, own=True)
-    batch = made.batch(0)
-    (gate,), corrupted = made.gates, differ(batch["frames"], batch["clean"])
-    made(batch)
+    objective = assemble(AdaptViews, agent, modality="rgb", **VIEWS, own=True)
+    batch = objective.batch(0)
+    (gate,), corrupted = objective.gates, differ(batch["frames"], batch["clean"])
+    objective(batch)
     wrong = []
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(DistilViews, "forward", lambda *_: {"loss": torch.zeros(())})
@@ -227,32 +227,32 @@ def test_a_gate_learns_which_views_are_corrupted(tmp_path):
             gate.judged.logits = torch.where(corrupted, sign, -sign).reshape(
                 gate.judged.logits.shape
             )
-            wrong.append(float(made(batch)["gate"]))
+            wrong.append(float(objective(batch)["gate"]))
     assert wrong[0] < 0.01 < 5 < wrong[1]
-    values = made(batch)
+    values = objective(batch)
     assert values["gate"] > 0 and {"opened_corrupted", "opened_clean"} <= set(values)
     start = agent.rgb_encoder.stem.adapter.judge.weight.clone()
-    Trainer(made, steps=2, folder=tmp_path, seed=0, lr=1e-2, warmup=0).fit()
+    Trainer(objective, steps=2, folder=tmp_path, seed=0, lr=1e-2, warmup=0).fit()
     assert not torch.equal(agent.rgb_encoder.stem.adapter.judge.weight, start)
 
 
-def test_the_threshold_of_a_gate_is_set_on_held_back_clean_views():
+def test_gate_threshold_is_set_on_held_out_clean_views():
     agent = small(adapters={**ADAPTERS, "gates": ["rgb_encoder.stem"]})
-    made = assemble(
+    objective = assemble(
         AdaptViews, agent, modality="rgb", **VIEWS, own=True, touched=0.25, held=4
     ).eval()
     assert agent.rgb_encoder.stem.adapter.threshold == 0
     with torch.no_grad():
-        made.finish()
-        values = made.evaluate(0)
-        again = made.evaluate(0)
+        objective.finish()
+        values = objective.evaluate(0)
+        again = objective.evaluate(0)
     gate = agent.rgb_encoder.stem.adapter
     assert gate.threshold != 0 and values == again
     with torch.no_grad():
-        logits, corrupted = made._judged(gate, HELD, 4, clean=True)
+        logits, corrupted = objective._judged(gate, HELD, 4, clean=True)
     opened = float((logits > 0).float().mean())
     assert not corrupted.any() and opened == pytest.approx(0.25, abs=0.1)
-    drawn = [made.poses.jobs(step) for step in (HELD, FRESH)]
+    drawn = [objective.poses.jobs(step) for step in (HELD, FRESH)]
     assert not {job[0] for jobs in drawn for job in jobs} & {*range(100_000)}
     assert 0 <= values["clean_opened"] < 1 and 0 <= values["corrupted_opened"] <= 1
     with pytest.raises(ValueError, match="touched must be above 0 and below 1, got 0"):
@@ -260,7 +260,7 @@ def test_the_threshold_of_a_gate_is_set_on_held_back_clean_views():
 
 
 def with_statistics(**options) -> TopologicalAgent:
-    """An agent whose encoders normalise by running statistics, with and without weights."""
+    """An agent whose encoders normalise with running statistics, with and without weights."""
     agent = small(**options)
     for encoder, affine in ((agent.rgb_encoder, True), (agent.depth_encoder, False)):
         block = encoder.stages[0]
@@ -284,35 +284,35 @@ def statistics(agent) -> dict[str, torch.Tensor]:
 )
 def test_frozen_normalisations_keep_their_statistics(kind, learning, tmp_path):
     agent = with_statistics(adapters=ADAPTERS if kind.startswith("adapters") else None)
-    before, own = statistics(agent), {"schedule": missing_data(), **EPISODES}
-    made = {
-        "adapters on episodes": lambda: assemble(Adapt, agent, **own),
+    before, settings = statistics(agent), {"schedule": missing_data(), **EPISODES}
+    output = {
+        "adapters on episodes": lambda: assemble(Adapt, agent, **settings),
         "adapters on views": lambda: assemble(AdaptViews, agent, modality="depth", held=1, **VIEWS),
         "one encoder on episodes": lambda: assemble(
-            Distil, agent, teacher="start", train_parts=["rgb_encoder"], **own
+            Distil, agent, teacher="start", train_parts=["rgb_encoder"], **settings
         ),
         "one encoder on views": lambda: assemble(
             DistilViews, agent, modality="depth", teacher="start", **VIEWS
         ),
     }[kind]()
-    Trainer(made, steps=1, folder=tmp_path, seed=0).fit()
+    Trainer(output, steps=1, folder=tmp_path, seed=0).fit()
     after = statistics(agent)
     moved = {name.partition(".")[0] for name in before if not before[name].equal(after[name])}
     assert moved == learning
 
 
-def test_a_backbone_that_changed_is_no_result_of_adapters(tmp_path):
+def test_changed_backbone_is_rejected(tmp_path):
     agent = small(adapters=ADAPTERS)
     agent.rgb_encoder.register_buffer("count", torch.zeros(1))
     agent.rgb_encoder.register_forward_hook(
         lambda encoder, *_: setattr(encoder, "count", encoder.count + 1)
     )
-    made = assemble(Adapt, agent, schedule=missing_data(), **EPISODES)
+    objective = assemble(Adapt, agent, schedule=missing_data(), **EPISODES)
     with pytest.raises(ValueError, match=r"The backbone of TopologicalAgent has changed"):
-        Trainer(made, steps=1, folder=tmp_path, seed=0).fit()
+        Trainer(objective, steps=1, folder=tmp_path, seed=0).fit()
 
 
-def test_views_differ_where_a_pixel_does_and_a_hole_is_a_hole():
+def test_views_differ_where_pixels_differ_and_holes_compare_equal():
     clean = torch.ones(2, 2, 4, 4, 1)
     clean[0, 0, 0] = torch.nan
     frames = clean.clone()
@@ -320,17 +320,18 @@ def test_views_differ_where_a_pixel_does_and_a_hole_is_a_hole():
     assert differ(frames, clean).tolist() == [False, False, True, False]
 
 
-def test_a_stage_may_draw_the_corruptions_of_its_sensor_alone():
+def test_stage_may_draw_corruptions_of_its_sensor_only():
     teacher = {"teacher": "start", "modality": "depth"}
-    both, own = (
-        assemble(DistilViews, small(), **VIEWS, **teacher, own=own) for own in (False, True)
+    both, own_value = (
+        assemble(DistilViews, small(), **VIEWS, **teacher, own=own_value)
+        for own_value in (False, True)
     )
-    assert set(own.poses.schedule.names) == set(DEPTH) < set(both.poses.schedule.names)
+    assert set(own_value.poses.schedule.names) == set(DEPTH) < set(both.poses.schedule.names)
     with pytest.raises(ValueError, match="must contain a depth corruption"):
         Schedule("per_episode", 0.6, names=("spatter",)).only("depth")
 
 
-def test_a_missing_teacher_is_an_error_that_names_the_command(tmp_path):
+def test_missing_teacher_names_the_command(tmp_path):
     with pytest.raises(FileNotFoundError, match="make train RECIPE=da_per_episode"):
         assemble(Distil, small(), teacher=str(tmp_path), schedule=missing_data(), **EPISODES)
 
@@ -346,7 +347,7 @@ def test_adapters_alone_are_no_teacher():
         )
 
 
-def test_one_option_names_the_teacher_of_all_stages():
+def test_teacher_option_applies_to_all_stages():
     for recipe in ("ts_distill", "stacked"):
         cfg = conf.load_config("train", [f"recipe={recipe}", "teacher=mine"])
         assert {stage.recipe.teacher for stage in cfg.stages.values()} == {"mine"}
@@ -373,15 +374,15 @@ def test_frozen_views_are_no_part_of_the_loss(teacher):
     assert losses[0] == losses[1]
 
 
-def test_a_run_is_not_resumed_under_another_teacher(tmp_path):
+def test_run_is_not_resumed_under_another_teacher(tmp_path):
     sources = []
     for seed in (1, 2):
         checkpoint.save_weights(small(seed), tmp_path / "teacher")
-        made = assemble(
+        objective = assemble(
             DistilViews, small(), modality="rgb", teacher=str(tmp_path / "teacher"), **VIEWS
         )
-        sources.append(made.identity()["teacher_sha256"])
-        trainer = Trainer(made, steps=1, folder=tmp_path / "run", config=made.identity())
+        sources.append(objective.identity()["teacher_sha256"])
+        trainer = Trainer(objective, steps=1, folder=tmp_path / "run", config=objective.identity())
         if seed == 1:
             trainer.fit()
     assert sources[0] != sources[1]
@@ -389,12 +390,12 @@ def test_a_run_is_not_resumed_under_another_teacher(tmp_path):
         trainer.fit()
 
 
-def test_an_unknown_feature_is_refused(teacher):
+def test_unknown_feature_is_rejected(teacher):
     with pytest.raises(ValueError, match="match must be names of views, nodes"):
-        made = assemble(
+        objective = assemble(
             Distil, small(), teacher=teacher, match=("logits",), schedule=missing_data(), **EPISODES
         )
-        made(made.batch(0))
+        objective(objective.batch(0))
 
 
 @pytest.mark.parametrize(
@@ -405,7 +406,7 @@ def test_an_unknown_feature_is_refused(teacher):
         ({"w_il": 0.0, "w_kl": 0.0, "w_feat": 0.0}, "train: w_il, w_kl and w_feat are 0"),
     ],
 )
-def test_weights_that_make_no_sense_are_refused_as_what_they_are(options, words):
+def test_invalid_weights_are_rejected_by_name(options, words):
     with pytest.raises(ValueError, match=words):
         assemble(Distil, small(), teacher="start", schedule=missing_data(), **EPISODES, **options)
 
@@ -422,11 +423,11 @@ def test_distil_views_rejects_invalid_numbers(options, words):
         assemble(DistilViews, small(), modality="depth", teacher="start", **{**VIEWS, **options})
 
 
-def test_of_two_ranks_the_one_with_more_panoramas_counts_more():
-    made = assemble(
+def test_rank_with_more_panoramas_weighs_more():
+    objective = assemble(
         DistilViews, small(), modality="depth", teacher="start", **{**VIEWS, "panoramas": 3}
     )
-    assert made.weight(made.batch(0)) == 3.0
+    assert objective.weight(objective.batch(0)) == 3.0
 
 
 def test_adapters_are_asked_for_where_there_are_none():

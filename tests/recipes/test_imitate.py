@@ -1,4 +1,4 @@
-"""Imitation trains the parts that it is told to train."""
+"""Imitation trains the selected parts only."""
 
 from __future__ import annotations
 
@@ -41,8 +41,9 @@ def test_adapters_alone_train_in_frozen_modules(tmp_path):
     assert backbone_sha(agent) == backbone and weights_sha(agent) != whole
 
 
-def test_a_prior_is_one_agents_evaluation(tmp_path):
-    """A run's own rows hold two agents, before and after: their mean is nobody's success."""
+def test_prior_needs_the_evaluation_of_one_agent(tmp_path):
+    """The rows of a run contain two agents, before and after; their mean is the success of
+    neither."""
     schedule = Schedule("success_distributed", 0.6, names=("flare", "spatter"))
     hard = [r for name in schedule.names for r in cell(2, corruption=name, severity=0.6)]
     rows.write(tmp_path / "one.jsonl", cell(8) + hard)
@@ -53,10 +54,10 @@ def test_a_prior_is_one_agents_evaluation(tmp_path):
         schedule=schedule,
         prior=str(tmp_path / "one.jsonl"),
     )
-    for other, said in (({"name": "trained"}, "agents"), ({"severity": 0.2}, "severities")):
+    for other, message in (({"name": "trained"}, "agents"), ({"severity": 0.2}, "severities")):
         mixed = [{**row, **other} for row in hard]
         rows.write(tmp_path / "two.jsonl", hard + mixed)
-        with pytest.raises(ValueError, match=f"several {said}"):
+        with pytest.raises(ValueError, match=f"several {message}"):
             assemble(
                 Imitate,
                 TopologicalAgent(16),
@@ -66,7 +67,7 @@ def test_a_prior_is_one_agents_evaluation(tmp_path):
             )
 
 
-def test_an_unknown_part_is_refused():
+def test_unknown_part_is_rejected():
     with pytest.raises(ValueError, match="adapters"):
         recipe(TopologicalAgent(16, SMALL), "encoder")
 
@@ -101,7 +102,7 @@ def test_imitate_rejects_weights_of_unknown_losses():
         check_losses(agent, {"waypoint": 0.5}, out)
 
 
-def test_a_step_needs_an_episode():
+def test_step_needs_an_episode():
     with pytest.raises(ValueError, match="must be >= 1, got"):
         schedule = Schedule("clean", 0.0)
         assemble(Imitate, TopologicalAgent(16, SMALL), **SOURCES, schedule=schedule, episodes=0)
@@ -109,7 +110,7 @@ def test_a_step_needs_an_episode():
 
 def test_rollouts_measure_missing_success_rates_once():
     schedule = Schedule("success_distributed", 0.6, names=("flare",))
-    made = assemble(
+    objective = assemble(
         Imitate,
         TopologicalAgent(16, SMALL),
         **SOURCES,
@@ -117,15 +118,15 @@ def test_rollouts_measure_missing_success_rates_once():
         episodes=1,
         refresh_episodes=1,
     )
-    assert made.jobs(0)[0][-1]["success"].keys() == {"flare"}
+    assert objective.jobs(0)[0][-1]["success"].keys() == {"flare"}
     before = schedule.success = {"flare": 0.25}
-    assert made.jobs(1)[0][-1] == {"success": before}
+    assert objective.jobs(1)[0][-1] == {"success": before}
 
 
 def test_measuring_success_leaves_the_agent_in_training_mode():
-    """Or all that follows would train without dropout."""
+    """Otherwise all later steps would train without dropout."""
     schedule = Schedule("success_distributed", 0.6, names=("flare",))
-    made = assemble(
+    objective = assemble(
         Imitate,
         TopologicalAgent(16, SMALL),
         **SOURCES,
@@ -135,18 +136,18 @@ def test_measuring_success_leaves_the_agent_in_training_mode():
         refresh_every=1,
         refresh_episodes=1,
     ).train()
-    assert made.jobs(0)[0][-1] == {"success": {"flare": schedule.success["flare"]}}
-    assert all(module.training for module in made.modules())
+    assert objective.jobs(0)[0][-1] == {"success": {"flare": schedule.success["flare"]}}
+    assert all(module.training for module in objective.modules())
 
 
-def test_logits_that_are_no_numbers_give_a_loss_that_is_none():
-    """Else the loss is 0, and what went wrong shows as the gradient's norm alone."""
+def test_nan_logits_give_nan_loss():
+    """Otherwise the loss would be 0, and only the gradient's norm would show the error."""
     target, weight = torch.tensor([[0.0, 1.0, 0.0]]), torch.ones(1)
     decisions = SimpleNamespace(target=target, weight=weight)
 
     def loss(*logits, mask=None):
-        found = imitation(Output(torch.tensor([logits]), mask), decisions, {})["loss"]
-        return float(found)
+        matches = imitation(Output(torch.tensor([logits]), mask), decisions, {})["loss"]
+        return float(matches)
 
     nan, far = float("nan"), float("-inf")
     assert loss(nan, nan, nan) != loss(nan, nan, nan)
@@ -155,7 +156,7 @@ def test_logits_that_are_no_numbers_give_a_loss_that_is_none():
 
 
 def test_imitation_adds_weighted_auxiliary_losses():
-    """Two decisions of two choices: the first is right with 0.8, the second with 0.4."""
+    """Two decisions with two choices: the correct one has probability 0.8, then 0.4."""
     logits = torch.tensor([[0.8, 0.2], [0.6, 0.4]]).log()
     decisions = SimpleNamespace(
         target=torch.tensor([[1.0, 0.0], [0.0, 1.0]]), weight=torch.tensor([1.0, 3.0])
@@ -168,8 +169,8 @@ def test_imitation_adds_weighted_auxiliary_losses():
     assert float(values["accuracy"]) == 0.5
 
 
-def test_every_step_and_piece_meets_other_episodes_and_other_keys():
-    """What training draws anew must not come again."""
+def test_every_step_and_piece_draws_other_episodes_and_keys():
+    """Random draws of training must not repeat."""
     drawn, keys = [], []
 
     class Listed(DrawnEpisodes):
@@ -184,11 +185,11 @@ def test_every_step_and_piece_meets_other_episodes_and_other_keys():
 
     schedule = Schedule("per_frame", 0.6)
     how = {"episodes": 8, "follow_oracle": 1.0, "seed": 7}
-    made = Rollouts(Kept(), SOURCES["world"], Listed(2), schedule, **how)
+    output = Rollouts(Kept(), SOURCES["world"], Listed(2), schedule, **how)
     for step in (0, 1):
-        for job in made.jobs(step):
-            made.work(job)
+        for job in output.jobs(step):
+            output.work(job)
     assert len(drawn) == len({*drawn}) == len(keys) == len({*keys}) == 16
     first = [*keys]
-    made.work(made.jobs(0)[0])
+    output.work(output.jobs(0)[0])
     assert keys[len(first) :] == first[: len(keys) - len(first)]

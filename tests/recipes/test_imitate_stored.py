@@ -1,4 +1,4 @@
-"""Planner training on stored features: what is stored does not depend on who is blind."""
+"""Planner training on stored features: the stored features do not depend on blind sensors."""
 
 from __future__ import annotations
 
@@ -20,11 +20,13 @@ SCENE = "apartments/train/000000"
 SMALL = {"heads": 2, "text_layers": 1, "layers": 1}
 
 
-def recipe(folder, blind: tuple[str, ...] = (), size: int = 64, own: int = 64) -> ImitateStored:
+def recipe(
+    folder, blind: tuple[str, ...] = (), size: int = 64, agent_size: int = 64
+) -> ImitateStored:
     seeding.seed_everything(0, "agent")
-    agent = TopologicalAgent(16, SMALL, blind=blind, size=own)
+    agent = TopologicalAgent(16, SMALL, blind=blind, size=agent_size)
     world = partial(ApartmentsWorld, size, 1)
-    made = assemble(
+    objective = assemble(
         ImitateStored,
         agent,
         world=world,
@@ -33,13 +35,13 @@ def recipe(folder, blind: tuple[str, ...] = (), size: int = 64, own: int = 64) -
         steps=2,
         episodes=2,
     )
-    made.start()
-    return made
+    objective.start()
+    return objective
 
 
 @pytest.fixture(autouse=True, scope="module")
 def few_poses():
-    """A sixteenth of those that a training stores."""
+    """A sixteenth of the poses that a training stores."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(stored, "SPACING", 2.0)
         yield
@@ -50,17 +52,17 @@ def folder(tmp_path_factory):
     return tmp_path_factory.mktemp("features")
 
 
-def spread(made: ImitateStored) -> tuple[float, float]:
-    """How much the RGB and the depth features of the stored poses differ."""
+def spread(output: ImitateStored) -> tuple[float, float]:
+    """Return how much the stored RGB and depth features differ."""
     views, depth = (
-        made.rollouts.store.features(SCENE).views.astype(np.float32),
-        made.agent.planner.widths[-1],
+        output.rollouts.store.features(SCENE).views.astype(np.float32),
+        output.agent.planner.widths[-1],
     )
     return float(views[..., :-depth].std(0).mean()), float(views[..., -depth:].std(0).mean())
 
 
-def test_a_blind_run_leaves_whole_features_to_the_next(folder):
-    """The blind one comes first and fills the cache."""
+def test_blind_run_stores_whole_features_for_the_next(folder):
+    """The blind run comes first and fills the cache."""
     assert spread(recipe(folder, ("rgb",)))[0] == 0.0
     seeing, deaf = recipe(folder), recipe(folder, ("instruction",))
     assert seeing.rollouts.store.folder == deaf.rollouts.store.folder and min(spread(seeing)) > 0
@@ -71,20 +73,22 @@ def test_a_blind_run_leaves_whole_features_to_the_next(folder):
 
 
 def test_views_of_another_size_are_stored_apart(folder):
-    made = [recipe(folder, size=n, own=own) for n, own in ((64, 64), (32, 64), (32, 32))]
-    assert len({recipe.rollouts.store.folder for recipe in made}) == 3
+    objective = [recipe(folder, size=n, agent_size=m) for n, m in ((64, 64), (32, 64), (32, 32))]
+    assert len({recipe.rollouts.store.folder for recipe in objective}) == 3
 
 
-def test_a_batch_trains_the_planner_alone(folder):
-    made = recipe(folder)
-    losses = made(made.batch(0))
+def test_batch_trains_the_planner_only(folder):
+    objective = recipe(folder)
+    losses = objective(objective.batch(0))
     losses["loss"].backward()
-    moved = {n.partition(".")[0] for n, p in made.agent.named_parameters() if p.grad is not None}
+    moved = {
+        n.partition(".")[0] for n, p in objective.agent.named_parameters() if p.grad is not None
+    }
     assert moved == {"planner"} and torch.isfinite(losses["loss"])
 
 
 def test_variants_are_corrupted_scenes_beside_the_clean_one(tmp_path):
-    """Each is stored once, under its own corruption; walks see the clean scene as often as the
+    """Each is stored once, under one corruption; rollouts see the clean scene as often as the
     schedule says."""
     seeding.seed_everything(0, "agent")
     agent = TopologicalAgent(16, SMALL)
@@ -97,8 +101,10 @@ def test_variants_are_corrupted_scenes_beside_the_clean_one(tmp_path):
         store.build()
     clean, again = (store.features(SCENE).views for store in stores)
     assert np.array_equal(clean, again)
-    made = [path for path in tmp_path.rglob("*") if path.is_dir()]
-    assert len({path.stat().st_mode for path in made}) == 1  # all that may read one read the others
+    output = [path for path in tmp_path.rglob("*") if path.is_dir()]
+    assert (
+        len({path.stat().st_mode for path in output}) == 1
+    )  # the cached features may serve all sensors
     variants = [stores[1].features(SCENE, v) for v in (1, 2)]
     assert all(not np.array_equal(v.views, clean) for v in variants)
     assert not np.array_equal(variants[0].views, variants[1].views)
@@ -113,8 +119,8 @@ def test_variants_are_corrupted_scenes_beside_the_clean_one(tmp_path):
 def test_variants_are_known_by_what_makes_their_pixels(tmp_path, monkeypatch):
     agent, world = TopologicalAgent(16, SMALL), partial(ApartmentsWorld, 64, 1)
 
-    def folder(**given):
-        schedule = Schedule("per_episode", 0.9, **{"names": ("haze", "flare"), **given})
+    def folder(**options):
+        schedule = Schedule("per_episode", 0.9, **{"names": ("haze", "flare"), **options})
         return agent.store(world, str(tmp_path), schedule=schedule, variants=1).corrupted
 
     known = folder()
@@ -126,7 +132,7 @@ def test_variants_are_known_by_what_makes_their_pixels(tmp_path, monkeypatch):
     assert folder() != known
 
 
-def test_a_flare_in_a_stored_panorama_stands_at_any_yaw(tmp_path):
+def test_flare_in_a_stored_panorama_has_any_yaw(tmp_path):
     task = stored.ScenesTask(
         TopologicalAgent(16, SMALL),
         partial(ApartmentsWorld, 64, 1),
@@ -138,6 +144,6 @@ def test_a_flare_in_a_stored_panorama_stands_at_any_yaw(tmp_path):
     hit = np.zeros(12, int)
     with task.ready():
         for number in range(40):
-            (made,) = task._corrupted(clean, f"scene-{number}")
-            hit += (made[0] != clean[0][0]).any((1, 2, 3))
+            (output,) = task._corrupted(clean, f"scene-{number}")
+            hit += (output[0] != clean[0][0]).any((1, 2, 3))
     assert np.all(hit > 0)

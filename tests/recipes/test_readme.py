@@ -12,7 +12,7 @@ from mitigate.training import states, train
 PAGE = (Path(__file__).parents[2] / "recipes/README.md").read_text(encoding="utf-8")
 
 
-def test_the_example_of_a_new_recipe_trains(tmp_path, monkeypatch):
+def test_readme_example_of_a_recipe_trains(tmp_path, monkeypatch):
     (tmp_path / "recipe").mkdir()
     for kind, name in (("python", "steady.py"), ("yaml", "recipe/steady.yaml")):
         text = re.search(rf"```{kind}\n(.*?)```", PAGE, re.DOTALL)[1]

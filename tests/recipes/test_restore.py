@@ -1,4 +1,4 @@
-"""Restorers learn from random poses or a folder of frames; their thresholds follow clean frames."""
+"""Restorers learn from random poses or a folder of frames; clean frames set their thresholds."""
 
 from __future__ import annotations
 
@@ -22,10 +22,10 @@ from mitigate.worlds.apartments.world import ApartmentsWorld
 from tests.tiny import assemble
 
 
-def recipe_of(sensor: str = RGB, names=("foreign_object", "missing_data"), **given) -> Restore:
+def recipe_of(sensor: str = RGB, names=("foreign_object", "missing_data"), **options) -> Restore:
     torch.manual_seed(0)
     restorer = Restorer(width=4, depth_width=4)
-    how = {"panoramas": 1, **given}
+    how = {"panoramas": 1, **options}
     schedule = Schedule("per_episode", (0.4, 0.8), names=names, clean_share=0.3)
     world = {"world": partial(ApartmentsWorld, 16, 2), "training": DrawnEpisodes(2)}
     return assemble(Restore, restorer, **world, modality=sensor, schedule=schedule, **how)
@@ -36,8 +36,8 @@ def test_training_takes_a_corruption_away(tmp_path, sensor, left):
     recipe = recipe_of(sensor, panoramas=2, single=0.0)
     Trainer(recipe, steps=30, lr=2e-3, folder=tmp_path, precision="fp32", log_every=0).fit()
     with torch.no_grad():
-        found = [recipe.eval()(recipe.batch(step)) for step in range(100, 104)]
-    before, after = (sum(float(each[name]) for each in found) for name in ("before", "after"))
+        matches = [recipe.eval()(recipe.batch(step)) for step in range(100, 104)]
+    before, after = (sum(float(each[name]) for each in matches) for name in ("before", "after"))
     assert after < left * before
     others = [p for name, net in recipe.agent.parts().items() if name != sensor
               for p in net.parameters()]  # fmt: skip
@@ -56,14 +56,14 @@ def test_restore_batch_is_a_function_of_the_step():
 
 
 def test_gate_trains_and_sets_its_threshold(tmp_path):
-    given = recipe_of(names=("low_light", "foreign_object"), panoramas=2, single=0.0)
-    Trainer(given, steps=40, lr=2e-3, folder=tmp_path / "first", precision="fp32").fit()
+    arguments = recipe_of(names=("low_light", "foreign_object"), panoramas=2, single=0.0)
+    Trainer(arguments, steps=40, lr=2e-3, folder=tmp_path / "first", precision="fp32").fit()
     schedule = Schedule("per_episode", (0.4, 0.8), names=("low_light", "foreign_object"))
     world = {"world": partial(ApartmentsWorld, 16, 2), "training": DrawnEpisodes(2)}
-    recipe = assemble(RestoreGate, given.agent, **world, modality=RGB, schedule=schedule,
+    recipe = assemble(RestoreGate, arguments.agent, **world, modality=RGB, schedule=schedule,
         instants=24, held=10, batch=16, touched=0.1,
     )  # fmt: skip
-    before = {name: p.clone() for name, p in given.agent.named_parameters()}
+    before = {name: p.clone() for name, p in arguments.agent.named_parameters()}
     Trainer(
         recipe,
         steps=40,
@@ -73,10 +73,10 @@ def test_gate_trains_and_sets_its_threshold(tmp_path):
         log_every=0,
         eval_every=40,
     ).fit()
-    found = recipe.evaluate(40)
-    assert found["threshold"] == recipe.net.threshold != 0
-    assert found["helped_found"] > 0.7 > 0.4 > found["clean_touched"]
-    changed = [n for n, p in given.agent.named_parameters() if not torch.equal(p, before[n])]
+    records = recipe.evaluate(40)
+    assert records["threshold"] == recipe.net.threshold != 0
+    assert records["helped_found"] > 0.7 > 0.4 > records["clean_touched"]
+    changed = [n for n, p in arguments.agent.named_parameters() if not torch.equal(p, before[n])]
     assert changed and all(name.startswith("nets.rgb.gate.") for name in changed)
 
 
@@ -94,22 +94,22 @@ def test_gate_target_rejects_blurred_right_pixels():
 
 def test_restore_loss_prefers_fewer_wrong_pixels():
     recipe = recipe_of(w_grad=0.0)
-    wanted = torch.full((1, 3, 8, 8), 0.5)
+    expected = torch.full((1, 3, 8, 8), 0.5)
     valid = torch.ones(1, 1, 8, 8)
-    few, all_ = wanted.clone(), wanted + 0.4 / 16
+    few, all_ = expected.clone(), expected + 0.4 / 16
     few[:, :, 2:4, 2:4] += 0.4
-    few, all_ = (float(recipe._error(out, wanted, valid)) for out in (few, all_))
-    assert few < all_ and float(recipe._error(wanted, wanted, valid)) == 0
+    few, all_ = (float(recipe._error(out, expected, valid)) for out in (few, all_))
+    assert few < all_ and float(recipe._error(expected, expected, valid)) == 0
 
 
-def test_depth_that_is_too_far_costs_more_than_what_is_too_near():
+def test_depth_loss_weighs_too_far_more_than_too_near():
     recipe = recipe_of(w_grad=0.0, w_right=0.0, w_far=3.0)
-    wanted, valid = torch.full((1, 1, 8, 8), 0.5), torch.ones(1, 1, 8, 8)
-    far, near = (float(recipe._error(wanted + off, wanted, valid)) for off in (0.1, -0.1))
+    expected, valid = torch.full((1, 1, 8, 8), 0.5), torch.ones(1, 1, 8, 8)
+    far, near = (float(recipe._error(expected + off, expected, valid)) for off in (0.1, -0.1))
     assert far == pytest.approx(3 * near)
 
 
-def test_a_folder_of_frames_will_do(tmp_path):
+def test_folder_of_frames_can_be_the_source(tmp_path):
     rng = np.random.default_rng(0)
     for scene in range(3):
         (tmp_path / f"s{scene}").mkdir()
@@ -122,7 +122,7 @@ def test_a_folder_of_frames_will_do(tmp_path):
     assert batch["frames"].shape == batch["clean"].shape == (1, 12, 24, 24, 3)
     there = pickle.loads(
         pickle.dumps(recipe)
-    )  # on a worker, which gets the frames of its jobs alone
+    )  # in a worker, which gets only the frames of its jobs
     assert there.pairs.frames is None
     sent = pickle.loads(pickle.dumps(recipe.jobs(0)))
     again = there.collate(0, [there.work(job) for job in sent])
@@ -146,7 +146,7 @@ def _of_folder(path) -> Restore:
 
 
 def test_folder_depth_uses_the_range_of_the_restorer(tmp_path):
-    """Else all beyond ten metres would read ten, and be what is learned from."""
+    """Otherwise all depth beyond ten metres would read ten, and become a training target."""
     for scene in range(3):
         (tmp_path / f"s{scene}").mkdir()
         metres = np.full((24, 24), 21 + scene, np.float32)
@@ -154,7 +154,7 @@ def test_folder_depth_uses_the_range_of_the_restorer(tmp_path):
     agent = Restorer([DEPTH], depth_width=4, far=40.0)
     world = partial(FolderFrames, str(tmp_path), sensor=DEPTH)
     schedule = Schedule("per_episode", 0.6, clean_share=0.0, names=("gaussian_noise",))
-    made = assemble(
+    objective = assemble(
         Restore,
         agent,
         world=world,
@@ -164,17 +164,17 @@ def test_folder_depth_uses_the_range_of_the_restorer(tmp_path):
         panoramas=1,
         frames=3,
     )
-    made.start()
-    batch = made.batch(0)
+    objective.start()
+    batch = objective.batch(0)
     assert batch["frames"].mean() > 18 and batch["clean"].min() >= 21
 
 
-def test_a_schedule_without_a_corruption_of_the_sensor_is_refused():
+def test_schedule_without_the_sensor_is_rejected():
     with pytest.raises(ValueError, match="must contain a depth corruption"):
         recipe_of(DEPTH, names=("flare",))
 
 
-def test_a_folder_with_other_frames_is_another_run(tmp_path):
+def test_folder_with_other_frames_is_another_run(tmp_path):
     for scene in range(4):
         (tmp_path / f"s{scene}").mkdir()
         Image.new("RGB", (24, 24), "navy").save(tmp_path / f"s{scene}/0.png")

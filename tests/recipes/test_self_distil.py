@@ -1,4 +1,4 @@
-"""Self-distillation: the loss is zero for equal answers, and what happens in each step."""
+"""Self-distillation: the loss is zero for equal answers, and the order of each step."""
 
 import numpy as np
 import pytest
@@ -56,7 +56,7 @@ def test_self_distil_trains_the_student_only(tmp_path):
 
 
 class Counting(nn.Module):
-    """Counts the frames that it has seen, so that its memory is visible."""
+    """Counts its frames, so that its memory is visible."""
 
     def __init__(self):
         super().__init__()
@@ -77,7 +77,7 @@ def test_self_distil_gives_a_recurrent_policy_windows(tmp_path):
         torch.testing.assert_close(distribution.logits, expected[place].expand(2, 2))
 
 
-def test_self_distil_keeps_at_most_the_given_number_of_frames(tmp_path):
+def test_memory_keeps_at_most_the_given_number_of_frames(tmp_path):
     task = objective(tmp_path, frames=3)
     task.batch(0)
     assert task._stored[0]["rgb"].shape == (6, 1, 16, 16, 3)

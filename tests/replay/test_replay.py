@@ -34,7 +34,7 @@ T = 30
 
 
 class ByBrightness:
-    """Moves forward in bright frames and turns in dark ones; remembers what it was informed of."""
+    """Moves forward in bright frames and turns in dark ones; records what it is informed of."""
 
     views = 1
 

@@ -1,4 +1,5 @@
-"""A hardened checkpoint reloads to the same outputs, or it was not written, or it is refused."""
+"""A hardened checkpoint reloads to the same outputs; otherwise it is not written, or is
+rejected."""
 
 from __future__ import annotations
 
@@ -32,7 +33,7 @@ from mitigate.shipping import card as cards
 from mitigate.shipping import export, export_command, programs
 from mitigate.shipping.card import metrics
 
-# one worker of pytest exports, not each its own
+# one worker of pytest exports, instead of each
 pytestmark = pytest.mark.xdist_group("export")
 
 ROOT = Path(__file__).parents[2]
@@ -91,7 +92,7 @@ def observation() -> dict:
 
 
 def python(code: str, *arguments: object, cwd: Path = ROOT) -> str:
-    """What ``code`` prints in a process of its own."""
+    """Return the output of ``code`` in a separate process."""
     done = subprocess.run(
         [sys.executable, "-c", code, *map(str, arguments)],
         cwd=cwd,
@@ -104,7 +105,7 @@ def python(code: str, *arguments: object, cwd: Path = ROOT) -> str:
 
 
 class StandIn(torch.nn.Module):
-    """A network that is traced at once: tracing those of an agent takes half a minute."""
+    """A network that is traced quickly: tracing the networks of an agent takes half a minute."""
 
     def __init__(self, names: tuple[str, ...]) -> None:
         super().__init__()
@@ -116,11 +117,11 @@ class StandIn(torch.nn.Module):
 
 def stand_in_programs(agent: TopologicalAgent, size: int) -> dict:
     """Replace ``programs.export_programs``; its own tests are slow."""
-    given = programs.probe(agent, size)
+    value = programs.probe(agent, size)
     return {
         name: torch.export.export(
             StandIn(names),
-            tuple(given[key] for key in programs.INPUTS[name]),
+            tuple(value[key] for key in programs.INPUTS[name]),
             dynamic_shapes=(programs.free_dimensions(name),),
         )
         for name, names in programs.OUTPUTS.items()
@@ -151,9 +152,9 @@ def place(tmp_path_factory) -> Path:
     base = checkpoint.save_weights(agent, place / "base", half=True)
     run = finished_run(place / "runs/whole", agent, TINY, init=str(base.parent))
     sha = checkpoint.weights_sha(agent)
-    found = [a_row(ROWS, e, c, float(e > 1)) for e in range(8) for c in ("clean", "spatter")]
-    found = [{**row, "weights": sha} for row in found]
-    rows.write(run / "rows.jsonl", [*found, a_row("0123456789ab", 0, "clean", 0.0)])
+    matches = [a_row(ROWS, e, c, float(e > 1)) for e in range(8) for c in ("clean", "spatter")]
+    matches = [{**row, "weights": sha} for row in matches]
+    rows.write(run / "rows.jsonl", [*matches, a_row("0123456789ab", 0, "clean", 0.0)])
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(programs, "TIMED", 2)
         patch.setattr(programs, "export_programs", stand_in_programs)
@@ -191,19 +192,19 @@ def exported(place) -> dict:
 
 @pytest.fixture
 def copied(place, tmp_path) -> Path:
-    """A copy of the folder `whole`, to spoil."""
+    """A copy of the folder `whole`, for tests that damage it."""
     return Path(shutil.copytree(place / "hardened/whole", tmp_path / "whole"))
 
 
 def resign(folder: Path, **changes) -> None:
-    """Change the card and list it with a fitting sha256 again."""
+    """Change the card and update its sha256 in the manifest."""
     card = json.loads((folder / "card.json").read_text())
     (folder / "card.json").write_text(json.dumps({**card, **changes}))
     folders.seal(folder, "hardened")
 
 
 def relist(folder: Path, change) -> None:
-    """Change what the manifest lists."""
+    """Change the manifest's list."""
     manifest = json.loads((folder / folders.MANIFEST).read_text())
     change(manifest["files"])
     (folder / folders.MANIFEST).write_text(json.dumps(manifest))
@@ -214,7 +215,7 @@ def node_of(settings: dict) -> DictConfig:
     return OmegaConf.create({"_target_": loading.TARGET, **settings})
 
 
-def test_the_card_says_what_made_the_agent_and_lists_every_file(place):
+def test_card_describes_the_agent_and_lists_every_file(place):
     folder = place / "hardened/whole"
     card = loading.check_hardened(folder)
     assert card["recipe"] == "tiny" and card["seed"] == 3 and card["license"] == "Apache-2.0"
@@ -239,7 +240,7 @@ def test_the_card_says_what_made_the_agent_and_lists_every_file(place):
 
 
 @pytest.mark.parametrize("name", ["whole", "adapted"])
-def test_the_loaded_agent_does_what_the_trained_one_did(place, name):
+def test_loaded_agent_acts_as_the_trained_one(place, name):
     trained = loading.build_from(place / "runs" / name / "config.yaml").eval()
     checkpoint.load_weights(trained, place / "runs" / name / "agent")
     state = torch.random.get_rng_state()
@@ -256,11 +257,11 @@ def test_the_loaded_agent_does_what_the_trained_one_did(place, name):
     assert actions[0] == actions[1] and actions[0] in range(4)
 
 
-def test_a_folder_of_adapters_holds_no_backbone_and_needs_its_base(place, tmp_path):
+def test_adapter_folder_holds_no_backbone_and_needs_its_base(place, tmp_path):
     folder = place / "hardened/adapted"
     assert loading.check_hardened(folder)["adapters_only"]
     assert not (folder / "model.safetensors").exists()
-    assert not list((place / "hardened").rglob("*.sha256"))  # the cards have the sums
+    assert not list((place / "hardened").rglob("*.sha256"))  # the cards contain the checksums
     other = checkpoint.save_weights(TopologicalAgent(**TINY), tmp_path / "other")
     with pytest.raises(ValueError, match="another"):
         loading.load_hardened(folder, base=other)
@@ -278,7 +279,7 @@ def test_evaluation_and_training_take_a_folder_of_adapters(place):
         building.build_agent(node_of(TINY), weights=folder, seed=0)
 
 
-def test_loading_needs_neither_hydra_nor_the_simulator_and_import_stays_light(place, tmp_path):
+def test_loading_needs_neither_hydra_nor_the_simulator(place, tmp_path):
     code = """
 import sys
 class Absent:
@@ -299,7 +300,7 @@ for folder in sys.argv[1:3]:
 
 
 @pytest.mark.slow
-def test_the_program_runs_a_decision_without_our_code(traced, tmp_path):
+def test_program_runs_a_decision_without_this_package(traced, tmp_path):
     code = """
 import json, sys
 import numpy, torch
@@ -319,29 +320,29 @@ print(json.dumps([waypoints.sum().item(), logits[0].tolist()]))
     import numpy as np
 
     agent = loading.load_hardened(traced)
-    given = programs.probe(agent, SIZE)
+    value = programs.probe(agent, SIZE)
     first = {  # the first decision of an episode: one panorama, one node, two ghosts
-        **{name: given[name][:1] for name in ("rgb", "depth", "tokens", "episode")},
+        **{name: value[name][:1] for name in ("rgb", "depth", "tokens", "episode")},
         "panorama": torch.tensor([0]),
         "nodes": torch.tensor([[0]]),
         "sightings": torch.tensor([[[3, -1, -1, -1], [7, 8, -1, -1]]]),
-        "geometry": given["geometry"][:1, :4],
+        "geometry": value["geometry"][:1, :4],
         "valid": torch.ones(1, 4, dtype=torch.bool),
         "allowed": torch.tensor([[True, False, True, True]]),
     }
     np.savez(tmp_path / "given.npz", **{name: t.numpy() for name, t in first.items()})
     printed = python(code, traced, tmp_path / "given.npz", cwd=tmp_path)
     waypoints, logits = json.loads(printed)
-    wanted = programs.outputs(programs.networks(agent), first)
-    assert waypoints == pytest.approx(wanted["waypoints"].sum().item(), abs=1e-2)
-    assert logits == pytest.approx(wanted["logits"][0].tolist(), abs=1e-4)
+    expected = programs.outputs(programs.networks(agent), first)
+    assert waypoints == pytest.approx(expected["waypoints"].sum().item(), abs=1e-2)
+    assert logits == pytest.approx(expected["logits"][0].tolist(), abs=1e-4)
 
 
 @pytest.mark.parametrize(
     "name", ["model.safetensors", "program.pt2", "config.yaml", "README.md", "program.json"]
 )
 @pytest.mark.parametrize("spoil", ["flipped", "truncated", "removed"])
-def test_a_changed_file_is_refused_by_name(copied, name, spoil):
+def test_changed_file_is_rejected_by_name(copied, name, spoil):
     file = copied / name
     data = bytearray(file.read_bytes())
     data[len(data) // 2] ^= 1
@@ -367,20 +368,20 @@ def test_a_changed_file_is_refused_by_name(copied, name, spoil):
         (lambda t: t.replace('"format": 2', '"format": 3'), "format 2"),
     ],
 )
-def test_a_changed_card_is_refused(copied, text, problem):
+def test_changed_card_is_rejected(copied, text, problem):
     card = copied / "card.json"
     card.write_text(text(card.read_text()))
     with pytest.raises(ValueError, match=problem):
         loading.load_hardened(copied)
 
 
-def test_a_folder_without_a_card_is_none(tmp_path):
+def test_folder_without_a_card_is_rejected(tmp_path):
     with pytest.raises(FileNotFoundError, match=r"card\.json is missing"):
         loading.load_hardened(tmp_path)
 
 
 @pytest.mark.parametrize("name", ["model.safetensors", "program.pt2", "config.yaml"])
-def test_a_card_that_lacks_a_file_is_refused(copied, name):
+def test_card_that_lacks_a_file_is_rejected(copied, name):
     relist(copied, lambda files: files.pop(name))
     part = "not listed in" if name == "program.pt2" else f"does not list {name}"
     with pytest.raises(ValueError, match=part):
@@ -388,13 +389,13 @@ def test_a_card_that_lacks_a_file_is_refused(copied, name):
 
 
 @pytest.mark.parametrize("name", ["../outside", "/etc/hostname", "..", "a/b"])
-def test_a_card_may_name_no_file_outside_its_folder(copied, name):
+def test_card_names_no_file_outside_its_folder(copied, name):
     relist(copied, lambda files: files.update({name: files["config.yaml"]}))
     with pytest.raises(ValueError, match="not a plain file name"):
         loading.load_hardened(copied)
 
 
-def test_a_config_is_data_and_names_no_other_class(copied):
+def test_config_is_data_and_names_no_other_class(copied):
     config = yaml.safe_load((copied / "config.yaml").read_text())
     config["agent"]["_target_"] = "os.system"
     (copied / "config.yaml").write_text(yaml.safe_dump(config))
@@ -403,16 +404,16 @@ def test_a_config_is_data_and_names_no_other_class(copied):
         loading.load_hardened(copied)
 
 
-def test_another_vocabulary_is_refused(copied):
+def test_other_vocabulary_is_rejected(copied):
     resign(copied, vocabulary="000000000000")
     with pytest.raises(ValueError, match="vocabulary"):
         loading.load_hardened(copied)
 
 
 @pytest.mark.parametrize("name", ["adapters.safetensors", "adapters.json", "decide.onnx"])
-def test_a_known_file_that_the_card_does_not_list_is_refused(copied, name):
+def test_known_file_missing_from_the_card_is_rejected(copied, name):
     (copied / name).write_bytes(b"x")
-    (copied / ".gitattributes").touch()  # as the hub adds it
+    (copied / ".gitattributes").touch()  # the hub adds it so
     for read in (
         lambda: loading.load_hardened(copied),
         lambda: loading.fill(TopologicalAgent(**TINY), copied),
@@ -421,8 +422,8 @@ def test_a_known_file_that_the_card_does_not_list_is_refused(copied, name):
             read()
 
 
-def test_adapters_that_the_card_does_not_list_take_no_part(place, copied):
-    """They are other weights than those that the card's sums are of."""
+def test_adapters_missing_from_the_card_are_ignored(place, copied):
+    """The weights differ from those that the card's checksums describe."""
     resign(copied, base=None)
     for name in (adapters.WEIGHTS, adapters.SETTINGS):
         shutil.copy(place / "hardened/adapted" / name, copied)
@@ -442,40 +443,40 @@ def test_evaluation_and_training_refuse_a_changed_folder(copied):
         building.build_agent(node_of(TINY), weights=str(copied), seed=0)
 
 
-def test_a_folder_of_another_agent_than_its_card_says_is_refused(copied):
+def test_folder_of_another_agent_than_its_card_is_rejected(copied):
     resign(copied, agent="0123456789ab")
     with pytest.raises(ValueError, match="'0123456789ab'"):
         loading.load_hardened(copied)
-    own = TopologicalAgent(**TINY).eval()
-    assert loading.fill(own, copied) is own  # to train from: with adapters it is another one
+    own_value = TopologicalAgent(**TINY).eval()
+    assert loading.fill(own_value, copied) is own_value  # for training: adapters would change it
 
 
 @pytest.mark.parametrize(
     "name", ["n" * 5000, "a\ud800", "a\nb"], ids=["long", "surrogate", "lines"]
 )
-def test_a_card_lists_only_names_that_can_be_held_and_shown(copied, name):
+def test_card_lists_only_valid_file_names(copied, name):
     relist(copied, lambda files: files.update({name: files["config.yaml"]}))
-    with pytest.raises(ValueError, match="not a plain file name") as told:
+    with pytest.raises(ValueError, match="not a plain file name") as caught:
         loading.load_hardened(copied)
-    assert str(told.value).isprintable() and len(str(told.value)) < 500
+    assert str(caught.value).isprintable() and len(str(caught.value)) < 500
 
 
 @pytest.mark.parametrize(
     "path", ["n" * 300, "a/" * 3000, "a\ud800"], ids=["long name", "long path", "surrogate"]
 )
-def test_a_card_names_a_base_that_can_be_held_and_shown(place, tmp_path, path):
+def test_card_names_only_a_valid_base(place, tmp_path, path):
     folder = Path(shutil.copytree(place / "hardened/adapted", tmp_path / "adapted"))
     resign(folder, base={"weights": path, "sha256": "0" * 64})
     with pytest.raises(ValueError, match="does not name the base of its adapters"):
         loading.load_hardened(folder)
 
 
-def test_an_unfinished_run_says_what_is_missing(tmp_path):
+def test_unfinished_run_names_what_is_missing(tmp_path):
     with pytest.raises(FileNotFoundError, match="no finished run"):
         export.export(tmp_path, "mine", out=tmp_path / "hardened")
 
 
-def test_the_folder_agent_of_a_run_is_answered_with_the_run(place, tmp_path):
+def test_agent_folder_of_a_run_names_the_run(place, tmp_path):
     run = place / "runs/whole"
     with pytest.raises(FileNotFoundError, match=f"Name the run: {re.escape(str(run))}"):
         export.export(run / "agent", "mine", out=tmp_path)
@@ -490,7 +491,7 @@ def test_the_folder_agent_of_a_run_is_answered_with_the_run(place, tmp_path):
     ],
 )
 @pytest.mark.parametrize("named", ["run", "run/agent"])
-def test_what_ships_as_it_is_needs_no_export(tmp_path, target, page, named):
+def test_agent_shipped_unchanged_needs_no_export(tmp_path, target, page, named):
     assert (ROOT / page).is_file() and build.locate(target)
     (tmp_path / "run/agent").mkdir(parents=True)
     for config in ("run/config.yaml", "run/agent/config.yaml"):
@@ -499,7 +500,7 @@ def test_what_ships_as_it_is_needs_no_export(tmp_path, target, page, named):
         export.export(tmp_path / named, "mine", out=tmp_path / "out")
 
 
-def test_an_existing_name_stays_unless_overwrite_is_asked_for(copied, place, monkeypatch):
+def test_existing_name_stays_without_overwrite(copied, place, monkeypatch):
     run, out = place / "runs/whole", copied.parent
     with pytest.raises(ValueError, match="--overwrite"):
         export.export(run, "whole", out=out)
@@ -527,12 +528,12 @@ def test_overwrite_replaces_nothing_but_a_hardened_folder(place, copied, tmp_pat
 
 
 @pytest.mark.parametrize("name", ["../mine", "", ".hidden", "a/b"])
-def test_a_name_is_one_folder(place, tmp_path, name):
+def test_name_is_one_folder(place, tmp_path, name):
     with pytest.raises(ValueError, match="name of the folder must"):
         export.export(place / "runs/whole", name, out=tmp_path)
 
 
-def test_what_does_not_reload_to_the_same_is_not_written(place, exported, tmp_path, monkeypatch):
+def test_export_writes_nothing_if_reload_differs(place, exported, tmp_path, monkeypatch):
     monkeypatch.setattr(programs, "export_programs", lambda *_: exported)
     monkeypatch.setattr(programs, "TIMED", 1)
     monkeypatch.setattr(export, "_RUN", "raise ValueError('differs')")
@@ -541,27 +542,27 @@ def test_what_does_not_reload_to_the_same_is_not_written(place, exported, tmp_pa
     assert not list(tmp_path.iterdir())
 
 
-def test_the_check_finds_other_outputs(place, tmp_path):
-    """The same outputs passed it when the fixture exported ``whole``."""
+def test_check_detects_other_outputs(place, tmp_path):
+    """The fixture exported ``whole`` with the same outputs and passed the check."""
     agent = loading.load_hardened(place / "hardened/whole")
-    wanted = programs.outputs(programs.networks(agent), programs.probe(agent, SIZE))
-    wanted["logits"] = wanted["logits"] + 0.01
-    save_file({k: v.contiguous() for k, v in wanted.items()}, tmp_path / "other.safetensors")
+    expected = programs.outputs(programs.networks(agent), programs.probe(agent, SIZE))
+    expected["logits"] = expected["logits"] + 0.01
+    save_file({k: v.contiguous() for k, v in expected.items()}, tmp_path / "other.safetensors")
     with pytest.raises(ValueError, match="agent differs by 0.01"):
         export.check_outputs(str(place / "hardened/whole"), str(tmp_path / "other.safetensors"))
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("fusion", [{"rate": 4.0, "cap": 3.0}, {"learned": True}], ids=str)
-def test_the_programs_weigh_the_views_as_the_agent_does(fusion):
+def test_programs_weigh_views_as_the_agent_does(fusion):
     agent = TopologicalAgent(**{**TINY, "planner": {**TINY["planner"], "fusion": fusion}}).eval()
-    made = {name: p.module() for name, p in programs.export_programs(agent, SIZE).items()}
-    given = programs.probe(agent, SIZE)
-    wanted = programs.outputs(programs.networks(agent), given)
-    assert programs.difference(wanted, programs.outputs(made, given)) < 1e-5
+    output = {name: p.module() for name, p in programs.export_programs(agent, SIZE).items()}
+    value = programs.probe(agent, SIZE)
+    expected = programs.outputs(programs.networks(agent), value)
+    assert programs.difference(expected, programs.outputs(output, value)) < 1e-5
 
 
-def test_rows_of_another_agent_are_no_metrics_of_this_one(place, tmp_path):
+def test_rows_of_another_agent_are_not_metrics(place, tmp_path):
     rows.write(tmp_path / "rows.jsonl", [a_row("0123456789ab", 0, "clean", 1.0)])
     with pytest.raises(ValueError, match="not to this agent"):
         export.export(
@@ -586,23 +587,23 @@ def test_rows_of_another_agent_are_no_metrics_of_this_one(place, tmp_path):
         ("stages", {"one": "two"}),
     ],
 )
-def test_what_no_training_writes_into_a_config_is_told_by_its_key(key, value):
+def test_unknown_config_entry_is_named_by_its_key(key, value):
     cfg = {"name": "tiny", "severity": 0.6, "severity_depth": None, "seed": 3} | {key: value}
     with pytest.raises(ValueError, match=rf"config\.yaml has {key}="):
         cards.facts(cfg, None)
 
 
-def test_the_commit_is_that_of_this_checkout_or_not_stated(monkeypatch, tmp_path):
+def test_commit_is_of_this_checkout_or_not_stated(monkeypatch, tmp_path):
     monkeypatch.setenv("PATH", str(tmp_path))
     assert cards.commit() is None  # no git
     monkeypatch.undo()
     monkeypatch.setattr(cards, "ROOT", tmp_path)
-    assert cards.commit() is None  # installed below a repository that is another's
+    assert cards.commit() is None  # installed inside the repository of another project
 
 
 @contextmanager
 def files_of_at_most(size: int) -> Iterator[None]:
-    """No file of this process may grow beyond ``size`` bytes."""
+    """Limit the files of this process to ``size`` bytes."""
     soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
     resource.setrlimit(resource.RLIMIT_FSIZE, (size, hard))
     try:
@@ -612,10 +613,10 @@ def files_of_at_most(size: int) -> Iterator[None]:
 
 
 @pytest.mark.parametrize("full", ["weights", "programs"])
-def test_a_disk_that_is_full_is_told_in_a_paragraph_and_leaves_nothing(
+def test_full_disk_is_reported_and_leaves_nothing(
     place, exported, tmp_path, monkeypatch, capfd, full
 ):
-    """As ``export`` says it when neither weights nor programs may grow beyond some size."""
+    """Return the error of ``export`` if weights and programs may not exceed some size."""
     weights = (place / "hardened/whole" / checkpoint.WEIGHTS).stat().st_size
     most = weights // 2 if full == "weights" else weights + 1000
     command = ["export", str(place / "runs/whole"), "mine", "--out", str(tmp_path)]
@@ -635,7 +636,7 @@ def git(folder, *words):
 
 
 @pytest.mark.parametrize("change", ["mitigate/agent.py", "conf/new.yaml"])
-def test_a_card_says_that_the_code_was_not_that_of_the_commit(monkeypatch, tmp_path, change):
+def test_card_states_uncommitted_changes(monkeypatch, tmp_path, change):
     (tmp_path / "mitigate").mkdir()
     (tmp_path / "conf").mkdir()
     (tmp_path / "mitigate/agent.py").write_text("a = 1\n")
@@ -654,7 +655,7 @@ def test_a_card_says_that_the_code_was_not_that_of_the_commit(monkeypatch, tmp_p
     assert cards.commit() is None and not cards.uncommitted()
 
 
-def test_a_readme_says_of_the_commit_what_is_known(place):
+def test_readme_states_what_is_known_of_the_commit(place):
     card = loading.read_card(place / "hardened/whole")
     end = f"exported at commit `{card['commit']}`"
     assert "uncommitted" in card
@@ -664,7 +665,7 @@ def test_a_readme_says_of_the_commit_what_is_known(place):
     assert "commit" not in cards.readme(card | {"commit": None}).partition("## ")[0]
 
 
-def test_a_missing_teacher_is_told(place, tmp_path):
+def test_missing_teacher_is_reported(place, tmp_path):
     agent = loading.load_hardened(place / "hardened/whole")
     stages = {"one": {"recipe": {"teacher": "checkpoints/nobody"}}}
     run = finished_run(tmp_path / "run", agent, TINY, stages=stages)
@@ -685,7 +686,7 @@ def test_onnx_files_do_what_the_agent_does(place, tmp_path):
 
 
 @pytest.mark.slow
-def test_the_examples_of_the_deployment_page_run(traced, tmp_path, monkeypatch):
+def test_deployment_page_examples_run(traced, tmp_path, monkeypatch):
     examples = re.findall(r"```python\n(.*?)```", PAGE.read_text(encoding="utf-8"), re.DOTALL)
     assert len(examples) == 3
     (tmp_path / "checkpoints/hardened").mkdir(parents=True)
@@ -725,7 +726,7 @@ def test_export_writes_no_path_of_this_machine(place, name):
 
 @pytest.mark.slow
 def test_programs_hold_no_path_of_this_machine(traced):
-    """As their traces once did."""
+    """Their traces once contained such paths."""
     assert places_in(traced / loading.PROGRAM) == []
 
 
@@ -734,10 +735,10 @@ def test_export_compares_the_programs_in_a_new_process(traced):
     card = loading.read_card(traced)
     assert card["checked"]["program_tolerance"] == export.EXPORTED
     agent = loading.load_hardened(traced)
-    given = programs.probe(agent, SIZE)
+    value = programs.probe(agent, SIZE)
     program = programs.load_programs(traced / loading.PROGRAM)
-    wanted = programs.outputs(programs.networks(agent), given)
-    assert programs.difference(wanted, programs.outputs(program, given)) <= export.EXPORTED
+    expected = programs.outputs(programs.networks(agent), value)
+    assert programs.difference(expected, programs.outputs(program, value)) <= export.EXPORTED
 
 
 SHIPPED = sorted(p.name for p in (ROOT / "checkpoints/hardened").glob("[!.]*"))
@@ -763,10 +764,10 @@ def test_export_writes_the_program_of_a_shipped_folder(name, tmp_path, monkeypat
     card = loading.read_card(folder)
     assert card["agent"] == before["agent"]
     assert loading.PROGRAM in folders.check(folder).files
-    given = programs.probe(agent, SIZE)
+    value = programs.probe(agent, SIZE)
     program = programs.load_programs(folder / loading.PROGRAM)
-    wanted = programs.outputs(programs.networks(agent), given)
-    assert programs.difference(wanted, programs.outputs(program, given)) <= export.EXPORTED
+    expected = programs.outputs(programs.networks(agent), value)
+    assert programs.difference(expected, programs.outputs(program, value)) <= export.EXPORTED
 
 
 def base_of(card):
@@ -780,5 +781,5 @@ def test_export_takes_no_name_with_programs(monkeypatch, capsys):
     assert "--programs takes one hardened folder" in capsys.readouterr().err
 
 
-def test_the_hardened_agents_of_the_readme_are_shipped():
+def test_hardened_agents_of_the_readme_are_shipped():
     assert {"conv_adapter", "stacked", "ts_distill"} <= set(SHIPPED)

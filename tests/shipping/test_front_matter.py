@@ -24,9 +24,9 @@ def card_of(folder: Path) -> dict:
 
 
 @pytest.mark.parametrize("folder", SHIPPED, ids=lambda folder: folder.name)
-def test_a_shipped_folder_is_a_model_repository(folder):
-    card, found = card_of(folder), ModelCard.load(folder / "README.md")
-    data = found.data
+def test_shipped_folder_is_a_model_repository(folder):
+    card, loaded = card_of(folder), ModelCard.load(folder / "README.md")
+    data = loaded.data
     assert (data.library_name, data.license, data.pipeline_tag) == (
         "mitigate",
         "apache-2.0",
@@ -42,37 +42,41 @@ def test_a_shipped_folder_is_a_model_repository(folder):
     clean = results["Clean SR"]
     assert clean.metric_value == entry["clean"]["SR"][0] and clean.dataset_split == "val_unseen"
     assert clean.dataset_args["episodes"] in (100, 300) and clean.metric_args["level"] == 0.95
-    assert found.text.strip().startswith(f"# {card['name']}")
+    assert loaded.text.strip().startswith(f"# {card['name']}")
     assert (folder / "README.md").read_text(encoding="utf-8") == readme(card)
 
 
 @pytest.mark.parametrize("folder", SHIPPED, ids=lambda folder: folder.name)
-def test_the_published_rows_are_found_by_a_shipped_card(folder):
+def test_published_rows_match_a_shipped_card(folder):
     published = gather([ROOT / f"docs/results/second/{folder.name}-val_unseen.jsonl.gz"])
     (agent,) = card_of(folder)["rows_agent"]
     assert len({row["corruption"] for row in published if row["agent"] == agent}) == 13
 
 
-def test_a_card_without_metrics_or_with_strange_names_is_one_too():
+def test_card_without_metrics_or_with_odd_names_is_valid():
     card = card_of(SHIPPED[0]) | {"metrics": []}
     assert ModelCard(front_matter(card)).data.eval_results is None
     strange = 'a: [b\n---\n"x": !!python/object:os.system'
-    own = card_of(SHIPPED[0])
-    own["name"] = strange
-    own["metrics"][0] |= {"rule": strange, "split": strange, "PRS": {"PRS-SR (RGB)": [None] * 3}}
-    data = ModelCard(front_matter(own)).data
+    own_value = card_of(SHIPPED[0])
+    own_value["name"] = strange
+    own_value["metrics"][0] |= {
+        "rule": strange,
+        "split": strange,
+        "PRS": {"PRS-SR (RGB)": [None] * 3},
+    }
+    data = ModelCard(front_matter(own_value)).data
     assert data.model_name == strange and data.eval_results[0].dataset_split == strange
     assert "PRS-SR (RGB)" not in {result.metric_name for result in data.eval_results}
 
 
 @pytest.mark.parametrize("name", ["on", "null", "2.0"])
-def test_a_text_stays_one_to_readers_of_yaml_of_today(name):
+def test_text_stays_one_string_for_current_yaml_readers(name):
     card = card_of(SHIPPED[0]) | {"name": name, "recipe": name}
     text = front_matter(card)
     assert f"name: '{name}'\n" in text and ModelCard(text).data.model_name == name
 
 
-def test_a_page_shows_the_words_of_rows_as_they_are():
+def test_page_shows_words_of_rows_unchanged():
     card = card_of(SHIPPED[0])
     card["metrics"][0]["suite"] = "1.1 <script>alert(1)</script> `x`"
     text = ModelCard(readme(card)).text
@@ -89,13 +93,13 @@ def test_renew_changes_the_readme_and_the_manifest_alone(tmp_path):
     assert page.read_text(encoding="utf-8") == "# old\n"  # as it was
     page.write_text(readme(before), encoding="utf-8")
     renew(folder)
-    kept = older_folders.without_sums(before)
-    assert loading.check_hardened(folder) == {**kept, "format": loading.FORMAT}
+    remaining = older_folders.without_sums(before)
+    assert loading.check_hardened(folder) == {**remaining, "format": loading.FORMAT}
     assert folders.read_manifest(folder).files.keys() == {*before["files"], "card.json"}
     assert [p.name for p in tmp_path.iterdir()] == ["mine"]
 
 
-def test_renewing_adds_the_agent_of_rows_to_a_card_that_lacks_it(tmp_path):
+def test_renewing_adds_the_agent_of_rows_to_a_card(tmp_path):
     folder = Path(shutil.copytree(ROOT / "checkpoints/hardened/conv_adapter", tmp_path / "mine"))
     old = {k: v for k, v in card_of(folder).items() if k != "rows_agent"}
     resigned = {**old, "sha256": older_folders.card_sha(old)}

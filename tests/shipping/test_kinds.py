@@ -1,4 +1,4 @@
-"""Every kind of agent of ours is exported, and reloads without being built by the user."""
+"""Every kind of shipped agent is exported, and reloads without being built by the user."""
 
 from __future__ import annotations
 
@@ -23,14 +23,14 @@ KINDS = {
 
 @pytest.mark.slow  # tests/test_methods.py exports a run of the frontier agent quickly
 @pytest.mark.parametrize("kind", KINDS)
-def test_a_run_is_exported_and_loads_again(tmp_path, kind, monkeypatch):
+def test_run_is_exported_and_loads_again(tmp_path, kind, monkeypatch):
     monkeypatch.setattr(export, "WALKS", 1)
-    made, own = KINDS[kind]
-    options = [f"agent={kind}", *SMALL, *own]
+    output, own_value = KINDS[kind]
+    options = [f"agent={kind}", *SMALL, *own_value]
     cfg = conf.load_config("train", ["recipe=imitation", "debug=smoke", *options])
     cfg.runs = str(tmp_path)
     run = train.run(cfg)
-    (option,) = export_command._own_kind(run)  # what the command takes unless told
+    (option,) = export_command._own_kind(run)  # the command's default
     assert option == f"agent={kind.partition('_')[0]}"
     with pytest.raises(ValueError, match=option):
         export.export(run, "mine", out=tmp_path)
@@ -38,15 +38,15 @@ def test_a_run_is_exported_and_loads_again(tmp_path, kind, monkeypatch):
     folder = export.export(run, "mine", out=tmp_path, walks=walks)
     assert 'load_hardened("checkpoints/hardened/mine")' in (folder / "README.md").read_text()
     loaded = mitigate.load_hardened(folder)
-    assert isinstance(loaded, made)
+    assert isinstance(loaded, output)
     assert weights_sha(loaded) == weights_sha(finished(run, walks)[1])
 
 
-def test_options_may_stand_behind_the_rows_and_a_wrong_one_is_explained(monkeypatch, tmp_path):
-    given = {}
+def test_options_may_follow_rows_and_wrong_ones_are_explained(monkeypatch, tmp_path):
+    options = {}
 
     def read(run, overrides, configs):
-        given["options"] = overrides
+        options["options"] = overrides
         raise ValueError("enough")
 
     command = ["export", "runs/a", "mine", "--rows", "rows.jsonl", "agent=policy", "env=corridor"]
@@ -54,7 +54,7 @@ def test_options_may_stand_behind_the_rows_and_a_wrong_one_is_explained(monkeypa
     monkeypatch.setattr(export_command, "_walks_of", read)
     with pytest.raises(SystemExit, match="enough"):
         export_command.main()
-    assert given["options"] == ["agent=policy", "env=corridor"]
+    assert options["options"] == ["agent=policy", "env=corridor"]
     monkeypatch.undo()
     monkeypatch.setattr("sys.argv", ["export", "runs/a", "mine", "agent=recurent"])
     with pytest.raises(SystemExit, match="Did you mean recurrent?"):

@@ -1,4 +1,4 @@
-"""One call loads an agent from whatever wrote its folder, and tools take its kind from there."""
+"""One call loads an agent from any kind of folder, and tools infer its kind from the folder."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ SHIPPED = {
 
 
 @pytest.mark.parametrize("folder", SHIPPED)
-def test_an_agent_of_ours_is_loaded_from_its_folder_alone(folder, tmp_path, monkeypatch):
+def test_own_agent_loads_from_its_folder_only(folder, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)  # found in the project
     state = torch.random.get_rng_state()
     agent = mitigate.load(folder)
@@ -35,7 +35,7 @@ def test_an_agent_of_ours_is_loaded_from_its_folder_alone(folder, tmp_path, monk
     agent.reset("walk past the red sofa")
 
 
-def test_what_says_nothing_of_its_agent_or_is_of_another_is_refused(tmp_path):
+def test_load_rejects_unnamed_or_different_agent(tmp_path):
     with pytest.raises(FileNotFoundError, match="There are no weights at"):
         mitigate.load(tmp_path)
     checkpoint.save_weights(torch.nn.Linear(2, 2), tmp_path)
@@ -48,7 +48,7 @@ def test_what_says_nothing_of_its_agent_or_is_of_another_is_refused(tmp_path):
         mitigate.load(None)
 
 
-def test_a_changed_hardened_folder_is_refused(tmp_path):
+def test_changed_hardened_folder_is_rejected(tmp_path):
     folder = Path(shutil.copytree(ROOT / "checkpoints/hardened/stacked", tmp_path / "stacked"))
     with open(folder / "model.safetensors", "ab") as file:
         file.write(b"x")
@@ -56,7 +56,7 @@ def test_a_changed_hardened_folder_is_refused(tmp_path):
         mitigate.load(folder)
 
 
-def test_options_get_the_kind_of_agent_that_weights_are_of():
+def test_options_take_the_agent_kind_of_the_weights():
     assert agent_option([], "checkpoints/recurrent_rgb/base") == ["agent=recurrent"]
     assert agent_option(["split=val_seen"], "checkpoints/frontier/base") == ["agent=frontier"]
     assert agent_option(["agent=frontier"], "checkpoints/recurrent/base") == []
@@ -64,16 +64,16 @@ def test_options_get_the_kind_of_agent_that_weights_are_of():
         assert agent_option([], usual) == []
 
 
-def test_evaluate_asks_of_the_world_what_the_agent_of_the_checkpoint_needs(monkeypatch):
+def test_evaluate_takes_world_needs_from_the_checkpoint(monkeypatch):
     seen = []
     monkeypatch.setattr(evaluate, "run", lambda cfg, options: seen.append((cfg, options)))
     monkeypatch.chdir(ROOT)
     for words in (["checkpoint=checkpoints/frontier/base"], ["checkpoint=checkpoints/base"]):
         monkeypatch.setattr("sys.argv", ["evaluate", *words])
         evaluate.main()
-    (found, options), (usual, _) = seen
-    assert found == conf.load_config("evaluate", ["agent=frontier", *options])
-    assert found.split == "val_unseen_ogn" and found.env.views == 1
+    (matches, options), (usual, _) = seen
+    assert matches == conf.load_config("evaluate", ["agent=frontier", *options])
+    assert matches.split == "val_unseen_ogn" and matches.env.views == 1
     assert usual.split == "val_unseen"
 
 

@@ -1,4 +1,5 @@
-"""Rows of one agent alone enter a card, and a folder fills only an agent like the exported one."""
+"""A card gets the rows of one agent only, and a folder loads only into an agent like the exported
+one."""
 
 from __future__ import annotations
 
@@ -17,12 +18,12 @@ def rows(agent: str, wins: bool) -> list[dict]:
     return [{**row(f"e{n}", wins), "agent": agent, "weights": "w" * 12} for n in range(3)]
 
 
-def test_the_runs_own_rows_say_which_agent_of_equal_weights_it_is():
-    own, blind = rows("a" * 12, True), rows("b" * 12, False)
-    found = list(_of_one_agent(own[:1], own + blind, {"w" * 12}))
-    assert {r["agent"] for r in found} == {"a" * 12} and len(found) == 3
+def test_run_rows_identify_agents_of_equal_weights():
+    own_rows, blind = rows("a" * 12, True), rows("b" * 12, False)
+    matches = list(_of_one_agent(own_rows[:1], own_rows + blind, {"w" * 12}))
+    assert {r["agent"] for r in matches} == {"a" * 12} and len(matches) == 3
     with pytest.raises(ValueError, match="several agents with these weights"):
-        list(_of_one_agent([], own + blind, {"w" * 12}))
+        list(_of_one_agent([], own_rows + blind, {"w" * 12}))
 
 
 def test_rows_of_before_are_known_by_their_weights():
@@ -30,10 +31,10 @@ def test_rows_of_before_are_known_by_their_weights():
     assert list(_of_one_agent([], old, {"w" * 12})) == old
 
 
-def test_a_card_names_the_agent_of_its_rows_and_not_those_of_other_weights():
-    found = [*rows("a" * 12, True), *rows("b" * 12, True)]
-    assert rows_agent(found, {"w" * 12}) == ["a" * 12, "b" * 12]
-    assert rows_agent(found, {"v" * 12}) == []
+def test_card_names_the_agent_of_its_rows():
+    matches = [*rows("a" * 12, True), *rows("b" * 12, True)]
+    assert rows_agent(matches, {"w" * 12}) == ["a" * 12, "b" * 12]
+    assert rows_agent(matches, {"v" * 12}) == []
 
 
 class Mine:
@@ -44,7 +45,7 @@ class Mine:
         return {"gain": self.gain}
 
 
-def test_an_agent_with_other_settings_than_the_folders_is_refused(tmp_path):
+def test_agent_with_other_settings_is_rejected(tmp_path):
     config = tmp_path / "config.yaml"
     config.write_text(yaml.safe_dump({"agent": {"_target_": "mine.Mine", "gain": -1.0}}))
     check_same(Mine(-1.0), config, "")
@@ -56,7 +57,7 @@ class Scaled:
     settings = {"scales": (1, 2)}
 
 
-def test_settings_may_be_a_mapping_and_a_tuple_is_a_list(tmp_path):
+def test_settings_may_be_a_mapping_and_tuples_become_lists(tmp_path):
     config = tmp_path / "config.yaml"
     config.write_text(yaml.safe_dump({"agent": {"_target_": "mine.Scaled", "scales": [1, 2]}}))
     check_same(Scaled(), config, "")
@@ -66,7 +67,7 @@ def test_settings_may_be_a_mapping_and_a_tuple_is_a_list(tmp_path):
 
 
 @pytest.mark.parametrize("filled", [load, load_hardened])
-def test_what_cannot_be_filled_is_named(filled):
+def test_values_that_cannot_be_loaded_are_named(filled):
     folder = "checkpoints/hardened/ts_distill" if filled is load_hardened else "checkpoints/base"
     with pytest.raises(TypeError, match="must be a torch.nn.Module .*, got <class .*Silent"):
         filled(folder, agent=Silent)
@@ -75,14 +76,14 @@ def test_what_cannot_be_filled_is_named(filled):
 
 
 class Silent:
-    """Without settings(); its ``net`` is no plain value."""
+    """Has no settings(); its ``net`` is not a plain value."""
 
     def __init__(self, gain: float) -> None:
         self.gain, self.net = gain, object()
 
 
-def test_of_an_agent_without_settings_attributes_are_compared_and_it_has_the_folders(tmp_path):
-    """So an evaluation and ``benchmark(load_hardened(...))`` have one hash for it."""
+def test_attributes_are_compared_without_settings(tmp_path):
+    """An evaluation and ``benchmark(load_hardened(...))`` then give it the same hash."""
     config = tmp_path / "config.yaml"
     config.write_text(yaml.safe_dump({"agent": {"_target_": "mine.Silent", "gain": 1, "net": "a"}}))
     with pytest.warns(UserWarning, match=r"with gain=1, but the given agent has 5\.0"):
@@ -93,6 +94,6 @@ def test_of_an_agent_without_settings_attributes_are_compared_and_it_has_the_fol
         check_same(agent, config, "")
     give_settings(agent, config, "")
     assert agent.settings() == {"gain": 1, "net": "a"}
-    told = Mine(2.0)
-    give_settings(told, config, "")
-    assert told.settings() == {"gain": 2.0}
+    reported = Mine(2.0)
+    give_settings(reported, config, "")
+    assert reported.settings() == {"gain": 2.0}

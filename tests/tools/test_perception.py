@@ -30,8 +30,8 @@ def test_measure_loses_things_or_free_space_by_corruption(printed):
 def test_measure_equals_clean_at_severity_zero():
     poses = perception.Poses("val_seen", 2, seed=1)
     agent = perception.load(perception._agent_node(), "checkpoints/base")
-    found = perception.measure(agent, poses, perception.SUITES["full"], severity=0.0)
-    assert found["motion_blur"] == found["clean"] and found["multipath"] == found["clean depth"]
+    result = perception.measure(agent, poses, perception.SUITES["full"], severity=0.0)
+    assert result["motion_blur"] == result["clean"] and result["multipath"] == result["clean depth"]
 
 
 @pytest.mark.parametrize(

@@ -1,4 +1,5 @@
-"""Worker processes make the same batches as none, survive a death, and pass errors on."""
+"""Worker processes make the same batches as the main process, survive deaths, and pass errors
+on."""
 
 from __future__ import annotations
 
@@ -24,7 +25,7 @@ from tests.tiny import TinyRecipe
 
 
 class Shared(TinyRecipe):
-    """Its batches are made of three pieces that depend on the seed and on the weights."""
+    """Its batches consist of three pieces that depend on the seed and on the weights."""
 
     def __init__(self, ahead: bool = False, fatal: str = "") -> None:
         super().__init__()
@@ -37,7 +38,7 @@ class Shared(TinyRecipe):
         if job == (2, 1) and self.fatal == "raise":
             raise ValueError("no such pose")
         if job == (2, 1) and os.path.exists(self.fatal):
-            os.unlink(self.fatal)  # the next one that comes here lives
+            os.unlink(self.fatal)  # the next process that arrives here survives
             if self.fatal.endswith("message"):
                 die_in_a_message()
             os.kill(os.getpid(), signal.SIGKILL)
@@ -56,7 +57,7 @@ class Shared(TinyRecipe):
 
 
 class Bulky(Shared):
-    """Its weights and its pieces are larger than what a pipe holds."""
+    """Its weights and its pieces are larger than the buffer of a pipe."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -76,8 +77,8 @@ def trained(folder, workers: Workers | None, lag: int = 0, save_every: int = 2, 
     return checkpoint.weights_sha(recipe.agent)
 
 
-def counted(order, given: dict[int, int], number: int, job) -> None:
-    given[number] += 1
+def counted(order, value: dict[int, int], number: int, job) -> None:
+    value[number] += 1
     order(job)
 
 
@@ -88,7 +89,7 @@ def two():
 
 
 @pytest.mark.parametrize("ahead", [True, False])
-def test_two_workers_train_the_weights_that_none_trains(ahead, two, tmp_path):
+def test_two_workers_train_the_same_weights_as_zero(ahead, two, tmp_path):
     alone = trained(tmp_path / "alone", None, ahead=ahead)
     assert trained(tmp_path / "two", two, ahead=ahead) == alone
     states.checkpoints(tmp_path / "two")[-1].unlink()  # back to step 4
@@ -96,14 +97,14 @@ def test_two_workers_train_the_weights_that_none_trains(ahead, two, tmp_path):
 
 
 @pytest.mark.parametrize("ahead,busy", [(True, 6), (False, 3)])
-def test_more_workers_than_pieces_work_at_several_steps_at_once(ahead, busy, tmp_path):
+def test_many_workers_work_on_several_steps_at_once(ahead, busy, tmp_path):
     with Workers(7) as workers:
-        given = dict.fromkeys(range(7), 0)
+        options = dict.fromkeys(range(7), 0)
         for worker in workers._all:
-            worker.order = partial(counted, worker.order, given, worker.number)
-        found = trained(tmp_path / "seven", workers, ahead=ahead)
-    assert found == trained(tmp_path / "alone", None, ahead=ahead)
-    assert [given[n] for n in range(7)] == [18 // busy] * busy + [0] * (7 - busy)
+            worker.order = partial(counted, worker.order, options, worker.number)
+        matches = trained(tmp_path / "seven", workers, ahead=ahead)
+    assert matches == trained(tmp_path / "alone", None, ahead=ahead)
+    assert [options[n] for n in range(7)] == [18 // busy] * busy + [0] * (7 - busy)
 
 
 def test_batches_with_lag_do_not_depend_on_workers(two, tmp_path):
@@ -124,15 +125,15 @@ def test_workers_do_not_deadlock_on_full_pipes(tmp_path):
     assert states.checkpoints(tmp_path)
 
 
-def test_the_weights_that_lag_are_those_of_so_many_updates_before(tmp_path):
+def test_lagging_weights_are_so_many_updates_old(tmp_path):
     seeding.seed_everything(0, "init")
     recipe, seen = Shared(), []
     recipe.work = lambda job: (
         seen.append(float(recipe.agent.body[0].weight.sum())) or np.ones((3, 4), np.float32)
     )
-    made = Batches(recipe, None, 6, "fp32", torch.device("cpu"), lag=2, save_every=4)
+    objective = Batches(recipe, None, 6, "fp32", torch.device("cpu"), lag=2, save_every=4)
     for step in range(6):
-        made.batch(step)
+        objective.batch(step)
         with torch.no_grad():
             recipe.agent.body[0].weight += 1.0
     updates = [
@@ -148,12 +149,12 @@ def test_batches_made_of_no_weights_know_no_lag(two, tmp_path):
 
 @pytest.mark.parametrize("where", ["job", "message"])
 @pytest.mark.parametrize("how", [{"ahead": True}, {}, {"lag": 2, "save_every": 0}], ids=str)
-def test_a_worker_that_is_killed_is_replaced_and_nothing_is_lost(how, where, tmp_path, capsys):
+def test_killed_worker_is_replaced_and_nothing_is_lost(how, where, tmp_path, capsys):
     mark = tmp_path / where
     mark.touch()
     with Workers(2) as workers:
-        found = trained(tmp_path / "killed", workers, fatal=str(mark), **how)
-    assert found == trained(tmp_path / "whole", None, **how)
+        matches = trained(tmp_path / "killed", workers, fatal=str(mark), **how)
+    assert matches == trained(tmp_path / "whole", None, **how)
     assert "ended with code -9; a new one repeats its work" in capsys.readouterr().out
 
 
@@ -163,14 +164,14 @@ def test_second_worker_death_ends_the_training(tmp_path):
     assert states.checkpoints(tmp_path)
 
 
-def test_an_error_in_a_worker_is_raised_as_it_was(two, tmp_path):
+def test_worker_error_is_raised_unchanged(two, tmp_path):
     with pytest.raises(ValueError, match="no such pose"):
         trained(tmp_path / "raised", two, fatal="raise")
     assert trained(tmp_path / "next", two) == trained(tmp_path / "alone", None)  # nothing is left
 
 
 class Unpackable(Shared):
-    """Its pieces, or its jobs, cannot be sent from one process to the other."""
+    """Its pieces, or its jobs, cannot be pickled."""
 
     def jobs(self, step: int) -> list:
         pointer = ctypes.pointer(ctypes.c_int(step))
@@ -191,7 +192,7 @@ def _no_job():
 
 
 @pytest.mark.parametrize(
-    ("fatal", "kind", "said"),
+    ("fatal", "kind", "message"),
     [
         ("piece", ValueError, "A piece of a batch cannot be sent .* workers=0"),
         ("pickled", ValueError, "A job of this objective cannot be sent .* workers=0"),
@@ -199,9 +200,9 @@ def _no_job():
         ("unpickled", OSError, "no job can be made"),
     ],
 )
-def test_what_cannot_be_sent_is_told_as_what_it_is(fatal, kind, said, tmp_path):
-    """Not as a want of memory, and nobody waits for it."""
-    with Workers(1) as workers, pytest.raises(kind, match=said) as raised:
+def test_unpicklable_result_is_reported(fatal, kind, message, tmp_path):
+    """The error must not mention memory, and no process waits for the job."""
+    with Workers(1) as workers, pytest.raises(kind, match=message) as raised:
         Trainer(Unpackable(fatal=fatal), steps=2, folder=tmp_path, workers=workers).fit()
     assert not isinstance(raised.value, WorkersDied)
 
@@ -214,7 +215,7 @@ def test_workers_reject_torchscript_objectives(two, tmp_path):
         Trainer(recipe, steps=1, folder=tmp_path, workers=two).fit()
 
 
-def test_a_recipe_that_cannot_be_sent_is_refused_with_a_way_out(two, tmp_path):
+def test_unpicklable_recipe_is_rejected_with_a_way_out(two, tmp_path):
     class Local(Shared):
         """Classes inside functions cannot be pickled."""
 
@@ -222,14 +223,14 @@ def test_a_recipe_that_cannot_be_sent_is_refused_with_a_way_out(two, tmp_path):
         Trainer(Local(), steps=1, folder=tmp_path, workers=two).fit()
 
 
-def test_a_worker_that_stands_still_is_reported_until_it_goes_on(tmp_path, monkeypatch, capsys):
+def test_stopped_worker_is_reported_until_it_continues(tmp_path, monkeypatch, capsys):
     monkeypatch.setattr(workers, "STUCK", 0.2)
     with Workers(1) as pool:
-        wanted = trained(tmp_path / "whole", pool)
+        expected = trained(tmp_path / "whole", pool)
         process = pool._all[0].process.pid
         os.kill(process, signal.SIGSTOP)
         going_on = threading.Timer(0.7, os.kill, (process, signal.SIGCONT))
         going_on.start()
-        assert trained(tmp_path / "stopped", pool) == wanted
+        assert trained(tmp_path / "stopped", pool) == expected
         going_on.join()
     assert f"worker 0 ({process}) has been silent for" in capsys.readouterr().out

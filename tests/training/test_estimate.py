@@ -1,4 +1,4 @@
-"""How long a training takes is said before it begins, as near as it was timed."""
+"""The duration of a training is estimated before it begins, within the error of the measurement."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ TIMED = [
 
 @pytest.fixture
 def reference(monkeypatch):
-    """The machine that the costs were measured on."""
+    """The machine on which the costs were measured."""
     monkeypatch.setattr(precision, "probe", lambda: precision.REFERENCE)
     monkeypatch.setattr(estimate, "cores", lambda: 2)
 
@@ -41,18 +41,18 @@ def training(recipe: str, agent: str, *options: str) -> TrainConfig:
 
 
 @pytest.mark.parametrize(("recipe", "agent", "minutes"), TIMED)
-def test_the_estimate_is_what_was_timed(reference, tmp_path, recipe, agent, minutes):
+def test_estimate_matches_measured_times(reference, tmp_path, recipe, agent, minutes):
     seconds = estimate.estimate(training(recipe, agent), tmp_path)
     assert seconds / 60 == pytest.approx(minutes, rel=0.1)
 
 
 @pytest.mark.parametrize("recipe", ["dagger", "imitation", "ablation", "harden", "stacked"])
 @pytest.mark.parametrize("agent", ["recurrent", "recurrent_rgb"])
-def test_every_recipe_of_a_kind_has_an_estimate(reference, tmp_path, recipe, agent):
+def test_every_recipe_kind_has_an_estimate(reference, tmp_path, recipe, agent):
     assert estimate.estimate(training(recipe, agent), tmp_path) > 60
 
 
-def test_what_is_done_takes_no_time(reference, tmp_path):
+def test_finished_stages_take_no_time(reference, tmp_path):
     cfg = training("da_per_episode", "recurrent")
     whole = estimate.estimate(cfg, tmp_path)
     (tmp_path / "imitation").mkdir()
@@ -78,15 +78,15 @@ def test_estimate_is_nan_for_unknown_evaluation_cost(tmp_path):
     assert estimate.estimate(cfg, tmp_path) > 60
 
 
-def test_other_machines_take_as_much_longer_as_their_probe(monkeypatch, reference, tmp_path):
+def test_estimate_scales_by_the_machines_probe(monkeypatch, reference, tmp_path):
     cfg = training("conv_adapter", "recurrent")
     here = estimate.estimate(cfg, tmp_path)
     monkeypatch.setattr(precision, "probe", lambda: 3 * precision.REFERENCE)
     assert estimate.estimate(cfg, tmp_path) == pytest.approx(3 * here)
 
 
-def test_a_base_that_is_not_evaluated_is_not_counted(tmp_path):
-    """swap_encoder starts from parts of an agent, which are none by themselves."""
+def test_base_without_evaluation_is_not_counted(tmp_path):
+    """swap_encoder starts from parts of an agent, which are not an agent."""
     cfg = read(conf.load_config("train", ["recipe=swap_encoder"]))
     assert ", 1 x 40 episodes x 13 conditions: about " in estimate.describe(cfg, tmp_path)
     assert ", 2 x 40 episodes x 13 conditions: about " in estimate.describe(

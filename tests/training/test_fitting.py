@@ -1,4 +1,4 @@
-"""What does not fit together is refused before the first step, in one paragraph."""
+"""Invalid combinations are rejected before the first step, in one paragraph."""
 
 from __future__ import annotations
 
@@ -48,10 +48,10 @@ def no_recipe(agent):
 
 def refusal(folder, *options: str) -> str:
     cfg = conf.load_config("train", ["debug=smoke", "workers=0", f"folder={folder}", *options])
-    with pytest.raises(ValueError) as found:
+    with pytest.raises(ValueError) as caught:
         train.run(cfg)
     assert not list(folder.glob("*/step-*.pt"))
-    return str(found.value)
+    return str(caught.value)
 
 
 @pytest.mark.parametrize(
@@ -66,17 +66,17 @@ def refusal(folder, *options: str) -> str:
         ("da_per_episode", "restorer", ["stage perception_rgb", "no labels, see"]),
     ],
 )
-def test_a_recipe_for_other_agents_says_which_it_takes(tmp_path, recipe, agent, words):
-    said = refusal(tmp_path, f"recipe={recipe}", f"agent={agent}", OFF)
-    assert all(word in said for word in words), said
+def test_recipe_for_other_agents_names_them(tmp_path, recipe, agent, words):
+    message = refusal(tmp_path, f"recipe={recipe}", f"agent={agent}", OFF)
+    assert all(word in message for word in words), message
 
 
 @pytest.mark.parametrize(
     "recipe", [Dagger, HardenEncoder, Imitate, ImitateStored, Pretrain, Restore]
 )
-def test_a_recipe_names_what_the_agent_lacks_and_what_to_do(recipe):
-    said = recipe.misfit(TinyAgent())
-    assert said.startswith("it has no ") and len(said.split(". ")) > 1
+def test_recipe_names_what_the_agent_lacks(recipe):
+    message = recipe.misfit(TinyAgent())
+    assert message.startswith("it has no ") and len(message.split(". ")) > 1
     assert not TinyRecipe.misfit(TinyAgent())
 
 
@@ -103,25 +103,27 @@ def test_plan_warns_about_unused_severity(recipe, capsys):
     cfg = conf.load_config("train", options)
     assert build(cfg.schedule) == build(conf.load_config("train", options[:1]).schedule)
     plan.warn_unused_schedule(read(cfg))
-    said = capsys.readouterr().out
-    assert "severity=0.9 affects only the evaluation" in said and "which is [0.3, 1.0]" in said
-    assert "severity_depth=0.8 affects only the evaluation" in said
+    printed = capsys.readouterr().out
+    assert (
+        "severity=0.9 affects only the evaluation" in printed and "which is [0.3, 1.0]" in printed
+    )
+    assert "severity_depth=0.8 affects only the evaluation" in printed
     plan.warn_unused_schedule(load(*options[:1]))
     plan.warn_unused_schedule(load("recipe=da_per_frame", *options[1:]))
     assert not capsys.readouterr().out
 
 
 @pytest.mark.parametrize("recipe", ["base", "dagger", "replan", "swap_encoder"])
-def test_the_oracles_share_falls_over_the_steps_that_are_taken(recipe):
+def test_oracle_share_falls_over_the_actual_steps(recipe):
     for options, steps in (
         (["trainer.steps=7"], 7),
         (["stages.{}.trainer.steps=9"], 9),
         ([], None),
     ):
         stage = "policy" if recipe == "dagger" else "planner"
-        given = [option.format(stage) for option in options]
-        own = conf.load_config("train", [f"recipe={recipe}", *given]).stages[stage]
-        assert own.recipe.steps == (steps or own.trainer.steps)
+        arguments = [option.format(stage) for option in options]
+        settings = conf.load_config("train", [f"recipe={recipe}", *arguments]).stages[stage]
+        assert settings.recipe.steps == (steps or settings.trainer.steps)
 
 
 def test_plan_warns_about_stages_shorter_than_the_warmup(capsys):
@@ -147,7 +149,7 @@ def test_plan_rejects_runs_without_stages(tmp_path, options):
 
 
 class Walker(StepwiseAgent):
-    """Learns on episodes, and shows no encoders."""
+    """Trains on episodes, and has no encoders."""
 
     def __init__(self):
         super().__init__()
@@ -162,7 +164,7 @@ def left(cfg) -> list[str]:
     ("recipe", "stage"),
     [("imitation", "imitation"), ("da_success", "imitation"), ("ts_distill", "episodes")],
 )
-def test_an_agent_that_shows_no_encoders_learns_on_episodes_alone(recipe, stage, capsys):
+def test_agent_without_encoders_trains_on_episodes_only(recipe, stage, capsys):
     cfg = load(f"recipe={recipe}")
     plan.leave_out_stages(cfg, Walker())
     assert left(cfg) == [stage]
@@ -198,11 +200,12 @@ def test_blinded_agent_without_stages_is_evaluated(tmp_path, monkeypatch, capsys
 
 
 @pytest.mark.parametrize(
-    ("agent", "views", "taken"), [("recurrent", 12, 1), ("frontier", 12, 1), ("topological", 1, 12)]
+    ("agent", "views", "record_action"),
+    [("recurrent", 12, 1), ("frontier", 12, 1), ("topological", 1, 12)],
 )
-def test_a_world_with_another_number_of_views_is_refused(tmp_path, agent, views, taken):
-    said = refusal(tmp_path, f"agent={agent}", f"env.views={views}", OFF)
-    assert f"takes {taken}" in said and f"env.views={taken}" in said
+def test_world_with_another_number_of_views_is_rejected(tmp_path, agent, views, record_action):
+    message = refusal(tmp_path, f"agent={agent}", f"env.views={views}", OFF)
+    assert f"takes {record_action}" in message and f"env.views={record_action}" in message
 
 
 def tiny(folder, name: str, *stages: str, width: int = 8):
@@ -215,7 +218,7 @@ def tiny(folder, name: str, *stages: str, width: int = 8):
     return cfg
 
 
-def test_a_folder_with_a_run_of_another_recipe_is_left_as_it_is(tmp_path):
+def test_folder_of_another_recipe_is_unchanged(tmp_path):
     train.run(tiny(tmp_path, "one", "first"))
     before = {p: p.read_bytes() for p in tmp_path.rglob("*") if p.is_file()}
     with pytest.raises(ValueError, match=r"another recipe: it has a stage first.*folder="):
@@ -310,9 +313,9 @@ def test_smoke_run_measures_success_without_workers(tmp_path, monkeypatch, optio
 
 
 def test_invalid_agent_setting_names_allowed_values(tmp_path):
-    said = refusal(tmp_path, "agent=recurrent", "agent.blind=[sonar]", OFF)
-    assert "agent.blind" in said and "a list of rgb, depth, instruction" in said
-    assert "agent.size" not in said
+    message = refusal(tmp_path, "agent=recurrent", "agent.blind=[sonar]", OFF)
+    assert "agent.blind" in message and "a list of rgb, depth, instruction" in message
+    assert "agent.size" not in message
 
 
 def test_missing_weights_name_the_recipe_that_makes_them(tmp_path):
@@ -321,7 +324,7 @@ def test_missing_weights_name_the_recipe_that_makes_them(tmp_path):
 
 
 def fitted(agent, *options: str):
-    """The stages of a training of ``agent``, by name."""
+    """Return the stages of a training of ``agent``, by name."""
     cfg = load(*options)
     before = copy.deepcopy(cfg.stages)
     plan.drop_unread_corruptions(cfg, agent)
@@ -337,19 +340,19 @@ def fitted(agent, *options: str):
     ],
 )
 @pytest.mark.parametrize("recipe", ["da_per_frame", "da_per_episode", "da_success", "ts_distill"])
-def test_an_agent_meets_corruptions_of_what_it_reads_alone(recipe, agent, read, capsys):
+def test_agent_gets_corruptions_of_its_sensors_only(recipe, agent, read, capsys):
     stages, _ = fitted(agent, f"recipe={recipe}")
     for stage in stages.values():
         schedule = build(stage.recipe["schedule"])
         met = Counter(schedule.draw(0, f"e{i}", 0)[0].name for i in range(2000))
         assert set(met) == {"clean", *read}
-        assert met["clean"] / 2000 == pytest.approx(0.25, abs=0.03)  # the clean share, and no more
+        assert met["clean"] / 2000 == pytest.approx(0.25, abs=0.03)  # only the clean share
     lost = ", ".join(DEPTH if read is RGB else RGB)
-    said = capsys.readouterr().out
-    assert said.count("reads no") == 1 and said.endswith(f"the schedule leaves out {lost}\n")
+    printed = capsys.readouterr().out
+    assert printed.count("reads no") == 1 and printed.endswith(f"the schedule leaves out {lost}\n")
 
 
-def test_of_named_corruptions_those_it_reads_are_drawn():
+def test_unread_corruptions_are_dropped_from_a_list():
     stages, _ = fitted(RecurrentAgent(["rgb"]), "schedule.names=[multipath,flare,spatter]")
     assert stages["imitation"].recipe["schedule"]["names"] == ["flare", "spatter"]
 
@@ -357,8 +360,8 @@ def test_of_named_corruptions_those_it_reads_are_drawn():
 @pytest.mark.parametrize(
     "agent", [TopologicalAgent(16), RecurrentAgent(), FrontierAgent(), TinyAgent()]
 )
-def test_an_agent_that_reads_both_draws_what_the_schedule_says(agent, capsys):
-    """To the letter: what it was trained under is part of a run's identity."""
+def test_agent_with_both_sensors_draws_the_whole_schedule(agent, capsys):
+    """Compared as text: the training corruptions are part of a run's fingerprint."""
     for recipe in ("da_per_episode", "stacked"):
         stages, before = fitted(agent, f"recipe={recipe}")
         assert stages == before
@@ -377,13 +380,13 @@ def test_clean_schedules_stay_as_they_are():
         ("depth", "flare", ["no rgb", "only flare", "gaussian_noise"]),
     ],
 )
-def test_a_schedule_of_nothing_that_the_agent_reads_is_refused(tmp_path, sensor, names, words):
+def test_schedule_without_read_corruptions_is_rejected(tmp_path, sensor, names, words):
     options = ["agent=recurrent", f"agent.sensors=[{sensor}]", "init=null", OFF]
-    said = refusal(tmp_path, *options, f"schedule.names=[{names}]")
-    assert all(word in said for word in words) and "schedule.names=[...]" in said
+    message = refusal(tmp_path, *options, f"schedule.names=[{names}]")
+    assert all(word in message for word in words) and "schedule.names=[...]" in message
 
 
-def test_a_run_trains_on_what_was_drawn_and_says_so(tmp_path, monkeypatch):
+def test_run_trains_on_and_records_the_drawn_corruptions(tmp_path, monkeypatch):
     met = {}
 
     def trained(plan, stage, *_):
@@ -393,8 +396,8 @@ def test_a_run_trains_on_what_was_drawn_and_says_so(tmp_path, monkeypatch):
     monkeypatch.setattr(stages, "train_stage", trained)
     train.run(conf.load_config("train", ["agent=recurrent_rgb", OFF, f"folder={tmp_path}"]))
     assert met == {"perception_rgb": list(RGB), "imitation": list(RGB)}
-    written = OmegaConf.load(tmp_path / "config.yaml")
-    assert written.stages.imitation.recipe.schedule.names == list(RGB)
+    saved = OmegaConf.load(tmp_path / "config.yaml")
+    assert saved.stages.imitation.recipe.schedule.names == list(RGB)
 
 
 def test_plan_rejects_an_unused_teacher(tmp_path):
@@ -403,7 +406,7 @@ def test_plan_rejects_an_unused_teacher(tmp_path):
     )
 
 
-def test_check_stages_stops_at_the_first_stage_of_a_user(monkeypatch):
+def test_check_stages_stops_at_the_first_user_stage(monkeypatch):
     built = []
     monkeypatch.setattr(
         ObjectiveSpec, "build", lambda spec, agent: built.append(spec.target) or Objective()

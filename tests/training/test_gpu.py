@@ -1,4 +1,5 @@
-"""On a GPU: losses of the processor's, weights that go both ways, the shipped agent's walks."""
+"""On a GPU: the losses of the CPU, weights that load on both devices, the shipped agent's
+actions."""
 
 from __future__ import annotations
 
@@ -23,7 +24,7 @@ pytestmark = [
     pytest.mark.skipif(not torch.cuda.is_available(), reason="no CUDA here"),
 ]
 GPU = "cuda"
-DROPOUT = 0.1  # each device draws its own: losses of stages that have it differed by 7 %
+DROPOUT = 0.1  # each device has its own random numbers: losses of such stages differed by 7 %
 KINDS = [
     (agent, recipe)
     for agent in ("topological", "recurrent", "recurrent_rgb", "frontier")
@@ -38,37 +39,37 @@ def settings(folder, device, *options):
 
 
 def trained(folder, device, *options):
-    """Train two steps a stage on a device; return the run's folder."""
+    """Train two steps per stage on a device; return the run's folder."""
     return train.run(settings(folder, device, *options))
 
 
-def losses(said):
-    return [float(value) for value in re.findall(r"step \d+/\d+  loss (\S+)", said)]
+def losses(message):
+    return [float(value) for value in re.findall(r"step \d+/\d+  loss (\S+)", message)]
 
 
 @pytest.mark.parametrize("agent,recipe", KINDS)
-def test_it_loses_on_the_gpu_what_it_loses_on_the_processor(tmp_path, capfd, agent, recipe):
-    found = []
+def test_loss_on_gpu_equals_loss_on_cpu(tmp_path, capfd, agent, recipe):
+    matches = []
     for place, device in (("processor", "cpu"), ("gpu", GPU)):
         trained(tmp_path / place, device, f"agent={agent}", f"recipe={recipe}")
-        found.append(losses("".join(capfd.readouterr())))
-    assert len(found[0]) >= 2 and found[1] == pytest.approx(found[0], rel=DROPOUT)
-    assert found[1][:2] == pytest.approx(found[0][:2], rel=0.01)  # of the first stage: no dropout
+        matches.append(losses("".join(capfd.readouterr())))
+    assert len(matches[0]) >= 2 and matches[1] == pytest.approx(matches[0], rel=DROPOUT)
+    assert matches[1][:2] == pytest.approx(matches[0][:2], rel=0.01)  # first stage: no dropout
 
 
 @pytest.mark.parametrize("recipe", ["harden", "ts_distill", "restore"])
 def test_workers_feed_every_stage_as_the_training_itself_does(tmp_path, capfd, recipe):
-    found = []
-    for count in (0, 2):  # no CUDA may be begun where the second stage's workers come from
+    matches = []
+    for count in (0, 2):  # CUDA must not start in the process that forks the second stage's workers
         options = [f"recipe={recipe}", f"workers={count}"]
         trained(tmp_path / str(count), GPU, *options)
-        found.append(losses("".join(capfd.readouterr())))
-    assert found[0] and found[1] == pytest.approx(found[0], rel=0.02, abs=1e-3)
+        matches.append(losses("".join(capfd.readouterr())))
+    assert matches[0] and matches[1] == pytest.approx(matches[0], rel=0.02, abs=1e-3)
 
 
 @pytest.mark.parametrize("computed", ["fp32", "bf16"])
 @pytest.mark.parametrize("precision", ["fp32", "int8"])
-def test_the_language_model_learns_and_answers(tmp_path, precision, computed):
+def test_language_model_learns_and_answers(tmp_path, precision, computed):
     pytest.importorskip("bitsandbytes")
     base = write_tiny_model(tmp_path / "base")
     options = ["recipe=safeguard_lora", f"agent.base={base}", f"agent.precision={precision}"]
@@ -83,7 +84,7 @@ def test_the_language_model_learns_and_answers(tmp_path, precision, computed):
 
 
 @pytest.mark.parametrize("first,then", [("cpu", GPU), (GPU, "cpu")])
-def test_a_run_begun_on_one_goes_on_on_the_other(tmp_path, first, then):
+def test_run_resumes_on_the_other_device(tmp_path, first, then):
     folder = trained(tmp_path, first, "recipe=harden", "name=moves")
     more = settings(tmp_path, then, "recipe=harden", "name=moves")
     for stage in more.stages.values():
@@ -92,7 +93,7 @@ def test_a_run_begun_on_one_goes_on_on_the_other(tmp_path, first, then):
     checkpoint.load_agent(build(more.agent), folder / "agent")
 
 
-def test_the_shipped_agent_walks_as_on_the_processor(tmp_path):
+def test_shipped_agent_acts_as_on_cpu(tmp_path):
     node, rows = conf.load_config("train", []).agent, []
     for place, device in (("processor", "cpu"), ("gpu", GPU)):
         walked = evaluate(
@@ -106,4 +107,4 @@ def test_the_shipped_agent_walks_as_on_the_processor(tmp_path):
         )
         rows.append(walked)
     same = [a["success"] == b["success"] for a, b in zip(*rows, strict=True)]
-    assert sum(same) >= len(same) - 1  # a choice of equals may turn out otherwise
+    assert sum(same) >= len(same) - 1  # ties may be resolved differently

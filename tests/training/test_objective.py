@@ -34,14 +34,14 @@ class OnNumbers(Objective):
 TARGET = f"{__name__}.OnNumbers"
 
 
-def test_spec_gives_each_argument_to_the_constructors_that_name_it():
+def test_spec_passes_arguments_by_constructor_name():
     spec = ObjectiveSpec.of({"_target_": TARGET, "count": 5, "seed": 7, "weight": 2.0})
     assert spec.source == {"count": 5, "seed": 7}
     assert spec.arguments == {"seed": 7, "weight": 2.0}
     agent = TinyAgent()
-    made = spec.build(agent)
-    assert made.agent is made.numbers.agent is agent
-    assert (made.numbers.count, made.numbers.seed, made.seed, made.scale) == (5, 7, 7, 2.0)
+    output = spec.build(agent)
+    assert output.agent is output.numbers.agent is agent
+    assert (output.numbers.count, output.numbers.seed, output.seed, output.scale) == (5, 7, 7, 2.0)
 
 
 def test_spec_uses_the_source_defaults_of_the_objective():

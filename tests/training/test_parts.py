@@ -1,4 +1,4 @@
-"""Which parts of an agent train, and what the others keep."""
+"""Which parts of an agent train, and what the other parts keep."""
 
 from __future__ import annotations
 

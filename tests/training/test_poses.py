@@ -1,4 +1,4 @@
-"""Views of random poses: what is learned, and what a corruption is shown."""
+"""Views at random poses: the training targets, and the input of a corruption."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ from mitigate.training import poses
 from mitigate.worlds.apartments.world import ApartmentsWorld
 
 
-def test_a_corruption_is_shown_a_picture_in_every_view(monkeypatch):
-    """It may put another view's picture in the place of one."""
-    shown = []
+def test_corruption_gets_a_picture_in_every_view(monkeypatch):
+    """It may return another view's picture."""
+    displayed = []
 
     def look(frames, *_):
-        shown.append(frames["rgb"])
+        displayed.append(frames["rgb"])
         return frames
 
     monkeypatch.setattr(poses, "corrupt_observation", look)
@@ -27,8 +27,8 @@ def test_a_corruption_is_shown_a_picture_in_every_view(monkeypatch):
     for every, pieces in ((2, half), (1, whole)):
         source.every = every
         pieces += source.work(job)
-    assert len(half) == len(whole) == 2 and len(shown) == 4
+    assert len(half) == len(whole) == 2 and len(displayed) == 4
     assert half[0][0].shape == (6, 32, 32, 3) and whole[0][0].shape == (12, 32, 32, 3)
-    assert all(view.std() > 0 for frames in shown for view in frames)
-    learned, panorama = half[0][1], shown[0]
+    assert all(view.std() > 0 for frames in displayed for view in frames)
+    learned, panorama = half[0][1], displayed[0]
     assert all(any(np.array_equal(view, seen) for seen in learned) for view in panorama)

@@ -21,8 +21,8 @@ PIECES = 4
 
 
 class Regression(Objective):
-    """Pieces of different lengths, a weight that nothing but the first rank's pieces use, and one
-    that none uses, which must not decay."""
+    """Pieces of different lengths, a weight that only the first rank's pieces use, and an unused
+    weight, which must not decay."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -54,10 +54,10 @@ class Regression(Objective):
 
 
 def train(folder: Path, ranks: Ranks, steps: int = 6) -> torch.Tensor:
-    made = Regression()
+    output = Regression()
     options = {"lr": 0.05, "weight_decay": 0.5, "save_every": 2, "log_every": 1}
-    Trainer(made, steps=steps, folder=folder, ranks=ranks, **options).fit()
-    return torch.cat([made.line.weight, made.unused.weight]).detach()
+    Trainer(output, steps=steps, folder=folder, ranks=ranks, **options).fit()
+    return torch.cat([output.line.weight, output.unused.weight]).detach()
 
 
 def torchrun(folder: Path, count: int) -> subprocess.CompletedProcess:
@@ -66,7 +66,7 @@ def torchrun(folder: Path, count: int) -> subprocess.CompletedProcess:
         "import os, sys, torch\nfrom pathlib import Path\n"
         "from mitigate.training import trainer\n"
         "from mitigate.training.ranks import Ranks\nfrom tests.training.test_ranks import train\n"
-        # bf16 may be the faster one on one rank alone: all take the first one's choice
+        # bf16 may be faster on one rank only: all ranks take the choice of the first
         "trainer.choose = lambda *_: ('fp32', 'bf16')[int(os.environ['RANK'])]\n"
         "folder = Path(sys.argv[1])\n"
         "with Ranks.of_environment() as ranks:\n"
@@ -95,7 +95,7 @@ def test_two_ranks_train_the_weights_of_one(tmp_path, monkeypatch):
     assert len(list((tmp_path / "run").glob("step-*.pt"))) == 2
 
 
-def test_more_ranks_than_pieces_are_refused():
+def test_more_ranks_than_pieces_are_rejected():
     with pytest.raises(ValueError, match="4 pieces, too few for 5 ranks"):
         Ranks(0, 5).share([1, 2, 3, 4])
     with pytest.raises(ValueError, match=r"stage policy has 1 piece, .* \(make train NPROC=1\)"):

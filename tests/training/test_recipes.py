@@ -1,4 +1,4 @@
-"""Every recipe in conf/recipe trains two steps a stage and leaves an agent that loads."""
+"""Every recipe in conf/recipe trains two steps per stage and leaves an agent that loads."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ from mitigate.worlds.apartments import simulator
 from tests.guards.text.conftest import write_tiny_model
 
 TINY_ENCODER = {"model": "tests.encoders.shapes:tiny", "weights": None, "output": "pool"}
-OTHERS = (  # kinds of agent from shipped weights, each through a kind of recipe
+OTHERS = (  # kinds of agent with shipped weights, each with one kind of recipe
     ("recurrent", "da_per_episode", "recurrent/base"),
     ("recurrent_rgb", "ts_distill", "recurrent_rgb/base"),
     ("frontier", "conv_adapter", "frontier/base"),
     ("topological", "da_per_episode", "hardened/harden"),
 )
-LITTLE = {  # what a stage's recipe learns from, beside two rollouts a step
+LITTLE = {  # training data of a stage's recipe, in addition to two rollouts per step
     "batch": 8,
     "frames": 48,
     "held": 2,
@@ -34,7 +34,7 @@ LITTLE = {  # what a stage's recipe learns from, beside two rollouts a step
     "variants": 1,
 }
 RECIPES = sorted(path.stem for path in (conf.CONF / "recipe").rglob("*.yaml"))
-QUICK = ("conv_adapter", "ts_distill")  # the others are slow, one by one
+QUICK = ("conv_adapter", "ts_distill")  # the others are slow one after the other
 
 
 def some_slow(names, quick):
@@ -43,16 +43,16 @@ def some_slow(names, quick):
 
 @pytest.mark.parametrize("name", some_slow(RECIPES, QUICK))
 def test_every_recipe_trains_two_steps(tmp_path, name, monkeypatch):
-    monkeypatch.setattr(stored, "SPACING", 2.0)  # few poses, of which to store features
-    monkeypatch.setattr(simulator, "MAX_STEPS", 40)  # of walks whose success is measured
+    monkeypatch.setattr(stored, "SPACING", 2.0)  # few poses, so that few features are stored
+    monkeypatch.setattr(simulator, "MAX_STEPS", 40)  # episodes for measuring success
     options = [f"recipe={name}", "debug=smoke", "evaluation.enabled=false", f"runs={tmp_path}"]
-    options.append("workers=0")  # two a stage take longer to start than to work
+    options.append("workers=0")  # two workers per stage take longer to start than to work
     cfg = conf.load_config("train", options)
     if "base" in cfg.agent:  # a language model: the real one takes half a minute to load
         cfg.agent.base = str(write_tiny_model(tmp_path / "tiny-llama"))
-    if cfg.agent.get("encoder", "own") != "own":  # an extra brings it, and it is slow
+    if cfg.agent.get("encoder", "own") != "own":  # it needs an extra, and is slow
         cfg.agent.encoder, cfg.agent.size, cfg.env.size = "own", 64, 64
-    if "adapters" in cfg.agent and "model" in cfg.agent:  # an encoder that an extra brings
+    if "adapters" in cfg.agent and "model" in cfg.agent:  # an encoder that needs an extra
         cfg.agent = OmegaConf.merge(cfg.agent, TINY_ENCODER)
         cfg.agent.kwargs = {}
     if "size" in cfg.agent and "size" in cfg.env:
@@ -74,13 +74,13 @@ def test_int8_language_model_trains_without_log_spam(tmp_path, capfd):
     options += [f"runs={tmp_path}", f"agent.base={base}", "agent.precision=int8"]
     cfg = conf.load_config("train", [*options, "trainer.eval_every=1"])
     folder = train.run(cfg)
-    said = "".join(capfd.readouterr())
-    assert "evaluated at step 2" in said and "MatMul8bitLt" not in said
+    printed = "".join(capfd.readouterr())
+    assert "evaluated at step 2" in printed and "MatMul8bitLt" not in printed
     checkpoint.load_agent(build(cfg.agent), folder / "agent")
 
 
 @pytest.mark.slow
-def test_a_language_model_goes_on_from_an_adapter(tmp_path):
+def test_language_model_resumes_from_an_adapter(tmp_path):
     base = write_tiny_model(tmp_path / "tiny-llama")
     options = ["recipe=safeguard_lora", "debug=smoke", "evaluation.enabled=false", "workers=1"]
     options += [f"agent.base={base}", "agent.lora.dropout=0"]

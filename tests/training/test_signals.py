@@ -1,4 +1,5 @@
-"""A training that is ended by a signal saves, says how to go on, and ends as if it never was."""
+"""A signal ends a training: it saves, names the command to resume, and resumes to the same
+result."""
 
 from __future__ import annotations
 
@@ -35,7 +36,7 @@ conf.main(program, "train")
 
 
 class Slow(Objective):
-    """A line that is fitted; at step 3 it sends itself a signal, once."""
+    """Fits a line; at step 3 it sends itself a signal, once."""
 
     def __init__(self, folder: Path, number: int) -> None:
         super().__init__()
@@ -55,7 +56,7 @@ class Slow(Objective):
 
 
 class Calibrated(Slow):
-    """``finish`` sets a threshold by the weights, and may do something ``before``."""
+    """``finish`` sets a threshold from the weights, and may call ``before`` first."""
 
     def __init__(self, folder: Path, before=lambda: None) -> None:
         super().__init__(folder, 0)
@@ -72,7 +73,7 @@ class Calibrated(Slow):
 
 
 def end_within_another_block():
-    """As a signal does that comes while workers measure something for a training."""
+    """Simulates a signal that arrives while workers measure for a training."""
     with delay_signals():
         os.kill(os.getpid(), signal.SIGTERM)
         time.sleep(0.01)
@@ -82,9 +83,9 @@ def end_within_another_block():
 def train(folder: Path, number: int) -> torch.Tensor:
     torch.manual_seed(0)
     folder.mkdir(parents=True, exist_ok=True)
-    made = Slow(folder, number)
-    Trainer(made, steps=6, folder=folder / "run", lr=0.1, save_every=5, precision="fp32").fit()
-    return made.line.weight.detach()
+    output = Slow(folder, number)
+    Trainer(output, steps=6, folder=folder / "run", lr=0.1, save_every=5, precision="fp32").fit()
+    return output.line.weight.detach()
 
 
 def run(folder: Path, number: int) -> subprocess.CompletedProcess:
@@ -110,11 +111,11 @@ def test_interrupted_training_saves_and_resumes_to_the_same_result(tmp_path, num
     assert "To resume:" in ended.stderr and "program.py" in ended.stderr
     assert "Traceback" not in ended.stderr
     assert [path.name for path in (tmp_path / "run").glob("step-*.pt")] == ["step-00000004.pt"]
-    found = train(tmp_path, 0)
-    assert torch.equal(found, train(tmp_path / "unbroken", 0))
+    matches = train(tmp_path, 0)
+    assert torch.equal(matches, train(tmp_path / "unbroken", 0))
 
 
-def test_a_signal_while_it_is_evaluated_loses_no_step(tmp_path):
+def test_signal_during_evaluation_loses_no_step(tmp_path):
     class Evaluated(Slow):
         def evaluate(self, step):
             os.kill(os.getpid(), signal.SIGTERM)
@@ -148,7 +149,7 @@ def test_signal_at_the_end_does_not_skip_finish(tmp_path, when):
     assert resumed.steps == [] and resumed.threshold == resumed.line.weight.sum() != 0
 
 
-def test_a_run_that_is_killed_while_it_is_finished_loses_no_step(tmp_path, capsys):
+def test_kill_while_finishing_loses_no_step(tmp_path, capsys):
     class Killed(BaseException):
         pass
 
@@ -166,7 +167,7 @@ def test_a_run_that_is_killed_while_it_is_finished_loses_no_step(tmp_path, capsy
     assert "already trained for 6 steps" in capsys.readouterr().out
 
 
-def test_a_checkpoint_of_an_older_version_counts_as_finished(tmp_path, capsys):
+def test_older_checkpoint_counts_as_finished(tmp_path, capsys):
     settings = {"steps": 2, "precision": "fp32", "folder": tmp_path / "run"}
     Trainer(Slow(tmp_path, 0), **settings).fit()
     state = states.load(states.checkpoints(tmp_path / "run")[-1])
@@ -175,7 +176,7 @@ def test_a_checkpoint_of_an_older_version_counts_as_finished(tmp_path, capsys):
     assert "already trained for 2 steps" in capsys.readouterr().out
 
 
-def test_what_ends_an_evaluation_loses_no_step(tmp_path):
+def test_interrupted_evaluation_loses_no_step(tmp_path):
     class Evaluated(Slow):
         def evaluate(self, step):
             end_within_another_block()
@@ -186,7 +187,7 @@ def test_what_ends_an_evaluation_loses_no_step(tmp_path):
     assert [path.name for path in (tmp_path / "run").glob("step-*.pt")] == ["step-00000002.pt"]
 
 
-def test_a_signal_in_an_inner_block_is_told_to_the_outer_one(tmp_path):
+def test_signal_in_an_inner_block_reaches_the_outer_one(tmp_path):
     with delay_signals() as outer:
         with uninterrupted():
             os.kill(os.getpid(), signal.SIGTERM)
@@ -201,7 +202,7 @@ def test_a_signal_in_an_inner_block_is_told_to_the_outer_one(tmp_path):
         time.sleep(0.01)
 
 
-def test_a_second_signal_ends_it_at_once(tmp_path):
+def test_second_signal_ends_at_once(tmp_path):
     with pytest.raises(Ended) as ended, delay_signals() as first:
         os.kill(os.getpid(), signal.SIGTERM)
         time.sleep(0.01)
@@ -213,7 +214,7 @@ def test_a_second_signal_ends_it_at_once(tmp_path):
 
 
 def test_signal_during_success_measurement_keeps_earlier_steps(tmp_path):
-    """Success rates are measured by workers that end at once, in the middle of a step."""
+    """Success rates are measured by workers that end at once, during a step."""
 
     class Measured(Slow):
         def batch(self, step):

@@ -1,4 +1,4 @@
-"""One recipe serves agents of all kinds: what one has not to learn is left out."""
+"""One recipe trains agents of all kinds: stages without trainable parts are left out."""
 
 from __future__ import annotations
 
@@ -34,14 +34,14 @@ KINDS = ["topological", "recurrent", "recurrent_rgb", "frontier"]
     ],
     ids=lambda x: type(x).__name__,
 )
-def test_a_stage_that_has_nothing_to_train_says_why(agent, left):
-    said = [stage for stage in (RGB, DEPTH, POLICY, STORED) if nothing_to_train(stage, agent)]
-    assert said == left
+def test_stage_without_trainable_parts_explains_why(agent, left):
+    texts = [stage for stage in (RGB, DEPTH, POLICY, STORED) if nothing_to_train(stage, agent)]
+    assert texts == left
     if left:
         assert type(agent).__name__ in nothing_to_train(left[0], agent)
 
 
-def test_the_policy_is_all_but_the_encoders():
+def test_policy_is_everything_except_the_encoders():
     agent = TopologicalAgent(16)
     assert policy_parts(agent) == ["planner"]
     train_only(agent, "policy")
@@ -49,14 +49,14 @@ def test_the_policy_is_all_but_the_encoders():
 
 
 @pytest.mark.parametrize("kind", KINDS)
-def test_every_kind_of_agent_says_what_it_asks_of_the_world(kind):
+def test_every_agent_kind_states_its_world_requirements(kind):
     cfg = conf.load_config("train", [f"agent={kind}"])
     assert cfg.env.world.views == (12 if kind == "topological" else 1)
     assert cfg.evaluation.split == ("val_unseen_ogn" if kind == "frontier" else "val_unseen")
     assert conf.load_config("evaluate", [f"agent={kind}"]).checkpoint == cfg.weights.base
 
 
-def test_a_stage_may_name_one_that_is_left_out(tmp_path, capsys, monkeypatch):
+def test_stage_may_reference_a_removed_one(tmp_path, capsys, monkeypatch):
     monkeypatch.setattr(simulator, "MAX_STEPS", 40)
     small = ["agent.size=16", "env.size=16", "agent.depth_width=8", "init=null", "trainer.steps=1"]
     options = ["agent=recurrent", "agent.sensors=[depth]", *small, "evaluation.enabled=false"]

@@ -1,4 +1,4 @@
-"""Success rates that a schedule draws by: the same for any number of processes."""
+"""Success rates for a schedule: equal for any number of processes."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from tests.agents.rooms import wanderer
 
 
 class Grey:
-    """Shows one grey view, and is over after a step; STOP is right."""
+    """Shows one grey view, and ends after a step; STOP is correct."""
 
     rule, sensors, done = "STOP", cameras(16, views=1), True
 
@@ -63,8 +63,8 @@ def test_rates_do_not_depend_on_the_number_of_processes(capsys):
     assert "success at step 60: 4 episodes" in capsys.readouterr().out
 
 
-def test_episodes_are_walked_in_fp32_inside_a_training_in_bf16():
-    """Or rates would depend on who measures: this process, or workers of its own."""
+def test_rollouts_use_fp32_inside_a_bf16_training():
+    """Otherwise rates would depend on the process that measures them: this one, or new workers."""
     cpu = torch.device("cpu")
     with computing("bf16", cpu), EpisodeTask(wanderer(), partial(ApartmentsWorld, 16)).ready():
         assert not torch.is_autocast_enabled("cpu")

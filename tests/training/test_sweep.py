@@ -1,4 +1,4 @@
-"""A sweep runs every combination of options in a folder of its own and ends in one table."""
+"""A sweep runs every combination of options in a separate folder and ends in one table."""
 
 from __future__ import annotations
 
@@ -19,25 +19,25 @@ def config(runs, *options):
 
 @pytest.fixture
 def fake(monkeypatch):
-    """Runs that take no time: each leaves rows, but those with ``seed=1``, which fail."""
+    """Runs that take no time: each leaves rows, except those with ``seed=1``, which fail."""
     ran = []
 
-    def run(chains, jobs, launcher, progress, told):
+    def run(chains, jobs, launcher, progress, reported):
         ran.append((chains, jobs, launcher.name))
         for number, chain in enumerate(chains):
             failed = "seed=1" in chain.name
             if not failed:
-                made = column(5, {"flare": 4}, name=chain.name.split()[0])
-                rows.write(chain.log.parent.parent / f"{number}" / "rows.jsonl", made)
-            told(number, programs.Outcome("train ended with 1 (so)" if failed else ""))
+                records = column(5, {"flare": 4}, name=chain.name.split()[0])
+                rows.write(chain.log.parent.parent / f"{number}" / "rows.jsonl", records)
+            reported(number, programs.Outcome("train ended with 1 (so)" if failed else ""))
 
     monkeypatch.setattr(programs, "run", run)
     return ran
 
 
-def test_every_combination_is_run_by_hydras_grammar():
-    made = sweep.combinations(["recipe=da_per_frame,stacked", "seed=range(2)", "severity=0.3"])
-    assert made == [
+def test_sweep_runs_every_combination_of_hydra_grammar():
+    objective = sweep.combinations(["recipe=da_per_frame,stacked", "seed=range(2)", "severity=0.3"])
+    assert objective == [
         [f"recipe={recipe}", f"seed={seed}", "severity=0.3"]
         for recipe in ("da_per_frame", "stacked")
         for seed in (0, 1)
@@ -45,24 +45,24 @@ def test_every_combination_is_run_by_hydras_grammar():
     assert sweep.combinations([]) == [[]]
 
 
-def test_a_list_is_one_value_and_not_a_sweep():
+def test_list_is_one_value_and_not_a_sweep():
     assert len(sweep.combinations(["agent.blind=[rgb,depth]", "seed=3"])) == 1
 
 
-@pytest.mark.parametrize("given", [[], ["runs=sweeps/default"], ["command=evaluate", "jobs=2"]])
-def test_without_options_to_combine_it_shows_how_and_runs_nothing(given, monkeypatch, fake, capsys):
-    """``make sweep`` alone gives it ``runs=``."""
-    monkeypatch.setattr(sys, "argv", ["mitigate sweep", *given])
+@pytest.mark.parametrize("value", [[], ["runs=sweeps/default"], ["command=evaluate", "jobs=2"]])
+def test_sweep_without_combinations_shows_help_and_runs_nothing(value, monkeypatch, fake, capsys):
+    """Only ``make sweep`` passes ``runs=``."""
+    monkeypatch.setattr(sys, "argv", ["mitigate sweep", *value])
     assert sweep.main() == 2 and not fake
-    shown = capsys.readouterr()
-    assert "mitigate sweep recipe=imitation,stacked seed=0,1" in shown.out
-    assert "jobs: 1  # runs at a time" in shown.out and "set options to combine" in shown.err
+    printed = capsys.readouterr()
+    assert "mitigate sweep recipe=imitation,stacked seed=0,1" in printed.out
+    assert "jobs: 1  # runs at a time" in printed.out and "set options to combine" in printed.err
 
 
 @pytest.mark.parametrize(
     ("command", "option"), [("evaluate", "out=x"), ("train", "folder=x"), ("train", "+out=x")]
 )
-def test_one_folder_for_all_runs_is_refused(tmp_path, fake, command, option):
+def test_shared_folder_for_all_runs_is_rejected(tmp_path, fake, command, option):
     with pytest.raises(ValueError, match=r"is a single folder, .* Set runs=FOLDER"):
         sweep.run_all(config(tmp_path, f"command={command}"), ["seed=0,1", option])
     assert not fake
@@ -78,8 +78,8 @@ def test_options_to_combine_are_run(monkeypatch, fake, tmp_path):
 def test_configs_of_ones_own_are_those_of_every_run(monkeypatch, fake, tmp_path, named):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "mine/recipe").mkdir(parents=True)
-    own = "# @package _global_\ndefaults: [imitation]\nname: own\n"
-    (tmp_path / "mine/recipe/own.yaml").write_text(own)
+    own_value = "# @package _global_\ndefaults: [imitation]\nname: own\n"
+    (tmp_path / "mine/recipe/own.yaml").write_text(own_value)
     words = ["mitigate sweep", *named, f"runs={tmp_path}", "recipe=own", "seed=0,2"]
     monkeypatch.setattr(sys, "argv", words)
     assert sweep.main() == 0
@@ -97,7 +97,7 @@ def test_configs_of_ones_own_are_those_of_every_run(monkeypatch, fake, tmp_path,
 def test_sweep_gives_each_run_a_log_a_folder_and_cores(tmp_path, monkeypatch):
     monkeypatch.setenv("PYTHON_CPU_COUNT", "8")
     cfg = config(tmp_path, "command=evaluate", "jobs=4")
-    chains = [sweep.chain(cfg, made) for made in sweep.combinations(["seed=0,1"])]
+    chains = [sweep.chain(cfg, output) for output in sweep.combinations(["seed=0,1"])]
     folders = {word for c in chains for word in c.programs[0][1] if word.startswith("out=")}
     assert folders == {f"out={tmp_path}/seed-0", f"out={tmp_path}/seed-1"}
     assert len({chain.log for chain in chains}) == 2
@@ -108,10 +108,10 @@ def test_sweep_gives_each_run_a_log_a_folder_and_cores(tmp_path, monkeypatch):
     assert there.environment["PYTHON_CPU_COUNT"] == "4"
 
 
-def test_combinations_whose_names_would_be_one_have_a_digest_each(tmp_path):
+def test_combinations_with_equal_names_get_a_digest(tmp_path):
     cfg = config(tmp_path, "command=evaluate")
-    made = sweep.combinations(["checkpoint=a/b,a_b"])
-    assert len({sweep.chain(cfg, one, made).log for one in made}) == 2
+    output = sweep.combinations(["checkpoint=a/b,a_b"])
+    assert len({sweep.chain(cfg, one, output).log for one in output}) == 2
 
 
 def test_sweep_continues_after_a_failed_run(tmp_path, fake):
@@ -123,7 +123,7 @@ def test_sweep_continues_after_a_failed_run(tmp_path, fake):
 
 
 @pytest.mark.parametrize(
-    ("own", "options", "said"),
+    ("own_value", "options", "message"),
     [
         (["command=trian"], [], "Did you mean train"),
         (["jobs=0"], [], "jobs must be >= 1"),
@@ -132,14 +132,16 @@ def test_sweep_continues_after_a_failed_run(tmp_path, fake):
         ([], ["severity=high"], "must be a number"),
     ],
 )
-def test_what_no_run_could_have_is_said_before_any_starts(tmp_path, fake, own, options, said):
-    with pytest.raises(ValueError, match=said):
-        sweep.run_all(config(tmp_path, *own), options)
+def test_impossible_options_are_reported_before_any_run(
+    tmp_path, fake, own_value, options, message
+):
+    with pytest.raises(ValueError, match=message):
+        sweep.run_all(config(tmp_path, *own_value), options)
     assert not fake
 
 
 def test_sweep_infers_the_agent_from_weights(tmp_path, fake):
-    """``rgb_width`` is a setting of the recurrent agent, and not of the usual one."""
+    """``rgb_width`` is a setting of the recurrent agent, and not of the default one."""
     cfg = config(tmp_path, "command=evaluate")
     options = ["checkpoint=checkpoints/recurrent/base", "agent.rgb_width=1,2"]
     sweep.run_all(cfg, options)

@@ -1,4 +1,4 @@
-"""The table of all methods is made cell by cell, goes on where it stopped, and counts its cost."""
+"""The table of all methods runs cell by cell, resumes where it stopped, and counts its cost."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ from mitigate.training import cells, tables
 from tests.evaluation.made_rows import column, row
 
 ALL = dict.fromkeys((*RGB, *DEPTH), 4)
-KEPT = ("topological", "recurrent")  # columns of Table I where more would say the same
+KEPT = ("topological", "recurrent")  # columns of Table I; more columns would test the same
 
 
-def less(table: str, kept: Collection[str]) -> list[str]:
-    """Options that leave these columns of a table alone."""
-    return [f"~columns.{name}" for name in conf.load_config(table).columns if name not in kept]
+def less(table: str, remaining: Collection[str]) -> list[str]:
+    """Return options that keep only these columns of a table."""
+    return [f"~columns.{name}" for name in conf.load_config(table).columns if name not in remaining]
 
 
 def load(table: str, *options: str) -> cells.TablesConfig:
@@ -39,11 +39,11 @@ def config(out: Path, **changes) -> cells.TablesConfig:
 
 
 def finished(cfg) -> None:
-    """Rows of every cell, as an evaluation leaves them; seed 1 fares worse than seed 0."""
+    """Rows of every cell, as an evaluation writes them; seed 1 has lower success than seed 0."""
     for cell in tables.cells(cfg):
         agent = "base" if not cell.options else f"{cell.column}{cell.seed}"
-        made = column(8 - 2 * cell.seed, ALL, name=cell.column, seed=cell.seed, agent=agent)
-        rows.write(cell.folder / "evaluation" / "rows.jsonl", made)
+        records = column(8 - 2 * cell.seed, ALL, name=cell.column, seed=cell.seed, agent=agent)
+        rows.write(cell.folder / "evaluation" / "rows.jsonl", records)
 
 
 @pytest.fixture(autouse=True)
@@ -61,12 +61,12 @@ def quick(monkeypatch):
     )
 
 
-def test_a_partial_run_holds_every_column_of_the_first_seed(tmp_path):
+def test_partial_run_holds_every_column_of_the_first_seed(tmp_path):
     order = [(cell.column, cell.seed) for cell in tables.cells(config(tmp_path))]
     assert order == [("base", 0), ("da_per_frame", 0), ("base", 1), ("da_per_frame", 1)]
 
 
-def test_a_cell_trains_and_evaluates_in_its_own_folder(tmp_path):
+def test_cell_trains_and_evaluates_in_its_own_folder(tmp_path):
     cfg = config(tmp_path, episodes=5)
     base, trained = tables.cells(cfg)[0], tables.cells(cfg)[-1]
     assert [kind for kind, _ in base.commands(cfg)] == ["evaluate"]
@@ -79,9 +79,9 @@ def test_a_cell_trains_and_evaluates_in_its_own_folder(tmp_path):
 def test_table1_evaluates_and_trains_agents(tmp_path):
     more = '+columns.recurrent_mine=["agent=recurrent","recipe=ts_distill"]'
     cfg = load("table1", f"out={tmp_path}", "split=val_unseen_ogn", more)
-    made = {cell.column: [args for _, args in cell.commands(cfg)] for cell in tables.cells(cfg)}
-    (plain,), (shipped,) = made["recurrent"], made["recurrent_da"]
-    train, hardened = made["recurrent_mine"]
+    records = {cell.column: [args for _, args in cell.commands(cfg)] for cell in tables.cells(cfg)}
+    (plain,), (shipped,) = records["recurrent"], records["recurrent_da"]
+    train, hardened = records["recurrent_mine"]
     assert "checkpoint=checkpoints/recurrent/teacher" in shipped
     assert "agent=recurrent" in plain and not any(a.startswith("checkpoint=") for a in plain)
     assert {"agent=recurrent", "recipe=ts_distill"} <= set(train)
@@ -93,14 +93,14 @@ def test_table1_evaluates_and_trains_agents(tmp_path):
 @pytest.mark.parametrize(
     "option", ["suite=quick", "conditions=[clean,low_light_noise,missing_data]"]
 )
-def test_what_is_measured_can_be_chosen(tmp_path, option):
+def test_evaluations_can_be_selected(tmp_path, option):
     cfg = load("table1", f"out={tmp_path}", option)
     for cell in tables.cells(cfg):
         assert "conditions=[clean,low_light_noise,missing_data]" in cell.commands(cfg)[-1][1]
 
 
 @pytest.mark.parametrize(
-    ("option", "said"),
+    ("option", "message"),
     [
         ('+evaluations.mine=["suite=unsen"]', "Evaluation mine: .*unseen"),
         ('+evaluations.mine=["conditions=[hase]"]', "Evaluation mine: .*Did you mean haze?"),
@@ -142,15 +142,15 @@ def test_what_is_measured_can_be_chosen(tmp_path, option):
         ("conditions=[clen]", "no condition 'clen'. Did you mean clean?"),
     ],
 )
-def test_a_mistake_is_told_once_and_before_any_cell_is_run(tmp_path, monkeypatch, option, said):
-    monkeypatch.setattr(tables, "make", lambda made, cfg: pytest.fail("cells are run"))
+def test_error_is_reported_once_before_any_cell_runs(tmp_path, monkeypatch, option, message):
+    monkeypatch.setattr(tables, "make", lambda output, cfg: pytest.fail("cells are run"))
     cfg = load("table1", f"out={tmp_path / 'out'}", option, *less("table1", KEPT))
-    with pytest.raises(ValueError, match=said):
+    with pytest.raises(ValueError, match=message):
         tables.make_table(cfg)
     assert not (tmp_path / "out").exists()
 
 
-def test_a_column_of_other_options_is_refused_where_it_has_rows(tmp_path, quick):
+def test_column_with_changed_options_is_rejected_with_rows(tmp_path, quick):
     cfg = config(tmp_path, seeds=[0])
     finished(cfg)
     tables.make_table(cfg)
@@ -167,7 +167,7 @@ def test_walks_of_what_is_no_column_are_told(tmp_path, capsys):
     assert "no pictures of episodes: stacked in walks= is not a column" in capsys.readouterr().out
 
 
-def test_a_score_that_is_undefined_or_of_few_corruptions_says_so(tmp_path, quick):
+def test_undefined_or_partial_score_is_marked(tmp_path, quick):
     cfg = config(tmp_path, seeds=[0])
     finished(cfg)
     failed, part = (cell.evaluation / "rows.jsonl" for cell in tables.cells(cfg))
@@ -201,7 +201,7 @@ def test_table1_columns_are_agents_or_trainings(table, split, suite):
             assert node.env.split == split, "an agent that follows no routes"
 
 
-def test_the_report_has_seeds_pooled_costs_and_the_papers_figures(tmp_path, quick):
+def test_report_has_pooled_seeds_costs_and_paper_figures(tmp_path, quick):
     cfg = config(tmp_path)
     finished(cfg)
     report = tables.make_table(cfg).read_text(encoding="utf-8")
@@ -218,20 +218,20 @@ def test_the_report_has_seeds_pooled_costs_and_the_papers_figures(tmp_path, quic
     assert json.loads(costs[0].read_text())["train"] >= first > 0
 
 
-def test_a_program_that_had_nothing_to_do_costs_nothing(tmp_path, monkeypatch):
+def test_program_without_work_costs_nothing(tmp_path, monkeypatch):
     cell = tables.cells(config(tmp_path, seeds=[0]))[-1]
     left = {
         "train": cell.folder / "run" / "imitation" / "step-00000001.pt",
         "evaluate": cell.evaluation / "rows.jsonl",
     }
-    todo = {*left, "evaluate more"}  # of which the last fails to leave rows
+    todo = {*left, "evaluate more"}  # the last cell fails to leave rows
     add = "import sys; open(sys.argv[1], 'a').write('x')"
 
     def chain(self, cfg):
         words = {kind: (add, str(left.get(kind, tmp_path / "other"))) for kind in todo}
         kinds = ("train", "evaluate", "evaluate more")
-        made = ((kind, (sys.executable, "-c", *words.get(kind, ("pass",)))) for kind in kinds)
-        return programs.Chain("mine", tuple(made), self.folder / "log.txt", Path.cwd())
+        output = ((kind, (sys.executable, "-c", *words.get(kind, ("pass",)))) for kind in kinds)
+        return programs.Chain("mine", tuple(output), self.folder / "log.txt", Path.cwd())
 
     def cost() -> dict[str, float]:
         assert tables.make([cell], config(tmp_path)) == []
@@ -250,7 +250,7 @@ def test_a_program_that_had_nothing_to_do_costs_nothing(tmp_path, monkeypatch):
     assert (third["train"], third["evaluate"]) == (second["train"], second["evaluate"])
 
 
-def test_the_report_can_be_made_again_from_the_rows_alone(tmp_path, quick):
+def test_report_can_be_rebuilt_from_rows_only(tmp_path, quick):
     cfg = config(tmp_path / "all")
     finished(cfg)
     whole = tables.make_table(cfg).read_text(encoding="utf-8").splitlines()
@@ -261,7 +261,7 @@ def test_the_report_can_be_made_again_from_the_rows_alone(tmp_path, quick):
 
 
 def test_further_evaluations_are_measured_and_reported_apart(tmp_path, quick, monkeypatch):
-    """Each takes what the table says and its own options, and none mixes with the table's rows."""
+    """Each evaluation takes the table's options and its own ones, and its rows stay separate."""
     measured = tables.Cell.measurement
     cfg = load("table2", f"out={tmp_path}", "seeds=[0]", "evaluations=beyond", "episodes=7")
     cfg.columns = {name: cfg.columns[name] for name in ("base", "restored")}
@@ -274,9 +274,11 @@ def test_further_evaluations_are_measured_and_reported_apart(tmp_path, quick, mo
     assert (node.name, node.restore, node.episodes) == ("base", "checkpoints/restorer", 7)
 
     for cell, name in ((plain, "base"), (restored, "base+restorer")):
-        made = column(8, ALL, name=name, agent=cell.column)
-        rows.write(cell.evaluation / "rows.jsonl", made)
-        rows.write(cell.evaluation_folder("severity_02") / "rows.jsonl", made[: len(made) // 2])
+        records = column(8, ALL, name=name, agent=cell.column)
+        rows.write(cell.evaluation / "rows.jsonl", records)
+        rows.write(
+            cell.evaluation_folder("severity_02") / "rows.jsonl", records[: len(records) // 2]
+        )
     report = tables.make_table(cfg).read_text(encoding="utf-8")
     apart = (tmp_path / "severity_02" / "table.md").read_text(encoding="utf-8")
     assert "| base | base+restorer |" in report and "| base | base+restorer |" in apart
@@ -287,42 +289,42 @@ def test_further_evaluations_are_measured_and_reported_apart(tmp_path, quick, mo
 
 
 @pytest.mark.parametrize(
-    ("table", "asked", "walked"),
+    ("table", "requests", "walked"),
     [(3, "150", 3), (200, "150", 150), (3, "null", 3), (None, "150", 150), (None, "null", None)],
 )
-def test_additional_evaluation_limits_episodes(tmp_path, table, asked, walked):
+def test_additional_evaluation_limits_episodes(tmp_path, table, requests, walked):
     cfg = config(tmp_path, episodes=table)
-    measured = tables.cells(cfg)[0].measurement(cfg, "mine", [f"episodes={asked}"])
+    measured = tables.cells(cfg)[0].measurement(cfg, "mine", [f"episodes={requests}"])
     assert conf.load_config("evaluate", measured).episodes == walked
 
 
-def test_a_column_or_an_evaluation_that_is_null_is_left_out(tmp_path):
+def test_null_column_or_evaluation_is_left_out(tmp_path):
     null = ["columns.base=null", "evaluations.pairs=null", "+evaluations.mine=null"]
     columns = less("table2", ["base", "da_per_frame"])  # each is composed and checked
     cfg = load("table2", f"out={tmp_path}", "evaluations=beyond", *null, *columns)
-    made = tables.cells(cfg)
-    cells.check(made, cfg)
-    assert "base" not in {cell.column for cell in made}
-    kinds = [kind for kind, _ in made[0].commands(cfg)]
+    output = tables.cells(cfg)
+    cells.check(output, cfg)
+    assert "base" not in {cell.column for cell in output}
+    kinds = [kind for kind, _ in output[0].commands(cfg)]
     assert "evaluate unseen" in kinds and not {"evaluate pairs", "evaluate mine"} & {*kinds}
-    rows.write(made[0].evaluation_folder("pairs") / "rows.jsonl", column(8, ALL))
-    assert tables.write_additional_reports(made, cfg, tmp_path) == []
+    rows.write(output[0].evaluation_folder("pairs") / "rows.jsonl", column(8, ALL))
+    assert tables.write_additional_reports(output, cfg, tmp_path) == []
     with pytest.raises(ValueError, match="columns.* must not be empty"):
         tables.cells(replace(cfg, columns=dict.fromkeys(cfg.columns)))
 
 
-def test_a_cell_is_trained_once_and_measured_by_each_evaluation(tmp_path):
+def test_cell_is_trained_once_and_measured_per_evaluation(tmp_path):
     cfg = config(tmp_path)
     cfg.evaluations = {"pairs": ["suite=pairs"]}
     kinds = [[kind for kind, _ in cell.commands(cfg)] for cell in tables.cells(cfg)[:2]]
     assert kinds == [["evaluate", "evaluate pairs"], ["train", "evaluate", "evaluate pairs"]]
 
 
-def test_a_failed_cell_does_not_lose_the_others(tmp_path, quick, monkeypatch):
+def test_failed_cell_does_not_lose_the_others(tmp_path, quick, monkeypatch):
     cfg = config(tmp_path)
     finished(cfg)
     broken = tables.cells(cfg)[-1]
-    (broken.evaluation / "rows.jsonl").unlink()  # its training fails before there are any
+    (broken.evaluation / "rows.jsonl").unlink()  # its training fails before there are rows
     monkeypatch.setattr(
         tables.Cell,
         "commands",
@@ -336,7 +338,7 @@ def test_a_failed_cell_does_not_lose_the_others(tmp_path, quick, monkeypatch):
     assert "| Seeds | 0 1 | 0 |" in report
 
 
-def test_an_empty_table_is_refused(tmp_path):
+def test_empty_table_is_rejected(tmp_path):
     with pytest.raises(ValueError, match="must not be empty"):
         tables.cells(config(tmp_path, seeds=[]))
 
@@ -350,22 +352,23 @@ def test_rows_of_another_severity_are_told(tmp_path):
 
 
 def test_clean_rows_alone_make_a_report(tmp_path):
-    """As of the ablations, whatever the severity is that nothing was measured at."""
+    """Like the ablations, at any severity without measurements."""
     rows.write(tmp_path / "rows.jsonl", column(8, {}))
     cfg = config(tmp_path / "out", rows=[str(tmp_path / "rows.jsonl")])
     report = tables.make_table(cfg).read_text(encoding="utf-8")
     assert "clean only" in report and "| Clean SR | 80.0 |" in report
 
 
-def test_the_papers_figures_stand_only_beside_its_severity(tmp_path):
+def test_paper_figures_appear_only_at_their_severity(tmp_path):
     rows.write(tmp_path / "rows.jsonl", column(8, ALL, name="da_per_frame", severity=0.9))
     cfg = config(tmp_path / "out", severity=0.9, rows=[str(tmp_path / "rows.jsonl")])
     lines = tables.make_table(cfg).read_text(encoding="utf-8").splitlines()
     assert "| Motion blur | 40.0 |" in lines
 
 
-def test_walks_are_drawn_where_the_last_agent_wins_episodes_back(tmp_path, quick, monkeypatch):
-    """Every cell's weights are the base agent's, so a test takes seconds; the rows say who won."""
+def test_trajectories_show_episodes_won_back_by_the_last_agent(tmp_path, quick, monkeypatch):
+    """Every cell has the base agent's weights, so a test takes seconds; the rows define the
+    winner."""
     monkeypatch.setattr(tables.Cell, "agent", ())
     cfg = config(tmp_path, walks=["base", "da_per_frame"], episodes=2, seeds=[0])
     ids = [
@@ -373,19 +376,19 @@ def test_walks_are_drawn_where_the_last_agent_wins_episodes_back(tmp_path, quick
         for episode in tables.episodes(conf.load_config("evaluate").env, cfg.split, 2)
     ]
     for cell, wins in zip(tables.cells(cfg), ("10", "11"), strict=True):
-        made = [
+        output = [
             row(i, won == "1", name=cell.column, corruption=c, severity=0.6 * (c != "clean"))
             for c in ("clean", "flare")
             for i, won in zip(ids, wins, strict=True)
         ]
         others = row("of-a-longer-run", True, name=cell.column)
-        rows.write(cell.folder / "evaluation" / "rows.jsonl", [*made, others])
+        rows.write(cell.folder / "evaluation" / "rows.jsonl", [*output, others])
     tables.make_table(cfg)
     assert [p.name for p in (tmp_path / "pictures").iterdir()] == [f"{ids[1]}-flare.png"]
 
 
-def test_walks_are_of_agents_behind_what_stands_in_front_of_them(tmp_path, monkeypatch):
-    """And known by the name that their rows have."""
+def test_trajectories_use_the_input_guard_of_the_table(tmp_path, monkeypatch):
+    """The agent has the name of its rows."""
     cfg = config(tmp_path, seeds=[0], episodes=1, walks=["base", "restored"])
     restored = ["name=base", "restore=checkpoints/restorer:rgb", "safeguard=rules"]
     cfg.columns = {"base": [], "restored": restored}
@@ -394,8 +397,10 @@ def test_walks_are_of_agents_behind_what_stands_in_front_of_them(tmp_path, monke
     for cell, name in zip(tables.cells(cfg), names, strict=True):
         for corruption in ("clean", "flare", "black_box"):
             at = {"corruption": corruption, "severity": 0.6 * (corruption != "clean")}
-            made = row(episode.episode_id, name != "base" or corruption == "flare", name=name, **at)
-            rows.append(cell.evaluation / "rows.jsonl", [made])
+            output = row(
+                episode.episode_id, name != "base" or corruption == "flare", name=name, **at
+            )
+            rows.append(cell.evaluation / "rows.jsonl", [output])
     walked = []
 
     def run_episode(agent, world, episode, met, seed, guards):
@@ -412,11 +417,11 @@ def test_walks_are_of_agents_behind_what_stands_in_front_of_them(tmp_path, monke
     assert repaired == ("black_box", text, ("rgb",))
 
 
-def test_no_walks_without_the_agents_cells(tmp_path):
+def test_trajectories_need_the_agents_cells(tmp_path):
     assert tables.draw_walks(config(tmp_path), tmp_path) == []
 
 
-def test_a_cell_is_measured_in_the_world_that_it_was_trained_in(tmp_path):
+def test_cell_is_measured_in_its_training_world(tmp_path):
     cfg = load("table2", f"out={tmp_path}", 'train=["env.size=32"]')
     cfg.columns = {"mine": ["recipe=da_per_episode", "env.rule=etpnav", "severity=0.9"]}
     (_, train), (_, evaluate) = tables.cells(cfg)[0].commands(cfg)
@@ -424,14 +429,14 @@ def test_a_cell_is_measured_in_the_world_that_it_was_trained_in(tmp_path):
     assert "severity=0.9" in train and "severity=0.6" in evaluate
 
 
-def test_a_column_may_have_configs_of_ones_own(tmp_path):
+def test_column_may_have_user_configs(tmp_path):
     cfg = load("table2", f"out={tmp_path}")
     cfg.columns = {"mine": ["--config-dir=mine", "recipe=own"]}
     commands = tables.cells(cfg)[0].commands(cfg)
     assert all("--config-dir=mine" in words for _, words in commands)
 
 
-def test_a_cell_that_left_no_whole_row_does_not_hide_why(tmp_path, quick, monkeypatch):
+def test_cell_without_a_whole_row_shows_its_error(tmp_path, quick, monkeypatch):
     cfg = config(tmp_path, seeds=[0])
     finished(cfg)
     broken = tables.cells(cfg)[-1]

@@ -27,8 +27,8 @@ def stage(**trainer) -> options.StageConfig:
     return options.StageConfig(recipe=TINY, trainer=options.TrainerConfig(**trainer))
 
 
-def config(folder, *given: str, stages: dict | None = None) -> DictConfig:
-    cfg = conf.load_config("train", ["evaluation.enabled=false", f"folder={folder}", *given])
+def config(folder, *arguments: str, stages: dict | None = None) -> DictConfig:
+    cfg = conf.load_config("train", ["evaluation.enabled=false", f"folder={folder}", *arguments])
     with open_dict(cfg):
         cfg.name, cfg.init = "tiny", None
         cfg.agent = {"_target_": "tests.tiny.TinyAgent"}
@@ -57,7 +57,7 @@ def test_stages_run_in_order_and_leave_agent_and_config(tmp_path):
     assert OmegaConf.load(tmp_path / "agent" / "config.yaml").agent["_target_"]
 
 
-def test_the_second_stage_goes_on_from_the_first(tmp_path):
+def test_second_stage_continues_from_the_first(tmp_path):
     train.run(config(tmp_path / "two"))
     train.run(config(tmp_path / "one", stages={"second": stage(steps=6)}))
     assert not same(weights(tmp_path / "one"), weights(tmp_path / "two"))
@@ -75,7 +75,7 @@ def test_train_resumes_an_interrupted_run(tmp_path, capsys):
     assert same(weights(tmp_path / "whole"), weights(tmp_path / "broken"))
 
 
-def test_a_stage_made_with_other_settings_is_not_resumed(tmp_path):
+def test_stage_with_other_settings_is_not_resumed(tmp_path):
     train.run(config(tmp_path))
     with pytest.raises(ValueError, match=r"trainer\.lr"):
         train.run(config(tmp_path, "trainer.lr=0.5"))
@@ -93,7 +93,7 @@ class OwnAgent(TinyAgent):
 """
 
 
-def test_a_stage_trained_by_other_code_of_ones_own_is_not_resumed(tmp_path, monkeypatch):
+def test_stage_with_other_user_code_is_not_resumed(tmp_path, monkeypatch):
     monkeypatch.syspath_prepend(tmp_path)
     folder, cfg = tmp_path / "run", config(tmp_path / "run")
     cfg.agent = {"_target_": "own_scaled_agent.OwnAgent"}
@@ -112,7 +112,7 @@ def test_a_stage_trained_by_other_code_of_ones_own_is_not_resumed(tmp_path, monk
     assert (folder / "agent").is_dir()
 
 
-def test_a_refused_resume_leaves_the_folder_as_it_is(tmp_path):
+def test_rejected_resume_leaves_the_folder_unchanged(tmp_path):
     train.run(config(tmp_path))
     before = {p: p.read_bytes() for p in tmp_path.rglob("*") if p.is_file()}
     with pytest.raises(ValueError, match="other settings"):
@@ -123,12 +123,12 @@ def test_a_refused_resume_leaves_the_folder_as_it_is(tmp_path):
 
 def test_train_skips_a_damaged_checkpoint(tmp_path, capsys):
     train.run(config(tmp_path))
-    wanted = weights(tmp_path)
+    expected = weights(tmp_path)
     newest = states.checkpoints(tmp_path / "second")[-1]
     os.truncate(newest, newest.stat().st_size // 2)
     train.run(config(tmp_path))
     assert f"{newest} is damaged; resuming from step-00000004.pt" in capsys.readouterr().out
-    assert same(wanted, weights(tmp_path)) and states.load(newest)["step"] == 6
+    assert same(expected, weights(tmp_path)) and states.load(newest)["step"] == 6
 
 
 def test_train_rewrites_damaged_final_weights(tmp_path):
@@ -143,10 +143,10 @@ def test_train_rewrites_damaged_final_weights(tmp_path):
     checkpoint.load_weights(TinyAgent(), tmp_path / "agent")
 
 
-def test_a_negative_number_of_workers_is_refused(tmp_path):
+def test_negative_number_of_workers_is_rejected(tmp_path):
     with pytest.raises(ValueError, match="null uses one per core"):
         train.run(config(tmp_path, "workers=-1"))
-    for wrong in (0, -3):  # which showed only after the training
+    for wrong in (0, -3):  # an error that showed only after the training
         with pytest.raises(
             ValueError, match=f"evaluation.workers must be from 1 to 256, got {wrong}"
         ):
@@ -171,13 +171,14 @@ def test_train_rejects_invalid_options_before_building(tmp_path, option, words, 
         train.run(config(tmp_path, option))
 
 
-def test_a_run_says_first_what_it_will_do_and_how_long_that_takes(tmp_path, capsys):
+def test_run_reports_its_plan_and_duration_first(tmp_path, capsys):
     cfg = config(tmp_path)
     cfg.stages.first.cost, cfg.stages.second.cost = 60.0, 60.0
     train.run(cfg)
-    said = capsys.readouterr().out.splitlines()[1]  # the first is of a schedule that none draws
-    assert said.startswith("tiny: first 4 steps, second 6 steps: about ") and "min" in said
-    train.run(cfg)  # what is done takes no time
+    # the first line is about a schedule that draws nothing
+    printed = capsys.readouterr().out.splitlines()[1]
+    assert printed.startswith("tiny: first 4 steps, second 6 steps: about ") and "min" in printed
+    train.run(cfg)  # finished work takes no time
     assert "about 0 s" in capsys.readouterr().out.splitlines()[1]
 
 
@@ -203,7 +204,7 @@ def test_default_folder_contains_changed_options():
     name = options.default_folder(cfg, "init=checkpoints/mine,debug=smoke")
     assert name == "runs/da_success-s0.9-d0.8-seed3-init-checkpoints_mine_debug-smoke"
     swept, single = (options.default_folder(cfg, f"a.b={value}") for value in ("False", "false"))
-    assert swept == single  # Hydra writes a sweep's values in Python's words
+    assert swept == single  # Hydra writes the values of a sweep in Python's syntax
 
 
 def test_column_name_contains_training_options():
@@ -218,16 +219,16 @@ def test_column_name_contains_training_options():
 
 @pytest.mark.parametrize("option", ["evaluation.episodes=null", "trainer.figure_every=7"])
 def test_default_folder_ignores_options_without_effect(option, monkeypatch):
-    """More episodes to report on must not train again."""
+    """More reported episodes must not cause another training."""
     met = []
     monkeypatch.setattr(train, "run", lambda cfg: met.append(cfg.folder))
-    for given in ([], [option]):
-        monkeypatch.setattr(sys, "argv", ["train", "recipe=da_success", *given])
+    for value in ([], [option]):
+        monkeypatch.setattr(sys, "argv", ["train", "recipe=da_success", *value])
         conf.main(train.hydra_main, "train")
     assert met == ["runs/da_success-s0.6-seed0"] * 2
 
 
-def test_build_hands_the_very_object_on_and_shows_a_users_error():
+def test_build_passes_objects_on_and_shows_user_errors():
     agent = TinyAgent()
     assert build(OmegaConf.create(TINY), agent=agent).agent is agent
     node = OmegaConf.create(

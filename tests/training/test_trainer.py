@@ -42,18 +42,18 @@ def recipe(**settings) -> TinyRecipe:
 
 
 def trained(folder: Path, **settings) -> dict[str, torch.Tensor]:
-    made = recipe()
-    Trainer(made, folder=folder, **{"steps": 20, "save_every": 5, **settings}).fit()
-    return {name: value.clone() for name, value in made.agent.state_dict().items()}
+    objective = recipe()
+    Trainer(objective, folder=folder, **{"steps": 20, "save_every": 5, **settings}).fit()
+    return {name: value.clone() for name, value in objective.agent.state_dict().items()}
 
 
 def test_trainer_notices_a_lost_folder(tmp_path, monkeypatch):
     save = states.save
 
     def save_and_lose(folder, state, **options):
-        written = save(folder, state, **options)
+        saved = save(folder, state, **options)
         shutil.rmtree(folder)
-        return written
+        return saved
 
     monkeypatch.setattr(states, "save", save_and_lose)
     with pytest.raises(FolderLostError, match="run was removed or replaced"):
@@ -72,16 +72,16 @@ def same(one: dict[str, torch.Tensor], two: dict[str, torch.Tensor]) -> bool:
     return one.keys() == two.keys() and all(torch.equal(one[name], two[name]) for name in one)
 
 
-def test_the_same_seed_trains_the_same_weights(tmp_path):
+def test_same_seed_trains_the_same_weights(tmp_path):
     assert same(trained(tmp_path / "a"), trained(tmp_path / "b"))
 
 
-def test_another_seed_trains_other_weights(tmp_path):
+def test_other_seed_trains_other_weights(tmp_path):
     assert not same(trained(tmp_path / "a"), trained(tmp_path / "b", seed=1))
 
 
 @pytest.mark.parametrize("precision", ["fp32", "bf16"])
-def test_a_resumed_run_equals_an_unbroken_one(tmp_path, precision):
+def test_resumed_run_equals_an_uninterrupted_one(tmp_path, precision):
     whole = trained(tmp_path / "whole", precision=precision)
     trained(tmp_path / "broken", precision=precision)
     states.checkpoints(tmp_path / "broken")[-1].unlink()  # back to step 15
@@ -89,7 +89,7 @@ def test_a_resumed_run_equals_an_unbroken_one(tmp_path, precision):
     assert same(whole, trained(tmp_path / "broken", precision=precision))
 
 
-def test_a_resumed_run_has_logged_what_an_unbroken_one_has(tmp_path):
+def test_resumed_run_logs_what_an_uninterrupted_one_logs(tmp_path):
     from tensorboard.backend.event_processing.event_accumulator import EventAccumulator
 
     how = {"log_every": 5, "save_every": 5, "eval_every": 5}
@@ -113,7 +113,7 @@ def test_logging_evaluation_and_saving_do_not_change_the_weights(tmp_path):
     assert same(quiet, busy)
 
 
-def test_a_run_killed_in_the_middle_resumes_to_the_same_weights(tmp_path):
+def test_killed_run_resumes_to_the_same_weights(tmp_path):
     environment = {**os.environ, "PYTHONPATH": str(ROOT), "OMP_NUM_THREADS": "1"}
     command = [sys.executable, "-c", RUN, str(tmp_path / "killed")]
     killed = subprocess.Popen(command, env=environment, cwd=ROOT)
@@ -129,22 +129,22 @@ def test_a_run_killed_in_the_middle_resumes_to_the_same_weights(tmp_path):
     assert same(resumed, whole)
 
 
-def test_a_finished_run_returns_at_once_and_says_so(tmp_path, capsys):
+def test_finished_run_returns_at_once(tmp_path, capsys):
     first = trained(tmp_path)
     capsys.readouterr()
     assert same(first, trained(tmp_path))
     assert "already trained for 20 steps" in capsys.readouterr().out
 
 
-def test_after_any_flipped_bit_the_older_checkpoint_is_used(tmp_path, capsys):
+def test_flipped_bit_falls_back_to_the_older_checkpoint(tmp_path, capsys):
     whole = trained(tmp_path)
     newest = states.checkpoints(tmp_path)[-1]
     sound = newest.read_bytes()
     draw = seeding.generator(0, "flipped bits of a trainer's checkpoint")
     for bit in draw.integers(0, 8 * len(sound), FLIPS):
         newest.write_bytes(flipped(sound, int(bit)))
-        made = recipe()
-        assert Trainer(made, steps=20, save_every=5, folder=tmp_path)._resume() == 15
+        objective = recipe()
+        assert Trainer(objective, steps=20, save_every=5, folder=tmp_path)._resume() == 15
         assert f"{newest} is damaged; resuming from step-00000015.pt" in capsys.readouterr().out
     assert same(whole, trained(tmp_path)) and states.load(newest)["step"] == 20
 
@@ -167,15 +167,15 @@ def test_extra_state_is_resumed(tmp_path):
 
 
 def test_frozen_weights_stay_and_are_not_in_the_optimiser(tmp_path):
-    made = recipe()
-    before = made.agent.frozen.weight.clone()
-    trainer = Trainer(made, steps=3, folder=tmp_path, weight_decay=0.5)
+    objective = recipe()
+    before = objective.agent.frozen.weight.clone()
+    trainer = Trainer(objective, steps=3, folder=tmp_path, weight_decay=0.5)
     trainer.fit()
-    assert torch.equal(made.agent.frozen.weight, before)
+    assert torch.equal(objective.agent.frozen.weight, before)
     assert all(p.requires_grad for p in trainer.trained) and len(trainer.trained) == 4
 
 
-def test_a_recipe_with_nothing_to_train_is_refused(tmp_path):
+def test_recipe_without_trainable_parts_is_rejected(tmp_path):
     with pytest.raises(ValueError, match="every parameter is frozen"):
         Trainer(recipe().requires_grad_(False), steps=1, folder=tmp_path)
 
@@ -193,7 +193,7 @@ def test_plain_lines_name_step_rate_and_time_left(tmp_path, capsys):
     assert "step 10/20" in out and "steps_per_s" in out and " s left" in out and "lr 0.0005" in out
 
 
-def test_a_terminal_gets_a_bar_with_the_time_left(tmp_path, capsys, monkeypatch):
+def test_terminal_shows_a_bar_with_the_time_left(tmp_path, capsys, monkeypatch):
     monkeypatch.setattr("sys.stdout.isatty", lambda: True, raising=False)
     trained(tmp_path, log_every=10)
     out = capsys.readouterr().out
@@ -211,26 +211,26 @@ def test_scalars_and_pictures_are_in_tensorboard(tmp_path):
     assert events.Tags()["images"] == ["noise"]
 
 
-def test_a_nan_loss_stops_with_step_recipe_and_episodes(tmp_path):
-    made = recipe(bad_step=7)
+def test_nan_loss_stops_with_step_recipe_and_episodes(tmp_path):
+    objective = recipe(bad_step=7)
     with pytest.raises(LossNotFinite) as error:
-        Trainer(made, steps=20, folder=tmp_path, save_every=5).fit()
+        Trainer(objective, steps=20, folder=tmp_path, save_every=5).fit()
     for part in ("step 7", "TinyRecipe", "episode-7", "step-00000005.pt"):
         assert part in str(error.value)
-    assert all(torch.isfinite(p).all() for p in made.parameters())
+    assert all(torch.isfinite(p).all() for p in objective.parameters())
     assert states.checkpoints(tmp_path)[-1].name == "step-00000005.pt"
 
 
-def test_an_infinite_gradient_stops_before_it_is_applied(tmp_path):
+def test_infinite_gradient_stops_before_the_update(tmp_path):
     class Overflow(TinyRecipe):
         def forward(self, batch):
             return {"loss": (self.agent.body(batch["inputs"]) * 0).sqrt().sum()}  # d sqrt(0) = inf
 
-    made = Overflow()
-    before = {name: value.clone() for name, value in made.agent.state_dict().items()}
+    output = Overflow()
+    before = {name: value.clone() for name, value in output.agent.state_dict().items()}
     with pytest.raises(LossNotFinite, match="gradient norm nan"):
-        Trainer(made, steps=3, folder=tmp_path).fit()
-    assert same(before, made.agent.state_dict())
+        Trainer(output, steps=3, folder=tmp_path).fit()
+    assert same(before, output.agent.state_dict())
 
 
 def test_trainer_rejects_the_folder_of_another_run(tmp_path):
@@ -266,7 +266,7 @@ def test_trainer_rejects_the_folder_of_another_run(tmp_path):
         ({"device": ""}, "trainer.device= cannot"),
     ],
 )
-def test_a_setting_out_of_range_names_the_allowed_values(tmp_path, setting, words):
+def test_setting_out_of_range_names_the_allowed_values(tmp_path, setting, words):
     with pytest.raises(ValueError, match=words):
         trained(tmp_path, **setting)
 
@@ -283,7 +283,7 @@ def test_a_setting_out_of_range_names_the_allowed_values(tmp_path, setting, word
         (lambda loss: {"loss": loss, "note": "text"}, "returned 'note' as str"),
     ],
 )
-def test_what_forward_must_return_is_said(tmp_path, returned, words):
+def test_wrong_forward_result_is_explained(tmp_path, returned, words):
     class Own(TinyRecipe):
         def forward(self, batch):
             return returned(super().forward(batch)["loss"])
@@ -295,7 +295,7 @@ def test_what_forward_must_return_is_said(tmp_path, returned, words):
 def test_weights_that_are_no_numbers_are_not_saved(tmp_path):
     class Poisoned(TinyRecipe):
         def forward(self, batch):
-            if self.count == 8:  # after the gradient is known, as an overflow in the update does
+            if self.count == 8:  # after the gradient is computed, like an overflow in the update
                 self.agent.body[2].bias.register_hook(self._poison)
             return super().forward(batch)
 
@@ -309,7 +309,7 @@ def test_weights_that_are_no_numbers_are_not_saved(tmp_path):
 
 
 @pytest.mark.skipif(torch.cuda.is_available(), reason="there is CUDA")
-def test_a_gpu_that_is_not_there_is_named(tmp_path):
+def test_missing_gpu_is_named(tmp_path):
     with pytest.raises(
         ValueError, match="trainer.device=cuda cannot be used here .it is not available"
     ):
@@ -333,7 +333,7 @@ def test_differences_names_leaves_only():
     assert differences({"a": 1}, {"a": 1, "d": 2}) == ["d: None -> 2"]
 
 
-def test_to_device_keeps_what_is_no_tensor():
+def test_to_device_keeps_values_that_are_not_tensors():
     batch = {"x": torch.zeros(2), "nested": [torch.ones(1)], "episode_ids": ["a"]}
     moved = to_device(batch, torch.device("cpu"))
     assert moved["episode_ids"] == ["a"] and torch.equal(moved["nested"][0], torch.ones(1))

@@ -94,7 +94,7 @@ def test_gym_world_runs_an_environment(entry):
     measures = run_episode(agent, world, episode(3), CLEAN, 0)
     assert measures["success"] == 1 and measures["steps"] == 4 == measures["decisions"]
     dark = run_episode(agent, world, episode(3), Corruption("low_light", 1.0), 0)
-    assert dark["success"] == 0 and dark["steps"] == 1  # it stops in what it takes for the dark
+    assert dark["success"] == 0 and dark["steps"] == 1  # it stops in frames that look dark
     world.reset(episode(3))
     with pytest.raises(ValueError, match="must be 0 to 1, got"):
         world.step(5)
@@ -168,17 +168,17 @@ def test_gym_world_passes_the_ending_to_success():
 NO_TRUTH = [float("nan"), "False", {"s": False}, 0.3, -1, "no", [0, 2], [[1], [0, 1]]]
 
 
-@pytest.mark.parametrize("told", NO_TRUTH, ids=str)
-def test_gym_world_rejects_invalid_success_values(told):
+@pytest.mark.parametrize("reported", NO_TRUTH, ids=str)
+def test_gym_world_rejects_invalid_success_values(reported):
     from mitigate.worlds.gym import GymWorld
 
-    world = GymWorld(Room(), success=lambda end: told, rule="anything")
+    world = GymWorld(Room(), success=lambda end: reported, rule="anything")
     with pytest.raises(ValueError, match=r"must be a truth value, 0 or 1"):
         run_episode(Brightness(), world, episode(3), CLEAN, 0)
 
 
 @pytest.mark.parametrize(
-    ("told", "won"),
+    ("reported", "won"),
     [
         *((value, 0) for value in (None, [], [False], False, 0, 0.0, np.bool_(False))),
         *((value, 1) for value in (1, 1.0, np.float32(1), np.uint8(1), [0, 1], np.ones((1, 1)))),
@@ -187,10 +187,10 @@ def test_gym_world_rejects_invalid_success_values(told):
     ],
     ids=str,
 )
-def test_gym_world_accepts_truth_values(told, won):
+def test_gym_world_accepts_truth_values(reported, won):
     from mitigate.worlds.gym import GymWorld
 
-    world = GymWorld(Room(), success=lambda end: told, rule="anything")
+    world = GymWorld(Room(), success=lambda end: reported, rule="anything")
     assert run_episode(Brightness(), world, episode(3), CLEAN, 0)["success"] == won
 
 

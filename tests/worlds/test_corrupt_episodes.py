@@ -114,7 +114,7 @@ def test_run_uses_a_named_tokenizer(tmp_path):
     assert tokens[: len(tokenizer(text)["input_ids"])] == tokenizer(text)["input_ids"]
     spoken = {"instruction_text": "Gehe links.", "language": "de-DE"}
     source = write(tmp_path / "in.json.gz", *(episode(i) for i in range(8)), episode(8, **spoken))
-    for severity in (0.0, 0.5):  # what the draw leaves as it is has the agent's tokens, too
+    for severity in (0.0, 0.5):  # an unchanged draw has the agent's tokens, too
         run(source, tmp_path / "o.json", "formal", severity, tokenizer=str(tmp_path / "named"))
         for got in json.loads((tmp_path / "o.json").read_text())["episodes"]:
             text, tokens = (got["instruction"][f"instruction_{x}"] for x in ("text", "tokens"))
@@ -333,7 +333,7 @@ def test_main_explains_invalid_arguments(tmp_path, capsys):
 
 def test_module_runs_as_a_program(tmp_path):
     source = write(tmp_path / "in.json.gz", episode(1))
-    told = subprocess.run(
+    printed = subprocess.run(
         [
             *(
                 sys.executable,
@@ -348,7 +348,7 @@ def test_module_runs_as_a_program(tmp_path):
         text=True,
         check=True,
     )
-    assert json.loads(told.stdout)["changed"] == 1 and "notice" in told.stderr
+    assert json.loads(printed.stdout)["changed"] == 1 and "notice" in printed.stderr
 
 
 @needs_r2r_ce

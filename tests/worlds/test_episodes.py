@@ -97,8 +97,8 @@ def test_write_episodes_writes_a_replaced_id(tmp_path):
     source = write_json(tmp_path / "a.json", {"episodes": [R2R]})
     renamed = (dataclasses.replace(e, episode_id="7/mask") for e in read_episodes(source))
     write_episodes(tmp_path / "b.json.gz", renamed)
-    (written,) = load(tmp_path / "b.json.gz")["episodes"]
-    assert (written["episode_id"], written["trajectory_id"]) == ("7/mask", 4)
+    (saved,) = load(tmp_path / "b.json.gz")["episodes"]
+    assert (saved["episode_id"], saved["trajectory_id"]) == ("7/mask", 4)
 
 
 def test_write_episodes_is_deterministic(tmp_path):
@@ -304,10 +304,10 @@ def test_real_ground_truth_matches_its_episodes():
 
 def test_read_episodes_accepts_seeded_episodes(tmp_path):
     listed = seeded_episodes(range(3), "Find the lamp.")
-    written = write_episodes(tmp_path / "val.json", listed)
-    assert list(read_episodes(written)) == [
+    saved = write_episodes(tmp_path / "val.json", listed)
+    assert list(read_episodes(saved)) == [
         dataclasses.replace(one, extra=results.extra)
-        for one, results in zip(listed, read_episodes(written), strict=True)
+        for one, results in zip(listed, read_episodes(saved), strict=True)
     ]
     least = {"episode_id": "a", "info": {"seed": 7}, "instruction": {"instruction_text": "Go."}}
     (one,) = read_episodes(write_json(tmp_path / "least.json", {"episodes": [least]}))

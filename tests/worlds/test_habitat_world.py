@@ -38,7 +38,7 @@ def test_navmesh_settings_have_a_default_file(tmp_path):
 
 
 @pytest.mark.parametrize(
-    "given, words",
+    "value, words",
     [
         ({"rule": "etpnaw"}, "no success rule 'etpnaw'. Did you mean etpnav"),
         ({"rule": "objectnav"}, "no success rule 'objectnav'.*vln_ce.*no view points"),
@@ -46,9 +46,9 @@ def test_navmesh_settings_have_a_default_file(tmp_path):
         ({"views": 4}, r"must be 12 \(panorama\) or 1"),
     ],
 )
-def test_habitat_world_rejects_invalid_arguments_first(given, words):
+def test_habitat_world_rejects_invalid_arguments_first(value, words):
     with pytest.raises(ValueError, match=words):
-        HabitatWorld("scenes", **given)
+        HabitatWorld("scenes", **value)
 
 
 class Simulator:
@@ -88,9 +88,9 @@ def test_failed_scene_is_loaded_again(tmp_path, monkeypatch):
 
 def started(rule, monkeypatch):
     """Return a world at the start of an episode, without a simulator."""
-    told = SimpleNamespace(reference_path=[(0.0, 0.0, 0.0), (0.0, 0.0, -2.0)])
+    reported = SimpleNamespace(reference_path=[(0.0, 0.0, 0.0), (0.0, 0.0, -2.0)])
     habitat = HabitatWorld("scenes", rule=rule)
-    vars(habitat).update(episode=told, path=[np.zeros(3)], start_distance=2.0)
+    vars(habitat).update(episode=reported, path=[np.zeros(3)], start_distance=2.0)
     vars(habitat).update(stopped=False, steps=0, collisions=0)
     monkeypatch.setattr(habitat, "distance_to_goal", lambda: 2.0)
     monkeypatch.setattr(habitat, "_observation", lambda: None)

@@ -139,7 +139,7 @@ def test_replay_buffer_gives_the_same_frames(storage, tmp_path):
     buffer = ReplayBuffer(storage=storage(len(clean), **options), batch_size=8)
     buffer.append_transform(CorruptObservation(HURT, seed=4))
     buffer.extend(clean)
-    for _ in range(2):  # what is stored stays clean
+    for _ in range(2):  # stored frames stay clean
         drawn = buffer[:]
         for name in ("rgb", "depth", ("next", "rgb"), ("next", "depth")):
             assert torch.equal(drawn[name], expected[name])
@@ -172,10 +172,10 @@ def test_corrupt_observation_explains_a_missing_modality():
         [2, 3],
     )
     out = CorruptObservation(Schedule.always("foreign_object", 1.0))(data.clone())
-    told = CorruptObservation(Corruption("foreign_object", 1.0))(data.clone())
-    assert (told["rgb"] == out["rgb"]).all()
+    reported = CorruptObservation(Corruption("foreign_object", 1.0))(data.clone())
+    assert (reported["rgb"] == out["rgb"]).all()
     assert out["rgb"].shape == (2, 3, 8, 8, 3) and (out["rgb"][..., 4, 4, :] == 0).all()
-    mostly_clean = Schedule("per_frame", 0.6, clean_share=1.0)  # would not ask for depth today
+    mostly_clean = Schedule("per_frame", 0.6, clean_share=1.0)  # would not need depth now
     for schedule in (Schedule.always("multipath", 1.0), mostly_clean):
         with pytest.raises(
             ValueError, match="corrupts depth, but the data have no depth.*name the entry"

@@ -156,18 +156,18 @@ def test_grid_covers_the_longest_episode():
 
 
 def test_act_all_keeps_episodes_independent():
-    made, episodes = FrontierAgent(size=16).eval(), load_episodes("val_seen", "ogn")[:3]
-    assert made.together > 1
+    new_agent, episodes = FrontierAgent(size=16).eval(), load_episodes("val_seen", "ogn")[:3]
+    assert new_agent.together > 1
     worlds = [ApartmentsWorld(16, 2, 1) for _ in episodes]
     seen = [world.reset(episode) for world, episode in zip(worlds, episodes, strict=True)]
-    memories = [made.begin(episode.instruction.text) for episode in episodes]
-    alone, world = made.begin(episodes[1].instruction.text), ApartmentsWorld(16, 2, 1)
+    memories = [new_agent.begin(episode.instruction.text) for episode in episodes]
+    alone, world = new_agent.begin(episodes[1].instruction.text), ApartmentsWorld(16, 2, 1)
     view, gone = world.reset(episodes[1]), []
     for _ in range(25):
-        actions = made.act_all(seen, memories)
+        actions = new_agent.act_all(seen, memories)
         seen = [world.step(action) for world, action in zip(worlds, actions, strict=True)]
         gone.append(actions[1])
-        assert made.act_all([view], [alone]) == [actions[1]]
+        assert new_agent.act_all([view], [alone]) == [actions[1]]
         view = world.step(actions[1])
     assert np.array_equal(alone.grid.evidence, memories[1].grid.evidence)
     assert set(gone) > {LEFT}  # it has turned around, and left

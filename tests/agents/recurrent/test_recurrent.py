@@ -30,10 +30,10 @@ World = partial(ApartmentsWorld, SIZE, 2, 1)
 
 def agent(*sensors: str, **settings) -> RecurrentAgent:
     seed_everything(0, "recurrent")
-    made = RecurrentAgent(sensors or (RGB, DEPTH), 8, 8, SMALL, size=SIZE, **settings).eval()
+    new_agent = RecurrentAgent(sensors or (RGB, DEPTH), 8, 8, SMALL, size=SIZE, **settings).eval()
     with torch.no_grad():
-        made.policy.act[-1].bias[STOP] = -4.0  # untrained, it would stop at once
-    return made
+        new_agent.policy.act[-1].bias[STOP] = -4.0  # untrained, it would stop at once
+    return new_agent
 
 
 def walked(by: RecurrentAgent, count: int = 2, *, share: float = 0.5, clean: bool = False):
@@ -59,65 +59,67 @@ def test_recurrent_agent_is_trainable_and_seeing():
 
 @pytest.mark.usefixtures("short_episodes")
 def test_decide_equals_step_by_step_actions():
-    made, episode = agent(), load_episodes("val_seen")[0]
+    new_agent, episode = agent(), load_episodes("val_seen")[0]
     with torch.no_grad():
-        made.policy.act[-1].bias[FORWARD] = 50.0  # whatever it sees, so both take the same way
+        new_agent.policy.act[-1].bias[FORWARD] = 50.0  # whatever it sees, so both take the same way
     how = {"expert_share": 0.0, "rngs": [generator(0, "same")]}
-    piece = made.collect([World()], [episode], **how)
+    piece = new_agent.collect([World()], [episode], **how)
     with torch.no_grad():
-        batch = made.decide(made.join([piece])).features["state"]
+        batch = new_agent.decide(new_agent.join([piece])).features["state"]
     world = World()
     seen = world.reset(episode)
-    made.reset(episode.instruction.text)
+    new_agent.reset(episode.instruction.text)
     for state in batch:
-        assert made.act(seen) == FORWARD
-        assert torch.allclose(made._walk.state.hidden[0], state, atol=1e-4)
+        assert new_agent.act(seen) == FORWARD
+        assert torch.allclose(new_agent._walk.state.hidden[0], state, atol=1e-4)
         seen = world.step(FORWARD)
 
 
 @pytest.mark.usefixtures("short_episodes")
 def test_collect_keeps_rollouts_independent():
-    made = agent()
-    together = made.join([walked(made, 2, share=1.0)])
-    alone = made.join([walked(made, 1, share=1.0)])
+    new_agent = agent()
+    together = new_agent.join([walked(new_agent, 2, share=1.0)])
+    alone = new_agent.join([walked(new_agent, 1, share=1.0)])
     with torch.no_grad():
-        both, one = made.decide(together).logits, made.decide(alone).logits
+        both, one = new_agent.decide(together).logits, new_agent.decide(alone).logits
     assert torch.allclose(both[: len(one)], one, atol=1e-4)
 
 
 def test_collect_never_takes_the_agents_stop():
-    made = agent()
+    new_agent = agent()
     with torch.no_grad():
-        made.policy.act[-1].bias[STOP] = 50.0
-    piece = walked(made, 1, share=0.0)
+        new_agent.policy.act[-1].bias[STOP] = 50.0
+    piece = walked(new_agent, 1, share=0.0)
     assert piece["lengths"][0] > 1  # with its own STOP the walk would end at once
     assert piece["answer"][-1] == STOP  # the expert's ends it
 
 
 @pytest.mark.usefixtures("short_episodes")
 def test_collect_stores_features_of_frozen_encoders():
-    made = agent()
-    made.requires_grad_(False)
-    made.policy.requires_grad_(True)
-    assert set(walked(made)["seen"]) == {"views", "goal"}
-    made.rgb_encoder.requires_grad_(True)
-    piece = walked(made, clean=True)
+    new_agent = agent()
+    new_agent.requires_grad_(False)
+    new_agent.policy.requires_grad_(True)
+    assert set(walked(new_agent)["seen"]) == {"views", "goal"}
+    new_agent.rgb_encoder.requires_grad_(True)
+    piece = walked(new_agent, clean=True)
     assert {RGB, DEPTH, "concepts", "free", "clean_rgb", "clean_depth"} <= set(piece["seen"])
-    out = made.decide(made.join([piece]))
+    out = new_agent.decide(new_agent.join([piece]))
     assert {"concepts", "free", "distance", "grounding"} == set(out.losses)
     out.losses["concepts"].backward()
-    assert made.rgb_encoder.stem[0].weight.grad.abs().sum() > 0
+    assert new_agent.rgb_encoder.stem[0].weight.grad.abs().sum() > 0
 
 
 @pytest.mark.usefixtures("short_episodes")
 def test_precompute_keeps_the_clean_output():
-    made = agent()
-    made.requires_grad_(False)
-    piece = walked(made, clean=True)
-    frames = made.decide(made.join([piece]), clean=True).logits
-    known = made.decide(made.join([made.precompute(piece, clean=True)]), clean=True).logits
+    new_agent = agent()
+    new_agent.requires_grad_(False)
+    piece = walked(new_agent, clean=True)
+    frames = new_agent.decide(new_agent.join([piece]), clean=True).logits
+    known = new_agent.decide(
+        new_agent.join([new_agent.precompute(piece, clean=True)]), clean=True
+    ).logits
     assert torch.allclose(frames, known, atol=1e-5)
-    corrupted = made.decide(made.join([piece])).logits
+    corrupted = new_agent.decide(new_agent.join([piece])).logits
     assert not torch.allclose(frames, corrupted, atol=1e-5)
 
 
@@ -131,53 +133,54 @@ def test_collect_weights_changes_of_action():
 
 def test_rgb_agent_ignores_depth(monkeypatch):
     monkeypatch.setattr(simulator, "MAX_STEPS", 60)  # untrained, it does not stop before
-    made, episode = agent(RGB), load_episodes("val_seen")[1]
-    clean = run_episode(made, World(), episode, Corruption("clean", 0.0), 0)
-    gone = run_episode(made, World(), episode, Corruption("missing_data", 1.0), 0)
+    new_agent, episode = agent(RGB), load_episodes("val_seen")[1]
+    clean = run_episode(new_agent, World(), episode, Corruption("clean", 0.0), 0)
+    gone = run_episode(new_agent, World(), episode, Corruption("missing_data", 1.0), 0)
     assert clean == gone
 
 
 @pytest.mark.parametrize("sense", [RGB, DEPTH, "instruction"])
 def test_blind_agent_ignores_the_input(sense):
-    made = agent(blind=[sense])
-    made.reset("turn left" if sense == "instruction" else "go to the bed")
+    new_agent = agent(blind=[sense])
+    new_agent.reset("turn left" if sense == "instruction" else "go to the bed")
     world = World()
     seen = dict(world.reset(load_episodes("val_seen")[0]))
-    made.act(seen)
-    first = made._walk.state.hidden
-    made.reset("go to the bed")
+    new_agent.act(seen)
+    first = new_agent._walk.state.hidden
+    new_agent.reset("go to the bed")
     if sense != "instruction":
         seen[sense] = (seen[sense] * 0.5).astype(seen[sense].dtype)
-    made.act(seen)
-    assert torch.equal(first, made._walk.state.hidden)
+    new_agent.act(seen)
+    assert torch.equal(first, new_agent._walk.state.hidden)
 
 
 def test_act_all_keeps_episodes_independent():
-    made, episodes = agent(), load_episodes("val_seen")[:3]
+    new_agent, episodes = agent(), load_episodes("val_seen")[:3]
     seen = [World().reset(episode) for episode in episodes]
-    memories = [made.begin(episode.instruction.text) for episode in episodes]
-    actions = made.act_all(seen, memories)
+    memories = [new_agent.begin(episode.instruction.text) for episode in episodes]
+    actions = new_agent.act_all(seen, memories)
     for number in (2, 0):  # alone, in another place of the batch
-        alone = made.begin(episodes[number].instruction.text)
-        assert made.act_all([seen[number]], [alone]) == [actions[number]]
+        alone = new_agent.begin(episodes[number].instruction.text)
+        assert new_agent.act_all([seen[number]], [alone]) == [actions[number]]
         assert torch.equal(alone.state.hidden, memories[number].state.hidden)
-        made.reset(episodes[number].instruction.text)
-        assert made.act(seen[number]) == actions[number]
-        assert torch.allclose(made._walk.state.hidden, alone.state.hidden, atol=1e-5)
+        new_agent.reset(episodes[number].instruction.text)
+        assert new_agent.act(seen[number]) == actions[number]
+        assert torch.allclose(new_agent._walk.state.hidden, alone.state.hidden, atol=1e-5)
 
 
 def test_evaluation_of_many_episodes_gives_equal_rows(tmp_path):
-    made, episodes = agent(), load_episodes("val_seen")[:4]
+    new_agent, episodes = agent(), load_episodes("val_seen")[:4]
     with torch.no_grad():
-        made.policy.act[-1].bias[STOP] = 0.1  # it goes some steps
+        new_agent.policy.act[-1].bias[STOP] = 0.1  # it goes some steps
     met = [CLEAN, Corruption("low_light", 0.8), Corruption("black_box", 1.0)]
     how = {"name": "test", "split": "val_seen"}
-    found = evaluate(made, World, episodes, met, out=tmp_path / "all.jsonl", **how)
+    records = evaluate(new_agent, World, episodes, met, out=tmp_path / "all.jsonl", **how)
     assert (
-        evaluate(made, World, episodes, met[1:2], out=tmp_path / "one.jsonl", **how) == found[1::3]
+        evaluate(new_agent, World, episodes, met[1:2], out=tmp_path / "one.jsonl", **how)
+        == records[1::3]
     )
-    for row, (episode, corruption) in zip(found, product(episodes, met), strict=True):
-        assert run_episode(made, World(), episode, corruption, 0).items() <= row.items()
+    for row, (episode, corruption) in zip(records, product(episodes, met), strict=True):
+        assert run_episode(new_agent, World(), episode, corruption, 0).items() <= row.items()
 
 
 def test_constructor_rejects_invalid_arguments():
@@ -188,16 +191,16 @@ def test_constructor_rejects_invalid_arguments():
     with pytest.raises(RuntimeError, match="reset"):
         agent().act({})
     panorama = ApartmentsWorld(SIZE).reset(load_episodes("val_seen")[0])
-    made = agent()
-    made.reset("go to the bed")
+    new_agent = agent()
+    new_agent.reset("go to the bed")
     with pytest.raises(ValueError, match="views=1"):
-        made.act(panorama)
+        new_agent.act(panorama)
 
 
 def test_state_separates_last_and_summed_attention():
     """They once shared a tensor, so that training rollouts followed another policy."""
-    made = agent()
-    state = State.start(made.policy.read(made.tokens(["go left", "go right"])))
+    new_agent = agent()
+    state = State.start(new_agent.policy.read(new_agent.tokens(["go left", "go right"])))
     fresh = State(state.hidden[:1] + 1, state.last[:1] + 0.1, state.sum[:1] + 0.7)
     state.put(torch.tensor([0]), fresh)
     assert torch.all(state.last[0] == 0.1) and torch.all(state.sum[0] == 0.7)

@@ -26,64 +26,66 @@ def agent(**settings) -> TopologicalAgent:
     return TopologicalAgent(16, SMALL, size=32, encoder="efficientnet_lite0", **settings)
 
 
-def features(made: TopologicalAgent) -> torch.Tensor:
+def features(output: TopologicalAgent) -> torch.Tensor:
     frames = torch.arange(12 * 32 * 32 * 3).reshape(1, 12, 32, 32, 3) % 251
     with torch.no_grad():
-        return made.eval().encode_rgb(frames.to(torch.uint8))[0]
+        return output.eval().encode_rgb(frames.to(torch.uint8))[0]
 
 
 def test_checkpoint_leaves_out_public_weights(tmp_path):
-    made = agent()
-    file = checkpoint.save_weights(made, tmp_path)
-    held = checkpoint.load_tensors(file)
-    assert not any(name.startswith(("rgb_encoder.stem", "rgb_encoder.stages")) for name in held)
+    new_agent = agent()
+    file = checkpoint.save_weights(new_agent, tmp_path)
+    content = checkpoint.load_tensors(file)
+    assert not any(name.startswith(("rgb_encoder.stem", "rgb_encoder.stages")) for name in content)
     again = agent()
     with torch.no_grad():
         for parameter in again.parameters():
-            parameter.add_(0.1)  # also the borrowed ones: loading brings them back
+            parameter.add_(0.1)  # also the shared ones: loading restores them
     checkpoint.load_weights(again, tmp_path)
-    assert torch.equal(features(made), features(again))
-    assert torch.equal(features(made), features(copy.deepcopy(made)))
+    assert torch.equal(features(new_agent), features(again))
+    assert torch.equal(features(new_agent), features(copy.deepcopy(new_agent)))
 
 
 def test_checkpoint_keeps_changed_public_weights(tmp_path):
-    made = agent()
+    new_agent = agent()
     with torch.no_grad():
-        made.rgb_encoder.stem[0].weight.mul_(1.1)
-    checkpoint.save_weights(made, tmp_path)
+        new_agent.rgb_encoder.stem[0].weight.mul_(1.1)
+    checkpoint.save_weights(new_agent, tmp_path)
     again = agent()
     checkpoint.load_weights(again, tmp_path)
-    assert torch.equal(again.rgb_encoder.stem[0].weight, made.rgb_encoder.stem[0].weight)
+    assert torch.equal(again.rgb_encoder.stem[0].weight, new_agent.rgb_encoder.stem[0].weight)
 
 
 def test_load_rejects_other_public_weights(tmp_path):
-    made = agent()
-    made.rgb_encoder.public[0] += 1
-    checkpoint.save_weights(made, tmp_path)
+    new_agent = agent()
+    new_agent.rgb_encoder.public[0] += 1
+    checkpoint.save_weights(new_agent, tmp_path)
     with pytest.raises(ValueError, match="another|belong to an EfficientNet-Lite0"):
         checkpoint.load_weights(agent(), tmp_path)
 
 
 def test_training_keeps_pretrained_layers_frozen():
-    made = agent(adapters=RING).train()
-    before = made.rgb_encoder.stem[1].running_mean.clone()
-    views_to_learn(made, "rgb")
-    trained = {name for name, p in made.rgb_encoder.named_parameters() if p.requires_grad}
+    new_agent = agent(adapters=RING).train()
+    before = new_agent.rgb_encoder.stem[1].running_mean.clone()
+    views_to_learn(new_agent, "rgb")
+    trained = {name for name, p in new_agent.rgb_encoder.named_parameters() if p.requires_grad}
     assert {name.split(".")[0] for name in trained if "adapter" not in name} == {
         *("gather", "embed", "concepts")
     }
-    train_only(made, [ADAPTERS])
-    assert all(p.requires_grad for p in adapter_parameters(made))
-    assert sum(p.requires_grad for p in made.parameters()) == len(list(adapter_parameters(made)))
-    made.encode_rgb(torch.zeros(1, 12, 32, 32, 3, dtype=torch.uint8))
-    assert torch.equal(made.rgb_encoder.stem[1].running_mean, before)
+    train_only(new_agent, [ADAPTERS])
+    assert all(p.requires_grad for p in adapter_parameters(new_agent))
+    assert sum(p.requires_grad for p in new_agent.parameters()) == len(
+        list(adapter_parameters(new_agent))
+    )
+    new_agent.encode_rgb(torch.zeros(1, 12, 32, 32, 3, dtype=torch.uint8))
+    assert torch.equal(new_agent.rgb_encoder.stem[1].running_mean, before)
 
 
 def test_gates_in_pretrained_layers_are_open_in_training():
-    made = agent(adapters={**RING, "gates": ["rgb_encoder.stem.0"]}).train()
-    assert all(adapter.training for adapter in adapters_of(made))
-    assert not made.rgb_encoder.stem[1].training
-    assert not any(adapter.training for adapter in adapters_of(made.eval()))
+    new_agent = agent(adapters={**RING, "gates": ["rgb_encoder.stem.0"]}).train()
+    assert all(adapter.training for adapter in adapters_of(new_agent))
+    assert not new_agent.rgb_encoder.stem[1].training
+    assert not any(adapter.training for adapter in adapters_of(new_agent.eval()))
 
 
 def test_new_adapters_keep_the_features():
@@ -99,11 +101,11 @@ def test_constructor_rejects_invalid_arguments():
 
 def test_depth_encoder_keeps_its_size():
     """The depth encoder of the base agent detects free floor only at its size."""
-    made, base = agent(), TopologicalAgent(16, SMALL)
+    new_agent, base = agent(), TopologicalAgent(16, SMALL)
     base.load_state_dict(
-        {n: w for n, w in made.state_dict().items() if not n.startswith("rgb")}, strict=False
+        {n: w for n, w in new_agent.state_dict().items() if not n.startswith("rgb")}, strict=False
     )
     depth = torch.rand(1, 12, 128, 128, 1) * 5
     with torch.no_grad():
-        seen, known = made.eval().encode_depth(depth), base.eval().encode_depth(depth)
+        seen, known = new_agent.eval().encode_depth(depth), base.eval().encode_depth(depth)
     assert all(torch.equal(a, b) for a, b in zip(seen, known, strict=True))

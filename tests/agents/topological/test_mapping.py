@@ -94,12 +94,12 @@ def test_route_takes_the_shorter_way():
 
 def test_decision_lists_stop_nodes_and_ghosts():
     graph = corridor()
-    made = graph.decision(pose(0, 4))
-    assert made.panorama == 2 and made.nodes.tolist() == [0, 1, 2]
-    assert made.geometry.shape == (1 + 3 + 2, GEOMETRY)
-    assert made.travel == pytest.approx([5.5, 2.0])
-    assert made.sightings[:, 0].tolist() == [[0, 3], [2, 0]]  # panorama and view that saw each
-    assert (made.sightings[:, 1:] == -1).all()
+    output = graph.decision(pose(0, 4))
+    assert output.panorama == 2 and output.nodes.tolist() == [0, 1, 2]
+    assert output.geometry.shape == (1 + 3 + 2, GEOMETRY)
+    assert output.travel == pytest.approx([5.5, 2.0])
+    assert output.sightings[:, 0].tolist() == [[0, 3], [2, 0]]  # panorama and view that saw each
+    assert (output.sightings[:, 1:] == -1).all()
 
 
 def test_geometry_is_invariant_to_the_world_frame():

@@ -44,9 +44,9 @@ def score(planner, decisions, rows, offsets, panoramas, tokens) -> torch.Tensor:
     return planner(planner.read(tokens), planner.look(views(planner, panoramas)), batch)["logits"]
 
 
-def split(logits: torch.Tensor, made: Decision, nodes: int) -> tuple[torch.Tensor, torch.Tensor]:
+def split(logits: torch.Tensor, output: Decision, nodes: int) -> tuple[torch.Tensor, torch.Tensor]:
     """Return the scores of [stop] and of the ghosts in a row padded to ``nodes`` nodes."""
-    return logits[0], logits[1 + nodes : 1 + nodes + len(made.ghosts)]
+    return logits[0], logits[1 + nodes : 1 + nodes + len(output.ghosts)]
 
 
 def test_planner_ignores_padding_of_decisions(planner):
@@ -55,34 +55,34 @@ def test_planner_ignores_padding_of_decisions(planner):
     alone = score(planner, [short], [0], [6], 8, tokens)
     together = score(planner, [long, short], [1, 0], [0, 6], 8, tokens)
     stop, ghosts = split(together[1], short, len(long.nodes))
-    wanted_stop, wanted = split(alone[0], short, len(short.nodes))
+    wanted_stop, expected = split(alone[0], short, len(short.nodes))
     assert torch.allclose(stop, wanted_stop, atol=1e-5)
-    assert torch.allclose(ghosts, wanted, atol=1e-5) and len(ghosts) > 2
+    assert torch.allclose(ghosts, expected, atol=1e-5) and len(ghosts) > 2
     padded = together[1, 1 + len(long.nodes) + len(short.ghosts) :]
     assert torch.isinf(padded).all()
 
 
 def test_planner_ignores_padding_of_instructions(planner):
-    made, tokens = decision(3), pad([Vocabulary().encode(TEXT[0])])
+    output, tokens = decision(3), pad([Vocabulary().encode(TEXT[0])])
     longer = torch.nn.functional.pad(tokens, (0, 9), value=PAD)
-    one, other = (score(planner, [made], [0], [0], 3, t) for t in (tokens, longer))
+    one, other = (score(planner, [output], [0], [0], 3, t) for t in (tokens, longer))
     assert torch.allclose(one, other, atol=1e-5)
 
 
 def test_planner_permutes_scores_with_ghosts(planner):
-    made, tokens = decision(4), pad([Vocabulary().encode(TEXT[0])])
-    count, first = len(made.ghosts), 1 + len(made.nodes)
+    output, tokens = decision(4), pad([Vocabulary().encode(TEXT[0])])
+    count, first = len(output.ghosts), 1 + len(output.nodes)
     order = np.random.default_rng(0).permutation(count)
-    geometry = made.geometry.copy()
-    geometry[first:] = made.geometry[first:][order]
+    geometry = output.geometry.copy()
+    geometry[first:] = output.geometry[first:][order]
     moved = replace(
-        made,
-        sightings=made.sightings[order],
+        output,
+        sightings=output.sightings[order],
         geometry=geometry,
-        ghosts=[made.ghosts[i] for i in order],
-        travel=made.travel[order],
+        ghosts=[output.ghosts[i] for i in order],
+        travel=output.travel[order],
     )
-    before, after = (score(planner, [d], [0], [0], 4, tokens)[0] for d in (made, moved))
+    before, after = (score(planner, [d], [0], [0], 4, tokens)[0] for d in (output, moved))
     assert count > 3 and not np.array_equal(order, np.arange(count))
     assert torch.allclose(before[0], after[0], atol=1e-5)
     assert torch.allclose(before[first:][order], after[first:], atol=1e-5)
@@ -90,16 +90,16 @@ def test_planner_permutes_scores_with_ghosts(planner):
 
 
 def test_planner_allows_only_stop_and_ghosts(planner):
-    made = decision(3)
-    logits = score(planner, [made], [0], [0], 3, pad([Vocabulary().encode(TEXT[1])]))[0]
-    nodes = logits[1 : 1 + len(made.nodes)]
-    assert torch.isinf(nodes).all() and torch.isfinite(logits).sum() == 1 + len(made.ghosts)
+    output = decision(3)
+    logits = score(planner, [output], [0], [0], 3, pad([Vocabulary().encode(TEXT[1])]))[0]
+    nodes = logits[1 : 1 + len(output.nodes)]
+    assert torch.isinf(nodes).all() and torch.isfinite(logits).sum() == 1 + len(output.ghosts)
 
 
 def test_planner_reads_instruction_and_views(planner):
-    made, tokens = decision(3), pad([Vocabulary().encode(text) for text in TEXT])
-    first, second = (score(planner, [made], [row], [0], 3, tokens) for row in (0, 1))
-    other = score(planner, [made], [0], [1], 4, tokens)  # other panoramas behind the same map
+    output, tokens = decision(3), pad([Vocabulary().encode(text) for text in TEXT])
+    first, second = (score(planner, [output], [row], [0], 3, tokens) for row in (0, 1))
+    other = score(planner, [output], [0], [1], 4, tokens)  # other panoramas behind the same map
     allowed = torch.isfinite(first)
     assert (first - second)[allowed].abs().max() > 1e-4
     assert (first - other)[allowed].abs().max() > 1e-4

@@ -63,10 +63,10 @@ def traces_of(follow_oracle: float, seed: int = 0, limit: int = 12):
     worlds = [RoomWorld(n, sum(agent.planner.widths)) for n in range(5)]
     tokens = pad([Vocabulary().encode(w.episode.instruction.text) for w in worlds])
     rngs = [np.random.default_rng([seed, i]) for i in range(len(worlds))]
-    made = roll_out(
+    output = roll_out(
         agent.planner, tokens, worlds, look, follow_oracle=follow_oracle, rngs=rngs, limit=limit
     )
-    return made, worlds
+    return output, worlds
 
 
 @pytest.mark.parametrize("follow_oracle", [1.0, 0.3, 0.0])
@@ -97,8 +97,8 @@ def test_oracle_stops_only_where_it_counts(monkeypatch, metres):
     monkeypatch.setattr(RoomWorld, "rule_metres", metres)
     bound, _ = traces_of(1.0)
     for before, after in zip(free, bound, strict=True):
-        own = [step for step in after.steps if step.target[0] == 1.0]
-        assert all(step.metres[0] < metres for step in own)
+        own_value = [step for step in after.steps if step.target[0] == 1.0]
+        assert all(step.metres[0] < metres for step in own_value)
         if before.steps[-1].metres[0] < metres:
             assert len(before.steps) == len(after.steps)
         else:
@@ -168,10 +168,10 @@ def test_stored_waypoints_do_not_depend_on_the_heading(stored):
         return waypoints[:, 1:] * np.stack([-np.sin(angles), np.cos(angles)], 1)
 
     world.turn = 0
-    wanted = ends()
+    expected = ends()
     for turn in (1, 5, 9):
         world.turn = turn
-        assert np.allclose(ends(), wanted, atol=1e-5) and len(wanted) > 0
+        assert np.allclose(ends(), expected, atol=1e-5) and len(expected) > 0
 
 
 def test_store_holds_free_lattice_poses(stored):

@@ -42,7 +42,8 @@ def test_act_reads_frames_only_to_decide(simulator):
     agent = wanderer()
     actions, looks = drive(agent, simulator)
     assert len(looks) == agent.decisions > 3
-    assert len(set(looks)) == len(looks) < len(actions) / 2  # once a decision, with walks between
+    # once per decision, with movements between
+    assert len(set(looks)) == len(looks) < len(actions) / 2
 
 
 def test_act_stops_at_the_limit_of_decisions(simulator, monkeypatch):
@@ -97,7 +98,7 @@ def test_blind_rejects_unknown_inputs():
 @pytest.mark.parametrize("side", [4, 7, 32])
 def test_halved_equals_average_pooling(side):
     x = torch.randn(12, 5, side, side)
-    wanted = F.avg_pool2d(x, 2)
+    expected = F.avg_pool2d(x, 2)
     with torch.no_grad():
-        assert halved(x).equal(wanted)
-    assert halved(x.requires_grad_()).equal(wanted) and halved(x).requires_grad
+        assert halved(x).equal(expected)
+    assert halved(x.requires_grad_()).equal(expected) and halved(x).requires_grad

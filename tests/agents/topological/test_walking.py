@@ -74,13 +74,14 @@ def test_free_directions_gives_free_distances():
     metres = 0.25 * grid.sum(1)
     assert grid.shape == (ANGLES, 12) and set(np.unique(grid)) == {0, 1}
     assert metres[np.abs(YAWS).argmin()] <= 0.75 < 2.9 < metres[np.abs(YAWS - np.pi).argmin()]
-    assert (np.diff(grid, axis=1) <= 0).all()  # free up to somewhere, then not
+    assert (np.diff(grid, axis=1) <= 0).all()  # free up to some distance, then blocked
 
 
 @pytest.mark.parametrize("quarters", [1, 2, 3])
 def test_free_directions_turns_against_the_heading(quarters):
     space, xy = room(5, 3), np.array([1.0, 1.2])
-    turned = free_directions(space, xy, quarters * np.pi / 2)  # left by so much: all moves right
+    # moved left by this offset: all moves are to the right
+    turned = free_directions(space, xy, quarters * np.pi / 2)
     assert np.array_equal(
         np.roll(free_directions(space, xy, 0.0), quarters * ANGLES // 4, 0), turned
     )

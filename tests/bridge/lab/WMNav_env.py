@@ -26,8 +26,8 @@ class Env:
     def _run_episode(self, number):
         observations = self._initialize_episode(number)
         for _ in range(2):
-            shown = observations["color_sensor"]
-            self.seen.append([shown.tolist()[0][0], self.current_episode["object"]])
+            observed = observations["color_sensor"]
+            self.seen.append([observed.tolist()[0][0], self.current_episode["object"]])
             observations = self.sim.get_sensor_observations(0)
         goal = self.sim.get_sensor_observations(1)["goal_sensor"]
         assert goal[0, 0, 0] == 130, "the goal's picture was corrupted"

@@ -16,7 +16,7 @@ from habitat.core.env import Env, make_dataset
 
 
 def walk(out, worker, options):
-    """Walk this worker's episodes and write what was seen to a file of its own."""
+    """Run this worker's episodes and write the observations to a separate file."""
     dataset = make_dataset(options["episodes"], [4, 5, 6] if options["tokens"] else None)
     dataset.episodes = dataset.episodes[worker :: max(1, options["workers"])]
     env, seen = Env(config={"cameras": options["cameras"]}, dataset=dataset), []
@@ -68,22 +68,22 @@ def main():
     parser.add_argument("--wait", type=float, default=0.0, help="seconds at the end")
     for flag in ("--tokens", "--no-stop", "--teleport"):
         parser.add_argument(flag, action="store_true")
-    given = parser.parse_args()
-    options = vars(given)
+    value = parser.parse_args()
+    options = vars(value)
     assert habitat.Env is Env
-    if not given.workers:
-        walk(given.out, 0, options)
+    if not value.workers:
+        walk(value.out, 0, options)
     else:
-        context = multiprocessing.get_context(given.start)
+        context = multiprocessing.get_context(value.start)
         processes = [
-            context.Process(target=walk, args=(given.out, i, options), daemon=True)
-            for i in range(given.workers)
+            context.Process(target=walk, args=(value.out, i, options), daemon=True)
+            for i in range(value.workers)
         ]
         for process in processes:
             process.start()
         for process in processes:
             process.join()
-    time.sleep(given.wait)
+    time.sleep(value.wait)
 
 
 if __name__ == "__main__":

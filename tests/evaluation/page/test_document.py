@@ -1,4 +1,4 @@
-"""The page holds the rows' numbers, their episodes as far as it may, and nothing from outside."""
+"""The page holds the numbers of the rows and their episodes up to a limit, and loads nothing."""
 
 from __future__ import annotations
 
@@ -26,8 +26,8 @@ from tests.evaluation.made_rows import cell, column, row
 from tests.evaluation.straight import Straight
 
 
-def held(text: str) -> tuple[dict, np.ndarray]:
-    """The data of a page, and its episodes [cell, field, ...] as one array."""
+def page_data(text: str) -> tuple[dict, np.ndarray]:
+    """Return the data of a page, and its episodes [cell, field, ...] as one array."""
     data = re.search(r'id="data">(.*?)</script>', text, re.S)
     packed = re.search(r'id="packed">(.*?)</script>', text, re.S)
     assert data and packed
@@ -42,43 +42,47 @@ def rows() -> list[dict]:
 
 def test_values_and_differences_are_those_of_the_table(rows):
     (part,) = sections(rows)
-    data, _ = held(report(rows))
-    (shown,) = data["sections"]
-    titles = [measure["title"] for measure in shown["measures"]]
+    data, _ = page_data(report(rows))
+    (displayed,) = data["sections"]
+    titles = [measure["title"] for measure in displayed["measures"]]
     clean = part.clean["hard", "SR"]
-    got = shown["values"][1][titles.index("Clean SR")]
+    got = displayed["values"][1][titles.index("Clean SR")]
     assert got[:3] == pytest.approx([clean.value, clean.low, clean.high], abs=1e-4)
     difference = part.differences["hard"]
     moved, raised = difference.clean, difference.corrupted.estimate
-    pair = shown["pairs"]["1-0"]["measures"]
+    pair = displayed["pairs"]["1-0"]["measures"]
     assert pair[titles.index("Clean SR")] == pytest.approx(
         [moved.value, moved.low, moved.high], abs=1e-4
     )
     mean = pair[titles.index("Mean SR, 12 corruptions")]
     assert mean[:3] == pytest.approx([raised.value, raised.low, raised.high], abs=1e-4)
     assert mean[3] == "† 2/12"
-    assert [line["label"] for line in shown["columns"]] == ["base", "hard"]
+    assert [line["label"] for line in displayed["columns"]] == ["base", "hard"]
 
 
 def test_interval_without_width_adds_a_note():
     varied = column(8, {"spatter": 2})
     alike = [row(0, 1), row(0, 1, corruption="spatter", severity=0.6)]
-    for shown, told in ((varied, False), (alike, True)):
-        (part,) = held(report(shown))[0]["sections"]
-        assert any(note.startswith("[–]") for note in part["notes"]) == told
+    for displayed, reported in ((varied, False), (alike, True)):
+        (part,) = page_data(report(displayed))[0]["sections"]
+        assert any(note.startswith("[–]") for note in part["notes"]) == reported
 
 
 def test_agents_without_a_common_seed_have_no_difference(rows):
     apart = column(6, {"spatter": 6}, name="apart", agent="cccccccccccc", seed=7)
-    (shown,) = held(report(rows + apart))[0]["sections"]
-    assert shown["pairs"]["1-0"] and shown["pairs"]["2-0"] is None and shown["baselines"] == 3
-    assert any("without a seed in common" in note for note in shown["notes"])
-    (alone,) = held(report([r for r in rows + apart if r["name"] != "hard"]))[0]["sections"]
+    (displayed,) = page_data(report(rows + apart))[0]["sections"]
+    assert (
+        displayed["pairs"]["1-0"]
+        and displayed["pairs"]["2-0"] is None
+        and displayed["baselines"] == 3
+    )
+    assert any("without a seed in common" in note for note in displayed["notes"])
+    (alone,) = page_data(report([r for r in rows + apart if r["name"] != "hard"]))[0]["sections"]
     assert alone["baselines"] == 0 and [*alone["pairs"].values()] == [None]
 
 
 def test_packed_episodes_match_the_rows(rows):
-    data, packed = held(report(rows))
+    data, packed = page_data(report(rows))
     (grid,) = data["grids"]
     begin = grid["cells"]["0|spatter|0.6|0"]
     success, spl, steps = packed[3 * begin : 3 * (begin + 10)].reshape(3, 10)
@@ -89,7 +93,7 @@ def test_packed_episodes_match_the_rows(rows):
 
 def test_packed_episodes_keep_gaps(rows):
     fewer = [r for r in rows if (r["episode_id"], r["corruption"]) != ("3", "spatter")]
-    data, packed = held(report(fewer))
+    data, packed = page_data(report(fewer))
     begin = data["grids"][0]["cells"]["0|spatter|0.6|0"]
     assert packed[3 * begin + 3] == 65535
     assert data["sections"][0]["cells"][0][1][2] == 9
@@ -97,31 +101,34 @@ def test_packed_episodes_keep_gaps(rows):
 
 
 def test_page_is_bounded_and_reports_omissions(rows):
-    data, packed = held(report(rows, most=25))
+    data, packed = page_data(report(rows, most=25))
     assert len(packed) == 3 * 20 and len(data["grids"][0]["cells"]) == 2
     assert "4 cells are not in this file" in data["notes"][0]
 
 
 def test_cell_is_packed_with_all_seeds_or_none(rows):
     two = [r | {"seed": seed} for seed in (0, 1) for r in rows if r["name"] == "base"]
-    data, _ = held(report(two, most=50))
-    begun = sorted(data["grids"][0]["cells"])
-    assert begun == [f"0|{at}|{seed}" for at in ("clean|0.0", "spatter|0.6") for seed in (0, 1)]
+    data, _ = page_data(report(two, most=50))
+    started = sorted(data["grids"][0]["cells"])
+    assert started == [f"0|{at}|{seed}" for at in ("clean|0.0", "spatter|0.6") for seed in (0, 1)]
     assert "episodes of 1 cell are not" in data["notes"][0]
 
 
 def test_page_share_uses_common_episodes(rows):
-    """As a PRS is: sure kept all that it was measured to have."""
+    """Like a PRS: the retained share of the measured success."""
     sure = column(10, {"spatter": 10}, name="sure", agent="cccccccccccc", spl=0.4)
     lost = [r | {"success": 0, "spl": 0.1} if r["episode_id"] == "9" else r for r in sure]
     fewer = [r for r in lost if (r["episode_id"], r["corruption"]) != ("9", "spatter")]
-    (shown,) = held(report(rows + fewer))[0]["sections"]
-    place = [one["name"] for one in shown["corruptions"]].index("spatter")
-    assert shown["cells"][2][place][3:] == [1.0, 1.0]
-    assert shown["cells"][0][place][3:] == [0.25, 0.25] and shown["cells"][0][0][3:] == [1.0, 1.0]
+    (displayed,) = page_data(report(rows + fewer))[0]["sections"]
+    place = [one["name"] for one in displayed["corruptions"]].index("spatter")
+    assert displayed["cells"][2][place][3:] == [1.0, 1.0]
+    assert displayed["cells"][0][place][3:] == [0.25, 0.25] and displayed["cells"][0][0][3:] == [
+        1.0,
+        1.0,
+    ]
     least = [r for r in fewer if r["corruption"] == "clean" or r["episode_id"] < "5"]
-    (shown,) = held(report(rows + least))[0]["sections"]
-    assert shown["cells"][2][place][3:] == [None, None]  # too few for a PRS
+    (displayed,) = page_data(report(rows + least))[0]["sections"]
+    assert displayed["cells"][2][place][3:] == [None, None]  # too few for a PRS
 
 
 @pytest.mark.parametrize("x", [0.3125, 0.31250000001, 0.0049999999, 0.125, 1 / 3, 0.0, 37 / 900])
@@ -133,7 +140,7 @@ def test_shortened_keeps_the_displayed_text(x):
 
 def test_page_separates_seeds_and_kinds(rows):
     more = rows + column(5, {"spatter": 4, "haze": 3}, seed=1, agent="aaaaaaaaaaaa")
-    data, _ = held(report(more))
+    data, _ = page_data(report(more))
     seeds = {key.rpartition("|")[2] for grid in data["grids"] for key in grid["cells"]}
     assert seeds >= {"0", "1"} and len(data["sections"]) == 2
 
@@ -141,7 +148,7 @@ def test_page_separates_seeds_and_kinds(rows):
 def test_curve_points_share_episodes():
     rows = cell(10) + cell(6, corruption="spatter", severity=0.4)
     rows += cell(0, 4, corruption="spatter", severity=0.8)
-    ((figure,), (panel,)) = (found := curve_figures(sections(rows))), found[0]["panels"]
+    ((figure,), (panel,)) = (matches := curve_figures(sections(rows))), matches[0]["panels"]
     (line,) = panel["lines"]
     assert figure["columns"] == ["base"] and line["count"] == 4
     assert [point[:2] for point in line["points"]] == [[0.0, 1.0], [0.4, 1.0], [0.8, 0.0]]
@@ -156,44 +163,44 @@ def test_page_escapes_texts_and_names_no_address(rows):
     named = [r | {"name": evil, "episode_id": f"{evil}{r['episode_id']}"} for r in rows[:30]]
     text = report(named, title=evil)
     assert len(re.findall(r"<script", text)) == 3 and len(re.findall(r"</script", text)) == 3
-    assert "<!--" not in text and held(text)[0]["sections"][0]["columns"][0]["label"] == evil
+    assert "<!--" not in text and page_data(text)[0]["sections"][0]["columns"][0]["label"] == evil
     addresses = set(re.findall(r"https?://[^\"'\s)]+", text))
-    assert addresses == {"http://www.w3.org/2000/svg"}  # a name, not an address that is asked
+    assert addresses == {"http://www.w3.org/2000/svg"}  # a name, not an address to load
 
 
 def test_choose_alternates_outcomes_and_corruptions():
     first = {"spatter": "0011", "flare": "0011"}
     last = {"spatter": "0101", "flare": "0101"}
-    made = [
+    output = [
         row(episode, won == "1", name=name, corruption=met, severity=0.6)
         for name, cells in (("base", first), ("hard", last))
         for met, wins in cells.items()
         for episode, won in zip("abcd", wins, strict=True)
     ]
-    chosen = choose(made, ["base", "hard"], 9)
+    chosen = choose(output, ["base", "hard"], 9)
     assert [episode for episode, _ in chosen] == ["b", "a", "d", "c"]  # in the order of KINDS
     assert {met.name for _, met in chosen} == {"spatter", "flare"} and len(KINDS) == 4
-    assert choose(made, ["base", "hard"], 2) == chosen[:2]
+    assert choose(output, ["base", "hard"], 2) == chosen[:2]
 
 
 def walked_rows(agents: dict, world: ApartmentsWorld, episode: Episode) -> list[dict]:
-    """What agents measure clean and in low light, by their hashes."""
-    made = []
+    """Clean and low-light results of agents, by their hashes."""
+    output = []
     for name, agent in agents.items():
         for met in (Corruption("clean", 0.0), Corruption("low_light", 0.6)):
             measures = run_episode(agent, world, episode, met, 0)
             at = {"corruption": met.name, "severity": met.severity, "name": name}
             at["agent"] = fingerprint(agent, world.sensors)
-            made.append(row(episode.episode_id, 0, **at) | measures)
-    return made
+            output.append(row(episode.episode_id, 0, **at) | measures)
+    return output
 
 
 def test_walk_again_compares_with_the_row():
     world, (episode,) = ApartmentsWorld(16), load_episodes("val_seen")[:1]
     agents = {"base": Straight(1), "hard": Straight(3)}
-    made = walked_rows(agents, world, episode)
-    made[-1]["steps"] += 1  # a row that says otherwise
-    (drawn,) = walk_again(agents, world, [episode], made, most=3, seed=0)
+    records = walked_rows(agents, world, episode)
+    records[-1]["steps"] += 1  # a row that differs
+    (drawn,) = walk_again(agents, world, [episode], records, most=3, seed=0)
     assert [walk["agrees"] for walk in drawn["walks"]] == [True, True, False]
     assert drawn["picture"].startswith("data:image/png;base64,")
     assert drawn["kind"] == "lost by both" and drawn["title"] == "L-L w/o noise"
@@ -202,11 +209,11 @@ def test_walk_again_compares_with_the_row():
 def test_walk_again_ignores_rows_of_other_agents():
     world, (episode,) = ApartmentsWorld(16), load_episodes("val_seen")[:1]
     agents = {"base": Straight(1)}
-    made = walked_rows(agents, world, episode)
-    others = [r | {"agent": "ba9876543210", "steps": r["steps"] + 1} for r in made]
-    (drawn,) = walk_again(agents, world, [episode], made + others, most=3, seed=0)
+    records = walked_rows(agents, world, episode)
+    others = [r | {"agent": "ba9876543210", "steps": r["steps"] + 1} for r in records]
+    (drawn,) = walk_again(agents, world, [episode], records + others, most=3, seed=0)
     assert [walk["agrees"] for walk in drawn["walks"]] == [True, True]
-    assert {walk["hash"] for walk in drawn["walks"]} == {made[0]["agent"]}
+    assert {walk["hash"] for walk in drawn["walks"]} == {records[0]["agent"]}
     with pytest.raises(
         ValueError, match=r"rows of base belong to the agent ba9876543210, but the named weights"
     ):
@@ -227,7 +234,7 @@ def test_report_command_writes_one_file(tmp_path, capsys, rows):
     write(tmp_path / "rows.jsonl", rows)
     out = tmp_path / "page.html"
     assert command.main([str(tmp_path / "rows.jsonl"), "--out", str(out)]) == 0
-    assert held(out.read_text(encoding="utf-8"))[0]["title"] == "Results"
+    assert page_data(out.read_text(encoding="utf-8"))[0]["title"] == "Results"
     assert sorted(p.name for p in tmp_path.iterdir()) == ["page.html", "rows.jsonl"]
     assert command.main([str(tmp_path / "nowhere")]) == 2
     assert "nowhere" in capsys.readouterr().err
@@ -238,11 +245,11 @@ def test_report_command_writes_one_file(tmp_path, capsys, rows):
 
 def test_report_command_accepts_a_config_folder(tmp_path, monkeypatch, rows):
     write(tmp_path / "rows.jsonl", rows)
-    asked = []
-    monkeypatch.setattr(command, "_walks", lambda *given: asked.append(given[-1]) or [])
+    requests = []
+    monkeypatch.setattr(command, "_walks", lambda *arguments: requests.append(arguments[-1]) or [])
     words = ["--walk", "base=x", "--config-dir", "mine", "env=own", "--out", f"{tmp_path}/p.html"]
     assert command.main([str(tmp_path / "rows.jsonl"), *words]) == 0
-    assert asked == [["--config-dir=mine", "env=own"]]
+    assert requests == [["--config-dir=mine", "env=own"]]
 
 
 def test_report_command_rejects_invalid_outputs(tmp_path, capsys, rows):
@@ -270,7 +277,7 @@ def test_report_command_accepts_a_path_with_equals_sign(tmp_path, capsys):
 
 def test_page_separates_lists_of_a_split(rows):
     other = [r | {"episode_id": f"{r['episode_id']}-b", "agent": "ccccccccccc"} for r in rows[:30]]
-    data, _ = held(report(rows + other))
+    data, _ = page_data(report(rows + other))
     assert [part["title"] for part in data["sections"]] == [
         f"val_unseen from {begins}, severity 0.6, suite 1.0" for begins in ("0", "0-b")
     ]

@@ -1,4 +1,4 @@
-"""A panorama of an apartment, and restorers that have learned nothing yet."""
+"""A panorama of an apartment, and untrained restorers."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def untrained() -> Restorer:
 
 
 def opened(restorer: Restorer, threshold: float = -1e9) -> Restorer:
-    """``restorer`` with its thresholds set."""
+    """Return ``restorer`` with these thresholds."""
     for net in restorer.parts().values():
         net.threshold.fill_(threshold)
     return restorer

@@ -1,4 +1,5 @@
-"""Frames taken for clean pass as they are; others are corrected, filled, and keep their form."""
+"""Frames that the gate accepts are unchanged; others are corrected and filled, and keep their
+form."""
 
 from __future__ import annotations
 
@@ -33,49 +34,50 @@ def frames(sensor: str, *shape: int) -> np.ndarray:
 
 
 @pytest.mark.parametrize("sensor", [RGB, DEPTH])
-def test_a_frame_that_the_gate_takes_for_clean_is_the_same_object(untrained, sensor):
+def test_clean_frame_is_returned_as_the_same_object(untrained, sensor):
     opened(untrained, 1e9)
     frame = frames(sensor, 12, 64, 64)
     before = frame.copy()
-    made = untrained({sensor: frame, "pose": "as it came"})
-    assert made[sensor] is frame and made["pose"] == "as it came"
+    output = untrained({sensor: frame, "pose": "as it came"})
+    assert output[sensor] is frame and output["pose"] == "as it came"
     assert np.array_equal(frame, before)
 
 
 @pytest.mark.parametrize("sensor", [RGB, DEPTH])
 @pytest.mark.parametrize("shape", SHAPES)
-def test_before_anything_is_learned_a_frame_hardly_changes(untrained, sensor, shape):
+def test_untrained_restorer_hardly_changes_a_frame(untrained, sensor, shape):
     for full in (shape, (1, *shape), (3, *shape)):
         frame = frames(sensor, *full)
-        made = untrained.restore(sensor, frame)
-        assert made.shape == frame.shape and made.dtype == frame.dtype and made is not frame
-        moved = np.abs(made.astype(float) - frame).mean()
+        output = untrained.restore(sensor, frame)
+        assert output.shape == frame.shape and output.dtype == frame.dtype and output is not frame
+        moved = np.abs(output.astype(float) - frame).mean()
         assert moved <= (3.0 if sensor == RGB else 0.1)
 
 
 def wall(metres: float, hole: bool = False) -> np.ndarray:
-    """A camera before a wall, with a sensor's noise of 2 cm; ``hole``: 4 % of it reads nothing."""
+    """A camera in front of a wall, with sensor noise of 2 cm; ``hole``: 4 % of it has no
+    reading."""
     noise = np.random.default_rng(0).normal(0, 0.02, (96, 96))
-    made = (metres + noise).astype(np.float32)
-    made[40:60, 40:60] *= not hole
-    return made
+    output = (metres + noise).astype(np.float32)
+    output[40:60, 40:60] *= not hole
+    return output
 
 
 @pytest.mark.filterwarnings("ignore:More than")
 @pytest.mark.parametrize("metres", [9.0, 9.9, 11.0, 20.0])
 @pytest.mark.parametrize("hole", [False, True])
-def test_no_obstacle_is_invented_before_a_wall_far_away(metres, hole):
-    """The shipped network, which knows apartments, would put one at 1.2 m."""
+def test_far_wall_gets_no_invented_obstacle(metres, hole):
+    """The shipped network, trained in apartments, would predict a wall at 1.2 m."""
     frame = wall(metres, hole)
     assert load_restorer(SHIPPED).restore(DEPTH, frame) is frame
 
 
-def test_a_wall_nearby_with_a_hole_is_filled():
-    made = load_restorer(SHIPPED).restore(DEPTH, wall(3.0, hole=True))
-    assert np.abs(made - 3).max() < 0.5
+def test_near_wall_with_a_hole_is_filled():
+    output = load_restorer(SHIPPED).restore(DEPTH, wall(3.0, hole=True))
+    assert np.abs(output - 3).max() < 0.5
 
 
-def test_depth_that_is_mostly_too_far_is_left_with_a_warning(untrained):
+def test_depth_mostly_out_of_range_is_kept_with_a_warning(untrained):
     frame = wall(5.0)
     frame[:9] = 12.0  # 9.4 % of it
     assert untrained.restore(DEPTH, frame).max() <= 10
@@ -90,12 +92,12 @@ def test_restorer_leaves_frames_without_a_reading(untrained):
         assert untrained.restore(DEPTH, frame) is frame
 
 
-def test_depth_may_lack_its_last_axis_and_holds_no_hole_afterwards(untrained):
+def test_depth_may_lack_its_last_axis_and_gets_no_holes(untrained):
     frame = frames(DEPTH, 40, 48)[..., 0]
     frame[10:20, 10:20], frame[0, 0], frame[1, 1] = 0.0, np.nan, np.inf
-    made = untrained.restore(DEPTH, frame)
-    assert made.shape == (40, 48) and np.isfinite(made).all() and (made > 0).all()
-    assert 0.5 < made[10:20, 10:20].mean() < 9.0
+    output = untrained.restore(DEPTH, frame)
+    assert output.shape == (40, 48) and np.isfinite(output).all() and (output > 0).all()
+    assert 0.5 < output[10:20, 10:20].mean() < 9.0
 
 
 @pytest.mark.parametrize(
@@ -117,19 +119,19 @@ def test_frames_of_another_form_are_refused(untrained, sensor, frame, words):
         untrained.restore(sensor, frame)
 
 
-def test_a_large_frame_keeps_its_detail_under_a_correction_computed_small():
+def test_large_frame_keeps_its_detail():
     restorer = opened(Restorer([RGB], width=8, size=32).eval())
     net = restorer.nets[RGB]
     with torch.no_grad():
         net.net.head.bias.view(-1, 4)[:3] = np.log(2.0)  # every gain is 2
         net.net.head.bias.view(-1, 4)[6:] = -100.0  # nothing is lost
     frame = frames(RGB, 128, 128) // 2
-    made = restorer.restore(RGB, frame)
-    assert np.abs(made.astype(int) - 2 * frame.astype(int)).max() <= 1
+    output = restorer.restore(RGB, frame)
+    assert np.abs(output.astype(int) - 2 * frame.astype(int)).max() <= 1
 
 
 @pytest.mark.parametrize("sensor", [RGB, DEPTH])
-def test_the_neighbours_show_what_a_view_has_lost(panorama, sensor):
+def test_lost_view_is_filled_from_its_neighbours(panorama, sensor):
     values = torch.from_numpy(panorama[sensor]).float().permute(0, 3, 1, 2)
     values = values / (255 if sensor == RGB else 10)
     trust = torch.ones_like(values[:, :1])
@@ -142,17 +144,17 @@ def test_the_neighbours_show_what_a_view_has_lost(panorama, sensor):
 
 
 @pytest.mark.parametrize("sensor", [RGB, DEPTH])
-def test_the_views_of_a_panorama_tell_which_of_them_lies(panorama, sensor):
+def test_inconsistent_view_of_a_panorama_is_detected(panorama, sensor):
     values = torch.from_numpy(panorama[sensor]).float().permute(0, 3, 1, 2)
     values = (values / (255 if sensor == RGB else 10)).clamp(max=1)
     valid = torch.ones_like(values[:, :1])
     wrong = values.clone()
     wrong[3, :, 20:40, 20:40] = (wrong[3, :, 20:40, 20:40] + 0.5) % 1
 
-    def outside(shown):
-        low, high, seen = ring.compared(shown, valid, sensor == DEPTH)
+    def outside(displayed):
+        low, high, seen = ring.compared(displayed, valid, sensor == DEPTH)
         assert seen.mean() > 0.95
-        return (low - shown).clamp(min=0) + (shown - high).clamp(min=0)
+        return (low - displayed).clamp(min=0) + (displayed - high).clamp(min=0)
 
     before, after = outside(values), outside(wrong)
     assert before.mean() < (0.04 if sensor == RGB else 0.002)
@@ -162,21 +164,19 @@ def test_the_views_of_a_panorama_tell_which_of_them_lies(panorama, sensor):
 
 
 @pytest.mark.parametrize("sensor", [RGB, DEPTH])
-def test_a_speck_that_no_other_view_shows_goes_before_anything_is_learned(
-    untrained, panorama, sensor
-):
+def test_speck_in_one_view_is_removed_by_untrained_restorer(untrained, panorama, sensor):
     rng, clean = np.random.default_rng(0), panorama[sensor]
     specks = rng.random(clean.shape[:3]) < 0.05
     frames = clean.copy()
     frames[specks] = np.where(clean[specks] > clean.max() / 2, clean.max() * 0.02, clean.max())
-    made = untrained.restore(sensor, frames)
-    before, after = (np.abs(f.astype(float) - clean)[specks].mean() for f in (frames, made))
+    output = untrained.restore(sensor, frames)
+    before, after = (np.abs(f.astype(float) - clean)[specks].mean() for f in (frames, output))
     assert after < 0.35 * before
     alone = untrained.restore(sensor, frames[4])
     assert np.abs(alone.astype(float) - frames[4])[specks[4]].mean() < 0.1 * before
 
 
-def test_what_no_other_view_shows_is_compared_with_nothing():
+def test_pixel_seen_by_one_view_is_not_compared():
     values, valid = torch.rand(12, 1, 16, 16), torch.zeros(12, 1, 16, 16)
     valid[5] = 1
     low, high, seen = ring.compared(values, valid, True)
@@ -184,7 +184,7 @@ def test_what_no_other_view_shows_is_compared_with_nothing():
     assert seen[4].any() and seen[6].any()
 
 
-def test_a_hole_takes_the_mean_around_it():
+def test_hole_takes_the_mean_around_it():
     values = torch.zeros(1, 1, 32, 32)
     values[..., 16:] = 1.0
     trust = torch.ones_like(values)
@@ -193,33 +193,33 @@ def test_a_hole_takes_the_mean_around_it():
     assert filled[0, 0, 15, 5] < 0.15 and filled[0, 0, 15, 27] > 0.85
 
 
-def test_a_world_is_restored_when_its_frames_are_read(untrained, panorama):
+def test_world_is_restored_when_its_frames_are_read(untrained, panorama):
     class Still:
         sensors: dict = {}
         reads = 0
 
         def reset(self, episode):
-            def made():
+            def output():
                 self.reads += 1
                 return {RGB: panorama[RGB]}
 
-            return Observation({"pose": panorama["pose"]}, made, (RGB,))
+            return Observation({"pose": panorama["pose"]}, output, (RGB,))
 
     class Episode:
         episode_id = "1"
 
     still = Still()
     met = Corrupted(still, Corruption("foreign_object", 0.6), 0)
-    shown = Guarded(met, untrained).reset(Episode())
-    assert still.reads == 0 and shown["pose"] is panorama["pose"]
-    assert not np.array_equal(shown[RGB], met.last[RGB]) and still.reads == 1
-    assert np.array_equal(shown.clean[RGB], panorama[RGB])
+    observed = Guarded(met, untrained).reset(Episode())
+    assert still.reads == 0 and observed["pose"] is panorama["pose"]
+    assert not np.array_equal(observed[RGB], met.last[RGB]) and still.reads == 1
+    assert np.array_equal(observed.clean[RGB], panorama[RGB])
 
 
 # folders -----------------------------------------------------------------------------------------
 
 
-def test_a_folder_gives_the_same_restorer(untrained, tmp_path):
+def test_folder_reloads_the_same_restorer(untrained, tmp_path):
     opened(untrained, 0.25)
     untrained.save(tmp_path, half=True)
     loaded = load_restorer(tmp_path)
@@ -271,7 +271,7 @@ def card_with(**changed):
         (lambda folder: (folder / "card.json").unlink(), "card.json missing"),
     ],
 )
-def test_a_damaged_folder_is_refused(untrained, tmp_path, change, words):
+def test_damaged_folder_is_rejected(untrained, tmp_path, change, words):
     untrained.save(tmp_path)
     change(tmp_path)
     with pytest.raises((ValueError, FileNotFoundError), match=words) as error:
@@ -289,7 +289,7 @@ def shipped(tmp_path_factory):
     return load_restorer(copied)
 
 
-def test_a_restorer_of_what_a_world_does_not_show_is_refused(tmp_path):
+def test_restorer_of_a_missing_sensor_is_rejected(tmp_path):
     Restorer(sensors=[DEPTH], depth_width=4).save(tmp_path / "mine")
     with pytest.raises(ValueError, match="is for depth, but the world shows rgb, pose: leave"):
         open_restorer(str(tmp_path / "mine"), (RGB, "pose"))
@@ -297,12 +297,12 @@ def test_a_restorer_of_what_a_world_does_not_show_is_refused(tmp_path):
     assert open_restorer(None, (RGB,)) is None
 
 
-def test_one_sensor_alone_is_restored_and_is_another_restorer(tmp_path):
-    made = Restorer(width=4, depth_width=4)
-    made.save(tmp_path / "mine")
+def test_single_sensor_gives_another_restorer(tmp_path):
+    model = Restorer(width=4, depth_width=4)
+    model.save(tmp_path / "mine")
     whole = open_restorer(str(tmp_path / "mine"))
     alone = open_restorer(f"{tmp_path / 'mine'}:rgb")
-    assert list(alone.nets) == ["rgb"] and alone.hash not in (whole.hash, made.hash)
+    assert list(alone.nets) == ["rgb"] and alone.hash not in (whole.hash, model.hash)
     depth = np.zeros((8, 8, 1), np.float32)
     rgb = np.zeros((8, 8, 3), np.uint8)
     assert alone({"rgb": rgb, "depth": depth})["depth"] is depth
@@ -323,7 +323,7 @@ def test_one_sensor_alone_is_restored_and_is_another_restorer(tmp_path):
         (["--split", "nowhere"], "no split 'nowhere'"),
     ],
 )
-def test_the_report_says_what_is_wrong_and_writes_nothing(tmp_path, options, words):
+def test_report_names_the_error_and_writes_nothing(tmp_path, options, words):
     with pytest.raises(ValueError, match=words):
         report.main([str(SHIPPED), "--out", str(tmp_path / "out"), *options])
     assert not [*tmp_path.iterdir()]
@@ -335,9 +335,9 @@ def test_restorer_report_rejects_a_count_below_one(tmp_path, capsys):
     assert "--count" in capsys.readouterr().err and not [*tmp_path.iterdir()]
 
 
-def test_the_shipped_restorer_leaves_a_clean_panorama_alone(shipped, panorama):
-    made = shipped(panorama)
-    assert made[RGB] is panorama[RGB] and made[DEPTH] is panorama[DEPTH]
+def test_shipped_restorer_keeps_a_clean_panorama(shipped, panorama):
+    output = shipped(panorama)
+    assert output[RGB] is panorama[RGB] and output[DEPTH] is panorama[DEPTH]
 
 
 @pytest.mark.parametrize(
@@ -349,15 +349,13 @@ def test_the_shipped_restorer_leaves_a_clean_panorama_alone(shipped, panorama):
         ("missing_data", DEPTH, 0.25),
     ],
 )
-def test_the_shipped_restorer_takes_away_its_part_of_a_corruption(
-    shipped, panorama, name, sensor, left
-):
+def test_shipped_restorer_removes_part_of_a_corruption(shipped, panorama, name, sensor, left):
     frames = corrupt_observation(panorama, Corruption(name, 0.6), Key(0, "test"))
-    made = shipped(frames)
-    errors = [np.abs(f[sensor].astype(float) - panorama[sensor]).mean() for f in (frames, made)]
+    output = shipped(frames)
+    errors = [np.abs(f[sensor].astype(float) - panorama[sensor]).mean() for f in (frames, output)]
     assert errors[1] < left * errors[0]
     other = DEPTH if sensor == RGB else RGB
-    assert made[other] is panorama[other]
+    assert output[other] is panorama[other]
 
 
 def test_clean_is_no_corruption_to_the_shipped_one(shipped, panorama):
@@ -367,7 +365,7 @@ def test_clean_is_no_corruption_to_the_shipped_one(shipped, panorama):
     assert shipped.restore(RGB, dark[RGB]) is not dark[RGB]
 
 
-def test_a_report_corrupts_depth_as_far_as_its_world_sees(panorama):
+def test_report_corrupts_depth_up_to_the_world_range(panorama):
     near = {**panorama, DEPTH: np.minimum(panorama[DEPTH], 5.0)}
     lost = Corruption("missing_data", 1.0)
     far = [
@@ -378,10 +376,8 @@ def test_a_report_corrupts_depth_as_far_as_its_world_sees(panorama):
 
 
 @pytest.mark.parametrize("met", [[CLEAN], [CLEAN, Corruption("flare", 0.6)]])
-def test_a_report_of_what_corrupts_no_sensor_that_there_is_has_a_table_and_no_picture(
-    tmp_path, panorama, met
-):
-    """As at the end of a training with suite=clean, or of RGB alone for a restorer of depth."""
+def test_report_without_fitting_corruption_has_no_picture(tmp_path, panorama, met):
+    """As after a training with suite=clean, or with RGB corruptions only for a depth restorer."""
     only = opened(Restorer([DEPTH], depth_width=4).eval())
     report.write(only, report.Instants([panorama]), met, 0, tmp_path, "one")
     assert [path.name for path in tmp_path.iterdir()] == ["restoration.md"]

@@ -36,8 +36,8 @@ def test_draw_route_uses_no_validation_phrase():
         for kind, phrases in TEMPLATES[split].items():
             for phrase in phrases if kind != "join" else ():
                 parts = [f" {plain(part)} " for part in re.split(r"\{\w+\}", phrase)]
-                held = "(?:[a-z]+ ){1,3}?".join(part.lstrip() for part in parts)
-                assert not re.search(f" {held}", everything), phrase
+                content = "(?:[a-z]+ ){1,3}?".join(part.lstrip() for part in parts)
+                assert not re.search(f" {content}", everything), phrase
 
 
 def test_overlaps_validation_finds_validation_instructions():
@@ -71,8 +71,8 @@ def test_draw_route_is_varied():
 
 def test_draw_pair_depends_on_seed_and_index_alone(pairs):
     for kind, share in KINDS.items():
-        found = sum(pair.kind == kind for pair in pairs) / len(pairs)
-        assert abs(found - share) < 0.05
+        matches = sum(pair.kind == kind for pair in pairs) / len(pairs)
+        assert abs(matches - share) < 0.05
     assert draw_pair(0, 700) == pairs[700] and draw_pair(1, 700) != pairs[700]
 
 
@@ -87,15 +87,15 @@ def test_draw_pair_targets_fit_their_kind(pairs):
 def test_draw_pair_uses_texts_of_the_user():
     mine = ["Swagger by the xylophone, then sashay up to the zebra statue."]
     pairs = [draw_pair(0, index, mine, 0.5) for index in range(200)]
-    found = sum("xylophone" in p.source.lower() or "zebra" in p.source.lower() for p in pairs)
-    assert 50 < found < 130
+    matches = sum("xylophone" in p.source.lower() or "zebra" in p.source.lower() for p in pairs)
+    assert 50 < matches < 130
 
 
 def test_read_chats_returns_the_written_pairs(tmp_path, pairs):
     lines = []
     for pair in pairs[:20]:
-        said = [("system", "Repair."), ("user", pair.source), ("assistant", pair.target)]
-        messages = [{"role": role, "content": content} for role, content in said]
+        texts = [("system", "Repair."), ("user", pair.source), ("assistant", pair.target)]
+        messages = [{"role": role, "content": content} for role, content in texts]
         lines.append(json.dumps({"messages": messages, "kind": pair.kind}))
     with gzip.open(tmp_path / "a.jsonl.gz", "wt", encoding="utf-8") as file:
         file.write("\n".join(lines))

@@ -68,14 +68,14 @@ def said(content) -> bytes:
 
 @pytest.fixture
 def server():
-    made = Server()
+    output = Server()
     thread = threading.Thread(
-        target=made.serve_forever, kwargs={"poll_interval": 0.02}, daemon=True
+        target=output.serve_forever, kwargs={"poll_interval": 0.02}, daemon=True
     )
     thread.start()
-    yield made
-    made.shutdown()
-    made.server_close()
+    yield output
+    output.shutdown()
+    output.server_close()
 
 
 def endpoint(server, **others) -> ChatEndpoint:
@@ -98,17 +98,17 @@ def test_endpoint_retries_only_temporary_failures(server):
     assert endpoint(server).rewrite(["a"]) == ["Go."] and len(server.requests) == 3
     server.requests.clear()
     server.replies = [(401, b"", 0)]
-    asked = endpoint(server)
-    assert asked.rewrite(["a"]) == [None] and len(server.requests) == 1
-    assert "HTTP 401" in asked.failures[0]
+    client = endpoint(server)
+    assert client.rewrite(["a"]) == [None] and len(server.requests) == 1
+    assert "HTTP 401" in client.failures[0]
 
 
 def test_endpoint_keeps_its_deadline_when_a_server_hangs(server):
     server.replies = [(200, said("late"), 3)]
-    asked = endpoint(server, timeout=0.2, retries=1)
+    client = endpoint(server, timeout=0.2, retries=1)
     began = time.monotonic()
-    assert asked.rewrite(["a"]) == [None]
-    assert time.monotonic() - began < 2 and "time" in asked.failures[0].lower()
+    assert client.rewrite(["a"]) == [None]
+    assert time.monotonic() - began < 2 and "time" in client.failures[0].lower()
     assert endpoint(server, timeout=9).rewrite(["a", "b"], seconds=0.2) == [None, None]
 
 
@@ -136,8 +136,8 @@ def test_endpoint_keeps_its_deadline_when_a_server_hangs(server):
 )
 def test_endpoint_ignores_malformed_answers(server, reply):
     server.replies = [(200, reply, 0)]
-    asked = endpoint(server, retries=1)
-    assert asked.rewrite(["a"]) == [None] and asked.failures
+    client = endpoint(server, retries=1)
+    assert client.rewrite(["a"]) == [None] and client.failures
 
 
 def test_endpoint_survives_a_missing_server():
@@ -155,8 +155,8 @@ def test_cache_keeps_answers_by_text_model_and_prompt(server, tmp_path):
 
 def test_cache_keeps_no_failures(server, tmp_path):
     server.replies = [(500, b"", 0), (200, said("Go."), 0)]
-    asked = endpoint(server, cache=tmp_path / "answers.sqlite", retries=0)
-    assert asked.rewrite(["a"]) == [None] and asked.rewrite(["a"]) == ["Go."]
+    client = endpoint(server, cache=tmp_path / "answers.sqlite", retries=0)
+    assert client.rewrite(["a"]) == [None] and client.rewrite(["a"]) == ["Go."]
 
 
 def test_endpoint_explains_a_wrong_url_or_cache(tmp_path):
@@ -182,21 +182,21 @@ def test_endpoint_follows_no_redirect(server, monkeypatch, status):
     thread.start()
     other.replies = [(200, said("Go."), 0)]
     server.replies = [(status, f"{other.url}/chat/completions".encode(), 0)]
-    asked = endpoint(server, retries=1)
-    assert asked.rewrite(["a"]) == [None] and f"HTTP {status}" in asked.failures[0]
+    client = endpoint(server, retries=1)
+    assert client.rewrite(["a"]) == [None] and f"HTTP {status}" in client.failures[0]
     other.shutdown()
     other.server_close()
-    assert not other.requests and "secret" not in asked.failures[0]
+    assert not other.requests and "secret" not in client.failures[0]
 
 
 @pytest.mark.parametrize("headers", [0, 200])
 def test_endpoint_keeps_its_deadline_when_a_server_drips(server, headers):
     server.replies, server.drops, server.pause = [(200, said("x" * 200), 0)], 2, 0.05
     server.headers = headers
-    asked = endpoint(server, timeout=0.4, retries=0)
+    client = endpoint(server, timeout=0.4, retries=0)
     began = time.monotonic()
-    assert asked.rewrite(["a"]) == [None]
-    assert time.monotonic() - began < 1.5 and "time" in asked.failures[0].lower()
+    assert client.rewrite(["a"]) == [None]
+    assert time.monotonic() - began < 1.5 and "time" in client.failures[0].lower()
 
 
 def test_endpoint_keeps_its_deadline_with_dead_addresses(server, monkeypatch):
@@ -210,10 +210,10 @@ def test_endpoint_keeps_its_deadline_with_dead_addresses(server, monkeypatch):
             one.connect_ex(dead.getsockname())
         info = (socket.AF_INET, socket.SOCK_STREAM, 6, "", dead.getsockname())
         monkeypatch.setattr(socket, "getaddrinfo", lambda *_, **__: [info] * 5)
-        asked = endpoint(server, timeout=0.4, retries=0)
+        client = endpoint(server, timeout=0.4, retries=0)
         began = time.monotonic()
-        assert asked.rewrite(["a"]) == [None]
-        assert time.monotonic() - began < 1.2 and "time" in asked.failures[0].lower()
+        assert client.rewrite(["a"]) == [None]
+        assert time.monotonic() - began < 1.2 and "time" in client.failures[0].lower()
         for one in fill:
             one.close()
 
@@ -228,13 +228,13 @@ def test_endpoint_keeps_its_deadline_with_a_slow_resolver(server, monkeypatch):
 @pytest.mark.parametrize("length", [5_000, 800_000])
 def test_endpoint_reads_no_huge_answer(server, length):
     server.replies = [(200, said("left " * length), 0)]
-    asked = endpoint(server, retries=0)
+    client = endpoint(server, retries=0)
     began = time.monotonic()
-    decision = Safeguard(asked).canonicalise(
+    decision = Safeguard(client).canonicalise(
         "Kindly stroll past the sofa, my dear, and hang a left."
     )
     assert decision.text == decision.original and time.monotonic() - began < 2
-    assert "bytes" in asked.failures[0] or "times as long" in asked.failures[0]
+    assert "bytes" in client.failures[0] or "times as long" in client.failures[0]
 
 
 SECRETS = [
@@ -291,13 +291,13 @@ def test_cache_treats_an_untrusted_file_as_data(server, tmp_path):
         )
     ):
         cache = tmp_path / f"{number}.sqlite"
-        with sqlite3.connect(cache) as held:
-            held.executescript(script)
+        with sqlite3.connect(cache) as handle:
+            handle.executescript(script)
         with pytest.raises(ValueError, match="is no cache of endpoint answers"):
             endpoint(server, cache=cache)
     cache = tmp_path / "answers.sqlite"
-    asked = endpoint(server, cache=cache)
-    assert asked.rewrite(["a"]) == ["Go."]
+    client = endpoint(server, cache=cache)
+    assert client.rewrite(["a"]) == ["Go."]
     for bad in (
         "7",
         "x'ff'",
@@ -305,8 +305,8 @@ def test_cache_treats_an_untrusted_file_as_data(server, tmp_path):
         "replace(hex(zeroblob(100000)), '0', 'x')",
         "CAST(x'ff' AS TEXT)",
     ):
-        with sqlite3.connect(cache) as held:
-            held.execute(f"UPDATE answers SET answer = {bad}")
+        with sqlite3.connect(cache) as handle:
+            handle.execute(f"UPDATE answers SET answer = {bad}")
         server.requests.clear()
         assert endpoint(server, cache=cache).rewrite(["a"]) == ["Go."] and len(server.requests) == 1
 

@@ -19,7 +19,7 @@ def test_rewrite_refused_accepts_the_same_route_in_plain_words():
 
 
 @pytest.mark.parametrize(
-    ("said", "reason"),
+    ("message", "reason"),
     [
         (SAID.replace("left", "right"), "directions"),
         (SAID.replace(", and stop by the lamp", ""), "directions"),
@@ -34,8 +34,8 @@ def test_rewrite_refused_accepts_the_same_route_in_plain_words():
         (None, "no answer"),
     ],
 )
-def test_rewrite_refused_names_what_changed(said, reason):
-    assert reason in rewrite_refused(HEARD, said)
+def test_rewrite_refused_names_what_changed(message, reason):
+    assert reason in rewrite_refused(HEARD, message)
 
 
 def test_rewrite_refused_keeps_conditions_and_the_last_stop():
@@ -46,7 +46,7 @@ def test_rewrite_refused_keeps_conditions_and_the_last_stop():
     assert "directions" in rewrite_refused("And there is your sofa.", "Stop at the sofa.")
 
 
-def test_rewrite_refused_accepts_an_empty_answer_only_for_words_without_facts():
+def test_rewrite_accepts_empty_answer_only_without_facts():
     assert rewrite_refused("Hello there, my friend!", "") == ""
     assert rewrite_refused("Turn left, my friend!", "")
 

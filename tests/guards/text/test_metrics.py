@@ -38,8 +38,8 @@ def test_score_counts_a_damaged_clean_instruction():
 
 
 def test_score_counts_a_paraphrase_as_faithful():
-    said = "Go past the couch, hang a left and halt by the lamp."
-    scores = score([Repair("friendly", TEXT, said, said)])
+    message = "Go past the couch, hang a left and halt by the lamp."
+    scores = score([Repair("friendly", TEXT, message, message)])
     assert scores.faithful == scores.landmarks == scores.directions == 1
     assert scores.exact == 0 and 0.4 < scores.token_f1 < 0.9 and 0.2 < scores.chrf < 0.9
 

@@ -39,8 +39,8 @@ def test_model_trains_and_saves_only_the_adapter(model, tmp_path):
     train(model, tmp_path, 3)
     moved = {n for n, p in model.named_parameters() if not torch.equal(p, before[n])}
     assert moved and all("lora_" in name for name in moved)
-    kept = states.load(states.checkpoints(tmp_path)[-1])["model"]
-    assert kept and all("lora_" in name for name in kept)
+    saved = states.load(states.checkpoints(tmp_path)[-1])["model"]
+    assert saved and all("lora_" in name for name in saved)
 
 
 def test_training_resumes_to_the_same_weights(tiny_base, tmp_path):
@@ -203,9 +203,9 @@ def test_open_adapter_reports_damage_before_loading_the_base(model, tmp_path, mo
         open_adapter(tmp_path)
     model.save(tmp_path)
     config = tmp_path / "adapter_config.json"
-    said = json.loads(config.read_text("utf-8"))
+    message = json.loads(config.read_text("utf-8"))
     for change in ({"r": 3}, {"target_modules": ["v_proj"]}):
-        config.write_text(json.dumps({**said, **change}), "utf-8")
+        config.write_text(json.dumps({**message, **change}), "utf-8")
         folders.seal(tmp_path, "safeguard")
         with pytest.raises(ValueError, match="does not fit its adapter_config.json.* is no LoRA"):
             open_adapter(tmp_path)
@@ -225,12 +225,12 @@ def test_rewrite_ends_an_answer_at_its_end_mark(model, monkeypatch, end):
     monkeypatch.setattr(
         "mitigate.guards.text.language_models.model.TURNS", ("<s>", "<|no such token|>")
     )
-    said = model.tokenizer.encode("turn left")
+    message = model.tokenizer.encode("turn left")
     mark = [] if end is None else [model.tokenizer.convert_tokens_to_ids(end)]
 
     def generate(input_ids, eos_token_id, **others):
         assert set(mark) <= set(eos_token_id)
-        return torch.cat([input_ids, torch.tensor([[*said, *mark, *said]])], 1)
+        return torch.cat([input_ids, torch.tensor([[*message, *mark, *message]])], 1)
 
     monkeypatch.setattr(model.network, "generate", generate)
     assert model.rewrite(["Turn left."]) == [None if end is None else "turn left"]
@@ -255,7 +255,7 @@ def test_model_uses_the_prompt_before_training(model):
 
 
 @pytest.mark.parametrize(
-    "given, error, words",
+    "value, error, words",
     [
         ({"base": "./no/such/model"}, FileNotFoundError, "no model folder ./no/such/model"),
         ({"precision": "int4"}, ValueError, "fp32, bf16, int8"),
@@ -263,9 +263,9 @@ def test_model_uses_the_prompt_before_training(model):
         ({"lora": {**LORA, "targets": ["nothing"]}}, ValueError, "q_proj"),
     ],
 )
-def test_model_explains_a_wrong_setting(tiny_base, given, error, words):
+def test_model_explains_a_wrong_setting(tiny_base, value, error, words):
     with pytest.raises(error, match=words):
-        LanguageModel(**{"base": tiny_base, "precision": "fp32", **given})
+        LanguageModel(**{"base": tiny_base, "precision": "fp32", **value})
 
 
 def test_model_explains_missing_weights_or_template(tmp_path):
@@ -303,14 +303,19 @@ def test_training_reads_chats_of_the_user(model, tmp_path):
     assert recipe.pair(3) == Pair("PLEASE go.", "Go.", "chat")
 
 
-@pytest.mark.parametrize("given, chats, files", [("cf", 0.25, 0.25), ("c", 0.5, 0), ("f", 0, 0.5)])
-def test_share_covers_chats_and_files_together(model, given, chats, files):
+@pytest.mark.parametrize("value, chats, files", [("cf", 0.25, 0.25), ("c", 0.5, 0), ("f", 0, 0.5)])
+def test_share_covers_chats_and_files_together(model, value, chats, files):
     recipe = SafeguardLora(model, share=0.5)
-    recipe.chats = [Pair("A", "A", "chat")] * ("c" in given)
-    recipe.texts = ["Turn left at the totem."] * ("f" in given)
-    made = [recipe.pair(index) for index in range(600)]
-    told = [pair.kind == "chat" for pair in made], ["totem" in pair.target for pair in made]
-    assert [sum(found) / len(made) for found in told] == pytest.approx([chats, files], abs=0.06)
+    recipe.chats = [Pair("A", "A", "chat")] * ("c" in value)
+    recipe.texts = ["Turn left at the totem."] * ("f" in value)
+    objective = [recipe.pair(index) for index in range(600)]
+    reported = (
+        [pair.kind == "chat" for pair in objective],
+        ["totem" in pair.target for pair in objective],
+    )
+    assert [sum(matches) / len(objective) for matches in reported] == pytest.approx(
+        [chats, files], abs=0.06
+    )
 
 
 def test_model_trains_and_reloads_in_eight_bits(tiny_base, tmp_path):

@@ -34,10 +34,10 @@ def test_report_tries_every_text_in_every_family():
 
 def test_report_command_writes_tables_and_repairs(tmp_path, capsys):
     (tmp_path / "texts.txt").write_text("# two\n" + "\n".join(TEXTS) + "\n")
-    given = ["none", "classifier", "--texts", str(tmp_path / "texts.txt"), "--examples", "3"]
-    report.main([*given, "--out", str(tmp_path)])
-    shown = capsys.readouterr().out
-    assert "| classifier |" in shown and shown.count("- meant:") == 3
+    arguments = ["none", "classifier", "--texts", str(tmp_path / "texts.txt"), "--examples", "3"]
+    report.main([*arguments, "--out", str(tmp_path)])
+    printed = capsys.readouterr().out
+    assert "| classifier |" in printed and printed.count("- meant:") == 3
     lines = [json.loads(line) for line in (tmp_path / "repairs.jsonl").open()]
     assert len(lines) == 2 * len(TEXTS) * len(report.FAMILIES)
 
@@ -60,9 +60,9 @@ def test_training_reports_before_and_after(tiny_base, tmp_path, capsys):
     cfg = read(conf.load_config("train", ["recipe=safeguard_lora", "evaluation.episodes=4"]))
     assert cfg.report == "mitigate.training.reports.safeguard.before_after"
     report.before_after(cfg, None, LanguageModel(tiny_base, "fp32", LORA), tmp_path)
-    shown = capsys.readouterr().out
+    printed = capsys.readouterr().out
     for name in ("none", "classifier", "before, alone", "after, alone", "after, guarded"):
-        assert f"## {name}" in shown
+        assert f"## {name}" in printed
 
 
 class Listener(torch.nn.Module):

@@ -10,28 +10,28 @@ from mitigate.training.reports.safeguard import voices
 
 
 def test_spoken_splits_share_no_voice_and_no_text():
-    found = {split: spoken.spoken(split) for split in spoken.SPLITS}
-    by_voice = [{text.voice for text in texts} for texts in found.values()]
+    matches = {split: spoken.spoken(split) for split in spoken.SPLITS}
+    by_voice = [{text.voice for text in texts} for texts in matches.values()]
     assert sum(map(len, by_voice)) == len(set.union(*by_voice)) >= 16
-    said = [{text.said.lower() for text in texts} for texts in found.values()]
-    assert sum(map(len, said)) == len(set.union(*said))
-    assert sum(len(texts) for texts in found.values()) >= 1500
+    lines_of_text = [{text.said.lower() for text in texts} for texts in matches.values()]
+    assert sum(map(len, lines_of_text)) == len(set.union(*lines_of_text))
+    assert sum(len(texts) for texts in matches.values()) >= 1500
 
 
 def test_spoken_texts_have_plain_parts():
     for split in spoken.SPLITS:
         for text in spoken.spoken(split):
             assert text.plain and text.said != text.plain, text
-            assert all(said.strip() for said, _ in text.parts), text
+            assert all(message.strip() for message, _ in text.parts), text
             assert text.task in ("route", "object")
 
 
 def test_passage_returns_neighbouring_parts_of_a_train_voice():
     train = {text.said: text for text in spoken.spoken("train")}
     for seed in range(200):
-        said, plain = spoken.passage(np.random.default_rng(seed))
-        assert said and len(said.split()) <= 250
-        (whole,) = [t for heard, t in train.items() if said in heard][:1]
+        message, plain = spoken.passage(np.random.default_rng(seed))
+        assert message and len(message.split()) <= 250
+        (whole,) = [t for heard, t in train.items() if message in heard][:1]
         assert all(part in whole.plain for part in plain.split(". ")[:1] if part)
 
 

@@ -47,11 +47,11 @@ def test_furniture_on_the_left_is_in_left_columns():
     middles = {before: [] for before in (True, False)}
     for _ in range(40):
         xy, heading = world.point(rng), float(rng.uniform(-3, 3))
-        shown = [
+        displayed = [
             world.put(xy, h)[1]["concepts"][:, :20] for h in (heading, heading - np.radians(22.5))
         ]
-        both = np.flatnonzero(shown[0].any(0) & shown[1].any(0))
-        for before, columns in zip((True, False), shown, strict=True):
+        both = np.flatnonzero(displayed[0].any(0) & displayed[1].any(0))
+        for before, columns in zip((True, False), displayed, strict=True):
             middles[before] += [np.flatnonzero(columns[:, i]).mean() for i in both]
     moved = np.subtract(middles[True], middles[False])
     assert len(moved) > 20 and moved.mean() > 0.5 and (moved < -0.5).mean() < 0.1

@@ -156,7 +156,7 @@ def test_replay_buffer_of_clean_frames_gives_the_same(episodes):
     assert not torch.equal(drawn[RGB], clean[RGB]) or not torch.equal(drawn[DEPTH], clean[DEPTH])
     for name in (RGB, DEPTH, ("next", RGB), ("next", DEPTH)):
         assert torch.equal(drawn[name], expected[name])
-    assert torch.equal(buffer[:][RGB], drawn[RGB])  # what is stored stays clean
+    assert torch.equal(buffer[:][RGB], drawn[RGB])  # stored frames stay clean
 
 
 def test_env_explains_invalid_use(episodes):

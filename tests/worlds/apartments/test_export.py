@@ -26,10 +26,10 @@ def chunks(data):
 
 
 def accessor(document, binary, number, dtype, width):
-    told = document["accessors"][number]
-    view = document["bufferViews"][told["bufferView"]]
+    reported = document["accessors"][number]
+    view = document["bufferViews"][reported["bufferView"]]
     raw = binary[view["byteOffset"] : view["byteOffset"] + view["byteLength"]]
-    return np.frombuffer(raw, dtype).reshape(told["count"], width)
+    return np.frombuffer(raw, dtype).reshape(reported["count"], width)
 
 
 def test_glb_contains_every_face_with_colours():
@@ -37,9 +37,9 @@ def test_glb_contains_every_face_with_colours():
     document, binary = chunks(glb(faces))
     corners, colours, triangles = [], [], 0
     for primitive in document["meshes"][0]["primitives"]:
-        own = primitive["attributes"]
-        corners.append(accessor(document, binary, own["POSITION"], np.float32, 3))
-        colours.append(accessor(document, binary, own["COLOR_0"], np.uint8, 4))
+        own_value = primitive["attributes"]
+        corners.append(accessor(document, binary, own_value["POSITION"], np.float32, 3))
+        colours.append(accessor(document, binary, own_value["COLOR_0"], np.uint8, 4))
         index = accessor(document, binary, primitive["indices"], np.uint32, 1)
         triangles += len(index) // 3
         assert index.max() == len(corners[-1]) - 1

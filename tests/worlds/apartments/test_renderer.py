@@ -74,7 +74,7 @@ def test_depth_and_ids_equal_ray_casting(renderer, seed):
         drawn, seen = ids[view].ravel(), depth[view].ravel()
         same = drawn == hit
         assert np.abs(seen - metres)[same].max() < 1e-5
-        # an edge is drawn to the nearest pixel, and two faces 1 cm apart may fight far away
+        # an edge is drawn to the nearest pixel, and distant faces 1 cm apart may overlap
         assert same.mean() > 0.8
         assert same[inner(hit)].mean() > 0.98
 
@@ -87,7 +87,7 @@ def test_renderer_recovers_every_id(renderer):
         raw = np.frombuffer(renderer.image.get_ram_image(), np.uint8).reshape(-1, 4 * SIZE, 4)
         codes = raw[3 * SIZE :, :, :3]
         drawn = codes.any(-1)
-        assert (codes[drawn] % 8 == 4).all()  # a colour of the code, unmixed
+        assert (codes[drawn] % 8 == 4).all()  # a colour of the code, not blended
         assert drawn.mean() > 0.999 and ids.max() < len(apartment.faces.plane)
         assert (ids < 0).sum() == (~drawn).sum()
 
@@ -151,7 +151,7 @@ def test_panorama_is_reproducible_after_other_scenes():
     first = renderer.render(*target)
     for again in zip(first, renderer.render(*target), strict=True):
         assert np.array_equal(*again)
-    for other in apartments[1:]:  # more scenes than are kept: the first is built anew
+    for other in apartments[1:]:  # more scenes than the cache keeps: the first is built again
         renderer.load(other)
         assert not np.array_equal(renderer.render(*pose(other, 0))[0], first[0])
     renderer.load(apartments[0])

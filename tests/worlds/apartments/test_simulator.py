@@ -144,21 +144,23 @@ def test_reset_moves_a_blocked_start(simulator, episodes):
 
 def test_world_measures_the_shortest_path(episodes):
     world, first = ApartmentsWorld(16), episodes[0]
-    own = first.geodesic_distance
+    own_value = first.geodesic_distance
     elsewhere = (first.reference_path[-1], *first.reference_path[1:])
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        for told in (own, own + 0.3, None):
-            world.reset(replace(first, geodesic_distance=told, reference_path=elsewhere))
-            assert world.measures()["geodesic_distance"] == own
-    for told in (0.0, 2 * own):
+        for reported in (own_value, own_value + 0.3, None):
+            world.reset(replace(first, geodesic_distance=reported, reference_path=elsewhere))
+            assert world.measures()["geodesic_distance"] == own_value
+    for reported in (0.0, 2 * own_value):
         other = ApartmentsWorld(16)
-        with pytest.warns(UserWarning, match=rf" {told:g} m for episode {first.episode_id}, but"):
-            other.reset(replace(first, geodesic_distance=told))
-        assert other.measures()["geodesic_distance"] == own
+        with pytest.warns(
+            UserWarning, match=rf" {reported:g} m for episode {first.episode_id}, but"
+        ):
+            other.reset(replace(first, geodesic_distance=reported))
+        assert other.measures()["geodesic_distance"] == own_value
         with warnings.catch_warnings():
             warnings.simplefilter("error")
-            other.reset(replace(episodes[1], geodesic_distance=told))
+            other.reset(replace(episodes[1], geodesic_distance=reported))
 
 
 def test_step_names_the_allowed_actions(simulator):

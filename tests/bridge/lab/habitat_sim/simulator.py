@@ -1,4 +1,4 @@
-"""A simulator of two agents: the one that acts, and one that sees the goal."""
+"""A simulator with two agents: one acts, the other sees the goal."""
 
 import enum
 
