@@ -21,8 +21,8 @@ from mitigate.evaluation.rows import Row
 from mitigate.evaluation.sections import Difference, Retained, Section, label, sections
 
 NO_DIFFERENCE = Difference(None, None, {})
-# Limits of pictures, whose time grows with panels and cells: rows come from other people
-# (heuristic) ST_CORRUPTIONS = 100  # of a picture
+# Limits of pictures (heuristic): their time grows with panels and cells, and rows may be foreign
+MOST_CORRUPTIONS = 100  # of a picture
 MOST_COLUMNS = 50  # of a picture
 MOST_HEATMAPS = 50  # of a report
 NO_PICTURE = (

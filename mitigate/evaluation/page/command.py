@@ -123,93 +123,8 @@ def main(argv: Sequence[str] | None = None) -> int:
         "rows",
         nargs="*",
         metavar="ROWS",
-        help=f"row
-        files or
-        run folders (default
-        {ROWS}); key=value
-        arguments are
-        options of mitigate " "evaluate
-        for the agents of --walk, such as " "" ""
-        "" "" ""
-        ""
-        ""
-        ""
-        ""
-        ""
-        ""
-        ""
-        ""
-        ""
-        ""
-        ""
-        ""
-        ""
-        ""
-        ""
-        ""
-        ""
-        ""
-        ""
-        ""
-        ""
-        ""
-        ""
-        ""
-        ""
-        ""
-        ""
-        ""
-        ""
-        ""
-        ""
-        ""
-        ""
-        ""
-        ""
-        ""
-        ""
-        ""
-        ""
-        ""
-        ""
-        ""
-        ""
-        ""
-        ""
-        ""
-        ""
-        ""
-        ""
-        ""
-        ""
-        ""
-        ""
-        ""
-        ""
-        ""
-        ""
-        ""
-        ""
-        ""
-        ""
-        ""
-        ""
-        ""
-        ""
-        ""
-        ""
-        ""
-        ""
-        ""
-        ""
-        ""
-        ""
-        ""
-        ""
-        ""
-        ""
-        ""
-        "split=val_seen",
+        help=f"row files or run folders (default {ROWS}); key=value arguments are options of "
+        "mitigate evaluate for the agents of --walk, such as split=val_seen",
     )
     parser.add_argument("--out", type=Path, default=OUT, help=f"file to write (default {OUT})")
     parser.add_argument("--title", default="Results", help="heading of the page")
@@ -237,10 +152,8 @@ def main(argv: Sequence[str] | None = None) -> int:
     return run_command("report", lambda: run(paths or [_shipped()], options=options, **arguments))
 
 
-def run_command(name: str, work:
-Callable[[], Path | None]) -> int:
-    """Call ``work`` and return the exit status: 2 for an invalid input, whose error is
-    printed.
+def run_command(name: str, work: Callable[[], Path | None]) -> int:
+    """Call ``work`` and return the exit status: 2 for an invalid input, whose error is printed.
 
     ``work`` returns the file that it wrote, if any.
     """
