@@ -22,9 +22,9 @@ from mitigate.core import conf, seeding
 from mitigate.core.build import locate, maker
 from mitigate.core.locks import FolderLock
 from mitigate.core.names import counted
-from mitigate.core.observation import sensor_lines
+from mitigate.core.observation import DEPTH, RGB, sensor_lines
 from mitigate.core.options import without_config_folder
-from mitigate.core.progress import duration
+from mitigate.core.progress import duration, say
 from mitigate.core.workers import ALONE, packed
 from mitigate.corruptions import CLEAN, Corruption
 from mitigate.evaluation import evaluate as evaluation
@@ -109,7 +109,9 @@ def benchmark(
     config, met = _conditions(agent, suite, severity, seed, options)
     texts = {"training_data": training_data, "link": link}
     make_world = world or maker(config.env.world)
-    first, made_by = checked_world(make_world, met, version)
+    first, made_by = checked_world(make_world, [] if isinstance(suite, str) else met, version)
+    if isinstance(suite, str):
+        met = _visible(met, first, suite)
     if is_policy(agent):
         agent = as_policy(agent, first)
         name, version = name or agent.name, version or agent.version
@@ -217,6 +219,21 @@ def _random(
 
 def _plain(name: str) -> str:
     return re.sub(r"[^A-Za-z0-9.@+-]+", "-", name)
+
+
+def _visible(met: Sequence[Corruption], world: World, suite: str) -> list[Corruption]:
+    """Return the conditions of a suite without corruptions of frames that the world lacks."""
+    unseen = {RGB, DEPTH} - {*world.sensors}
+    left_out = [one.name for one in met if unseen & {*one.modalities}]
+    conditions = [one for one in met if one.name not in left_out]
+    if all(one.severity == 0 for one in conditions):
+        raise ValueError(
+            f"suite={suite} must corrupt a sensor of the world, got {', '.join(world.sensors)}. "
+            "Name another suite, such as rgb or depth, or a list of corruptions."
+        )
+    if left_out:
+        say(f"benchmark: the world has no {' or '.join(unseen)}: left out {', '.join(left_out)}")
+    return conditions
 
 
 def checked_world(

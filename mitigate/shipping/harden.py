@@ -201,7 +201,14 @@ def harden(
         else:
             checkpoint.save_weights(after.network, folder / "agent")
         rows += _evaluate(after, "after", conditions, *arguments, workers)
-    return Hardened(_like(policy, after), after, compare(rows), rows, folder)
+    report = compare(rows)
+    change = report.lines[0].changes["after"]  # the mean over the corruptions
+    if change.excludes_zero and change.value < 0:
+        say(
+            "harden: the hardened policy is worse than the given one under these corruptions. Keep "
+            "the given policy, or train with other settings (suite=, severity=, steps=, seed=)."
+        )
+    return Hardened(_like(policy, after), after, report, rows, folder)
 
 
 def _check_folder(trainer: Trainer, folder: Path) -> None:

@@ -258,3 +258,9 @@ def test_benchmark_reports_the_return_and_reuses_rows(tmp_path, capsys):
         )
         assert report.line("Return: Clean").values["Net"].value == 5.0
     assert "all already done" in capsys.readouterr().out
+
+
+def test_benchmark_leaves_out_corruptions_of_sensors_that_the_world_lacks(tmp_path, capsys):
+    entry = mitigate.benchmark(trained(), world=world, listed=FEW, suite="quick", out=tmp_path)
+    assert "the world has no depth: left out" in capsys.readouterr().out
+    assert "missing_data" not in entry.SR

@@ -27,7 +27,7 @@ from mitigate.evaluation.sections import sections
 from mitigate.worlds.apartments.tasks import load_episodes
 from mitigate.worlds.apartments.world import ApartmentsWorld
 from tests.evaluation.made_rows import column
-from tests.evaluation.page.test_document import held
+from tests.evaluation.page.test_document import page_data
 
 ROOT = Path(__file__).parents[3]
 SHIPPED = sorted((ROOT / "docs/leaderboard").rglob("*.json"))
@@ -189,7 +189,7 @@ def test_show_ranks_entries_by_mean_sr(tmp_path, monkeypatch, capsys):
         entry.save(f"entries/{file}.json")
     assert command.main(["show", "entries", "--out", "page.html"]) == 0
     text = Path("page.html").read_text(encoding="utf-8")
-    data, _ = held(text)
+    data, _ = page_data(text)
     assert text.count("<script") == 3
     assert [[c["label"] for c in s["columns"]] for s in data["sections"]] == [[evil, "low"]]
     assert sum("trained on halls" in note for note in data["notes"]) == 2
