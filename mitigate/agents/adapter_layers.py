@@ -377,7 +377,8 @@ def neighbour_grid(height: int, width: int, step: float, hfov: float) -> Tensor:
         hfov: horizontal field of view in degrees; views are square.
 
     Returns:
-        float32 ``[2, h, w, 2]``: (x, y) as ``grid_sample`` takes them with ``align_corners=False``;
+        float32 ``[2, h, w, 2]``: (x, y) in the coordinates of ``grid_sample`` with
+        ``align_corners=False``;
         inside [-1, 1] where the neighbour sees the cell.
     """
     half = math.tan(math.radians(hfov) / 2)

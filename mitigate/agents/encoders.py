@@ -225,8 +225,8 @@ class CameraRGB(Encoder):
 class CameraDepth(Encoder):
     """Encode float32 metres ``[n, H, W, 1]`` as features of four columns, and free-space logits.
 
-    Features are ``[n, 4, width]``. Logits ``[n, 30, 12]`` say where the agent can go straight: by
-    angle, from 45 degrees left to 45 right, and by distance, 0.25 to 3 m.
+    Features are ``[n, 4, width]``. Logits ``[n, 30, 12]`` predict free space by angle (45 degrees
+    left to 45 right) and distance (0.25 to 3 m).
     """
 
     channels, widths, resize = 2, (24, 32, 64, 96), "nearest-exact"

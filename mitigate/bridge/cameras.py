@@ -42,7 +42,7 @@ class Camera:
         yaw: Degrees to the left of the agent.
         level: Whether pitch and roll are 0.
         sensor: Range of depth in metres.
-        normalised: Whether depth is in [0, 1] over that range.
+        normalised: Whether depth is divided by that range, to [0, 1].
     """
 
     name: str
@@ -96,7 +96,7 @@ def read_camera(description: Mapping[str, Any], sensor: DepthSensor) -> Camera:
 
     Args:
         description: From the agent's process.
-        sensor: Range of depth, if the description has none.
+        sensor: Default range of depth, for a description without a range.
 
     Raises:
         ValueError: Frames of the camera cannot be corrupted.

@@ -1,7 +1,7 @@
 """Train one agent with several processes: ``torchrun --nproc-per-node 2 -m mitigate.train``.
 
 Each rank makes its share of a step's pieces and learns from it. Gradients are averaged, so all
-ranks take the same step. With one rank, as usual, nothing here costs time.
+ranks take the same step. With one rank, which is the usual case, this module adds no cost.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """The contract of worlds, and the world that corrupts another one.
 
-A world produces observations and measures episodes; it knows no agent. How to add a world is in
-``docs/bring-your-own.md``.
+A world produces observations and measures episodes; it knows no agent. ``docs/bring-your-own.md``
+describes how to add a world.
 """
 
 from __future__ import annotations

@@ -268,8 +268,8 @@ def frontiers(grid: Grid) -> list[np.ndarray]:
 def object_cells(grid: Grid, least: float) -> np.ndarray:
     """Return the group of cells [n, 2] with the most evidence for the object.
 
-    Cells count above ``least`` and above ``SHARE`` of the highest evidence, so that more
-    observations narrow the group down.
+    A cell counts if its evidence is above ``least`` and above ``SHARE`` of the highest evidence.
+    More observations therefore narrow the group down.
     """
     likely = grid.evidence > max(least, SHARE * float(grid.evidence.max()))
     if not likely.any():
