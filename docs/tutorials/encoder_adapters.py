@@ -1,5 +1,5 @@
 # %% [markdown]
-# # Harden an image encoder in a training loop of your own
+# # Harden an image encoder in your own training loop
 #
 # This tutorial puts zero-initialised adapters into a frozen encoder and trains them to return the clean features of
 # corrupted frames. No label, action or environment is needed. It takes about 20 seconds on a CPU.

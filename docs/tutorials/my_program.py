@@ -1,4 +1,4 @@
-"""A small navigation program with a loop of its own, to try ``mitigate run`` on.
+"""A small navigation program with its own loop, to try ``mitigate run`` on.
 
     mitigate run "conditions=[clean,foreign_object,missing_data]" -- python docs/tutorials/my_program.py
 

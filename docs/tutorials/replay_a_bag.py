@@ -1,5 +1,5 @@
 # %% [markdown]
-# # Replay a ROS bag with a policy of your own
+# # Replay a ROS bag with your own policy
 #
 # This tutorial writes a ROS bag, shows its frames to a policy, clean and corrupted, and counts how many decisions
 # change. It takes about 20 seconds on a CPU. The bag is simulated: it records an oracle in a generated apartment.

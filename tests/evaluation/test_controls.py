@@ -50,7 +50,7 @@ def test_random_agent_differs_between_episodes_of_one_text(monkeypatch, tmp_path
 
 @pytest.fixture
 def walked(monkeypatch):
-    """Return the ids of the episodes of a run, all of which must be successes."""
+    """Return the ids of the episodes of a run; every episode must be a success."""
     ids: list[str] = []
 
     def walk(agent, world, episode, *others):
