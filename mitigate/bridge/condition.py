@@ -165,7 +165,7 @@ class Words:
                 )
             return {}
         changed = text
-        for part in parts if is_english(message.get("language")) else ():
+        for part in parts if is_english(message.get("language"), text) else ():
             changed = corrupt_instruction(
                 changed, part.name, part.severity, key, mask_token=self._mask()
             )

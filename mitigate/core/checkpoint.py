@@ -19,7 +19,7 @@ from safetensors.torch import load_file, save_file
 from torch import nn
 
 from mitigate.core import checksums, folders
-from mitigate.core.files import write_text
+from mitigate.core.files import lfs_problem, write_text
 from mitigate.core.names import short
 
 WEIGHTS = "model.safetensors"
@@ -201,6 +201,8 @@ def load_tensors(file: Path) -> dict[str, torch.Tensor]:
         PermissionError: The user may not read the file.
     """
     file.open("rb").close()  # raises PermissionError, which does not mean damage
+    if pointer := lfs_problem(file):
+        raise ValueError(f"The weights {file} cannot be read: {file.name} {pointer}.")
     problem = folders.problem(file)
     if not problem:
         try:

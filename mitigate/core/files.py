@@ -19,6 +19,7 @@ from typing import Any, BinaryIO, TextIO
 from mitigate.core import output
 
 GZIP_MAGIC = b"\x1f\x8b"  # RFC 1952
+LFS_START = b"version https://git-lfs.github.com/spec/"  # Git LFS specification, pointer files
 RECORDING = "recording.json"  # file in the folder of a recording by `mitigate run record=FOLDER`
 # A gzip file may unpack to FREE + RATIO * its size in bytes (heuristic; our files have ratios of 15
 # to 31).
@@ -129,6 +130,14 @@ class _Unpacked(gzip.GzipFile):
                 "not use it, or unpack it yourself and name the plain file"
             )
         return content
+
+
+def lfs_problem(path: Path | str) -> str:
+    """Return "is a Git LFS pointer ..." if the file is one; else an empty text."""
+    with open(path, "rb") as file:
+        if file.read(len(LFS_START)) != LFS_START:
+            return ""
+    return "is a Git LFS pointer, not the file itself. Run `git lfs pull` in its repository"
 
 
 def read_regular(path: Path | str) -> str:

@@ -27,7 +27,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from mitigate.core import checksums, older_folders, output
-from mitigate.core.files import make_folder, sha256, write_text
+from mitigate.core.files import lfs_problem, make_folder, sha256, write_text
 from mitigate.core.json_files import read_object
 from mitigate.core.names import short
 from mitigate.core.output import writing
@@ -260,6 +260,8 @@ def _compare(
         if not file.is_file():
             raise FileNotFoundError(f"{folder} is incomplete: {name} is missing. {again}")
         if not _matches(file, entry):
+            if pointer := lfs_problem(file):
+                raise ValueError(f"{file} {pointer}.")
             raise ValueError(
                 f"{file} does not have the sha256 that {manifest.source} states: it was changed or "
                 f"cut short. {again}"

@@ -10,13 +10,17 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, NoReturn, TextIO
 
-from mitigate.core.files import open_text
+from mitigate.core.files import lfs_problem, open_text
 from mitigate.core.names import short
 from mitigate.core.output import is_regular
 
 CHUNK = 1 << 16  # characters read at a time (heuristic)
 LARGEST_VALUE = 1 << 25  # characters of one JSON value; more means a broken file (heuristic)
 LARGEST_JSON = 1 << 24  # bytes of a JSON file that is read at once (heuristic; a card has 1e4)
+
+
+class JsonListError(ValueError):
+    """A file holds a JSON list instead of an object."""
 
 
 def read_json(path: Path, again: str) -> Any:
@@ -35,6 +39,8 @@ def read_json(path: Path, again: str) -> Any:
             raise ValueError(f"more than {LARGEST_JSON} bytes")
         return parse_json(raw.decode("utf-8-sig"))
     except (ValueError, RecursionError) as error:
+        if pointer := lfs_problem(path):
+            raise ValueError(f"{path} {pointer}.") from error
         raise ValueError(f"{path} is cut short or damaged ({error!s:.200}). {again}") from error
 
 
@@ -76,6 +82,8 @@ def json_members(path: Path | str, streamed: str) -> Iterator[tuple[str, Any]]:
     """
     with open_text(path) as file:
         json_file = _JsonFile(file, path)
+        if json_file.accept("["):
+            raise JsonListError(f"{path} must hold a JSON object, got a list.")
         json_file.expect("{", "a JSON object")
         for _ in json_file.until("}"):
             key = json_file.value()
@@ -166,6 +174,8 @@ class _JsonFile:
         return bool(more)
 
     def _fail(self, problem: str) -> NoReturn:
+        if pointer := lfs_problem(self._path):
+            raise ValueError(f"{self._path} {pointer}.")
         raise ValueError(
             f"{self._path} is not complete JSON: {problem}, near character "
             f"{self._before + self._at}. It is cut short, damaged or another kind of file: "

@@ -15,7 +15,15 @@ from mitigate.core.observation import Z_MAX
 from mitigate.core.output import UnsafePathError, is_regular, lost, output_folder
 from mitigate.corruptions import frame_files
 from mitigate.corruptions.depth_sensor import DepthSensor
-from mitigate.corruptions.frame_files import MAX_COUNT, RGB, Frame, Plan, count_suffixes, make_plan
+from mitigate.corruptions.frame_files import (
+    MAX_COUNT,
+    NO_READING,
+    RGB,
+    Frame,
+    Plan,
+    count_suffixes,
+    make_plan,
+)
 from mitigate.corruptions.keying import Key
 from mitigate.corruptions.registry import known, version
 from mitigate.corruptions.suite import SUITE_VERSION, Corruption, check_name, corrupt
@@ -35,9 +43,10 @@ class Settings:
     seed: int = 0
     episode: str = "folder"  # "folder": each folder is an episode; "all": one episode
     format: str = "png"  # format of a corrupted JPEG: "png" or "same"
-    unit: float = UNITS["mm"]  # metres per count of a 16-bit PNG
+    unit: float | None = None  # metres per count of a 16-bit PNG; None: mm, after a check
     z_max: float = Z_MAX  # metres, maximum that depth is clipped to
     missing: float = 0.0  # metres, value of missing data
+    no_reading: int = NO_READING  # count of a 16-bit PNG without a reading, next to 0
 
     def __post_init__(self) -> None:
         Corruption(self.corruption, self.severity)
@@ -48,7 +57,7 @@ class Settings:
         for name, value, allowed in choices:
             if value not in allowed:
                 raise ValueError(f"{name} must be one of {', '.join(allowed)}, got {value}.")
-        if not 0.0 < self.unit < float("inf"):
+        if not 0.0 < self.metres_per_count < float("inf"):
             raise ValueError(
                 f"unit must be mm, cm, m or the metres per count of a 16-bit PNG above 0, such as "
                 f"0.00025, got {self.unit}."
@@ -57,7 +66,13 @@ class Settings:
             raise ValueError(
                 f"missing must be 0 (no reading) or more metres, got {self.missing:g}."
             )
+        if not 0 <= self.no_reading <= NO_READING:
+            raise ValueError(f"no_reading must be 0 to {NO_READING}, got {self.no_reading}.")
         DepthSensor(z_max=self.z_max)  # checks z_max
+
+    @property
+    def metres_per_count(self) -> float:
+        return UNITS["mm"] if self.unit is None else self.unit
 
     @property
     def sensor(self) -> DepthSensor:
@@ -92,6 +107,9 @@ def run(source: Path | str, out: Path | str, settings: Settings) -> dict:
         raise FileNotFoundError(_no_frames(source, modality, settings, plan))
     if any(frame.path.suffix.lower() == ".png" for frame in plan.frames) and modality != RGB:
         _check_counts(settings)
+    if modality != RGB and settings.unit is None:
+        frames = [source / frame.path for frame in plan.frames]
+        frame_files.check_scale(frames, settings.metres_per_count, settings.z_max)
     with output_folder(out, SUMMARY):
         return _corrupt_all(source, out, settings, plan)
 
@@ -150,7 +168,9 @@ def _corrupt_frame(
         )
 
     try:
-        data = frame_files.corrupt_file(files[0], target.suffix, settings.unit, change)
+        data = frame_files.corrupt_file(
+            files[0], target.suffix, settings.metres_per_count, change, settings.no_reading
+        )
     except ValueError as error:  # LeftOutError, or a shape that the suite does not support
         plan.left_out[frame.path.as_posix()] = str(error)
         checksums.pop(name, None)
@@ -184,7 +204,7 @@ def _output(path: Path, form: str) -> Path:
 def _begin(out: Path, settings: Settings, plan: Plan) -> dict:
     """Check the results of an earlier run in ``out``, then write settings and episodes there."""
     versions = {"suite_version": SUITE_VERSION, **version(settings.corruption)}
-    settings_now = {**versions, **asdict(settings)}
+    settings_now = {**versions, **asdict(settings), "unit": settings.metres_per_count}
     checksums: dict[str, str] = {}
     if out.is_dir() and any(path.name[0] != "." for path in out.iterdir()):
         checksums = _check_earlier(out, settings_now, plan.episodes())
@@ -215,6 +235,9 @@ def _check_earlier(out: Path, settings: dict, episodes: dict[str, list[str]]) ->
     try:
         earlier = json.loads(read_regular(out / SUMMARY))
         earlier_settings = dict(earlier["settings"])
+        # earlier versions knew no other count than 0, so no_reading=0 resumes their folders
+        is_rgb = Corruption(settings["corruption"], settings["severity"]).modality == RGB
+        earlier_settings.setdefault("no_reading", settings["no_reading"] if is_rgb else 0)
         recorded = dict(earlier["episodes"]).items()
         digests = {name: (int(e["frames"]), str(e["names"])) for name, e in recorded}
         checksums = {str(k): str(v) for k, v in dict(earlier.get("checksums", {})).items()}
@@ -298,10 +321,10 @@ def _no_frames(source: Path, modality: str, settings: Settings, plan: Plan) -> s
 def _check_counts(settings: Settings) -> None:
     """Raise ValueError if depth does not fit into a 16-bit PNG."""
     largest = max(settings.z_max, settings.missing)
-    limit = MAX_COUNT * settings.unit
+    limit = MAX_COUNT * settings.metres_per_count
     if largest > limit:
         raise ValueError(
             f"Depth must be at most {limit:g} metres to fit into a 16-bit PNG with "
-            f"{settings.unit:g} metres per count, got {largest:g}. Set z_max={limit:g} or less, or "
-            "another unit."
+            f"{settings.metres_per_count:g} metres per count, got {largest:g}. Set "
+            f"z_max={limit:g} or less, or another unit."
         )

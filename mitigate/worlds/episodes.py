@@ -17,7 +17,7 @@ from typing import Any, NoReturn
 import numpy as np
 
 from mitigate.core.files import atomic_text, sha256
-from mitigate.core.json_files import json_members
+from mitigate.core.json_files import JsonListError, json_members
 from mitigate.core.names import short
 
 Vector = tuple[float, ...]
@@ -228,7 +228,7 @@ def read_episodes(path: Path | str, *, hidden_goals: bool = False) -> Iterator[E
         ValueError: An episode is invalid; the message names file, episode and key.
     """
     has_episodes = False
-    for key, items in json_members(path, "episodes"):
+    for key, items in _members(path):
         if key != "episodes":
             continue
         has_episodes = True
@@ -299,7 +299,18 @@ class ListedEpisodes:
 
 def read_extras(path: Path | str) -> dict[str, Any]:
     """Return the keys of a file except its episodes, such as R2R-CE's ``instruction_vocab``."""
-    return {key: value for key, value in json_members(path, "episodes") if key != "episodes"}
+    return {key: value for key, value in _members(path) if key != "episodes"}
+
+
+def _members(path: Path | str) -> Iterator[tuple[str, Any]]:
+    """Yield the members of an episode file; explain a list, as of the discrete R2R task."""
+    try:
+        yield from json_members(path, "episodes")
+    except JsonListError as error:
+        raise ValueError(
+            f"{error} Is it a list of the discrete R2R task (scan, path, instructions)? Convert "
+            'it, or use R2R-CE: {"episodes": [...]}.'
+        ) from error
 
 
 def write_episodes(

@@ -28,7 +28,7 @@ class CorruptObservation(Transform):
     is a function of the name in ``episode``, which changes at every reset. The pixels therefore do
     not depend on the number of parallel environments or on partial resets. They are also the same
     when a frame is corrupted later, out of a replay buffer with clean frames (``forward``, which
-    also corrupts ``("next", ...)`` if present). An environment without episode names needs an
+    also corrupts ``("next", ...)`` if it has frames). An environment without episode names needs an
     ``EpisodeCounter`` before this transform.
 
     Frames are RGB uint8 [*batch, H, W, 3] or [*batch, V, H, W, 3] and depth float32
@@ -82,7 +82,9 @@ class CorruptObservation(Transform):
         """
         out = self._corrupt(tensordict.copy())
         following = out.get("next", None)
-        if following is not None:
+        if following is not None and any(
+            following.get(self.entries[name], None) is not None for name in (RGB, DEPTH)
+        ):
             self._corrupt(following)
         return out
 

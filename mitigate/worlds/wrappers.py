@@ -34,7 +34,7 @@ from mitigate.worlds.modalities import ENTRY_FIX, check_available
 FORMATS = "uint8 [(V,) H, W, 3] for RGB, or float32 [H, W] or [(V,) H, W, 1] for depth"
 
 
-class CorruptObservation(gymnasium.ObservationWrapper):
+class CorruptObservation(gymnasium.ObservationWrapper, gymnasium.utils.RecordConstructorArgs):
     """Corrupt the frames of an environment by a schedule, keyed by (seed, episode, frame).
 
     The observation is an RGB frame (``Box`` uint8 [H, W, 3] or [V, H, W, 3]), a depth frame
@@ -80,6 +80,16 @@ class CorruptObservation(gymnasium.ObservationWrapper):
         sensor: DepthSensor | None = None,
         normalised: bool = False,
     ) -> None:
+        gymnasium.utils.RecordConstructorArgs.__init__(
+            self,
+            schedule=schedule,
+            seed=seed,
+            rgb=rgb,
+            depth=depth,
+            pose=pose,
+            sensor=sensor,
+            normalised=normalised,
+        )
         super().__init__(env)
         self.schedule, self.seed = schedule, seed
         self.sensor = sensor or DepthSensor()

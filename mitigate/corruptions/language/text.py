@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import unicodedata
 from collections.abc import Mapping
 
 
@@ -19,12 +20,20 @@ def check_text(text: str) -> None:
         )
 
 
-def is_english(language: str | None) -> bool:
+def is_english(language: str | None, text: str = "") -> bool:
     """Return whether a language code or name means English.
 
-    "en" and "en-US" do, in any case, and so does a missing language (None or empty).
+    "en" and "en-US" do, in any case. Without a language (None or empty), ``text`` must not be in
+    another script: at least half of its letters must be Latin.
     """
-    return not language or language.lower().startswith("en")
+    if language:
+        return language.lower().startswith("en")
+    letters = [character for character in text if character.isalpha()]
+    latin = sum(unicodedata.name(letter, "").startswith("LATIN") for letter in letters)
+    return 2 * latin >= len(letters)
+
+
+UNMARKED = "an unknown language (not in Latin script)"  # of texts without a language
 
 
 def passed_through(languages: Mapping[str, int]) -> str:

@@ -11,14 +11,17 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterator, Mapping, Sequence
+import warnings
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from mitigate.core.files import lfs_problem
 from mitigate.core.names import unknown
 from mitigate.core.observation import DEPTH, POSE, RGB
 from mitigate.worlds.recorded.messages import (
@@ -48,6 +51,7 @@ OFF = "none"  # value of a topic option that turns the topic off
 # does not match /depth_camera/image_raw
 _DEPTH_TOPIC = re.compile(r"(?:^|[/_])depth(?:$|/|_(?!camera))")
 _OTHER_IMAGES = re.compile(r"infra|mask|(?:^|[/_])ir(?:$|[/_])")  # infrared images and masks
+_OTHER_POSES = re.compile(r"goal|target|waypoint|initial_?pose")  # not where the robot is
 
 KINDS = (RGB, DEPTH)
 # Heuristic limits.
@@ -77,7 +81,8 @@ class Bag(Source):
         self.instruction = read_instruction(resolved.parent / f"{self.name}.txt")
         with self._open() as reader:
             available = {name: info.msgtype for name, info in reader.topics.items()}
-            self.topics = choose_topics(path, available, topics)
+            counts = {name: info.msgcount for name, info in reader.topics.items()}
+            self.topics = choose_topics(path, available, topics, counts)
             self.kinds = [kind for kind in KINDS if kind in self.topics]
             stamps, poses, lenses = self._index(reader, hfov)
         if hfov is not None and all(kind in lenses for kind in self.kinds):
@@ -129,14 +134,17 @@ class Bag(Source):
             ) from error
         try:
             default_types = get_typestore(Stores.ROS2_HUMBLE)
-            with (
-                bounded(self.path),
-                AnyReader([self.path], default_typestore=default_types) as reader,
-            ):
-                yield reader
+            with bounded(self.path):
+                reader: Any = AnyReader([self.path], default_typestore=default_types)
+                for part in reader.readers:
+                    part.open = partial(_open_part, part, part.open)
+                with reader:
+                    yield reader
         except OSError:
             raise
         except Exception as error:
+            if self.path.is_file() and (pointer := lfs_problem(self.path)):
+                raise ValueError(f"{self.path} {pointer}.") from error
             if isinstance(error, ValueError) and str(self.path) in str(error):
                 raise  # raised by this package, already names the bag
             reason = " ".join(str(error).split())[:300]
@@ -234,6 +242,24 @@ class Bag(Source):
         self._image_numbers = instants.frames
 
 
+def _open_part(part: Any, open_: Callable[[], None]) -> None:
+    """Open a reader of ``rosbags``, which then parses the definitions of the read types only.
+
+    Otherwise one definition that it cannot parse, such as that of a service event, would make the
+    whole bag unreadable.
+    """
+    from rosbags.interfaces import MessageDefinition, MessageDefinitionFormat
+
+    open_()
+    none = MessageDefinition(MessageDefinitionFormat.NONE, "")
+    part.connections[:] = [
+        connection
+        if connection.msgtype in (*IMAGES, INFO, *POSES)
+        else connection._replace(msgdef=none)
+        for connection in part.connections
+    ]
+
+
 def _choose_clock(stamps: Sequence[tuple[float, float]]) -> list[float]:
     """Return the times of the headers if any header has one, otherwise the times of receipt."""
     has_header = any(header for header, _ in stamps)
@@ -265,7 +291,10 @@ class Topics:
 
 
 def choose_topics(
-    path: Path, available: Mapping[str, str | None], topics: Topics
+    path: Path,
+    available: Mapping[str, str | None],
+    topics: Topics,
+    counts: Mapping[str, int] | None = None,
 ) -> dict[str, str]:
     """Choose the topics "rgb", "depth", "pose", "info rgb" and "info depth".
 
@@ -273,6 +302,8 @@ def choose_topics(
         path: The bag, for messages.
         available: Message type of each topic in the bag.
         topics: The user's choice.
+        counts: Number of messages of each topic, if known. A topic with one message next to several
+            images holds no trajectory.
 
     Returns:
         Topics by name; topics that the bag lacks are left out.
@@ -288,7 +319,17 @@ def choose_topics(
     ]
     depth = [n for n in images if _DEPTH_TOPIC.search(n) and n != topics.rgb]
     rgb = [n for n in images if n not in depth and n != topics.depth]
-    poses = [name for name, kind in available.items() if kind in POSES]
+    counts = counts or {}
+    several = max((counts.get(name, 0) for name in images), default=0) > 1
+    typed = [name for name, kind in available.items() if kind in POSES]
+    others = [n for n in typed if _OTHER_POSES.search(n) or (several and counts.get(n) == 1)]
+    poses = [name for name in typed if name not in others]
+    if others and not poses and topics.pose is None:
+        warnings.warn(
+            f"{path} is read without poses: {', '.join(others)} seems to hold goals or single "
+            f"poses, not the path of the robot. If it does, set topics.pose={others[0]}.",
+            stacklevel=3,
+        )
     chosen = {
         RGB: _choose_topic(path, RGB, topics.rgb, rgb, available, IMAGES),
         DEPTH: _choose_topic(path, DEPTH, topics.depth, depth, available, IMAGES),

@@ -5,7 +5,8 @@ Three layouts are supported:
 * ``recording.json`` and ``<scene>/<episode>/<camera>/000000.png``: written by
   ``mitigate run record=``;
 * ``rgb.txt``, ``depth.txt``, ``groundtruth.txt``: the layout of the TUM RGB-D benchmark (Sturm et
-  al., IROS 2012), which most tools for RGB-D cameras write;
+  al., IROS 2012), which most tools for RGB-D cameras write; ``associations.txt`` may replace both
+  lists;
 * ``rgb/`` and ``depth/`` with one file per step, sorted by name. ``poses.csv`` is optional and has
   one line "x,y,heading" per step (metres, radians, forward is (-sin h, cos h)).
 
@@ -26,7 +27,7 @@ import numpy as np
 from mitigate.core.files import RECORDING
 from mitigate.core.json_files import parse_json, read_object
 from mitigate.core.names import short, unknown
-from mitigate.core.observation import DEPTH, RGB
+from mitigate.core.observation import DEPTH, RGB, Z_MAX
 from mitigate.corruptions import frame_files
 from mitigate.corruptions.frame_files import SUFFIXES, natural
 from mitigate.worlds.episodes import from_vlnce
@@ -51,6 +52,7 @@ POSES = "poses.csv"
 INSTRUCTION = "instruction.txt"
 # The layout of the TUM RGB-D benchmark.
 LISTS = ("rgb.txt", "depth.txt")
+ASSOCIATIONS = "associations.txt"  # both lists in one, by associate.py of that benchmark
 TRAJECTORY = "groundtruth.txt"
 TUM_UNIT = 1 / 5000  # metres per count; TUM RGB-D benchmark, file formats
 # TUM's default calibration: width 640 pixels, focal length 525
@@ -123,7 +125,7 @@ def open_folder(
             f"cameras= applies only to a recording by mitigate run, which {path} is not. Remove "
             "cameras=."
         )
-    if any((path / name).is_file() for name in LISTS):
+    if any((path / name).is_file() for name in (*LISTS, ASSOCIATIONS)):
         return [_read_tum(path, hfov, TUM_UNIT if unit is None else unit)]
     if (path / TRAJECTORY).is_file():
         raise ValueError(
@@ -134,7 +136,7 @@ def open_folder(
 
 def is_drive(folder: Path) -> bool:
     """Return whether a folder contains frames in one of the three layouts."""
-    return any((folder / name).exists() for name in (RECORDING, *LISTS, RGB, DEPTH))
+    return any((folder / name).exists() for name in (RECORDING, *LISTS, ASSOCIATIONS, RGB, DEPTH))
 
 
 def _read_recorded(
@@ -284,6 +286,11 @@ def _read_simple(path: Path, hfov: float | None, unit: float | None) -> Frames:
             f"{path} must have as many of each, one per step, got {listed}. Add or remove the "
             "files that do not match."
         )
+    if unit is None and DEPTH in files:
+        try:
+            frame_files.check_scale(files[DEPTH], 0.001, Z_MAX)
+        except ValueError as error:
+            raise ValueError(f"{path}: {error}") from error
     stems = [[file.stem for file in paths] for paths in files.values()]
     if len(stems) == 2 and stems[0] != stems[1] and set(stems[0]) & set(stems[1]):
         raise ValueError(
@@ -355,7 +362,10 @@ def _read_tum(path: Path, hfov: float | None, unit: float) -> Frames:
     Raises:
         ValueError: A file is damaged, or no frame of one list is near in time to the others.
     """
-    listed = {kind: _read_list(path, f"{kind}.txt") for kind in (RGB, DEPTH)}
+    if any((path / name).is_file() for name in LISTS):
+        listed = {kind: _read_list(path, f"{kind}.txt") for kind in (RGB, DEPTH)}
+    else:
+        listed = _read_associations(path)
     listed = {kind: lines for kind, lines in listed.items() if lines}
     if not listed:
         raise ValueError(f"{path}: its lists name no image. Add lines to {' or '.join(LISTS)}.")
@@ -382,13 +392,38 @@ def _read_tum(path: Path, hfov: float | None, unit: float) -> Frames:
 
 def _read_list(path: Path, name: str) -> list[tuple[float, Path]]:
     """Read the lines of a list of images as (time, file); raise ValueError for a file outside."""
-    listed = []
-    for line, row in _read_rows(path / name, 2):
-        file = path / row[1]
-        if "\0" in row[1] or path.resolve() not in file.resolve().parents:
-            raise ValueError(f"{path / name}, line {line}, names a file outside of {path}.")
-        listed.append((number(row[0], path / name, line), file))
-    return sorted(listed)
+    return sorted(_read_entry(path, name, line, row) for line, row in _read_rows(path / name, 2))
+
+
+def _read_associations(path: Path) -> dict[str, list[tuple[float, Path]]]:
+    """Read lines "time file time file"; the files of the first line tell RGB from depth.
+
+    Raises:
+        ValueError: A file lies outside of the folder, or both files are of one kind.
+    """
+    rows = list(_read_rows(path / ASSOCIATIONS, 4))
+    pairs = [
+        [_read_entry(path, ASSOCIATIONS, n, row[at : at + 2]) for n, row in rows] for at in (0, 2)
+    ]
+    try:
+        listed = {frame_files.modality(pair[0][1]): sorted(pair) for pair in pairs if pair}
+    except frame_files.LeftOutError as error:
+        raise ValueError(
+            f"{path / ASSOCIATIONS}: its first line names a file that {error}."
+        ) from error
+    if rows and len(listed) != 2:
+        raise ValueError(
+            f"{path / ASSOCIATIONS} must name one RGB and one depth image per line. Correct it."
+        )
+    return {kind: listed[kind] for kind in (RGB, DEPTH) if listed}
+
+
+def _read_entry(path: Path, name: str, line: int, row: Sequence[str]) -> tuple[float, Path]:
+    """Return the time and the file of a line of a list."""
+    file = path / row[1]
+    if "\0" in row[1] or path.resolve() not in file.resolve().parents:
+        raise ValueError(f"{path / name}, line {line}, names a file outside of {path}.")
+    return number(row[0], path / name, line), file
 
 
 def _read_trajectory(file: Path) -> np.ndarray:

@@ -13,6 +13,7 @@ import numpy as np
 from PIL import Image
 
 from mitigate.core.observation import DEPTH, RGB
+from mitigate.corruptions.frame_files import NO_READING
 from mitigate.worlds.recorded.source import Lens, plan_pose
 
 FISHEYE = ("equidistant", "fisheye")  # distortion models of ROS
@@ -128,7 +129,10 @@ def read_image(message: Any, kind: str, path: Path) -> np.ndarray:
     padded[: min(len(data), height * step)] = data[: height * step]
     rows = np.ascontiguousarray(padded.reshape(height, step)[:, :row_bytes])
     if kind == DEPTH:
-        return _clean_depth(rows.view(dtype) * _DEPTHS[encoding][1])
+        stored = rows.view(dtype)
+        if dtype.kind == "u":
+            stored = np.where(stored == NO_READING, 0, stored)
+        return _clean_depth(stored * _DEPTHS[encoding][1])
     pixels = rows.reshape(height, width, channels)
     conversion = _COLOURS[encoding][1]
     return pixels if conversion is None else cv2.cvtColor(pixels, conversion)
@@ -149,7 +153,7 @@ def _read_compressed(message: Any, kind: str, path: Path) -> np.ndarray:
                 f"{path}: compressed depth must be 16-bit PNG in millimetres, got the format "
                 f"{encoding[:40]!r}. Record the raw images."
             )
-        return _clean_depth(pixels * 0.001)
+        return _clean_depth(np.where(pixels == NO_READING, 0, pixels) * 0.001)
     if pixels.dtype != np.uint8:
         raise ValueError(f"{path}: compressed RGB images must be uint8, got {pixels.dtype}.")
     if pixels.ndim == 2:

@@ -237,7 +237,7 @@ def read_texts(files: Iterable[str | Path]) -> list[str]:
     for file in files:
         for episode in read_episodes(file):
             text = " ".join(episode.instruction.text.split())
-            if is_english(episode.instruction.language) and len(text.split()) > 2:
+            if is_english(episode.instruction.language, text) and len(text.split()) > 2:
                 texts[text] = None
     return list(texts)
 
