@@ -227,8 +227,8 @@ def load_weights(model: nn.Module, weights: str, prefix: str = "") -> None:
         begins = sorted({name.rpartition(".")[0].partition(".")[0] for name in state})
         raise ValueError(
             f"The weights {weights} do not fit the encoder: {'; '.join(wrong[:4])} ({len(wrong)} "
-            f"differences). Their names begin with {short(', '.join(begins[:8]), 200)}; agent.prefix "
-            f"is {prefix!r}. Set it to the prefix of the encoder's names, such as "
+            f"differences). Their names begin with {short(', '.join(begins[:8]), 200)}; "
+            f"agent.prefix is {prefix!r}. Set it to the prefix of the encoder's names, such as "
             "net.rgb_encoder.model. (with the dot)."
         )
     model.load_state_dict(loaded)
