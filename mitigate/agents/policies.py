@@ -389,8 +389,9 @@ def as_policy(
         return StableBaselinesPolicy(network, world.native, world.action_space)
     if forward is None and hasattr(network, "in_keys") and hasattr(network, "out_keys"):
         if list(world.entries.values()) != [WHOLE]:
-            states = {_dotted(key)[5:] for key in network.out_keys if _dotted(key)[:5] == "next."}
-            keys = {_dotted(key) for key in network.in_keys} - states - {"is_init"}
+            module: Any = network
+            states = {_dotted(key)[5:] for key in module.out_keys if _dotted(key)[:5] == "next."}
+            keys = {_dotted(key) for key in module.in_keys} - states - {"is_init"}
             _check_read([key.split(".")[0] for key in keys], world)
         return TorchrlPolicy(network, world.native, world.action_space)
     return ModulePolicy(network, world.native, world.action_space, forward, recurrent)
