@@ -80,7 +80,7 @@ def contact_sheet(
     Args:
         rgb: uint8 [H, W, 3] or [V, H, W, 3].
         depth: float32 metres [H, W], [H, W, 1] or [V, H, W, 1] of the same instant and size.
-        path: where the picture goes (.png, .jpg, .jpeg); parent folders are made.
+        path: file of the picture (.png, .jpg, .jpeg); parent folders are created.
         key: the random draw; one draw for the whole sheet; a repeated name gets a new draw.
         views: which views of a panorama each cell shows, left to right.
         names: the corruptions.

@@ -851,7 +851,7 @@ def _corrupt_acting_agent(sim, observations, agent_ids):
 
     Args:
         sim: The simulator.
-        observations: Of one agent by sensor, or of several agents by number.
+        observations: Observations by sensor, or by number of the agent if there are several.
         agent_ids: The agents that were asked for; None is the acting agent.
     """
     acting = _default_agent(sim)
@@ -1218,7 +1218,7 @@ def connect(episode, scene="", instruction=None):
     """Begin an episode under ``mitigate run`` and return its ``Episode``.
 
     Args:
-        episode: Its name, unique within the scene.
+        episode: Name of the episode, unique within the scene.
         scene: File name or path of the scene.
         instruction: Text for the agent.
 
