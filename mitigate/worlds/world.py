@@ -1,6 +1,7 @@
 """The contract of worlds, and the world that corrupts another one.
 
-A world produces observations and measures episodes; it knows no agent. ``docs/bring-your-own.md``
+A world produces observations and measures episodes; it does not depend on any agent.
+``docs/bring-your-own.md``
 describes how to add a world.
 """
 

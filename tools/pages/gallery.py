@@ -199,7 +199,9 @@ def main(arguments: list[str] | None = None) -> None:
     parser.add_argument("--seed", type=int, default=7, help="apartment to render (default 7)")
     parser.add_argument("--size", type=int, default=160, help="rendered view size (default 160)")
     parser.add_argument("--view", type=int, help="rendered view (default: the most varied depth)")
-    parser.add_argument("--suite", choices=SHEETS, default="full", help="what it shows")
+    parser.add_argument(
+        "--suite", choices=SHEETS, default="full", help="suite that the sheet shows"
+    )
     parser.add_argument("--page", action="store_true", help="write the pages in docs instead")
     options = parser.parse_args(arguments)
     if options.page:

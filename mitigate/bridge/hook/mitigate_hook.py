@@ -12,7 +12,7 @@ corrupted. A loop that does not use Habitat calls ``connect``, ``corrupt`` and `
     act_on(episode.corrupt({"rgb": rgb, "depth": depth}))  # at each step
     episode.finish(success=True, spl=0.8)
 
-One file for Python 3.6 to 3.13 that needs only the standard library and numpy. If the server
+This file runs on Python 3.6 to 3.13 and needs only the standard library and numpy. If the server
 reports an error, dies or is late, the process ends with one paragraph: no agent continues with
 clean frames.
 """
