@@ -21,7 +21,7 @@ class Command(NamedTuple):
 
     Attributes:
         module: its ``main()`` reads ``sys.argv`` and returns an exit status.
-        about: what the command does, for the help.
+        about: description of the command, for the help.
         example: example of its options, for the help.
         extra: the extra of the package that it needs.
     """

@@ -80,8 +80,8 @@ class AdaptViews(DistilViews):
     Args:
         agent: its adapters in the encoders of the sensor of ``poses`` are trained in place.
         poses: the source of views.
-        w_labels: as ``DistilViews``.
-        w_feat: as ``DistilViews``.
+        w_labels: same as in ``DistilViews``.
+        w_feat: same as in ``DistilViews``.
         w_gate: weight of the gates' cross-entropy (is a view corrupted or clean?).
         touched: share of clean views for which a gate opens after training.
         held: number of held-out clean panoramas that set the thresholds.

@@ -37,10 +37,10 @@ class Dagger(Imitate):
             share of decisions by the expert: it falls from 1 over the first 0.6 of ``steps``.
         folder: folder of the stored rollouts, one file per piece.
         steps: number of steps of the training.
-        train_parts: as ``Imitate``.
+        train_parts: same as in ``Imitate``.
         every: steps between two rollouts.
         walks: rollouts per step, new and stored.
-        losses: as ``Imitate``.
+        losses: same as in ``Imitate``.
 
     Raises:
         ValueError: The rollouts of the agent are not plain data, or the schedule is

@@ -35,8 +35,8 @@ class Distil(OnEpisodes):
         agent: the student, trained in place.
         rollouts: the source of its decisions.
         teacher: weights, or "start" for a copy of ``agent`` at the start of the stage.
-        train_parts: as ``Imitate``.
-        losses: as ``Imitate``.
+        train_parts: same as in ``Imitate``.
+        losses: same as in ``Imitate``.
         w_il: weight of the imitation loss.
         w_kl: weight of the policy loss.
         w_feat: weight of the feature loss.

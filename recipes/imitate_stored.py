@@ -94,7 +94,7 @@ class ImitateStored(Objective):
     Args:
         agent: its ``stored_parts`` are trained in place.
         rollouts: the source of its decisions.
-        losses: as ``Imitate``.
+        losses: same as in ``Imitate``.
     """
 
     sources: ClassVar[Mapping[str, Callable[..., Any]]] = {"rollouts": StoredRollouts}

@@ -146,7 +146,7 @@ def through(gates: list[Adapter], x: Tensor, corrected: Tensor) -> Tensor:
     Args:
         gates: the gate of the adapter; empty for none.
         x: the input of the adapter.
-        corrected: its output, of the same shape.
+        corrected: output of the layer, of the same shape.
     """
     if not gates or gates[0].training:
         return corrected
@@ -349,7 +349,7 @@ class RingAdapter(Adapter):
 
         Args:
             maps: ``[P * views, C, h, w]``.
-            grid: of :func:`neighbour_grid`.
+            grid: result of :func:`neighbour_grid`.
 
         Returns:
             Three tensors of the shape of ``maps``. A neighbour is zero where it does not see a

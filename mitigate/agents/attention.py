@@ -70,7 +70,7 @@ class TextReader(nn.Module):
     """Base class of networks that read an instruction with a small transformer.
 
     Args:
-        vocabulary: of the instructions.
+        vocabulary: words of the instructions.
         width: width of all layers.
         heads: attention heads.
         layers: transformer layers over the text.

@@ -155,9 +155,9 @@ def check(
 
     Args:
         values: the settings.
-        file: where they come from, for messages.
+        file: source of the settings, for messages.
         target: the kind of agent, one of ``KINDS``.
-        again: what to do about an error.
+        again: advice after an error.
 
     Raises:
         ValueError: A setting is unknown or has an invalid value; names the file and the setting.

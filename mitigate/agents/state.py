@@ -73,7 +73,7 @@ Parts = Iterable[tuple[str, Any]]
 
 @dataclass
 class State:
-    """What :func:`read_state` found, by place in the agent; "" is the agent itself.
+    """The result of :func:`read_state`, by place in the agent; "" is the agent itself.
 
     Attributes:
         networks: every ``nn.Module`` by place, without the modules inside it.

@@ -33,10 +33,10 @@ class Camera:
     """One camera as the agent's process describes it.
 
     Attributes:
-        name: Its name in the observations.
+        name: Name of the camera in the observations.
         kind: "rgb" or "depth".
-        shape: Of a frame, [H, W, C] or [H, W].
-        dtype: Of a frame.
+        shape: Shape of a frame, [H, W, C] or [H, W].
+        dtype: Dtype of a frame.
         hfov: Horizontal field of view in degrees; None if unknown.
         place: Position relative to the agent in metres; None if unknown.
         yaw: Degrees to the left of the agent.
@@ -247,7 +247,7 @@ class Rig:
 
         Args:
             memory: Shared memory.
-            offsets: Of the cameras in ``memory``.
+            offsets: Offset of each camera in ``memory``.
             corruption: Parts of other modalities are ignored.
             key: Determines the draws.
             heading: The agent's heading in radians; None if unknown.

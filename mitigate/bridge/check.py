@@ -202,7 +202,7 @@ def draw_sheet(
     Args:
         rig: The cameras.
         frames: The frames of the first call, by :func:`entry_name`, and the heading.
-        corruptions: Of modalities that ``rig`` has.
+        corruptions: Corruptions of modalities that ``rig`` has.
         first: The event of the first episode, part of the keys.
         seed: The corruption seed.
     """

@@ -110,8 +110,8 @@ class Command:
         """End all processes with SIGTERM, and after ``GRACE`` with SIGKILL.
 
         Args:
-            connected: Returns whether any of them is connected to the bridge. If none is and the
-                command ended, SIGKILL follows at once.
+            connected: Returns whether any of them is connected to the bridge. Without a connected
+                process, SIGKILL follows at once if the command ended.
         """
         until = time.monotonic() + GRACE
         signal_all(self.running(), signal.SIGTERM)

@@ -36,11 +36,11 @@ class Reports:
     Attributes:
         hellos: The first message of each connection, with versions of Python and libraries.
         cameras: The cameras of all calls, as first described.
-        ends: By episode name, its first end that was over, or else its first end.
+        ends: Name of an episode -> its first end at which it was over, else its first end.
         repeated: How many episodes ended once more.
         dropped: Episodes that were left unfinished, with the reason if it is known.
         parallel: Whether an episode ended while another one was running.
-        problems: What the server could not do, and why processes stopped themselves.
+        problems: Failures of the server, and reasons why processes stopped themselves.
         first: The event of the first episode.
         languages: Language of the instruction, by episode name.
         adapted: Encoders that got adapters.
@@ -124,7 +124,7 @@ def _add(reports: Reports, event: dict[str, Any], began: dict[int, int]) -> None
     Args:
         reports: The reports of the events before it.
         event: One line of the events.
-        began: Per connection, how many episodes had ended when its episode began.
+        began: Connection -> number of episodes that had ended when its episode began.
     """
     kind = event["event"]
     name = episode_name(event.get("scene", ""), event.get("episode", ""))
@@ -170,7 +170,7 @@ def rows(
 
     Args:
         reports: The reports of the condition.
-        corruption: Its corruption.
+        corruption: Corruption of the condition.
         label: Entries of all rows ("agent", "name", "split", "seed").
         rule: A name in ``RULES`` that replaces the agent's Success measure. An agent without
             either gets rows by the common rule only.

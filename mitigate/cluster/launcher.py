@@ -37,7 +37,7 @@ def count(launcher: LauncherConfig, requested: int | None, jobs: int, worth: int
     """Return how many workers (for SLURM: jobs) to start.
 
     Args:
-        launcher: where they run.
+        launcher: place where the workers run.
         requested: the requested number; None: as many as are worth starting, or as the Ray cluster
             has room for.
         jobs: number of jobs.

@@ -96,7 +96,7 @@ def main(
         primary: name of the config.
         check: called before ``program``, after the check of addresses (``core/addresses.py``).
         behind: words of the command line that are not Hydra's; they end the printed command.
-        again: what the printed command does, if it does not resume.
+        again: purpose of the printed command, if it does not resume.
     """
     if {"--help", "-h"} & set(sys.argv[1:]):
         print(help_text(sys.modules[program.__module__].__doc__ or "", primary))

@@ -52,7 +52,7 @@ class Manifest(NamedTuple):
 
     Attributes:
         kind: "weights", "agent", "hardened", "adapters", "encoder", "restorer" or "safeguard".
-        files: by name.
+        files: files by name.
         replaced: the files before, while a folder is being replaced.
         source: name of the file that lists them: the manifest, or the card of an older folder.
     """
@@ -230,7 +230,7 @@ def check(
     Args:
         folder: the folder.
         optional: names that may be missing.
-        again: what to do about a damaged folder; ends each message.
+        again: advice for a damaged folder; ends each message.
 
     Raises:
         FileNotFoundError: A file is missing.

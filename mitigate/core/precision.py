@@ -105,7 +105,7 @@ def native(capabilities: dict | None = None, cap: str | None = None) -> bool:
     """Return whether the CPU has instructions for bf16 and oneDNN may use them.
 
     Args:
-        capabilities: as from ``torch.cpu.get_capabilities``; None reads this machine's.
+        capabilities: result of ``torch.cpu.get_capabilities``; None reads this machine's.
         cap: replaces the value of the environment variable ``ONEDNN_MAX_CPU_ISA``.
     """
     has = torch.cpu.get_capabilities() if capabilities is None else capabilities

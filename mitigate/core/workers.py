@@ -256,7 +256,7 @@ def packed(thing: Any, what: str, instead: str, *, shared: bool = False) -> byte
     Args:
         thing: the object.
         what: name of the object in the error.
-        instead: what to do if it cannot be pickled, for the error.
+        instead: advice in the error if it cannot be pickled.
         shared: pass its tensors by shared memory, for one process that reads them once.
 
     Raises:

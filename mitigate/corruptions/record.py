@@ -35,7 +35,7 @@ class Record:
         frame: What is drawn for each frame.
         version: Version of a corruption outside the suite; rows of another version are not reused.
             Those of the suite have the version of the suite.
-        half: Of an unseen corruption, ``VALIDATION`` or ``TEST``. Methods may be chosen on the
+        half: Half of an unseen corruption, ``VALIDATION`` or ``TEST``. Methods may be chosen on the
             validation half only.
 
     Raises:

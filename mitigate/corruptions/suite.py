@@ -133,7 +133,7 @@ class Corruption:
     Attributes:
         name: "clean", the name of a corruption, or a pair such as "low_light+missing_data"; the
             first of a pair is applied first.
-        severity: In [0, 1], the same for both of a pair.
+        severity: Severity in [0, 1], the same for both corruptions of a pair.
 
     Raises:
         ValueError: The name is unknown, a pair is invalid, the severity is outside [0, 1], or

@@ -203,7 +203,7 @@ def load_weights(model: nn.Module, weights: str, prefix: str = "") -> None:
 
     Args:
         model: the encoder.
-        weights: as for :func:`find_weights`.
+        weights: same as in :func:`find_weights`.
         prefix: only entries with this prefix are loaded; it is removed from their names.
 
     Raises:

@@ -162,11 +162,12 @@ class Encoder(nn.Module):
     """Map frames to features; the recipe for encoders trains it in place of an agent.
 
     Args:
-        model: as for :func:`mitigate.encoders.loading.load_model`.
+        model: same as in :func:`mitigate.encoders.loading.load_model`.
         transform: arguments of :class:`Transform`.
         kwargs: arguments of ``model``.
-        weights: as for :func:`mitigate.encoders.loading.load_weights`; None: the model's weights.
-        prefix: as for :func:`mitigate.encoders.loading.load_weights`.
+        weights: same as in :func:`mitigate.encoders.loading.load_weights`; None: the model's
+            weights.
+        prefix: same as in :func:`mitigate.encoders.loading.load_weights`.
         sensor: "rgb" or "depth".
         output: the target features. None: the output of the model; a number or a name: that item
             of the output (``pooler_output``); else the dotted name of a module.

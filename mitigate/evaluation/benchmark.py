@@ -93,7 +93,7 @@ def benchmark(
             "--config-dir=mine".
         world: makes a world of yours; it replaces the world of ``options``. A world of another
             class needs ``listed``.
-        listed: its episodes, or their file.
+        listed: the episodes, or a file of episodes.
         training_data: for the entry.
         link: for the entry.
         out: folder of the rows; None: a folder in runs/benchmark.

@@ -77,7 +77,7 @@ def resampled_means(
     Args:
         values: [C, N] or [N].
         resamples: number of resamples.
-        seed: of the draws.
+        seed: seed of the draws.
         units: numbers [N]; episodes with equal numbers are drawn together. None: each separately.
 
     Raises:

@@ -66,7 +66,7 @@ class Line:
     """A line of a comparison.
 
     Attributes:
-        title: what was measured, such as "SR (%): Clean".
+        title: name of the measure, such as "SR (%): Clean".
         values: the value of each agent, by name.
         changes: the paired difference of each agent but the first to the first one, by name.
         digits: decimal places.

@@ -175,7 +175,7 @@ class Grid:
         cells: float64 [N] by (label, corruption, severity, metric), the mean over ``seeds``; NaN
             where a row is missing. There is one clean cell per severity, over its seeds.
         runs: ``runs[label][seed]`` are the cells of a seed by (corruption, severity, metric).
-        drawn: what the bootstrap draws, of :data:`DRAWN`.
+        drawn: unit that the bootstrap draws, one of :data:`DRAWN`.
         units: [N]; episodes with equal numbers are drawn together.
         cut: text by label on how many episodes a limit cut, if any.
         begins: id of the first episode if another grid differs only in its list, else empty.
@@ -315,7 +315,7 @@ def grids(rows: Iterable[Row], drawn: str = DRAWN[0]) -> list[Grid]:
 
     Args:
         rows: result rows.
-        drawn: what the bootstrap draws, of :data:`DRAWN`.
+        drawn: unit that the bootstrap draws, one of :data:`DRAWN`.
 
     Raises:
         ValueError: There are no rows, or scenes are drawn and rows do not name their scene.

@@ -139,8 +139,8 @@ def keep(
 ) -> None:
     """Store in ``folder`` a description of the world and hashes of the episodes.
 
-    Worlds with other sensors or another rule can share a folder, because their rows differ. Entries
-    that a note of an older version lacks are not compared, nor is anything without a note.
+    Worlds with other sensors or another rule can share a folder, because their rows differ. Without
+    a note nothing is compared; entries that an older note lacks are not compared either.
 
     Args:
         folder: folder of the rows.

@@ -61,11 +61,11 @@ def write(
 
     Args:
         rows: result rows.
-        folder: where to write.
+        folder: output folder.
         first: the success rule whose sections come first.
         least: smallest number of severities for which curves are drawn.
         against: the reference column, as in :func:`sections`.
-        drawn: what the bootstrap draws, as in :func:`sections`.
+        drawn: unit that the bootstrap draws, as in :func:`sections`.
     """
     from mitigate.evaluation import plots  # matplotlib is slow to import
 

@@ -71,7 +71,7 @@ class Section:
     Attributes:
         grid: the results.
         kind: the corruptions of the table; empty for the suite.
-        severity: of the corruptions.
+        severity: severity of the corruptions.
         columns: labels of the columns; the first one is the reference of differences.
     """
 
@@ -236,7 +236,7 @@ def sections(
     Args:
         rows: result rows.
         against: the reference column, in sections that have it; None: :data:`REFERENCES`.
-        drawn: what the bootstrap draws, as in :func:`grids`.
+        drawn: unit that the bootstrap draws, as in :func:`grids`.
 
     Raises:
         ValueError: No row belongs to the column ``against``.

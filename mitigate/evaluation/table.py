@@ -33,7 +33,7 @@ def run(
         seeds: the seeds to use; None: all.
         against: the column that the others are compared with; None: "base" or "before", or else
             the first.
-        drawn: what the bootstrap draws, "episode" or "scene".
+        drawn: unit that the bootstrap draws, "episode" or "scene".
 
     Raises:
         FileNotFoundError: A path has no rows.

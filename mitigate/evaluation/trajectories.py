@@ -42,7 +42,7 @@ class Walk:
         path: float64 [n, 2], plan metres.
         won: whether the episode succeeded.
         metres_left: geodesic metres to the goal at the end.
-        colour: of the line.
+        colour: colour of the line.
         agent: name of the agent.
         corruption: the corruption.
         measures: the measures of a row.
@@ -174,7 +174,7 @@ def write_pictures(
         world: the world.
         episodes: the episodes of the rows.
         rows: result rows.
-        folder: where to write.
+        folder: output folder.
         seed: corruption seed.
         guards: guards by the name of their agent.
 

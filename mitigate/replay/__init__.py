@@ -1,1 +1,1 @@
-"""Agents on recorded drives: what they would decide, and what a corruption changes of it."""
+"""Run agents on recorded drives and measure how corruptions change their decisions."""

@@ -116,7 +116,7 @@ def harden(
         training: episodes to train on; None: other seeds of the environment.
         suite: a name of ``conf/suite`` or a list of corruptions, for training and comparison;
             corruptions of sensors that the policy does not read are left out.
-        severity: of the comparison, from 0 to 1. Training draws from 0.3 to 1.
+        severity: severity of the comparison, from 0 to 1. Training draws from 0.3 to 1.
         tune: "all" weights, or "adapters" inserted into the frozen policy.
         targets: regular expressions for the modules that get adapters; None: every
             convolution, or else the first layer.

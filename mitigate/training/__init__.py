@@ -1,1 +1,1 @@
-"""The trainer, what it asks of a recipe, and the run of ``mitigate train``."""
+"""The trainer, its interface for objectives, and the program of ``mitigate train``."""

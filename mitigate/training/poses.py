@@ -35,7 +35,7 @@ class Poses(DrawsBySuccess):
     """The source of batches of panoramas from random poses, corrupted and clean.
 
     Args:
-        agent: its success rates are measured if a success-distributed schedule has none.
+        agent: measured if a success-distributed schedule has no success rates.
         world: makes a world with random poses (``Placeable`` in ``worlds/world.py``).
         training: episodes for measurements of success rates.
         modality: the sensor, "rgb" or "depth".

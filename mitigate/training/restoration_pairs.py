@@ -54,7 +54,7 @@ class FramePairs:
     """Frames of a folder, each corrupted as a separate instant (``encoders/sources.py``).
 
     Attributes:
-        source: where the frames come from.
+        source: source of the frames.
         schedule: schedule of corruptions of ``sensor``.
         sensor: "rgb" or "depth".
         count: number of frames, read once.

@@ -67,7 +67,7 @@ def measure(
 
     Args:
         agent: a module with ``reset`` and ``act``; it is left in eval mode.
-        schedule: its corruptions are measured.
+        schedule: names the corruptions to measure.
         world: makes a world.
         training: source of the episodes.
         episodes: number of episodes per corruption.

@@ -44,7 +44,7 @@ class Trainer:
     """Train ``objective`` for ``steps`` updates of AdamW in ``folder``.
 
     Args:
-        objective: what to train; see :class:`mitigate.training.objective.Objective`.
+        objective: objective to train; see :class:`mitigate.training.objective.Objective`.
         steps: number of updates.
         folder: holds ``step-*.pt`` and TensorBoard files; a checkpoint there is resumed.
         lr, weight_decay: for parameter groups that set none.

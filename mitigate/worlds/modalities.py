@@ -15,8 +15,8 @@ def check_available(names: Iterable[str], available: Container[str], lack: str, 
     Args:
         names: Names of the corruptions.
         available: Modalities of the observation.
-        lack: What is missing, for the message; ``{0}`` is replaced by the modality.
-        fix: What to do instead of leaving corruptions out; ``{0}`` likewise.
+        lack: Description of the missing part, for the message; ``{0}`` becomes the modality.
+        fix: Alternative to leaving corruptions out; ``{0}`` becomes the modality.
 
     Raises:
         ValueError: A modality is missing.

@@ -127,7 +127,7 @@ class SeededWorld(World):
 
     Args:
         env: The environment.
-        action_space: Its actions.
+        action_space: Actions of the environment.
         arrays: Shape, dtype and maximum of each entry of the environment's observations.
         entries: Entry of each sensor: "rgb", "depth", "pose", and any other name that the agent
             reads, such as "goal".

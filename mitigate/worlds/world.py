@@ -1,6 +1,7 @@
 """The contract of worlds, and the world that corrupts another one.
 
-A world produces observations and measures episodes; it knows no agent. ``docs/bring-your-own.md``
+A world produces observations and measures episodes; it does not depend on any agent.
+``docs/bring-your-own.md``
 describes how to add a world.
 """
 
@@ -73,7 +74,7 @@ class World:
         rule: The success rule of ``measures`` in words, such as "STOP and geodesic < 3 m"; part of
             every row.
         done: Whether the episode is over; no step may follow.
-        action_space: Its actions (``core/spaces.py``); None: whole numbers; 0 is STOP.
+        action_space: Actions of the world (``core/spaces.py``); None: whole numbers; 0 is STOP.
         native: Converts frames by sensor to the environment's own observation; None if it has none.
         draw: Function that draws a floor plan on Matplotlib axes; None if there is no plan.
     """

@@ -147,7 +147,7 @@ def draw(count: int, mean: float, spread: float, seed: int) -> np.ndarray:
         count: How many.
         mean: Seconds.
         spread: Standard deviation divided by the mean.
-        seed: Of the generator.
+        seed: Seed of the generator.
     """
     sigma = np.sqrt(np.log1p(spread**2))
     return np.random.default_rng(seed).lognormal(np.log(mean) - sigma**2 / 2, sigma, count)

@@ -53,7 +53,7 @@ def growth(hours: np.ndarray, values: np.ndarray, seed: int = 0) -> Growth:
     Args:
         hours: Times [N].
         values: Measurements [N].
-        seed: Of the bootstrap.
+        seed: Seed of the bootstrap.
 
     Raises:
         ValueError: There are fewer than ``MIN_COUNT`` measurements.

@@ -70,7 +70,7 @@ def watch(name: str, seconds: float, every: float, out: Path) -> tuple[list[Samp
     """Run a load; return its samples and, if it ended early, the end of its output.
 
     Args:
-        name: Of the load.
+        name: Name of the load.
         seconds: Duration.
         every: Seconds between two samples.
         out: Gets the output of the load.

@@ -104,7 +104,7 @@ def cost(
     """Time one corruption.
 
     Args:
-        name: Of the corruption.
+        name: Name of the corruption.
         frame: uint8 [V, H, W, 3] or float32 metres [V, H, W].
         seconds: Duration of each measurement.
         others: Times of other libraries.

@@ -73,7 +73,7 @@ class Stage:
     Attributes:
         recipe: Name of the recipe.
         stage: Name of the stage.
-        precision: Of the networks.
+        precision: Precision of the networks.
         whole: The whole step.
         waiting: The part of it in which the trainer waits for the batch.
         alone: Forward, backward and update without other processes.

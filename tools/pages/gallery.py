@@ -80,7 +80,7 @@ def contact_sheet(
     Args:
         rgb: uint8 [H, W, 3] or [V, H, W, 3].
         depth: float32 metres [H, W], [H, W, 1] or [V, H, W, 1] of the same instant and size.
-        path: where the picture goes (.png, .jpg, .jpeg); parent folders are made.
+        path: file of the picture (.png, .jpg, .jpeg); parent folders are created.
         key: the random draw; one draw for the whole sheet; a repeated name gets a new draw.
         views: which views of a panorama each cell shows, left to right.
         names: the corruptions.
@@ -199,7 +199,9 @@ def main(arguments: list[str] | None = None) -> None:
     parser.add_argument("--seed", type=int, default=7, help="apartment to render (default 7)")
     parser.add_argument("--size", type=int, default=160, help="rendered view size (default 160)")
     parser.add_argument("--view", type=int, help="rendered view (default: the most varied depth)")
-    parser.add_argument("--suite", choices=SHEETS, default="full", help="what it shows")
+    parser.add_argument(
+        "--suite", choices=SHEETS, default="full", help="suite that the sheet shows"
+    )
     parser.add_argument("--page", action="store_true", help="write the pages in docs instead")
     options = parser.parse_args(arguments)
     if options.page:

@@ -234,7 +234,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     parser.add_argument("--sample", type=int, help="R2R-CE texts that are tried; default all")
     parser.add_argument("--each", type=int, default=1, help="routes per attack and place")
     parser.add_argument("--seed", type=int, default=0)
-    parser.add_argument("--bad", type=int, default=0, help="print so many failures per measure")
+    parser.add_argument("--bad", type=int, default=0, help="failures to print per measure")
     options = parser.parse_args(arguments)
     from mitigate.guards.text.guard import open_safeguard
 

@@ -132,7 +132,7 @@ class Policy(TextReader):
     Args:
         rgb: RGB features of a column; 0 without RGB.
         depth: depth features of a column; 0 without depth.
-        vocabulary: of the instructions.
+        vocabulary: words of the instructions.
         width: width of all layers.
         heads: attention heads of the text layers.
         text_layers: number of transformer layers over the text.

@@ -88,7 +88,7 @@ class Planner(TextReader):
         fusion: keyword arguments of ``fusion.weigher`` (rate, cap, learned). Nodes and ghosts are
             then means of their views weighted by the reliability of the encoder features. None:
             plain means.
-        vocabulary: of the instructions; None: the default one.
+        vocabulary: words of the instructions; None: the default one.
     """
 
     yaws: Tensor

@@ -12,7 +12,7 @@ corrupted. A loop that does not use Habitat calls ``connect``, ``corrupt`` and `
     act_on(episode.corrupt({"rgb": rgb, "depth": depth}))  # at each step
     episode.finish(success=True, spl=0.8)
 
-One file for Python 3.6 to 3.13 that needs only the standard library and numpy. If the server
+This file runs on Python 3.6 to 3.13 and needs only the standard library and numpy. If the server
 reports an error, dies or is late, the process ends with one paragraph: no agent continues with
 clean frames.
 """
@@ -851,7 +851,7 @@ def _corrupt_acting_agent(sim, observations, agent_ids):
 
     Args:
         sim: The simulator.
-        observations: Of one agent by sensor, or of several agents by number.
+        observations: Observations by sensor, or by number of the agent if there are several.
         agent_ids: The agents that were asked for; None is the acting agent.
     """
     acting = _default_agent(sim)
@@ -1218,7 +1218,7 @@ def connect(episode, scene="", instruction=None):
     """Begin an episode under ``mitigate run`` and return its ``Episode``.
 
     Args:
-        episode: Its name, unique within the scene.
+        episode: Name of the episode, unique within the scene.
         scene: File name or path of the scene.
         instruction: Text for the agent.
 

@@ -167,7 +167,7 @@ def add(
     Args:
         paths: row files or folders.
         name: name of the agent in the rows.
-        folder: where to write the entry.
+        folder: folder for the entry.
         overwrite: replace an entry of that name.
         **values: severity, split, sensors, training_data and link, as for ``entry_of``.
 

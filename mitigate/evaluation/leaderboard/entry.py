@@ -108,13 +108,13 @@ class LeaderboardEntry:
         agents: content hash (``agents/fingerprint.py``) of the agent of each training seed,
             with the seed of its rows.
         sensors: one line per sensor.
-        training_data: what the agent was trained on, in the words of the submitter.
+        training_data: training data of the agent, in the words of the submitter.
         episodes: number of episodes per condition.
         listed: hash of the episode ids; a table compares entries over the same episodes.
         scores: clean, mean and PRS values, [value, low, high] with 95 % intervals, or None.
         SR, SPL: the same per condition.
         rows: "file" (relative or empty), "sha256" and "count" of the rows behind the figures.
-        link: where the weights or the paper are.
+        link: address of the weights or the paper.
     """
 
     __pydantic_config__ = _STRICT

@@ -86,8 +86,10 @@ def left_out(entry: LeaderboardEntry, rows: Iterable[Row]) -> str:
 
 
 def rows_sha(rows: Iterable[Row]) -> str:
-    """Return the sha256 of rows, whatever their order and file format: of their JSON with sorted
-    keys, one per line, in the order of their identities."""
+    """Return a sha256 of rows that does not depend on their order and file format.
+
+    It hashes their JSON with sorted keys, one row per line, in the order of their identities.
+    """
     digest = hashlib.sha256()
     for row in sorted(rows, key=lambda row: tuple(map(str, identity(row)))):
         digest.update(json.dumps(row, sort_keys=True).encode() + b"\n")

@@ -109,7 +109,7 @@ class Restorer(nn.Module, Guard):
         return RESTORER + self.hash
 
     def forward(self, observation: Mapping[str, Any]) -> dict[str, Any]:
-        """Return ``observation`` with the frames restored that the gate judges to be corrupted.
+        """Return ``observation``; the frames that the gate judges to be corrupted are restored.
 
         All other entries, and frames judged to be clean, are the same objects.
 
