@@ -29,6 +29,7 @@ ENDPOINT_SECONDS = 120.0
 SECONDS = 20.0  # for the language model, per instruction
 REMEMBERED = 4096  # texts whose decisions are remembered
 PASSAGE = 12  # words that are rewritten at once, about a sentence; of 30 the model lost clauses
+TOO_LARGE = 6000  # characters; 600 words have about 3,300 (heuristic)
 TOO_LONG = 600  # words; a longer text is not rewritten (RxR's longest have about 500)
 LOOKS = re.compile(
     r"</?(?:b|i|u|em|strong|span|mark|small|big|font)\b[^<>]{0,80}>|\*\*(?=\S)|(?<=\S)\*\*", re.I
@@ -144,7 +145,8 @@ class _Draft:
             self.reasons.append("capitals lowered")
         self.text = quiet
         self.parts: list[str] = []
-        if rewrites and script(quiet) == "latin" and len(quiet.split()) <= TOO_LONG:
+        short = len(quiet) <= TOO_LARGE and len(quiet.split()) <= TOO_LONG
+        if rewrites and short and script(quiet) == "latin":
             self.parts = passages(quiet)
         self.asked = [p for p in self.parts if rules.MASK.search(p) or classifier.styled(p)]
 

@@ -45,6 +45,7 @@ LETTERS = re.compile(r"[^\W\d_]")
 _ABBREVIATION = re.compile(
     r"\b(?:Mr|Mrs|Ms|Dr|St|No|Prof|approx|ft|e\.g|i\.e|vs|rm|etc)\.\s*$", re.I
 )
+ABBREVIATED = 10  # characters that hold an abbreviation, and what is before it
 LONGEST_CLAUSE = 2  # words; shorter clauses join the one before
 
 
@@ -104,7 +105,10 @@ def _cut(text: str, start: int, end: int, cuts) -> list[Piece]:
 
 def _sentence_cuts(part: str) -> list[tuple[int, int]]:
     cuts = [
-        m.span() for m in _SENTENCE.finditer(part) if not _ABBREVIATION.search(part[: m.start()])
+        match.span()
+        for match in _SENTENCE.finditer(part)
+        # only the last characters, because a search from the start makes the time quadratic
+        if not _ABBREVIATION.search(part[: match.start()].rstrip()[-ABBREVIATED:])
     ]
     return cuts + [m.span() for m in _RUN_ON.finditer(part)]
 

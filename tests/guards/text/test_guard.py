@@ -236,3 +236,24 @@ def test_canonicalise_remembers_logs_and_rejects_other_types(tmp_path):
         safeguard.canonicalise_all("Turn left.")
     with pytest.raises(TypeError, match="must be a text"):
         safeguard.canonicalise_all([None])
+
+
+HUGE = {
+    "sentences": "turn left at the sofa. " * 35_000,
+    "one word": "x" * 800_000,
+    "letters with accents": "é" * 800_000,
+    "points": ". " * 400_000,
+    "masks": "[MASK] " * 110_000,
+}
+
+
+@pytest.mark.parametrize("text", HUGE.values(), ids=HUGE)
+def test_item_9_safeguard_reads_a_huge_instruction_in_bounded_time(text):
+    class Rewriter:
+        def rewrite(self, texts, seconds=None):
+            return ["left " * 160_000 for _ in texts]
+
+    safeguard = Safeguard(Rewriter())
+    began = time.process_time()
+    safeguard.canonicalise(text)
+    assert time.process_time() - began < 15
