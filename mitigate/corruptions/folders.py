@@ -11,6 +11,7 @@ import numpy as np
 from tqdm import tqdm
 
 from mitigate.core.files import read_regular, sha256, write_bytes
+from mitigate.core.names import escaped, short
 from mitigate.core.observation import Z_MAX
 from mitigate.core.output import UnsafePathError, is_regular, lost, output_folder
 from mitigate.corruptions import frame_files
@@ -254,7 +255,7 @@ def _check_earlier(out: Path, settings: dict, episodes: dict[str, list[str]]) ->
             "folder, or delete this one."
         ) from error
     different = [
-        f"{name}={earlier_settings.get(name)} there, {name}={settings.get(name)} now"
+        escaped(f"{name}={earlier_settings.get(name)} there, {name}={settings.get(name)} now")
         for name in {**earlier_settings, **settings}
         if earlier_settings.get(name) != settings.get(name)
     ]
@@ -266,7 +267,7 @@ def _check_earlier(out: Path, settings: dict, episodes: dict[str, list[str]]) ->
     for name, (count, digest) in digests.items():
         if _digest(episodes.get(name, [])[:count]) != digest:
             raise ValueError(
-                f"The first {count} frames of episode {name!r} are not those that {out} was made "
+                f"The first {count} frames of episode {short(name, 200)} are not those that {out} was made "
                 "from: files were added between them, removed or renamed, so their numbers "
                 "changed. Name another folder, or delete this one. (Frames may be added at the "
                 "end.)"
@@ -325,6 +326,6 @@ def _check_counts(settings: Settings) -> None:
     if largest > limit:
         raise ValueError(
             f"Depth must be at most {limit:g} metres to fit into a 16-bit PNG with "
-            f"{settings.metres_per_count:g} metres per count, got {largest:g}. Set z_max={limit:g} or less, or "
-            "another unit."
+            f"{settings.metres_per_count:g} metres per count, got {largest:g}. Set "
+            f"z_max={limit:g} or less, or another unit."
         )

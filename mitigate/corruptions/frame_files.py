@@ -152,7 +152,7 @@ def check_scale(paths: Sequence[Path], unit: float, z_max: float) -> None:
         with suppress(LeftOutError):  # reported when the file is read
             if modality(path) == DEPTH:
                 stored = (_load(path) if suffix == ".npy" else _decode(path)).reshape(-1)
-                readings = stored[:: stored.size // SCALE_PIXELS + 1]
+                readings = stored[:: stored.size // SCALE_PIXELS + 1].astype(np.float32)
                 valid = np.isfinite(readings) & (readings > 0) & (readings != NO_READING)
                 samples[suffix].append(readings[valid])
     counts, metres = (np.concatenate(parts or [np.zeros(0)]) for parts in samples.values())
