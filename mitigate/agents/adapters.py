@@ -240,8 +240,8 @@ def load_adapters(model: nn.Module, folder: str | Path) -> list[str]:
     if sha != expected:
         raise ValueError(
             f"The adapters in {folder} were trained on a backbone with sha256 "
-            f"{escaped(str(expected))}, but this one has {sha}. Load the weights they were trained on first; to run in another "
-            "dtype, convert the model afterwards."
+            f"{escaped(str(expected))}, but this one has {sha}. Load the weights they "
+            "were trained on first; to run in another dtype, convert the model afterwards."
         )
     missing = sorted(set(shapes) - {name for name, _ in model.named_modules()})
     if missing:

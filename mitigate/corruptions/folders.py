@@ -267,9 +267,9 @@ def _check_earlier(out: Path, settings: dict, episodes: dict[str, list[str]]) ->
     for name, (count, digest) in digests.items():
         if _digest(episodes.get(name, [])[:count]) != digest:
             raise ValueError(
-                f"The first {count} frames of episode {short(name, 200)} are not those that {out} was made "
-                "from: files were added between them, removed or renamed, so their numbers "
-                "changed. Name another folder, or delete this one. (Frames may be added at the "
+                f"The first {count} frames of episode {short(name, 200)} are not those that {out} "
+                "was made from: files were added between them, removed or renamed, so their "
+                "numbers changed. Name another folder, or delete this one. (Frames may be added at the "
                 "end.)"
             )
     return checksums

@@ -166,7 +166,7 @@ def check_scale(paths: Sequence[Path], unit: float, z_max: float) -> None:
     if far > 0.5:
         likely = "5000 counts per metre, as in TUM RGB-D, need unit=0.0002"
         if not (counts % 8).any():
-            likely = "all counts are multiples of 8, as in SUN RGB-D: rotate their bits right by 3"
+            likely += "; SUN RGB-D, whose counts are multiples of 8, needs a rotation by 3 bits"
         raise ValueError(
             f"The unit of the depth seems wrong: with {unit:g} metres per count, {far:.0%} of the "
             f"readings are at {z_max:g} m or beyond (median {np.median(counts) * unit:.3g} m). "

