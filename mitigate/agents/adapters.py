@@ -32,7 +32,7 @@ from mitigate.core import checkpoint
 from mitigate.core.files import write_text
 from mitigate.core.folders import problem, write_folder
 from mitigate.core.json_files import read_json
-from mitigate.core.names import short
+from mitigate.core.names import escaped, short
 from mitigate.core.observation import HFOV_DEGREES, VIEWS
 
 WEIGHTS, SETTINGS = "adapters.safetensors", "adapters.json"
@@ -239,13 +239,13 @@ def load_adapters(model: nn.Module, folder: str | Path) -> list[str]:
     sha = backbone_sha(model)
     if sha != expected:
         raise ValueError(
-            f"The adapters in {folder} were trained on a backbone with sha256 {expected}, but this "
-            f"one has {sha}. Load the weights they were trained on first; to run in another "
-            "dtype, convert the model afterwards."
+            f"The adapters in {folder} were trained on a backbone with sha256 "
+            f"{escaped(str(expected))}, but this one has {sha}. Load the weights they "
+            "were trained on first; to run in another dtype, convert the model afterwards."
         )
     missing = sorted(set(shapes) - {name for name, _ in model.named_modules()})
     if missing:
-        raise ValueError(f"This model has no module called {', '.join(missing)}.")
+        raise ValueError(f"This model has no module called {escaped(', '.join(missing))}.")
     weights: dict[str, dict[str, Tensor]] = {_key(name): {} for name in shapes}
     try:
         for name, tensor in tensors.items():

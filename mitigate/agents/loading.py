@@ -39,6 +39,7 @@ ONNX = ("perceive.onnx", "decide.onnx")
 KNOWN = (checkpoint.WEIGHTS, adapters.WEIGHTS, adapters.SETTINGS, *FILES, PROGRAM, *ONNX)
 ENTRIES = ("adapters_only", "base", "vocabulary", "commit", "agent")  # required in a card
 LONGEST_PATH = 1000  # characters of the path of a base (heuristic; the limit of Linux is 4095)
+FREE_WEIGHTS = 1 << 25  # of an agent that is built without a check (heuristic): 128 MiB
 TARGET = schema.KINDS[0]
 PAGES = {  # documentation of models that are not agents, by package; they need no export
     "mitigate.encoders": "docs/encoder.md",
@@ -83,6 +84,8 @@ def load(folder: str | Path, *, agent: Any = None) -> Any:
         )
     folders.check(config.parent)
     with torch.random.fork_rng(devices=[]):  # keeps the caller's random state
+        if agent is None:
+            _check_size(config, checkpoint.weights_file(place))
         filled = _agent_to_fill(agent, config, _RUN)
         checkpoint.load_agent(filled, place)
     if config.is_file():
@@ -113,6 +116,12 @@ def load_hardened(folder: str | Path, *, base: str | Path | None = None, agent: 
     folder = Path(folder)
     card = check_hardened(folder)
     with torch.random.fork_rng(devices=[]):
+        if agent is None:
+            only = card["adapters_only"]
+            weights = (
+                _find_base(folder, card["base"], base) if only else folder / checkpoint.WEIGHTS
+            )
+            _check_size(folder / CONFIG, weights)
         filled = _agent_to_fill(agent, folder / CONFIG, _AGAIN)
         if agent is None and card["vocabulary"] != vocabulary_sha(filled):
             commit = f" (commit {short(card['commit'])})" if card["commit"] else ""
@@ -167,6 +176,27 @@ def build_from(config: Path) -> Any:
         return schema.class_of(kind)(**arguments)
     except (TypeError, RuntimeError) as error:
         raise ValueError(f"The agent's settings in {config} do not fit ({error}).") from error
+
+
+def _check_size(config: Path, weights: Path) -> None:
+    """Raise ValueError if the agent in ``config`` is large and has more numbers than ``weights``.
+
+    The agent is built without memory for its weights.
+    """
+    kind = kind_of(config)
+    arguments = agent_settings(config, kind)
+    try:
+        with torch.device("meta"):
+            agent = schema.class_of(kind)(**arguments)
+    except (TypeError, RuntimeError):  # build_from explains it
+        return
+    count = sum(parameter.numel() for parameter in agent.parameters())
+    size = weights.stat().st_size
+    if count > max(FREE_WEIGHTS, size):  # a weight has at least one byte
+        raise ValueError(
+            f"The agent's settings in {config} do not fit: they ask for {count} weights, but "
+            f"{weights} has only {size} bytes. Do not use this folder."
+        )
 
 
 def config_of(weights: Path) -> Path:

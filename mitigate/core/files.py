@@ -21,6 +21,7 @@ from mitigate.core import output
 GZIP_MAGIC = b"\x1f\x8b"  # RFC 1952
 LFS_START = b"version https://git-lfs.github.com/spec/"  # Git LFS specification, pointer files
 RECORDING = "recording.json"  # file in the folder of a recording by `mitigate run record=FOLDER`
+LONGEST_DRAFT = 200  # bytes of a file's name in the name of its draft
 # A gzip file may unpack to FREE + RATIO * its size in bytes (heuristic; our files have ratios of 15
 # to 31).
 RATIO = 128
@@ -189,7 +190,8 @@ def _draft(path: Path) -> Iterator[Path]:
     The folder is made if needed.
     """
     # The random part prevents that someone places a link at a predictable name.
-    temporary = path.with_name(f".{path.name}.{secrets.token_hex(4)}.{os.getpid()}.tmp")
+    name = os.fsdecode(os.fsencode(path.name)[:LONGEST_DRAFT])  # a file name has up to 255 bytes
+    temporary = path.with_name(f".{name}.{secrets.token_hex(4)}.{os.getpid()}.tmp")
     with output.writing(path):
         output.make_checked(path.parent)
         output.open_output(temporary, "xb").close()

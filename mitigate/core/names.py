@@ -35,6 +35,15 @@ def short(value: object, most: int = 60) -> str:
     return text if len(text) <= most + 2 else f"{text[:most]}..."
 
 
+def escaped(text: str, most: int = 200) -> str:
+    """Return an untrusted ``text`` without quotes, printable and with at most ``most`` characters.
+
+    It ends in "..." if it was cut.
+    """
+    printable = "".join(c if c.isprintable() else ascii(c)[1:-1] for c in text[: most + 1])
+    return printable if len(printable) <= most else f"{printable[: most - 3]}..."
+
+
 def name_of(weights: str) -> str:
     """Return a name for the weights at a path.
 

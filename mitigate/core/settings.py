@@ -43,7 +43,7 @@ def read(file: Path) -> dict[str, Any]:
     try:
         settings = yaml.load(raw.decode("utf-8"), _PlainLoader)
     except (yaml.YAMLError, ValueError, OverflowError, RecursionError) as error:
-        cause = " ".join(str(error).split())
+        cause = names.escaped(" ".join(str(error).split()))
         raise ValueError(f"{file} is not plain YAML ({cause}). {_WARNING}") from error
     if not isinstance(settings, dict):
         raise ValueError(

@@ -11,6 +11,7 @@ import numpy as np
 from tqdm import tqdm
 
 from mitigate.core.files import read_regular, sha256, write_bytes
+from mitigate.core.names import escaped, short
 from mitigate.core.observation import Z_MAX
 from mitigate.core.output import UnsafePathError, is_regular, lost, output_folder
 from mitigate.corruptions import frame_files
@@ -254,7 +255,7 @@ def _check_earlier(out: Path, settings: dict, episodes: dict[str, list[str]]) ->
             "folder, or delete this one."
         ) from error
     different = [
-        f"{name}={earlier_settings.get(name)} there, {name}={settings.get(name)} now"
+        escaped(f"{name}={earlier_settings.get(name)} there, {name}={settings.get(name)} now")
         for name in {**earlier_settings, **settings}
         if earlier_settings.get(name) != settings.get(name)
     ]
@@ -266,10 +267,10 @@ def _check_earlier(out: Path, settings: dict, episodes: dict[str, list[str]]) ->
     for name, (count, digest) in digests.items():
         if _digest(episodes.get(name, [])[:count]) != digest:
             raise ValueError(
-                f"The first {count} frames of episode {name!r} are not those that {out} was made "
-                "from: files were added between them, removed or renamed, so their numbers "
-                "changed. Name another folder, or delete this one. (Frames may be added at the "
-                "end.)"
+                f"The first {count} frames of episode {short(name, 200)} are not those that {out} "
+                "was made from: files were added between them, removed or renamed, so their "
+                "numbers changed. Name another folder, or delete this one. (Frames may be added at "
+                "the end.)"
             )
     return checksums
 

@@ -152,7 +152,7 @@ def check_scale(paths: Sequence[Path], unit: float, z_max: float) -> None:
         with suppress(LeftOutError):  # reported when the file is read
             if modality(path) == DEPTH:
                 stored = (_load(path) if suffix == ".npy" else _decode(path)).reshape(-1)
-                readings = stored[:: stored.size // SCALE_PIXELS + 1]
+                readings = stored[:: stored.size // SCALE_PIXELS + 1].astype(np.float32)
                 valid = np.isfinite(readings) & (readings > 0) & (readings != NO_READING)
                 samples[suffix].append(readings[valid])
     counts, metres = (np.concatenate(parts or [np.zeros(0)]) for parts in samples.values())
@@ -166,7 +166,7 @@ def check_scale(paths: Sequence[Path], unit: float, z_max: float) -> None:
     if far > 0.5:
         likely = "5000 counts per metre, as in TUM RGB-D, need unit=0.0002"
         if not (counts % 8).any():
-            likely = "all counts are multiples of 8, as in SUN RGB-D: rotate their bits right by 3"
+            likely += "; SUN RGB-D, whose counts are multiples of 8, needs a rotation by 3 bits"
         raise ValueError(
             f"The unit of the depth seems wrong: with {unit:g} metres per count, {far:.0%} of the "
             f"readings are at {z_max:g} m or beyond (median {np.median(counts) * unit:.3g} m). "

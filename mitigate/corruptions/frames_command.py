@@ -35,6 +35,7 @@ import sys
 from collections.abc import Sequence
 from dataclasses import MISSING, fields
 
+from mitigate.core.names import escaped
 from mitigate.core.options import asks_help, paths_and_options
 from mitigate.corruptions import folders, registry
 from mitigate.corruptions.folders import UNITS, Settings
@@ -111,11 +112,13 @@ def _report(summary: dict, out: str) -> int:
         more = ", ..." if len(replaced) > MAX_LISTED else ""
         print(
             f"{len(replaced)} frames differed from the results of this command and were written "
-            f"again: {', '.join(replaced[:MAX_LISTED])}{more}",
+            f"again: {', '.join(map(escaped, replaced[:MAX_LISTED]))}{more}",
             file=sys.stderr,
         )
     for entry in left_out[:MAX_LISTED]:
-        print(f"left out: {entry['file']} {entry['reason']}", file=sys.stderr)
+        print(
+            f"left out: {escaped(entry['file'])} {escaped(entry['reason'], 500)}", file=sys.stderr
+        )
     if left_out:
         print(f"{len(left_out)} files left out, see {out}/{folders.SUMMARY}", file=sys.stderr)
     return 1 if left_out else 0

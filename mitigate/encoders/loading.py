@@ -27,7 +27,7 @@ from torch.fx import GraphModule
 
 from mitigate.core import checkpoint
 from mitigate.core.files import find, lfs_problem
-from mitigate.core.names import short, unknown
+from mitigate.core.names import escaped, short, unknown
 
 SCRIPTS, EXPORTS = (".ts", ".torchscript"), (".pt2",)
 INSTALLED = "pkg://"  # pkg://package/path: a file of an installed package
@@ -227,7 +227,7 @@ def load_weights(model: nn.Module, weights: str, prefix: str = "") -> None:
         begins = sorted({name.rpartition(".")[0].partition(".")[0] for name in state})
         raise ValueError(
             f"The weights {weights} do not fit the encoder: {'; '.join(wrong[:4])} ({len(wrong)} "
-            f"differences). Their names begin with {short(', '.join(begins[:8]), 200)}; "
+            f"differences). Their names begin with {escaped(', '.join(begins[:8]))}; "
             f"agent.prefix is {prefix!r}. Set it to the prefix of the encoder's names, such as "
             "net.rgb_encoder.model. (with the dot)."
         )

@@ -110,6 +110,7 @@ def _in_words(tasks: Sequence[str]) -> str:
 
 
 LIST_HASH = "episodes-{split}.sha256"  # hash of the episode file of a split
+LARGEST = 1 << 16  # characters of such a file that are read (heuristic; it has one line)
 _SHA256 = re.compile(r"[0-9a-f]{64}")
 OLD_LIST = "episodes.sha256"  # the same by older versions: one line per file, for all splits
 
@@ -140,7 +141,8 @@ def _list_hashes(folder: Path, split: str, source: str) -> list[str]:
     """
     note, old = folder / LIST_HASH.format(split=split), folder / OLD_LIST
     if note.is_file():
-        words = note.read_text(encoding="utf-8", errors="replace").split()[:1]
+        with open(note, encoding="utf-8", errors="replace") as file:
+            words = file.read(LARGEST).split()[:1]
         if not words or not _SHA256.fullmatch(words[0]):
             raise ValueError(
                 f"{note} must begin with a sha256, and is empty or damaged. Copy it back, or move "

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 import torch
 from tensordict import NestedKey, TensorDictBase
-from torchrl.data import Composite, Unbounded
+from torchrl.data import Bounded, Composite, Unbounded
 from torchrl.envs import Transform
 
 from mitigate.core.observation import DEPTH, EPISODE, FRAME, POSE, RGB
@@ -17,6 +19,7 @@ from mitigate.corruptions import (
     corrupt_normalised,
     corrupt_observation,
 )
+from mitigate.corruptions.registry import modality
 from mitigate.corruptions.schedule import drawn, names_of
 from mitigate.worlds.modalities import ENTRY_FIX, check_available
 
@@ -62,7 +65,22 @@ class CorruptObservation(Transform):
         self.schedule, self.seed = schedule, seed
         self.entries = {RGB: rgb, DEPTH: depth, POSE: POSE}
         self.sensor = sensor or DepthSensor()
+        self._normalised = normalised
         self._corrupt_instant = corrupt_normalised if normalised else corrupt_observation
+
+    def transform_observation_spec(self, observation_spec: Composite) -> Composite:
+        """Return the spec; raise ValueError for normalised depth that is corrupted as metres."""
+        entry = self.entries[DEPTH]
+        corrupts = any(modality(name) == DEPTH for name in names_of(self.schedule))
+        if corrupts and not self._normalised and entry in observation_spec.keys(True, True):
+            spec = observation_spec[entry]
+            high = float(spec.space.high.max()) if isinstance(spec, Bounded) else math.inf
+            if high <= 1.0:
+                raise ValueError(
+                    f"The depth spec ends at {high:g}, so it may be normalised to [0, 1]. Set "
+                    "normalised=True and sensor=DepthSensor(z_min, z_max), or use a spec in metres."
+                )
+        return observation_spec
 
     def _call(self, next_tensordict: TensorDictBase) -> TensorDictBase:
         return self._corrupt(next_tensordict)
