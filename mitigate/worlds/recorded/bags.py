@@ -245,7 +245,7 @@ class Bag(Source):
 def _open_part(part: Any, open_: Callable[[], None]) -> None:
     """Open a reader of ``rosbags``, which then parses the definitions of the read types only.
 
-    Otherwise one definition that it cannot parse, such as that of a service event, would make the
+    Otherwise one definition that it cannot parse, such as a service event, would make the
     whole bag unreadable.
     """
     from rosbags.interfaces import MessageDefinition, MessageDefinitionFormat
