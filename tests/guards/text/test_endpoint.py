@@ -60,7 +60,7 @@ class Handler(BaseHTTPRequestHandler):
         pass
 
 
-def said(content) -> bytes:
+def answer(content) -> bytes:
     return json.dumps(
         {"choices": [{"message": {"role": "assistant", "content": content}}]}
     ).encode()
@@ -84,7 +84,7 @@ def endpoint(server, **others) -> ChatEndpoint:
 
 def test_endpoint_speaks_the_openai_protocol(server, monkeypatch):
     monkeypatch.setenv("OPENAI_API_KEY", "secret")
-    server.replies = [(200, said(" Turn left. "), 0)]
+    server.replies = [(200, answer(" Turn left. "), 0)]
     assert endpoint(server, options={"temperature": 0}).rewrite(["HEY turn left"]) == ["Turn left."]
     path, body, key = server.requests[0]
     assert path == "/v1/chat/completions" and key == "Bearer secret"
@@ -94,7 +94,7 @@ def test_endpoint_speaks_the_openai_protocol(server, monkeypatch):
 
 
 def test_endpoint_retries_only_temporary_failures(server):
-    server.replies = [(503, b"", 0), (429, b"", 0), (200, said("Go."), 0)]
+    server.replies = [(503, b"", 0), (429, b"", 0), (200, answer("Go."), 0)]
     assert endpoint(server).rewrite(["a"]) == ["Go."] and len(server.requests) == 3
     server.requests.clear()
     server.replies = [(401, b"", 0)]
@@ -104,7 +104,7 @@ def test_endpoint_retries_only_temporary_failures(server):
 
 
 def test_endpoint_keeps_its_deadline_when_a_server_hangs(server):
-    server.replies = [(200, said("late"), 3)]
+    server.replies = [(200, answer("late"), 3)]
     client = endpoint(server, timeout=0.2, retries=1)
     began = time.monotonic()
     assert client.rewrite(["a"]) == [None]
@@ -121,15 +121,15 @@ def test_endpoint_keeps_its_deadline_when_a_server_hangs(server):
             b"[]",
             b"{}",
             b'{"choices": []}',
-            said(None),
-            said(["x"]),
+            answer(None),
+            answer(["x"]),
         ),
         *(b"", b"null", b"[" * 100_000, b'{"a":' * 100_000, b"9" * 100_000, b" " * (ENVELOPE + 99)),
         *(
             b'{"choices": 7}',
             b'{"choices": [null]}',
             b'{"choices": {"0": 1}}',
-            said(said("x").decode())[:-3],
+            answer(answer("x").decode())[:-3],
         ),
     ],
     ids=lambda reply: repr(reply[:20]),
@@ -145,7 +145,7 @@ def test_endpoint_survives_a_missing_server():
 
 
 def test_cache_keeps_answers_by_text_model_and_prompt(server, tmp_path):
-    server.replies = [(200, said("One."), 0), (200, said("Two."), 0)]
+    server.replies = [(200, answer("One."), 0), (200, answer("Two."), 0)]
     cache = tmp_path / "answers.sqlite"
     assert endpoint(server, cache=cache).rewrite(["a"]) == ["One."]
     assert endpoint(server, cache=cache).rewrite(["a"]) == ["One."] and len(server.requests) == 1
@@ -154,7 +154,7 @@ def test_cache_keeps_answers_by_text_model_and_prompt(server, tmp_path):
 
 
 def test_cache_keeps_no_failures(server, tmp_path):
-    server.replies = [(500, b"", 0), (200, said("Go."), 0)]
+    server.replies = [(500, b"", 0), (200, answer("Go."), 0)]
     client = endpoint(server, cache=tmp_path / "answers.sqlite", retries=0)
     assert client.rewrite(["a"]) == [None] and client.rewrite(["a"]) == ["Go."]
 
@@ -168,7 +168,7 @@ def test_endpoint_explains_a_wrong_url_or_cache(tmp_path):
 
 
 def test_endpoint_answers_pass_the_gate(server):
-    server.replies = [(200, said("Walk to the airport and fly right."), 0)]
+    server.replies = [(200, answer("Walk to the airport and fly right."), 0)]
     heard = "Hey there! So, go ahead and stroll past the sofa. Then hang a left, okay?"
     decision = Safeguard(endpoint(server)).canonicalise(heard)
     assert decision.route == "fallback" and "airport" not in decision.text
@@ -180,7 +180,7 @@ def test_endpoint_follows_no_redirect(server, monkeypatch, status):
     other = Server()
     thread = threading.Thread(target=other.serve_forever, args=(0.02,), daemon=True)
     thread.start()
-    other.replies = [(200, said("Go."), 0)]
+    other.replies = [(200, answer("Go."), 0)]
     server.replies = [(status, f"{other.url}/chat/completions".encode(), 0)]
     client = endpoint(server, retries=1)
     assert client.rewrite(["a"]) == [None] and f"HTTP {status}" in client.failures[0]
@@ -191,7 +191,7 @@ def test_endpoint_follows_no_redirect(server, monkeypatch, status):
 
 @pytest.mark.parametrize("headers", [0, 200])
 def test_endpoint_keeps_its_deadline_when_a_server_drips(server, headers):
-    server.replies, server.drops, server.pause = [(200, said("x" * 200), 0)], 2, 0.05
+    server.replies, server.drops, server.pause = [(200, answer("x" * 200), 0)], 2, 0.05
     server.headers = headers
     client = endpoint(server, timeout=0.4, retries=0)
     began = time.monotonic()
@@ -227,7 +227,7 @@ def test_endpoint_keeps_its_deadline_with_a_slow_resolver(server, monkeypatch):
 
 @pytest.mark.parametrize("length", [5_000, 800_000])
 def test_endpoint_reads_no_huge_answer(server, length):
-    server.replies = [(200, said("left " * length), 0)]
+    server.replies = [(200, answer("left " * length), 0)]
     client = endpoint(server, retries=0)
     began = time.monotonic()
     decision = Safeguard(client).canonicalise(
@@ -281,7 +281,7 @@ def test_check_choice_accepts_a_url_without_a_secret():
 
 
 def test_cache_treats_an_untrusted_file_as_data(server, tmp_path):
-    server.replies = [(200, said("Go."), 0)]
+    server.replies = [(200, answer("Go."), 0)]
     for number, script in enumerate(
         (
             "CREATE VIEW answers AS WITH RECURSIVE c(x) AS (SELECT 1 UNION ALL SELECT x FROM c) "
@@ -312,7 +312,7 @@ def test_cache_treats_an_untrusted_file_as_data(server, tmp_path):
 
 
 def test_cache_survives_flipped_bytes(server, tmp_path):
-    server.replies = [(200, said("Go."), 0)]
+    server.replies = [(200, answer("Go."), 0)]
     cache = tmp_path / "answers.sqlite"
     endpoint(server, cache=cache).rewrite([f"text {n}" for n in range(60)])
     sound = cache.read_bytes()
@@ -338,7 +338,7 @@ def dead_address():
 
 
 def test_item_7_endpoint_answers_when_the_first_address_is_dead(server, monkeypatch):
-    server.replies = [(200, said("Go."), 0)]
+    server.replies = [(200, answer("Go."), 0)]
     live = ("127.0.0.1", server.server_port)
     with dead_address() as dead:
         info = [(socket.AF_INET, socket.SOCK_STREAM, 6, "", address) for address in (dead, live)]
@@ -349,22 +349,22 @@ def test_item_7_endpoint_answers_when_the_first_address_is_dead(server, monkeypa
 
 
 @pytest.mark.parametrize("count", [1, 5])
-def test_item_7_deadline_for_all_texts_holds_with_dead_addresses(server, monkeypatch, count):
+def test_endpoint_deadline_for_all_texts_holds_with_dead_addresses(server, monkeypatch, count):
     with dead_address() as dead:
         info = [(socket.AF_INET, socket.SOCK_STREAM, 6, "", dead)] * count
         monkeypatch.setattr(socket, "getaddrinfo", lambda *_, **__: info)
-        asked = endpoint(server, timeout=60.0, retries=3)
+        client = endpoint(server, timeout=60.0, retries=3)
         began = time.monotonic()
-        assert asked.rewrite(["a", "b", "c"], seconds=0.5) == [None] * 3
+        assert client.rewrite(["a", "b", "c"], seconds=0.5) == [None] * 3
         assert time.monotonic() - began < 2.0
 
 
-def test_item_7_deadline_holds_while_another_process_locks_the_cache(server, tmp_path):
-    server.replies = [(200, said("Go."), 0)]
-    asked = endpoint(server, cache=tmp_path / "answers.sqlite")
+def test_endpoint_deadline_holds_while_another_process_locks_the_cache(server, tmp_path):
+    server.replies = [(200, answer("Go."), 0)]
+    client = endpoint(server, cache=tmp_path / "answers.sqlite")
     with sqlite3.connect(tmp_path / "answers.sqlite") as other:
         other.execute("BEGIN EXCLUSIVE")
         began = time.monotonic()
-        assert asked.rewrite(["a", "b"], seconds=2.0) == ["Go.", "Go."]
+        assert client.rewrite(["a", "b"], seconds=2.0) == ["Go.", "Go."]
         assert time.monotonic() - began < 2.0
     other.close()
