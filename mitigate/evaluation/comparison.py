@@ -254,7 +254,8 @@ class _Scores:
                 values[agent] = float(gained.mean() / clean.mean()), draws[:, 0] / draws[:, 1]
         first, *others = self.agents
         (value, samples) = values[first]
-        changes = {n: _estimate(values[n][0] - value, values[n][1] - samples) for n in others}
+        with np.errstate(invalid="ignore"):
+            changes = {n: _estimate(values[n][0] - value, values[n][1] - samples) for n in others}
         return Line(heading, {n: _estimate(*values[n]) for n in self.agents}, changes, digits=2)
 
 
