@@ -86,7 +86,7 @@ def test_item_6_unknown_value_is_repeated_only_if_it_is_a_name():
     with pytest.raises(ValueError, match="'clasifier'. Did you mean classifier"):
         choices.check("clasifier")
     for value in ("me:PW", ["PW"], {"url": "PW"}, "PW%40h"):
-        with pytest.raises(ValueError, match="This value is no safeguard") as error:
+        with pytest.raises(ValueError, match="This value names no safeguard") as error:
             choices.check(value)
         assert "PW" not in str(error.value)
 

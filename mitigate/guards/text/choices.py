@@ -59,7 +59,7 @@ def check(choice: object) -> None:
         return
     alone = bool(plus) and name in ("none", *REPLACED, "classifier")
     if alone or name not in (*CHOICES, *REPLACED) and not (name and Path(name).is_dir()):
-        cause = f"This value is no safeguard. Choose one of: {', '.join(CHOICES)}."
+        cause = f"This value names no safeguard that exists. Choose one of: {', '.join(CHOICES)}."
         if is_plain(choice):  # any other value may hold a password
             cause = unknown("safeguard", choice, CHOICES)
         raise ValueError(f"{cause} Or name a folder. {FOLDER}")
