@@ -116,6 +116,7 @@ def test_run_reports_the_episode_of_a_background_process(run, tmp_path, monkeypa
     assert not (tmp_path / "o/conditions/clean/done.json").exists()
 
 
+@pytest.mark.slow
 def test_run_repeats_clean_if_it_lacks_episodes(run, tmp_path):
     out, file = tmp_path / "o", tmp_path / "nav.py"
     lost = "for name in 'abcd':\n    if name == 'd' and sys.argv[1] == 'clean': break\n"

@@ -216,6 +216,7 @@ def run_adapted(folder, place):
     run_command(config(*options), command)
 
 
+@pytest.mark.slow
 def test_adapters_wrap_a_torchscript_encoder(tmp_path, monkeypatch):
     script, wrapped = scripted(tmp_path, PROGRAM.replace(LOADING, ""))
     script.save(str(tmp_path / "w.pt"))
@@ -226,6 +227,7 @@ def test_adapters_wrap_a_torchscript_encoder(tmp_path, monkeypatch):
         assert torch.equal(features, wrapped(FRAMES)) and not torch.equal(features, script(FRAMES))
 
 
+@pytest.mark.slow
 def test_adapters_stop_the_agent_inside_torchscript(tmp_path, monkeypatch):
     """An agent that catches the error must not continue without them."""
     call = "    features = encoder(torch.from_numpy(rgb).permute(2, 0, 1)[None] / 255)\n"

@@ -81,7 +81,7 @@ def test_older_restorer_loads_and_needs_its_checksum(tmp_path):
     as_before(tmp_path)
     assert load_restorer(tmp_path).hash == restorer.hash
     (tmp_path / "model.safetensors.sha256").unlink()
-    with pytest.raises(ValueError, match=r"no manifest\.json"):
+    with pytest.raises(ValueError, match=r"not listed in the manifest\.json"):
         load_restorer(tmp_path)
 
 

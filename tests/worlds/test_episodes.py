@@ -215,7 +215,8 @@ def test_read_episodes_rejects_damaged_files(tmp_path):
     }
     for name, content in cases.items():
         (tmp_path / name).write_bytes(content)
-        with pytest.raises(ValueError, match=f"{name}(: episode 0| is not complete JSON)"):
+        problem = r"(: episode 0| is not complete JSON| must hold a JSON object)"
+        with pytest.raises(ValueError, match=f"{name}{problem}"):
             list(read_episodes(tmp_path / name))
 
 

@@ -190,6 +190,7 @@ def test_store_builds_only_missing_scenes(stored):
     assert store.path(SCENE).stat().st_mtime_ns == before
 
 
+@pytest.mark.slow
 def test_store_does_not_depend_on_the_process_count(tmp_path):
     agent = wanderer()
     one, two = (Store(agent, partial(Corner, SIZE, 2), tmp_path / name) for name in ("1", "2"))

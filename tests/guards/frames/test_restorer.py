@@ -261,7 +261,7 @@ def card_with(**changed):
     [
         (damaged_weights, "cut short or damaged"),
         (damaged_sum, "cannot be compared with its manifest .* Fetch the folder again"),
-        (no_sum, "listed in no manifest.json"),
+        (no_sum, "not listed in the manifest.json"),
         (card_with(hash="0" * 12), "do not match its card"),
         (card_with(width=1 << 30), "whole number from 4 to 128"),
         (card_with(width=16), "do not fit"),
