@@ -131,8 +131,8 @@ def identity(choice: str) -> str:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         choice = current(choice)
-    own = {"classifier": CLASSIFIER, "lora": ADAPTER}.get(choice, choice)
-    folders = [own] if own == CLASSIFIER else [CLASSIFIER, own]
+    chosen = {"classifier": CLASSIFIER, "lora": ADAPTER}.get(choice, choice)
+    folders = [chosen] if chosen == CLASSIFIER else [CLASSIFIER, chosen]
     files = [file for folder in folders if (file := weights_in(find(folder)))]
     versions = [VERSION] if len(folders) == 1 else [VERSION, ANSWERS]
     parts = " ".join([*versions, *(sha256(file) for file in files)])

@@ -54,10 +54,10 @@ def terms(said: Decoded, original: str, block: bool) -> Counter[int]:
         names.append("= signs")
     if script(original) == "other":
         names.append("= script")
-    found = Counter(map(_hashed, names))
+    counts = Counter(map(_hashed, names))
     for word in words:
-        found.update(_word_terms(word))
-    return found
+        counts.update(_word_terms(word))
+    return counts
 
 
 def _hashed(name: str) -> int:
@@ -113,23 +113,23 @@ class Classifier:
 
     def clauses(self, text: str) -> list[Clause]:
         """Return the clauses of a text, read one by one."""
-        found = []
+        results = []
         for number, sentence in enumerate(sentence_pieces(text)):
             for piece in clause_pieces(text, sentence):
-                said = piece.of(text)
-                plain = decode(said, self.known)
-                index, value = weighted(terms(plain, said, piece.block), self.idf)
+                raw = piece.of(text)
+                plain = decode(raw, self.known)
+                index, value = weighted(terms(plain, raw, piece.block), self.idf)
                 clause = Clause(
                     piece,
                     number,
-                    len(said.split()),
-                    sum(1 + 2 * ("\u3000" <= c <= "\ud7ff") for c in said if c.isalpha()),
-                    script(said),
+                    len(raw.split()),
+                    sum(1 + 2 * ("\u3000" <= c <= "\ud7ff") for c in raw if c.isalpha()),
+                    script(raw),
                     float(self.arrays["alone"][index] @ value),
                     float(value @ value),
                 )
-                found.append(clause)
-        return found
+                results.append(clause)
+        return results
 
     def score(self, clauses: Sequence[Clause]) -> float:
         """Return the log odds that some clauses, read as one text, are of an attack."""

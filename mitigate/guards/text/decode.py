@@ -67,8 +67,8 @@ def decode(text: str, known: Set[str]) -> Decoded:
     if len(re.findall(r"\b[a-z]+[A-Z]+[a-z]\w*|\b[A-Z][a-z]+[A-Z]\w*", text)) > 2:
         marks.add("case")
         text = text.lower()
-    found = _WORD.findall(text)
-    if len(found) > 2 and _share(text, known) <= HIDDEN:
+    tokens = _WORD.findall(text)
+    if len(tokens) > 2 and _share(text, known) <= HIDDEN:
         best = max(_ciphers(text), key=lambda read: _share(read, known))
         if _share(best, known) >= ENGLISH:
             marks.add("cipher")
@@ -85,12 +85,12 @@ def visible(text: str) -> str:
     if text.isascii():
         return text
     text = re.sub("\u202e([^\u202c\n]*)\u202c?", lambda match: match[1][::-1], text)
-    kept = []
+    signs = []
     for place, sign in enumerate(text):
         needed = sign in _JOINERS and place > 0 and not text[place - 1].isascii()
         if unicodedata.category(sign) not in ("Cf", "Co", "Cs") or needed:
-            kept.append(sign)
-    return "".join(kept)
+            signs.append(sign)
+    return "".join(signs)
 
 
 def _letters(text: str, marks: set[str]) -> str:
@@ -122,14 +122,14 @@ def _decoded(read: Callable[[str], str], marks: set[str], match: re.Match[str]) 
     """Return what a code says, or the code if it says nothing in letters."""
     coded = match.group()
     try:
-        said = read(coded)
+        decoded = read(coded)
     except (ValueError, binascii.Error, OverflowError):
         return coded
-    letters = sum(c.isascii() and (c.isalpha() or c == " ") for c in said)
-    if len(said) < 3 or letters < 0.8 * len(said):
+    letters = sum(c.isascii() and (c.isalpha() or c == " ") for c in decoded)
+    if len(decoded) < 3 or letters < 0.8 * len(decoded):
         return coded
     marks.add("code")
-    return f" {said} "
+    return f" {decoded} "
 
 
 def _base64(coded: str) -> str:
@@ -160,11 +160,11 @@ def _escaped(coded: str) -> str:
 
 
 def _morse(coded: str) -> str:
-    said = (
+    decoded = (
         " " if c in ("/", "|") else _MORSE_LETTERS.get(c, "")
         for c in re.split(r"\s+|(?=[/|])|(?<=[/|])", coded)
     )
-    return "".join(said)
+    return "".join(decoded)
 
 
 _CODES: tuple[tuple[re.Pattern[str], Callable[[str], str]], ...] = (
@@ -211,8 +211,8 @@ def _ciphers(text: str) -> Iterator[str]:
 
 def _share(text: str, known: Set[str]) -> float:
     """Return the share of words that are known, by letters."""
-    found = _WORD.findall(text.lower())
-    total = sum(map(len, found))
+    tokens = _WORD.findall(text.lower())
+    total = sum(map(len, tokens))
     return sum(
-        len(word) for word in found if word in known and (len(word) > 1 or word in "ai")
+        len(word) for word in tokens if word in known and (len(word) > 1 or word in "ai")
     ) / max(1, total)

@@ -118,8 +118,8 @@ def _span(clauses: Sequence[Clause]) -> Piece:
 
 
 def _names_the_way(text: str) -> bool:
-    said = facts(text)
-    return bool(said.directions or set(said.landmarks) & gate.KNOWN)
+    content = facts(text)
+    return bool(content.directions or set(content.landmarks) & gate.KNOWN)
 
 
 def _is_step(text: str) -> bool:
@@ -131,10 +131,10 @@ def _english_attacks(clauses: Sequence[Clause], classifier: Classifier) -> list[
 
     The route is in the other script, so that script is never removed.
     """
-    found = []
+    spans = []
     for other, run in groupby(clauses, key=lambda clause: clause.script == "other"):
         parts = list(run)
         words = sum(clause.words for clause in parts)
         if not other and words >= SHORTEST and classifier.score(parts) > 0:
-            found.append(_span(parts))
-    return found
+            spans.append(_span(parts))
+    return spans

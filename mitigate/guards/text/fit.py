@@ -42,7 +42,7 @@ def fit(folder: Path, routes: int = ROUTES, log: Any = sys.stderr) -> Classifier
     known = frozenset(words)
     terms = [model.terms(decode(text, known), text, block) for text, block, _, _ in pieces]
     print(f"training on {len(pieces)} pieces of text", file=log, flush=True)
-    seen = Counter(index for found in terms for index in found)
+    seen = Counter(index for term_counts in terms for index in term_counts)
     idf = np.zeros(SIZE, np.float32)
     for index, n in seen.items():
         idf[index] = np.log(len(terms) / n) + 1 if n > 1 else 0.0
@@ -80,10 +80,10 @@ def _pieces(lines: Sequence[Line]) -> Iterator[tuple[str, bool, Line, float]]:
                     yield clause.of(text), clause.block, line, 0.4 * line.weight
 
 
-def _matrix(found: Sequence[Mapping[int, int]], idf: np.ndarray) -> csr_matrix:
+def _matrix(term_counts: Sequence[Mapping[int, int]], idf: np.ndarray) -> csr_matrix:
     """Return TF-IDF of the terms, rows of length 1; terms that occur once are left out."""
     rows = []
-    for terms in found:
+    for terms in term_counts:
         index, value = model.weighted(terms, idf)
         index, value = index[value > 0], value[value > 0]
         rows.append((index, value / max(1e-6, float(np.linalg.norm(value)))))
@@ -109,11 +109,11 @@ def regression(x: Any, y: np.ndarray, weight: np.ndarray, steps: int) -> tuple[n
     return w[:-1], float(w[-1])
 
 
-def save(made: Classifier, folder: Path) -> None:
+def save(trained: Classifier, folder: Path) -> None:
     """Write a classifier into a folder."""
     make_folder(folder)
-    write_text(folder / model.CONFIG, json.dumps(made.config) + "\n")
-    arrays = {name: array.astype(np.float16) for name, array in made.arrays.items()}
+    write_text(folder / model.CONFIG, json.dumps(trained.config) + "\n")
+    arrays = {name: array.astype(np.float16) for name, array in trained.arrays.items()}
     checksums.write(folder / model.WEIGHTS, lambda file: save_file(arrays, file))
 
 

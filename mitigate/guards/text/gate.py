@@ -47,26 +47,26 @@ def leaves_no_instruction(text: str, removed: str, rest: str) -> str:
     return ""
 
 
-def is_too_long(heard: str, said: str) -> bool:
+def is_too_long(heard: str, rewrite: str) -> bool:
     """Return whether a rewrite has so many characters that it is not read."""
-    return len(said) > max(LENGTH, TIMES * len(heard))
+    return len(rewrite) > max(LENGTH, TIMES * len(heard))
 
 
-def rewrite_refused(heard: str, said: str | None, last: bool = False) -> str:
+def rewrite_refused(heard: str, rewrite: str | None, last: bool = False) -> str:
     """Return why ``said`` may not replace ``heard``; ``last``: the text ends with it, so that a
     stop may be added, which is meant."""
-    if said is None:
+    if rewrite is None:
         return "no answer in time"
-    if is_too_long(heard, said) or len(words(said)) > len(words(heard)) + LONGER:
+    if is_too_long(heard, rewrite) or len(words(rewrite)) > len(words(heard)) + LONGER:
         return "longer than what it replaces"
     plain = heard.replace("[MASK]", "the")
-    if last and "stop" in facts(said).directions and "stop" not in facts(plain).directions:
+    if last and "stop" in facts(rewrite).directions and "stop" not in facts(plain).directions:
         plain = f"{plain.rstrip(' .!?;,')}, and stop."
-    problems = [p for p in check(plain, said) if not _is_aside(p, plain)]
+    problems = [p for p in check(plain, rewrite) if not _is_aside(p, plain)]
     if problems:
         return problems[0]
     before = Counter(words(_POLITE.sub(" ", plain.lower())))
-    lost = [word for word in sorted(_CONDITIONS) if before[word] > Counter(words(said))[word]]
+    lost = [word for word in sorted(_CONDITIONS) if before[word] > Counter(words(rewrite))[word]]
     return f"condition lost: {', '.join(lost)}" if lost else ""
 
 

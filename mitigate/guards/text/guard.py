@@ -103,12 +103,12 @@ class Safeguard:
         fresh = [text for text in dict.fromkeys(texts) if text not in known]
         began = time.monotonic()
         drafts = [_Draft(text, self.classifier, self.rewriter is not None) for text in fresh]
-        asked = list(dict.fromkeys(p for draft in drafts for p in draft.asked))
-        if self.rewriter is not None and asked:
-            answers = self.rewriter.rewrite(asked, self.seconds * len(drafts))
-            said = dict(zip(asked, answers, strict=True))
+        requested = list(dict.fromkeys(p for draft in drafts for p in draft.requested))
+        if self.rewriter is not None and requested:
+            answers = self.rewriter.rewrite(requested, self.seconds * len(drafts))
+            by_passage = dict(zip(requested, answers, strict=True))
             for draft in drafts:
-                draft.accept(said)
+                draft.accept(by_passage)
         each = (time.monotonic() - began) / max(1, len(fresh))
         decided = [draft.decision(each) for draft in drafts]
         known.update((decision.original, decision) for decision in decided)
@@ -126,7 +126,7 @@ class _Draft:
     def __init__(self, original: str, classifier: Classifier, rewrites: bool) -> None:
         self.original = original
         self.reasons: list[str] = []
-        self.taken = 0
+        self.accepted = 0
         text = visible(original)
         if text != original:
             self.reasons.append("invisible characters taken out")
@@ -148,27 +148,27 @@ class _Draft:
         short = len(quiet) <= TOO_LARGE and len(quiet.split()) <= TOO_LONG
         if rewrites and short and script(quiet) == "latin":
             self.parts = passages(quiet)
-        self.asked = [p for p in self.parts if rules.MASK.search(p) or classifier.styled(p)]
+        self.requested = [p for p in self.parts if rules.MASK.search(p) or classifier.styled(p)]
 
-    def accept(self, said: dict[str, str | None]) -> None:
+    def accept(self, answers: dict[str, str | None]) -> None:
         """Take the answers that pass the gate in place of their passages."""
         parts = list(self.parts)
         for place, heard in enumerate(self.parts):
-            if heard not in self.asked:
+            if heard not in self.requested:
                 continue
-            answer, last = said[heard], place == len(parts) - 1
+            answer, last = answers[heard], place == len(parts) - 1
             problem = gate.rewrite_refused(heard, answer, last)
             if problem:
                 self.reasons.append(f"kept {heard[:40]!r}: {problem}")
             elif answer is not None and answer != heard:
                 parts[place] = answer
-                self.taken += 1
+                self.accepted += 1
         text = " ".join(filter(None, parts))
-        if not self.taken:
+        if not self.accepted:
             return
         if not text.strip():
             self.reasons.append("kept all: nothing would be left")
-            self.taken = 0
+            self.accepted = 0
         else:
             self.reasons.append("rewritten by the model")
             self.text = text
@@ -180,8 +180,8 @@ class _Draft:
             if filled != text:
                 self.reasons.append("masks filled by rule")
                 text = filled
-        route = "model" if self.taken else "fallback" if self.asked else "classifier"
-        if text == self.original and not self.asked and len(text) <= READ:
+        route = "model" if self.accepted else "fallback" if self.requested else "classifier"
+        if text == self.original and not self.requested and len(text) <= READ:
             route = "clean"
         return Decision(self.original, text, route, tuple(self.reasons), seconds)
 
@@ -222,13 +222,13 @@ def _opened(name: str, log: str | Path | None) -> Safeguard:
 
 def passages(text: str) -> list[str]:
     """Return the sentences of a text, short ones joined to passages of ``PASSAGE`` words."""
-    found: list[str] = []
+    results: list[str] = []
     for sentence in sentences(text):
-        if found and len(found[-1].split()) + len(sentence.split()) <= PASSAGE:
-            found[-1] += " " + sentence
+        if results and len(results[-1].split()) + len(sentence.split()) <= PASSAGE:
+            results[-1] += " " + sentence
         else:
-            found.append(sentence)
-    return found
+            results.append(sentence)
+    return results
 
 
 def _append(path: Path, decisions: list[Decision]) -> None:

@@ -59,7 +59,7 @@ def score(repairs: Sequence[Repair]) -> Scores:
 
     chrf = CHRF().corpus_score([r.repaired for r in repairs], [[r.clean for r in repairs]])
     problems = [bool(check(r.clean, r.repaired)) for r in repairs]
-    kept = [_landmarks_kept(r) for r in repairs]
+    landmark_counts = [_landmarks_kept(r) for r in repairs]
     injected = [gone for r in repairs for gone in _gone(r)]
     clean = [problem for r, problem in zip(repairs, problems, strict=True) if r.family == CLEAN]
     return Scores(
@@ -68,7 +68,7 @@ def score(repairs: Sequence[Repair]) -> Scores:
         token_f1=_mean([token_f1(r.clean, r.repaired) for r in repairs]) or 0.0,
         chrf=chrf.score / 100,
         directions=_mean([_same_directions(r) for r in repairs]) or 0.0,
-        landmarks=_ratio(sum(k for k, _ in kept), sum(n for _, n in kept)),
+        landmarks=_ratio(sum(k for k, _ in landmark_counts), sum(n for _, n in landmark_counts)),
         faithful=1 - sum(problems) / len(problems),
         removed=_mean(injected),
         changed=_mean(clean),
@@ -88,18 +88,18 @@ def table(scores: dict[str, Scores]) -> str:
     """Return the scores as a Markdown table in percent, one row a family."""
     names = [f.name for f in fields(Scores)]
     lines = []
-    for family, found in scores.items():
-        values = asdict(found)
+    for family, score in scores.items():
+        values = asdict(score)
         cells = ["–" if values[n] is None else f"{100 * values[n]:.1f}" for n in names[1:]]
-        lines.append([family, str(found.count), *cells])
+        lines.append([family, str(score.count), *cells])
     return markdown_table(["family", *names], lines)
 
 
 def token_f1(reference: str, text: str) -> float:
     """Return the F1 of the words of ``text`` against the words of ``reference``, as bags."""
-    wanted, given = Counter(words_of(reference)), Counter(words_of(text))
-    shared = (wanted & given).total()
-    return 2 * shared / max(1, wanted.total() + given.total()) if shared else 0.0
+    expected, actual = Counter(words_of(reference)), Counter(words_of(text))
+    shared = (expected & actual).total()
+    return 2 * shared / max(1, expected.total() + actual.total()) if shared else 0.0
 
 
 def words_of(text: str) -> list[str]:
@@ -113,9 +113,9 @@ def _same_directions(repair: Repair) -> bool:
 
 def _landmarks_kept(repair: Repair) -> tuple[int, int]:
     """Return how many of the clean landmarks are kept, and how many there are."""
-    wanted = set(facts(repair.clean).landmarks)
+    landmarks = set(facts(repair.clean).landmarks)
     lost = sum(p.startswith("landmark lost") for p in check(repair.clean, repair.repaired))
-    return len(wanted) - lost, len(wanted)
+    return len(landmarks) - lost, len(landmarks)
 
 
 def _gone(repair: Repair) -> list[bool]:
@@ -125,14 +125,14 @@ def _gone(repair: Repair) -> list[bool]:
 
 def pairs(text: str) -> list[tuple[str, str]]:
     """Return the pairs of neighbouring words, or the one word with nothing."""
-    found = words_of(text)
-    return list(zip(found, found[1:], strict=False)) or [(word, "") for word in found]
+    tokens = words_of(text)
+    return list(zip(tokens, tokens[1:], strict=False)) or [(word, "") for word in tokens]
 
 
 def left(words: str, text: str) -> float:
     """Return the share of the word pairs of ``words`` that are in ``text``."""
-    here, wanted = set(pairs(text)), pairs(words)
-    return sum(pair in here for pair in wanted) / max(1, len(wanted))
+    here, expected = set(pairs(text)), pairs(words)
+    return sum(pair in here for pair in expected) / max(1, len(expected))
 
 
 def _mean(values: Sequence[float | bool]) -> float | None:

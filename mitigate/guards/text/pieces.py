@@ -96,10 +96,10 @@ def _cut(text: str, start: int, end: int, cuts) -> list[Piece]:
     edges.append(len(part))
     pieces = []
     for low, high in zip(edges[::2], edges[1::2], strict=True):
-        said = part[low:high]
-        if said.strip():
-            left = low + len(said) - len(said.lstrip())
-            pieces.append(Piece(start + left, start + left + len(said.strip())))
+        fragment = part[low:high]
+        if fragment.strip():
+            left = low + len(fragment) - len(fragment.lstrip())
+            pieces.append(Piece(start + left, start + left + len(fragment.strip())))
     return pieces
 
 
@@ -142,13 +142,13 @@ def script(text: str) -> str:
 
 def without(text: str, pieces: Sequence[Piece]) -> str:
     """Return ``text`` without some pieces, with one space in the place of each."""
-    kept, at = "", 0
+    rest, at = "", 0
     for piece in sorted(pieces, key=lambda piece: piece.start):
-        kept += text[at : piece.start].rstrip() + " "
+        rest += text[at : piece.start].rstrip() + " "
         at = max(at, piece.end)
         while at < len(text) and text[at].isspace():
             at += 1
-    left = (kept + text[at:]).strip()
+    left = (rest + text[at:]).strip()
     left = re.sub(r"\s+([,.;!?])", r"\1", left)
     left = re.sub(r"^[,;:.!?\s–—-]+(?=\w)", "", left)
     left = re.sub(r"(?:,\s*(?:and|then|but|or|so)?|\s+(?:and|then|but|or))\s*$", "", left).rstrip()

@@ -182,7 +182,7 @@ def voices(split: str, count: int | None) -> list[Repair]:
     texts = spoken(split)
     chosen = sorted(range(len(texts)), key=lambda i: i * GOLDEN % 1)[:count]
     sample = [texts[i] for i in sorted(chosen)]
-    return [Repair(text.voice, text.plain, text.said, text.said) for text in sample]
+    return [Repair(text.voice, text.plain, text.original, text.original) for text in sample]
 
 
 def _heard(options: argparse.Namespace) -> tuple[list[Repair], str]:

@@ -13,7 +13,7 @@ def test_spoken_splits_share_no_voice_and_no_text():
     matches = {split: spoken.spoken(split) for split in spoken.SPLITS}
     by_voice = [{text.voice for text in texts} for texts in matches.values()]
     assert sum(map(len, by_voice)) == len(set.union(*by_voice)) >= 16
-    lines_of_text = [{text.said.lower() for text in texts} for texts in matches.values()]
+    lines_of_text = [{text.original.lower() for text in texts} for texts in matches.values()]
     assert sum(map(len, lines_of_text)) == len(set.union(*lines_of_text))
     assert sum(len(texts) for texts in matches.values()) >= 1500
 
@@ -21,13 +21,13 @@ def test_spoken_splits_share_no_voice_and_no_text():
 def test_spoken_texts_have_plain_parts():
     for split in spoken.SPLITS:
         for text in spoken.spoken(split):
-            assert text.plain and text.said != text.plain, text
+            assert text.plain and text.original != text.plain, text
             assert all(message.strip() for message, _ in text.parts), text
             assert text.task in ("route", "object")
 
 
 def test_passage_returns_neighbouring_parts_of_a_train_voice():
-    train = {text.said: text for text in spoken.spoken("train")}
+    train = {text.original: text for text in spoken.spoken("train")}
     for seed in range(200):
         message, plain = spoken.passage(np.random.default_rng(seed))
         assert message and len(message.split()) <= 250

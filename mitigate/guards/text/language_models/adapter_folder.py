@@ -90,10 +90,10 @@ def _entries(file: Path, kinds: dict[str, tuple[type, ...]]) -> dict[str, Any]:
     damage = folders.problem(file)
     if damage:
         raise ValueError(f"{file} is cut short or damaged: it {damage}. {_AGAIN}")
-    found = read_json(file, _AGAIN)
+    config = read_json(file, _AGAIN)
     for name, kind in kinds.items():
-        value = found.get(name) if isinstance(found, dict) else None
+        value = config.get(name) if isinstance(config, dict) else None
         if type(value) not in kind:
             allowed = " or ".join(k.__name__ for k in kind)
             raise ValueError(f"{file}: {name} must be {allowed}, not {value!r:.80}. {_AGAIN}")
-    return found
+    return config

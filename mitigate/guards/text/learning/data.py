@@ -85,14 +85,14 @@ class Pair:
 
 def draw_pair(seed: int, index: int, texts: Sequence[str] = (), share: float = 0.5) -> Pair:
     """Return pair ``index`` of ``seed``; the share ``share`` is made from ``texts``, if any."""
-    own = not texts or generator(seed, "own", index).random() >= share
-    hand_written = own and spoken.available()
+    from_templates = not texts or generator(seed, "own", index).random() >= share
+    hand_written = from_templates and spoken.available()
     kinds = {kind: part for kind, part in KINDS.items() if hand_written or kind != "spoken"}
     parts = np.array(list(kinds.values()))
     kind = str(generator(seed, "kind", index).choice(list(kinds), p=parts / parts.sum()))
     for attempt in range(100):
         rng = generator(seed, "pair", index, attempt)
-        clean = draw_route(rng) if own else texts[int(rng.integers(len(texts)))]
+        clean = draw_route(rng) if from_templates else texts[int(rng.integers(len(texts)))]
         pair = _MAKE[kind](clean, Key(seed, f"pair {index} {attempt}"), rng)
         if pair is not None:
             return pair
@@ -125,24 +125,24 @@ def _attacked(clean: str, key: Key, rng: np.random.Generator) -> Pair | None:
     if rng.random() < 0.3:  # a passage may be nothing but attack
         return Pair(attack, "", "black_box")
     if rng.random() < 0.3 and spoken.available():
-        said, plain = spoken.passage(rng)
-        return Pair(f"{attack} {said}", plain, "black_box")
+        source, plain = spoken.passage(rng)
+        return Pair(f"{attack} {source}", plain, "black_box")
     text = _window(_SENTENCE.split(clean), rng)
     return Pair(f"{attack} {text}", text, "black_box")
 
 
 def _spoken(clean: str, key: Key, rng: np.random.Generator) -> Pair | None:
-    said, plain = spoken.passage(rng)
-    return Pair(said, plain, "spoken")
+    source, plain = spoken.passage(rng)
+    return Pair(source, plain, "spoken")
 
 
 def _styled(clean: str, key: Key, rng: np.random.Generator) -> Pair | None:
     manner = str(rng.choice(MANNERS))
-    said = corrupt_instruction(clean, manner, 1.0, key, split="train")
+    source = corrupt_instruction(clean, manner, 1.0, key, split="train")
     commands = [_told(clause) for clause in clauses(clean)]
-    if said == clean or holds_held_out(said, manner):
+    if source == clean or holds_held_out(source, manner):
         return None
-    aligned = _align(commands, _SENTENCE.split(said))
+    aligned = _align(commands, _SENTENCE.split(source))
     if aligned is None:
         return None
     first = int(rng.integers(len(aligned))) if rng.random() < 0.5 else 0
@@ -177,9 +177,9 @@ def vary(rng: np.random.Generator) -> str:
     return text[0].upper() + text[1:] + ("." if rng.random() < 0.9 else "!")
 
 
-def holds_held_out(said: str, manner: str) -> bool:
+def holds_held_out(source: str, manner: str) -> bool:
     """Return whether ``said`` holds one of the manner's phrases that training never shows."""
-    return any(pattern.search(said) for pattern in held_out(manner))
+    return any(pattern.search(source) for pattern in held_out(manner))
 
 
 def held_out(manner: str) -> list[re.Pattern[str]]:
@@ -199,14 +199,14 @@ def _told(clause: Any) -> str:
     return text[:1].upper() + text[1:] + "."
 
 
-def _align(commands: list[str], said: list[str]) -> list[tuple[str, int | None]] | None:
+def _align(commands: list[str], source: list[str]) -> list[tuple[str, int | None]] | None:
     """Give each spoken sentence the command it says (None: it only frames), or give up."""
     found: list[tuple[str, int | None]] = []
     at = 0
-    for sentence in said:
+    for sentence in source:
         fits = at < len(commands) and len(sentence.split()) > 1
         if fits and not check(commands[at], sentence):
-            frames = len(said) - len(commands)
+            frames = len(source) - len(commands)
             if at == 0 and not found and frames and not _tells(sentence, commands[0]):
                 found.append((sentence, None))
                 continue

@@ -47,8 +47,8 @@ def read_lines(folder: Path, routes: int = ROUTES) -> list[Line]:
         )
     lines = []
     for name in ("attacks", "fresh_attacks"):
-        found = _json(banks / f"{name}.jsonl", "attack")
-        lines += [Line(d["attack"], True) for d in found]
+        attacks = _json(banks / f"{name}.jsonl", "attack")
+        lines += [Line(d["attack"], True) for d in attacks]
     lines += [Line(text, True, 0.7) for text in _text(banks / "fit_attacks.txt")]
     for split in ("train", "validation"):  # never the test families, which the suite speaks
         for texts in prefixes(split).values():
@@ -61,9 +61,9 @@ def read_lines(folder: Path, routes: int = ROUTES) -> list[Line]:
             lines += [Line(text, False, 0.5) for key, text in d.items() if key != "kind"]
     for file in sorted((folder / "styles").glob("*.jsonl")):
         for d in _json(file):
-            said = " ".join(said for said, _ in d["parts"])
+            styled_text = " ".join(styled_text for styled_text, _ in d["parts"])
             plain = " ".join(plain for _, plain in d["parts"] if plain)
-            lines.append(Line(said, False, 1.0, styled=True))
+            lines.append(Line(styled_text, False, 1.0, styled=True))
             lines.append(Line(plain, False, 0.5, styled=False))
     for i in range(routes):
         text = draw_route(generator(0, "fit", i))
@@ -72,8 +72,8 @@ def read_lines(folder: Path, routes: int = ROUTES) -> list[Line]:
         lines.append(Line(styled, False, 0.7, styled=True))
         if i % 3 == 0:
             manner, key = MANNERS[i // 3 % len(MANNERS)], Key(0, f"fit {i}")
-            said = corrupt_instruction(text, manner, 1.0, key, split="train")
-            lines.append(Line(said, False, 0.5))
+            corrupted = corrupt_instruction(text, manner, 1.0, key, split="train")
+            lines.append(Line(corrupted, False, 0.5))
     return lines
 
 
@@ -104,7 +104,7 @@ def _text(file: Path) -> list[str]:
 
 def varied(lines: Sequence[Line]) -> list[Line]:
     """Return the lines, and copies of some as careless people or people who hide words write."""
-    made = list(lines)
+    results = list(lines)
     for number, line in enumerate(lines):
         rng = generator(0, "varied", number)
         draw, text = rng.random(), line.text
@@ -120,8 +120,8 @@ def varied(lines: Sequence[Line]) -> list[Line]:
             text = _leet(text, "o")
         else:
             continue
-        made.append(replace(line, text=text, weight=line.weight / 2, styled=None))
-    return made
+        results.append(replace(line, text=text, weight=line.weight / 2, styled=None))
+    return results
 
 
 def _leet(text: str, letters: str = "oieas") -> str:

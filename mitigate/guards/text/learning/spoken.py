@@ -35,9 +35,9 @@ class Spoken:
     parts: tuple[tuple[str, str], ...]
 
     @property
-    def said(self) -> str:
+    def original(self) -> str:
         """The whole styled text."""
-        return " ".join(said for said, _ in self.parts)
+        return " ".join(original for original, _ in self.parts)
 
     @property
     def plain(self) -> str:
@@ -55,13 +55,13 @@ def spoken(split: str) -> tuple[Spoken, ...]:
     """All texts of a split's voices. Raises ValueError for an unknown split."""
     if split not in SPLITS:
         raise ValueError(unknown("split", split, SPLITS))
-    kept = {"validation": VALIDATION, "test": TEST}.get(split)
-    found: list[Spoken] = []
+    styles = {"validation": VALIDATION, "test": TEST}.get(split)
+    texts: list[Spoken] = []
     for file in sorted(find(FOLDER).glob("*.jsonl")):
         held_out = file.stem in (*VALIDATION, *TEST)
-        if file.stem in kept if kept else not held_out:
-            found += voice(file.stem)
-    return tuple(found)
+        if file.stem in styles if styles else not held_out:
+            texts += voice(file.stem)
+    return tuple(texts)
 
 
 @lru_cache(maxsize=32)
@@ -78,15 +78,17 @@ def passage(rng: np.random.Generator) -> tuple[str, str]:
     count = 1 if share < 0.45 else int(rng.integers(2, 4)) if share < 0.8 else len(parts)
     first = int(rng.integers(max(1, len(parts) - count + 1)))
     chosen = parts[first : first + count]
-    while len(chosen) > 1 and sum(len(said.split()) for said, _ in chosen) > LONGEST:
+    while len(chosen) > 1 and sum(len(original.split()) for original, _ in chosen) > LONGEST:
         chosen = chosen[:-1]
-    return " ".join(said for said, _ in chosen), " ".join(plain for _, plain in chosen if plain)
+    return " ".join(original for original, _ in chosen), " ".join(
+        plain for _, plain in chosen if plain
+    )
 
 
 def _read(file: Path) -> list[Spoken]:
-    found = []
+    texts = []
     for line in file.read_text(encoding="utf-8").splitlines():
-        held = json.loads(line)
-        parts = tuple((said, plain) for said, plain in held["parts"])
-        found.append(Spoken(file.stem, held["task"], parts))
-    return found
+        entry = json.loads(line)
+        parts = tuple((original, plain) for original, plain in entry["parts"])
+        texts.append(Spoken(file.stem, entry["task"], parts))
+    return texts

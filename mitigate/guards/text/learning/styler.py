@@ -49,15 +49,15 @@ def draw_styled(rng: np.random.Generator) -> str:
             verb = re.sub(r"^\w+", lambda m: m[0] + ("es" if m[0][-1] in "so" else "s"), verb)
             verb = re.sub(r"^(\w+[sc]h)s\b", r"\1es", verb)
         if kind == "go":
-            said = f"{verb} {one(lists['pass'])} {thing()}"
+            sentence = f"{verb} {one(lists['pass'])} {thing()}"
         elif kind == "turn":
-            said = f"{verb} {one(('left', 'right'))}"
-            said += f" {one(lists['at'])} {thing()}" if rng.random() < 0.6 else ""
+            sentence = f"{verb} {one(('left', 'right'))}"
+            sentence += f" {one(lists['at'])} {thing()}" if rng.random() < 0.6 else ""
         else:
-            said = f"{verb} {one(lists['at'])} {thing()}"
+            sentence = f"{verb} {one(lists['at'])} {thing()}"
         if rng.random() < 0.08:
-            said = f"don't {one(lists['go'])} into {thing()}, {said}"
-        return f"{who} {said}".strip()
+            sentence = f"don't {one(lists['go'])} into {thing()}, {sentence}"
+        return f"{who} {sentence}".strip()
 
     kinds = [*rng.choice(["go", "go", "turn"], int(rng.integers(1, 5))), "stop"]
     join = one(lists["joins"])
