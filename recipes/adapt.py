@@ -78,7 +78,7 @@ class AdaptViews(DistilViews):
     ``finish`` sets the thresholds of gates, if the encoders have any, and scales the adapters.
 
     Args:
-        agent: its adapters in the encoders of the sensor of ``poses`` are trained in place.
+        agent: its adapters in the encoders for the sensor in ``poses`` are trained in place.
         poses: the source of views.
         w_labels: same as in ``DistilViews``.
         w_feat: same as in ``DistilViews``.

@@ -88,7 +88,7 @@ class Dagger(Imitate):
         return [(*job, expert) for job in jobs]
 
     def pieces(self) -> int:
-        """Return 1: a step learns from rollouts that its own process has stored."""
+        """Return 1 piece per step, because each process trains on the rollouts that it stored."""
         return 1
 
     def work(self, job: tuple) -> Any:

@@ -126,7 +126,7 @@ class DistilViews(OnViews):
     """Distil a teacher's encoders on random poses.
 
     Args:
-        agent: the student; its encoders of the sensor of ``poses`` are trained in place.
+        agent: the student; its encoders for the sensor in ``poses`` are trained in place.
         poses: the source of views.
         teacher: weights, or "start" for a copy of ``agent`` at the start of the stage.
         w_labels: weight of the loss of labels.

@@ -21,7 +21,7 @@ class Pretrain(OnViews):
     """Train encoders on labels of the world.
 
     Args:
-        agent: its encoders of the sensor of ``poses`` are trained in place; it must be able to
+        agent: its encoders for the sensor in ``poses`` are trained in place; it must be able to
             ``see`` (``agents/agent.py``).
         poses: the source of views.
     """

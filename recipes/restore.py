@@ -36,7 +36,7 @@ class Restore(Objective):
     """Train a restorer on pairs of corrupted and clean frames.
 
     Args:
-        agent: the restorer; its network of the sensor of ``pairs`` is trained in place.
+        agent: the restorer; its network for the sensor in ``pairs`` is trained in place.
         pairs: the source of frames.
         single: share of steps that process each view separately.
         seed: seed that chooses these steps.

@@ -1,6 +1,6 @@
 """Train the gate of a restorer: it decides which frames are closer to the clean ones when restored.
 
-    L = BCE(gate, error after < ``BETTER`` error before, and at most ``SPENT`` fewer right pixels)
+    L = BCE(gate, error after < ``BETTER`` error before, and at most ``SPENT`` fewer correct pixels)
 
 By the mean error alone, blurring a partly wrong frame would count as better, but an agent loses
 details. A frame that is neither clearly better when restored, nor clean, nor worse, is ignored. The
@@ -29,7 +29,7 @@ from mitigate.training.restoration_pairs import Pairs, pairs_of, with_clean_shar
 
 CLEAN_SHARE = 0.35  # share of clean instants in the training (heuristic)
 BETTER = 0.85  # the restored error must be below this share of the error before (heuristic)
-SPENT = 0.15  # largest loss of right pixels, as a share of all pixels (heuristic)
+SPENT = 0.15  # largest loss of correct pixels, as a share of all pixels (heuristic)
 # First step numbers, so that instants were not used to train the network and serve one purpose.
 OFFSETS = {"held": 1_000_000, "fresh": 2_000_000, "corrupted": 3_000_000, "learned": 4_000_000}
 
@@ -42,7 +42,7 @@ class Judged(NamedTuple):
         textures: input of the gate [N, V, t].
         before: mean error of the original frames [N], divided by the range.
         after: mean error of the restored frames [N].
-        spent: share of right pixels before, minus that after [N] (``TOLERANCE``).
+        spent: share of correct pixels before minus the share after [N] (``TOLERANCE``).
     """
 
     stats: Tensor
@@ -63,7 +63,7 @@ class RestoreGate(Objective):
     """Train the gate of a restorer.
 
     Args:
-        agent: the restorer; the gate of its network of the sensor of ``pairs`` is trained in place.
+        agent: the restorer; its network's gate for the sensor in ``pairs`` is trained in place.
         pairs: the source of frames.
         instants: number of training instants, and of single views.
         held: number of held-out clean instants that set the threshold.
@@ -123,7 +123,7 @@ class RestoreGate(Objective):
         self.learned = [self._judged(self.pairs, self.instants, "learned", ring) for ring in kinds]
 
     def pieces(self) -> int:
-        """Return 1: ranks cannot share a step."""
+        """Return 1 piece per step, because ranks cannot share a step."""
         return 1
 
     def batch(self, step: int) -> dict[str, Any]:

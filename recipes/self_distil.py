@@ -140,7 +140,7 @@ class SelfDistil(Objective):
         return {"teacher_sha256": checkpoint.weights_sha(self.teacher)}
 
     def pieces(self) -> int:
-        """Return 1: a step learns from frames that its own process has stored."""
+        """Return 1 piece per step, because each process trains on the frames that it stored."""
         return 1
 
     def batch(self, step: int) -> dict[str, Any]:

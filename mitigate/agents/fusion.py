@@ -51,7 +51,7 @@ def reliability(
 
 
 class LearnedReliability(nn.Module):
-    """Weigh views by a learned score of their features and of the difference to their mean.
+    """Weigh views by a learned score of their features and of the difference from their mean.
 
         w_v = softmax over views of cap * tanh(score([f_v, f_v - mean f])).
 

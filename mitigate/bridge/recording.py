@@ -43,7 +43,7 @@ def path_part(name: str) -> str:
 
 
 def unique_part(name: str) -> str:
-    """Return a part of a path that no other name has: with a hash if ``name`` had to be changed."""
+    """Return a unique part of a path; it has a hash if ``name`` had to be changed."""
     part = path_part(name)[:MAX_NAME]
     if part == name or not name:
         return part

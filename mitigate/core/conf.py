@@ -129,7 +129,7 @@ def main(
 
 
 def _prepare(primary: str, check: Callable[[], None] | None) -> None:
-    """Check the command line before Hydra parses or prints it, and bring it in Hydra's order."""
+    """Check the command line before Hydra parses or prints it, and put it in Hydra's order."""
     check_arguments(sys.argv[1:])
     if check is not None:
         check()

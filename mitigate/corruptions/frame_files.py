@@ -135,7 +135,7 @@ def read(path: Path, unit: float) -> np.ndarray:
 
 
 def check_scale(paths: Sequence[Path], unit: float, z_max: float) -> None:
-    """Check that depth files may be in the assumed unit. Some of the files are read.
+    """Check that depth files may be in the assumed unit. Reads a sample of the files.
 
     Args:
         paths: Files of 16-bit PNG and NPY.

@@ -155,6 +155,6 @@ def table() -> str:
 
 
 def _suite(record: Record) -> str:
-    """Return the smallest suite of ``conf/suite`` with a corruption, or "-"."""
+    """Return the smallest suite in ``conf/suite`` that contains a corruption, or "-"."""
     short = {VALIDATION: "unseen_val", TEST: "unseen_test"}
     return "full" if record.name in SUITE else short.get(record.half, "-")

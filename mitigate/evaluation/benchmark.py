@@ -91,8 +91,8 @@ def benchmark(
             call must be under ``if __name__ == "__main__":``, because processes import the script.
         options: options of the agent and the world: "agent=recurrent", "env.views=1",
             "--config-dir=mine".
-        world: makes a world of yours; it replaces the world of ``options``. A world of another
-            class needs ``listed``.
+        world: function that creates your world; it replaces the world of ``options``. A world of
+            a different class needs ``listed``.
         listed: the episodes, or a file of episodes.
         training_data: for the entry.
         link: for the entry.

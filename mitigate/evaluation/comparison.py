@@ -68,7 +68,7 @@ class Line:
     Attributes:
         title: name of the measure, such as "SR (%): Clean".
         values: the value of each agent, by name.
-        changes: the paired difference of each agent but the first to the first one, by name.
+        changes: the paired difference of each later agent from the first agent, by name.
         digits: decimal places.
     """
 
@@ -221,9 +221,9 @@ class _Scores:
         value, random = (self.values(name, CLEAN, measure).mean() for name in (agent, RANDOM))
         if value <= random:
             raise ValueError(
-                f"The policy {agent!r} {verb} {value:.2f} on clean episodes, no more than random "
-                f"actions ({random:.2f}), so that there is nothing to keep. Train it further, or "
-                "check that it gets the observations that it was trained on."
+                f"The policy {agent!r} {verb} {value:.2f} on clean episodes, no better than "
+                f"random actions ({random:.2f}), so there is no performance to preserve. Train it "
+                "further, or check that it gets the observations that it was trained on."
             )
 
     def prs(self, names: Sequence[str]) -> list[Line]:

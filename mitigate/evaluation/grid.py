@@ -198,7 +198,7 @@ class Grid:
 
     @property
     def heading(self) -> str:
-        """The split, with the first episode of the list if there are several lists."""
+        """The split, and with several lists also the first episode of this one."""
         return f"{self.split} from {self.begins}" if self.begins else self.split
 
     def cell(self, label: str, corruption: str, severity: float, metric: str) -> np.ndarray:

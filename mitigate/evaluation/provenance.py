@@ -36,7 +36,7 @@ from mitigate.evaluation.rows import read
 from mitigate.worlds.episodes import Episode
 from mitigate.worlds.world import World
 
-# id of an agent without settings() -> the agent, its parts after the last run and before the first
+# id() of an agent that lacks settings() -> the agent, its parts after the last run and before the first
 _last: dict[int, tuple[Callable[[], Any], Any, Any]] = {}
 # (classes of the layers, user's version) -> hashes of the names that the code of worlds reads,
 # before the first episode and after the last
@@ -255,7 +255,7 @@ def _layers(world: World) -> Iterator[Any]:
 def name_of(world: World) -> str:
     """Return the name of a world's class.
 
-    For a world of this project around an environment it is the class of the environment.
+    If a world of this project wraps an environment, return the name of the environment's class.
     """
     env = _member(world, "env")
     shipped = type(world).__module__.startswith("mitigate.")

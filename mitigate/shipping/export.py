@@ -390,7 +390,7 @@ def _reload_walks(draft: Path, agent: nn.Module, walks: Walks) -> None:
     """Run :func:`check_walks` in a new process; raise ValueError if it fails."""
     with tempfile.TemporaryDirectory() as folder:
         check_file, expected = Path(folder, "walks"), Path(folder, "expected.json")
-        # Written here for the process that is started here.
+        # This function writes the file for the process that it starts.
         check_file.write_bytes(pickle.dumps((sys.path, walks)))
         expected.write_text(json.dumps(walks.measures(agent)), encoding="utf-8")
         _run_apart("check_walks", "agent", draft, check_file, expected)

@@ -121,8 +121,8 @@ def harden(
         targets: regular expressions for the modules that get adapters; None: every
             convolution, or else the first layer.
         steps, lr: of the training.
-        broad_share: share of corrupted frames with random compositions in place of the suite's
-            corruptions, for corruptions that the suite lacks.
+        broad_share: share of corrupted frames that get random compositions in place of the suite's
+            corruptions. They prepare the policy for corruptions that the suite lacks.
         seed: seed of the training and of the corruptions.
         workers: processes of the comparison; None: one per core if there is enough work.
         out: folder of the run; None: a folder in runs/harden.

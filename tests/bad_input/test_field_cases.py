@@ -48,7 +48,8 @@ def png(path: Path, pixels: np.ndarray) -> None:
         ((((MM << 3) | (MM >> 13)) & 0xFFFF).astype(np.uint16), "SUN RGB-D"),
     ],
 )
-def test_item_12_corrupt_rejects_a_guessed_unit_that_does_not_fit(tmp_path, counts, part):
+def test_corrupt_rejects_a_guessed_unit_that_does_not_fit(tmp_path, counts, part):
+    """Issue T2, item 12."""
     png(tmp_path / "in/0.png", counts)
     with pytest.raises(ValueError, match=part):
         folders.run(tmp_path / "in", tmp_path / "out", Settings("quantization", 0.3))
@@ -57,7 +58,8 @@ def test_item_12_corrupt_rejects_a_guessed_unit_that_does_not_fit(tmp_path, coun
     assert folders.run(tmp_path / "in", tmp_path / "out", settings)["written"] == 1
 
 
-def test_item_12_corrupt_keeps_65535_as_no_reading(tmp_path):
+def test_corrupt_keeps_65535_as_no_reading(tmp_path):
+    """Issue T2, item 12."""
     counts = np.full((96, 128), 2000, np.uint16)
     counts[40:60, 50:80] = 65535
     png(tmp_path / "in/0.png", counts)
@@ -67,7 +69,8 @@ def test_item_12_corrupt_keeps_65535_as_no_reading(tmp_path):
     assert (frame_files.read(tmp_path / "in/0.png", 0.001)[40:60, 50:80] == 0).all()
 
 
-def test_item_12_corrupt_rejects_normalised_npy(tmp_path):
+def test_corrupt_rejects_normalised_npy(tmp_path):
+    """Issue T2, item 12."""
     (tmp_path / "in").mkdir()
     np.save(tmp_path / "in/0.npy", (WALL / 10).astype(np.float32))
     with pytest.raises(ValueError, match="unit=m"):
@@ -77,7 +80,8 @@ def test_item_12_corrupt_rejects_normalised_npy(tmp_path):
 
 
 @pytest.mark.parametrize("rgb_first", [True, False])
-def test_item_12_open_recording_reads_associations(tmp_path, rgb_first):
+def test_open_recording_reads_associations(tmp_path, rgb_first):
+    """Issue T2, item 12."""
     lines = []
     for i in range(3):
         png(tmp_path / f"drive/rgb/{i}.png", np.full((48, 64, 3), 60, np.uint8))
@@ -93,7 +97,8 @@ def test_item_12_open_recording_reads_associations(tmp_path, rgb_first):
         open_recording(tmp_path / "drive")
 
 
-def test_item_12_choose_topics_leaves_goals_out(tmp_path):
+def test_choose_topics_leaves_goals_out(tmp_path):
+    """Issue T2, item 12."""
     pose, image = "geometry_msgs/msg/PoseStamped", "sensor_msgs/msg/Image"
     available = {"/camera/image_raw": image, "/goal_pose": pose}
     with pytest.warns(UserWarning, match="topics.pose=/goal_pose"):
@@ -105,7 +110,8 @@ def test_item_12_choose_topics_leaves_goals_out(tmp_path):
         choose_topics(tmp_path, available, Topics(), {"/camera/image_raw": 6, "/place": 1})
 
 
-def test_item_12_bag_with_an_unreadable_definition_is_read(tmp_path):
+def test_bag_with_an_unreadable_definition_is_read(tmp_path):
+    """Issue T2, item 12."""
     from rosbags.rosbag2 import StoragePlugin, Writer
     from rosbags.typesys import Stores, get_typestore
 
@@ -132,7 +138,8 @@ def test_item_12_bag_with_an_unreadable_definition_is_read(tmp_path):
     assert len(source.times) == 3 and len(list(source.frames([0, 1, 2]))) == 3
 
 
-def test_item_12_transform_leaves_next_without_frames_alone():
+def test_transform_leaves_next_without_frames_alone():
+    """Issue T2, item 12."""
     steps = torch.arange(6)[:, None]
     data = TensorDict(
         {
@@ -155,7 +162,8 @@ class Camera(gymnasium.Env):
         return np.full((32, 32, 3), 120, np.uint8), {}
 
 
-def test_item_12_wrapper_is_made_again_from_its_spec():
+def test_wrapper_is_made_again_from_its_spec():
+    """Issue T2, item 12."""
     gymnasium.register("Field-v0", entry_point=Camera)
     env = Wrapper(gymnasium.make("Field-v0"), Schedule.always("spatter", 0.6), seed=3)
     again = gymnasium.make(env.spec)
@@ -164,7 +172,8 @@ def test_item_12_wrapper_is_made_again_from_its_spec():
 
 
 @pytest.mark.parametrize("kind", ["numpy", "array", "rng", "two"])
-def test_item_12_load_weights_reads_checkpoints_with_other_data(tmp_path, kind):
+def test_load_weights_reads_checkpoints_with_other_data(tmp_path, kind):
+    """Issue T2, item 12."""
     net = nn.Sequential(nn.Conv2d(3, 4, 3))
     state = net.state_dict()
     contents = {
@@ -180,7 +189,8 @@ def test_item_12_load_weights_reads_checkpoints_with_other_data(tmp_path, kind):
     assert torch.equal(loaded[0].weight, net[0].weight)
 
 
-def test_item_12_readers_name_a_git_lfs_pointer(tmp_path):
+def test_readers_name_a_git_lfs_pointer(tmp_path):
+    """Issue T2, item 12."""
     for name in ("net.pth", "net.safetensors", "drive.bag", "a.json", "in/0.png"):
         write_text(tmp_path / name, POINTER)
     for name in ("net.pth", "net.safetensors"):
@@ -196,18 +206,21 @@ def test_item_12_readers_name_a_git_lfs_pointer(tmp_path):
         frame_files.modality(tmp_path / "in/0.png")
 
 
-def test_item_12_read_extras_names_a_list_of_the_r2r_task(tmp_path):
+def test_read_extras_names_a_list_of_the_r2r_task(tmp_path):
+    """Issue T2, item 12."""
     write_text(tmp_path / "r2r.json", json.dumps([{"path_id": 1, "scan": "x", "path": ["a"]}]))
     with pytest.raises(ValueError, match="a list of the discrete R2R task"):
         read_extras(tmp_path / "r2r.json")
 
 
-def test_item_12_is_english_checks_the_script_of_unmarked_text():
+def test_is_english_checks_the_script_of_unmarked_text():
+    """Issue T2, item 12."""
     assert is_english(None, "Walk past the sofa.") and is_english("en", "经过沙发")
     assert not is_english(None, "经过沙发，在门口停下。") and not is_english("", "दरवाजे पर रुकें")
 
 
-def test_item_8_load_rejects_settings_larger_than_the_weights(tmp_path, monkeypatch):
+def test_load_rejects_settings_larger_than_the_weights(tmp_path, monkeypatch):
+    """Issue T2, item 8."""
     monkeypatch.setattr(loading, "FREE_WEIGHTS", 1000)
     shipped = Path(__file__).parents[2] / "checkpoints/recurrent/base/config.yaml"
     write_text(tmp_path / "config.yaml", shipped.read_text())
@@ -216,7 +229,8 @@ def test_item_8_load_rejects_settings_larger_than_the_weights(tmp_path, monkeypa
         loading.load(tmp_path)
 
 
-def test_item_8_keep_list_hash_reads_a_bounded_part(tmp_path):
+def test_keep_list_hash_reads_a_bounded_part(tmp_path):
+    """Issue T2, item 8."""
     source = tmp_path / "list.json"
     source.write_text("{}")
     note = tmp_path / LIST_HASH.format(split="test")
@@ -226,7 +240,8 @@ def test_item_8_keep_list_hash_reads_a_bounded_part(tmp_path):
         keep_list_hash(tmp_path, "test", str(source))
 
 
-def test_item_10_corrupt_writes_a_frame_with_a_long_name(tmp_path):
+def test_corrupt_writes_a_frame_with_a_long_name(tmp_path):
+    """Issue T2, item 10."""
     for name in ("a" * 246 + ".png", "b.png"):
         png(tmp_path / "b.png", np.full((24, 32, 3), 90, np.uint8))
         (tmp_path / "in").mkdir(exist_ok=True)
@@ -236,7 +251,8 @@ def test_item_10_corrupt_writes_a_frame_with_a_long_name(tmp_path):
     write_text(tmp_path / ("ü" * 120), "long")
 
 
-def test_item_11_escaped_is_printable_and_short():
+def test_escaped_is_printable_and_short():
+    """Issue T2, item 11."""
     text = escaped("\x1b[31mred\n" + "x" * 10**6)
     assert text.isprintable() and len(text) == 200 and text.startswith("\\x1b[31mred")
     assert escaped("Küche") == "Küche"

@@ -366,7 +366,8 @@ def test_run_lists_the_launchers():
     assert "Choose one of: local, ray, slurm." in result.stderr
 
 
-def test_item_9_run_prints_little_of_a_command_that_prints_much(run, tmp_path):
+def test_run_prints_little_of_a_command_that_prints_much(run, tmp_path):
+    """Issue T2, item 9."""
     code = "import sys; sys.stdout.write('x' * (50 << 20) + chr(27) + '[31m'); sys.exit(3)"
     command = f"{sys.executable} -c {shlex.quote(code)}"
     result = run(tmp_path / "o", "conditions=[clean]", command)

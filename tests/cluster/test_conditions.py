@@ -13,7 +13,7 @@ from mitigate.core.conf import load_config
 
 pytestmark = pytest.mark.xdist_group("launchers")  # as tests/cluster/test_launchers.py
 
-# An agent of two episodes; in the middle of the first one under spatter it kills its worker, once.
+# An agent that runs two episodes. Under spatter it once kills its worker during the first episode.
 AGENT = """
 import os, pathlib, signal, sys, time
 import mitigate_hook, numpy

@@ -126,7 +126,8 @@ def test_stopped_chain_lets_its_programs_save(tmp_path):
     assert not result[2].log.exists()
 
 
-def test_item_9_chain_repeats_little_of_a_program_that_prints_much(tmp_path):
+def test_chain_repeats_little_of_a_program_that_prints_much(tmp_path):
+    """Issue T2, item 9."""
     code = "import sys; sys.stdout.write('x' * (50 << 20)); sys.exit(3)"
     chain = programs.Chain(
         "one", (("train", (sys.executable, "-c", code)),), tmp_path / "log", tmp_path

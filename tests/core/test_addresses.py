@@ -64,9 +64,8 @@ def output(monkeypatch, capfd, words: list[str]) -> str:
 @pytest.mark.parametrize("flags", [[], ["-m"]], ids=["run", "multirun"])
 @pytest.mark.parametrize("full", ["", "1"], ids=["paragraph", "HYDRA_FULL_ERROR"])
 @pytest.mark.parametrize("word", WORDS)
-def test_item_6_command_line_never_repeats_a_password(
-    tmp_path, monkeypatch, capfd, word, full, flags
-):
+def test_command_line_never_repeats_a_password(tmp_path, monkeypatch, capfd, word, full, flags):
+    """Issue T2, item 6."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv(conf.FULL, full)
     words = word.split(" ") if " = " in word or word.startswith("-") else [word]
@@ -76,13 +75,15 @@ def test_item_6_command_line_never_repeats_a_password(
 
 
 @pytest.mark.parametrize("url", URLS)
-def test_item_6_choices_never_repeat_a_password(url):
+def test_choices_never_repeat_a_password(url):
+    """Issue T2, item 6."""
     with pytest.raises(ValueError, match="endpoint") as error:
         choices.check(url)
     assert "PW" not in "".join(traceback.format_exception(error.value))
 
 
-def test_item_6_unknown_value_is_repeated_only_if_it_is_a_name():
+def test_unknown_value_is_repeated_only_if_it_is_a_name():
+    """Issue T2, item 6."""
     with pytest.raises(ValueError, match="'clasifier'. Did you mean classifier"):
         choices.check("clasifier")
     for value in ("me:PW", ["PW"], {"url": "PW"}, "PW%40h"):
@@ -93,7 +94,8 @@ def test_item_6_unknown_value_is_repeated_only_if_it_is_a_name():
 
 @pytest.mark.parametrize("value", ["https://me:PW@h/v1@m", "['https://me:PW@h/v1@m']"])
 @pytest.mark.parametrize("full", ["", "1"])
-def test_item_6_config_file_never_repeats_a_password(tmp_path, monkeypatch, capfd, full, value):
+def test_config_file_never_repeats_a_password(tmp_path, monkeypatch, capfd, full, value):
+    """Issue T2, item 6."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv(conf.FULL, full)
     (tmp_path / "suite").mkdir()
@@ -103,7 +105,8 @@ def test_item_6_config_file_never_repeats_a_password(tmp_path, monkeypatch, capf
     assert "PW" not in text
 
 
-def test_item_6_environment_variable_never_repeats_a_password(monkeypatch):
+def test_environment_variable_never_repeats_a_password(monkeypatch):
+    """Issue T2, item 6."""
     monkeypatch.setenv("MY_URL", "https://me:PW@h/v1@m")
     config = conf.typed(conf.load_config("evaluate", ["safeguard=${oc.env:MY_URL}"]), "evaluate")
     with pytest.raises(ValueError, match="endpoint") as error:
@@ -111,7 +114,8 @@ def test_item_6_environment_variable_never_repeats_a_password(monkeypatch):
     assert "PW" not in str(error.value)
 
 
-def test_item_6_columns_of_a_table_never_repeat_a_password():
+def test_columns_of_a_table_never_repeat_a_password():
+    """Issue T2, item 6."""
     with pytest.raises(ValueError, match="endpoint") as error:
         listed({"x": ["agent=recurrent", "safeguard=https://me:P=PW@h/v1@m"]}, "columns")
     assert "PW" not in str(error.value)
@@ -135,11 +139,13 @@ def test_item_6_columns_of_a_table_never_repeat_a_password():
         "checkpoint=a//b",
     ],
 )
-def test_item_6_valid_words_pass(word):
+def test_valid_words_pass(word):
+    """Issue T2, item 6."""
     check_arguments([word])
 
 
-def test_item_6_folder_with_marks_of_an_address_passes(tmp_path, monkeypatch):
+def test_folder_with_marks_of_an_address_passes(tmp_path, monkeypatch):
+    """Issue T2, item 6."""
     monkeypatch.chdir(tmp_path)
     (tmp_path / "my@guard").mkdir()
     check_choice("my@guard")

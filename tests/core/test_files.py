@@ -169,7 +169,8 @@ def test_reader_error_passes_unchanged(tmp_path):
 
 
 @pytest.mark.parametrize("block", [b"x" * 4096, b"\n" * 4096], ids=["one line", "empty lines"])
-def test_item_9_last_lines_read_little_of_a_huge_output(tmp_path, block):
+def test_last_lines_read_little_of_a_huge_output(tmp_path, block):
+    """Issue T2, item 9."""
     path = tmp_path / "log"
     with open(path, "wb") as file:
         file.seek(300 << 20)  # a sparse file
@@ -183,7 +184,8 @@ def test_item_9_last_lines_read_little_of_a_huge_output(tmp_path, block):
     assert len(lines) == 1 and len(lines[0]) < 210 and lines[0].endswith("end")
 
 
-def test_item_9_last_lines_escape_control_characters(tmp_path):
+def test_last_lines_escape_control_characters(tmp_path):
+    """Issue T2, item 9."""
     path = tmp_path / "log"
     path.write_bytes("first\n\x1b[31mrot\tgrün\x1b[0m\xff\n\n".encode() + b"\xff\n")
     with open(path, "rb") as log:

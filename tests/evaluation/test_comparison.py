@@ -85,7 +85,7 @@ def test_compare_averages_the_seeds_of_an_episode():
 
 
 def test_compare_rejects_an_agent_no_better_than_random():
-    with pytest.raises(ValueError, match="no more than random"):
+    with pytest.raises(ValueError, match="no better than random"):
         compare(example(clean=(1.0, 1.0)))
 
 

@@ -467,7 +467,8 @@ def test_columns_distinguish_hashes_with_equal_prefixes():
     assert set(part.columns) == {"base (myagent-v1)", "base (myagent-v2)"}
 
 
-def test_item_9_report_over_2000_made_up_corruptions_finishes(tmp_path):
+def test_report_over_2000_made_up_corruptions_finishes(tmp_path):
+    """Issue T2, item 9."""
     wins = {f"made_up_{number}": number % 10 for number in range(2000)}
     rows = column(9, wins) + column(8, wins, name="other", agent="a" * 12)[:-1]  # with a gap
     began = time.process_time()
@@ -478,9 +479,8 @@ def test_item_9_report_over_2000_made_up_corruptions_finishes(tmp_path):
     assert report.NO_PICTURE in text and "made_up_1999" in text and "other" in text
 
 
-def test_item_9_report_over_many_severities_draws_a_bounded_number_of_pictures(
-    tmp_path, monkeypatch
-):
+def test_report_over_many_severities_draws_a_bounded_number_of_pictures(tmp_path, monkeypatch):
+    """Issue T2, item 9."""
     monkeypatch.setattr(report, "MOST_HEATMAPS", 1)
     rows = cell(9) + cell(5, corruption="spatter", severity=0.3)
     rows += cell(4, corruption="spatter", severity=0.6)

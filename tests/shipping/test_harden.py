@@ -168,7 +168,7 @@ def test_harden_stops_before_training_without_skill(tmp_path, continuous):
         net.head.bias.copy_(torch.ones(1) if continuous else torch.tensor([0.0, 1.0]))  # right
     listed = seeded_episodes([3, 5])
     make = continuous_world if continuous else world
-    with pytest.raises(ValueError, match="no more than random"):
+    with pytest.raises(ValueError, match="no better than random"):
         mitigate.harden(net, make, listed=listed, out=tmp_path, **SHORT)
     assert not list((tmp_path / "training").glob("step-*"))
 

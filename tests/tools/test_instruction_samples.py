@@ -1,4 +1,4 @@
-"""The report on corruptions of instructions: its tables and examples are computed, and repeat."""
+"""The report on corruptions of instructions: its tables and examples are reproducible."""
 
 from __future__ import annotations
 

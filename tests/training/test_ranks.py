@@ -1,4 +1,4 @@
-"""Two ranks take the steps that one process takes on all their pieces."""
+"""Two ranks take the same training steps as one process with the pieces of both."""
 
 from __future__ import annotations
 

@@ -15,7 +15,7 @@ def panorama():
 
 @pytest.fixture
 def obs(panorama):
-    """Return an observation of ETPNav: rgb_A faces A degrees left, as view 12 - A / 30."""
+    """Return an observation of ETPNav: rgb_A faces A degrees left and is view 12 - A / 30."""
     rgb, depth = panorama
     entries = {"instruction": "go", "rgb": rgb[0], "depth": depth[0]}
     for step in range(1, 12):

@@ -5,7 +5,7 @@
 Each stage runs as ``make train`` runs it, with a worker process per core. Measured are the time of
 a step, the time in which the trainer waits for the batch, and the time of forward, backward and
 update. Then the same batches are made in this process, and each part of making them is timed.
-``make bench`` calls this twice, with all instructions and capped to AVX2.
+``make bench`` calls this twice: with all processor instructions, and with AVX2 at most.
 """
 
 from __future__ import annotations

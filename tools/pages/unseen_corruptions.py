@@ -140,7 +140,7 @@ def table(half: str) -> str:
 
 
 def _ranges(suite: Mapping[str, Curve], unseen: Mapping[str, Curve], at: int) -> str:
-    """A sentence on how strong the weakest and the strongest of each are."""
+    """Return a sentence on the weakest and the strongest corruption of each set."""
     ranges = []
     for curves in (suite, unseen):
         psnr = [curve.psnr[:, at].mean() for curve in curves.values() if curve.psnr.size]

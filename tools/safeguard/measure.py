@@ -1,8 +1,8 @@
 """Measure a safeguard on the fresh banks: ``python -m tools.safeguard.measure classifier``.
 
 The banks in ``data/fresh`` were written to measure only. ``--authors`` selects some of them.
-Every file is split by a hash of the text: half of it is there to choose settings by, the other half
-only to report. ``--r2r FILE`` adds real routes, whose terms forbid to ship them.
+Every file is split by a hash of the text: one half serves to choose settings, the other half only
+to report. ``--r2r FILE`` adds real routes, whose terms forbid to ship them.
 """
 
 from __future__ import annotations

@@ -233,7 +233,7 @@ def _describe_error(error):
 
 
 def _is_orderly(error):
-    """Return whether an exception only ends a loop, or the program without a fault."""
+    """Return whether an exception ends a loop or the program normally."""
     ended = isinstance(error, SystemExit) and error.code in (None, 0)
     return ended or isinstance(error, ORDERLY)
 
@@ -440,8 +440,8 @@ class Session:
         """Report the result of the episode, once.
 
         An episode without a step is not reported, and a forked process does not end the episode
-        of its parent. If an exception since the episode began makes the program leave it before it
-        was over, it is reported as the program's fault, not the agent's.
+        of its parent. If an exception raised since the episode began makes the program leave
+        the episode before its end, the result counts as the program's fault, not the agent's.
         """
         if not self.active or self.episode_pid != os.getpid():
             return
@@ -510,7 +510,7 @@ def _describe_array(frame, name):
 def _plain_data(value):
     """Return a camera's description with lists and numbers in place of numpy's.
 
-    Descriptions are compared at each step, and arrays cannot be compared as values.
+    Each step compares descriptions by value, which does not work for arrays.
     """
     if isinstance(value, dict):
         return {name: _plain_data(entry) for name, entry in value.items()}

@@ -73,7 +73,7 @@ def haze_mask(value: int, severity: float, height: int, width: int) -> np.ndarra
 
 
 def haze(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
-    """Blend x t + A (1 - t), like smoke or dust; each view has another part of the field."""
+    """Blend x t + A (1 - t), like smoke or dust; each view has a different part of the field."""
     count, height, width, _ = views.shape
     value, out = digest(key, "haze"), np.empty_like(views)
     mask = haze_mask(value, severity, height, width)

@@ -23,7 +23,7 @@ from mitigate.core.names import counted, short
 from mitigate.evaluation.page.model import Numbers
 
 FORMAT = 2  # 2: with ``listed``
-LARGEST = 1 << 18  # bytes of an entry's file; one of 34 corruptions has 5,000
+LARGEST = 1 << 18  # bytes of an entry's file; an entry with 34 corruptions has 5,000
 GREATEST_PRS = 100.0  # a PRS is a ratio; it grows without bound where the clean value is near 0
 _REWRITE = "Write it again with `mitigate leaderboard add`."
 _NUMBERS = re.compile(r"\[\n\s+([\d\s.,eE+nul-]*?)\s*\n\s+\]")

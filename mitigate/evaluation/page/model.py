@@ -19,7 +19,7 @@ from mitigate.evaluation.curves import Curve, curves
 from mitigate.evaluation.grid import METRICS, STEPS
 from mitigate.evaluation.sections import Retained, Section, label
 
-BASELINES = 12  # number of first columns that others can be compared with (heuristic)
+BASELINES = 12  # columns that can be a baseline: the first ones (heuristic)
 DIGITS = 6
 CLEAN = "clean"
 Numbers = list[Any] | None

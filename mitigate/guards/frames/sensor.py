@@ -119,7 +119,7 @@ class SensorRestorer(nn.Module):
     def seen(self, x: Tensor, valid: Tensor, views: int) -> tuple[Tensor, Tensor]:
         """Return the U-Net's input, and how far each pixel contradicts the other views.
 
-        The input holds the frame, for depth the mask of readings, the differences to the smallest
+        The input holds the frame, for depth the mask of readings, the differences from the smallest
         and largest value in the other views, and whether another view has a reading.
         """
         inputs = [x * 2 - 1, valid] if self.sensor == DEPTH else [x * 2 - 1]

@@ -132,7 +132,7 @@ class Classifier:
         return results
 
     def score(self, clauses: Sequence[Clause]) -> float:
-        """Return the log odds that some clauses, read as one text, are of an attack."""
+        """Return the log odds that some clauses, read as one text, are an attack."""
         return self.of_sums(*self.total(clauses))
 
     def total(self, clauses: Sequence[Clause]) -> tuple[float, float]:

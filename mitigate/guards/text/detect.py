@@ -94,7 +94,7 @@ def _contrast(part: Sequence[Clause], total: tuple[float, float], classifier: Cl
 def runs(
     seeds: Sequence[float], scores: Sequence[float], least: float, beside: float
 ) -> list[tuple[int, int]]:
-    """Return the first and last index of each foreign run, the run with the highest seed first.
+    """Return the first and last index of each foreign run, starting at the highest seed.
 
     A run contains a seed above ``least`` and the neighbours whose scores are above ``beside``.
     """

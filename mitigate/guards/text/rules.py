@@ -33,7 +33,7 @@ _BEHIND = SMALL | bag(
     "inside outside over against off beyond within during since because if while about after my "
     "his her our their these those any each every no both all he she they we i me him them us"
 )
-# Masks that no small word can stand for: a part of a word, or where to turn.
+# Masks that a function word cannot replace: a part of a word, or the direction of a turn.
 _STAYS = re.compile(
     r"(?<=[a-z])\[mask\]|\[mask\](?=[a-z])|"
     r"(?<!\ba )(?<!\bthe )\b(?:turn|turning|bear|veer|rotate|swing)\s+\[mask\](?:\s*\[mask\])*"

@@ -87,7 +87,7 @@ def _encoder_before(config: TrainConfig, base: Any, folder: Path) -> nn.Module:
 
 
 def _frames(config: TrainConfig, sensor: str) -> tuple[Frames, Frames]:
-    """Return training frames, which fit the probe and its centre, and unseen frames."""
+    """Return frames to fit the probe and its centre on, and unseen frames."""
     recipe = next(iter(config.active_stages.values())).recipe
     frames = recipe["frames"]
     quick = config.evaluation

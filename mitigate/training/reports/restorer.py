@@ -43,13 +43,13 @@ from mitigate.worlds.episodes import read_episodes
 from mitigate.worlds.world import depth_sensor
 
 UNITS = {RGB: 1.0, DEPTH: 100.0}  # errors are shown in grey levels (RGB) and centimetres (depth)
-SHOWN = (0, 1, 2)  # views of an instant in the picture
+SHOWN = (0, 1, 2)  # indices of the views that the picture shows
 SIDE, LABEL = 96, 130  # pixels of a view in the picture, and of the names next to it
 GAP, HEAD = 6, 20  # pixels between its blocks, and of their headings
 
 
 class Score(NamedTuple):
-    """Mean error before and after, shares of right pixels before and after, and the share of
+    """Mean error before and after, shares of correct pixels before and after, and the share of
     instants that the gate had restored."""
 
     before: Estimate
@@ -210,7 +210,7 @@ def _row_of(name: np.ndarray, parts: Sequence[np.ndarray]) -> np.ndarray:
 
 
 def _label(text: str, width: int, height: int) -> np.ndarray:
-    """Return a white field with a text."""
+    """Return a white image with ``text`` on it."""
     field = np.full((height, width, 3), 255, np.uint8)
     place, font = (4, height // 2 + 4), cv2.FONT_HERSHEY_SIMPLEX
     return cv2.putText(field, text, place, font, 0.42, (0, 0, 0), 1, cv2.LINE_AA)

@@ -100,7 +100,7 @@ def before_after(cfg: Any, before: Any, trained: nn.Module, folder: Path) -> Non
 
     ``cfg`` is a training's config: each of the first ``evaluation.episodes`` instructions of
     ``evaluation.split`` meets one family, attacks are of the test split. ``before`` is not used:
-    the model before fine-tuning is the trained one without its adapter, and prompted.
+    the model before fine-tuning is the trained model without its adapter, with a prompt.
     """
     quick = cfg.evaluation
     listed = islice(read_episodes(find(cfg.env.episodes[quick.split])), quick.episodes)

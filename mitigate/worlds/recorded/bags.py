@@ -299,7 +299,7 @@ def choose_topics(
     """Choose the topics "rgb", "depth", "pose", "info rgb" and "info depth".
 
     Args:
-        path: The bag, for messages.
+        path: Path of the bag, for error messages.
         available: Message type of each topic in the bag.
         topics: The user's choice.
         counts: Number of messages of each topic, if known. A topic with one message next to several
@@ -384,7 +384,7 @@ def _choose_topic(
 def _infos_of(topic: str, infos: Sequence[str]) -> list[str]:
     """Return the CameraInfo topics of an image topic.
 
-    By convention of ROS this is ``<camera>/camera_info``; otherwise those with the same first name.
+    ROS names it ``<camera>/camera_info``; else return the topics with the same first name.
     """
     namespace = topic
     while "/" in namespace.strip("/"):

@@ -200,7 +200,7 @@ def test_endpoint_keeps_its_deadline_when_a_server_drips(server, headers):
 
 
 def test_endpoint_keeps_its_deadline_with_dead_addresses(server, monkeypatch):
-    """A socket whose queue is full never accepts; each of its addresses would take the time out."""
+    """A socket whose queue is full never accepts; each such address would use up the timeout."""
     with socket.socket() as dead:
         dead.bind(("127.0.0.1", 0))
         dead.listen(0)
@@ -337,7 +337,8 @@ def dead_address():
         yield dead.getsockname()
 
 
-def test_item_7_endpoint_answers_when_the_first_address_is_dead(server, monkeypatch):
+def test_endpoint_answers_when_the_first_address_is_dead(server, monkeypatch):
+    """Issue T2, item 7."""
     server.replies = [(200, answer("Go."), 0)]
     live = ("127.0.0.1", server.server_port)
     with dead_address() as dead:

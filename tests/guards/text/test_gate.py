@@ -76,7 +76,8 @@ ANSWERS = {
 
 
 @pytest.mark.parametrize("answer", ANSWERS.values(), ids=ANSWERS)
-def test_item_9_gate_rejects_a_huge_answer_in_little_time(answer):
+def test_gate_rejects_a_huge_answer_in_little_time(answer):
+    """Issue T2, item 9."""
     began = time.process_time()
     assert rewrite_refused("Kindly hang a left.", answer) == "longer than what it replaces"
     assert time.process_time() - began < 0.5

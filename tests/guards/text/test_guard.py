@@ -248,7 +248,9 @@ HUGE = {
 
 
 @pytest.mark.parametrize("text", HUGE.values(), ids=HUGE)
-def test_item_9_safeguard_reads_a_huge_instruction_in_bounded_time(text):
+def test_safeguard_reads_a_huge_instruction_in_bounded_time(text):
+    """Issue T2, item 9."""
+
     class Rewriter:
         def rewrite(self, texts, seconds=None):
             return ["left " * 160_000 for _ in texts]

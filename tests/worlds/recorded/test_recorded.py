@@ -201,7 +201,7 @@ def turn_poses(folder: Path, quaternion: str, numbers: Sequence[int]) -> None:
 
 def test_tum_folder_rejects_poses_of_a_robot_frame(tmp_path):
     folder = tum(tmp_path / "lab", steps([(0.0, 0.25 * i, 0.0) for i in range(8)]))
-    turn_poses(folder, "0 0 0.38 0.92", range(8))  # about the vertical, as x ahead has it
+    turn_poses(folder, "0 0 0.38 0.92", range(8))  # about the vertical: a frame with x ahead
     with pytest.raises(ValueError, match=r"8 of 8 poses face up or down.*z ahead"):
         read(folder)
 
