@@ -36,7 +36,8 @@ from mitigate.evaluation.rows import read
 from mitigate.worlds.episodes import Episode
 from mitigate.worlds.world import World
 
-# id() of an agent that lacks settings() -> the agent, its parts after the last run and before the first
+# id() of an agent that lacks settings() -> the agent, its parts after the last run and those before
+# the first run
 _last: dict[int, tuple[Callable[[], Any], Any, Any]] = {}
 # (classes of the layers, user's version) -> hashes of the names that the code of worlds reads,
 # before the first episode and after the last

@@ -54,8 +54,8 @@ class CorruptObservation(gymnasium.ObservationWrapper, gymnasium.utils.RecordCon
         seed: Corruption seed.
         rgb: Name of the RGB entry of a ``Dict``.
         depth: Name of the depth entry of a ``Dict``.
-        pose: Name of a float entry of shape [3], (x, y, heading in radians, counter-clockwise), which
-            keeps a flare at its place in the world; None without a pose.
+        pose: Name of a float entry of shape [3]: x, y, heading in radians, counter-clockwise. It
+            keeps a flare at its place in the world. None if there is no pose.
         sensor: Depth range and value for no reading.
         normalised: Whether depth is in [0, 1] over the sensor's range instead of in metres.
 

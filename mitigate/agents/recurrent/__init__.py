@@ -1,4 +1,4 @@
-"""Agent with one forward camera and a recurrent memory, modelled on VLN-CE's cross-modal attention."""
+"""Agent with one forward camera and a recurrent memory, like VLN-CE's cross-modal agent."""
 
 from mitigate.agents.recurrent.agent import RecurrentAgent
 
