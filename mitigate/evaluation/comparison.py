@@ -114,7 +114,7 @@ class Comparison:
 
 
 def compare(rows: Iterable[Row]) -> Comparison:
-    """Return the comparison of the agents in ``rows``, of one list, severity and success rule.
+    """Compare the agents in ``rows``, which share a list, a severity and a success rule.
 
     An episode under several seeds counts as the mean over the seeds.
 
