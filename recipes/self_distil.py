@@ -205,7 +205,7 @@ class SelfDistil(Objective):
     def figures(self, step: int) -> dict[str, np.ndarray]:
         return {} if self._picture is None else {"seen": self._picture}
 
-    def _answer(self, policy: Policy, frames: dict[str, Tensor]) -> tuple[list[Answer], Tensor]:
+    def _answer(self, policy: Policy, frames: dict[str, np.ndarray]) -> tuple[list[Answer], Tensor]:
         with policy.recording(self.module) as outputs:
             answers = policy.answers(frames, self.window)
         return answers, torch.cat([output.float().flatten(1) for output in outputs])
@@ -287,11 +287,8 @@ def _mean(teacher: list[Answer], student: list[Answer]) -> Tensor:
     return torch.stack(pairs).mean()
 
 
-def _stacked(observations: list[dict[str, np.ndarray]]) -> dict[str, Tensor]:
-    return {
-        name: torch.from_numpy(np.stack([o[name] for o in observations]))
-        for name in observations[0]
-    }
+def _stacked(observations: list[dict[str, np.ndarray]]) -> dict[str, np.ndarray]:
+    return {name: np.stack([o[name] for o in observations]) for name in observations[0]}
 
 
 def _read(file: Path) -> dict[str, np.ndarray]:

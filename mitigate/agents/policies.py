@@ -139,14 +139,14 @@ class Policy(Agent, nn.Module):
         answer, self._memory = self.answer(self.native(frames), self._memory)
         return self.action(answer)
 
-    def answers(self, frames: Mapping[str, Tensor], length: int = 1) -> list[Answer]:
+    def answers(self, frames: Mapping[str, np.ndarray], length: int = 1) -> list[Answer]:
         """Return the answers to windows of consecutive frames, a list with one batch per place.
 
         Args:
             frames: frames by sensor, [B * length, ...]; each window's frames follow each other.
             length: frames per window. A recurrent policy starts each window without memory.
         """
-        arrays = {name: frames[name].numpy(force=True) for name in self.sensors}
+        arrays = {name: frames[name] for name in self.sensors}
         if not self.recurrent:
             return [self.answer(self.native(arrays))[0]]
         memory, answers = None, []
@@ -475,7 +475,9 @@ def divergence(teacher: Answer, student: Answer) -> Tensor:
     for one, other in zip(teacher, student, strict=True):
         try:
             kl = kl_divergence(_base(one), _base(other))
-        except NotImplementedError:  # such as a deterministic action in a distribution's clothes
+        except (
+            NotImplementedError
+        ):  # such as a deterministic action that is written as a distribution
             return divergence(
                 torch.cat([mode(t) for t in teacher], -1), torch.cat([mode(s) for s in student], -1)
             )

@@ -274,7 +274,8 @@ def open_output(path: Path | str, mode: str = "w", **options: Any) -> IO[Any]:
     _check_file(path)
 
     def no_link(name: str, flags: int) -> int:
-        return os.open(name, flags | os.O_NOFOLLOW, 0o666)
+        # without O_NONBLOCK, a FIFO that appears after the check would wait for a reader
+        return os.open(name, flags | os.O_NOFOLLOW | os.O_NONBLOCK, 0o666)
 
     return open(path, mode, opener=no_link, **options)
 

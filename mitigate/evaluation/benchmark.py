@@ -37,9 +37,10 @@ from mitigate.evaluation.evaluator import LOCAL, WORTH, evaluate
 from mitigate.evaluation.leaderboard.entry import LeaderboardEntry, check_texts
 from mitigate.evaluation.leaderboard.figures import entry_of
 from mitigate.evaluation.provenance import Known
-from mitigate.evaluation.rows import RETURN, ROWS, Row
+from mitigate.evaluation.rows import ROWS, Row
 from mitigate.guards.opening import labels, open_guards
 from mitigate.worlds.episodes import Episode, read_episodes
+from mitigate.worlds.seeded import RETURN
 from mitigate.worlds.world import Corrupted, World
 
 EPISODES = 20  # default number (heuristic): an SR then has an error of about 17 points

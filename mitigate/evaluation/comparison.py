@@ -22,7 +22,8 @@ from mitigate.core.seeding import generator
 from mitigate.core.spaces import ActionSpace
 from mitigate.corruptions.registry import modality, title
 from mitigate.evaluation.bootstrap import LEVEL, RESAMPLES, Estimate, mean, resampled_means, share
-from mitigate.evaluation.rows import RETURN, Row
+from mitigate.evaluation.rows import Row
+from mitigate.worlds.seeded import RETURN
 
 CLEAN = "clean"
 RANDOM = "random"  # name of the rows of random actions

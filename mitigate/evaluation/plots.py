@@ -19,7 +19,7 @@ COLOURS = mpl.colormaps["viridis"]  # readable without colour vision; bright is 
 LINES = [mpl.colormaps["tab10"](index) for index in range(10)]
 DASHES = ("-", "--", "-.", ":")
 WIDTH, MARKER = 1.2, 3.0  # points: width of a line and size of its markers
-RIM = 2.0  # points by which markers shrink from column to column
+RIM, LARGEST = 1.4, 8.0  # points: how much markers shrink per column; the largest marker
 DPI = 150
 STACKED = 5  # number of columns from which the panels of a heatmap are stacked vertically
 
@@ -120,6 +120,7 @@ def _panel(axis: Axes, section: Section, block: str, names: tuple[str, ...]) -> 
 def _draw_curves(axis: Axes, grid: Grid, name: str) -> None:
     """Draw the curves of one panel; coinciding curves have other dashes and smaller markers."""
     columns = list(grid.columns)
+    rim = min(RIM, (LARGEST - MARKER) / len(columns))
     for curve in curves(grid, name):
         index = columns.index(curve.column)
         colour = LINES[index % len(LINES)]
@@ -131,7 +132,7 @@ def _draw_curves(axis: Axes, grid: Grid, name: str) -> None:
             linestyle=DASHES[index % len(DASHES)],
             linewidth=WIDTH,
             marker="o",
-            markersize=MARKER + RIM * (len(columns) - 1 - index),
+            markersize=MARKER + rim * (len(columns) - 1 - index),
         )
         low = [100 * estimate.low for estimate in curve.points]
         high = [100 * estimate.high for estimate in curve.points]

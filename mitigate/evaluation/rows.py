@@ -20,6 +20,7 @@ from mitigate.core.files import atomic_text, make_folder, open_text
 from mitigate.core.json_files import parse_json
 from mitigate.core.names import counted, short
 from mitigate.core.output import open_output, writing
+from mitigate.worlds.seeded import RETURN
 
 if TYPE_CHECKING:
     from mitigate.worlds.episodes import Episode
@@ -37,7 +38,6 @@ IDENTITY: dict[str, Any] = {
     "suite": str,  # SUITE_VERSION of the corruptions
     "rule": str,  # rule of success
 }
-RETURN = "return"  # sum of the rewards; the only score of rows whose rule is "return"
 SCORES = ("success", "spl", RETURN)
 REQUIRED = IDENTITY | {"success": (int, float), "spl": (int, float)}
 MEASURES = (

@@ -27,7 +27,8 @@ from mitigate.evaluation.grid import (
     halves,
 )
 from mitigate.evaluation.metrics import FLOOR
-from mitigate.evaluation.rows import RETURN, Row
+from mitigate.evaluation.rows import Row
+from mitigate.worlds.seeded import RETURN
 
 REFERENCES = ("base", "before")  # columns with these names come first and are the reference
 

@@ -11,6 +11,7 @@ import re
 import time
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
+from inspect import signature
 from pathlib import Path
 from typing import Any
 
@@ -54,10 +55,8 @@ EPISODES = 50  # default episodes of the comparison (heuristic): SR within about
 FIRST_TRAINING_SEED = 1_000_000  # seeds of training episodes; the comparison's seeds are smaller
 TUNE = ("all", "adapters")
 SPLIT = "compared"
-SETTINGS = (
-    *("every", "episodes", "frames", "batch", "window", "module", "curriculum"),
-    *("w_policy", "w_feat", "w_consistency"),
-)
+# arguments of SelfDistil that harden() passes on; it sets the first six itself, and the seed
+SETTINGS = [*signature(SelfDistil).parameters][6:-1]
 
 
 @dataclass(frozen=True)
@@ -202,7 +201,8 @@ def harden(
             checkpoint.save_weights(after.network, folder / "agent")
         rows += _evaluate(after, "after", conditions, *arguments, workers)
     report = compare(rows)
-    change = report.lines[0].changes["after"]  # the mean over the corruptions
+    corrupted = next(line for line in report.lines if not line.title.endswith(": Clean"))
+    change = corrupted.changes["after"]  # the mean over the corruptions, or the only one
     if change.excludes_zero and change.value < 0:
         say(
             "harden: the hardened policy is worse than the given one under these corruptions. Keep "

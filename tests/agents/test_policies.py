@@ -90,7 +90,7 @@ def test_as_policy_remembers_as_recurrent_ppo():
         expected, state = model.predict(observation["rgb"], state, start, deterministic=True)
         assert action == expected
         start = np.array([False])
-    batch = {"rgb": torch.from_numpy(np.stack([f["rgb"] for f in frames]))}
+    batch = {"rgb": np.stack([f["rgb"] for f in frames])}
     places = policy.answers(batch, length=len(frames))
     assert [int(mode(answer[0])[0]) for answer in places] == actions
 
@@ -156,7 +156,7 @@ def test_as_policy_takes_a_recurrent_module():
     world = world_of(Noise())
     policy = as_policy(Memory(), world, recurrent=True)
     frames, actions = rollout(world, policy)
-    batch = {"rgb": torch.from_numpy(np.stack([f["rgb"] for f in frames]))}
+    batch = {"rgb": np.stack([f["rgb"] for f in frames])}
     assert [int(mode(a[0])[0]) for a in policy.answers(batch, len(frames))] == actions
 
 
