@@ -31,7 +31,7 @@ from safetensors.numpy import load_file, save
 from torch import Tensor
 
 from mitigate.agents.adapters import adapted
-from mitigate.agents.policies import Answer, Policy, copied, divergence
+from mitigate.agents.policies import Answer, Policy, copied, divergence, imitation
 from mitigate.core import checkpoint
 from mitigate.core.files import write_bytes
 from mitigate.core.observation import DEPTH, RGB
@@ -63,7 +63,7 @@ class SelfDistil(Objective):
         frames: most frames that are kept of an episode, spread evenly.
         batch: frames per step.
         window: consecutive frames that a recurrent policy sees; 1 for other policies.
-        w_policy, w_feat, w_consistency: weights of the losses.
+        w_policy, w_imitation, w_feat, w_consistency: weights of the losses.
         module: name of the module of the network whose output is compared; None: its last
             convolution.
         curriculum: whether the severity rises and the end is mostly clean.
@@ -88,6 +88,7 @@ class SelfDistil(Objective):
         batch: int = 64,
         window: int = 16,
         w_policy: float = 1.0,
+        w_imitation: float = 1.0,
         w_feat: float = 1.0,
         w_consistency: float = 0.1,
         module: str | None = None,
@@ -95,7 +96,9 @@ class SelfDistil(Objective):
         seed: int = 0,
     ) -> None:
         super().__init__()
-        check_weights(w_policy=w_policy, w_feat=w_feat, w_consistency=w_consistency)
+        check_weights(
+            w_policy=w_policy, w_imitation=w_imitation, w_feat=w_feat, w_consistency=w_consistency
+        )
         for name, value in {
             "every": every,
             "episodes": episodes,
@@ -122,6 +125,7 @@ class SelfDistil(Objective):
         self.window = window if agent.recurrent else 1
         self.batch_windows = max(1, batch // self.window)
         self.w_policy = w_policy
+        self.w_imitation = w_imitation
         self.w_feat = w_feat
         self.w_consistency = w_consistency
         self.curriculum = curriculum
@@ -189,13 +193,15 @@ class SelfDistil(Objective):
         second, _ = self._answer(self.agent, batch["second"])
         with torch.no_grad():
             target, target_features = self._answer(self.teacher, batch["clean"])
-        policy = (_mean(target, first) + _mean(target, second)) / 2
+        policy = (_mean(divergence, target, first) + _mean(divergence, target, second)) / 2
+        imitated = (_mean(imitation, target, first) + _mean(imitation, target, second)) / 2
         values = {
             "policy": policy,
+            "imitation": imitated,
             "feat": feature_loss(features, target_features),
-            "consistency": _mean(first, second),
+            "consistency": _mean(divergence, first, second),
         }
-        loss = self.w_policy * policy
+        loss = self.w_policy * policy + self.w_imitation * imitated
         if self.w_feat and (features.requires_grad or not torch.is_grad_enabled()):
             loss = loss + self.w_feat * values["feat"]
         if self.w_consistency:
@@ -281,9 +287,11 @@ def last_convolution(policy: Policy) -> str:
     return convolutions[-1] if convolutions else layers[0][0]
 
 
-def _mean(teacher: list[Answer], student: list[Answer]) -> Tensor:
-    """Return the mean divergence over the places of a window."""
-    pairs = [divergence(one, other) for one, other in zip(teacher, student, strict=True)]
+def _mean(
+    loss: Callable[[Answer, Answer], Tensor], teacher: list[Answer], student: list[Answer]
+) -> Tensor:
+    """Return the mean loss over the places of a window."""
+    pairs = [loss(one, other) for one, other in zip(teacher, student, strict=True)]
     return torch.stack(pairs).mean()
 
 
