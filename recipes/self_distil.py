@@ -96,20 +96,8 @@ class SelfDistil(Objective):
     ) -> None:
         super().__init__()
         check_weights(w_policy=w_policy, w_feat=w_feat, w_consistency=w_consistency)
-        for name, value in {
-            "every": every,
-            "episodes": episodes,
-            "frames": frames,
-            "batch": batch,
-        }.items():
-            if value < 1:
-                raise ValueError(f"{name} must be a whole number >= 1, got {value}.")
-        if not {RGB, DEPTH} & set(agent.sensors):
-            raise ValueError(
-                f"{agent.name} reads {', '.join(agent.sensors) or 'nothing'}, but no rgb and no "
-                "depth, so that no corruption changes its input. Name its frames: "
-                "GymWorld(entries=...)."
-            )
+        check_counts(every=every, episodes=episodes, frames=frames, batch=batch)
+        check_frames(agent)
         self.agent = agent
         self.world = world
         self.training_episodes = training
@@ -126,10 +114,7 @@ class SelfDistil(Objective):
         self.w_consistency = w_consistency
         self.curriculum = curriculum
         self.seed = seed
-        self.teacher = copied(agent)
-        if adapted(self.teacher):
-            self.teacher = self.teacher.as_teacher()
-        self.teacher.requires_grad_(False)
+        self.teacher = clean_teacher(agent)
         self.module = module or last_convolution(agent)
         self._stored: list[dict[str, np.ndarray]] = []  # windows of each round, [n, window, ...]
         self._now = 0  # a resumed training has stored the rounds before this step
@@ -258,6 +243,31 @@ class SelfDistil(Objective):
 
     def set_extra_state(self, state: dict[str, Any]) -> None:
         self._now = int(state["rounds"]) * self.every
+
+
+def check_counts(**counts: int) -> None:
+    """Raise ValueError for a count below 1."""
+    for name, value in counts.items():
+        if value < 1:
+            raise ValueError(f"{name} must be a whole number >= 1, got {value}.")
+
+
+def check_frames(policy: Policy) -> None:
+    """Raise ValueError if the policy reads no frames."""
+    if not {RGB, DEPTH} & set(policy.sensors):
+        raise ValueError(
+            f"{policy.name} reads {', '.join(policy.sensors) or 'nothing'}, but no rgb and no "
+            "depth, so that no corruption changes its input. Name its frames: "
+            "GymWorld(entries=...)."
+        )
+
+
+def clean_teacher(policy: Policy) -> Policy:
+    """Return a frozen copy of a policy, without adapters."""
+    teacher = copied(policy)
+    if adapted(teacher):
+        teacher = teacher.as_teacher()
+    return teacher.requires_grad_(False)
 
 
 def last_convolution(policy: Policy) -> str:

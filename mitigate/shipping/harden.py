@@ -1,7 +1,7 @@
-"""``mitigate.harden(policy, world)``: make a trained policy robust, without expert and reward.
+"""``mitigate.harden(policy, world)``: make a trained policy robust, without an expert.
 
-The policy teaches its copy (``recipes/self_distil.py``). The episodes that compare both are never
-trained on.
+The policy teaches its copy (``recipes/self_distil.py``), or the copy learns from the reward of the
+world (``recipes/ppo.py``). The episodes that compare both are never trained on.
 """
 
 from __future__ import annotations
@@ -43,8 +43,10 @@ from mitigate.evaluation.comparison import RANDOM, Comparison, RandomPolicy, com
 from mitigate.evaluation.episode import run_episode
 from mitigate.evaluation.evaluator import evaluate
 from mitigate.evaluation.rows import ROWS, Row
+from mitigate.recipes.ppo import Ppo
 from mitigate.recipes.self_distil import SelfDistil, last_convolution
 from mitigate.training import states
+from mitigate.training.objective import Objective
 from mitigate.training.trainer import Trainer
 from mitigate.worlds.episodes import Episode
 from mitigate.worlds.seeded import seeded_episodes
@@ -55,8 +57,10 @@ EPISODES = 50  # default episodes of the comparison (heuristic): SR within about
 FIRST_TRAINING_SEED = 1_000_000  # seeds of training episodes; the comparison's seeds are smaller
 TUNE = ("all", "adapters")
 SPLIT = "compared"
-# arguments of SelfDistil that harden() passes on; it sets the first six itself, and the seed
-SETTINGS = [*signature(SelfDistil).parameters][6:-1]
+METHODS: dict[str, type[Objective]] = {"self_distil": SelfDistil, "ppo": Ppo}
+SCHEDULES = ("per_episode", "per_frame")
+# arguments of the objectives that harden() sets itself
+OWN = ("agent", "world", "training", "schedule", "folder", "steps", "seed")
 
 
 @dataclass(frozen=True)
@@ -87,6 +91,7 @@ def harden(
     *,
     forward: Forward | None = None,
     recurrent: bool = False,
+    method: str = "self_distil",
     listed: Sequence[Episode] | None = None,
     training: Sequence[Episode] | None = None,
     suite: str | Sequence[str] = "full",
@@ -96,6 +101,7 @@ def harden(
     steps: int = 1500,
     lr: float = 3e-4,
     broad_share: float = 0.5,
+    schedule: str = "per_episode",
     seed: int = 0,
     workers: int | None = 1,
     out: Path | str | None = None,
@@ -103,7 +109,8 @@ def harden(
 ) -> Hardened:
     """Train a copy of ``policy`` to act under corruptions as ``policy`` acts on clean frames.
 
-    Needs no expert, no reward and no labels. The same call continues an interrupted run.
+    Needs no expert and no labels, and a reward only for ``method="ppo"``. The same call continues
+    an interrupted run.
 
     Args:
         policy: a trained policy of stable-baselines3 or torchrl, or an ``nn.Module``
@@ -111,6 +118,8 @@ def harden(
         world: makes a world, such as ``lambda: GymWorld(gymnasium.make(...))``.
         forward, recurrent: how to call an ``nn.Module``
             (:class:`~mitigate.agents.policies.ModulePolicy`).
+        method: "self_distil": the policy teaches its copy. "ppo": the copy learns from the reward
+            of the world.
         listed: episodes of the comparison; None: seeds 0 to 49 of the environment.
         training: episodes to train on; None: other seeds of the environment.
         suite: a name of ``conf/suite`` or a list of corruptions, for training and comparison;
@@ -122,46 +131,55 @@ def harden(
         steps, lr: of the training.
         broad_share: share of corrupted frames that get random compositions in place of the suite's
             corruptions. They prepare the policy for corruptions that the suite lacks.
+        schedule: "per_episode" or "per_frame": how often the corruption of the training changes.
         seed: seed of the training and of the corruptions.
         workers: processes of the comparison; None: one per core if there is enough work.
         out: folder of the run; None: a folder in runs/harden.
-        **settings: other arguments of :class:`~mitigate.recipes.self_distil.SelfDistil`, such as
-            ``episodes=16``.
+        **settings: other arguments of the method,
+            :class:`~mitigate.recipes.self_distil.SelfDistil` or
+            :class:`~mitigate.recipes.ppo.Ppo`, such as ``episodes=16``.
 
     Raises:
         TypeError: The policy is of an unknown kind.
         ValueError: An argument is invalid, or the folder holds another run.
     """
     seeding.check(seed)
-    if tune not in TUNE:
-        raise ValueError(f"tune must be one of {', '.join(TUNE)}, got {tune!r:.80}.")
+    choices = {"method": (method, METHODS), "tune": (tune, TUNE), "schedule": (schedule, SCHEDULES)}
+    for argument, (value, allowed) in choices.items():
+        if value not in allowed:
+            raise ValueError(f"{argument} must be one of {', '.join(allowed)}, got {value!r:.80}.")
     if type(steps) is not int or steps < 1:
         raise ValueError(f"steps must be a whole number >= 1, got {steps!r:.80}.")
-    unknown_names = sorted(set(settings) - set(SETTINGS))
+    parameters = signature(METHODS[method]).parameters
+    known = [name for name in parameters if name not in OWN]
+    unknown_names = sorted(set(settings) - set(known))
     if unknown_names:
-        raise ValueError(unknown("argument of harden", unknown_names[0], SETTINGS))
+        what = f"argument of harden(method={method!r})"
+        raise ValueError(unknown(what, unknown_names[0], known))
     first, made_by = checked_world(world, [])
     before = as_policy(policy, first, forward=forward, recurrent=recurrent)
     after = copied(before)
     names = _corruptions(suite, before)
-    folder = Path(out or OUT / f"{_plain(before.name)}-s{severity:g}-seed{seed}")
+    suffix = "" if method == "self_distil" else f"-{method}"
+    folder = Path(out or OUT / f"{_plain(before.name)}-s{severity:g}-seed{seed}{suffix}")
     compared = seeded_episodes(range(EPISODES)) if listed is None else list(listed)
     conditions = [CLEAN, *(Corruption(name, severity) for name in names)]
     if workers != 1:
         packed((before, world), "The policy or its world", "give workers=1")
     if tune == "adapters":
         _insert_adapters(after, first, compared[0], targets)
-    objective = SelfDistil(
-        after,
-        world,
-        _Training(training, compared),
-        Schedule("per_episode", (0.3, 1.0), names=tuple(names), broad_share=broad_share),
-        folder / "frames",
-        steps,
-        seed=seed,
-        **settings,
-    )
-    identity = {
+    available: dict[str, Any] = {
+        "agent": after,
+        "world": world,
+        "training": _Training(training, compared),
+        "schedule": Schedule(schedule, (0.3, 1.0), names=tuple(names), broad_share=broad_share),
+        "folder": folder / "frames",
+        "steps": steps,
+        "seed": seed,
+    }
+    own = {name: value for name, value in available.items() if name in parameters}
+    objective = METHODS[method](**own, **settings)
+    identity: dict[str, Any] = {
         "policy": before.version,
         "settings_of_policy": before.settings(),
         "names": list(names),
@@ -169,6 +187,10 @@ def harden(
         "tune": tune,
         "settings": {name: str(value) for name, value in settings.items()},
     }
+    if method != "self_distil":  # runs of older versions have neither entry
+        identity["method"] = method
+    if schedule != "per_episode":
+        identity["schedule"] = schedule
     trainer = Trainer(
         objective,
         steps=steps,
