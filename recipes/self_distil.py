@@ -2,10 +2,13 @@
 
 The copy (student) runs episodes under corruptions. For every frame that it meets, the unchanged
 policy (teacher) answers to the clean frame, and the student learns to give the same answer to the
-corrupted one: DAgger (Ross et al. 2011) with the clean policy in place of an expert. Three terms:
+corrupted one: DAgger (Ross et al. 2011) with the clean policy in place of an expert. Four terms:
 
 * ``w_policy``: the divergence of the action distributions (KL; for actions without a distribution
   the squared error),
+* ``w_imitation``: the cross-entropy of the teacher's likeliest action (for continuous actions the
+  squared error), because an undecided policy acts differently after a small change of its
+  probabilities,
 * ``w_feat``: the squared error of the features of one module, relative to their variance,
 * ``w_consistency``: the divergence between the answers to two corruptions of the same frame.
 
@@ -99,20 +102,8 @@ class SelfDistil(Objective):
         check_weights(
             w_policy=w_policy, w_imitation=w_imitation, w_feat=w_feat, w_consistency=w_consistency
         )
-        for name, value in {
-            "every": every,
-            "episodes": episodes,
-            "frames": frames,
-            "batch": batch,
-        }.items():
-            if value < 1:
-                raise ValueError(f"{name} must be a whole number >= 1, got {value}.")
-        if not {RGB, DEPTH} & set(agent.sensors):
-            raise ValueError(
-                f"{agent.name} reads {', '.join(agent.sensors) or 'nothing'}, but no rgb and no "
-                "depth, so that no corruption changes its input. Name its frames: "
-                "GymWorld(entries=...)."
-            )
+        check_counts(every=every, episodes=episodes, frames=frames, batch=batch)
+        check_frames(agent)
         self.agent = agent
         self.world = world
         self.training_episodes = training
@@ -130,10 +121,7 @@ class SelfDistil(Objective):
         self.w_consistency = w_consistency
         self.curriculum = curriculum
         self.seed = seed
-        self.teacher = copied(agent)
-        if adapted(self.teacher):
-            self.teacher = self.teacher.as_teacher()
-        self.teacher.requires_grad_(False)
+        self.teacher = clean_teacher(agent)
         self.module = module or last_convolution(agent)
         self._stored: list[dict[str, np.ndarray]] = []  # windows of each round, [n, window, ...]
         self._now = 0  # a resumed training has stored the rounds before this step
@@ -264,6 +252,31 @@ class SelfDistil(Objective):
 
     def set_extra_state(self, state: dict[str, Any]) -> None:
         self._now = int(state["rounds"]) * self.every
+
+
+def check_counts(**counts: int) -> None:
+    """Raise ValueError for a count below 1."""
+    for name, value in counts.items():
+        if value < 1:
+            raise ValueError(f"{name} must be a whole number >= 1, got {value}.")
+
+
+def check_frames(policy: Policy) -> None:
+    """Raise ValueError if the policy reads no frames."""
+    if not {RGB, DEPTH} & set(policy.sensors):
+        raise ValueError(
+            f"{policy.name} reads {', '.join(policy.sensors) or 'nothing'}, but no rgb and no "
+            "depth, so that no corruption changes its input. Name its frames: "
+            "GymWorld(entries=...)."
+        )
+
+
+def clean_teacher(policy: Policy) -> Policy:
+    """Return a frozen copy of a policy, without adapters."""
+    teacher = copied(policy)
+    if adapted(teacher):
+        teacher = teacher.as_teacher()
+    return teacher.requires_grad_(False)
 
 
 def last_convolution(policy: Policy) -> str:

@@ -81,8 +81,7 @@ class Policy(Agent, nn.Module):
         A tensor holds the value of each action if actions are discrete, else the action.
         """
         if isinstance(self.space, MultiDiscrete):
-            choices = [int(mode(part)[0]) for part in answer]
-            return np.array(choices).reshape(self.space.counts.shape)
+            return self.executable(torch.stack([mode(part)[0] for part in answer]))
         first_answer = answer[0] if isinstance(answer, Tensor) else mode(answer[0])[0]
         if isinstance(self.space, Discrete):
             values = answer if isinstance(answer, Tensor) else getattr(answer[0], "logits", None)
@@ -93,8 +92,15 @@ class Policy(Agent, nn.Module):
                 )
             if isinstance(answer, Tensor):
                 first_answer = check_logits(first_answer, self).argmax()
-            return int(first_answer) + self.space.start
-        values = first_answer.double().cpu().numpy()
+        return self.executable(first_answer)
+
+    def executable(self, chosen: Tensor) -> Any:
+        """Return an action of the network, such as a sample of its distribution, for the world."""
+        if isinstance(self.space, MultiDiscrete):
+            return chosen.long().cpu().numpy().reshape(self.space.counts.shape)
+        if isinstance(self.space, Discrete):
+            return int(chosen) + self.space.start
+        values = chosen.double().cpu().numpy()
         if not np.isfinite(values).all():
             raise ValueError(f"The action of {self.name} must be finite, got {values.tolist()}.")
         assert isinstance(self.space, Box), "as_policy rejects other spaces"
@@ -217,12 +223,11 @@ class StableBaselinesPolicy(Policy):
                 if isinstance(value, (Tensor, Distribution, list)):
                     setattr(last_call, name, None)  # distributions and actions, with their graph
 
-    def action(self, answer: Answer) -> Any:
+    def executable(self, chosen: Tensor) -> Any:
         policy: Any = self.network
         if policy.squash_output and isinstance(self.space, Box):
-            chosen = answer[0] if isinstance(answer, Tensor) else mode(answer[0])[0]
             return policy.unscale_action(chosen.cpu().numpy()).astype(self.space.low.dtype)
-        return super().action(answer)
+        return super().executable(chosen)
 
 
 class TorchrlPolicy(Policy):
