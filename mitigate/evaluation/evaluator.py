@@ -225,7 +225,7 @@ def run_missing(
     at_once = _together(task.agent, world)
     groups = _groups(todo, 4 * at_once if at_once > 1 else 1)
     started = min(count(launcher, workers, len(todo), WORTH), len(groups))
-    with Progress(title, len(jobs), unit="walk", start=len(jobs) - len(todo)) as progress:
+    with Progress(title, len(jobs), unit="episode", start=len(jobs) - len(todo)) as progress:
         if started > 1:
             progress.say(f"{title}: {started} {launcher.name} workers")
         try:

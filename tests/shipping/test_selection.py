@@ -70,7 +70,17 @@ def test_score_weighs_clean_and_corrupted_episodes_equally():
 def test_harden_returns_the_given_policy_if_validation_prefers_it(tmp_path, capsys):
     net = trained()
     # steps of this size break the policy
-    result = mitigate.harden(net, world, listed=FEW, out=tmp_path, **SHORT, lr=1.0, validation=4)
+    result = mitigate.harden(
+        net,
+        world,
+        listed=FEW,
+        out=tmp_path,
+        **SHORT,
+        lr=1.0,
+        w_policy=0,
+        w_consistency=0,
+        validation=4,
+    )
     assert result.chosen == "given"
     assert same(result.policy, net)
     assert "the policy is unchanged" in " ".join(capsys.readouterr().err.split())

@@ -13,8 +13,10 @@ from importlib import import_module
 from pathlib import Path
 
 import mitigate
+from mitigate.core import conf
+from mitigate.corruptions.registry import modality
 from mitigate.evaluation import rows
-from mitigate.evaluation.comparison import compare
+from mitigate.evaluation.comparison import CLEAN, compare
 from mitigate.worlds.seeded import seeded_episodes
 
 UNSEEN = "unseen_test"
@@ -49,6 +51,8 @@ def main() -> None:
         )
         known += result.rows
         before = mitigate.as_policy(module.load_policy(), module.make_world(), forward=forward)
+        suite = conf.load_config("evaluate", [f"suite={UNSEEN}"]).suite.conditions
+        suite = [name for name in suite if name == CLEAN or modality(name) in before.sensors]
         for name, policy in {"before": before, "after": result.agent}.items():
             mitigate.benchmark(
                 policy,
@@ -56,7 +60,7 @@ def main() -> None:
                 listed=listed,
                 name=name,
                 version=policy.version,
-                suite=UNSEEN,
+                suite=suite,
                 seed=seed,
                 out=out / UNSEEN,
             )
