@@ -23,7 +23,7 @@ import torch
 from torch import Tensor, nn
 
 from mitigate.agents.actor_critic import ActorCritic, Joint
-from mitigate.agents.policies import Policy, divergence
+from mitigate.agents.policies import Policy, divergence, last_convolution
 from mitigate.core import checkpoint
 from mitigate.core.contracts import read
 from mitigate.core.pictures import picture
@@ -33,7 +33,6 @@ from mitigate.recipes.self_distil import (
     check_counts,
     check_frames,
     clean_teacher,
-    last_convolution,
 )
 from mitigate.training.objective import Objective, check_share, check_weights
 from mitigate.worlds.world import Corrupted, TrainingEpisodes, World
@@ -66,6 +65,9 @@ class Ppo(Objective):
         ValueError: A number is out of its range, the policy reads no frames, has a memory or gives
             no distribution, or the world has no reward.
     """
+
+    loss: Any  # ClipPPOLoss
+    scale: Tensor
 
     def __init__(
         self,
@@ -106,7 +108,7 @@ class Ppo(Objective):
         self.w_kl = w_kl
         self.critic_rounds = critic_rounds
         self.seed = seed
-        self.world = world()  # made once, because making an environment takes time
+        self.world: Any = world()  # made once, because making an environment takes time
         if read(self.world, "reward") is None:
             raise ValueError(
                 f"{type(self.world).__name__} has no reward, which method='ppo' maximises. "

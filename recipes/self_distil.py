@@ -34,7 +34,7 @@ from safetensors.numpy import load_file, save
 from torch import Tensor
 
 from mitigate.agents.adapters import adapted
-from mitigate.agents.policies import Answer, Policy, copied, divergence, imitation
+from mitigate.agents.policies import Answer, Policy, copied, divergence, imitation, last_convolution
 from mitigate.core import checkpoint
 from mitigate.core.files import write_bytes
 from mitigate.core.observation import DEPTH, RGB
@@ -277,27 +277,6 @@ def clean_teacher(policy: Policy) -> Policy:
     if adapted(teacher):
         teacher = teacher.as_teacher()
     return teacher.requires_grad_(False)
-
-
-def last_convolution(policy: Policy) -> str:
-    """Return the name of the last convolution of a network, or else of its first layer.
-
-    Raises:
-        ValueError: The network has neither.
-    """
-    layers = [
-        (name, isinstance(module, (torch.nn.Conv1d, torch.nn.Conv2d, torch.nn.Conv3d)))
-        for name, module in policy.network.named_modules()
-        if isinstance(module, (torch.nn.Conv1d, torch.nn.Conv2d, torch.nn.Conv3d, torch.nn.Linear))
-        and checkpoint.ADAPTER not in f".{name}."
-    ]
-    if not layers:
-        raise ValueError(
-            f"{policy.name} has no convolution and no linear layer. Name the module whose output "
-            "is to be compared: module=..."
-        )
-    convolutions = [name for name, is_convolution in layers if is_convolution]
-    return convolutions[-1] if convolutions else layers[0][0]
 
 
 def _mean(

@@ -57,7 +57,7 @@ class Policy(Agent, nn.Module):
     """
 
     recurrent = False
-    run_state = ("_memory",)
+    run_state = ("_memory", "_before")
 
     def __init__(self, network: nn.Module, native: Any, space: ActionSpace) -> None:
         super().__init__()
@@ -65,6 +65,7 @@ class Policy(Agent, nn.Module):
         self.native = native
         self.space = space
         self._memory: Any = None
+        self._before: Any = None  # memory before the last action
 
     def answer(self, observation: Any, memory: Any = None) -> tuple[Answer, Any]:
         """Return the policy's answers to a batch, and its memory after it.
@@ -143,8 +144,24 @@ class Policy(Agent, nn.Module):
     def act(self, observation: Mapping[str, Any]) -> Any:
         """Return the likeliest action."""
         frames = {name: np.asarray(observation[name])[None] for name in self.sensors}
+        self._before = self._memory
         answer, self._memory = self.answer(self.native(frames), self._memory)
         return self.action(answer)
+
+    def entropy(self, observation: Mapping[str, Any]) -> Tensor:
+        """Return the entropy of the last action's distribution (``agents/agent.py``).
+
+        Raises:
+            ValueError: The policy gives no distribution.
+        """
+        frames = {name: np.asarray(observation[name])[None] for name in self.sensors}
+        answer = self.answer(self.native(frames), self._before)[0]
+        if isinstance(answer, Tensor):
+            raise ValueError(
+                f"adapt=tent lowers the entropy of actions, but {self.name} returns values "
+                "without a distribution. Choose adapt=norm or adapt=recentre."
+            )
+        return torch.stack([part.entropy().sum() for part in answer]).sum()
 
     def answers(self, frames: Mapping[str, np.ndarray], length: int = 1) -> list[Answer]:
         """Return the answers to windows of consecutive frames, a list with one batch per place.
@@ -450,6 +467,27 @@ def copied(policy: Policy) -> Policy:
             "the clean teacher needs. Give a policy without open files or environments."
         ) from error
     return twin
+
+
+def last_convolution(policy: Policy) -> str:
+    """Return the name of the last convolution of a network, or else of its first layer.
+
+    Raises:
+        ValueError: The network has neither.
+    """
+    layers = [
+        (name, isinstance(module, (nn.Conv1d, nn.Conv2d, nn.Conv3d)))
+        for name, module in policy.network.named_modules()
+        if isinstance(module, (nn.Conv1d, nn.Conv2d, nn.Conv3d, nn.Linear))
+        and checkpoint.ADAPTER not in f".{name}."
+    ]
+    if not layers:
+        raise ValueError(
+            f"{policy.name} has no convolution and no linear layer. Name the module whose output "
+            "is to be compared: module=..."
+        )
+    convolutions = [name for name, is_convolution in layers if is_convolution]
+    return convolutions[-1] if convolutions else layers[0][0]
 
 
 def mode(distribution: Any) -> Tensor:

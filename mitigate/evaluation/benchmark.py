@@ -32,12 +32,18 @@ from mitigate.evaluation import provenance
 from mitigate.evaluation.comparison import RANDOM, Comparison, RandomPolicy, compare
 from mitigate.evaluation.config import EvaluateConfig, read
 from mitigate.evaluation.episode import run_episode
-from mitigate.evaluation.episode_lists import check_count, check_episodes, spread
+from mitigate.evaluation.episode_lists import (
+    check_count,
+    check_episodes,
+    spread,
+    training_episodes,
+)
 from mitigate.evaluation.evaluator import LOCAL, WORTH, evaluate
 from mitigate.evaluation.leaderboard.entry import LeaderboardEntry, check_texts
 from mitigate.evaluation.leaderboard.figures import entry_of
 from mitigate.evaluation.provenance import Known
 from mitigate.evaluation.rows import ROWS, Row
+from mitigate.guards.guard import Guard
 from mitigate.guards.opening import labels, open_guards
 from mitigate.worlds.episodes import Episode, read_episodes
 from mitigate.worlds.seeded import RETURN
@@ -61,6 +67,7 @@ def benchmark(
     seed: int = 0,
     safeguard: str | None = None,
     restore: str | None = None,
+    adapt: str | Guard | None = None,
     workers: int | None = 1,
     options: Sequence[str] = (),
     world: Callable[[], World] | None = None,
@@ -88,6 +95,8 @@ def benchmark(
         seed: corruption seed.
         safeguard: guard for instructions, such as "rules" or "module:callable".
         restore: guard for frames, such as "checkpoints/restorer".
+        adapt: test-time adaptation: "norm", "tent", "recentre", with ":never" to keep what was
+            learned from episode to episode; or a guard (``mitigate/guards/adaptation``).
         workers: processes; None: one per core if there is enough work. With more than one the
             call must be under ``if __name__ == "__main__":``, because processes import the script.
         options: options of the agent and the world: "agent=recurrent", "env.views=1",
@@ -116,12 +125,14 @@ def benchmark(
     if is_policy(agent):
         agent = as_policy(agent, first)
         name, version = name or agent.name, version or agent.version
-    agent, name = _agent(agent, name, config, seed, labels(safeguard, restore))
+    agent, name = _agent(agent, name, config, seed, labels(safeguard, restore, adapt))
     check_texts(name=name, **texts)
     check_fits(agent, first.sensors, type(first).__name__)
     split, chosen = _episodes(first, config, split, episodes, listed, world is not None)
     file = Path(out or OUT / f"{_plain(name)}-{split}-s{severity:g}") / ROWS
-    guards = open_guards(safeguard, restore, first.sensors)
+    guards = open_guards(safeguard, restore, first.sensors, adapt=adapt)
+    training = None if world is not None and _is_own(first, config) else config.env.training
+    guards.calibrate(agent, first, training_episodes(first, training))
     known = Known(agent, first, guards.fingerprint(), version).check(file, name)
     label: dict[str, Any] = {"name": name, "split": split, "seed": seed, "known": known}
     with known:

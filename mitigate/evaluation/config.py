@@ -108,6 +108,7 @@ class EvaluateConfig:
     checkpoint: str | None = None
     safeguard: Any = "none"  # text; check_choice checks it, because Hydra would print it
     restore: str | None = None
+    adapt: str | None = None
     name: str | None = None
     version: str | None = None
     split: str = "val_unseen"

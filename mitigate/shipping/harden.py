@@ -27,7 +27,7 @@ from mitigate.agents.adapters import (
     save_adapters,
     trainable_share,
 )
-from mitigate.agents.policies import Forward, Policy, as_policy, copied
+from mitigate.agents.policies import Forward, Policy, as_policy, copied, last_convolution
 from mitigate.agents.sites import find_sites
 from mitigate.core import checkpoint, conf, seeding
 from mitigate.core.locks import FolderLock
@@ -46,18 +46,17 @@ from mitigate.evaluation.episode import run_episode
 from mitigate.evaluation.evaluator import evaluate
 from mitigate.evaluation.rows import ROWS, Row
 from mitigate.recipes.ppo import Ppo
-from mitigate.recipes.self_distil import SelfDistil, last_convolution
+from mitigate.recipes.self_distil import SelfDistil
 from mitigate.shipping import selection
 from mitigate.training import states
 from mitigate.training.objective import Objective
 from mitigate.training.trainer import Trainer
 from mitigate.worlds.episodes import Episode
-from mitigate.worlds.seeded import seeded_episodes
+from mitigate.worlds.seeded import FIRST_TRAINING_SEED, seeded_episodes
 from mitigate.worlds.world import World
 
 OUT = Path("runs/harden")
 EPISODES = 50  # default episodes of the comparison (heuristic): SR within about 10 points
-FIRST_TRAINING_SEED = 1_000_000  # seeds of training episodes; the comparison's seeds are smaller
 TUNE = ("all", "adapters")
 SPLIT = "compared"
 METHODS: dict[str, type[Objective]] = {"self_distil": SelfDistil, "ppo": Ppo}

@@ -275,7 +275,7 @@ def check(table_cells: Sequence[Cell], config: TablesConfig) -> None:
                 f"which takes {', '.join(CELLS)} from its columns and seeds. An additional "
                 "evaluation "
                 "may set suite, conditions, severity, severity_depth, split, episodes, safeguard, "
-                "restore and entries of env and agent.",
+                "restore, adapt and entries of env and agent.",
             )
             evaluation = evaluation_of(table_cells[0].measurement(config, name, options))
             names, severity = evaluation.condition_names, evaluation.severity
@@ -307,9 +307,10 @@ def evaluation_of(options: Sequence[str]) -> EvaluateConfig:
 
 
 def _check_guards(config: EvaluateConfig) -> None:
-    """Raise ValueError or FileNotFoundError for a missing safeguard or restorer."""
+    """Raise ValueError or FileNotFoundError for a missing guard."""
     choices.check(config.safeguard)
-    if config.restore is not None:
-        from mitigate.guards.opening import open_restorer
+    from mitigate.guards.opening import labels, open_restorer
 
+    labels(None, None, config.adapt)  # rejects unknown adaptations
+    if config.restore is not None:
         open_restorer(config.restore, build.maker(config.env.world)().sensors)

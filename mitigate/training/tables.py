@@ -22,7 +22,7 @@ from mitigate.core.json_files import read_object
 from mitigate.core.names import short
 from mitigate.core.output import is_regular, output_folder
 from mitigate.core.progress import say
-from mitigate.evaluation.episode_lists import episodes
+from mitigate.evaluation.episode_lists import episodes, training_episodes
 from mitigate.evaluation.evaluate import load
 from mitigate.evaluation.rows import ROWS, Row, gather, read
 from mitigate.evaluation.sections import sections
@@ -200,9 +200,11 @@ def draw_walks(config: TablesConfig, out: Path) -> list[Path]:
     env = next(iter(nodes.values())).env
     world, chosen = build.maker(env.world)(), episodes(env, config.split, config.episodes)
     guards = {
-        name: open_guards(node.safeguard, node.restore, world.sensors)
+        name: open_guards(node.safeguard, node.restore, world.sensors, adapt=node.adapt)
         for name, node in nodes.items()
     }
+    for name, chain in guards.items():
+        chain.calibrate(agents[name], world, training_episodes(world, env.training))
     episode_ids = {episode.episode_id for episode in chosen}
     rows = [
         row

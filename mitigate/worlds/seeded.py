@@ -49,6 +49,7 @@ def seeded_episodes(seeds: Iterable[int], instruction: str = "Reach the goal.") 
     ]
 
 
+FIRST_TRAINING_SEED = 1_000_000  # seeds of training episodes; those of comparisons are smaller
 RETURN = "return"  # a measure, and the rule of worlds without a success
 SCORES = ("success", RETURN)
 

@@ -5,9 +5,9 @@ import pytest
 import torch
 from torch import nn
 
-from mitigate.agents.policies import as_policy
+from mitigate.agents.policies import as_policy, last_convolution
 from mitigate.corruptions import Schedule
-from mitigate.recipes.self_distil import SelfDistil, last_convolution
+from mitigate.recipes.self_distil import SelfDistil
 from mitigate.shipping.harden import _Training
 from mitigate.worlds.gym import GymWorld
 from tests.shipping.test_harden import Lights, Net
