@@ -7,13 +7,15 @@ import subprocess
 import sys
 from dataclasses import dataclass
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 from omegaconf import OmegaConf
 
+from mitigate.bridge import program
+from mitigate.bridge import run as run_module
 from mitigate.bridge.condition import Condition, Words
 from mitigate.bridge.results import read
-from mitigate.bridge.run import run as run_command
 from mitigate.bridge.server import Listener
 from mitigate.core.conf import load_config
 from mitigate.corruptions import Corruption
@@ -103,20 +105,29 @@ class RunResult:
         return int(bool(self.stderr))
 
 
+# Their tests start new interpreters, as a user's command does; others start forks.
+NEW_INTERPRETERS = {"test_run", "test_leftovers", "test_pythons"}
+
+
 @pytest.fixture
-def run(capsys, monkeypatch):
+def run(request, capsys, monkeypatch):
     """Run a command as the command line does, in this process, without drawing heat maps.
 
     Tests of the report check those; a picture takes a third of the time of a short condition.
     """
     monkeypatch.setattr(plots, "heatmap", lambda section, path: path.touch())
+    monkeypatch.setattr(run_module, "PAUSE", 0.05)
+    if request.module.__name__.rpartition(".")[2] not in NEW_INTERPRETERS:
+        names = ("DEVNULL", "STDOUT", "TimeoutExpired")
+        used = {name: getattr(subprocess, name) for name in names}
+        monkeypatch.setattr(program, "subprocess", SimpleNamespace(Popen=warm.popen, **used))
 
     def call(out, options, command=AGENT, **environment):
         path = os.pathsep.join([str(LAB), environment.pop("PYTHONPATH", "")])
         monkeypatch.setenv("PYTHONPATH", path)
         problem = ""
         try:
-            run_command(config(f"out={out}", *options.split()), shlex.split(command))
+            run_module.run(config(f"out={out}", *options.split()), shlex.split(command))
         except ValueError as error:
             problem = str(error)
         return RunResult(capsys.readouterr().out, problem)
