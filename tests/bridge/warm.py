@@ -100,7 +100,7 @@ class Supervisor:
         self, words: Sequence[str], environment: Mapping[str, str], log: IO[str], pipe: int
     ) -> None:
         self.pid = _fork("supervisor", words, environment, [log.fileno(), pipe])
-        self._ended = open(os.pidfd_open(self.pid), "rb")
+        self._ended = open(os.pidfd_open(self.pid), "rb")  # noqa: SIM115 - closed by ``wait``
 
     def poll(self) -> int | None:
         with suppress(subprocess.TimeoutExpired):
