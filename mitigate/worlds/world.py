@@ -26,8 +26,9 @@ from mitigate.core.observation import (
     Sensor,
 )
 from mitigate.core.spaces import ActionSpace
-from mitigate.corruptions import Corruption, DepthSensor, Schedule, corrupt_observation
+from mitigate.corruptions import Corruption, DepthSensor, FrameStream, Key, Schedule
 from mitigate.corruptions.schedule import drawn
+from mitigate.corruptions.stream import is_timed, shows_past
 from mitigate.worlds.episodes import Episode
 
 MAX_MEDIAN_DEPTH = 100.0  # metres, heuristic: the median of an indoor depth frame is smaller
@@ -250,8 +251,9 @@ class Corrupted(WorldWrapper):
     """A world whose frames are corrupted, by one corruption or by a schedule.
 
     Every draw is keyed by (seed, name, index of the read frame); an observation whose frames are
-    never read does not count. ``observation.clean`` is the clean observation. Instructions are
-    corrupted in ``evaluation/episode.py``, not here.
+    never read does not count. With a temporal fault it is the index of the step, and the frames are
+    rendered at every step if a later step may show them. ``observation.clean`` is the clean
+    observation. Instructions are corrupted in ``evaluation/episode.py``, not here.
 
     Args:
         world: The world.
@@ -269,13 +271,22 @@ class Corrupted(WorldWrapper):
         self.name = name
         self.frames_read = 0
         self.last: dict[str, np.ndarray] | None = None  # the corrupted frames that were read last
+        self._timed = isinstance(by, Corruption) and is_timed(by)
+        self._shows_past = isinstance(by, Corruption) and shows_past(by)
+        self._steps = 0
 
     def reset(self, episode: Episode) -> Observation:
-        """Start an episode and restart the count of frames."""
+        """Start an episode and restart the counts of frames and steps."""
         self.episode = episode
         self.frames_read = 0
         self.last = None
+        self._stream = FrameStream()
+        self._steps = 0
         return super().reset(episode)
+
+    def step(self, action: Any) -> Observation:
+        self._steps += 1
+        return super().step(action)
 
     def _observe(self, clean: Observation) -> Observation:
         if not isinstance(clean, Observation):
@@ -284,13 +295,17 @@ class Corrupted(WorldWrapper):
                 f"got {type(clean).__name__}. Return for example Observation({{'pose': pose}}, "
                 "lambda: {'rgb': rgb}, ('rgb',)) (docs/bring-your-own.md)."
             )
+        name = self.episode.episode_id if self.name is None else self.name
+        step = self._steps
+        if self._shows_past:
+            self._stream.remember(clean, Key(self.seed, name, step))
 
         def corrupted() -> dict[str, np.ndarray]:
-            name = self.episode.episode_id if self.name is None else self.name
-            corruption, key = drawn(self.by, self.seed, name, self.frames_read)
+            number = step if self._timed else self.frames_read
+            corruption, key = drawn(self.by, self.seed, name, number)
             self.frames_read += 1
-            sensor = depth_sensor(self.world.sensors)
-            self.last = corrupt_observation(dict(clean), corruption, key, sensor)
+            self._stream.sensor = depth_sensor(self.world.sensors)
+            self.last = self._stream.corrupt(clean, corruption, key)
             return self.last
 
         return Observation(clean.ready, corrupted, clean.frames, clean=clean)

@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 from mitigate.core.observation import HFOV_DEGREES
 from mitigate.corruptions import depth, eld, masks, rgb
+from mitigate.corruptions.faults import temporal
 from mitigate.corruptions.unseen import calibration, codec, edges, light, optics, returns, signal
 
 
@@ -326,5 +327,49 @@ DESCRIPTIONS = {
             "as "
             "high as the camera is heuristic"
         ),
+    ),
+    "frozen_frame": Description(
+        "the driver or the network hangs",
+        (
+            f"in each {temporal.FREEZE_PERIOD} frames, {temporal.LONGEST_FREEZE} s of them repeat "
+            "the last frame before the freeze"
+        ),
+        "heuristic",
+    ),
+    "repeated_frames": Description(
+        "bursts of frames are lost, and the receiver keeps the last one",
+        (
+            f"in each {temporal.BURST_PERIOD} frames, {temporal.LONGEST_BURST} s of them repeat "
+            "the last frame before the burst"
+        ),
+        "losses come in bursts (Gilbert 1960; Elliott 1963); the lengths are heuristic",
+    ),
+    "dropped_frames": Description(
+        "the same bursts, and the receiver has no last frame",
+        "in the bursts of `repeated_frames`, RGB is 0 and valid depth `DepthSensor.missing`",
+        "as `repeated_frames`, with equal draws: the two are a controlled pair",
+    ),
+    "frame_delay": Description(
+        "exposure, transport and computing take time",
+        f"the frame of {temporal.DELAY} s instants ago; the first frame until then",
+        "heuristic",
+    ),
+    "depth_lag": Description(
+        "RGB and depth are not synchronised",
+        f"depth of {temporal.DELAY} s instants ago; RGB is current",
+        "heuristic",
+    ),
+    "exposure_flicker": Description(
+        "automatic exposure hunts",
+        f"255 min(1, (x/255) 2^(g/{temporal.GAMMA:g})), g ~ {temporal.STOPS:g} s U(-1, 1) stops",
+        "heuristic",
+    ),
+    "intermittent": Description(
+        "a corruption sets in and recovers",
+        (
+            f"`intermittent+NAME`: NAME acts in {temporal.ACTIVE} of each {temporal.ACTIVE_PERIOD} "
+            "frames, at the severity of the pair"
+        ),
+        "heuristic",
     ),
 }
