@@ -177,7 +177,8 @@ class Group:
     def stream(self) -> FrameStream:
         """Return a stream of these cameras' frames."""
         first = self.cameras[0]
-        return FrameStream(first.sensor, normalised=first.normalised)
+        hfov = {first.kind: first.hfov}
+        return FrameStream(first.sensor, normalised=first.normalised, hfov=hfov)
 
 
 class Rig:

@@ -27,7 +27,8 @@ from mitigate.corruptions.frame_files import (
     make_plan,
 )
 from mitigate.corruptions.keying import Key
-from mitigate.corruptions.registry import FAULTS, known, parts, version
+from mitigate.corruptions.record import CAMERA, TEMPORAL
+from mitigate.corruptions.registry import family, fault_names, known, parts, version
 from mitigate.corruptions.stream import FrameStream, shows_past
 from mitigate.corruptions.suite import SUITE_VERSION, Corruption, check_gate, check_name
 
@@ -50,11 +51,13 @@ class Settings:
     z_max: float = Z_MAX  # metres, maximum that depth is clipped to
     missing: float = 0.0  # metres, value of missing data
     no_reading: int = NO_READING  # count of a 16-bit PNG without a reading, next to 0
+    hfov: float | None = None  # degrees, horizontal field of view for camera faults
 
     def __post_init__(self) -> None:
         check_gate(Corruption(self.corruption, self.severity))
         if parts(self.corruption)[0] != GATE:
-            check_name(self.corruption, ("clean", *known("rgb", "depth"), *FAULTS))
+            of_frames = (*known("rgb", "depth"), *fault_names(TEMPORAL, CAMERA))
+            check_name(self.corruption, ("clean", *of_frames))
         if self.corruption == "clean":
             raise ValueError("corruption=clean changes nothing. Copy the folder instead.")
         choices = (("episode", self.episode, EPISODES), ("format", self.format, FORMATS))
@@ -73,6 +76,16 @@ class Settings:
         if not 0 <= self.no_reading <= NO_READING:
             raise ValueError(f"no_reading must be 0 to {NO_READING}, got {self.no_reading}.")
         DepthSensor(z_max=self.z_max)  # checks z_max
+        if "camera_height" in parts(self.corruption):
+            raise ValueError(
+                "camera_height needs a world that renders; files show one height. Choose another "
+                "corruption."
+            )
+        if family(self.corruption) == CAMERA and self.hfov is None:
+            raise ValueError(
+                f"{self.corruption} needs the horizontal field of view: hfov=DEGREES, such as "
+                "hfov=90."
+            )
 
     @property
     def metres_per_count(self) -> float:
@@ -124,7 +137,7 @@ def _corrupt_all(source: Path, out: Path, settings: Settings, plan: Plan) -> dic
     summary = _begin(out, settings, plan)
     outputs = {frame.path: _output(frame.path, settings.format) for frame in plan.frames}
     names = set(outputs)
-    stream = FrameStream(settings.sensor)
+    stream = FrameStream(settings.sensor, hfov=dict.fromkeys((RGB, DEPTH), settings.hfov))
     try:
         for frame in tqdm(plan.frames, desc=settings.corruption, unit="frame", disable=None):
             name, target = frame.path.as_posix(), outputs[frame.path]

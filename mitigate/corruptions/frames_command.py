@@ -17,6 +17,7 @@
   z_max       depth range in metres (10): valid depth beyond it is clipped
   missing     value of missing data in metres (0: no reading)
   no_reading  count of a 16-bit PNG that means no reading, next to 0 (65535)
+  hfov        horizontal field of view in degrees, which the camera faults need
 
   --list      list the corruptions: what they corrupt, what severity means, their draws and source
   --help      this help

@@ -17,8 +17,9 @@ from mitigate.corruptions.keying import Key
 
 MODALITIES = ("rgb", "depth", "instruction")
 FRAMES = "rgb+depth"  # modality of a fault of both sensors, or of the only one
-TEMPORAL = "temporal"
-FAMILIES = (TEMPORAL,)  # of faults, each with a suite of this name
+ACTION = "action"  # modality of a fault of motion
+TEMPORAL, CAMERA, MOTION = "temporal", "camera", "motion"
+FAMILIES = (TEMPORAL, CAMERA, MOTION)  # of faults, each with a suite of this name
 VALIDATION, TEST = "validation", "test"  # halves of the unseen corruptions
 
 
@@ -28,7 +29,7 @@ class Record:
 
     Attributes:
         name: Lower case with underscores.
-        modality: What it corrupts, one of ``MODALITIES`` or ``FRAMES``.
+        modality: What it corrupts, one of ``MODALITIES``, ``FRAMES`` or ``ACTION``.
         apply: A pure function. For RGB: (views uint8 [V, H, W, 3], severity in (0, 1], key, heading
             or None) -> new array of the same shape. For depth: (views float32 metres [V, H, W],
             severity, key, DepthSensor) -> new array of the same shape. None for instructions, which
@@ -64,7 +65,7 @@ class Record:
     draw: Callable[[float, Key], Any] | None = None
 
     def __post_init__(self) -> None:
-        if self.modality not in (*MODALITIES, FRAMES):
+        if self.modality not in (*MODALITIES, FRAMES, ACTION):
             raise ValueError(
                 f"The modality of corruption {self.name!r} must be one of "
                 f"{', '.join(MODALITIES)}, got {self.modality!r}."

@@ -14,7 +14,7 @@ from importlib.metadata import entry_points
 
 from mitigate.core.names import unknown
 from mitigate.corruptions import broad, depth, faults, rgb, unseen
-from mitigate.corruptions.record import MODALITIES, TEST, VALIDATION, Record
+from mitigate.corruptions.record import ACTION, FRAMES, MODALITIES, TEST, VALIDATION, Record
 
 _record = partial(
     Record, modality="instruction", apply=None, episode="all draws", source="NavTrust"
@@ -161,13 +161,18 @@ def modality(name: str) -> str:
 def table() -> str:
     """Return all corruptions of frames as text in aligned columns, with a heading."""
     records = [*(record(name) for name in known("rgb", "depth")), *FAULTS.values()]
+    records = [record for record in records if record.modality != ACTION]
     rows = [
-        (r.name, r.modality, r.severity, r.episode, r.frame, r.source, _suite(r)) for r in records
+        (r.name, _sensor(r), r.severity, r.episode, r.frame, r.source, _suite(r)) for r in records
     ]
     rows = [HEAD, *rows]
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
     lines = ("  ".join(map(str.ljust, row, widths)).rstrip() for row in rows)
     return "\n".join(lines)
+
+
+def _sensor(record: Record) -> str:
+    return "both" if record.modality == FRAMES else record.modality
 
 
 def _suite(record: Record) -> str:

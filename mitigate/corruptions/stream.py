@@ -15,10 +15,11 @@ import numpy as np
 from mitigate.core.observation import DEPTH, POSE, RGB
 from mitigate.corruptions import registry
 from mitigate.corruptions.depth_sensor import DepthSensor
-from mitigate.corruptions.faults.temporal import GATE, OLDEST, is_active
+from mitigate.corruptions.faults.camera import Mount, total
+from mitigate.corruptions.faults.temporal import GATE, OLDEST
 from mitigate.corruptions.keying import Key, as_key
 from mitigate.corruptions.normalised import corrupt_normalised
-from mitigate.corruptions.record import TEMPORAL
+from mitigate.corruptions.record import CAMERA, TEMPORAL
 from mitigate.corruptions.suite import (
     SENSOR,
     Corruption,
@@ -40,6 +41,22 @@ def shows_past(corruption: Corruption) -> bool:
     return any(record.family == TEMPORAL and record.draw is not None for record in records)
 
 
+def mount_of(corruption: Corruption, key: Key) -> Mount | None:
+    """Return the displacement of the camera at an instant; None without an active camera fault."""
+    parts = corruption.parts
+    if parts and parts[0].name == GATE and not _draw(parts[0], key):
+        return None
+    mounts = [_draw(p, key) for p in parts if registry.record(p.name).family == CAMERA]
+    return total(mounts) if mounts else None
+
+
+def _draw(part: Corruption, key: Key) -> Any:
+    """Return what a fault does at the instant of ``key``."""
+    draw = registry.record(part.name).draw
+    assert draw is not None, "only faults are drawn"
+    return draw(part.severity, key)
+
+
 class FrameStream:
     """Corrupt the observations of one episode after another, in the order of their frames.
 
@@ -50,10 +67,18 @@ class FrameStream:
     Args:
         sensor: Depth range and value for no reading.
         normalised: Whether depth is in [0, 1] over the sensor's range instead of in metres.
+        hfov: Horizontal field of view in degrees by entry, which camera faults need.
     """
 
-    def __init__(self, sensor: DepthSensor = SENSOR, *, normalised: bool = False) -> None:
+    def __init__(
+        self,
+        sensor: DepthSensor = SENSOR,
+        *,
+        normalised: bool = False,
+        hfov: Mapping[str, float | None] | None = None,
+    ) -> None:
         self.sensor = sensor
+        self.hfov = hfov
         self._corrupt = corrupt_normalised if normalised else corrupt_observation
         self._past: dict[str, list[tuple[int, np.ndarray]]] = {}  # by entry: frame number, frame
         self._episode = (0, "")
@@ -65,6 +90,7 @@ class FrameStream:
         key: Key | int | str,
         *,
         partial: bool = False,
+        displaced: bool = False,
     ) -> dict:
         """Corrupt the frames of the next observation.
 
@@ -73,6 +99,7 @@ class FrameStream:
             corruption: The corruption.
             key: Key of the random draws; ``key.frame`` is the number of the instant.
             partial: Whether to ignore corruptions of frames that ``obs`` lacks.
+            displaced: Whether the frames already show the camera faults (``World.displaced``).
 
         Returns:
             A new dict; entries that are not corrupted are the same objects.
@@ -82,15 +109,18 @@ class FrameStream:
         """
         key = as_key(key)
         parts = check_gate(check_corruption(corruption)).parts
+        parts = tuple(p for p in parts if {*registry.record(p.name).modalities} & {RGB, DEPTH})
         if partial:
             parts = tuple(p for p in parts if {*registry.record(p.name).modalities} & {*obs})
+        if displaced:
+            parts = tuple(p for p in parts if registry.record(p.name).family != CAMERA)
         if not is_timed(corruption):
-            for each in parts if partial else (corruption,):
-                obs = self._corrupt(dict(obs), each, key, self.sensor)
+            for each in parts if partial or displaced else (corruption,):
+                obs = self._corrupt(dict(obs), each, key, self.sensor, self.hfov)
             return dict(obs)
         self.remember(obs, key)
         if parts and parts[0].name == GATE:
-            parts = parts[1:] if is_active(parts[0].severity, key) else ()
+            parts = parts[1:] if _draw(parts[0], key) else ()
         changed: dict[str, list[Corruption]] = {}
         for part in parts:
             for entry in changed_entries(obs, part):
@@ -122,17 +152,15 @@ class FrameStream:
     def _arriving(self, entry: str, parts: Sequence[Corruption], key: Key) -> np.ndarray:
         """Return the frame that arrives, corrupted as when it was taken."""
         taken = key.frame
-        for draw, severity in ((registry.record(p.name).draw, p.severity) for p in parts):
-            if draw is not None:
-                taken -= draw(severity, replace(key, frame=taken))
+        for late in (part for part in parts if shows_past(part)):
+            taken -= _draw(late, replace(key, frame=taken))
         instant, frame = self._recall(entry, taken)
         arriving: dict[str, Any] = {entry: frame.copy()}
         if POSE in self._past:
             arriving[POSE] = self._recall(POSE, instant)[1]
-        for part in parts:
-            if registry.record(part.name).draw is None:
-                then = replace(key, frame=instant)
-                arriving = self._corrupt(arriving, part, then, self.sensor)
+        then = replace(key, frame=instant)
+        for part in (part for part in parts if not shows_past(part)):
+            arriving = self._corrupt(arriving, part, then, self.sensor, self.hfov)
         return arriving[entry]
 
     def _recall(self, entry: str, number: int) -> tuple[int, np.ndarray]:

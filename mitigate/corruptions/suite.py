@@ -16,9 +16,10 @@ from mitigate.core import observation
 from mitigate.core.names import unknown
 from mitigate.corruptions import registry
 from mitigate.corruptions.depth_sensor import DepthSensor, check_unit
+from mitigate.corruptions.faults.camera import NARROWEST, WIDEST, Mount, warp
 from mitigate.corruptions.faults.temporal import GATE
 from mitigate.corruptions.keying import Key, as_key
-from mitigate.corruptions.record import FRAMES, MODALITIES, TEMPORAL
+from mitigate.corruptions.record import ACTION, CAMERA, FRAMES, MODALITIES, MOTION, TEMPORAL
 
 MAX_VIEWS = 36  # views per instant: R2R's discrete panoramas have 3 elevations of 12; VLN-CE has 12
 
@@ -166,11 +167,17 @@ class Corruption:
 
     @property
     def parts(self) -> tuple[Corruption, ...]:
-        """The single corruptions in order; empty for "clean"."""
+        """The single corruptions in the order of their effect; empty for "clean".
+
+        A camera fault comes first, because it changes what the lens sees.
+        """
         if self.name == "clean":
             return ()
         names = registry.parts(self.name)
-        return (self,) if len(names) == 1 else tuple(Corruption(n, self.severity) for n in names)
+        if len(names) == 1:
+            return (self,)
+        ordered = sorted(names, key=lambda n: (n != GATE, registry.family(n) != CAMERA))
+        return tuple(Corruption(name, self.severity) for name in ordered)
 
     @property
     def modalities(self) -> tuple[str, ...]:
@@ -199,7 +206,8 @@ def _check_pair(name: str) -> None:
         check_name(part, (*registry.known(*MODALITIES), *registry.FAULTS))
     if GATE in names:
         gated = registry.record(names[-1])
-        if names[0] != GATE or gated.modality == "instruction" or gated.family == TEMPORAL:
+        of_frames = gated.modality not in ("instruction", ACTION)
+        if names[0] != GATE or not of_frames or gated.family == TEMPORAL:
             raise ValueError(
                 f"{GATE!r} must be the first of a pair, and the second a corruption of frames "
                 f"without its own intervals, got {name!r}. Write for example {GATE}+spatter."
@@ -259,6 +267,7 @@ def corrupt(
     key: Key | int | str,
     heading: float | None = None,
     sensor: DepthSensor = SENSOR,
+    hfov: float | None = None,
 ) -> np.ndarray:
     """Corrupt one modality of one instant.
 
@@ -273,6 +282,7 @@ def corrupt(
         heading: Heading of the agent in radians, counter-clockwise, so that a flare keeps its
             direction in the world. None (unknown): the flare keeps its place in view 0.
         sensor: Depth range and value for no reading.
+        hfov: Horizontal field of view in degrees, which camera faults need.
 
     Returns:
         A new array of the same shape and dtype; the input is not modified.
@@ -289,7 +299,12 @@ def corrupt(
     heading = check_heading(heading)
     frame = np.asarray(frame)
     record = registry.record(name)
-    if record.draw is not None:
+    if record.family == MOTION:
+        raise ValueError(
+            f"{name!r} changes actions, not frames. Apply it with mitigate evaluate, or with "
+            "FaultyMotion in mitigate.worlds.motion."
+        )
+    if record.family == TEMPORAL and record.draw is not None:
         raise ValueError(
             f"{name!r} is a {record.family} fault, which depends on earlier frames, but a single "
             "frame was passed. Pass the frames of a sequence in order to a FrameStream "
@@ -299,6 +314,11 @@ def corrupt(
     views = rgb_views(frame) if rgb else depth_views(frame, sensor, name)
     if severity == 0.0:
         return frame.copy()
+    if record.family == CAMERA:
+        assert record.draw is not None, "camera faults have a function"
+        mount = record.draw(severity, key)
+        degrees = _check_camera(name, mount, hfov)
+        return warp(views, mount, degrees, None if rgb else sensor).reshape(frame.shape)
     assert record.apply is not None, "corruptions of frames have a function"
     arguments = (severity, key, heading if rgb else sensor)
     if name not in registry.plugin_records():
@@ -314,18 +334,42 @@ def corrupt(
     return result.reshape(frame.shape)
 
 
+def _check_camera(name: str, mount: Mount, hfov: float | None) -> float:
+    """Return the field of view; ValueError if a fault of the camera cannot be shown."""
+    if mount.height:
+        raise ValueError(
+            f"{name!r} needs a world that renders from another height; a frame alone does not show "
+            "what such a camera sees. Use the apartments, or a world that defines displaced() "
+            "(docs/faults.md), or leave it out."
+        )
+    if hfov is None:
+        raise ValueError(
+            f"{name!r} needs the horizontal field of view of the camera. Pass hfov=DEGREES, or set "
+            "hfov of the Sensor of your world."
+        )
+    if not NARROWEST <= hfov <= WIDEST:
+        raise ValueError(f"hfov must be {NARROWEST:g} to {WIDEST:g} degrees, got {hfov!r}.")
+    return float(hfov)
+
+
 def corrupt_observation(
-    obs: dict, corruption: Corruption, key: Key | int | str, sensor: DepthSensor = SENSOR
+    obs: dict,
+    corruption: Corruption,
+    key: Key | int | str,
+    sensor: DepthSensor = SENSOR,
+    hfov: Mapping[str, float | None] | None = None,
 ) -> dict:
     """Corrupt the frames of an observation (``core/observation.py``).
 
-    Corruptions of instructions change nothing here; they are applied by ``corrupt_instruction``.
+    Corruptions of instructions and motion faults change nothing here; they are applied by
+    ``corrupt_instruction`` and ``mitigate/worlds/motion.py``.
 
     Args:
         obs: The observation; the heading is read from ``obs["pose"]``, if present.
         corruption: The corruption.
         key: Key of the random draws.
         sensor: Depth range and value for no reading.
+        hfov: Horizontal field of view in degrees by entry, which camera faults need.
 
     Returns:
         A new dict; entries that are not corrupted are the same objects.
@@ -336,12 +380,18 @@ def corrupt_observation(
     """
     result = dict(obs)
     for part in check_corruption(corruption).parts:
-        if part.modality != "instruction":
-            result |= _corrupt_entry(result, part, key, sensor)
+        if part.modality not in ("instruction", ACTION):
+            result |= _corrupt_entry(result, part, key, sensor, hfov or {})
     return result
 
 
-def _corrupt_entry(obs: dict, part: Corruption, key: Key | int | str, sensor: DepthSensor) -> dict:
+def _corrupt_entry(
+    obs: dict,
+    part: Corruption,
+    key: Key | int | str,
+    sensor: DepthSensor,
+    hfov: Mapping[str, float | None],
+) -> dict:
     """Return the entries that one corruption changes, by name."""
     pose = obs.get(observation.POSE)
     entries = changed_entries(obs, part)
@@ -353,7 +403,13 @@ def _corrupt_entry(obs: dict, part: Corruption, key: Key | int | str, sensor: De
     heading = None if pose is None else float(pose[2])
     return {
         entry: corrupt(
-            obs[entry], part.name, part.severity, key=key, heading=heading, sensor=sensor
+            obs[entry],
+            part.name,
+            part.severity,
+            key=key,
+            heading=heading,
+            sensor=sensor,
+            hfov=hfov.get(entry),
         )
         for entry in entries
     }

@@ -83,10 +83,11 @@ def check_sensors(met: Iterable[Corruption], sensors: Iterable[str], world: str)
 
     A fault of both sensors needs only one of them.
     """
+    from mitigate.corruptions.record import ACTION
     from mitigate.corruptions.registry import record
 
     available = [*sensors]
-    usable_parts = {*available, "instruction"}
+    usable_parts = {*available, "instruction", ACTION}
     missing = [
         corruption.name
         for corruption in met

@@ -307,6 +307,8 @@ def inapplicable(corruption: Any, agent: Any, drives: Sequence[Any]) -> str:
     from mitigate.agents.agent import as_agent
     from mitigate.corruptions.registry import parts, record
 
+    if any(record(part.name).modality == "action" for part in corruption.parts):
+        return "the recording decides how the robot moves"
     for drive in drives:
         for part in corruption.parts:
             sensors = {"rgb", "depth"} & {*record(part.name).modalities}

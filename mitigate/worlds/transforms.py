@@ -48,6 +48,7 @@ class CorruptObservation(Transform):
         depth: Name of the depth entry; may be absent from the data.
         sensor: Depth range and value for no reading.
         normalised: Whether depth is in [0, 1] over the sensor's range instead of in metres.
+        hfov: Horizontal field of view of the cameras in degrees, which camera faults need.
 
     Raises:
         ValueError: On data: episode or frame are missing, the schedule corrupts a missing entry, a
@@ -63,12 +64,14 @@ class CorruptObservation(Transform):
         depth: NestedKey = DEPTH,
         sensor: DepthSensor | None = None,
         normalised: bool = False,
+        hfov: float | None = None,
     ) -> None:
         super().__init__(in_keys=[rgb, depth], out_keys=[rgb, depth])
         self.schedule, self.seed = schedule, seed
         self.entries = {RGB: rgb, DEPTH: depth, POSE: POSE}
         self.sensor = sensor or DepthSensor()
         self._normalised = normalised
+        self._hfov = dict.fromkeys((RGB, DEPTH), hfov)
         self._streams: dict[int, FrameStream] = {}  # by row
 
     def transform_observation_spec(self, observation_spec: Composite) -> Composite:
@@ -135,7 +138,9 @@ class CorruptObservation(Transform):
                 continue
             instant = {entry: views[row] for entry, views in frames.items()}
             if row not in self._streams:
-                self._streams[row] = FrameStream(self.sensor, normalised=self._normalised)
+                self._streams[row] = FrameStream(
+                    self.sensor, normalised=self._normalised, hfov=self._hfov
+                )
             result = self._streams[row].corrupt(instant, corruption, key)
             for name in frames.keys() & {*corruption.modalities}:
                 corrupted.setdefault(name, frames[name].copy())[row] = result[name]

@@ -20,6 +20,7 @@ from mitigate.core.observation import (
     DEPTH,
     FORWARD,
     LEFT,
+    RGB,
     RIGHT,
     TURN_DEGREES,
     Observation,
@@ -27,8 +28,9 @@ from mitigate.core.observation import (
 )
 from mitigate.core.spaces import ActionSpace
 from mitigate.corruptions import Corruption, DepthSensor, FrameStream, Key, Schedule
+from mitigate.corruptions.faults.camera import Mount
 from mitigate.corruptions.schedule import drawn
-from mitigate.corruptions.stream import is_timed, shows_past
+from mitigate.corruptions.stream import is_timed, mount_of, shows_past
 from mitigate.worlds.episodes import Episode
 
 MAX_MEDIAN_DEPTH = 100.0  # metres, heuristic: the median of an indoor depth frame is smaller
@@ -116,6 +118,15 @@ class World:
         """Return ground-truth labels of the current view, arrays by name."""
         return {}
 
+    def displaced(self, mount: Mount) -> dict[str, np.ndarray] | None:
+        """Render the current instant with a displaced camera, for camera faults.
+
+        Returns:
+            The frames as in an observation; None if the world cannot. The frames of the
+            observation are then warped, which needs ``hfov`` of their sensors.
+        """
+        return None
+
     def remembering(self) -> AbstractContextManager:
         """Return a context that caches frames between the conditions of an episode.
 
@@ -173,7 +184,7 @@ class TrainingEpisodes(Protocol):
         """
 
 
-OPTIONAL = ("expert", "truth", "remembering", "draw", "action_space", "native")
+OPTIONAL = ("expert", "truth", "displaced", "remembering", "draw", "action_space", "native")
 
 
 def as_world(world: Any) -> World:
@@ -204,6 +215,10 @@ class WorldWrapper(World):
     def step(self, action: Any) -> Observation:
         return self._observe(self._inner.step(action))
 
+    def move(self, metres: float, degrees: float) -> Observation:
+        """Take a step as in ``worlds/motion.py``, if the world has ``move``."""
+        return self._observe(self._inner.move(metres, degrees))  # type: ignore[attr-defined]
+
     def measures(self) -> dict[str, float]:
         return self._inner.measures()
 
@@ -212,6 +227,9 @@ class WorldWrapper(World):
 
     def truth(self) -> Mapping[str, np.ndarray]:
         return self._inner.truth()
+
+    def displaced(self, mount: Mount) -> dict[str, np.ndarray] | None:
+        return self._inner.displaced(mount)
 
     def remembering(self) -> AbstractContextManager:
         return self._inner.remembering()
@@ -298,17 +316,32 @@ class Corrupted(WorldWrapper):
         name = self.episode.episode_id if self.name is None else self.name
         step = self._steps
         if self._shows_past:
-            self._stream.remember(clean, Key(self.seed, name, step))
+            key = Key(self.seed, name, step)
+            self._stream.remember(self._displaced(clean, key) or clean, key)
 
         def corrupted() -> dict[str, np.ndarray]:
             number = step if self._timed else self.frames_read
             corruption, key = drawn(self.by, self.seed, name, number)
             self.frames_read += 1
-            self._stream.sensor = depth_sensor(self.world.sensors)
-            self.last = self._stream.corrupt(clean, corruption, key)
+            frames = self._displaced(clean, key)
+            sensors = self.world.sensors
+            self._stream.sensor = depth_sensor(sensors)
+            self._stream.hfov = {n: sensors[n].hfov for n in {RGB, DEPTH}.intersection(sensors)}
+            self.last = self._stream.corrupt(
+                frames or clean, corruption, key, displaced=frames is not None
+            )
             return self.last
 
         return Observation(clean.ready, corrupted, clean.frames, clean=clean)
+
+    def _displaced(self, clean: Observation, key: Key) -> dict[str, Any] | None:
+        """Return the observation rendered with the camera fault, None without one.
+
+        None also if the world cannot render it.
+        """
+        mount = mount_of(self.by, key) if isinstance(self.by, Corruption) else None
+        frames = None if mount is None else self._inner.displaced(mount)
+        return None if frames is None else {**clean.ready, **frames}
 
 
 def depth_sensor(sensors: Mapping[str, Sensor]) -> DepthSensor:

@@ -57,6 +57,7 @@ class CorruptObservation(gymnasium.ObservationWrapper, gymnasium.utils.RecordCon
             keeps a flare at its place in the world. None if there is no pose.
         sensor: Depth range and value for no reading.
         normalised: Whether depth is in [0, 1] over the sensor's range instead of in metres.
+        hfov: Horizontal field of view of the cameras in degrees, which camera faults need.
 
     Attributes:
         corruption: Corruption of the last frame.
@@ -78,6 +79,7 @@ class CorruptObservation(gymnasium.ObservationWrapper, gymnasium.utils.RecordCon
         pose: str | None = None,
         sensor: DepthSensor | None = None,
         normalised: bool = False,
+        hfov: float | None = None,
     ) -> None:
         gymnasium.utils.RecordConstructorArgs.__init__(
             self,
@@ -88,6 +90,7 @@ class CorruptObservation(gymnasium.ObservationWrapper, gymnasium.utils.RecordCon
             pose=pose,
             sensor=sensor,
             normalised=normalised,
+            hfov=hfov,
         )
         super().__init__(env)
         self.schedule, self.seed = schedule, seed
@@ -98,7 +101,8 @@ class CorruptObservation(gymnasium.ObservationWrapper, gymnasium.utils.RecordCon
         self._resets = 0
         self._frame = 0
         self._over = False
-        self._stream = FrameStream(self.sensor, normalised=normalised)
+        degrees = dict.fromkeys((RGB, DEPTH), hfov)
+        self._stream = FrameStream(self.sensor, normalised=normalised, hfov=degrees)
         # modality of an observation that is one frame
         self._whole = _modality(env.observation_space)
         self._entries = {RGB: rgb, DEPTH: depth, **({} if pose is None else {POSE: pose})}

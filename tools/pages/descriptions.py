@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 from mitigate.core.observation import HFOV_DEGREES
 from mitigate.corruptions import depth, eld, masks, rgb
-from mitigate.corruptions.faults import temporal
+from mitigate.corruptions.faults import camera, motion, temporal
 from mitigate.corruptions.unseen import calibration, codec, edges, light, optics, returns, signal
 
 
@@ -371,5 +371,50 @@ DESCRIPTIONS = {
             "frames, at the severity of the pair"
         ),
         "heuristic",
+    ),
+    "camera_height": Description(
+        "the camera is mounted higher or lower",
+        f"+-{camera.HEIGHT:g} s metres",
+        "heuristic; the camera of VLN-CE is at 1.25 m",
+    ),
+    "camera_pitch": Description(
+        "the camera looks up or down", f"+-{camera.PITCH:g} s degrees", "heuristic"
+    ),
+    "camera_roll": Description("the camera is tilted", f"+-{camera.ROLL:g} s degrees", "heuristic"),
+    "camera_yaw": Description(
+        "the camera does not look ahead", f"+-{camera.YAW:g} s degrees", "heuristic"
+    ),
+    "camera_fov": Description(
+        "another lens",
+        (
+            f"horizontal field of view +-{camera.FOV:g} s degrees, within {camera.NARROWEST:g} to "
+            f"{camera.WIDEST:g}"
+        ),
+        "heuristic",
+    ),
+    "motion_slip": Description(
+        "wheels slip",
+        f"each movement is multiplied by 1 - {motion.SLIP:g} s U(0, 1)",
+        "heuristic",
+    ),
+    "motion_drift": Description(
+        "one wheel is worn",
+        f"each forward step also turns by +-{motion.DRIFT:g} s degrees",
+        "drift of RobustNav (ICCV 2021); the size is heuristic",
+    ),
+    "motion_gain": Description(
+        "the odometry is not calibrated",
+        f"metres and degrees are each multiplied by 1 + {motion.GAIN:g} s U(-1, 1)",
+        "heuristic",
+    ),
+    "dropped_action": Description(
+        "a command is lost",
+        f"with probability {motion.LOST:g} s the robot does not move in this step",
+        "heuristic",
+    ),
+    "repeated_action": Description(
+        "a command arrives too late",
+        f"with probability {motion.LOST:g} s the previous action is executed instead",
+        "sticky actions (Machado et al., JAIR 2018: probability 0.25)",
     ),
 }
