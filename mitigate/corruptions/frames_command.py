@@ -5,7 +5,7 @@
               first
   OUT         folder for the corrupted frames, with the same tree and names
 
-  corruption  its name (see --list); frames of the other modality are skipped
+  corruption  its name (see --list), or intermittent+NAME; frames of the other modality are skipped
   severity    0 (clean) to 1 (worst)
   seed        corruption seed (0)
   episode     folder: each folder is an episode, frames in the order of their names (default);
@@ -17,6 +17,7 @@
   z_max       depth range in metres (10): valid depth beyond it is clipped
   missing     value of missing data in metres (0: no reading)
   no_reading  count of a 16-bit PNG that means no reading, next to 0 (65535)
+  hfov        horizontal field of view in degrees, which the camera faults need
 
   --list      list the corruptions: what they corrupt, what severity means, their draws and source
   --help      this help
@@ -40,7 +41,6 @@ from mitigate.core.options import asks_help, paths_and_options
 from mitigate.corruptions import folders, registry
 from mitigate.corruptions.folders import UNITS, Settings
 from mitigate.corruptions.frame_files import count_suffixes
-from mitigate.corruptions.suite import check_name
 
 MAX_LISTED = 5  # files that are printed; the summary has all
 
@@ -59,7 +59,6 @@ def _settings(options: dict[str, str]) -> Settings:
                 f"The option {option.name}= is missing. Write for example corruption=spatter "
                 "severity=0.5. List the corruptions with --list."
             )
-    check_name(options["corruption"])
     return Settings(**{name: _value(name, text) for name, text in options.items()})  # type: ignore[arg-type]
 
 

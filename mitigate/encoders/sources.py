@@ -199,7 +199,7 @@ class FolderFrames:
 
     def _find_files(self) -> dict[str, list[Path]]:
         """Return the files of each scene, in the order of their names."""
-        plan = make_plan(self.path, None, self.sensor, "folder")
+        plan = make_plan(self.path, None, (self.sensor,), "folder")
         recorded = (self.path / RECORDING).is_file()  # <scene>/<episode>/<camera>/000000.png
         scenes: dict[str, list[Path]] = {}
         for frame in plan.frames:

@@ -26,7 +26,7 @@ from mitigate.core.observation import DEPTH, RGB, sensor_lines
 from mitigate.core.options import without_config_folder
 from mitigate.core.progress import duration, say
 from mitigate.core.workers import ALONE, packed
-from mitigate.corruptions import CLEAN, Corruption
+from mitigate.corruptions import CLEAN, Corruption, registry
 from mitigate.evaluation import evaluate as evaluation
 from mitigate.evaluation import provenance
 from mitigate.evaluation.comparison import RANDOM, Comparison, RandomPolicy, compare
@@ -236,7 +236,11 @@ def _plain(name: str) -> str:
 def _visible(met: Sequence[Corruption], world: World, suite: str) -> list[Corruption]:
     """Return the conditions of a suite without corruptions of frames that the world lacks."""
     unseen = {RGB, DEPTH} - {*world.sensors}
-    left_out = [one.name for one in met if unseen & {*one.modalities}]
+    left_out = [
+        one.name
+        for one in met
+        if any({*registry.record(part.name).modalities} <= unseen for part in one.parts)
+    ]
     conditions = [one for one in met if one.name not in left_out]
     if all(one.severity == 0 for one in conditions):
         raise ValueError(

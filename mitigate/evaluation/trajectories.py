@@ -18,7 +18,7 @@ from mitigate.agents.agent import Agent
 from mitigate.core.files import write_figure
 from mitigate.core.observation import DEPTH, POSE, RGB, VIEWS, Observation
 from mitigate.core.pictures import depth_picture, draw_path, strip
-from mitigate.corruptions import CLEAN, Corruption, Key, corrupt_observation
+from mitigate.corruptions import CLEAN, Corruption, FrameStream, Key
 from mitigate.evaluation.episode import run_episode
 from mitigate.evaluation.rows import Row
 from mitigate.evaluation.sections import label
@@ -126,7 +126,7 @@ def first_sight(
     """
     clean = dict(world.reset(episode))
     key, sensor = Key(seed, episode.episode_id, 0), depth_sensor(world.sensors)
-    met = corrupt_observation(clean, corruption, key, sensor)
+    met = FrameStream(sensor).corrupt(clean, corruption, key)
     first = DEPTH if {DEPTH, RGB}.intersection(corruption.modalities) == {DEPTH} else RGB
     entry = next((name for name in (first, RGB, DEPTH) if name in clean), "")
     far = float(clean[DEPTH].max()) if DEPTH in clean else 0.0

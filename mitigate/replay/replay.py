@@ -305,16 +305,15 @@ def replay(
 def inapplicable(corruption: Any, agent: Any, drives: Sequence[Any]) -> str:
     """Return why a corruption does not apply to an agent and drives; empty if it does."""
     from mitigate.agents.agent import as_agent
-    from mitigate.corruptions.registry import parts
+    from mitigate.corruptions.registry import parts, record
 
-    lacking = [
-        (part, drive.name)
-        for drive in drives
-        for part in corruption.modalities
-        if part in ("rgb", "depth") and part not in drive.frames
-    ]
-    if lacking:
-        return f"{lacking[0][1]} has no {lacking[0][0]} frames"
+    if any(record(part.name).modality == "action" for part in corruption.parts):
+        return "the recording decides how the robot moves"
+    for drive in drives:
+        for part in corruption.parts:
+            sensors = {"rgb", "depth"} & {*record(part.name).modalities}
+            if sensors and not sensors & {*drive.frames}:
+                return f"{drive.name} has no {' or '.join(sorted(sensors))} frames"
     if "white_box" in parts(corruption.name) and not as_agent(agent).system_prompt:
         return "the agent has no system prompt"
     return ""

@@ -37,7 +37,7 @@ from mitigate.core.progress import duration, say
 from mitigate.core.seeding import digest, generator
 from mitigate.core.workers import packed
 from mitigate.corruptions import CLEAN, Corruption, Schedule
-from mitigate.corruptions.registry import modality
+from mitigate.corruptions.registry import family, modality
 from mitigate.corruptions.suite import check_name
 from mitigate.evaluation import provenance
 from mitigate.evaluation.benchmark import checked_world
@@ -319,6 +319,12 @@ def _corruptions(suite: str | Sequence[str], policy: Policy) -> list[str]:
             raise ValueError(conf.explain(error, "evaluate", [f"suite={suite}"])) from None
     else:
         listed = [check_name(name) for name in suite if name != "clean"]
+    if faults := [name for name in listed if family(name)]:
+        raise ValueError(
+            f"suite={suite} has {faults[0]}, a {family(faults[0])} fault, which training does not "
+            "draw. Harden with corruptions of single frames, and measure faults with "
+            "mitigate.benchmark."
+        )
     kinds = {name: modality(name) for name in listed if name != "clean"}
     sensors = [sensor for sensor in (RGB, DEPTH) if sensor in policy.sensors]
     names = [name for name, kind in kinds.items() if kind in sensors]

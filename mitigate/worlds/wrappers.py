@@ -22,10 +22,9 @@ from mitigate.core.observation import DEPTH, POSE, RGB
 from mitigate.corruptions import (
     Corruption,
     DepthSensor,
+    FrameStream,
     Key,
     Schedule,
-    corrupt_normalised,
-    corrupt_observation,
 )
 from mitigate.corruptions.normalised import check_sensor
 from mitigate.corruptions.schedule import drawn, names_of
@@ -44,9 +43,9 @@ class CorruptObservation(gymnasium.ObservationWrapper, gymnasium.utils.RecordCon
 
     Episodes are named by the seed of ``reset(seed=n)`` and the number of resets since then: "n-0",
     "n-1", ...; before the first seed "unseeded-0" and so on. ``frame`` is the number of steps since
-    the reset. The pixels are a function of (schedule, seed, reset seed, resets, steps) only. An
-    environment that resets itself, as in ``gymnasium.wrappers.Autoreset``, resets in the step after
-    the end of an episode.
+    the reset. The pixels are a function of (schedule, seed, reset seed, resets, steps) only, and
+    under a temporal fault of the earlier frames of the episode. An environment that resets itself,
+    as in ``gymnasium.wrappers.Autoreset``, resets in the step after the end of an episode.
 
     Args:
         env: The environment.
@@ -58,6 +57,7 @@ class CorruptObservation(gymnasium.ObservationWrapper, gymnasium.utils.RecordCon
             keeps a flare at its place in the world. None if there is no pose.
         sensor: Depth range and value for no reading.
         normalised: Whether depth is in [0, 1] over the sensor's range instead of in metres.
+        hfov: Horizontal field of view of the cameras in degrees, which camera faults need.
 
     Attributes:
         corruption: Corruption of the last frame.
@@ -79,6 +79,7 @@ class CorruptObservation(gymnasium.ObservationWrapper, gymnasium.utils.RecordCon
         pose: str | None = None,
         sensor: DepthSensor | None = None,
         normalised: bool = False,
+        hfov: float | None = None,
     ) -> None:
         gymnasium.utils.RecordConstructorArgs.__init__(
             self,
@@ -89,6 +90,7 @@ class CorruptObservation(gymnasium.ObservationWrapper, gymnasium.utils.RecordCon
             pose=pose,
             sensor=sensor,
             normalised=normalised,
+            hfov=hfov,
         )
         super().__init__(env)
         self.schedule, self.seed = schedule, seed
@@ -99,7 +101,8 @@ class CorruptObservation(gymnasium.ObservationWrapper, gymnasium.utils.RecordCon
         self._resets = 0
         self._frame = 0
         self._over = False
-        self._corrupt = corrupt_normalised if normalised else corrupt_observation
+        degrees = dict.fromkeys((RGB, DEPTH), hfov)
+        self._stream = FrameStream(self.sensor, normalised=normalised, hfov=degrees)
         # modality of an observation that is one frame
         self._whole = _modality(env.observation_space)
         self._entries = {RGB: rgb, DEPTH: depth, **({} if pose is None else {POSE: pose})}
@@ -149,7 +152,7 @@ class CorruptObservation(gymnasium.ObservationWrapper, gymnasium.utils.RecordCon
         self.corruption, self.key = drawn(self.schedule, self.seed, self._episode, self._frame)
         parts = observation if self._whole is None else {self._whole: observation}
         frames = {name: parts[entry] for name, entry in self._entries.items() if entry in parts}
-        corrupted = self._corrupt(frames, self.corruption, self.key, self.sensor)
+        corrupted = self._stream.corrupt(frames, self.corruption, self.key)
         if self._whole is not None:
             return corrupted[self._whole]
         return {**observation, **{self._entries[name]: frame for name, frame in corrupted.items()}}

@@ -343,7 +343,8 @@ def test_unit_too_small_for_the_range_is_rejected(run, tmp_path):
 def test_list_names_every_corruption(capsys):
     assert program.main(["--list"]) == 0
     lines = capsys.readouterr().out.splitlines()
-    assert [line.split()[0] for line in lines[1:]] == list(registry.known("rgb", "depth"))
+    listed = [*registry.known("rgb", "depth"), *registry.fault_names("temporal", "camera")]
+    assert [line.split()[0] for line in lines[1:]] == listed
     assert all(len(line) <= 170 for line in lines)
 
 

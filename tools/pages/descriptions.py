@@ -13,6 +13,7 @@ import yaml
 
 from mitigate.core.observation import HFOV_DEGREES
 from mitigate.corruptions import depth, eld, masks, rgb
+from mitigate.corruptions.faults import camera, motion, temporal
 from mitigate.corruptions.unseen import calibration, codec, edges, light, optics, returns, signal
 
 
@@ -30,7 +31,10 @@ class Description(NamedTuple):
     sources: str
 
 
-MODULES = (depth, eld, masks, rgb, calibration, codec, edges, light, optics, returns, signal)
+MODULES = (
+    *(depth, eld, masks, rgb, calibration, codec, edges, light, optics, returns, signal),
+    *(camera, motion, temporal),
+)
 DERIVED = {
     "defocus_low": 1 - rgb.DEFOCUS_SPREAD,
     "defocus_high": 1 + rgb.DEFOCUS_SPREAD,
