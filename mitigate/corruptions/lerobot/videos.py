@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from fractions import Fraction
@@ -107,7 +108,10 @@ def open_video(path: Path, camera: Camera) -> Iterator[tuple[Any, Any]]:
                 _check_size(path, camera, stream.height, stream.width)
                 stream.thread_type = "AUTO"
                 yield container, stream
-        except av.FFmpegError as error:
+        except (av.FFmpegError, OSError) as error:
+            # a damaged file makes FFmpeg seek to places before its start: EINVAL
+            if not isinstance(error, av.FFmpegError) and error.errno != errno.EINVAL:
+                raise
             raise ValueError(
                 f"{path} cannot be decoded: it is cut short or damaged ({error!s:.200}). {FIX}"
             ) from error
