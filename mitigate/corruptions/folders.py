@@ -118,7 +118,7 @@ def run(source: Path | str, out: Path | str, settings: Settings) -> dict:
         OSError: ``out`` cannot be written.
     """
     source, out = Path(source), Path(out)
-    _check_folders(source, out)
+    check_folders(source, out)
     kinds = Corruption(settings.corruption, settings.severity).modalities
     plan = make_plan(source, out, kinds, settings.episode)
     if not plan.frames:
@@ -310,7 +310,13 @@ def _write_summary(out: Path, summary: dict) -> None:
 # -------------------------------------------------------------------------------- user errors
 
 
-def _check_folders(source: Path, out: Path) -> None:
+def check_folders(source: Path, out: Path) -> None:
+    """Check that ``source`` exists, and that neither folder contains the other.
+
+    Raises:
+        FileNotFoundError: There is no folder ``source``.
+        ValueError: ``out`` is a file, or one folder contains the other.
+    """
     if not source.is_dir():
         hint = " Put single files into a folder." if source.is_file() else " Check the path."
         raise FileNotFoundError(f"There is no folder {source}.{hint}")

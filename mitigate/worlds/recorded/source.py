@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
@@ -111,6 +111,7 @@ class Source:
         stepped: Whether each instant is one step of an agent; otherwise a frame of the camera.
         dropped: Number of instants left out because no pose or no frame of the other camera was
             near in time.
+        signals: Recorded numbers by name, such as "action": float64 [N, size].
     """
 
     name: str
@@ -120,6 +121,7 @@ class Source:
     poses: np.ndarray | None
     stepped: bool
     dropped: int
+    signals: Mapping[str, np.ndarray] = field(default_factory=dict, kw_only=True)
 
     def frames(self, chosen: Sequence[int]) -> Iterator[dict[str, np.ndarray]]:
         """Yield the frame of each camera at each chosen instant, in order.
