@@ -21,7 +21,9 @@ def config(*options: str) -> HardenConfig:
 
 def test_harden_command_prints_the_comparison_and_writes_the_weights(tmp_path, capsys):
     options = ["test_episodes=4", "conditions=[low_light,spatter]", "validation=0"]
-    main(["harden", *NAMES, *SHORT, *options, f"out={tmp_path}/run"])
+    with pytest.raises(SystemExit) as exit_info:
+        main(["harden", *NAMES, *SHORT, *options, f"out={tmp_path}/run"])
+    assert not exit_info.value.code
     assert "SR (%), mean of 2 corruptions" in capsys.readouterr().out
     assert (tmp_path / "run/agent/model.safetensors").is_file()
 
@@ -29,7 +31,7 @@ def test_harden_command_prints_the_comparison_and_writes_the_weights(tmp_path, c
 def test_harden_config_has_the_defaults_of_the_function():
     parameters = signature(harden).parameters
     defaults = vars(HardenConfig())
-    shared = set(parameters) & set(defaults) - {"policy", "world", "suite"}
+    shared = set(parameters) & set(defaults) - {"policy", "world", "suite", "settings"}
     assert len(shared) > 12
     assert {name: parameters[name].default for name in shared} == {
         name: defaults[name] for name in shared

@@ -109,7 +109,7 @@ class Tent(Adaptation):
     @torch.no_grad()
     def _step(self, adapted: list[Tensor]) -> None:
         """Take a step along the gradients, if all are finite."""
-        trained = [weight for weight in adapted if weight.grad is not None]
-        if all(bool(torch.isfinite(weight.grad).all()) for weight in trained):
-            for weight in trained:
-                weight.sub_(weight.grad, alpha=self.lr)
+        steps = [(weight, weight.grad) for weight in adapted if weight.grad is not None]
+        if all(bool(torch.isfinite(gradient).all()) for _, gradient in steps):
+            for weight, gradient in steps:
+                weight.sub_(gradient, alpha=self.lr)
