@@ -109,7 +109,7 @@ class Tent(Adaptation):
     @torch.no_grad()
     def _step(self, adapted: list[Tensor]) -> None:
         """Take a step along the gradients, if all are finite."""
-        trained = [weight for weight in adapted if weight.grad is not None]
-        if all(bool(torch.isfinite(weight.grad).all()) for weight in trained):
-            for weight in trained:
-                weight.sub_(weight.grad, alpha=self.lr)
+        pairs = [(weight, weight.grad) for weight in adapted if weight.grad is not None]
+        if all(bool(torch.isfinite(gradient).all()) for _, gradient in pairs):
+            for weight, gradient in pairs:
+                weight.sub_(gradient, alpha=self.lr)
