@@ -109,7 +109,7 @@ class Tent(Adaptation):
     @torch.no_grad()
     def _step(self, adapted: list[Tensor]) -> None:
         """Take a step along the gradients, if all are finite."""
-        steps = [(weight, weight.grad) for weight in adapted if weight.grad is not None]
-        if all(bool(torch.isfinite(gradient).all()) for _, gradient in steps):
-            for weight, gradient in steps:
+        pairs = [(weight, weight.grad) for weight in adapted if weight.grad is not None]
+        if all(bool(torch.isfinite(gradient).all()) for _, gradient in pairs):
+            for weight, gradient in pairs:
                 weight.sub_(gradient, alpha=self.lr)
