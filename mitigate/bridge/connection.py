@@ -229,6 +229,7 @@ class Connection:
         self._check_chosen()
         self.scene, self.episode = read_start(message)
         self.open = True
+        self.streams.clear()
         self.loop = message.get("loop") is True
         self.seconds = 0.0
         self.calls = 0

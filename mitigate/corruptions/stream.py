@@ -154,6 +154,7 @@ class FrameStream:
         taken = key.frame
         for late in (part for part in parts if shows_past(part)):
             taken -= _draw(late, replace(key, frame=taken))
+        taken = max(taken, key.frame - OLDEST)  # a pair may add two ages
         instant, frame = self._recall(entry, taken)
         arriving: dict[str, Any] = {entry: frame.copy()}
         if POSE in self._past:

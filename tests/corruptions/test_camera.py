@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from mitigate.bridge.cameras import Rig
+from mitigate.bridge.condition import why_not_applicable
 from mitigate.core import conf
 from mitigate.core.observation import DEPTH, RGB
 from mitigate.corruptions import (
@@ -200,6 +202,17 @@ def test_files_need_a_field_of_view():
         Settings("camera_height", 0.5, hfov=90.0)
     with pytest.raises(ValueError, match="hfov must be 10 to 150"):
         corrupt(np.zeros((4, 4, 3), np.uint8), "camera_yaw", 0.5, key=0, hfov=180.0)
+
+
+def test_bridge_skips_faults_that_it_cannot_show():
+    def reason(name, hfov):
+        reports = SimpleNamespace(cameras=[{"type": RGB, "hfov": hfov}], first={})
+        return why_not_applicable(Corruption(name, 0.6), reports)
+
+    assert reason("camera_roll", 90.0) == reason("frozen_frame", None) == ""
+    assert "no hfov" in reason("camera_roll", None)
+    assert "another height" in reason("camera_height", 90.0)
+    assert reason("depth_lag", 90.0) == "the agent has no depth camera"
 
 
 def test_wrappers_take_the_field_of_view(clean):
