@@ -295,10 +295,10 @@ def _check_features(file: Path, info: Mapping[str, Any]) -> dict[str, Any]:
         )
     for name, feature in features.items():
         # lerobot forbids a slash too (_validate_feature_names)
-        if not 0 < len(name) <= MAX_NAME or re.search(r"[/\\\0]", name) or name in (".", ".."):
+        if not 0 < len(name) <= MAX_NAME or re.search(r"^\.|[/\\\0]", name):
             raise ValueError(
                 f"{file}: the name of a feature must have 1 to {MAX_NAME} characters without / and "
-                f"\\, got {short(name)}."
+                f"\\, and must not begin with a dot, got {short(name)}."
             )
         dtype = feature.get("dtype") if isinstance(feature, dict) else None
         if dtype not in DTYPES:
@@ -423,8 +423,8 @@ def _template(file: Path, key: str, template: object) -> str:
     fields = "{chunk_index:03d}, {file_index:03d} and {video_key}"
     if isinstance(template, str) and len(template) <= MAX_TEMPLATE:
         plain = _FIELD.sub("0", template)
-        is_inside = not plain.startswith("/") and ".." not in plain.split("/")
-        if is_inside and plain and not re.search(r"[{}\\\0]", plain):
+        # no part may be empty, hidden or "..", so that each file has one name
+        if re.fullmatch(r"[^./{}\\\0][^/{}\\\0]*(/[^./{}\\\0][^/{}\\\0]*)*", plain):
             return template
     raise ValueError(
         f"{file}: {key} must be a path inside the dataset with the fields {fields}, got "
@@ -460,8 +460,8 @@ def _place(
             f"{values['chunk_index']} and {values['file_index']}. {FIX}"
         )
 
-    def value(found: re.Match[str]) -> str:
-        return video if found[1] == "video_key" else f"{values[found[1]]:0{found[2] or 1}d}"
+    def value(match: re.Match[str]) -> str:
+        return video if match[1] == "video_key" else f"{values[match[1]]:0{match[2] or 1}d}"
 
     return _FIELD.sub(value, template)
 
@@ -471,6 +471,8 @@ def _flatten(column: Any, size: int, name: str, path: Path) -> np.ndarray:
     import pyarrow
 
     array = pyarrow.chunked_array(column).combine_chunks() if column.num_chunks else column
+    if isinstance(array.type, pyarrow.BaseExtensionType):  # if `datasets` is imported: arrays
+        array = array.storage
     while _is_list(array.type):
         array = array.flatten()
     values = np.asarray(array.to_numpy(zero_copy_only=False))

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from mitigate.core.files import FREE, RATIO, lfs_problem
+from mitigate.core.names import escaped
 from mitigate.core.output import is_regular
 
 MAX_ROWS = 1 << 24  # rows per file (heuristic): 150 hours at 30 Hz
@@ -49,12 +50,13 @@ def open_table(path: Path) -> Iterator[Any]:
         with pq.ParquetFile(path, page_checksum_verification=True) as file:
             _check_size(path, file.metadata)
             yield file
-    except (pyarrow.ArrowException, OSError) as error:
+    except (pyarrow.ArrowException, OSError, UnicodeDecodeError) as error:
         if isinstance(error, OSError) and error.strerror is not None:  # of the system
             raise
+        cause = escaped(" ".join(str(error).split()))
         raise ValueError(
-            f"{path} cannot be read as parquet: it is cut short or damaged ({error!s:.200}). If it "
-            f"was recorded, call dataset.finalize(). {FIX}"
+            f"{path} cannot be read as parquet: it is cut short or damaged ({cause}). If it was "
+            f"recorded, call dataset.finalize(). {FIX}"
         ) from error
 
 

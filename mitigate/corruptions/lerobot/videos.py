@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import errno
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from fractions import Fraction
 from pathlib import Path
@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from mitigate.core.files import lfs_problem
-from mitigate.core.names import short
+from mitigate.core.names import escaped, short
 from mitigate.core.observation import RGB
 from mitigate.core.output import is_regular, open_output
 from mitigate.corruptions.lerobot.dataset import Camera
@@ -105,6 +105,8 @@ def open_video(path: Path, camera: Camera) -> Iterator[tuple[Any, Any]]:
                 if not container.streams.video:
                     raise ValueError(f"{path} has no video stream. {FIX}")
                 stream = container.streams.video[0]
+                if stream.codec_context is None:
+                    raise ValueError(f"{path} has an unknown codec. {FIX}")
                 _check_size(path, camera, stream.height, stream.width)
                 stream.thread_type = "AUTO"
                 yield container, stream
@@ -112,8 +114,9 @@ def open_video(path: Path, camera: Camera) -> Iterator[tuple[Any, Any]]:
             # a damaged file makes FFmpeg seek to places before its start: EINVAL
             if not isinstance(error, av.FFmpegError) and error.errno != errno.EINVAL:
                 raise
+            cause = escaped(" ".join(str(error).split()))
             raise ValueError(
-                f"{path} cannot be decoded: it is cut short or damaged ({error!s:.200}). {FIX}"
+                f"{path} cannot be decoded: it is cut short or damaged ({cause}). {FIX}"
             ) from error
 
 
@@ -203,6 +206,37 @@ def read_codes(path: Path, frame: Any) -> np.ndarray:
     return frame.to_ndarray(format=DEPTH_PIXELS)
 
 
+def encode(
+    target: Path, frames: Iterable[np.ndarray], camera: Camera, encoding: Encoding, fps: int
+) -> None:
+    """Write a video.
+
+    Args:
+        target: The file to write.
+        frames: uint8 [H, W, 3], or float32 metres [H, W].
+        camera: The camera.
+        encoding: How the frames are encoded.
+        fps: Frames per second.
+    """
+    av = video_library()
+    with open_output(target, "wb") as file, av.open(file, "w", format=CONTAINER) as output:
+        written = _add_stream(output, camera, encoding, fps)
+        for frame in frames:
+            if camera.code is None:
+                new = av.VideoFrame.from_ndarray(frame, format=RGB_PIXELS)
+            else:
+                new = av.VideoFrame.from_ndarray(camera.code.codes(frame), format=DEPTH_PIXELS)
+            output.mux(written.encode(new))
+        output.mux(written.encode(None))
+
+
+def _add_stream(output: Any, camera: Camera, encoding: Encoding, rate: Any) -> Any:
+    stream = output.add_stream(encoding.codec, rate, options=encoding.options)
+    stream.width, stream.height = camera.width, camera.height
+    stream.pix_fmt = encoding.pixels
+    return stream
+
+
 def corrupt_video(
     source: Path,
     target: Path,
@@ -231,9 +265,7 @@ def corrupt_video(
         av.open(file, "w", format=CONTAINER) as output,
     ):
         rate = stream.average_rate or stream.guessed_rate or Fraction(30)
-        written = output.add_stream(encoding.codec, rate, options=encoding.options)
-        written.width, written.height = camera.width, camera.height
-        written.pix_fmt = encoding.pixels
+        written = _add_stream(output, camera, encoding, rate)
         written.codec_context.time_base = stream.time_base
         for number, frame in enumerate(container.decode(stream)):
             clean = _as_frame(source, camera, frame)
