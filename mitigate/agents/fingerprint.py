@@ -88,9 +88,8 @@ def contents(agent: Any, version: str | None = None) -> Contents:
     code = code_of(type(agent), *map(type, modules))
     unreadable |= code.unreadable
     shas = {place: weights_sha(net) for place, net in nets.items()}
-    arrays = (
-        {} if shas else {k: sha for k, part in attributes_of(agent) if (sha := array_sha(part))}
-    )
+    arrays = {name: array_sha(part) for name, part in attributes_of(agent)}
+    weights = shas or {name: sha for name, sha in arrays.items() if sha}
     optional = {
         "state": entries,
         **code.parts,
