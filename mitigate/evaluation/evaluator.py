@@ -136,7 +136,7 @@ def _together(agent: Any, world: Any) -> int:
 
 
 def _parameters(agent: Any) -> Iterator[torch.nn.Parameter]:
-    return (parameter for net in networks(agent) for parameter in net.parameters())
+    return (parameter for net in networks(agent).values() for parameter in net.parameters())
 
 
 def evaluate(

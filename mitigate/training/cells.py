@@ -116,15 +116,6 @@ class Cell:
         """Return the folder of the rows of an additional evaluation; "" is the main one."""
         return self.folder / (f"evaluation-{name}" if name else "evaluation")
 
-    def left(self, kind: str) -> list[tuple[str, int]]:
-        """Return the output files of a program of ``commands`` with their times.
-
-        A program that had nothing to do does not change them.
-        """
-        rows = self.evaluation_folder(kind.removeprefix("evaluate").strip()) / ROWS
-        files = [*(self.folder / "run").glob("*/step-*.pt")] if kind == "train" else [rows]
-        return sorted((str(file), file.stat().st_mtime_ns) for file in files if file.is_file())
-
     def commands(self, config: TablesConfig) -> list[tuple[str, list[str]]]:
         """Return the programs that make the cell.
 
