@@ -83,7 +83,7 @@ def measure(
     out: Path,
     **guards: str | None,
 ) -> None:
-    """Evaluate a policy under the corruptions of the frames that it reads; its rows are in ``out``."""
+    """Evaluate a policy under a suite's corruptions of the frames that it reads."""
     conditions = conf.load_config("evaluate", [f"suite={suite}"]).suite.conditions
     mitigate.benchmark(
         policy,
@@ -105,7 +105,7 @@ def tables(known: list[Row], unseen: list[Row]) -> str:
 
 
 def stored_tables(file: Path) -> str:
-    """Return the tables of a file of rows, in which the split of unseen corruptions is ``UNSEEN``."""
+    """Return the tables of a file of rows; those of unseen corruptions have the split ``UNSEEN``."""
     stored = rows.read(file)
     known = [row for row in stored if row["split"] != UNSEEN]
     return tables(known, [row for row in stored if row["split"] == UNSEEN])
