@@ -27,6 +27,7 @@ from mitigate.worlds.world import World
 SPLIT = "validation"
 # fraction of the trained weights in the average: trained, averaged, given (0.75: heuristic)
 MIXES = {"trained": 1.0, "averaged": 0.75, "given": 0.0}
+TIE = 1e-3  # relative difference of scores that counts as equal (heuristic)
 
 
 def choose(
@@ -43,7 +44,7 @@ def choose(
 
     The best weights have the highest score: the mean of the clean success rate and the mean success
     rate under the corruptions, or of the returns where the world measures only these. If scores are
-    equal, the weights with more training win.
+    equal, the weights that come first in ``MIXES`` win.
 
     Args:
         policy: the trained policy, changed in place.
@@ -74,7 +75,8 @@ def choose(
                 version=candidate.version,
             )
         )
-    best = max(scores, key=lambda name: scores[name])
+    least = max(scores.values()) - TIE * max(map(abs, scores.values()))
+    best = next(name for name, value in scores.items() if value >= least)
     listed = ", ".join(f"{name} {value:.3g}" for name, value in scores.items())
     say(f"harden: mean score of {len(episodes)} validation episodes: {listed}. Chosen: {best}.")
     policy.network.load_state_dict(average(start, end, MIXES[best]))

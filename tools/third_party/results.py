@@ -105,7 +105,7 @@ def tables(known: list[Row], unseen: list[Row]) -> str:
 
 
 def stored_tables(file: Path) -> str:
-    """Return the tables of a file of rows; those of unseen corruptions have the split ``UNSEEN``."""
+    """Return the tables of a file of rows; the split of unseen corruptions is ``UNSEEN``."""
     stored = rows.read(file)
     known = [row for row in stored if row["split"] != UNSEEN]
     return tables(known, [row for row in stored if row["split"] == UNSEEN])
