@@ -88,7 +88,7 @@ def _fork(
 
 def popen(words: Sequence[str], **options: Any) -> subprocess.Popen[bytes] | Supervisor:
     """Start the supervisor of ``mitigate run`` as a fork, in place of ``subprocess.Popen``."""
-    if list(words[:3]) != [sys.executable, "-I", "-S"]:
+    if sys.platform != "linux" or list(words[:3]) != [sys.executable, "-I", "-S"]:
         return subprocess.Popen(words, **options)
     return Supervisor(words[3:], options["env"], options["stdout"], options["pass_fds"][0])
 
