@@ -45,7 +45,7 @@ from mitigate.corruptions.lerobot.dataset import (
     rows_of,
 )
 from mitigate.corruptions.lerobot.frames import check_images, stored_image
-from mitigate.corruptions.lerobot.tables import FIX, integers, open_table, parquet
+from mitigate.corruptions.lerobot.tables import FIX, check_file, integers, open_table, parquet
 from mitigate.corruptions.lerobot.videos import Encoding
 from mitigate.corruptions.registry import version
 from mitigate.corruptions.suite import SUITE_VERSION, Corruption, corrupt
@@ -396,6 +396,8 @@ def _digest(dataset: Dataset) -> str:
         path.relative_to(dataset.path).as_posix()
         for path in (dataset.path / EPISODES).glob("*/*.parquet")
     }
+    for name in names:
+        check_file(dataset.path / name)
     return _short_hash("".join(name + sha256(dataset.path / name) for name in sorted(names)))
 
 

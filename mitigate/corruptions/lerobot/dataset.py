@@ -418,13 +418,15 @@ def _template(file: Path, key: str, template: object) -> str:
 
     Raises:
         ValueError: It is not a relative path, leaves the dataset, or has other fields than
-            chunk_index, file_index and video_key.
+            chunk_index, file_index and, for videos, video_key.
     """
-    fields = "{chunk_index:03d}, {file_index:03d} and {video_key}"
+    is_video = key == "video_path"
+    fields = "{chunk_index:03d}, {file_index:03d}" + ", {video_key}" * is_video
     if isinstance(template, str) and len(template) <= MAX_TEMPLATE:
         plain = _FIELD.sub("0", template)
+        has_fields = is_video or "{video_key" not in template
         # no part may be empty, hidden or "..", so that each file has one name
-        if re.fullmatch(r"[^./{}\\\0][^/{}\\\0]*(/[^./{}\\\0][^/{}\\\0]*)*", plain):
+        if has_fields and re.fullmatch(r"[^./{}\\\0][^/{}\\\0]*(/[^./{}\\\0][^/{}\\\0]*)*", plain):
             return template
     raise ValueError(
         f"{file}: {key} must be a path inside the dataset with the fields {fields}, got "

@@ -11,12 +11,11 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from mitigate.core.files import lfs_problem
 from mitigate.core.names import escaped, short
 from mitigate.core.observation import RGB
-from mitigate.core.output import is_regular, open_output
+from mitigate.core.output import open_output
 from mitigate.corruptions.lerobot.dataset import Camera
-from mitigate.corruptions.lerobot.tables import FIX, INSTALL
+from mitigate.corruptions.lerobot.tables import FIX, INSTALL, check_file
 
 # Reading: only this container, so that a playlist cannot name other files or addresses.
 CONTAINER = "mp4"
@@ -95,10 +94,7 @@ def open_video(path: Path, camera: Camera) -> Iterator[tuple[Any, Any]]:
         ValueError: It is damaged, or has another size than ``camera``.
     """
     av = video_library()
-    if not is_regular(path):
-        raise FileNotFoundError(f"The dataset lacks the file {path}. {FIX}")
-    if pointer := lfs_problem(path):
-        raise ValueError(f"{path} {pointer}.")
+    check_file(path)
     with open(path, "rb") as file:
         try:
             with av.open(file, format=CONTAINER) as container:
