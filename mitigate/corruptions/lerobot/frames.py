@@ -9,7 +9,8 @@ from typing import Any
 import numpy as np
 
 from mitigate.corruptions.lerobot import images, videos
-from mitigate.corruptions.lerobot.dataset import VIDEO, Camera, Dataset, Episode
+from mitigate.corruptions.lerobot.dataset import Dataset
+from mitigate.corruptions.lerobot.metadata import VIDEO, Camera, Episode
 from mitigate.corruptions.lerobot.tables import BATCH_ROWS, FIX, check_columns, integers, open_table
 
 

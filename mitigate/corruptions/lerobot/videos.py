@@ -14,7 +14,7 @@ import numpy as np
 from mitigate.core.names import escaped, short
 from mitigate.core.observation import RGB
 from mitigate.core.output import open_output
-from mitigate.corruptions.lerobot.dataset import Camera
+from mitigate.corruptions.lerobot.metadata import Camera
 from mitigate.corruptions.lerobot.tables import FIX, INSTALL, check_file
 
 # Reading: only this container, so that a playlist cannot name other files or addresses.
