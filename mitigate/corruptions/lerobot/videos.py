@@ -151,22 +151,22 @@ def decode(
     """
     if not times:
         return
-    left = list(times)[::-1]
+    pending = list(times)[::-1]
     before: tuple[float, Any] | None = None  # the frame before, and its time
     with open_video(path, camera) as (container, stream):
         # one frame earlier: the first frame may lie a rounding error before its time
-        container.seek(max(0, round(left[-1] / stream.time_base) - 1), stream=stream)
+        container.seek(max(0, round(pending[-1] / stream.time_base) - 1), stream=stream)
         for frame in container.decode(stream):
             if frame.pts is None:
                 continue
             now = float(frame.pts * stream.time_base)
-            while left and before is not None and left[-1] - before[0] <= now - left[-1]:
-                yield _pixels(path, camera, before, left.pop(), tolerance)
-            if not left:
+            while pending and before is not None and pending[-1] - before[0] <= now - pending[-1]:
+                yield _pixels(path, camera, before, pending.pop(), tolerance)
+            if not pending:
                 return
             before = now, frame
-        while left:
-            yield _pixels(path, camera, before, left.pop(), tolerance)
+        while pending:
+            yield _pixels(path, camera, before, pending.pop(), tolerance)
 
 
 def _pixels(
