@@ -56,7 +56,6 @@ ALLOWED = {
     ("mitigate/shipping/export.py", "write_text"): OWN,
     ("mitigate/replay/export_drive.py", "Writer1"): OWN,
     ("mitigate/replay/export_drive.py", "Writer2"): OWN,
-    ("tools/bench/scaling.py", "mkdir"): OWN,
     ("mitigate/training/journal.py", "SummaryWriter"): "names its file by time and process; "
     "event files that exist are checked before",
     (

@@ -40,111 +40,7 @@ PICTURES = {
     "camera": "pictures/faults-camera.jpg",
     "motion": "pictures/faults-motion.png",
 }
-TEXT = """# Faults
-
-Corruptions of the [standard suite](corruptions.md) act on single frames. A robot also fails over
-time, its camera may be mounted wrongly, and its motion is not exact. A fault has a severity s
-from 0 (no fault) to 1, a key and its own version in result rows, as an [unseen
-corruption](unseen-corruptions.md). Faults are not part of `suite=full` or `suite=all`, and no
-recipe trains on them.
-
-```bash
-make evaluate ARGS="checkpoint=checkpoints/base suite=temporal"
-make evaluate ARGS="checkpoint=checkpoints/base suite=camera"
-make evaluate ARGS="checkpoint=checkpoints/base suite=motion"
-```
-
-Each family has its own table in the results. [The base agent](results/faults.md) was measured under
-all faults. `python -m tools.pages.faults` writes this page and its pictures.
-
-## Time
-
-![One view of {frames} steps, clean and under each temporal fault]({temporal_picture})
-
-The forward view at {frames} steps in apartment {apartment}, at s = {severity:g}. The last rows
-show depth.
-
-{temporal}
-- A **frame** is an observation of the sequence: a step of `mitigate evaluate` (0.25 m or 15
-  degrees in the apartments and in Habitat), also a step at which the agent reads no frames; a step
-  of a gymnasium or torchrl environment; a file of a folder; a call of the agent's sensors under
-  `mitigate run`.
-- All views of a panorama and both sensors fail together, except under `depth_lag` and
-  `exposure_flicker`. With one sensor, the fault affects that sensor. The pose is never delayed.
-- In a pair, a late frame is corrupted as when it was taken: `low_light_noise+frame_delay` shows
-  old noise on an old picture. The order does not matter.
-- A frame that is lost at one severity is lost at every higher severity too.
-- Rows do not depend on resume, workers and parallel episodes: the frames are a function of the key
-  and the earlier frames of the episode.
-
-## Camera
-
-![The forward view under each fault of the camera, rendered and warped]({camera_picture})
-
-The forward view: clean, rendered from the displaced camera at s = 0.5 and 1, and warped from the
-clean frame at s = 0.5 and 1, which is what other worlds and files get.
-
-{camera}
-- The displacement is constant in an episode. Its direction is drawn.
-- **Rendered**: the apartments render again (`World.displaced`), so nothing is lost.
-- **Warped**: in all other worlds and entry points. A rotation and a field of view are exact
-  homographies of a pinhole camera with square pixels. What the camera did not see is black, or
-  without a reading. RGB is interpolated bilinearly; depth is the nearest reading, converted to
-  depth along the new optical axis. The horizontal field of view must be known: `hfov` of the
-  world's sensors, of the cameras under `mitigate run`, or the argument `hfov=`.
-- `camera_height` needs rendering. A frame does not show what is behind an edge.
-- A **panorama** is one rigid rig: pitch of the rig is roll for a view to the side.
-- In a pair, the camera comes first: `spatter+camera_roll` has level dirt on a tilted view.
-- The pose is that of the robot. The agent does not know that its camera has moved.
-
-## Motion
-
-![Paths of one list of commands under each fault of motion]({motion_picture})
-
-Paths of the expert's commands in apartment {apartment}, at s = {severity:g}, executed open loop.
-
-{motion}
-- **Steps of 0.25 m and 15 degrees** (apartments, Habitat): slip and gain scale both, drift turns
-  the robot after each forward step, a dropped action is a step without movement, and a repeated
-  action replaces the command by the previous one. STOP is always executed.
-- **Continuous actions** (a `Box`): slip and gain scale the action, drift adds a bias to all its
-  elements (up to {bias:g} of half their range), a dropped action is zero. The result is clipped.
-- **Other actions**: `repeated_action` only; the others raise an error.
-- The pose sensor reports where the robot really is. An agent with poses can correct its path.
-- The code for Habitat is tested with a replacement of the simulator only.
-
-## Where they work
-
-| entry point | temporal | camera | motion |
-|---|---|---|---|
-| `mitigate evaluate`, `mitigate.benchmark` | yes | yes | yes |
-| `mitigate replay` | yes | warped | no |
-| `mitigate run` | yes | warped | no |
-| `mitigate corrupt` | yes; a resumed run reads all files again | warped, `hfov=` | no |
-| gymnasium wrapper, torchrl transform | yes | warped, `hfov=` | no |
-| torchrl transform in a replay buffer | no | warped | no |
-| `corrupt`, `corrupt_observation` | no | warped, `hfov=` | no |
-| `corrupt_habitat`, habitat-baselines, schedules of trainings | no | no | no |
-
-"No" is an error that says why. The wrappers need a `Corruption`, not a `Schedule`.
-
-In Python, a `FrameStream` corrupts the observations of a sequence in order:
-
-```python
-import numpy as np
-from mitigate.corruptions import Corruption, FrameStream, Key
-
-stream = FrameStream(hfov={{"rgb": 90.0}})
-frozen = Corruption("frozen_frame+camera_roll", 0.6)
-for step in range(20):
-    observation = {{"rgb": np.full((64, 64, 3), step, np.uint8)}}
-    corrupted = stream.corrupt(observation, frozen, Key(seed=0, episode="17", frame=step))
-```
-
-A world of yours gets rendered camera faults with a method `displaced(mount)`, which returns the
-frames of a displaced camera, and motion faults with a method `move(metres, degrees)`, which takes a
-step of any size (`mitigate/worlds/world.py`, `mitigate/worlds/motion.py`).
-"""
+TEMPLATE = Path(__file__).with_suffix(".md")  # the text, with names of values in braces
 
 
 def write_page(folder: Path = DOCS) -> None:
@@ -152,7 +48,7 @@ def write_page(folder: Path = DOCS) -> None:
     _write_picture(folder / PICTURES["temporal"], timeline())
     _write_picture(folder / PICTURES["camera"], camera_sheet())
     write_figure(folder / PICTURES["motion"], paths(), dpi=70, facecolor="white")
-    text = TEXT.format(
+    text = TEMPLATE.read_text("utf-8").format(
         frames=FRAMES,
         apartment=APARTMENT,
         severity=SEVERITY,
