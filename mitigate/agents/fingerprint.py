@@ -1,8 +1,8 @@
-"""Fingerprint of an agent: a content hash of everything that determines its behaviour.
+"""Compute the fingerprint of an agent: a content hash of everything that determines its behaviour.
 
 Result rows hold the fingerprint in addition to a display name. Agents with different settings,
-weights or sensors are different agents in tables, and rows are reused only for an equal
-fingerprint. If state cannot be read (:attr:`Contents.unreadable`), the user identifies it with
+weights or sensors appear as different agents in tables, and rows are reused only if the fingerprint
+is equal. If some state cannot be read (:attr:`Contents.unreadable`), the user must identify it with
 ``version=``.
 """
 
@@ -29,12 +29,13 @@ from mitigate.core.checksums import DIGITS
 from mitigate.core.contracts import read
 from mitigate.core.observation import Sensor
 
-KIND = "fingerprint_kind"  # attribute of shipped classes: a name that is stable when a module moves
+# attribute of shipped classes: a name that stays the same if a module is moved
+KIND = "fingerprint_kind"
 
 
 @dataclass(frozen=True)
 class Contents:
-    """The data that a fingerprint hashes, and the state that could not be read.
+    """The data that a fingerprint is computed from, and the state that could not be read.
 
     Attributes:
         parts: plain data by name.
@@ -54,13 +55,13 @@ class Contents:
 def fingerprint(
     agent: Any, sensors: Mapping[str, Sensor], front: str = "none", version: str | None = None
 ) -> str:
-    """Return the hash of ``agent`` with ``sensors``.
+    """Return the fingerprint of ``agent`` with the ``sensors`` of a world.
 
     Args:
         agent: any object.
         sensors: the sensors of the world.
         front: fingerprints of the guards between the world and the agent.
-        version: the user's name for state that cannot be read.
+        version: string with which the user identifies state that cannot be read.
     """
     return hash_of(contents(agent, version).parts, sensors, front)
 
@@ -71,17 +72,17 @@ _SETTINGS_LINE = re.compile(r"settings[.( ]")
 def contents(agent: Any, version: str | None = None) -> Contents:
     """Return everything that determines the behaviour of ``agent``.
 
-    For every agent these are its kind, ``settings()``, weights, buffers, layers, hooks, the user's
-    code and the objects that this code names. A shipped agent adds everything that differs from a
-    new agent with the same settings. An agent whose ``settings()`` is missing or inherited adds all
-    its attributes.
+    For every agent, the contents are its kind, ``settings()``, weights, buffers, layers, hooks, the
+    user's code and the objects that this code refers to. For a shipped agent, everything that
+    differs from a new agent with the same settings is added. If ``settings()`` is missing or
+    inherited, all attributes of the agent are added.
     """
     shipped = KIND in vars(type(agent))
     settings = agent.settings if _definer(agent) is not None else {}
     state = _changes(agent) if shipped else read_state(agent, attributes=not says_all(agent))
     optional = {
         "code": _codes(agent, state),
-        # ``settings`` counts with its result, not as an attribute, which loading may have set
+        # the result of ``settings`` is included, not the attribute, which loading may have set
         "state": sorted(line for line in state.lines if not _SETTINGS_LINE.match(line)),
         "version": version,
         "unreadable": sorted(state.unreadable.items()) if version is None else [],
@@ -96,9 +97,9 @@ def contents(agent: Any, version: str | None = None) -> Contents:
 
 
 def says_all(agent: Any) -> bool:
-    """Return whether ``settings`` covers all attributes.
+    """Return whether ``settings`` describes all attributes.
 
-    It does not if it is inherited, because a subclass may add attributes.
+    An inherited ``settings`` does not, because a subclass may add attributes.
     """
     return _definer(agent) in (agent, type(agent))
 
@@ -106,7 +107,7 @@ def says_all(agent: Any) -> bool:
 def _definer(agent: Any) -> Any:
     """Return the object or class that defines ``settings``, or None.
 
-    A ``settings`` that ``__getattr__`` provides does not count: it describes another object.
+    A ``settings`` from ``__getattr__`` does not count, because it describes a different object.
     """
     candidates = (agent, *type(agent).__mro__)
     definers = (one for one in candidates if "settings" in read(one, "__dict__", default=()))
@@ -114,7 +115,8 @@ def _definer(agent: Any) -> Any:
 
 
 def _changes(agent: Any) -> State:
-    """Return how the state of a shipped agent differs from a new agent with the same settings.
+    """Return the differences between a shipped agent's state and a new agent with the same
+    settings.
 
     Weights and the memory of an episode are excluded.
     """
@@ -130,14 +132,15 @@ def _changes(agent: Any) -> State:
 
 
 def hash_of(parts: Mapping[str, Any], sensors: Mapping[str, Sensor], front: str = "none") -> str:
-    """Return the hash of an agent with these ``parts``, ``sensors`` and guards (``front``)."""
+    """Return the fingerprint for these ``parts``, ``sensors`` and guards (``front``)."""
     plain = {name: asdict(sensor) for name, sensor in sorted(sensors.items())}
     text = json.dumps({**parts, "sensors": plain, "front": front}, sort_keys=True, default=_plain)
     return hashlib.sha256(text.encode()).hexdigest()[:DIGITS]
 
 
 def code_sha(objective: nn.Module) -> str:
-    """Return the hash of the user's code in an objective and its agent; "" without such code."""
+    """Return the hash of the user's code in an objective and its agent; "" if there is no such
+    code."""
     code = "\n".join(_codes(objective, read_state(objective, attributes=False)))
     return code and hashlib.sha256(code.encode()).hexdigest()[:DIGITS]
 
@@ -154,7 +157,8 @@ def _codes(agent: Any, state: State) -> list[str]:
 
 @cache
 def _code_source(code: types.CodeType, file: str) -> str:
-    """Return the source of ``code`` when it was first read; without a file, its bytecode."""
+    """Return the source of ``code`` as it was when first read, or its bytecode if there is no
+    file."""
     try:
         return inspect.getsource(code)
     except (OSError, TypeError):
@@ -162,7 +166,7 @@ def _code_source(code: types.CodeType, file: str) -> str:
 
 
 def source_of(kind: type) -> list[str]:
-    """Return the sources of a class and its bases that are the user's code.
+    """Return the sources of a class and of its base classes, as far as they are the user's code.
 
     They are read once, because a later edit of the file does not change a loaded class.
     """
@@ -180,7 +184,7 @@ def _source_of(kind: type) -> tuple[str, ...]:
 
 
 def _weights(state: State) -> str | list[tuple[str, str]]:
-    """Return the hash of the weights; for several networks or plain arrays, of each."""
+    """Return the hash of the weights, or one hash for each of several networks or arrays."""
     shas = [(place, weights_sha(net)) for place, net in state.networks]
     if len(shas) == 1 and not shas[0][0]:
         return shas[0][1]

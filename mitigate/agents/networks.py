@@ -12,13 +12,14 @@ from mitigate.agents.state import read_state
 
 
 def networks(agent: Any) -> list[nn.Module]:
-    """Return the networks that ``agent`` is or holds."""
+    """Return the networks that ``agent`` contains, or ``agent`` itself if it is a network."""
     return [net for _, net in read_state(agent, attributes=False).networks]
 
 
 @contextmanager
 def in_eval_mode(agent: Any) -> Iterator[None]:
-    """Put every network of ``agent`` into eval mode, and restore the modes of all modules.
+    """Put every network of ``agent`` into eval mode, and restore the previous modes of all modules
+    at the end.
 
     Each network's ``eval()`` is called, because a class may override it.
     """
@@ -37,4 +38,4 @@ def in_eval_mode(agent: Any) -> Iterator[None]:
 
 
 def _has_mode(module: nn.Module) -> bool:
-    return hasattr(module, "training")  # an exported program lacks it
+    return hasattr(module, "training")  # an exported program has no such method

@@ -1,4 +1,4 @@
-"""Read everything that determines how an object behaves, and list what cannot be read.
+"""Read all state that determines how an object behaves, and list state that cannot be read.
 
 :func:`read_state` follows attributes, containers, functions and the names that functions use. A
 value counts as read only if Python exposes all of it: plain data, arrays, attributes without hidden
@@ -35,17 +35,19 @@ from mitigate.core.checksums import DIGITS
 from mitigate.core.contracts import read
 from mitigate.core.observation import Observation
 
-MOST_VALUES = 100_000  # values that are visited (heuristic: under a second)
+MOST_VALUES = 100_000  # maximum number of visited values (heuristic: takes under a second)
 _SCALARS: tuple[Any, ...] = (str, bytes, int, float, complex)
 _CONTENT: tuple[Any, ...] = (dict, list, tuple, set, frozenset, *_SCALARS)  # and their subclasses
-_PATHS = (type(PurePath()), *type(PurePath()).__subclasses__())  # their attributes are caches
+# classes whose attributes are caches
+_PATHS = (type(PurePath()), *type(PurePath()).__subclasses__())
 _TEXTS = (*_SCALARS, bool, type(None), type(...), *_PATHS, torch.dtype, torch.device)
 _IGNORED = (  # types that cannot change an action
     *(type(threading.Lock()), type(threading.RLock()), logging.Logger, Observation),
 )
 _ARRAYS = (np.ndarray, np.memmap, torch.Tensor, nn.Parameter)
 _NAMED = (types.FunctionType, types.ModuleType, type, types.BuiltinFunctionType)
-_MEMBERS: dict[type, tuple[str, ...]] = {  # members that determine the whole object
+# members that determine the behaviour of the whole object
+_MEMBERS: dict[type, tuple[str, ...]] = {
     **dict.fromkeys((staticmethod, classmethod), ("__func__",)),
     property: ("fget", "fset", "fdel"),
     types.MethodType: ("__self__", "__func__"),
@@ -61,27 +63,28 @@ _ANSWERING = {  # methods with which user code could replace an object's state
     *("__reduce_ex__", "__reduce__", "__getstate__", "__getnewargs_ex__", "__getnewargs__"),
     *("__getattr__", "__getattribute__", "__iter__", "items"),
 }
-_LEFT_OUT = {  # of torch (the last two are parameters of recurrent layers), and of adapters.py
+# attributes that torch sets (the last two for recurrent layers), and those of adapters.py
+_LEFT_OUT = {
     *(*vars(nn.Module()), "parametrizations", "_flat_weights", "_flat_weight_refs"),
     "_statistics_before_adapters",
 }
 _RUNNING = {"hook", "judged"}  # attributes of an adapter: its hook handle and its last output
-_OWN_HOOKS = "mitigate.agents.adapters"  # its adapters are modules, so state_dict() holds them
+_OWN_HOOKS = "mitigate.agents.adapters"  # adapters are modules, so state_dict() contains them
 
 Parts = Iterable[tuple[str, Any]]
 
 
 @dataclass
 class State:
-    """The result of :func:`read_state`, by place in the agent; "" is the agent itself.
+    """The result of :func:`read_state`, keyed by place, which is a dotted path ("" is the agent).
 
     Attributes:
         networks: every ``nn.Module`` by place, without the modules inside it.
-        arrays: hashes, by place, of tensors and arrays that do not count as attributes.
+        arrays: hashes of tensors and arrays by place, except those that are attributes.
         functions: code of the user's functions.
-        lines: everything else that counts, as ``place = text``. Places in classes begin with
+        lines: all other state, as lines ``place = text``. Places in classes begin with
             "class "; they do not depend on the object.
-        unreadable: reasons by place.
+        unreadable: the reason for each unreadable place.
     """
 
     networks: list[tuple[str, nn.Module]] = field(default_factory=list)
@@ -96,14 +99,15 @@ def read_state(agent: Any, *, attributes: bool = True, like: nn.Module | None = 
 
     Args:
         agent: any object.
-        attributes: whether plain attributes count. If not, only code and what it names counts.
-        like: an agent of the same kind. Attributes of modules that it lacks do not count.
+        attributes: whether plain attributes are included. If not, only code and the objects it
+            refers to are included.
+        like: an agent of the same kind. Attributes of modules that this agent lacks are excluded.
     """
     return _Reader(agent, attributes, like).read()
 
 
 class _Reader:
-    """The search through one agent, breadth first."""
+    """Breadth-first search through the objects of one agent."""
 
     def __init__(self, agent: Any, attributes: bool, like: nn.Module | None) -> None:
         self.agent = agent
@@ -114,7 +118,7 @@ class _Reader:
         self.waiting: deque[tuple[str, Any, bool]] = deque([("", agent, attributes)])
 
     def read(self) -> State:
-        """Visit everything that can be reached."""
+        """Visit every object that can be reached."""
         while self.waiting:
             self.visit(*self.waiting.popleft())
             if len(self.seen) > MOST_VALUES:
@@ -127,11 +131,11 @@ class _Reader:
             self.state.lines.append(f"{place} = {text}")
 
     def add(self, place: str, parts: Parts, counts: bool = True) -> None:
-        """Visit the ``parts`` of what is at ``place`` later."""
+        """Add the ``parts`` of the object at ``place`` to the queue."""
         self.waiting.extend((_join(place, name), part, counts) for name, part in parts)
 
     def visit(self, place: str, value: Any, counts: bool) -> None:
-        """Note what ``value`` is, and add its parts."""
+        """Record ``value`` and add its parts to the queue."""
         counts = counts or isinstance(value, _CODE)
         text = plain_text(value)
         if isinstance(value, _IGNORED):
@@ -143,7 +147,8 @@ class _Reader:
         _, first, counted = self.seen.get(id(value), (None, "", False))
         if id(value) in self.seen and (counted or not counts or value is self.agent):
             return self.note(place, f"same object as {first}", counts and counted)
-        self.seen[id(value)] = value, place, counts  # a reference, so that the id stays unique
+        # keeps a reference, so that the id stays unique
+        self.seen[id(value)] = value, place, counts
         if isinstance(value, nn.Module):
             return self.visit_network(place, value, counts)
         parts = self.parts(place, value, counts)
@@ -196,11 +201,12 @@ class _Reader:
         return [("", base.__repr__(value))]
 
     def function_parts(self, place: str, value: types.FunctionType) -> Parts:
-        """Note the code of a user's function; return its closure, defaults and named objects."""
+        """Record the code of a user's function; return its closure, defaults and named objects."""
         users = _is_users(value)
         if users:
             self.state.functions.append(value.__code__)
-        if users and value.__name__ == "<lambda>":  # the source line may hold several lambdas
+        # the same source line may contain several lambdas
+        if users and value.__name__ == "<lambda>":
             self.note(place, bytecode(value.__code__))
         cells = zip(value.__code__.co_freevars, value.__closure__ or (), strict=True)
         enclosed = [(name, cell.cell_contents) for name, cell in cells if _is_filled(cell)]
@@ -217,7 +223,7 @@ class _Reader:
         return []
 
     def visit_network(self, place: str, net: nn.Module, counts: bool) -> None:
-        """Note a network; add its classes, hooks and everything outside its state dict."""
+        """Record a network; add its classes, its hooks and all state outside its state dict."""
         self.state.networks.append((place, net))
         if torch_module._global_forward_hooks or torch_module._global_forward_pre_hooks:
             hooks = _join(place, "global hooks")
@@ -251,7 +257,7 @@ class _Reader:
         self.add(_join(place, "state_dict()"), packed)
 
     def visit_hooks(self, place: str, module: nn.Module) -> None:
-        """Note the hooks of a module.
+        """Record the hooks of a module.
 
         A hook is readable if it belongs to an adapter of this project, has a method
         ``fingerprint()`` that returns plain data, or is an object of torch such as a weight norm.
@@ -275,14 +281,14 @@ class _Reader:
 
 
 def _members(kind: type) -> Parts:
-    """Yield the members of a user's class; of other classes only members that were replaced."""
+    """Yield the members of a user's class; for other classes, yield only replaced members."""
     users = _is_users_class(kind)
     ours = kind.__module__.startswith(("mitigate.", "torch.")) and kind is not nn.Module
     for name, one in vars(kind).items():
         function = read(one, "__func__", "fget", default=one)
         method = isinstance(function, types.FunctionType)
         data = name == "_abc_impl" or isinstance(one, _DESCRIPTORS)
-        # generated by a dataclass
+        # such members are generated by a dataclass
         data |= name == "__repr__" and method and not _is_users(function)
         if data or (_is_dunder(name) and not callable(function)):
             continue
@@ -294,7 +300,7 @@ def _members(kind: type) -> Parts:
 
 
 def _globals(function: types.FunctionType) -> Parts:
-    """Yield the globals that the user's ``function`` and its inner functions may use.
+    """Yield the global variables that the user's ``function`` and its inner functions may use.
 
     Attributes of the user's modules are followed.
     """
@@ -320,7 +326,7 @@ def _globals(function: types.FunctionType) -> Parts:
 def _hides_memory(kind: type, base: type) -> bool:
     """Return whether objects of ``kind`` hold C memory beyond ``base`` and Python attributes.
 
-    This is the check of ``object.__reduce_ex__``, without calling the user's code.
+    This repeats the check of ``object.__reduce_ex__`` without calling the user's code.
     """
     slots: Any = copyreg._slotnames(kind)  # type: ignore[attr-defined]
     words = len(slots) + (kind.__weakrefoffset__ > 0)
@@ -331,9 +337,10 @@ def _hides_memory(kind: type, base: type) -> bool:
 def _pickled(value: Any) -> Parts | None:
     """Return what pickle would store of an object with C memory.
 
-    None if it cannot be pickled, or if code of the user or of an unknown package would run.
+    The result is None if it cannot be pickled, or if this would run code of the user or of an
+    unknown package.
     """
-    if isinstance(value, Iterator):  # it changes with every use
+    if isinstance(value, Iterator):  # this state changes with every use
         return None
     for each in type(value).__mro__:
         users = _is_users_class(each)
@@ -347,7 +354,7 @@ def _pickled(value: Any) -> Parts | None:
             return _numbered(list(part) if isinstance(part, Iterator) else part for part in reduced)
         where = pickle.whichmodule(value, reduced)  # type: ignore[attr-defined]
         return [("", f"{where}.{reduced}")] if read(sys.modules[where], reduced) is value else None
-    except Exception:  # a type that cannot be pickled may raise any error
+    except Exception:  # types that cannot be pickled may raise any error
         return None
 
 
@@ -358,7 +365,7 @@ def _attributes(value: Any) -> Parts:
     for kind in type(value).__mro__:
         for name, one in vars(kind).items() if "__slots__" in vars(kind) else ():
             if isinstance(one, types.MemberDescriptorType):
-                with suppress(AttributeError):  # the slot has no value
+                with suppress(AttributeError):  # the slot has no value yet
                     yield name, one.__get__(value)
 
 
@@ -397,7 +404,7 @@ def _is_users(function: types.FunctionType) -> bool:
 
 @cache
 def is_users(module: str, file: str) -> bool:
-    """Return whether code belongs to the user.
+    """Return whether a module is the user's code.
 
     This project, torch, Python and installed packages are identified by their versions instead.
     """
@@ -407,14 +414,15 @@ def is_users(module: str, file: str) -> bool:
 
 
 def class_name(kind: type) -> str:
-    """Return the name of a class; with its module unless it is the user's code."""
+    """Return the name of a class, with its module unless the class is the user's."""
     return kind.__qualname__ if _is_users_code(kind) else f"{kind.__module__}.{kind.__qualname__}"
 
 
 def array_sha(array: np.ndarray | torch.Tensor) -> str:
     """Return the hash of an array's or tensor's type, shape and bytes.
 
-    "" if it has no readable bytes: sparse, on the meta device, or an array of objects.
+    The result is "" if there are no readable bytes: sparse, on the meta device, or an array of
+    objects.
     """
     kind: Any = array.dtype
     if isinstance(array, torch.Tensor):
@@ -431,7 +439,8 @@ def array_sha(array: np.ndarray | torch.Tensor) -> str:
 
 
 def plain_text(value: Any) -> str | None:
-    """Return plain data, or a flat container of it, as text that is equal in every process."""
+    """Return plain data, or a flat container of plain data, as text that is equal in every
+    process."""
     kind = type(value)
     if kind in _TEXTS:
         return repr(value)
