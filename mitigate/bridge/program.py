@@ -177,7 +177,7 @@ def processes() -> dict[int, tuple[int, bool]]:
             ):
                 text = file.read()
                 fields = text[text.rindex(b")") + 2 :].split()  # proc_pid_stat(5), from field 3
-                # if other threads remain, the process still runs although its main thread ended
+                # if other threads remain, the process still runs even if its main thread has ended
                 zombie = fields[0] in (b"Z", b"X") and int(fields[17]) <= 1
                 states[int(name)] = (int(fields[1]), not zombie)
     return states
@@ -199,7 +199,7 @@ def descendants(root: int) -> list[int]:
 
 
 def signal_all(pids: Iterable[int], number: int) -> None:
-    """Send a signal to processes; ignore those that are gone or belong to another user."""
+    """Send a signal to processes; ignore processes that are gone or belong to a different user."""
     for pid in pids:
         with suppress(ProcessLookupError, PermissionError):
             os.kill(pid, number)
@@ -212,7 +212,7 @@ def main() -> None:
     program = sys.argv[3:]
     ending: list[bool] = []
     for number in (signal.SIGINT, signal.SIGHUP):
-        # ignored here, because the parent decides; a handler is not inherited by the program
+        # ignored here, because the parent decides; the program does not inherit a handler
         signal.signal(number, lambda *_: None)
     signal.signal(signal.SIGTERM, lambda *_: ending.append(True))
     child = os.fork()
@@ -221,7 +221,7 @@ def main() -> None:
     if sys.platform == "linux":
         ctypes.CDLL(None).prctl(PR_SET_CHILD_SUBREAPER, 1)
     while _reap(child, pipe):
-        if os.getppid() != parent:  # killed: end at once, because the run may be repeated
+        if os.getppid() != parent:  # exits at once if killed, because the run may be repeated
             return _end(child, pipe, 0.0)
         if ending:
             return _end(child, pipe, GRACE)
@@ -229,7 +229,7 @@ def main() -> None:
 
 
 def _start(program: Sequence[str], pipe: int) -> None:
-    """Start the program, wait for its end and report its status, also after SIGTERM."""
+    """Start the program, wait for its end and report its status, even after SIGTERM."""
     try:
         child = subprocess.Popen(program, start_new_session=True)
     except OSError as error:
@@ -246,7 +246,7 @@ def _report(pipe: int, **message: object) -> None:
 def _reap(child: int, pipe: int) -> bool:
     """Reap ended processes; return whether any process is left.
 
-    Report the status of ``child``, which waits for the program, if it was killed.
+    If ``child``, which waits for the program, was killed, report its status.
     """
     while True:
         try:

@@ -1,8 +1,8 @@
 """The four depth corruptions of float32 panoramas [V, H, W] in metres.
 
-A pixel is invalid where z <= 0, NaN or infinite. It is returned unchanged and is ignored in
-neighbourhoods. Only missing data makes valid depth invalid; all other valid depth is clipped to
-[0.001, z_max]. Formulas and sources: docs/corruptions.md.
+A pixel is invalid where z <= 0, NaN or infinite. Invalid pixels are returned unchanged and are
+ignored in neighbourhoods. Only ``missing_data`` makes valid depth invalid; all other valid depth is
+clipped to [0.001, z_max]. Formulas and sources: docs/corruptions.md.
 """
 
 from __future__ import annotations
@@ -26,7 +26,8 @@ from mitigate.corruptions.keying import (
 )
 from mitigate.corruptions.record import Record
 
-ECHO_REACH = 0.03  # share of min(H, W): half side of the square searched for an echo
+# half side of the square that is searched for an echo, as a fraction of min(H, W)
+ECHO_REACH = 0.03
 ECHO_GAP = 2.5  # metres
 ECHO_STRENGTH = 0.9
 ECHO_HERTZ = 20e6
@@ -35,7 +36,7 @@ ECHO_HERTZ = 20e6
 def echo_shift(gap: np.ndarray, severity: float) -> np.ndarray:
     """Return the over-estimation in metres for a surface ``gap`` metres farther.
 
-    It is the phasor sum of two light paths.
+    The value is computed from the phasor sum of two light paths.
     """
     scale = LIGHT_SPEED / (4.0 * math.pi * ECHO_HERTZ)
     beta, phase = ECHO_STRENGTH * severity, gap / scale
@@ -44,10 +45,10 @@ def echo_shift(gap: np.ndarray, severity: float) -> np.ndarray:
 
 @lru_cache(maxsize=32)
 def echo_polynomial(severity: float) -> np.ndarray:
-    """Return float32 [8]: p with echo_shift = gap p(gap) up to 0.01 mm, lowest power first.
+    """Return coefficients float32 [8] of p, lowest power first: echo_shift = gap p(gap) to 0.01 mm.
 
-    It interpolates at the Chebyshev nodes of [0, 2.5] m, where the shift is smooth. The compiler
-    can vectorise a polynomial, but not table look-ups.
+    The polynomial interpolates at the Chebyshev nodes of [0, 2.5] m, where the shift is smooth. The
+    compiler can vectorise a polynomial, but not table look-ups.
     """
     degree = 7
     nodes = 0.5 * ECHO_GAP * (1.0 + np.cos(np.pi * (np.arange(degree + 1) + 0.5) / (degree + 1)))
@@ -58,14 +59,15 @@ def echo_polynomial(severity: float) -> np.ndarray:
 
 @njit(cache=True)
 def larger(row, other):
-    """Set row = max(row, other) in place, float32; the two must not overlap."""
+    """Compute row = max(row, other) in place, float32; the two must not overlap."""
     for x in range(row.size):
         row[x] = row[x] if row[x] > other[x] else other[x]
 
 
 @njit(cache=True)
 def farthest_along(row, spare, reach):
-    """Replace each entry by the maximum of the 2 reach + 1 entries from it on, by doubling."""
+    """Replace each entry by the maximum of the 2 reach + 1 entries that start with it, by
+    doubling."""
     have, want, size = 1, 2 * reach + 1, row.size
     while have < want:
         step = min(have, want - have)
@@ -77,7 +79,8 @@ def farthest_along(row, spare, reach):
 
 @njit(cache=True)
 def extremes(view, reach, sign, out):
-    """Set out [H, W] to the maximum of sign z in a square of 2 reach + 1; -inf if none is valid."""
+    """Write to out [H, W] the maximum of sign z in a square of 2 reach + 1, or -inf if none is
+    valid."""
     height, width = view.shape
     rows = height + 2 * reach
     wide = np.full((rows, width + 2 * reach), np.float32(-np.inf), np.float32)

@@ -35,7 +35,7 @@ class Decision:
     Attributes:
         panorama: index of the current panorama.
         nodes: int [n], the panorama of each node.
-        sightings: int [g, SIGHTINGS, 2], (panorama, view) of each ghost; -1 where unused.
+        sightings: int [g, SIGHTINGS, 2], the (panorama, view) pairs of each ghost, -1 where unused.
         geometry: float32 [1 + n + g, GEOMETRY].
         ghosts: ids of the ghosts, in order.
         travel: metres along the map to each ghost.
@@ -51,7 +51,7 @@ class Decision:
 
 @dataclass
 class TopologicalMap:
-    """Visited nodes with edges in metres, ghosts by id, and the panorama of each node."""
+    """A map with visited nodes, edges in metres, ghosts by id, and the panorama of each node."""
 
     positions: list[np.ndarray] = field(default_factory=list)
     edges: list[dict[int, float]] = field(default_factory=list)
