@@ -58,8 +58,8 @@ def save_weights(module: nn.Module, path: str | Path, *, half: bool = False) -> 
 
     Args:
         module: the module.
-        path: a folder, for ``model.safetensors`` and a manifest; or a ``.safetensors`` file, which
-            gets a sidecar with its sha256.
+        path: a folder, into which ``model.safetensors`` and a manifest are written; or a
+            ``.safetensors`` file, which gets a sidecar file with its sha256.
         half: round floats to float16, as in the shipped weights.
 
     Returns:
@@ -99,9 +99,9 @@ def unwritten(file: Path, error: Exception) -> OSError:
 def load_weights(module: nn.Module, path: str | Path) -> None:
     """Load weights that :func:`save_weights` wrote into ``module``.
 
-    Names and shapes must match exactly. Float tensors may have another width; integers, booleans
-    and complex numbers must stay in their class. If the weights hold no adapters at all, as
-    weights trained before adapters were added, the adapters of ``module`` keep their values.
+    Names and shapes must match exactly. Float tensors may have a different precision; integers,
+    booleans and complex numbers must keep their type. If the weights contain no adapters (for
+    example weights of a base agent), the adapters of ``module`` keep their values.
 
     Raises:
         FileNotFoundError: There is no safetensors file at ``path``.

@@ -44,9 +44,9 @@ class Root:
         folder: The folder path as given by the user. It may be a link.
         places: Absolute path of the folder, with and without links.
         descriptor: Open descriptor of the folder; it keeps the inode from being reused.
-        lock: Path and status of the lock file, None without one.
+        lock: Path and status of the lock file, or None without a lock.
         expected: Files and folders that must exist when the command ends.
-        seen: Folders inside it that existed at an earlier write.
+        seen: Subfolders that existed at an earlier write.
     """
 
     folder: Path
@@ -57,7 +57,7 @@ class Root:
     seen: set[Path] = field(default_factory=set)
 
     def inner(self, path: Path) -> Path | None:
-        """Return the absolute ``path`` relative to the folder; None if it lies outside."""
+        """Return the absolute ``path`` relative to the folder, or None if it lies outside."""
         for place in self.places:
             if path.is_relative_to(place):
                 return path.relative_to(place)

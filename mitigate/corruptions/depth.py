@@ -121,20 +121,22 @@ def _echo(views, reach, polynomial, z_max, out):
 
 
 def multipath(views: np.ndarray, severity: float, key: Key, sensor: DepthSensor) -> np.ndarray:
-    """Over-estimate depth next to farther surfaces, like a second light path."""
+    """Over-estimate depth next to farther surfaces, as if light took a second path."""
     reach = max(1, round(ECHO_REACH * min(views.shape[1:])))
     out = np.empty_like(views)
     _echo(views, reach, echo_polynomial(severity), np.float32(sensor.z_max), out)
     return out
 
 
-NOISE_BASE, NOISE_SQUARE = 0.02, 0.02  # D435: RMS grows with z^2; s = 0.1 is similar to a Kinect
-HOLE_CORRELATION = 0.025  # share of min(H, W)
-HOLE_SHARE = 0.5  # share of the pixels at s = 1 (Zhang & Funkhouser 2018: often over half indoors)
-FAR_SHARE = 0.25  # share of the holes that read z_max ("incorrectly large")
-HOLE_FRAMES = 5  # frames after which the holes move
-STEP = 0.5  # metres at s = 1
-STEP_LEAST = 1e-30  # metres: depth over a smaller step would overflow float32
+# as in a D435, the RMS error grows with z^2; s = 0.1 is similar to a Kinect
+NOISE_BASE, NOISE_SQUARE = 0.02, 0.02
+HOLE_CORRELATION = 0.025  # as a fraction of min(H, W)
+# fraction of missing pixels at s = 1 (Zhang & Funkhouser 2018: often over half indoors)
+HOLE_SHARE = 0.5
+FAR_SHARE = 0.25  # fraction of the holes that have the value z_max ("incorrectly large")
+HOLE_FRAMES = 5  # number of frames after which the holes move
+STEP = 0.5  # in metres, at s = 1
+STEP_LEAST = 1e-30  # minimum step in metres: depth divided by a smaller step would overflow float32
 
 _U = np.uint64
 
@@ -168,9 +170,9 @@ def gaussian_noise(views: np.ndarray, severity: float, key: Key, sensor: DepthSe
 
 @cached
 def hole_map(value: int, severity: float, height: int, width: int) -> np.ndarray:
-    """Return uint8 [H, 2 W]: 0 unchanged, 1 no reading, 2 reads z_max.
+    """Return a map uint8 [H, 2 W]: 0 means unchanged, 1 no reading, and 2 the value z_max.
 
-    It holds the map twice, side by side, so that a shifted row is one contiguous slice.
+    The array holds the map twice, side by side, so that a shifted row is one contiguous slice.
     """
     smooth, cells = field(value, height, width, HOLE_CORRELATION)
     holes = smooth >= top_share(cells, HOLE_SHARE * severity)
@@ -204,7 +206,8 @@ def _drop(views, holes, streams, missing, z_max, out):
 
 
 def missing_data(views: np.ndarray, severity: float, key: Key, sensor: DepthSensor) -> np.ndarray:
-    """Remove the top 0.5 s of a random field; a quarter reads z_max. It moves every 5 frames."""
+    """Remove depth where a random field is in its top 0.5 s; a quarter of these pixels becomes
+    z_max. The field moves every 5 frames."""
     count, height, width = views.shape
     holes = hole_map(digest(key, "missing_data"), severity, height, width)
     placement = int(key.frame) // HOLE_FRAMES
@@ -224,7 +227,7 @@ def _round_off(views, step, z_max, out):
 
 
 def quantization(views: np.ndarray, severity: float, key: Key, sensor: DepthSensor) -> np.ndarray:
-    """Round to steps of 0.5 s metres."""
+    """Round depth to multiples of 0.5 s metres."""
     out = np.empty_like(views)
     step, z_max = np.float32(max(STEP * severity, STEP_LEAST)), np.float32(sensor.z_max)
     _round_off(views.reshape(-1), step, z_max, out.reshape(-1))

@@ -1,4 +1,5 @@
-"""Corrupt the frames of a folder into another folder; resumable, files are written atomically."""
+"""Corrupt the frames of a folder into a new folder; runs can resume, and files are written
+atomically."""
 
 from __future__ import annotations
 
@@ -37,17 +38,18 @@ FORMATS = ("png", "same")
 
 @dataclass(frozen=True)
 class Settings:
-    """Options of the corruption of a folder; ValueError for an invalid value."""
+    """Options for corrupting a folder; raises ValueError for an invalid value."""
 
     corruption: str
     severity: float
     seed: int = 0
-    episode: str = "folder"  # "folder": each folder is an episode; "all": one episode
-    format: str = "png"  # format of a corrupted JPEG: "png" or "same"
-    unit: float | None = None  # metres per count of a 16-bit PNG; None: mm, after a check
-    z_max: float = Z_MAX  # metres, maximum that depth is clipped to
-    missing: float = 0.0  # metres, value of missing data
-    no_reading: int = NO_READING  # count of a 16-bit PNG without a reading, next to 0
+    # "folder": each folder is an episode; "all": all frames are one episode
+    episode: str = "folder"
+    format: str = "png"  # output format of a corrupted JPEG: "png" or "same"
+    unit: float | None = None  # metres per count of a 16-bit PNG; None assumes mm, after a check
+    z_max: float = Z_MAX  # maximum depth in metres; larger values are clipped
+    missing: float = 0.0  # value of missing depth in metres
+    no_reading: int = NO_READING  # count in a 16-bit PNG that means no reading, in addition to 0
 
     def __post_init__(self) -> None:
         Corruption(self.corruption, self.severity)
@@ -81,10 +83,10 @@ class Settings:
 
 
 def run(source: Path | str, out: Path | str, settings: Settings) -> dict:
-    """Corrupt the frames of ``source`` and its folders into the same tree in ``out``.
+    """Corrupt the frames of ``source`` and its subfolders into the same folder tree in ``out``.
 
     Frames are numbered by name inside their episode, comparing digits as numbers ("9" before "10");
-    a damaged file keeps its number. A file that already is in ``out`` is not written again.
+    a damaged file keeps its number. A file that is already in ``out`` is not written again.
 
     Args:
         source: Folder with frames.
@@ -92,12 +94,13 @@ def run(source: Path | str, out: Path | str, settings: Settings) -> dict:
         settings: The options.
 
     Returns:
-        The summary, also written to ``out/corrupt.json``: settings, counts and files left out.
+        The summary, which is also written to ``out/corrupt.json``: settings, counts and skipped
+        files.
 
     Raises:
-        FileNotFoundError: The folder does not exist or has no frame.
-        ValueError: One folder contains the other, or ``out`` was written with other settings or
-            frames, or by another program.
+        FileNotFoundError: The folder does not exist or contains no frame.
+        ValueError: One folder contains the other, or ``out`` was written with different settings or
+            frames, or by a different program.
         OSError: ``out`` cannot be written.
     """
     source, out = Path(source), Path(out)
@@ -130,7 +133,7 @@ def _corrupt_all(source: Path, out: Path, settings: Settings, plan: Plan) -> dic
             else:
                 _corrupt_frame(source, out, target, frame, settings, plan, summary)
             names.add(target)
-    finally:  # an interrupted run must not compute its frames again
+    finally:  # so that a resumed run does not compute these frames again
         _write_summary(out, summary)
     missing = [
         out / outputs[frame.path]
@@ -153,7 +156,7 @@ def _corrupt_frame(
     plan: Plan,
     summary: dict,
 ) -> None:
-    """Write a frame, unless ``out`` already has the same file, and record its checksum."""
+    """Write a frame unless ``out`` already contains the same file, and record its checksum."""
     name = target.as_posix()
     checksums = summary["checksums"]
     files = (source / frame.path, out / target)
@@ -172,7 +175,8 @@ def _corrupt_frame(
         data = frame_files.corrupt_file(
             files[0], target.suffix, settings.metres_per_count, change, settings.no_reading
         )
-    except ValueError as error:  # LeftOutError, or a shape that the suite does not support
+    # catches LeftOutError, and errors for shapes that the suite does not support
+    except ValueError as error:
         plan.left_out[frame.path.as_posix()] = str(error)
         checksums.pop(name, None)
         return
@@ -194,7 +198,7 @@ def _checksum(source: Path, output: Path) -> str:
 
 
 def _output(path: Path, form: str) -> Path:
-    """Return the path of the result of a file."""
+    """Return the output path for an input file."""
     jpeg = path.suffix.lower() in (".jpg", ".jpeg")
     return path.with_suffix(".png") if jpeg and form == "png" else path
 
@@ -203,7 +207,8 @@ def _output(path: Path, form: str) -> Path:
 
 
 def _begin(out: Path, settings: Settings, plan: Plan) -> dict:
-    """Check the results of an earlier run in ``out``, then write settings and episodes there."""
+    """Check the results of an earlier run in ``out``, and then write settings and episodes
+    there."""
     versions = {"suite_version": SUITE_VERSION, **version(settings.corruption)}
     settings_now = {**versions, **asdict(settings), "unit": settings.metres_per_count}
     checksums: dict[str, str] = {}
@@ -228,15 +233,15 @@ def _begin(out: Path, settings: Settings, plan: Plan) -> dict:
 
 
 def _check_earlier(out: Path, settings: dict, episodes: dict[str, list[str]]) -> dict[str, str]:
-    """Return the checksums of an earlier run; empty if an earlier version wrote none.
+    """Return the checksums of an earlier run, or an empty dict if an earlier version wrote none.
 
     Raises:
-        ValueError: ``out`` was written with other settings or frames.
+        ValueError: ``out`` was written with different settings or frames.
     """
     try:
         earlier = json.loads(read_regular(out / SUMMARY))
         earlier_settings = dict(earlier["settings"])
-        # earlier versions knew no other count than 0, so no_reading=0 resumes their folders
+        # earlier versions used only the count 0, so no_reading=0 resumes their folders
         is_rgb = Corruption(settings["corruption"], settings["severity"]).modality == RGB
         earlier_settings.setdefault("no_reading", settings["no_reading"] if is_rgb else 0)
         recorded = dict(earlier["episodes"]).items()
@@ -306,7 +311,7 @@ def _check_folders(source: Path, out: Path) -> None:
 
 
 def _no_frames(source: Path, modality: str, settings: Settings, plan: Plan) -> str:
-    """Return the message for a folder without frames of the modality."""
+    """Return the error message for a folder without frames of the modality."""
     formats = "8-bit RGB PNG or JPEG" if modality == RGB else "16-bit grey PNG or NPY (metres)"
     other = ""
     if plan.other_modality:
@@ -320,7 +325,7 @@ def _no_frames(source: Path, modality: str, settings: Settings, plan: Plan) -> s
 
 
 def _check_counts(settings: Settings) -> None:
-    """Raise ValueError if depth does not fit into a 16-bit PNG."""
+    """Raise ValueError if depth cannot be stored in a 16-bit PNG."""
     largest = max(settings.z_max, settings.missing)
     limit = MAX_COUNT * settings.metres_per_count
     if largest > limit:

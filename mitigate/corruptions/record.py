@@ -1,6 +1,6 @@
-"""The record of a corruption: its function and what tables and suites print about it.
+"""Define the record of a corruption: its function, and its description for tables and suites.
 
-A package can add a corruption by a record in the entry point group ``mitigate.corruptions``
+A package can add a corruption with a record in the entry point group ``mitigate.corruptions``
 (``docs/bring-your-own.md``). The records of this project are at the end of ``rgb.py``,
 ``depth.py``, ``registry.py``, ``broad/__init__.py`` and the files of ``unseen``.
 """
@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 MODALITIES = ("rgb", "depth", "instruction")
-VALIDATION, TEST = "validation", "test"  # halves of the unseen corruptions
+VALIDATION, TEST = "validation", "test"  # the two halves of the unseen corruptions
 
 
 @dataclass(frozen=True)
@@ -22,21 +22,21 @@ class Record:
     """A corruption.
 
     Attributes:
-        name: Lower case with underscores.
-        modality: What it corrupts, one of ``MODALITIES``.
-        apply: A pure function. For RGB: (views uint8 [V, H, W, 3], severity in (0, 1], key, heading
-            or None) -> new array of the same shape. For depth: (views float32 metres [V, H, W],
-            severity, key, DepthSensor) -> new array of the same shape. None for instructions, which
-            ``corrupt_instruction`` changes.
-        severity: What the severity s controls, in a few words.
-        label: Title in tables; by default the name in words.
-        source: Sources of the constants, in a word or two.
-        episode: What is drawn once per episode.
-        frame: What is drawn for each frame.
-        version: Version of a corruption outside the suite; rows of another version are not reused.
-            Those of the suite have the version of the suite.
-        half: Half of an unseen corruption, ``VALIDATION`` or ``TEST``. Methods may be chosen on the
-            validation half only.
+        name: Name in lower case with underscores.
+        modality: What the corruption changes, one of ``MODALITIES``.
+        apply: A pure function. For RGB: For RGB: function (views uint8 [V, H, W, 3], severity in
+            (0, 1], key, heading or None) -> new array of the same shape. For depth: (views float32
+            metres [V, H, W], severity, key, DepthSensor) -> new array of the same shape. For
+            instructions it is None, because ``corrupt_instruction`` changes these.
+        severity: A few words on what the severity s controls.
+        label: Title in tables; by default the name with spaces.
+        source: One or two words on the sources of the constants.
+        episode: The properties that are sampled once per episode.
+        frame: The properties that are sampled for each frame.
+        version: Version of a corruption outside the suite; rows of a different version are not
+            reused. Corruptions of the suite have the version of the suite.
+        half: Half of an unseen corruption, ``VALIDATION`` or ``TEST``. Methods may be chosen only
+            on the validation half.
 
     Raises:
         ValueError: The name, modality, half or function is invalid.

@@ -1,4 +1,5 @@
-"""Apply corruptions to frames: ``corrupt`` for a frame, ``corrupt_observation`` for an observation.
+"""Apply corruptions to frames: Corrupt a frame with ``corrupt``, or an observation with
+``corrupt_observation``.
 
 Both are pure functions of (frame, name, severity, key, heading).
 """
@@ -17,11 +18,13 @@ from mitigate.corruptions.depth_sensor import DepthSensor, check_unit
 from mitigate.corruptions.keying import Key, as_key
 from mitigate.corruptions.record import MODALITIES
 
-MAX_VIEWS = 36  # views per instant: R2R's discrete panoramas have 3 elevations of 12; VLN-CE has 12
+# maximum views per time step; R2R's discrete panoramas have 3 elevations of 12, VLN-CE has 12
+MAX_VIEWS = 36
 
 
 def rgb_views(frame: np.ndarray) -> np.ndarray:
-    """Return the frame as contiguous uint8 [V, H, W, 3]; ValueError for another shape or dtype."""
+    """Return the frame as contiguous uint8 [V, H, W, 3]; raise ValueError if it is not an RGB
+    frame."""
     if frame.dtype != np.uint8:
         raise ValueError(
             f"RGB frames must be uint8 in 0-255, got {frame.dtype}. Convert them: "
@@ -38,7 +41,8 @@ def rgb_views(frame: np.ndarray) -> np.ndarray:
 
 
 def depth_views(frame: np.ndarray, sensor: DepthSensor, name: str) -> np.ndarray:
-    """Return the frame as contiguous float32 [V, H, W]; ValueError for RGB and millimetres too."""
+    """Return the frame as contiguous float32 [V, H, W]; raise ValueError for RGB or other
+    dtypes."""
     if frame.ndim > 2 and frame.shape[-1] == 3:
         raise ValueError(
             f"{name} needs a depth frame, but the last axis of {frame.shape} is 3, as in "
@@ -65,7 +69,7 @@ def depth_views(frame: np.ndarray, sensor: DepthSensor, name: str) -> np.ndarray
 
 
 def _one_instant(views: np.ndarray) -> np.ndarray:
-    """Return ``views`` [V, ...]; ValueError for more views than a panorama has."""
+    """Return ``views`` [V, ...]; raise ValueError for more views than a panorama has."""
     if len(views) > MAX_VIEWS:
         raise ValueError(
             f"An instant must have at most {MAX_VIEWS} views, got {len(views)}. The leading "
@@ -75,14 +79,14 @@ def _one_instant(views: np.ndarray) -> np.ndarray:
     return views
 
 
-# Raise it when any pixel or word of any corruption changes, for inputs that follow
-# docs/corruptions.md and docs/instructions.md.
+# Increase this version when any pixel or word of any corruption changes,
+# for inputs that follow docs/corruptions.md and docs/instructions.md.
 SUITE_VERSION = "1.1"
 
 RGB = registry.names("rgb")
 DEPTH = registry.names("depth")
 NAMES = RGB + DEPTH
-# applied by instruction.py before an episode starts
+# these are applied by instruction.py before an episode starts
 INSTRUCTION = registry.names("instruction")
 SENSOR = DepthSensor()
 
@@ -90,7 +94,7 @@ SENSOR = DepthSensor()
 def check_name(name: str, allowed: tuple[str, ...] | None = None) -> str:
     """Return ``name``, or raise ValueError with the nearest allowed name.
 
-    By default all corruptions of frames are allowed, including plugins.
+    By default, all corruptions of frames are allowed, including plugins.
     """
     if name in (NAMES if allowed is None else allowed):
         return name
@@ -112,7 +116,8 @@ def check_name(name: str, allowed: tuple[str, ...] | None = None) -> str:
 
 
 def check_severity(severity: float) -> float:
-    """Return ``severity`` as a float in [0, 1]; ValueError also for NaN, str and bool."""
+    """Return ``severity`` as a float in [0, 1]; raise ValueError otherwise, and for str and
+    bool."""
     try:
         value = math.nan if isinstance(severity, (str, bool, np.bool_)) else float(severity)
     except (TypeError, ValueError):
@@ -128,7 +133,7 @@ def check_severity(severity: float) -> float:
 
 @dataclass(frozen=True)
 class Corruption:
-    """A corruption, or a pair, at a severity.
+    """A corruption, or a pair of corruptions, with a severity.
 
     Attributes:
         name: "clean", the name of a corruption, or a pair such as "low_light+missing_data"; the
@@ -157,7 +162,7 @@ class Corruption:
 
     @property
     def parts(self) -> tuple[Corruption, ...]:
-        """The single corruptions in order; empty for "clean"."""
+        """The single corruptions in order, or an empty tuple for "clean"."""
         if self.name == "clean":
             return ()
         names = registry.parts(self.name)
@@ -205,7 +210,7 @@ def check_corruption(corruption: Corruption) -> Corruption:
 
 
 def check_heading(heading: float | None) -> float | None:
-    """Return ``heading`` as a float or None, or raise ValueError for NaN, infinity and text."""
+    """Return ``heading`` as a float or None; raise ValueError for NaN, infinity and text."""
     if heading is None or (type(heading) is float and math.isfinite(heading)):
         return heading
     try:
@@ -230,26 +235,27 @@ def corrupt(
     heading: float | None = None,
     sensor: DepthSensor = SENSOR,
 ) -> np.ndarray:
-    """Corrupt one modality of one instant.
+    """Corrupt the frame of one modality at one time step.
 
     Args:
         frame: uint8 [H, W, 3] or [V, H, W, 3] for RGB names; float32 metres [H, W], [H, W, 1],
-            [V, H, W] (W not 3) or [V, H, W, 1] for depth names. View k of V has yaw -30 k degrees
-            and is level. V is the number of views of one instant, at most 36, which share one mask.
-            It is not a batch axis; corrupt a batch one instant at a time, each with its own key.
+            [V, H, W] (W not 3) or [V, H, W, 1] for depth names. View k of V faces yaw -30 k degrees
+            without pitch. V is the number of views of one time step (at most 36), which share one
+            mask. The axis is not a batch axis; corrupt a batch one time step at a time, each with
+            its own key.
         name: One of NAMES, or another known corruption of frames.
         severity: s in [0, 1]; 0 returns a bit-exact copy.
-        key: Key of the random draws; an int is a seed, a str an episode.
+        key: Key of the random numbers; an int is used as the seed, a str as the episode.
         heading: Heading of the agent in radians, counter-clockwise, so that a flare keeps its
-            direction in the world. None (unknown): the flare keeps its place in view 0.
-        sensor: Depth range and value for no reading.
+            direction in the world. If None (unknown), the flare keeps its position in view 0.
+        sensor: Depth range, and value that marks missing depth.
 
     Returns:
         A new array of the same shape and dtype; the input is not modified.
 
     Raises:
-        ValueError: An argument is invalid, or over nine tenths of the depth are beyond three times
-            the sensor's z_max, so it is probably in millimetres.
+        ValueError: An argument is invalid, or more than nine tenths of the depth values exceed
+            three times the sensor's z_max, which suggests millimetres.
     """
     check_name(name)
     severity = check_severity(severity)
@@ -281,20 +287,20 @@ def corrupt_observation(
 ) -> dict:
     """Corrupt the frames of an observation (``core/observation.py``).
 
-    Corruptions of instructions change nothing here; they are applied by ``corrupt_instruction``.
+    Corruptions of instructions have no effect here; ``corrupt_instruction`` applies them.
 
     Args:
         obs: The observation; the heading is read from ``obs["pose"]``, if present.
         corruption: The corruption.
-        key: Key of the random draws.
-        sensor: Depth range and value for no reading.
+        key: Key of the random numbers.
+        sensor: Depth range, and value that marks missing depth.
 
     Returns:
         A new dict; entries that are not corrupted are the same objects.
 
     Raises:
         ValueError: The modality is missing, the pose is not [3], ``corruption`` is not a
-            Corruption, or as in ``corrupt``.
+            Corruption, or an error of ``corrupt``.
     """
     result = dict(obs)
     for part in check_corruption(corruption).parts:
@@ -304,7 +310,7 @@ def corrupt_observation(
 
 
 def _corrupt_entry(obs: dict, part: Corruption, key: Key | int | str, sensor: DepthSensor) -> dict:
-    """Return the entry that one corruption changes, by name."""
+    """Return a dict with the changed entry of an observation under a single corruption."""
     entry = observation.RGB if part.modality == "rgb" else observation.DEPTH
     if entry not in obs:
         raise ValueError(

@@ -43,9 +43,11 @@ from mitigate.worlds.episodes import Episode, read_episodes
 from mitigate.worlds.seeded import RETURN
 from mitigate.worlds.world import Corrupted, World
 
-EPISODES = 20  # default number (heuristic): an SR then has an error of about 17 points
+# default number of episodes (heuristic), for which an SR has an error of about 17 points
+EPISODES = 20
 OUT = Path("runs/benchmark")
-TIMED = 2  # clean episodes; the last one gives the time estimate (heuristic)
+# number of clean episodes that are run first; the last one gives the time estimate (heuristic)
+TIMED = 2
 OPTION = re.compile(r"[+~]*(agent|env)[.=]|--config-dir\b")  # options that ``options=`` may contain
 
 
@@ -71,40 +73,42 @@ def benchmark(
 ) -> LeaderboardEntry | Comparison:
     """Evaluate ``agent`` clean and under a suite of corruptions, and return its entry.
 
-    It first prints how long the evaluation takes. The rows are in ``out``; the same call continues
-    from them.
+    The function first prints how long the evaluation will take. The rows are in ``out``; the same
+    call continues from them.
 
     Args:
         agent: any object with the interface in ``mitigate/agents/agent.py``, a path of weights, or
-            a policy of another library (``mitigate/agents/policies.py``).
-        name: heading of the entry; None: the folder of the weights, or the class of the agent.
-        version: the user's name for state of the agent that cannot be read, such as hooks; without
-            it rows of such an agent are not reused.
-        split: list of episodes of the world; None: the default list, or the name of your world.
-        episodes: number of episodes, spread over the list; None: all, as for the leaderboard. By
-            default 20 of a split, and all of ``listed``.
-        suite: a name of ``conf/suite`` or a list of corruptions.
+            a policy of a supported library (``mitigate/agents/policies.py``).
+        name: heading of the entry; the default is the folder of the weights or the class of the
+            agent.
+        version: string that identifies state of the agent that cannot be read, such as hooks;
+            without it, rows of such an agent are not reused.
+        split: episode list of the world; None means the default list, or the name of your world.
+        episodes: number of episodes, spread over the list; None means all, as for the leaderboard.
+            The default is 20 episodes of a split, or all of ``listed``.
+        suite: a name in ``conf/suite`` or a list of corruptions.
         severity: from 0 to 1.
         seed: corruption seed.
         safeguard: guard for instructions, such as "rules" or "module:callable".
         restore: guard for frames, such as "checkpoints/restorer".
-        workers: processes; None: one per core if there is enough work. With more than one the
-            call must be under ``if __name__ == "__main__":``, because processes import the script.
+        workers: number of processes; None means one per core if there is enough work. With more
+            than one worker, the call must be under ``if __name__ == "__main__":``, because
+            processes import the script.
         options: options of the agent and the world: "agent=recurrent", "env.views=1",
             "--config-dir=mine".
-        world: function that creates your world; it replaces the world of ``options``. A world of
-            a different class needs ``listed``.
-        listed: the episodes, or a file of episodes.
-        training_data: for the entry.
-        link: for the entry.
-        out: folder of the rows; None: a folder in runs/benchmark.
+        world: function that creates your world; it replaces the world of ``options``. A world of a
+            different class requires ``listed``.
+        listed: the episodes, or an episode file.
+        training_data: description of the training data in the entry.
+        link: link in the entry.
+        out: folder of the rows; None means a folder in runs/benchmark.
 
     Returns:
-        The entry; for a world with score "return" the returns with their retention.
+        The leaderboard entry, or for a world with score "return" the returns with their retention.
 
     Raises:
-        ValueError: The agent, an option or a text of the entry is invalid, or ``out`` holds rows of
-            another world.
+        ValueError: The agent, an option or a text of the entry is invalid, or ``out`` contains rows
+            of a different world.
         FileNotFoundError: Weights are missing.
     """
     config, met = _conditions(agent, suite, severity, seed, options)
@@ -142,9 +146,9 @@ def benchmark(
 def _conditions(
     agent: Any, suite: str | Sequence[str], severity: float, seed: int, options: Sequence[str]
 ) -> tuple[EvaluateConfig, list[Corruption]]:
-    """Return the config of an evaluation and the conditions of the suite, clean first.
+    """Return the config of an evaluation and the conditions of the suite, starting with clean.
 
-    If ``agent`` is a path of weights, the config has the kind of agent that they belong to.
+    If ``agent`` is a path of weights, the config contains the kind of agent to which they belong.
     """
     seeding.check(seed)
     if isinstance(options, str) or not all(isinstance(one, str) for one in options or ()):
