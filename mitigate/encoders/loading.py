@@ -124,7 +124,7 @@ def _call(path: str, target: Any, kwargs: dict[str, Any]) -> Any:
 def describe(error: Exception, line: int = 0) -> str:
     """Describe an error of the user's code: "KeyError: 'x', in net.py, line 3".
 
-    ``line``: which line of the message to show.
+    ``line`` selects the line of the message to show.
     """
     lines = str(error).strip().splitlines() or [""]
     message = f"{type(error).__name__}: {lines[line][:200]}"

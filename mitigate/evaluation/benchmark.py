@@ -187,7 +187,7 @@ def _conditions(
 def _agent(
     agent: Any, name: str | None, config: EvaluateConfig, seed: int, guards: Sequence[str]
 ) -> tuple[Any, str]:
-    """Return the agent, loaded if it is a path, and its heading with the labels ``guards``."""
+    """Return the agent (loaded if it is a path), and its heading with the labels of ``guards``."""
     usual = type(agent).__name__
     if isinstance(agent, (str, Path)):
         usual = evaluation.name_of(str(agent))
@@ -227,7 +227,7 @@ def _plain(name: str) -> str:
 
 
 def _visible(met: Sequence[Corruption], world: World, suite: str) -> list[Corruption]:
-    """Return the conditions of a suite without corruptions of frames that the world lacks."""
+    """Return the conditions of a suite, except corruptions of frames that the world lacks."""
     unseen = {RGB, DEPTH} - {*world.sensors}
     left_out = [one.name for one in met if unseen & {*one.modalities}]
     conditions = [one for one in met if one.name not in left_out]
@@ -244,11 +244,11 @@ def _visible(met: Sequence[Corruption], world: World, suite: str) -> list[Corrup
 def checked_world(
     make_world: Any, met: Sequence[Corruption], version: str | None = None
 ) -> tuple[World, dict[str, str]]:
-    """Return a world and the description of how it was made (``provenance.first_world``).
+    """Construct a world and describe how it was constructed (``provenance.first_world``).
 
     Raises:
-        ValueError: ``make_world`` does not make a world, or the world lacks sensors of the agent
-            or of the conditions, or has another number of views.
+        ValueError: ``make_world`` does not return a world, or the world lacks sensors of the agent
+            or of the conditions, or has a different number of views.
     """
     if not callable(make_world):
         raise ValueError(
@@ -256,7 +256,7 @@ def checked_world(
             "Each process makes its own world."
         )
     world, made_by = provenance.first_world(make_world, version)
-    if not hasattr(world, "sensors"):  # the user may give any object by mistake
+    if not hasattr(world, "sensors"):  # the user may pass any object by mistake
         kind = type(world).__name__
         raise ValueError(
             f"A {kind} is not a world: it has no sensors (docs/bring-your-own.md). For a "
@@ -271,11 +271,12 @@ def checked_world(
 def _is_own(world: World, config: EvaluateConfig) -> bool:
     """Return whether the class of the world differs from the config.
 
-    The lists of episodes of the config are then meaningless.
+    In that case, the episode lists in the config do not apply.
     """
     node = config.env.world
     target = locate(node["_target_"])
-    kind = target if isinstance(target, type) else type(maker(node)())  # the target is a function
+    # the target may be a function
+    kind = target if isinstance(target, type) else type(maker(node)())
     return not isinstance(world, kind)
 
 
@@ -290,8 +291,8 @@ def _episodes(
     """Return the split and the episodes to run.
 
     Raises:
-        ValueError: There are no episodes, or the user's (``custom``) world has another class than
-            the config and no list of episodes.
+        ValueError: There are no episodes, or the user's (``custom``) world has a different class
+            than in the config and no episode list.
     """
     other_class = custom and _is_own(world, config)
     split = split or (provenance.name_of(world) if other_class else config.split)
@@ -325,16 +326,16 @@ def _print_estimate(
     conditions: Sequence[Corruption],
     workers: int | None,
 ) -> None:
-    """Print the number of rollouts and an estimate of the time, measured on a few clean ones."""
+    """Print the number of rollouts and a time estimate, measured on a few clean episodes."""
     total = len(episodes) * len(conditions)
     processes = min(count(LOCAL, workers, total, WORTH), len(episodes))
-    if processes > 1:  # now, not after the episodes that are timed
+    if processes > 1:  # checked now rather than after the timed episodes
         packed((agent, make_world), "The agent or its world", ALONE)
     world = make_world()
     for condition in conditions:  # compiles the corruptions
         dict(Corrupted(world, condition, 0).reset(episodes[0]))
     with in_eval_mode(agent):
-        for episode in episodes[:TIMED]:  # the first one also pays for lazy loading
+        for episode in episodes[:TIMED]:  # the first episode also includes the time of lazy loading
             started = time.monotonic()
             run_episode(agent, world, episode, CLEAN, 0)
             each = time.monotonic() - started

@@ -1,4 +1,4 @@
-"""Build guards from the options ``safeguard=`` and ``restore=``; import only the chosen ones."""
+"""Build guards from the options ``safeguard=`` and ``restore=``, importing only the chosen ones."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ class TextGuard(Guard):
     """A guard that applies a safeguard (``safeguard=``) to instructions.
 
     Args:
-        safeguard: repairs instructions.
+        safeguard: the safeguard that repairs instructions.
         label: part of a table's column name (:class:`Guard`).
     """
 
@@ -36,7 +36,7 @@ class TextGuard(Guard):
         return [decision.text for decision in decisions]
 
     def prepared(self, episodes: Sequence[EpisodeStart]) -> Guard:
-        """Compute all answers in this process, which has the only copy of a language model."""
+        """Compute all answers in this process, which holds the only copy of a language model."""
         texts = [episode.instruction for episode in episodes]
         answers = dict(zip(texts, self.begin_all(episodes), strict=True))
         return AnsweredText(answers, self.label, self.fingerprint())
@@ -46,7 +46,8 @@ class TextGuard(Guard):
 
 
 class AnsweredText(Guard):
-    """The answers of a :class:`TextGuard`, for worker processes. Other texts stay unchanged."""
+    """The precomputed answers of a :class:`TextGuard`, for worker processes. Other texts stay
+    unchanged."""
 
     def __init__(self, answers: dict[str, str], label: str, fingerprint: str) -> None:
         self.answers = answers
@@ -66,11 +67,11 @@ def open_guards(
     sensors: Iterable[str] = SENSORS,
     log: str | Path | None = None,
 ) -> Guards:
-    """Return the guards of the two options, the safeguard first.
+    """Build the guards of the two options, starting with the safeguard.
 
     Args:
-        safeguard: a value as in ``text/guard.py``, or None.
-        restore: a value as in :func:`open_restorer`.
+        safeguard: value of ``safeguard=`` (``text/guard.py``), or None.
+        restore: value of ``restore=`` (:func:`open_restorer`).
         sensors: names of the world's sensors.
         log: file for the decisions of the safeguard.
     """
@@ -87,12 +88,12 @@ def open_guards(
 
 
 def open_restorer(choice: str | None, sensors: Iterable[str] = SENSORS) -> Guard | None:
-    """Return the guard of ``restore=`` (``frames/choices.py``); None for None and "none".
+    """Build the guard of ``restore=`` (``frames/choices.py``); for None and "none", return None.
 
     Raises:
-        FileNotFoundError: The folder holds no restorer.
+        FileNotFoundError: The folder contains no restorer.
         ValueError: The restorer is damaged, the callable does not exist, or the guard changes none
-            of ``sensors``, the sensors of the world.
+            of the world's ``sensors``.
     """
     if choice in NONE:
         return None
@@ -112,7 +113,7 @@ def open_restorer(choice: str | None, sensors: Iterable[str] = SENSORS) -> Guard
 
 
 def labels(safeguard: str | None, restore: str | None) -> list[str]:
-    """Return the labels of the guards of the two options, without opening them."""
+    """Return the labels of the guards of the two options, without building the guards."""
     names = []
     if safeguard not in NONE:
         from mitigate.guards.text import choices

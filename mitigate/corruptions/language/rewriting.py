@@ -57,8 +57,8 @@ class Rewriter:
     def __call__(self, text: str, manner: str) -> str:
         """Return ``text`` rewritten in the style ``manner``.
 
-        Raises ValueError for an unknown style, and for an answer that is not text. Such an answer
-        is not cached: the next call asks again.
+        Raises ValueError for an unknown style, and for an answer that is not text. An invalid
+        answer is not cached, so the next call asks the model again.
         """
         if manner not in TONES:
             raise ValueError(f"There is no manner {manner!r}. Choose one of: {', '.join(MANNERS)}.")

@@ -1,6 +1,6 @@
-"""Score the clauses of an instruction: a logistic regression over TF-IDF.
+"""Score the clauses of an instruction with a logistic regression on TF-IDF features.
 
-The terms are words, word pairs and letter groups. Inference needs numpy alone; :mod:`fit` makes the
+The terms are words, word pairs and letter groups. Inference needs only numpy; :mod:`fit` trains the
 weights.
 """
 
@@ -27,7 +27,7 @@ from mitigate.guards.text.decode import Decoded, decode
 from mitigate.guards.text.pieces import Piece, clause_pieces, script, sentence_pieces
 
 BITS = 18
-SIZE = 1 << BITS  # of the table of hashed features
+SIZE = 1 << BITS  # size of the table of hashed features
 CONFIG, WEIGHTS = "classifier.json", "classifier.safetensors"
 ARRAYS = ("idf", "alone", "style")
 _TOKEN = re.compile(r"[a-z]+(?:['’][a-z]+)?|\d+|[^\w\s]|[^\W\d_]+")
@@ -36,7 +36,7 @@ _SIGNS = re.compile(r"[<>{}\[\]|=_\\`#]|//|\(\)")
 
 
 def terms(said: Decoded, original: str, block: bool) -> Counter[int]:
-    """Return hashed term -> count of a piece: words, pairs, letter groups, marks."""
+    """Return the counts of a clause's hashed terms: words, pairs, letter groups and marks."""
     lower = said.text.lower().replace("’", "'")
     tokens = [
         t if not t.isdigit() else ("#" if len(t) < 3 else "###") for t in _TOKEN.findall(lower)
@@ -66,7 +66,7 @@ def _hashed(name: str) -> int:
 
 @lru_cache(maxsize=20_000)
 def _word_terms(word: str) -> tuple[int, ...]:
-    """Return the terms of a word and of its groups of three to five letters."""
+    """Return the terms for a word and for its groups of three to five letters."""
     edged = f"<{word}>"
     groups = [f"c{edged[i : i + n]}" for n in (3, 4, 5) for i in range(len(edged) - n + 1)]
     return tuple(map(_hashed, [f"w {word}", *groups]))
@@ -74,15 +74,15 @@ def _word_terms(word: str) -> tuple[int, ...]:
 
 @dataclass(frozen=True)
 class Clause:
-    """A clause that was read.
+    """A clause of an instruction with its features.
 
     Attributes:
-        piece: Its place in the text.
-        sentence: Number of its sentence.
+        piece: Position of the clause in the text.
+        sentence: Index of its sentence.
         words: Number of words.
-        letters: Number of letters; a sign of Chinese, Japanese or Korean counts as three.
+        letters: Number of letters; a Chinese, Japanese or Korean character counts as three.
         script: "latin", "other", or "" without letters.
-        product: Sum of its TF-IDF values times the weights of attacks.
+        product: Sum of the clause's TF-IDF values times the attack weights.
         square: Sum of its squared TF-IDF values.
     """
 
