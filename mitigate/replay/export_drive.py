@@ -1,7 +1,8 @@
-"""Record an oracle's episodes as drives, to try ``mitigate replay``: ``mitigate export_drive OUT``.
+"""Record an oracle's episodes as drives (recordings), as examples for ``mitigate replay``:
+``mitigate export_drive OUT``.
 
-OUT is a folder. Each episode becomes a drive in it, as one RGB-D camera of 90 degrees would have
-recorded it: a folder of frames, or a bag of ROS 1 or of ROS 2 (MCAP).
+OUT is a folder. Each episode is written to this folder as a drive, in the form that a robot with
+one 90-degree RGB-D camera would record: a folder of frames, or a bag of ROS 1 or ROS 2 (MCAP).
 """
 
 from __future__ import annotations
@@ -30,7 +31,7 @@ from mitigate.corruptions.frame_files import counts
 FORMS = ("frames", "bag", "mcap")
 _NOT_IN_NAMES = re.compile(r"[^\w-]+")  # characters that are replaced in the name of a drive
 UNIT = 0.001  # metres per count of 16-bit depth
-SECOND = 1_000_000_000  # nanoseconds; each step lasts one second
+SECOND = 1_000_000_000  # duration of a step in nanoseconds (one second)
 TOPICS = {
     RGB: "/camera/color/image_raw",
     DEPTH: "/camera/aligned_depth_to_color/image_raw",
@@ -41,7 +42,7 @@ TOPICS = {
 
 @dataclass
 class ExportDriveConfig:
-    """Types of ``conf/export_drive.yaml``, which explains each entry."""
+    """Types of the options in ``conf/export_drive.yaml``, which documents each of them."""
 
     split: str = "val_unseen"
     episodes: int = 3
@@ -54,7 +55,7 @@ conf.register("export_drive", ExportDriveConfig)
 
 
 def run(config: ExportDriveConfig, out: Path) -> list[Path]:
-    """Write the drives into ``out`` and return their paths.
+    """Write the recorded drives into ``out`` and return their paths.
 
     A drive is written completely or not at all.
 
@@ -87,7 +88,7 @@ def run(config: ExportDriveConfig, out: Path) -> list[Path]:
                     write_frames(draft, steps, instruction)
                 else:
                     draft = write_bag(draft, steps, config.form)
-                    # before the bag, so that a complete bag always has its instruction
+                    # written before the bag, so that a complete bag always has its instruction
                     write_bytes(path.with_suffix(".txt"), instruction.encode())
                 draft.rename(path)
             root.expected.append(path)
@@ -96,7 +97,7 @@ def run(config: ExportDriveConfig, out: Path) -> list[Path]:
 
 
 def _drive_paths(out: Path, names: Sequence[str], form: str) -> list[Path]:
-    """Return the path of each episode's drive; ids are reduced to letters, digits, "_" and "-".
+    """Return the output path of each episode; ids are reduced to letters, digits, "_" and "-".
 
     Raises:
         ValueError: Two episodes have the same path, or a path already exists.
@@ -116,7 +117,7 @@ def _drive_paths(out: Path, names: Sequence[str], form: str) -> list[Path]:
 
 
 def oracle(world: Any, episode: Any) -> Iterator[dict[str, np.ndarray]]:
-    """Yield the observation of each step of the expert, the one before STOP included."""
+    """Yield the observation at each step of the expert, including the one before STOP."""
     from mitigate.worlds.world import expert_of
 
     observation = world.reset(episode)
@@ -126,7 +127,8 @@ def oracle(world: Any, episode: Any) -> Iterator[dict[str, np.ndarray]]:
 
 
 def write_frames(path: Path, steps: Sequence[dict[str, np.ndarray]], instruction: str) -> None:
-    """Write a drive as a folder: ``rgb/``, ``depth/``, ``poses.csv`` and ``instruction.txt``."""
+    """Write a recorded drive as a folder with ``rgb/``, ``depth/``, ``poses.csv`` and
+    ``instruction.txt``."""
     for number, step in enumerate(steps):
         write_bytes(path / RGB / f"{number:06d}.png", _png(step[RGB][..., ::-1]))
         write_bytes(path / DEPTH / f"{number:06d}.png", _png(counts(step[DEPTH][..., 0], UNIT)))
@@ -143,7 +145,7 @@ def _png(picture: np.ndarray) -> bytes:
 
 
 def write_bag(path: Path, steps: Sequence[dict[str, np.ndarray]], form: str) -> Path:
-    """Write a drive as a bag and return its path.
+    """Write a recorded drive as a bag and return its path.
 
     Each step lasts one second. Odometry uses the axes of REP 103.
     """
@@ -191,7 +193,7 @@ def messages(
 
 
 def _odometry(types: Any, header: Any, pose: np.ndarray) -> Any:
-    """Return odometry at a plan pose; ROS's yaw is the heading plus a quarter turn."""
+    """Return the odometry at a plan pose; the yaw in ROS is the heading plus a quarter turn."""
     half = (float(pose[2]) + np.pi / 2) / 2
     z, w = float(np.sin(half)), float(np.cos(half))
     point = types["geometry_msgs/msg/Point"](float(pose[0]), float(pose[1]), 0.0)
@@ -209,7 +211,7 @@ def _odometry(types: Any, header: Any, pose: np.ndarray) -> Any:
     )
 
 
-_out: list[str] = []  # the folder on the command line
+_out: list[str] = []  # the folder that was given on the command line
 
 
 @hydra.main(version_base="1.3", config_path=str(conf.CONF), config_name="export_drive")

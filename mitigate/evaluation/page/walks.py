@@ -145,7 +145,7 @@ def _rows_of(rows: Sequence[Row], hashes: Mapping[str, str]) -> list[Row]:
     """Return the rows of the agents in ``hashes`` (by name).
 
     Raises:
-        ValueError: The rows of a name belong only to agents with other hashes.
+        ValueError: The rows with a name belong only to agents with different hashes.
     """
     for name, agent_hash in hashes.items():
         others = sorted({row["agent"] for row in rows if row["name"] == name})

@@ -83,7 +83,7 @@ class Clause:
         letters: Number of letters; a Chinese, Japanese or Korean character counts as three.
         script: "latin", "other", or "" without letters.
         product: Sum of the clause's TF-IDF values times the attack weights.
-        square: Sum of its squared TF-IDF values.
+        square: Sum of the clause's squared TF-IDF values.
     """
 
     piece: Piece
@@ -96,11 +96,11 @@ class Clause:
 
 
 class Classifier:
-    """The weights, and what they say of a text.
+    """The trained weights, and methods that score texts with them.
 
     Args:
-        config: Common words, bias of the attack weights and of the style weights.
-        arrays: ``idf``, weights of attacks ``alone`` and of styles ``style``, each [SIZE].
+        config: Settings: common words, and the biases of the attack and style weights.
+        arrays: ``idf``, attack weights ``alone`` and style weights ``style``, each [SIZE].
     """
 
     def __init__(self, config: dict[str, Any], arrays: dict[str, np.ndarray]) -> None:
@@ -112,7 +112,7 @@ class Classifier:
         self.idf = self.arrays["idf"]
 
     def clauses(self, text: str) -> list[Clause]:
-        """Return the clauses of a text, read one by one."""
+        """Return the clauses of a text with their features."""
         results = []
         for number, sentence in enumerate(sentence_pieces(text)):
             for piece in clause_pieces(text, sentence):
@@ -132,7 +132,7 @@ class Classifier:
         return results
 
     def score(self, clauses: Sequence[Clause]) -> float:
-        """Return the log odds that some clauses, read as one text, are an attack."""
+        """Return the log odds that some clauses, taken together as one text, are an attack."""
         return self.of_sums(*self.total(clauses))
 
     def total(self, clauses: Sequence[Clause]) -> tuple[float, float]:
@@ -144,14 +144,14 @@ class Classifier:
         return product / math.sqrt(square) + self.bias if square > 1e-3 else 0.0
 
     def styled(self, text: str) -> bool:
-        """Return whether a sentence is in a style, not in the words of a plain route."""
+        """Return whether a sentence is written in an unusual style rather than as a plain route."""
         index, value = weighted(terms(decode(text, self.known), text, False), self.idf)
         norm = math.sqrt(float(value @ value)) + 1e-6
         return float(self.arrays["style"][index] @ value) / norm + self.style_bias > 0
 
 
 def weighted(found: Mapping[int, int], idf: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return indices and TF-IDF values of terms."""
+    """Return the indices and TF-IDF values of terms."""
     index = np.fromiter(found, np.int64, len(found))
     count = np.fromiter(found.values(), np.float32, len(found))
     return index, (1 + np.log(count)) * idf[index] if len(index) else count
@@ -159,8 +159,8 @@ def weighted(found: Mapping[int, int], idf: np.ndarray) -> tuple[np.ndarray, np.
 
 @lru_cache(maxsize=4)
 def load(folder: str | Path) -> Classifier:
-    """Return the classifier of a folder. Raises FileNotFoundError if a file is missing, ValueError
-    for damaged files."""
+    """Load the classifier in a folder. Raises FileNotFoundError if a file is missing, and
+    ValueError if a file is damaged."""
     config_file, file = Path(folder) / CONFIG, Path(folder) / WEIGHTS
     for needed in (config_file, file):
         if not needed.is_file():

@@ -1,10 +1,10 @@
-"""Measure a restorer on frames of unseen scenes: errors before and after, and the gate.
+"""Measure a restorer's errors and its gate on frames of unseen scenes.
 
     python -m mitigate.training.reports.restorer checkpoints/restorer --suite unseen_val
 
-Errors are means over pixels: RGB in levels of 255, depth in centimetres. A pixel is right if it is
-off by less than ``TOLERANCE`` of the range. `python -m mitigate.evaluate restore=FOLDER` measures
-the success of an agent with the restorer.
+Errors are means over pixels: RGB errors are in levels of 255, depth errors in centimetres. A pixel
+is correct if its error is below ``TOLERANCE`` of the range. `python -m mitigate.evaluate
+restore=FOLDER` measures the success of an agent with the restorer.
 """
 
 from __future__ import annotations
@@ -44,13 +44,13 @@ from mitigate.worlds.world import depth_sensor
 
 UNITS = {RGB: 1.0, DEPTH: 100.0}  # errors are shown in grey levels (RGB) and centimetres (depth)
 SHOWN = (0, 1, 2)  # indices of the views that the picture shows
-SIDE, LABEL = 96, 130  # pixels of a view in the picture, and of the names next to it
-GAP, HEAD = 6, 20  # pixels between its blocks, and of their headings
+SIDE, LABEL = 96, 130  # size in pixels of a view in the picture, and of the names next to it
+GAP, HEAD = 6, 20  # size in pixels of gaps between blocks, and of their headings
 
 
 class Score(NamedTuple):
-    """Mean error before and after, shares of correct pixels before and after, and the share of
-    instants that the gate had restored."""
+    """Mean errors and fractions of correct pixels before and after, and the fraction of restored
+    time steps."""
 
     before: Estimate
     after: Estimate
@@ -60,13 +60,13 @@ class Score(NamedTuple):
 
 
 class Instants(NamedTuple):
-    """Clean observations, and the properties of their depth sensor."""
+    """Clean observations, with the properties of their depth sensor."""
 
     clean: list[dict[str, np.ndarray]]
     depth: DepthSensor = SENSOR
 
     def corrupted(self, number: int, corruption: Corruption, seed: int) -> dict[str, np.ndarray]:
-        """Return the frames of an observation under a corruption."""
+        """Return the corrupted frames of an observation."""
         seen = self.clean[number]
         frames = {name: seen[name] for name in seen if name in (RGB, DEPTH, POSE)}
         key = Key(seed, f"instant {number}", 0)
@@ -76,8 +76,8 @@ class Instants(NamedTuple):
 def before_after(config: TrainConfig, base: Any, trained: nn.Module, folder: Path) -> None:
     """Measure a trained restorer; print and write ``restoration.md`` and ``restoration.jpg``.
 
-    It is measured on ``evaluation.episodes`` random instants of unseen scenes, under the conditions
-    of the suite. ``base`` is not used: "before" means without a restorer.
+    The restorer is measured on ``evaluation.episodes`` random time steps of unseen scenes, under
+    the conditions of the suite. ``base`` is not used: "before" means without a restorer.
     """
     assert isinstance(trained, Restorer)
     quick = config.evaluation
