@@ -114,7 +114,8 @@ def instants(env: Any, split: str, count: int, seed: int, restorer: Restorer) ->
 def measure(
     restorer: Restorer, data: Instants, corruptions: Sequence[Corruption], seed: int
 ) -> dict[tuple[str, str], Score]:
-    """Return scores by sensor and condition; a corruption counts for the sensor that it changes."""
+    """Return scores by sensor and condition; each corruption is scored for the sensor that it
+    changes."""
     scores: dict[tuple[str, str], Score] = {}
     pairs = [(s, c) for c in corruptions for s in restorer.nets if c is CLEAN or s in c.modalities]
     pairs = [(s, c) for s, c in pairs if s in data.clean[0]]
@@ -138,9 +139,9 @@ def measure(
 
 
 def _off(frames: np.ndarray, clean: np.ndarray, far: float) -> np.ndarray:
-    """Return the error of each valid pixel as a share of the range ``far``, mean over colours.
+    """Return each valid pixel's error as a fraction of the range ``far``, averaged over colours.
 
-    Returns [0] if the clean frame has no valid pixel.
+    If the clean frame has no valid pixel, the result is [0].
     """
     valid = np.isfinite(clean) & (clean > 0) if clean.dtype != np.uint8 else True
     values = np.nan_to_num(frames.astype(np.float64), posinf=0.0)
@@ -150,7 +151,7 @@ def _off(frames: np.ndarray, clean: np.ndarray, far: float) -> np.ndarray:
 
 
 def table(scores: dict[tuple[str, str], Score], about: str) -> str:
-    """Return the Markdown table: one row per condition, one block per sensor."""
+    """Return the Markdown table, with one row per condition and one block per sensor."""
     parts = [f"# Frames before and after restoration\n\n{about}. In brackets 95 % intervals.\n"]
     for sensor in dict.fromkeys(sensor for sensor, _ in scores):
         unit = "levels of 255" if sensor == RGB else "cm"
@@ -175,10 +176,10 @@ def _text(e: Estimate, scale: float = 1.0) -> str:
 def sheet(
     restorer: Restorer, seen: Instants, met: Sequence[Corruption], seed: int
 ) -> np.ndarray | None:
-    """Draw three views of the instant with the greatest depth: corrupted, restored, clean.
+    """Draw three views (corrupted, restored, clean) of the time step with the greatest depth.
 
     Returns:
-        uint8 RGB with one row per corruption; None if no corruption fits the sensors.
+        uint8 RGB with one row per corruption; None if no corruption applies to the sensors.
     """
     number = max(range(len(seen.clean)), key=lambda n: _far(seen.clean[n]))
     clean = seen.clean[number]
@@ -199,7 +200,8 @@ def sheet(
 
 
 def _far(frames: dict[str, np.ndarray]) -> float:
-    """Return the least mean depth of the views in a picture: near walls show little."""
+    """Return the minimum over the drawn views of their mean depth, because near walls show
+    little."""
     depth = frames.get(DEPTH)
     return 0.0 if depth is None or depth.ndim < 4 else float(depth[[*SHOWN]].mean((1, 2, 3)).min())
 

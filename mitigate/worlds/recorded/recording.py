@@ -1,7 +1,7 @@
-"""Load a recorded drive as an agent's observations, and replay it as a world.
+"""Load a recorded drive as observations for an agent, and replay it as a world.
 
-The frames of any camera are cropped and resized to square views of 90 degrees, the field of view
-that agents expect. Pixels outside the recorded image are black (no reading in depth).
+The frames of each camera are cropped and resized to square views of 90 degrees, the field of view
+that agents expect. Pixels outside the recorded image are black, or missing depth.
 """
 
 from __future__ import annotations
@@ -34,28 +34,30 @@ from mitigate.worlds.episodes import Episode, Instruction
 from mitigate.worlds.recorded.source import Lens, Source
 from mitigate.worlds.world import World, check_metres
 
-NO_ACTION = -1  # a movement that no action of an agent describes: backwards or sideways
+# action number for a motion that is not an action of an agent, such as backwards or sideways
+NO_ACTION = -1
 
 # Heuristic limits.
-STEP_TOLERANCE = 0.98  # share of a step: rounding must not skip a step of exactly full length
-MIN_MOVE = 0.05  # metres: odometry of a standing robot moves by less
-MIN_LAST_STEP = 0.5  # share of a step; a shorter last step is merged into the step before
-MAX_FRAME_BYTES = 1 << 32  # all frames of a drive
-MAX_OFF_HEADING = 1 / 3  # share of the moving steps that may go another way than the heading
-MIN_MOVING_STEPS = 5  # fewer moving steps are too few to warn about the heading
-SUPERSAMPLING = 4  # canvas pixels per pixel of a partly covered view, along each side
-MAX_YAW_ERROR = 3.0  # degrees between a camera and its view of the panorama
+# as a fraction of a step, so that rounding does not skip a step of exactly full length
+STEP_TOLERANCE = 0.98
+MIN_MOVE = 0.05  # in metres; the odometry of a standing robot moves by less
+MIN_LAST_STEP = 0.5  # as a fraction of a step; a shorter last step is merged into the previous step
+MAX_FRAME_BYTES = 1 << 32  # maximum bytes of all frames of a drive
+MAX_OFF_HEADING = 1 / 3  # fraction of moving steps whose direction may differ from the heading
+MIN_MOVING_STEPS = 5  # minimum number of moving steps for a warning about the heading
+SUPERSAMPLING = 4  # canvas pixels per pixel of a partially covered view, along each side
+MAX_YAW_ERROR = 3.0  # maximum degrees between a camera and its view of the panorama
 
 
 @dataclass(frozen=True)
 class Recording:
-    """One drive of T steps, loaded into memory.
+    """One recorded drive of T steps, loaded into memory.
 
     Attributes:
         name: Name of the drive.
-        instruction: Instruction text; may be empty.
+        instruction: Instruction text, which may be empty.
         frames: "rgb" uint8 [T, S, S, 3] and "depth" float32 metres [T, S, S, 1], or with 12 views
-            [T, 12, S, S, C]. Sensors that were not recorded are missing.
+            [T, 12, S, S, C]. Sensors that were not recorded are absent.
         times: float64 [T], seconds since the first step.
         poses: float64 [T, 3], (x, y, heading), or None if unknown.
         driven: The driver's actions, or None if the poses are unknown.
@@ -78,7 +80,7 @@ class Recording:
 
 
 def load(source: Source, *, views: int, size: int, step: Step) -> Recording:
-    """Load the frames of ``source`` at the instants that are one step apart.
+    """Load the frames of ``source`` at times that are one agent step apart.
 
     Args:
         source: An opened drive.
@@ -149,7 +151,7 @@ def kinds(source: Source, views: int) -> list[str]:
 
 
 def _assign_cameras(source: Source, views: int) -> dict[tuple[str, int], str]:
-    """Return the camera of each (kind, view): the front camera, or the whole panorama."""
+    """Return the camera of each (kind, view), for the front camera or the whole panorama."""
     assigned: dict[tuple[str, int], str] = {}
     for name, lens in source.cameras.items():
         yaw_error = abs((lens.yaw - 30.0 * lens.view + 180) % 360 - 180)
@@ -190,12 +192,12 @@ def square_view(frame: np.ndarray, lens: Lens, size: int) -> np.ndarray:
 
     Args:
         frame: uint8 [H, W, 3] or float32 [H, W].
-        lens: Lens of the camera that took it.
+        lens: Lens of the camera that took the frame.
         size: Height and width of the view in pixels.
 
     Returns:
         uint8 [size, size, 3] or float32 [size, size, 1]. A frame that already is such a view is
-        returned bit for bit.
+        returned unchanged.
     """
     is_depth = lens.kind == DEPTH
     frame = frame.reshape(*frame.shape[:2], -1)
@@ -214,10 +216,10 @@ def square_view(frame: np.ndarray, lens: Lens, size: int) -> np.ndarray:
 def _partial_view(
     frame: np.ndarray, edges: tuple[float, float, float, float], size: int, is_depth: bool
 ) -> np.ndarray:
-    """Draw a frame that covers only part of the view.
+    """Draw a frame that covers only a part of the view.
 
-    The frame is drawn on a larger canvas first, so that rounding moves its edges by a fraction of
-    a pixel only.
+    The frame is first drawn on a larger canvas, so that rounding moves its edges only by a fraction
+    of a pixel.
     """
     height, width = frame.shape[:2]
     left, right, top, bottom = edges

@@ -47,12 +47,12 @@ class ChatEndpoint:
     """Rewrites texts by asking a chat model over HTTP.
 
     Args:
-        url: up to and without ``/chat/completions``, such as ``http://localhost:8000/v1``.
-        model: as the endpoint names it.
-        prompt: which of ``PROMPTS`` goes before the text.
-        key: environment variable that holds the API key; unset means none is sent.
-        timeout: seconds for one request. retries: further tries after a failure that may pass.
-        pause: seconds before the first retry, doubled before each next one.
+        url: address without ``/chat/completions``, such as ``http://localhost:8000/v1``.
+        model: name of the model at the endpoint.
+        prompt: name in ``PROMPTS`` of the prompt before the text.
+        key: environment variable with the API key; if it is not set, no key is sent.
+        timeout: seconds for one request. retries: number of retries after a temporary failure.
+        pause: seconds before the first retry, doubled before each later one.
         cache: SQLite file of answers by (text, model, prompt), or None for no cache.
         options: additional fields of the request, such as ``{"temperature": 0}``.
 
