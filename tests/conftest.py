@@ -1,4 +1,4 @@
-"""Set up all tests of a process: cached configs, marks of slow tests, the fork server."""
+"""Set up all tests of a process: cached configs, marks of slow tests, and the fork server."""
 
 from __future__ import annotations
 
@@ -21,13 +21,14 @@ from mitigate.corruptions import NAMES, Key, corrupt
 from mitigate.corruptions.registry import modality, unseen_names
 from mitigate.training.workers import PRELOAD
 
-PLACE = re.compile(r"(folder|runs|out)=(/[\w./-]+)")  # options that name a folder of one test
+# options that name the folder of a single test
+PLACE = re.compile(r"(folder|runs|out)=(/[\w./-]+)")
 compose = conf.load_config
 composed: dict[tuple, DictConfig] = {}
 
 
 def load_config(primary: str, words: Iterable[str] = ()) -> DictConfig:
-    """Compose each set of options once per process, since Hydra takes 0.2 s each time."""
+    """Compose each set of options only once per process, because Hydra takes 0.2 s each time."""
     overrides = [*words]
     places = dict(match.groups() for match in map(PLACE.fullmatch, overrides) if match)
     rest = tuple(option for option in overrides if not PLACE.fullmatch(option))
@@ -44,14 +45,14 @@ def load_config(primary: str, words: Iterable[str] = ()) -> DictConfig:
     return cfg
 
 
-gc.disable()  # until the tests are collected, imported objects are not garbage
+gc.disable()  # disabled until the tests are collected, because imported objects are not garbage
 conf.load_config = load_config
 SLOW_FIXTURES = {"cluster"}  # a Ray cluster takes long to start
 for command in ("train", "evaluate", "table1", "table2", "sweep", "run", "replay", "export_drive"):
-    import_module(COMMANDS[command].module)  # registers the types of its options
+    import_module(COMMANDS[command].module)  # imported to register the types of its options
 
 
-@pytest.hookimpl(tryfirst=True)  # before pytest-xdist reads the marks
+@pytest.hookimpl(tryfirst=True)  # must run before pytest-xdist reads the marks
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Send tests that share a module's fixture to one worker, and mark those with slow fixtures."""
     for item in items:
@@ -65,10 +66,10 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 
 
 def compile_kernels(share: int, workers: int) -> None:
-    """Compile a share of the corruptions' kernels, which takes a minute in a new checkout.
+    """Compile a part of the corruption kernels, which takes a minute in a new checkout.
 
-    No test starts before all workers have compiled their share. Each worker reads the kernels of
-    the others from numba's cache and does not compile them.
+    No test starts before all workers have compiled their part. Each worker reads the kernels of the
+    other workers from numba's cache.
     """
     frames = {
         "rgb": np.full((12, 32, 32, 3), 90, np.uint8),
@@ -79,7 +80,7 @@ def compile_kernels(share: int, workers: int) -> None:
         corrupt(frames[modality(name)], name, 0.6, key=Key(0, "compile"))
 
 
-@pytest.hookimpl(tryfirst=True)  # before pytest-xdist reports the tests
+@pytest.hookimpl(tryfirst=True)  # must run before pytest-xdist reports the tests
 def pytest_collection_finish() -> None:
     """Start the fork server with the modules that most workers import.
 

@@ -1,4 +1,4 @@
-"""Reading the state of agents: networks, arrays and values at any place."""
+"""Tests of reading the state of agents: networks, arrays and values at any place."""
 
 from __future__ import annotations
 
@@ -132,7 +132,7 @@ def test_read_state_reports_unreadable_values():
 
 
 class Merged(nn.Linear):
-    """A layer that merges its weights only in eval mode, as LoRA does."""
+    """A layer that merges its weights only in eval mode, like LoRA layers."""
 
     def train(self, mode: bool = True):
         self.merged = not mode

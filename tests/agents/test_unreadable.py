@@ -1,4 +1,4 @@
-"""A change of behaviour changes the fingerprint, or the user is asked for a version."""
+"""Tests that a change of behaviour changes the fingerprint, or that a version is required."""
 
 from __future__ import annotations
 
@@ -27,13 +27,13 @@ class Level(enum.Enum):
 
 
 class Table(dict):
-    """A mapping class of the user, with attributes for keys."""
+    """A user's mapping class with attributes for keys."""
 
     __getattr__ = dict.get
 
 
 class Steps(list):
-    """A list class of the user."""
+    """A user's list class."""
 
 
 class Slotted:
@@ -44,7 +44,7 @@ class Slotted:
 
 
 class Pickled:
-    """Leaves its behaviour out of its pickles."""
+    """An object whose pickles do not contain its behaviour."""
 
     def __init__(self, level: int) -> None:
         self.level = level
@@ -54,11 +54,11 @@ class Pickled:
 
 
 class Numbers(np.ndarray):
-    """An array class of the user."""
+    """A user's array class."""
 
 
 class Answer:
-    """An object in place of a method."""
+    """An object that replaces a method."""
 
     def __init__(self, levels) -> None:
         self.levels = levels
@@ -279,7 +279,7 @@ def test_fingerprint_with_settings_changes_with_code_and_what_it_names(what):
 def test_fingerprint_does_not_depend_on_imported_modules(monkeypatch):
     class Agent(Holder):
         def act(self, observation) -> int:
-            return observation.colorsys.value  # names a module of Python that is not imported
+            return observation.colorsys.value  # the name of a standard module that is not imported
 
     before = fingerprint(Agent(0), {})
     monkeypatch.setitem(sys.modules, "colorsys", types.ModuleType("colorsys"))

@@ -1,4 +1,5 @@
-"""Programs without habitat-lab, loops without Habitat, and adapters in an agent's encoder."""
+"""Tests of programs without habitat-lab, loops without Habitat, and adapters in an agent's
+encoder."""
 
 import hashlib
 import json
@@ -37,7 +38,7 @@ def test_wmnav_is_corrupted_and_measured_without_a_lab(tmp_path):
     own_rows = [row for row in result_rows if row["rule"] == OWN]
     assert [(row["success"], row["spl"]) for row in own_rows] == [(1.0, 0.75)] * 3
     common = {row["rule"] for row in result_rows} - {OWN}
-    assert common == {str(RULES["wmnav"])}  # its goals are categories, passed as words
+    assert common == {str(RULES["wmnav"])}  # the goals are categories, passed as words
 
 
 def test_wmnav_hears_the_corrupted_category(tmp_path):
@@ -198,7 +199,7 @@ FRAMES = torch.full((1, 3, 9, 9), 90 / 255)
 
 
 def scripted(folder, program):
-    """A convolution as TorchScript, within adapters that are saved in a folder, and the agent's."""
+    """A TorchScript convolution with saved adapters, and the same convolution of an agent."""
     (folder / "their_encoder.py").write_text(SCRIPTED)
     (folder / "program.py").write_text(program)
     torch.manual_seed(0)
@@ -229,7 +230,7 @@ def test_adapters_wrap_a_torchscript_encoder(tmp_path, monkeypatch):
 
 @pytest.mark.slow
 def test_adapters_stop_the_agent_inside_torchscript(tmp_path, monkeypatch):
-    """An agent that catches the error must not continue without them."""
+    """An agent that catches the error must not continue without adapters."""
     call = "    features = encoder(torch.from_numpy(rgb).permute(2, 0, 1)[None] / 255)\n"
     assert call in PROGRAM
     again = f"    try:\n    {call}    except RuntimeError:\n    {call}"

@@ -1,4 +1,4 @@
-"""``python -m mitigate.corrupt``: folders of frames in, corrupted folders out."""
+"""Tests of ``python -m mitigate.corrupt``, which corrupts folders of frames."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def read(path: Path) -> np.ndarray:
 
 @pytest.fixture
 def run(tmp_path, capsys):
-    """Call the program on tmp_path/in and tmp_path/out; (status, stdout, stderr)."""
+    """Call the program on tmp_path/in and tmp_path/out; return (status, stdout, stderr)."""
 
     def call(*options, source="in", out="out"):
         status = program.main([str(tmp_path / source), str(tmp_path / out), *options])
@@ -54,7 +54,7 @@ def run(tmp_path, capsys):
 
 @pytest.fixture
 def walk(tmp_path):
-    """Two folders of RGB PNG; the names of the first are not padded."""
+    """Write two folders of RGB PNG files; the names in the first are not padded with zeros."""
     for number in range(12):
         save(tmp_path / f"in/a/frame{number}.png", RGB[number])
     save(tmp_path / "in/b/c/0.png", RGB[0])

@@ -237,7 +237,8 @@ def _partial_view(
 
 
 def _resize(frame: np.ndarray, width: int, height: int, is_depth: bool) -> np.ndarray:
-    """Resize a frame. Depth takes the nearest pixel, so that missing readings stay missing."""
+    """Resize a frame. Depth is resized to the nearest pixel, so that missing depth stays
+    missing."""
     shrinks = width < frame.shape[1] or height < frame.shape[0]
     smooth = cv2.INTER_AREA if shrinks else cv2.INTER_LINEAR
     return cv2.resize(
@@ -246,7 +247,7 @@ def _resize(frame: np.ndarray, width: int, height: int, is_depth: bool) -> np.nd
 
 
 def _check_headings(name: str, poses: np.ndarray, driven: Driven) -> None:
-    """Warn if too many of the steps that move go another way than the heading."""
+    """Warn if too many moving steps have a direction that differs from the heading."""
     moves = np.hypot(*np.diff(poses[:, :2], axis=0).T) >= MIN_MOVE
     moves &= np.isin(driven.actions[:-1], (FORWARD, NO_ACTION))
     off_heading = int((driven.actions[:-1][moves] == NO_ACTION).sum())
@@ -261,9 +262,10 @@ def _check_headings(name: str, poses: np.ndarray, driven: Driven) -> None:
 
 
 class RecordedWorld(World):
-    """A world that replays a recording: each step returns its next instant, whatever the action.
+    """World that replays a recording: each step returns the next recorded step, whatever the
+    action.
 
-    The episode ends after the last instant. Success cannot be measured here.
+    The episode ends after the last recorded step. Success cannot be measured in a recording.
     """
 
     rule = "recorded: the way is the driver's"
@@ -275,7 +277,7 @@ class RecordedWorld(World):
         self.done = True
 
     def episode(self) -> Episode:
-        """Return the drive as an episode with its name and instruction."""
+        """Return the recorded drive as an episode with its name and instruction."""
         name = self.recording.name
         origin = (0.0, 0.0, 0.0)
         return Episode(
@@ -296,7 +298,7 @@ class RecordedWorld(World):
         return self._observation()
 
     def step(self, action: int) -> Observation:
-        """Return the next instant, or the last one again when the episode ends.
+        """Return the next recorded observation, or the last one again when the episode ends.
 
         Raises:
             RuntimeError: The episode is over.
@@ -308,7 +310,7 @@ class RecordedWorld(World):
         return self._observation()
 
     def measures(self) -> dict[str, float]:
-        """Return an empty dict: the driver, not the agent, chose the path."""
+        """Return an empty dict, because the driver and not the agent chose the path."""
         return {}
 
     def _observation(self) -> Observation:
@@ -321,12 +323,12 @@ class RecordedWorld(World):
 
 @dataclass(frozen=True)
 class Step:
-    """Distance between two instants that an agent observes; by default one step of the agent.
+    """Distance between two observations of an agent; the default is one step of the agent.
 
     Attributes:
-        metres: Metres moved since the last instant.
-        degrees: Degrees turned since the last instant.
-        seconds: Seconds since the last instant; used where poses are unknown.
+        metres: Metres moved since the last observation.
+        degrees: Degrees turned since the last observation.
+        seconds: Seconds since the last observation; used if poses are unknown.
 
     Raises:
         ValueError: A value is not above 0.
@@ -342,22 +344,22 @@ class Step:
                 raise ValueError(f"step.{name} must be above 0, got {value:g}.")
 
     def share(self, before: np.ndarray, after: np.ndarray) -> float:
-        """Return the distance between two poses [3] as a share of a step."""
+        """Return the distance between two poses [3] as a fraction of a step."""
         moved = float(np.hypot(*(after[:2] - before[:2]))) / self.metres
         return max(moved, abs(turn(before[2], after[2])) / math.radians(self.degrees))
 
     def choose(self, times: np.ndarray, poses: np.ndarray | None) -> np.ndarray:
-        """Choose the instants that an agent observes.
+        """Choose the recorded times at which an agent observes.
 
-        These are the first instant, each that is a step away from the one before, and the last.
-        The last replaces the one before it if both are at nearly the same pose.
+        These are the first time, each time that is one step after the previous choice, and the last
+        time. The last time replaces the previous choice if both have nearly the same pose.
 
         Args:
             times: float64 [N], seconds.
             poses: float64 [N, 3], or None if unknown.
 
         Returns:
-            Indices of the chosen instants, int [T].
+            Indices of the chosen times, int [T].
         """
         chosen = [0]
         for index in range(1, len(times)):
@@ -378,11 +380,11 @@ class Step:
 
 @dataclass(frozen=True)
 class Driven:
-    """The driver's movement at each of T steps; the last step is STOP.
+    """The driver's motion at each of T steps, of which the last is STOP.
 
     Attributes:
-        actions: int [T], the nearest action of an agent, or ``NO_ACTION``.
-        metres: float [T], metres moved forward; negative when backwards.
+        actions: int [T], the most similar action of an agent, or ``NO_ACTION``.
+        metres: float [T], metres moved forward; negative if backwards.
         radians: float [T], radians turned to the left.
     """
 
@@ -392,14 +394,15 @@ class Driven:
 
 
 def turn(before: float, after: float) -> float:
-    """Return the radians turned to the left from one heading to another, -pi to pi."""
+    """Return the angle in radians to the left between two headings, from -pi to pi."""
     return float((after - before + math.pi) % (2 * math.pi) - math.pi)
 
 
 def driver_actions(poses: np.ndarray) -> Driven:
-    """Return the movements between poses [T, 3]; the last action is STOP.
+    """Return the motions between poses [T, 3]; the last action is STOP.
 
-    A step that both moves and turns counts as the larger part, in units of 0.25 m and 15 degrees.
+    If a step both moves and turns, the larger part determines its action, in units of 0.25 m and 15
+    degrees.
     """
     count = len(poses)
     actions = np.full(count, STOP)
@@ -423,6 +426,6 @@ def driver_actions(poses: np.ndarray) -> Driven:
 
 
 def movements(actions: np.ndarray) -> Driven:
-    """Return the movements of a driver who takes ``actions`` in full steps."""
+    """Return the motions of a driver who takes ``actions`` in full steps."""
     turned = math.radians(TURN_DEGREES) * ((actions == LEFT) * 1.0 - (actions == RIGHT))
     return Driven(actions, FORWARD_METRES * (actions == FORWARD), turned)
