@@ -1,13 +1,14 @@
-"""Runs habitat-baselines' PPO agent under `mitigate run`, on this project's scenes and episodes.
+"""Run habitat-baselines' PPO agent under `mitigate run`, on this project's scenes and episodes.
 
     mitigate export_scene habitat/
     python tools/baselines_by_hand.py habitat/ train
     mitigate run conditions=[low_light] -- python tools/baselines_by_hand.py habitat/ evaluate
 
-Uses their trainer and evaluator (ObjectNav, two workers, ResNet-18), and prints means of the
-policy's input. Needs habitat-sim (docs/habitat.md), habitat-lab and habitat-baselines 0.3; the
-wheel of habitat-baselines lacks its YAML files, which are in its repository. Two updates do not
-train a useful policy: the program only shows that the policy's input is corrupted.
+This program uses the trainer and evaluator of habitat-baselines (ObjectNav, two workers,
+ResNet-18), and prints means of the policy's input. It needs habitat-sim (docs/habitat.md),
+habitat-lab and habitat-baselines 0.3. The wheel of habitat-baselines lacks its YAML files, which
+are in its repository. Two updates do not train a useful policy: the program only shows that the
+policy's input is corrupted.
 """
 
 from __future__ import annotations
@@ -47,7 +48,7 @@ def options(folder: Path, evaluate: bool, episodes: int) -> list[str]:
 
 
 def print_batches() -> None:
-    """Print the means of every fifth batch that the policy gets."""
+    """Print the means of every fifth batch that the policy receives."""
     from habitat_baselines.rl.ppo import habitat_evaluator
 
     original = habitat_evaluator.apply_obs_transforms_batch
@@ -73,7 +74,7 @@ def main() -> None:
     parser.add_argument("--episodes", type=int, default=6)
     arguments = parser.parse_args()
     evaluate = arguments.what == "evaluate"
-    # the checkpoint holds a pickled config, which torch >= 2.6 rejects; this program wrote it
+    # the checkpoint contains a pickled config, which torch >= 2.6 rejects; this program wrote it
     os.environ["TORCH_FORCE_NO_WEIGHTS_ONLY_LOAD"] = "1"
     from habitat.config.default_structured_configs import register_hydra_plugin
     from habitat_baselines import run

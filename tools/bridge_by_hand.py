@@ -1,4 +1,4 @@
-"""Programs for `mitigate run` on the real Habitat, with unchanged files of other projects.
+"""Run programs for `mitigate run` on the real Habitat, with unchanged files of other projects.
 
     mitigate export_scene habitat/
     mitigate run conditions=[low_light] -- python tools/bridge_by_hand.py lab habitat/ --task vln
@@ -7,9 +7,10 @@
     mitigate run conditions=[low_light] -- python tools/bridge_by_hand.py l3mvn habitat/ L3MVN/
     mitigate run conditions=[low_light] -- python tools/bridge_by_hand.py wmnav habitat/ WMNav/
 
-Needs habitat-sim and habitat-lab 0.3 (docs/habitat.md) and, for the last three, a checkout of the
-agent. Prints means of the frames; results are in docs/lab/bridge-trials.md. The agents' files need
-older versions of habitat-lab, so this program defines the names that they import and 0.3 lacks.
+This needs habitat-sim and habitat-lab 0.3 (docs/habitat.md) and, for the last three programs, a
+checkout of the agent. The programs print means of the frames; results are in
+docs/lab/bridge-trials.md. The agents' files need older versions of habitat-lab, so this file
+defines the names that they import but that version 0.3 lacks.
 """
 
 from __future__ import annotations
@@ -25,7 +26,7 @@ from typing import Any
 
 import numpy as np
 
-if "l3mvn" in sys.argv:  # also applies to its workers, which import this file first
+if "l3mvn" in sys.argv:  # this also applies to workers, which import this file first
     import habitat.config
 
     habitat.config.Config = dict
@@ -114,7 +115,7 @@ def vector(options: argparse.Namespace) -> None:
 
 
 def etpnav(options: argparse.Namespace) -> None:
-    """Run ETPNav's VLNCEDaggerEnv: panoramas by get_observations_at, teleports, STOP."""
+    """Run ETPNav's VLNCEDaggerEnv, with panoramas by get_observations_at, teleports and STOP."""
     import habitat
     from habitat.config import read_write
     from habitat.core.registry import registry
@@ -176,7 +177,8 @@ def l3mvn_worker(folder: Path, scene: int) -> Any:
     import habitat
 
     class Nav(habitat.RLEnv):
-        """Like L3MVN's environment: STOP is action 3, and its Env never ends."""
+        """Like L3MVN's environment: In this environment, STOP is action 3, and the Env never
+        ends."""
 
         def reset(self) -> Any:
             self.steps = 0
@@ -222,7 +224,7 @@ def l3mvn(options: argparse.Namespace) -> None:
 
 
 def wmnav(options: argparse.Namespace) -> None:
-    """Run WMNav's Env and SimWrapper: habitat-sim without the lab, a second camera for goals."""
+    """Run WMNav's Env and SimWrapper, which use habitat-sim without habitat-lab."""
     import habitat_sim
 
     original_init = habitat_sim.Simulator.__init__

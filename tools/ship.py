@@ -3,9 +3,9 @@
     python tools/ship.py runs/da_per_episode-s0.6-seed0-agent-recurrent/agent \
         checkpoints/recurrent/teacher recurrent
 
-FOLDER gets ``model.safetensors`` with its sha256 and ``config.yaml``. Prints the agent's
-fingerprints: before rounding, as in the rows of the run, and after it, as in rows of the shipped
-weights.
+The tool writes ``model.safetensors`` with its sha256 and ``config.yaml`` to FOLDER. It prints the
+agent's fingerprints before rounding (as in the rows of the run) and after rounding (as in rows of
+the shipped weights).
 """
 
 from __future__ import annotations

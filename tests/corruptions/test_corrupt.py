@@ -74,7 +74,7 @@ def summary(folder: Path) -> dict:
 def test_every_frame_equals_the_suites_output(run, walk):
     status, out, err = run("corruption=low_light_noise", "severity=0.7", "seed=3")
     assert status == 0 and "13 frames written" in out
-    for number in range(12):  # frame10 is number 10, not number 2
+    for number in range(12):  # frame10 has number 10 rather than number 2
         key = Key(3, "a", number)
         expected = corrupt(RGB[number], "low_light_noise", 0.7, key=key)
         assert np.array_equal(read(walk / f"out/a/frame{number}.png"), expected)
@@ -168,7 +168,7 @@ def test_jpeg_becomes_png_or_stays_jpeg(run, tmp_path):
 def test_jpeg_is_rotated_by_its_exif_data(run, tmp_path):
     (tmp_path / "in").mkdir()
     exif = Image.Exif()
-    exif[0x0112] = 6  # turned by 90 degrees
+    exif[0x0112] = 6  # the image is rotated by 90 degrees
     Image.fromarray(RGB[0]).save(tmp_path / "in/x.jpg", exif=exif)
     assert run("corruption=spatter", "severity=0")[0] == 0
     decoded = read(tmp_path / "in/x.jpg")
@@ -407,7 +407,7 @@ def contents(folder: Path) -> dict[str, bytes]:
 def test_corrupt_writes_changed_output_frames_again(run, walk, damage, earlier):
     run(*SPATTER)
     whole = contents(walk / "out")
-    if earlier == "without checksums":  # summaries of earlier versions
+    if earlier == "without checksums":  # as in summaries of earlier versions
         content = summary(walk / "out")
         del content["checksums"], content["replaced"]
         (walk / "out/corrupt.json").write_text(json.dumps(content))

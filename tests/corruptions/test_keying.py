@@ -1,4 +1,4 @@
-"""The same frame gets the same pixels in any order, batch and process."""
+"""Tests that a frame gets the same pixels in any order, batch and process."""
 
 import hashlib
 import os
@@ -91,7 +91,7 @@ def test_digest_matches_the_published_value():
 
 
 def test_compiled_hash_is_splitmix64():
-    # Reference output of splitmix64 seeded with 1234567 (Vigna's C code).
+    # Reference output of splitmix64 with seed 1234567 (Vigna's C code).
     assert keying.scramble(1234567, 0) == 6457827717110365317
     assert keying.scramble(1234567, 1) == 3203168211198807973
     value = keying.digest(Key(0, "a"), "x")

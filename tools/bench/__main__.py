@@ -1,4 +1,4 @@
-"""Time corruptions (also of other libraries), training stages, evaluation and the renderer.
+"""Measure the time of corruptions (ours and others'), training stages, evaluation and renderer.
 
     make bench ARGS="--seconds 0.2 --steps 1"
 

@@ -1,8 +1,9 @@
-"""Time that the bridge adds to a corruption, per call: ``python -m tools.bench.bridge``.
+"""Measure the time that the bridge adds to a corruption, per call: ``python -m
+tools.bench.bridge``.
 
-The cameras are ETPNav's: 12 RGB cameras of 224 x 224 pixels and 12 depth cameras of 256 x 256. The
-same frames are corrupted alternately by ``corrupt_habitat`` in this process and over the bridge.
-Reports medians.
+The cameras are those of ETPNav: 12 RGB cameras of 224 x 224 pixels and 12 depth cameras of 256 x
+256. The same frames are corrupted alternately by ``corrupt_habitat`` in this process and over the
+bridge. Reports medians.
 """
 
 from __future__ import annotations
@@ -28,7 +29,7 @@ from tools.bench.timing import machine
 
 SEVERITY = 0.6
 HEADING = 0.1  # radians
-WARM_UP = 5  # calls that are not timed
+WARM_UP = 5  # number of calls that are not timed
 LEVEL = {"hfov": 90, "position": [0, 1.25, 0]}
 
 
@@ -40,7 +41,8 @@ def cameras() -> tuple[dict[str, np.ndarray], list[dict[str, Any]]]:
     for kind, size in (("rgb", 224), ("depth", 256)):
         for k in range(12):
             name = f"{kind}_{30 * k}" if k else kind
-            if kind == "rgb":  # habitat-sim has four channels, habitat-lab gives a view of three
+            # frames of habitat-sim have four channels, of which habitat-lab returns a view of three
+            if kind == "rgb":
                 frames[name] = rng.integers(0, 256, (size, size, 4), dtype=np.uint8)[..., :3]
             else:
                 frames[name] = rng.uniform(0.05, 0.95, (size, size, 1)).astype(np.float32)

@@ -2,11 +2,11 @@
 
     python -m tools.bench.cluster
 
-A discrete-event simulation, not a measurement. The times of episodes (under all conditions) are
-drawn from a lognormal distribution with the mean and spread of ``--mean`` and ``--spread``. Workers
-take shares of some episodes at a time. Nodes fail at random and come back. Rows of a finished
-episode are kept, as both launchers do. The running episode is lost, and the rest of its share goes
-back to the front of the queue.
+This is a discrete-event simulation and not a measurement. The times of episodes (under all
+conditions) are sampled from a lognormal distribution with the mean and spread of ``--mean`` and
+``--spread``. Each worker takes several episodes (a share) at a time. Nodes fail at random times and
+return later. As in both launchers, the rows of a finished episode are kept. The running episode is
+lost, and the rest of the share is returned to the front of the queue.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ class Outcome:
     """The result of a simulation.
 
     Attributes:
-        hours: Until the last episode is done.
+        hours: Hours until the last episode is finished.
         lost: Worker hours of episodes that failures interrupted.
         idle: Worker hours without an episode.
         failures: Number of node failures.
@@ -59,7 +59,8 @@ class Outcome:
 
 
 def simulate(seconds: np.ndarray, share: int, cluster: Cluster, seed: int = 0) -> Outcome:
-    """Run episodes that take ``seconds`` [N] on ``cluster``; a worker takes ``share`` at a time."""
+    """Run episodes that take ``seconds`` [N] on ``cluster``; a worker takes ``share`` episodes at a
+    time."""
     return _Simulation(seconds, share, cluster, seed).run()
 
 
@@ -73,7 +74,8 @@ class _Simulation:
         episodes = list(range(len(seconds)))
         self.waiting = deque(episodes[i : i + share] for i in range(0, len(episodes), share))
         self.events: list[tuple[float, int, str, int]] = []
-        self.running: dict[int, tuple[list[int], float, float]] = {}  # worker: share, start, end
+        # maps a worker to its share, start and end
+        self.running: dict[int, tuple[list[int], float, float]] = {}
         self.idle: set[int] = set()
         self.now = self.lost = self.busy = 0.0
         self.order = self.done = self.failures = 0
@@ -89,14 +91,14 @@ class _Simulation:
         return Outcome(self.now / HOUR, self.lost / HOUR, idle / HOUR, self.failures)
 
     def comes_back(self, node: int) -> None:
-        """Start a node, at the beginning or after a failure."""
+        """Start a node, at the beginning or after a failure of the node."""
         mean = self.cluster.days * 24 * HOUR
         self._schedule(self.now + self.rng.exponential(mean), "fails", node)
         for worker in self._workers(node):
             self._take_share(worker)
 
     def fails(self, node: int) -> None:
-        """Lose a node and its running episodes; its remaining shares go to other workers."""
+        """Lose a node and its running episodes; remaining episodes go to other workers."""
         self.failures += 1
         for worker in self._workers(node):
             self.idle.discard(worker)
@@ -141,7 +143,7 @@ class _Simulation:
 
 
 def draw(count: int, mean: float, spread: float, seed: int) -> np.ndarray:
-    """Draw seconds [count] from a lognormal distribution.
+    """Sample durations in seconds [count] from a lognormal distribution.
 
     Args:
         count: How many.
@@ -154,7 +156,7 @@ def draw(count: int, mean: float, spread: float, seed: int) -> np.ndarray:
 
 
 def table(options: argparse.Namespace) -> str:
-    """Return a Markdown table of outcomes by share and failures; medians over the seeds."""
+    """Return a Markdown table of outcomes by share and failures, as medians over the seeds."""
     caption = (
         f"{options.episodes:,} episodes of {options.mean:g} s (all conditions), {options.nodes} "
         f"nodes of {options.workers} workers, a failed node is back after {options.back:g} "

@@ -1,4 +1,4 @@
-"""The measurements as the page ``docs/benchmarks.md``."""
+"""Write the measurements as the page ``docs/benchmarks.md``."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from tools.bench.targets import REASONS
 from tools.bench.timing import machine
 from tools.bench.training import CAPS, LAYOUTS, Stage, table
 
-AIM = 0.15  # largest share of a training step in which no network may compute
+AIM = 0.15  # target: maximum fraction of a training step in which no network computes
 COLUMNS = (
     "corruption",
     "steady",
@@ -38,7 +38,7 @@ def page(
     by_workers: dict[int, float],
     arguments: str = "",
 ) -> str:
-    """Return all parts as Markdown. ``arguments`` are the arguments of the command."""
+    """Return all parts of the page as Markdown. ``arguments`` are the arguments of the command."""
     options = f' ARGS="{arguments}"' if arguments else ""
     head = [
         "# Benchmarks",

@@ -2,10 +2,10 @@
 
     python -m tools.bench.safeguard
 
-Each precision runs in a separate process. Measured are the resident memory after loading, tokens
-per second of training (steps of the recipe; prompts and completions count, padding does not), and
-seconds to generate 60 tokens greedily. The baseline is transformers with PEFT as in their guides:
-the whole batch at once, logits of all positions, weights in float32, no autocast.
+Each precision runs in a separate process. The tool measures the resident memory after loading, the
+training speed in tokens per second (steps of the recipe, without padding), and the seconds to
+generate 60 tokens greedily. The baseline is transformers with PEFT as in the guides of these
+libraries: the whole batch at once, logits of all positions, weights in float32, no autocast.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from mitigate.core import conf
 from mitigate.training import train  # noqa: F401 - registers its options
 
 BASELINE = "transformers + PEFT, fp32"
-KINDS = {  # name -> precision of the weights, autocast, whether it runs as in the recipe
+KINDS = {  # maps a name to precision of the weights, autocast, and whether it runs as in the recipe
     BASELINE: ("fp32", False, False),
     "fp32": ("fp32", False, True),
     "fp32, bf16 autocast (default)": ("fp32", True, True),
@@ -44,7 +44,7 @@ COLUMNS = {
 
 
 def measure(kind: str, base: str) -> dict[str, float]:
-    """Return the measurements of one kind, taken in this process."""
+    """Measure one kind in this process."""
     from mitigate.guards.text.language_models.model import LanguageModel
     from mitigate.recipes.safeguard_lora import SafeguardLora
     from mitigate.training.objective import accumulate
@@ -74,7 +74,7 @@ def measure(kind: str, base: str) -> dict[str, float]:
 
 
 def _baseline_step(model: Any, group: dict[str, torch.Tensor]) -> None:
-    """Compute the gradients of a batch as the guides of transformers do."""
+    """Compute the gradients of a batch as in the guides of transformers."""
     labels = torch.full_like(group["input_ids"], -100)
     width = group["completion"].shape[1]
     tail = labels[:, -width:]

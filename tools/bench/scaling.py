@@ -6,7 +6,7 @@
 - recording: calls of one RGB-D camera of 128 pixels over the bridge, written to disk, by 1 and 2
   environments.
 
-All are measured in one run, so that ratios are comparable. ``--write`` puts the table into
+All loads are measured in one run, so that ratios are comparable. ``--write`` inserts the table into
 docs/lab/gpu-and-clusters.md. Linux only.
 """
 
@@ -38,13 +38,13 @@ BEGIN = "<!-- table: python -m tools.bench.scaling --write -->"
 END = "<!-- end of the table -->"
 SUITE = 13  # conditions of the default suite
 CALLS = 60  # calls per episode
-SIZE = 128  # pixels of a side
-_session: Any = None  # the mitigate_hook.Session of a process of the pool
+SIZE = 128  # side of a frame in pixels
+_session: Any = None  # the mitigate_hook.Session of a pool process
 _SPEED = re.compile(r"steps_per_s ([\d.]+)")
 
 
 def training(processes: int, steps: int, folder: Path) -> float:
-    """Return steps per second, the median of ``steps`` after the first three."""
+    """Return the median steps per second of ``steps`` steps after the first three."""
     ranks = ["torch.distributed.run", "--standalone", "--nproc-per-node", str(processes), "-m"]
     options = [
         "recipe=da_per_episode",
@@ -91,7 +91,7 @@ def _open_session() -> None:
 
 
 def _run_episode(number: int) -> None:
-    """Run one episode of the process's session."""
+    """Run one episode in the session of this process."""
     from mitigate.bridge.hook import mitigate_hook
 
     rng = np.random.default_rng(abs(number))

@@ -1,4 +1,4 @@
-"""The page ``docs/corruptions.md``: formulas with the constants of the code, scopes, limits."""
+"""Generate the page ``docs/corruptions.md`` with formulas, scopes and limits."""
 
 from __future__ import annotations
 
@@ -134,7 +134,8 @@ evaluates R2R at s = 0.6, RxR and HM3D at 0.5, and trains at 0.6, or at 0.9 (RGB
 
 
 def page(curves: dict[str, Curve], seed: int) -> str:
-    """The page as Markdown; ``curves`` are the curves, ``seed`` names the apartment shown."""
+    """Return the page as Markdown, with ``curves`` and the seed of the apartment in its
+    pictures."""
     text = TEXT.format(
         gamma=eld.GAMMA,
         darkest=eld.DARKEST,
@@ -155,7 +156,7 @@ def page(curves: dict[str, Curve], seed: int) -> str:
 
 
 def suites() -> str:
-    """A table of ``conf/suite``: the name of each file and the comment at its head."""
+    """Return a table of ``conf/suite`` with the name and first comment of each file."""
     rows = []
     for file in sorted((PACKAGE / "conf" / "suite").glob("*.yaml")):
         head = takewhile(lambda line: line.startswith("#"), file.read_text("utf-8").splitlines())
@@ -164,7 +165,7 @@ def suites() -> str:
 
 
 def formulas(names: tuple[str, ...] = NAMES) -> str:
-    """A table of the formulas of corruptions."""
+    """Return a table of the formulas of corruptions."""
     return markdown_table(COLUMNS, map(_cells, names), words=len(COLUMNS)) + "\n"
 
 

@@ -1,4 +1,4 @@
-"""The tables of the docs: what each corruption models, its formula and its sources."""
+"""Define the tables of the documentation: failure, formula and sources of each corruption."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ from mitigate.corruptions.unseen import calibration, codec, edges, light, optics
 
 
 class Description(NamedTuple):
-    """Cells of a corruption in the tables of the docs.
+    """The cells of a corruption in the tables of the documentation.
 
     Attributes:
-        fails: the failure in the world that it models.
-        formula: Markdown, with the constants of the code.
+        fails: the real failure that the corruption models.
+        formula: Markdown formula with the constants of the code.
         sources: sources of the constants.
     """
 

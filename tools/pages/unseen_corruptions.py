@@ -1,5 +1,4 @@
-"""The page ``docs/unseen-corruptions.md``: formulas, halves, and strength compared with the
-suite."""
+"""Generate the page ``docs/unseen-corruptions.md`` with formulas, halves and strengths."""
 
 from __future__ import annotations
 
@@ -113,8 +112,8 @@ draw single corruptions only.
 def page(
     unseen: Mapping[str, Curve], suite: Mapping[str, Curve], grid: np.ndarray, seed: int
 ) -> str:
-    """The page as Markdown; ``unseen`` and ``suite`` are the curves on ``grid`` of severities, and
-    ``seed`` names the apartment shown."""
+    """Return the page as Markdown. ``unseen`` and ``suite`` are the curves on the ``grid`` of
+    severities, and ``seed`` is the apartment in the pictures."""
     return TEXT.format(
         rgb=len(registry.unseen_names("rgb")),
         depth=len(registry.unseen_names("depth")),
@@ -135,7 +134,7 @@ def page(
 
 
 def table(half: str) -> str:
-    """The table of the formulas of one half."""
+    """Return the table of formulas of one half."""
     return formulas(registry.unseen_names("rgb", "depth", half=half))
 
 
@@ -153,7 +152,7 @@ def _ranges(suite: Mapping[str, Curve], unseen: Mapping[str, Curve], at: int) ->
 
 
 def _strengths(curves: Mapping[str, Curve], at: int) -> str:
-    """Two tables, the suite's corruptions first in each."""
+    """Return two tables, each starting with the suite's corruptions."""
     frames, depths = [], []
     for name in (*RGB, *registry.unseen_names("rgb")):
         curve = curves[name]

@@ -1,5 +1,4 @@
-"""Harden a policy of another library with several seeds, and compare it on known and unseen
-corruptions.
+"""Harden a policy of another library with several seeds, and compare it before and after.
 
     python -m tools.third_party.results vizdoom_basic --seeds 0 1 2
 

@@ -1,4 +1,4 @@
-"""The language model: what is trained, what is masked, what is saved, what goes wrong."""
+"""Tests of the language model: trained and masked tokens, saved weights, and errors."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The simulated cluster finishes all episodes, and loses only running ones."""
+"""Tests that the simulated cluster finishes all episodes and loses only running ones."""
 
 from __future__ import annotations
 
