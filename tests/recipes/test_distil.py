@@ -106,7 +106,7 @@ def test_loss_is_the_sum_of_its_terms(recipe, batch):
 
 
 def test_matched_features_count_in_units_of_the_teachers_variance():
-    teacher = torch.tensor([[0.0, 2.0], [4.0, 6.0]])  # variance 20 / 3
+    teacher = torch.tensor([[0.0, 2.0], [4.0, 6.0]])  # its variance is 20 / 3
     student = teacher + torch.tensor([[1.0, -1.0], [2.0, 0.0]])
     assert float(feature_loss(student, teacher)) == pytest.approx(1.5 / (20 / 3))
     assert float(feature_loss(10 * student, 10 * teacher)) == pytest.approx(1.5 / (20 / 3))

@@ -164,7 +164,7 @@ def test_endpoint_explains_a_wrong_url_or_cache(tmp_path):
     with pytest.raises(ValueError, match="is not a valid URL"):
         ChatEndpoint("localhost:8000", "m")
     (tmp_path / "notes").write_text("not a data base, but long enough to be taken for one" * 40)
-    with pytest.raises(ValueError, match="is no cache"):
+    with pytest.raises(ValueError, match="is not a cache"):
         ChatEndpoint("http://localhost:8000", "m", cache=tmp_path / "notes")
 
 
@@ -294,7 +294,7 @@ def test_cache_treats_an_untrusted_file_as_data(server, tmp_path):
         cache = tmp_path / f"{number}.sqlite"
         with sqlite3.connect(cache) as handle:
             handle.executescript(script)
-        with pytest.raises(ValueError, match="is no cache of endpoint answers"):
+        with pytest.raises(ValueError, match="is not a cache of endpoint answers"):
             endpoint(server, cache=cache)
     cache = tmp_path / "answers.sqlite"
     client = endpoint(server, cache=cache)
@@ -322,7 +322,7 @@ def test_cache_survives_flipped_bytes(server, tmp_path):
         try:
             assert endpoint(server, cache=cache).rewrite(["text 7"])[0] is not None
         except ValueError as error:
-            assert "is no cache" in str(error)
+            assert "is not a cache" in str(error)
 
 
 @contextmanager
