@@ -44,6 +44,11 @@ COMMANDS = {
         "measure the success of an agent, clean and under every corruption",
         "checkpoint=checkpoints/base split=val_seen",
     ),
+    "harden": Command(
+        "mitigate.shipping.harden_command",
+        "make a trained policy of another library robust, without an expert",
+        "policy=my_policy:load world=my_policy:make_world severity=0.6",
+    ),
     "controls": Command(
         "mitigate.evaluation.controls",
         "run the shortest-path oracle and a random agent, the bounds of every result",

@@ -1,12 +1,14 @@
 """Self-distil a trained policy, which teaches its copy without expert and reward.
 
-The copy (student) runs episodes under corruptions. For every frame, the unchanged policy (teacher)
-answers to the clean frame, and the student learns to give the same answer to the corrupted frame.
-This is DAgger (Ross et al. 2011) in which the policy on clean frames replaces the expert. Three
-terms:
+The copy (student) runs episodes under corruptions. For every frame that it meets, the unchanged
+policy (teacher) answers to the clean frame, and the student learns to give the same answer to the
+corrupted one: DAgger (Ross et al. 2011) with the clean policy in place of an expert. Four terms:
 
 * ``w_policy``: the divergence of the action distributions (KL; for actions without a distribution
   the squared error),
+* ``w_imitation``: the cross-entropy of the teacher's likeliest action (for continuous actions the
+  squared error), because an undecided policy acts differently after a small change of its
+  probabilities,
 * ``w_feat``: the squared error of the features of one module, relative to their variance,
 * ``w_consistency``: the divergence between the answers to two corruptions of the same frame.
 
@@ -32,7 +34,7 @@ from safetensors.numpy import load_file, save
 from torch import Tensor
 
 from mitigate.agents.adapters import adapted
-from mitigate.agents.policies import Answer, Policy, copied, divergence
+from mitigate.agents.policies import Answer, Policy, copied, divergence, imitation, last_convolution
 from mitigate.core import checkpoint
 from mitigate.core.files import write_bytes
 from mitigate.core.observation import DEPTH, RGB
@@ -64,7 +66,7 @@ class SelfDistil(Objective):
         frames: maximum number of frames that are stored per episode, spread evenly.
         batch: number of frames per step.
         window: number of consecutive frames for a recurrent policy; 1 for other policies.
-        w_policy, w_feat, w_consistency: weights of the losses.
+        w_policy, w_imitation, w_feat, w_consistency: weights of the losses.
         module: name of the network module whose output is compared; None means the last
             convolution.
         curriculum: whether the severity rises and the last part uses mostly clean frames.
@@ -89,6 +91,7 @@ class SelfDistil(Objective):
         batch: int = 64,
         window: int = 16,
         w_policy: float = 1.0,
+        w_imitation: float = 1.0,
         w_feat: float = 1.0,
         w_consistency: float = 0.1,
         module: str | None = None,
@@ -96,21 +99,11 @@ class SelfDistil(Objective):
         seed: int = 0,
     ) -> None:
         super().__init__()
-        check_weights(w_policy=w_policy, w_feat=w_feat, w_consistency=w_consistency)
-        for name, value in {
-            "every": every,
-            "episodes": episodes,
-            "frames": frames,
-            "batch": batch,
-        }.items():
-            if value < 1:
-                raise ValueError(f"{name} must be a whole number >= 1, got {value}.")
-        if not {RGB, DEPTH} & set(agent.sensors):
-            raise ValueError(
-                f"{agent.name} reads {', '.join(agent.sensors) or 'nothing'}, but no rgb and no "
-                "depth, so that no corruption changes its input. Name its frames: "
-                "GymWorld(entries=...)."
-            )
+        check_weights(
+            w_policy=w_policy, w_imitation=w_imitation, w_feat=w_feat, w_consistency=w_consistency
+        )
+        check_counts(every=every, episodes=episodes, frames=frames, batch=batch)
+        check_frames(agent)
         self.agent = agent
         self.world = world
         self.training_episodes = training
@@ -123,14 +116,12 @@ class SelfDistil(Objective):
         self.window = window if agent.recurrent else 1
         self.batch_windows = max(1, batch // self.window)
         self.w_policy = w_policy
+        self.w_imitation = w_imitation
         self.w_feat = w_feat
         self.w_consistency = w_consistency
         self.curriculum = curriculum
         self.seed = seed
-        self.teacher = copied(agent)
-        if adapted(self.teacher):
-            self.teacher = self.teacher.as_teacher()
-        self.teacher.requires_grad_(False)
+        self.teacher = clean_teacher(agent)
         self.module = module or last_convolution(agent)
         # windows of each round of rollouts, [n, window, ...]
         self._stored: list[dict[str, np.ndarray]] = []
@@ -192,13 +183,15 @@ class SelfDistil(Objective):
         second, _ = self._answer(self.agent, batch["second"])
         with torch.no_grad():
             target, target_features = self._answer(self.teacher, batch["clean"])
-        policy = (_mean(target, first) + _mean(target, second)) / 2
+        policy = (_mean(divergence, target, first) + _mean(divergence, target, second)) / 2
+        imitated = (_mean(imitation, target, first) + _mean(imitation, target, second)) / 2
         values = {
             "policy": policy,
+            "imitation": imitated,
             "feat": feature_loss(features, target_features),
-            "consistency": _mean(first, second),
+            "consistency": _mean(divergence, first, second),
         }
-        loss = self.w_policy * policy
+        loss = self.w_policy * policy + self.w_imitation * imitated
         if self.w_feat and (features.requires_grad or not torch.is_grad_enabled()):
             loss = loss + self.w_feat * values["feat"]
         if self.w_consistency:
@@ -263,30 +256,36 @@ class SelfDistil(Objective):
         self._now = int(state["rounds"]) * self.every
 
 
-def last_convolution(policy: Policy) -> str:
-    """Return the name of the last convolution of a network, or else of its first layer.
+def check_counts(**counts: int) -> None:
+    """Raise ValueError for a count below 1."""
+    for name, value in counts.items():
+        if value < 1:
+            raise ValueError(f"{name} must be a whole number >= 1, got {value}.")
 
-    Raises:
-        ValueError: The network has neither.
-    """
-    layers = [
-        (name, isinstance(module, (torch.nn.Conv1d, torch.nn.Conv2d, torch.nn.Conv3d)))
-        for name, module in policy.network.named_modules()
-        if isinstance(module, (torch.nn.Conv1d, torch.nn.Conv2d, torch.nn.Conv3d, torch.nn.Linear))
-        and checkpoint.ADAPTER not in f".{name}."
-    ]
-    if not layers:
+
+def check_frames(policy: Policy) -> None:
+    """Raise ValueError if the policy reads no frames."""
+    if not {RGB, DEPTH} & set(policy.sensors):
         raise ValueError(
-            f"{policy.name} has no convolution and no linear layer. Name the module whose output "
-            "is to be compared: module=..."
+            f"{policy.name} reads {', '.join(policy.sensors) or 'nothing'}, but no rgb and no "
+            "depth, so that no corruption changes its input. Name its frames: "
+            "GymWorld(entries=...)."
         )
-    convolutions = [name for name, is_convolution in layers if is_convolution]
-    return convolutions[-1] if convolutions else layers[0][0]
 
 
-def _mean(teacher: list[Answer], student: list[Answer]) -> Tensor:
-    """Return the mean divergence over the positions in a window."""
-    pairs = [divergence(one, other) for one, other in zip(teacher, student, strict=True)]
+def clean_teacher(policy: Policy) -> Policy:
+    """Return a frozen copy of a policy, without adapters."""
+    teacher = copied(policy)
+    if adapted(teacher):
+        teacher = teacher.as_teacher()
+    return teacher.requires_grad_(False)
+
+
+def _mean(
+    loss: Callable[[Answer, Answer], Tensor], teacher: list[Answer], student: list[Answer]
+) -> Tensor:
+    """Return the mean loss over the positions in a window."""
+    pairs = [loss(one, other) for one, other in zip(teacher, student, strict=True)]
     return torch.stack(pairs).mean()
 
 

@@ -70,8 +70,8 @@ manifest mitigate/core/folders.py tests/core/test_folders.py
 - and sha256(file) == entry.sha256
 + and bool(entry.sha256)
 resume mitigate/evaluation/evaluator.py tests/evaluation/test_evaluator.py
-- if rows.identity(job[2]) not in finished]
-+ if job]
+- strict=True) if identity not in finished]
++ strict=True) if job]
 """
 ENTRY = re.compile(r"^(\S+) (\S+) (\S+)\n- (.*)\n\+ (.*)$", re.MULTILINE)
 MUTATIONS = {name: Mutation(*fields) for name, *fields in ENTRY.findall(TABLE)}

@@ -246,6 +246,12 @@ def check_logits(logits: Tensor, agent: Any) -> Tensor:
     return logits
 
 
+def entropy_of(logits: Tensor) -> Tensor:
+    """Return the entropy of the distribution with ``logits`` [n]; -inf marks forbidden ones."""
+    chances = logits[torch.isfinite(logits)].log_softmax(-1)
+    return -(chances.exp() * chances).sum()
+
+
 def stop_figures(logits: Tensor, target: Tensor) -> dict[str, Tensor]:
     """Return the recall of STOP and the rate of false STOPs, for targets as in ``Decisions``."""
     stop = target[:, STOP] > 0
@@ -316,6 +322,21 @@ class Trainable(Protocol):
         """Return the agent's output for ``decisions``.
 
         With ``clean``, use the observations before corruption but the same candidates.
+        """
+
+
+@runtime_checkable
+class KnowsEntropy(Protocol):
+    """An agent whose decisions have a known entropy, which test-time adaptation lowers."""
+
+    def entropy(self, observation: Mapping[str, np.ndarray]) -> Tensor | None:
+        """Return the entropy of the last decision, computed again with gradients.
+
+        Args:
+            observation: the argument of the last ``act``.
+
+        Returns:
+            A scalar in nats; None if the last ``act`` took no decision.
         """
 
 

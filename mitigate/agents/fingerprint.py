@@ -1,36 +1,42 @@
 """Compute the fingerprint of an agent: a content hash of everything that determines its behaviour.
 
-Result rows hold the fingerprint in addition to a display name. Agents with different settings,
-weights or sensors appear as different agents in tables, and rows are reused only if the fingerprint
-is equal. If some state cannot be read (:attr:`Contents.unreadable`), the user must identify it with
-``version=``.
+It covers the kind of the agent, ``settings()``, weights, layers, sensors, and the user's source
+files. Result rows hold it in addition to a display name: agents with different fingerprints are
+different agents in tables, and rows are reused only for an equal fingerprint. Hooks, closures,
+TorchScript and other state that cannot be read (:attr:`Contents.unreadable`) need ``version=``.
 """
 
 from __future__ import annotations
 
 import hashlib
-import inspect
 import json
-import re
 import types
 from collections.abc import Mapping
-from contextlib import suppress
-from dataclasses import asdict, dataclass, replace
-from functools import cache
+from dataclasses import asdict, dataclass
 from pathlib import PurePath
 from typing import Any
 
+import numpy as np
 import torch
 from torch import nn
+from torch.nn.modules import module as torch_module
 
-from mitigate.agents.state import State, bytecode, class_name, is_users, read_state
+from mitigate.agents.networks import networks
+from mitigate.agents.source import is_users, methods, named_values, source_files
 from mitigate.core.checkpoint import weights_sha
 from mitigate.core.checksums import DIGITS
 from mitigate.core.contracts import read
-from mitigate.core.observation import Sensor
+from mitigate.core.observation import Observation, Sensor
 
 # attribute of shipped classes: a name that stays the same if a module is moved
 KIND = "fingerprint_kind"
+DEEPEST = 50  # depth of nested attributes (heuristic); deeper ones are probably a cycle
+_OWN_HOOKS = "mitigate.agents.adapters"  # its adapters are modules, so state_dict() holds them
+# attributes of torch modules, of adapters (handle of the hook, last output), and of adapters.py
+_LEFT_OUT = {*vars(nn.Module()), "_flat_weights", "_flat_weight_refs", "hook", "judged"}
+_LEFT_OUT |= {"_statistics_before_adapters", "settings"}
+_PLAIN = (str, int, float, bool, type(None))
+_SOURCE = (type, types.FunctionType, property, types.MemberDescriptorType)  # in source files
 
 
 @dataclass(frozen=True)
@@ -66,34 +72,38 @@ def fingerprint(
     return hash_of(contents(agent, version).parts, sensors, front)
 
 
-_SETTINGS_LINE = re.compile(r"settings[.( ]")
-
-
 def contents(agent: Any, version: str | None = None) -> Contents:
     """Return everything that determines the behaviour of ``agent``.
 
-    For every agent, the contents are its kind, ``settings()``, weights, buffers, layers, hooks, the
-    user's code and the objects that this code refers to. For a shipped agent, everything that
-    differs from a new agent with the same settings is added. If ``settings()`` is missing or
-    inherited, all attributes of the agent are added.
+    A shipped agent adds the attributes that differ from those of a new agent with the same
+    settings. An agent whose ``settings()`` is missing or inherited adds all its attributes.
     """
     shipped = KIND in vars(type(agent))
     settings = agent.settings if _definer(agent) is not None else {}
-    state = _changes(agent) if shipped else read_state(agent, attributes=not says_all(agent))
+    nets = networks(agent)
+    attributes = not (shipped or says_all(agent))
+    entries, unreadable = _entries(agent, nets, attributes)
+    if shipped:
+        entries = _changes(agent, nets)
+    modules = [module for net in nets.values() for module in net.modules()]
+    code = code_of(type(agent), *map(type, modules))
+    unreadable |= code.unreadable
+    shas = {place: weights_sha(net) for place, net in nets.items()}
+    arrays = {name: array_sha(part) for name, part in attributes_of(agent)}
+    weights = shas or {name: sha for name, sha in arrays.items() if sha}
     optional = {
-        "code": _codes(agent, state),
-        # the result of ``settings`` is included, not the attribute, which loading may have set
-        "state": sorted(line for line in state.lines if not _SETTINGS_LINE.match(line)),
+        "state": entries,
+        **code.parts,
         "version": version,
-        "unreadable": sorted(state.unreadable.items()) if version is None else [],
+        "unreadable": sorted(unreadable.items()) if version is None else [],
     }
     parts = {
         "class": vars(type(agent)).get(KIND, class_name(type(agent))),
-        "weights": _weights(state),
+        "weights": shas[""] if [*shas] == [""] else sorted(weights.items()) or "",
         "settings": settings() if callable(settings) else settings,
         **{name: part for name, part in optional.items() if part},
     }
-    return Contents(parts, state.unreadable if version is None else {})
+    return Contents(parts, unreadable if version is None else {})
 
 
 def says_all(agent: Any) -> bool:
@@ -114,21 +124,184 @@ def _definer(agent: Any) -> Any:
     return next(definers, None)
 
 
-def _changes(agent: Any) -> State:
-    """Return the differences between a shipped agent's state and a new agent with the same
-    settings.
+def _changes(agent: Any, nets: Mapping[str, nn.Module]) -> dict[str, Any]:
+    """Return how the attributes and layers of a shipped agent differ from those of a new agent.
 
-    Weights and the memory of an episode are excluded.
+    Weights, the memory of an episode and further attributes are excluded.
     """
     with torch.random.fork_rng(devices=[]):
         new = type(agent)(**agent.settings())
-    state = read_state(agent, like=new)
-    baseline = read_state(new, like=new)
-    state_lines = {line for line in baseline.lines if not line.startswith("class ")}
-    missing = [f"not {line}" for line in state_lines - {*state.lines}]
-    lines = [line for line in state.lines if line not in state_lines] + missing
-    unreadable = {k: v for k, v in state.unreadable.items() if k not in baseline.unreadable}
-    return replace(state, lines=lines, unreadable=unreadable)
+    usual, _ = _entries(new, {"": new}, True)
+    entries, _ = _entries(agent, nets, True)
+    layers = {place.removesuffix("()") for place in usual if place.endswith("()")}
+    before = {place: "missing" for place in entries if place.rpartition(".")[0] not in layers}
+    before |= {place: "missing" for place in entries if place.endswith("()")}
+    before |= dict.fromkeys(dir(type(agent)), "default") | usual
+    after = {place: "missing" for place in usual if place.endswith("()")} | entries
+    changed = {k: text for k, text in after.items() if text != before.get(k, text)}
+    running = tuple(agent.run_state)
+    return {k: text for k, text in changed.items() if not k.startswith(running)}
+
+
+def _entries(
+    agent: Any, nets: Mapping[str, nn.Module], attributes: bool
+) -> tuple[dict[str, Any], dict[str, str]]:
+    """Return text on attributes, layers and hooks by place, and reasons for unreadable ones.
+
+    Args:
+        agent: the agent.
+        nets: its networks.
+        attributes: whether attributes of the agent and of the user's modules count. Attributes of
+            other modules, which ``settings()`` may not list, always count.
+    """
+    entries: dict[str, Any] = {}
+    unreadable: dict[str, str] = {}
+    if torch_module._global_forward_hooks or torch_module._global_forward_pre_hooks:
+        unreadable["global hooks"] = "they are registered for all modules"
+    objects = {} if "" in nets else {"": agent}
+    for place, net in nets.items():
+        layers = net.named_modules(remove_duplicate=False)
+        objects |= {_join(place, name): module for name, module in layers}
+    for place, thing in objects.items():
+        if isinstance(thing, nn.Module):
+            entries[f"{place}()"] = class_name(type(thing))
+            _add_hooks(thing, place, entries, unreadable)
+        library = place != "" and not is_users(type(thing))
+        for name, part in attributes_of(thing):
+            inner = _join(place, name)
+            if callable(part) and callable(read(type(thing), name)):
+                unreadable[inner] = "a replaced method"
+            elif attributes or library:
+                entries[inner] = _described(part, inner, unreadable if attributes else {})
+    for place, net in nets.items():  # packed weights of quantised layers
+        for name, part in net.state_dict().items():
+            if not isinstance(part, torch.Tensor):
+                entries[_join(place, name)] = _described(part, place, unreadable)
+    return entries, unreadable
+
+
+def _add_hooks(
+    module: nn.Module, place: str, entries: dict[str, Any], unreadable: dict[str, str]
+) -> None:
+    """Add hooks that describe themselves with ``fingerprint()``; others are unreadable."""
+    if type(module).__module__.startswith("torch.jit"):
+        unreadable[place] = "a TorchScript module"
+        return
+    hooks = [*module._forward_pre_hooks.values(), *module._forward_hooks.values()]
+    for number, hook in enumerate(hooks):
+        name = _join(place, f"forward hook {number}")
+        describe = read(hook, "fingerprint")
+        if callable(describe):
+            entries[f"{name}()"] = f"{type(hook).__qualname__} {describe()!r}"
+        elif read(hook, "__module__") == _OWN_HOOKS:
+            entries[f"{name}()"] = hook.__qualname__
+        else:
+            kind = read(hook, "__qualname__", default=type(hook).__qualname__)
+            unreadable[name] = f"a forward hook, {kind}"
+
+
+def attributes_of(thing: Any) -> list[tuple[str, Any]]:
+    """Return the attributes of an object, and the buffers that a module does not save, by name."""
+    attributes = read(thing, "__dict__", default={})
+    if not isinstance(thing, nn.Module):
+        return [(name, part) for name, part in attributes.items() if name != "settings"]
+    buffers = {name: thing._buffers[name] for name in thing._non_persistent_buffers_set}
+    return [(k, part) for k, part in {**attributes, **buffers}.items() if k not in _LEFT_OUT]
+
+
+def code_of(*kinds: type) -> Contents:
+    """Return the source files of the user's classes among ``kinds``, and the values they name.
+
+    These are class attributes, and global variables that the methods name.
+    """
+    classes = dict.fromkeys(each for kind in kinds for each in kind.__mro__ if each is not object)
+    users = [each for each in classes if is_users(each)]
+    sources = source_files([each.__module__ for each in users])
+    unreadable = {k: "a module without a source file" for k, text in sources.items() if not text}
+    values: dict[str, Any] = {}
+    for each in classes:
+        functions = methods(each)
+        for name, function in functions.items():
+            own = function.__qualname__ == f"{each.__qualname__}.{name}" or name.startswith("__")
+            if is_users(function) and not own:
+                unreadable[f"{each.__qualname__}.{name}"] = "a replaced method"
+        if each not in users:
+            continue
+        named = [(k, part) for k, part in vars(each).items() if k not in functions and k[0] != "_"]
+        waiting = [*functions.values()]
+        for function in waiting:
+            found = named_values(function)
+            named += [(f"() {name}", part) for name, part in found.items()]
+            called = [one for one in found.values() if isinstance(one, types.FunctionType)]
+            waiting += [one for one in called if is_users(one) and one not in waiting]
+        for name, part in named:
+            place = f"{each.__qualname__}.{name}"
+            if not isinstance(part, (*_SOURCE, types.ModuleType)):
+                values[place] = _described(part, place, unreadable)
+    code = sorted(text for text in sources.values() if text)
+    parts = {"code": code, "names": values}
+    return Contents({name: part for name, part in parts.items() if part}, unreadable)
+
+
+def _described(value: Any, place: str, unreadable: dict[str, str]) -> Any:
+    """Return ``value`` as JSON data; parts that cannot be read are added to ``unreadable``."""
+    kind = type(value)
+    if kind in _PLAIN:
+        return value
+    if isinstance(value, Observation):
+        return None  # the last observation changes no action
+    if place.count(".") > DEEPEST:
+        unreadable[place] = "nested too deeply"
+        return None
+    if kind in (list, tuple):
+        parts = [_described(part, f"{place}.{n}", unreadable) for n, part in enumerate(value)]
+        return [kind.__name__, *parts]
+    if kind is dict and all(type(key) in (str, int) for key in value):
+        items = value.items()
+        return [[repr(k), _described(part, f"{place}.{k}", unreadable)] for k, part in items]
+    if isinstance(value, nn.Module):
+        return f"{class_name(kind)} {weights_sha(value)}"
+    if isinstance(value, (bytes, torch.dtype, torch.device, PurePath, np.generic)):
+        return repr(value)
+    if isinstance(value, (type, types.FunctionType)) and not is_users(value):
+        return class_name(value)
+    if isinstance(value, types.BuiltinFunctionType) and value.__module__:  # not a bound method
+        return class_name(value)
+    if kind in (set, frozenset) and all(type(part) in _PLAIN for part in value):
+        return sorted(map(repr, value))
+    if sha := array_sha(value):
+        return sha
+    unreadable[place] = f"a {class_name(kind)}"
+    return None
+
+
+def array_sha(array: Any) -> str:
+    """Return the hash of an array's or tensor's type, shape and bytes.
+
+    "" if it is no array or has no readable bytes: sparse, on the meta device, or of objects.
+    """
+    if type(array) not in (np.ndarray, torch.Tensor, nn.Parameter):
+        return ""
+    text = f"{array.dtype} {tuple(array.shape)}"
+    if isinstance(array, torch.Tensor):
+        if array.layout != torch.strided or array.is_meta or vars(array):
+            return ""
+        array = array.dequantize() if array.is_quantized else array
+        array = array.detach().cpu().contiguous().reshape(-1).view(torch.uint8).numpy()
+    elif array.dtype.hasobject:
+        return ""
+    return hashlib.sha256(text.encode() + array.tobytes()).hexdigest()[:DIGITS]
+
+
+def class_name(kind: Any) -> str:
+    """Return the name of a class or function; with its module unless it is the user's code."""
+    if isinstance(kind, types.BuiltinFunctionType):
+        return f"{kind.__module__}.{kind.__qualname__}"
+    return kind.__qualname__ if is_users(kind) else f"{kind.__module__}.{kind.__qualname__}"
+
+
+def _join(*names: str) -> str:
+    return ".".join(name for name in names if name)
 
 
 def hash_of(parts: Mapping[str, Any], sensors: Mapping[str, Sensor], front: str = "none") -> str:
@@ -141,54 +314,9 @@ def hash_of(parts: Mapping[str, Any], sensors: Mapping[str, Sensor], front: str 
 def code_sha(objective: nn.Module) -> str:
     """Return the hash of the user's code in an objective and its agent; "" if there is no such
     code."""
-    code = "\n".join(_codes(objective, read_state(objective, attributes=False)))
+    kinds = [type(module) for net in networks(objective).values() for module in net.modules()]
+    code = "\n".join(code_of(type(objective), *kinds).parts.get("code", ()))
     return code and hashlib.sha256(code.encode()).hexdigest()[:DIGITS]
-
-
-def _codes(agent: Any, state: State) -> list[str]:
-    """Return the sources of the classes of the agent and its modules, and of other functions."""
-    modules = [module for _, net in state.networks for module in net.modules()]
-    kinds = dict.fromkeys(map(type, (agent, *modules)))
-    classes = [*dict.fromkeys(source for kind in kinds for source in source_of(kind))]
-    functions = dict.fromkeys(_code_source(code, code.co_filename) for code in state.functions)
-    outside = [text for text in functions if not any(text in source for source in classes)]
-    return [*classes, *outside]
-
-
-@cache
-def _code_source(code: types.CodeType, file: str) -> str:
-    """Return the source of ``code`` as it was when first read, or its bytecode if there is no
-    file."""
-    try:
-        return inspect.getsource(code)
-    except (OSError, TypeError):
-        return bytecode(code)
-
-
-def source_of(kind: type) -> list[str]:
-    """Return the sources of a class and of its base classes, as far as they are the user's code.
-
-    They are read once, because a later edit of the file does not change a loaded class.
-    """
-    return list(_source_of(kind))
-
-
-@cache
-def _source_of(kind: type) -> tuple[str, ...]:
-    sources = []
-    for each in kind.__mro__:
-        with suppress(OSError, TypeError):  # defined interactively or at run time
-            if is_users(each.__module__, inspect.getsourcefile(each) or ""):
-                sources.append(inspect.getsource(each))
-    return tuple(sources)
-
-
-def _weights(state: State) -> str | list[tuple[str, str]]:
-    """Return the hash of the weights, or one hash for each of several networks or arrays."""
-    shas = [(place, weights_sha(net)) for place, net in state.networks]
-    if len(shas) == 1 and not shas[0][0]:
-        return shas[0][1]
-    return sorted(shas or state.arrays) or ""
 
 
 def _plain(value: Any) -> Any:

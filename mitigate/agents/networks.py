@@ -2,18 +2,64 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from contextlib import contextmanager
+import functools
+import types
+from collections import deque
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager, suppress
 from typing import Any
 
 from torch import nn
 
-from mitigate.agents.state import read_state
+from mitigate.agents.source import is_users, methods, named_values
+
+MOST_VALUES = 100_000  # values that are visited (heuristic: under a second)
+_SCALARS = (str, bytes, int, float, complex, type(None), types.ModuleType)
 
 
-def networks(agent: Any) -> list[nn.Module]:
-    """Return the networks that ``agent`` contains, or ``agent`` itself if it is a network."""
-    return [net for _, net in read_state(agent, attributes=False).networks]
+def networks(agent: Any) -> dict[str, nn.Module]:
+    """Return the networks that ``agent`` is or holds, by place, without the networks inside them.
+
+    Attributes, containers, closures and the global variables that methods name are searched,
+    without running the agent's code.
+    """
+    found: dict[str, nn.Module] = {}
+    seen: dict[int, Any] = {}
+    waiting: deque[tuple[str, Any]] = deque([("", agent)])
+    while waiting and len(seen) < MOST_VALUES:
+        place, value = waiting.popleft()
+        if id(value) in seen or isinstance(value, _SCALARS):
+            continue
+        seen[id(value)] = value  # a reference, so that the id stays unique
+        if isinstance(value, nn.Module):
+            found[place] = value
+            seen |= {id(module): module for module in value.modules()}
+            parts = [part for module in value.modules() for part in _parts(module)]
+        else:
+            parts = [*_parts(value)]
+        waiting.extend((f"{place}.{name}".strip("."), part) for name, part in parts)
+    return found
+
+
+def _parts(value: Any) -> Iterable[tuple[Any, Any]]:
+    """Return what ``value`` holds directly, by name."""
+    if isinstance(value, dict):
+        return dict.items(value)
+    if type(value) in (list, tuple, set, frozenset):
+        return enumerate(value)
+    if isinstance(value, functools.partial):
+        return [("func", value.func), ("args", value.args), ("keywords", value.keywords)]
+    if isinstance(value, types.MethodType):
+        return [("self", value.__self__), ("function", value.__func__)]
+    if isinstance(value, types.FunctionType):
+        values = named_values(value) if is_users(value) else {}
+        return [*values.items(), ("defaults", value.__defaults__)]
+    if isinstance(value, type):
+        users = [each for each in value.__mro__ if is_users(each)]
+        return [part for each in users for part in [*vars(each).items(), *methods(each).items()]]
+    with suppress(AttributeError):  # without the user's __getattr__
+        return [*object.__getattribute__(value, "__dict__").items(), ("class", type(value))]
+    return ()
 
 
 @contextmanager
@@ -23,7 +69,7 @@ def in_eval_mode(agent: Any) -> Iterator[None]:
 
     Each network's ``eval()`` is called, because a class may override it.
     """
-    roots = [net for net in networks(agent) if _has_mode(net)]
+    roots = [net for net in networks(agent).values() if _has_mode(net)]
     modules = [module for net in roots for module in net.modules() if _has_mode(module)]
     modes = {module: module.training for module in modules}
     for net in roots:

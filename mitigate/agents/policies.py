@@ -17,6 +17,7 @@ from typing import Any
 
 import numpy as np
 import torch
+import torch.nn.functional as F
 from torch import Tensor, nn
 from torch.distributions import (
     Categorical,
@@ -56,7 +57,7 @@ class Policy(Agent, nn.Module):
     """
 
     recurrent = False
-    run_state = ("_memory",)
+    run_state = ("_memory", "_before")
 
     def __init__(self, network: nn.Module, native: Any, space: ActionSpace) -> None:
         super().__init__()
@@ -64,6 +65,7 @@ class Policy(Agent, nn.Module):
         self.native = native
         self.space = space
         self._memory: Any = None
+        self._before: Any = None  # memory before the last action
 
     def answer(self, observation: Any, memory: Any = None) -> tuple[Answer, Any]:
         """Return the policy's answers to a batch, and its memory after it.
@@ -81,8 +83,7 @@ class Policy(Agent, nn.Module):
         otherwise the action itself.
         """
         if isinstance(self.space, MultiDiscrete):
-            choices = [int(mode(part)[0]) for part in answer]
-            return np.array(choices).reshape(self.space.counts.shape)
+            return self.executable(torch.stack([mode(part)[0] for part in answer]))
         first_answer = answer[0] if isinstance(answer, Tensor) else mode(answer[0])[0]
         if isinstance(self.space, Discrete):
             values = answer if isinstance(answer, Tensor) else getattr(answer[0], "logits", None)
@@ -93,8 +94,15 @@ class Policy(Agent, nn.Module):
                 )
             if isinstance(answer, Tensor):
                 first_answer = check_logits(first_answer, self).argmax()
-            return int(first_answer) + self.space.start
-        values = first_answer.double().cpu().numpy()
+        return self.executable(first_answer)
+
+    def executable(self, chosen: Tensor) -> Any:
+        """Return an action of the network, such as a sample of its distribution, for the world."""
+        if isinstance(self.space, MultiDiscrete):
+            return chosen.long().cpu().numpy().reshape(self.space.counts.shape)
+        if isinstance(self.space, Discrete):
+            return int(chosen) + self.space.start
+        values = chosen.double().cpu().numpy()
         if not np.isfinite(values).all():
             raise ValueError(f"The action of {self.name} must be finite, got {values.tolist()}.")
         assert isinstance(self.space, Box), "as_policy rejects other spaces"
@@ -138,8 +146,24 @@ class Policy(Agent, nn.Module):
     def act(self, observation: Mapping[str, Any]) -> Any:
         """Return the likeliest action."""
         frames = {name: np.asarray(observation[name])[None] for name in self.sensors}
+        self._before = self._memory
         answer, self._memory = self.answer(self.native(frames), self._memory)
         return self.action(answer)
+
+    def entropy(self, observation: Mapping[str, Any]) -> Tensor:
+        """Return the entropy of the last action's distribution (``agents/agent.py``).
+
+        Raises:
+            ValueError: The policy gives no distribution.
+        """
+        frames = {name: np.asarray(observation[name])[None] for name in self.sensors}
+        answer = self.answer(self.native(frames), self._before)[0]
+        if isinstance(answer, Tensor):
+            raise ValueError(
+                f"adapt=tent lowers the entropy of actions, but {self.name} returns values "
+                "without a distribution. Choose adapt=norm or adapt=recentre."
+            )
+        return torch.stack([part.entropy().sum() for part in answer]).sum()
 
     def answers(self, frames: Mapping[str, np.ndarray], length: int = 1) -> list[Answer]:
         """Return the answers to windows of consecutive frames, as a list with one batch per
@@ -220,12 +244,11 @@ class StableBaselinesPolicy(Policy):
                     # distributions and actions, with their autograd graph
                     setattr(last_call, name, None)
 
-    def action(self, answer: Answer) -> Any:
+    def executable(self, chosen: Tensor) -> Any:
         policy: Any = self.network
         if policy.squash_output and isinstance(self.space, Box):
-            chosen = answer[0] if isinstance(answer, Tensor) else mode(answer[0])[0]
             return policy.unscale_action(chosen.cpu().numpy()).astype(self.space.low.dtype)
-        return super().action(answer)
+        return super().executable(chosen)
 
 
 class TorchrlPolicy(Policy):
@@ -450,6 +473,27 @@ def copied(policy: Policy) -> Policy:
     return twin
 
 
+def last_convolution(policy: Policy) -> str:
+    """Return the name of the last convolution of a network, or else of its first layer.
+
+    Raises:
+        ValueError: The network has neither.
+    """
+    layers = [
+        (name, isinstance(module, (nn.Conv1d, nn.Conv2d, nn.Conv3d)))
+        for name, module in policy.network.named_modules()
+        if isinstance(module, (nn.Conv1d, nn.Conv2d, nn.Conv3d, nn.Linear))
+        and checkpoint.ADAPTER not in f".{name}."
+    ]
+    if not layers:
+        raise ValueError(
+            f"{policy.name} has no convolution and no linear layer. Name the module whose output "
+            "is to be compared: module=..."
+        )
+    convolutions = [name for name, is_convolution in layers if is_convolution]
+    return convolutions[-1] if convolutions else layers[0][0]
+
+
 def mode(distribution: Any) -> Tensor:
     """Return the most probable value of a distribution, [B, ...]."""
     if isinstance(distribution, (Categorical, OneHotCategorical)):
@@ -479,12 +523,33 @@ def divergence(teacher: Answer, student: Answer) -> Tensor:
     for one, other in zip(teacher, student, strict=True):
         try:
             kl = kl_divergence(_base(one), _base(other))
-        except NotImplementedError:  # such as a deterministic action in the form of a distribution
+        except NotImplementedError:  # such as a fixed action given as a distribution
             return divergence(
                 torch.cat([mode(t) for t in teacher], -1), torch.cat([mode(s) for s in student], -1)
             )
         total = total + kl.flatten(1).sum(1).mean() if kl.dim() > 1 else total + kl.mean()
     return total
+
+
+def imitation(teacher: Answer, student: Answer) -> Tensor:
+    """Return how badly the student predicts the teacher's likeliest action, mean over the batch.
+
+    Cross-entropy for discrete actions. For continuous actions, and for values without a
+    distribution, the squared error divided by the teacher's variance over the batch. Unlike the KL
+    divergence, it matters where the teacher is undecided: a policy whose two best actions have
+    probabilities of 0.50 and 0.48 acts differently if these change places.
+    """
+    if isinstance(teacher, Tensor) or isinstance(student, Tensor):
+        return divergence(teacher, student)
+    losses = []
+    for one, other in zip(teacher, student, strict=True):
+        action = mode(one)
+        if isinstance(other, (Categorical, OneHotCategorical)):
+            loss = F.cross_entropy(other.logits.flatten(0, -2), action.flatten())
+        else:
+            loss = divergence(action, mode(other))
+        losses.append(loss)
+    return torch.stack(losses).sum()
 
 
 def _base(distribution: Any) -> Distribution:

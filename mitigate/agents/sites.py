@@ -74,7 +74,7 @@ def _shapes(model: nn.Module, run: Run, count: int) -> dict[str, tuple[Any, int]
     handles = []
     try:
         for name, module in model.named_modules():
-            if name and not isinstance(module, torch.jit.ScriptModule):
+            if name:
                 handles.append(module.register_forward_hook(watch(name)))
         run(count)
     finally:

@@ -14,7 +14,7 @@ import numpy as np
 import torch
 from torch import Tensor, nn
 
-from mitigate.agents.agent import Agent, Output, check_logits, sample
+from mitigate.agents.agent import Agent, Output, check_logits, entropy_of, sample
 from mitigate.core.observation import RGB, STOP, Observation
 from mitigate.worlds.episodes import Episode
 from mitigate.worlds.world import World, expert_of
@@ -107,6 +107,11 @@ class StepwiseAgent(Agent, nn.Module):
         """Return the likeliest action. Raises ValueError for invalid logits."""
         frames = {name: observation[name] for name in self.needs}
         return int(check_logits(self._logits(frames, self.instruction), self).argmax())
+
+    def entropy(self, observation: Mapping[str, np.ndarray]) -> Tensor:
+        """Return the entropy of the decision on an observation, with gradients."""
+        frames = {name: observation[name] for name in self.needs}
+        return entropy_of(self._logits(frames, self.instruction))
 
     @torch.no_grad()
     def collect(

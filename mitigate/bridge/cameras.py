@@ -16,8 +16,7 @@ from typing import Any
 import numpy as np
 
 from mitigate.core.observation import DEPTH, HFOV_DEGREES, POSE, RGB, VIEW_STEP_DEGREES, VIEWS
-from mitigate.corruptions import Corruption, DepthSensor, Key, corrupt_observation
-from mitigate.corruptions.normalised import corrupt_normalised
+from mitigate.corruptions import Corruption, DepthSensor, FrameStream, Key
 from mitigate.guards.guard import Guards
 
 # maximum bytes of all frames in a call (heuristic): 24 cameras of 1080 x 1920 have 5e8
@@ -177,6 +176,12 @@ class Group:
         """Shape of the array of all views, in which views without a camera are zero."""
         return (1 + max(self.views), *self.cameras[0].shape)
 
+    def stream(self) -> FrameStream:
+        """Return a stream of these cameras' frames."""
+        first = self.cameras[0]
+        hfov = {first.kind: first.hfov}
+        return FrameStream(first.sensor, normalised=first.normalised, hfov=hfov)
+
 
 class Rig:
     """All cameras of a call.
@@ -185,13 +190,19 @@ class Rig:
         descriptions: Descriptions from the agent's process.
         missing: Value in metres for missing depth.
         turn: Direction of increasing yaw, "left" (Habitat) or "right".
+        streams: Recent frames by group, which an earlier rig of this environment filled; None:
+            there was none.
 
     Raises:
         ValueError: A camera cannot be corrupted, or there are too many.
     """
 
     def __init__(
-        self, descriptions: Sequence[Mapping[str, Any]], missing: float = 0.0, turn: str = "left"
+        self,
+        descriptions: Sequence[Mapping[str, Any]],
+        missing: float = 0.0,
+        turn: str = "left",
+        streams: dict[Group, FrameStream] | None = None,
     ) -> None:
         if len(descriptions) > MAX_CAMERAS:
             raise ValueError(
@@ -203,6 +214,7 @@ class Rig:
         if len(set(names)) < len(names):
             raise ValueError(f"Names of cameras must be different, got {', '.join(names)}.")
         self.groups = [g for kind in CHANNELS for g in _make_groups(self.cameras, kind, turn)]
+        self.streams = {} if streams is None else streams
 
     def describe(self) -> dict[str, dict[str, Any]]:
         """Return the kind, field of view, yaw (degrees to the right) and level of each camera."""
@@ -254,13 +266,14 @@ class Rig:
             key: Determines the draws.
             heading: The agent's heading in radians; None if unknown.
         """
-        changed: dict[str, None] = {}
-        for part in (part for part in corruption.parts if part.modality in CHANNELS):
-            for group in (g for g in self.groups if g.cameras[0].kind == part.modality):
-                views = _views(memory, offsets, group)
-                views[...] = corrupt_group(group, views, part, key, heading)
-                changed |= dict.fromkeys(camera.name for camera in group.cameras)
-        return list(changed)
+        changed: list[str] = []
+        for group in (g for g in self.groups if g.cameras[0].kind in corruption.modalities):
+            if group not in self.streams:
+                self.streams[group] = group.stream()
+            views = _views(memory, offsets, group)
+            views[...] = corrupt_group(group, views, corruption, key, heading, self.streams[group])
+            changed += [camera.name for camera in group.cameras]
+        return changed
 
     def guard(self, memory: Any, offsets: Mapping[str, int], guards: Guards) -> list[str]:
         """Apply ``guards`` to the frames in ``memory``; return the names of the changed cameras.
@@ -345,9 +358,14 @@ def _pair(frames: Sequence[Frame]) -> list[list[Frame]]:
 
 
 def corrupt_group(
-    group: Group, views: np.ndarray, corruption: Corruption, key: Key, heading: float | None
+    group: Group,
+    views: np.ndarray,
+    corruption: Corruption,
+    key: Key,
+    heading: float | None,
+    stream: FrameStream,
 ) -> np.ndarray:
-    """Return the corrupted views of a group; ``corruption`` must have the group's modality."""
+    """Return the corrupted views of a group; parts of other modalities are ignored."""
     first = group.cameras[0]
     frames: dict[str, Any] = {first.kind: views}
     if first.kind == DEPTH:
@@ -356,8 +374,7 @@ def corrupt_group(
         frames[POSE] = np.array([0.0, 0.0, heading])
     if group.suffix:
         key = Key(key.seed, f"{key.episode}|{group.suffix}", key.frame)
-    function = corrupt_normalised if first.normalised else corrupt_observation
-    return function(frames, corruption, key, first.sensor)[first.kind]
+    return stream.corrupt(frames, corruption, key, partial=True)[first.kind]
 
 
 def _views(memory: Any, offsets: Mapping[str, int], group: Group) -> np.ndarray:

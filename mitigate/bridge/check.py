@@ -28,6 +28,8 @@ from mitigate.core.observation import DEPTH, RGB
 from mitigate.core.output import output_folder
 from mitigate.core.pictures import depth_picture
 from mitigate.corruptions import Corruption, Key
+from mitigate.corruptions.record import TEMPORAL
+from mitigate.corruptions.registry import record
 from mitigate.evaluation.plots import plain
 from mitigate.guards.guard import NO_GUARDS, Guards
 
@@ -103,18 +105,28 @@ def check(config: RunConfig, command: Sequence[str]) -> Path | None:
         applies = "needs tokenizer=, the agent reads tokens" if no_tokenizer else "applies"
         print(f"  {other.name}: {f'not applicable, {reason}' if reason else applies}")
         if not reason:
-            applicable += [p for p in other.corruption.parts if p.modality in (RGB, DEPTH)]
+            applicable += [p for p in other.corruption.parts if _sensors(p) and not _shows_past(p)]
     if not rig.groups:
         print("no frame is named or described as rgb or depth: nothing to draw", flush=True)
         return None
     kinds = {group.cameras[0].kind for group in rig.groups}
-    for kind in sorted({part.modality for part in applicable} - kinds):
+    for kind in sorted({_sensors(part)[0] for part in applicable} - kinds):
         print(f"the first call has no {kind} frame: no {kind} corruption is drawn")
-    drawn = [part for part in dict.fromkeys(applicable) if part.modality in kinds]
+    drawn = [part for part in dict.fromkeys(applicable) if kinds.intersection(_sensors(part))]
     figure = draw_sheet(rig, frames, drawn, reports.first, config.seed)
     path = write_figure(out / "sheet.png", figure)
     print(f"wrote {path}: the first frame of the agent under each condition", flush=True)
     return path
+
+
+def _sensors(part: Corruption) -> list[str]:
+    """Return the sensors that a single corruption changes."""
+    return [kind for kind in record(part.name).modalities if kind in (RGB, DEPTH)]
+
+
+def _shows_past(part: Corruption) -> bool:
+    """Return whether a fault shows earlier frames or only limits another corruption."""
+    return record(part.name).family == TEMPORAL and record(part.name).draw is not None
 
 
 def _wait(attempt: Attempt, file: Path) -> None:
@@ -200,7 +212,8 @@ def draw_sheet(
 ) -> Figure:
     """Draw a row for the clean frames and one per corruption, with the largest group of cameras.
 
-    An intermittent corruption is drawn at the first call in which it acts.
+    An intermittent corruption is drawn at the first call in which it acts. Faults that show
+    earlier frames are not drawn.
 
     Args:
         rig: The cameras.
@@ -216,10 +229,11 @@ def draw_sheet(
     clean = {kind: _views(group, frames) for kind, group in by_kind.items()}
     rows = [([f"clean {kind}"], by_kind[kind], views) for kind, views in clean.items()]
     for corruption in corruptions:
-        group, before = by_kind[corruption.modality], clean[corruption.modality]
+        kind = next(kind for kind in _sensors(corruption) if kind in by_kind)
+        group, before = by_kind[kind], clean[kind]
         for call in range(TRIED_CALLS):
             key = Key(seed, episode, call)
-            views = corrupt_group(group, before.copy(), corruption, key, heading)
+            views = corrupt_group(group, before.copy(), corruption, key, heading, group.stream())
             if not np.array_equal(views, before, equal_nan=True):
                 break
         note = f"at call {call}" if call else ""

@@ -25,6 +25,8 @@ from mitigate.corruptions import Corruption, Key, corrupt_instruction
 from mitigate.corruptions.keying import digest, uniform
 from mitigate.corruptions.language.text import is_english
 from mitigate.corruptions.language.tokens import VOCABULARY, Tokenizer, tokenizer_for
+from mitigate.corruptions.record import CAMERA
+from mitigate.corruptions.registry import record
 from mitigate.guards.guard import NO_GUARDS, EpisodeStart, Guards
 from mitigate.worlds.episodes import read_extras
 
@@ -99,8 +101,14 @@ def why_not_applicable(corruption: Corruption, clean: Reports) -> str:
     """Return the reason why a corruption cannot reach this agent, or an empty text."""
     kinds = {camera["type"] for camera in clean.cameras}
     for part in corruption.parts:
-        if part.modality in ("rgb", "depth") and part.modality not in kinds:
-            return f"the agent has no {part.modality} camera"
+        sensors = {*record(part.name).modalities} & {"rgb", "depth"}
+        if sensors and not sensors & kinds:
+            return f"the agent has no {' or '.join(sorted(sensors))} camera"
+        if record(part.name).family == CAMERA:
+            if part.name == "camera_height":
+                return "the bridge cannot render from another height"
+            if any(camera.get("hfov") is None for camera in clean.cameras):
+                return "a camera has no hfov: describe it in connect(...).corrupt(cameras=...)"
         if part.name == "white_box":
             return "the bridge does not see the agent's system prompt"
         if part.modality == "instruction" and not clean.first.get("text"):

@@ -19,6 +19,8 @@ from mitigate.core import conf
 from mitigate.core.addresses import check_choice
 from mitigate.core.files import make_folder
 from mitigate.core.names import short, unknown
+from mitigate.corruptions.record import MOTION
+from mitigate.corruptions.registry import family
 from mitigate.evaluation.conditions import suite_conditions
 from mitigate.evaluation.rows import allowed
 from mitigate.worlds.measures import RULES
@@ -90,6 +92,11 @@ def check_options(config: RunConfig, command: Sequence[str]) -> None:
         raise ValueError(
             f"corruption={config.corruption} and conditions=... both name conditions. Put "
             f"{config.corruption} into conditions=[...], or leave conditions out."
+        )
+    if moving := [name for name in config.names if family(name) == MOTION]:
+        raise ValueError(
+            f"{moving[0]} changes actions, which mitigate run does not intercept: it corrupts "
+            "frames and instructions only. Leave it out (suite=temporal and suite=camera work)."
         )
     for option, value in (("jobs", config.jobs), ("repeats", config.repeats)):
         if value < 1:

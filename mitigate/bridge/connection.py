@@ -18,12 +18,13 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
-from mitigate.bridge.cameras import CHANNELS, Rig
+from mitigate.bridge.cameras import CHANNELS, Group, Rig
 from mitigate.bridge.condition import Condition
 from mitigate.bridge.events import EVENTS, read_end, read_start, write_event
 from mitigate.bridge.hook import mitigate_hook
 from mitigate.bridge.hook.mitigate_hook import BROKEN, MAX_TEXT, receive, send
 from mitigate.core.names import short, unknown
+from mitigate.corruptions import FrameStream, registry
 
 
 def numbered(message: Mapping[str, Any], answer: dict[str, Any]) -> dict[str, Any]:
@@ -122,6 +123,7 @@ class Connection:
             "stopped": self.on_stopped,
         }
         self.rig: Rig | None = None
+        self.streams: dict[Group, FrameStream] = {}  # by group, also across descriptions
         self.offsets: dict[str, int] = {}
         self.scene = ""
         self.episode = ""
@@ -208,7 +210,7 @@ class Connection:
     def on_spec(self, message: Mapping[str, Any]) -> dict[str, Any]:
         """Answer a description of cameras by providing shared memory for their frames."""
         condition = self.condition
-        self.rig = Rig(message["cameras"], condition.missing, condition.turn)
+        self.rig = Rig(message["cameras"], condition.missing, condition.turn, self.streams)
         kinds = (
             *condition.corruption.modalities,
             *condition.guards.frames,
@@ -228,6 +230,7 @@ class Connection:
         self._check_chosen()
         self.scene, self.episode = read_start(message)
         self.open = True
+        self.streams.clear()
         self.loop = message.get("loop") is True
         self.seconds = 0.0
         self.calls = 0
@@ -315,7 +318,8 @@ class Connection:
     def _check_kinds(self) -> None:
         """Raise ValueError if no camera of the episode matches the corruption or the guards."""
         for part in self.condition.corruption.parts:
-            if part.modality in CHANNELS and part.modality not in self.kinds:
+            sensors = {*registry.record(part.name).modalities} & {*CHANNELS}
+            if sensors and not sensors & self.kinds:
                 raise ValueError(
                     f"{part.name!r} corrupts {part.modality}, but no call of episode "
                     f"{self.episode} had such a camera (it has "

@@ -24,8 +24,7 @@ from mitigate.bridge.connection import Connection
 from mitigate.bridge.hook import mitigate_hook
 from mitigate.core.files import make_folder
 from mitigate.core.signals import raise_ended
-from mitigate.corruptions import Corruption
-from mitigate.corruptions.suite import corrupt
+from mitigate.corruptions import Corruption, FrameStream
 
 HOOK = Path(mitigate_hook.__file__).parent
 MEMORY = Path("/dev/shm")  # used on Linux; other systems use the folder for temporary files
@@ -153,6 +152,4 @@ def warm_up(corruption: Corruption) -> None:
     """Compile the code of a corruption in advance, so that the first frame does not wait for it."""
     rgb, depth = np.zeros((32, 32, 3), np.uint8), np.ones((32, 32, 1), np.float32)
     frames: dict[str, np.ndarray] = {"rgb": rgb, "depth": depth}
-    for part in corruption.parts:
-        if part.modality in frames:
-            corrupt(frames[part.modality], part.name, part.severity, key=0)
+    FrameStream().corrupt(frames, corruption, 0)

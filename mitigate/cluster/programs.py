@@ -48,20 +48,11 @@ class Chain:
     environment: dict[str, str] = field(default_factory=dict)
 
 
-@dataclass
-class Outcome:
-    """The result of a chain: its problem (empty on success), and CPU seconds by program."""
-
-    problem: str = ""
-    seconds: dict[str, float] = field(default_factory=dict)
-
-
 class Running:
-    """A chain that runs on this machine; call :meth:`poll` until it returns an outcome."""
+    """A chain that runs on this machine; call :meth:`poll` until it returns a text."""
 
     def __init__(self, chain: Chain) -> None:
         self.chain = chain
-        self.outcome = Outcome()
         self.left = list(chain.programs)
         make_folder(chain.log.parent)
         self._next()
@@ -81,21 +72,15 @@ class Running:
                 stderr=subprocess.STDOUT,
             )
 
-    def poll(self) -> Outcome | None:
-        """Return the outcome, or None while a program runs."""
-        ended, status, used = os.wait4(self.process.pid, os.WNOHANG)
-        if not ended:
-            return None
-        self.process.returncode = os.waitstatus_to_exitcode(status)
-        spent = self.outcome.seconds
-        spent[self.what] = spent.get(self.what, 0.0) + used.ru_utime + used.ru_stime
-        if self.process.returncode:
-            last = _last_line(self.chain.log)
-            self.outcome.problem = f"{self.what} ended with {self.process.returncode} ({last})"
-        elif self.left:
+    def poll(self) -> str | None:
+        """Return the problem, or "" after success, or None while a program runs."""
+        code = self.process.poll()
+        if code:
+            return f"{self.what} ended with {code} ({_last_line(self.chain.log)})"
+        if code == 0 and self.left:
             self._next()
             return None
-        return self.outcome
+        return None if code is None else ""
 
     def end(self) -> None:
         """Ask the running program to save and exit, and kill it after ``GRACE`` seconds."""
@@ -118,23 +103,23 @@ def _last_line(log: Path) -> str:
 
 
 class ChainTask:
-    """Task that runs chains in workers (``core/workers.py``); a result is (problem, seconds)."""
+    """Task that runs chains in workers (``core/workers.py``); a result is the problem, or ""."""
 
     preload: ClassVar[str] = "mitigate.cluster.programs"
 
     def ready(self) -> AbstractContextManager[None]:
         return nullcontext()
 
-    def work(self, jobs: Sequence[Chain]) -> Iterator[tuple[str, dict[str, float]]]:
+    def work(self, jobs: Sequence[Chain]) -> Iterator[str]:
         """Run each chain to its end and yield its result."""
         for chain in jobs:
             running = Running(chain)
             try:
-                while (outcome := running.poll()) is None:
+                while (problem := running.poll()) is None:
                     time.sleep(PAUSE)
             finally:
                 running.end()
-            yield outcome.problem, outcome.seconds
+            yield problem
 
     def name(self, job: Chain) -> str:
         return job.name
@@ -145,12 +130,12 @@ def run(
     jobs: int,
     launcher: LauncherConfig,
     progress: Progress,
-    ended: Callable[[int, Outcome], None],
+    ended: Callable[[int, str], None],
 ) -> None:
     """Run ``chains``, ``jobs`` at a time, on the machines of ``launcher``.
 
-    For each chain that ends, ``ended`` is called with its number and outcome. If this call is
-    interrupted, the chains are also stopped. Chains on this machine can save their state first.
+    Calls ``ended`` with the number and the problem ("": none) of each chain that ended. If this
+    call is interrupted, the chains are stopped too; those on this machine can save first.
 
     Raises:
         WorkersDied: The worker of a chain died too often.
@@ -160,15 +145,14 @@ def run(
     groups = [[chain] for chain in chains]
     for item in launchers.results(launcher, ChainTask(), groups, jobs, progress):
         if item is not None:
-            number, (problem, seconds) = item
-            ended(number, Outcome(problem, dict(seconds)))
+            ended(*item)
 
 
 def _run_here(
     waiting: list[tuple[int, Chain]],
     jobs: int,
     progress: Progress,
-    ended: Callable[[int, Outcome], None],
+    ended: Callable[[int, str], None],
 ) -> None:
     running: dict[int, Running] = {}
     try:
@@ -177,10 +161,10 @@ def _run_here(
                 number, chain = waiting.pop(0)
                 running[number] = Running(chain)
             for number, one in list(running.items()):
-                outcome = one.poll()
-                if outcome is not None:
+                problem = one.poll()
+                if problem is not None:
                     del running[number]
-                    ended(number, outcome)
+                    ended(number, problem)
             progress.advance(0)
             time.sleep(PAUSE)
     finally:

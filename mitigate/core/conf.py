@@ -174,7 +174,10 @@ def explain(error: Exception, primary: str, options: Sequence[str] = ()) -> str:
         )
     key = _first(r"Could not (?:override|delete from config\.) '([^']+)'", text)
     if key is not None:
-        return _unknown_key(key, _chosen_by(options, primary), primary)
+        cfg = _chosen_by(options, primary)
+        if isinstance(OmegaConf.select(cfg, key), DictConfig):  # Hydra took it for a group
+            return _misfit(key, _first(rf"{re.escape(key)}=(.*)", "\n".join(options)) or "", cfg)
+        return _unknown_key(key, cfg, primary)
     missing = _first(r"Interpolation key '([^']+)' not found", text)
     if missing is not None:
         key = _first(r"full_key: (\S+)", text) or "another entry"
@@ -371,8 +374,10 @@ def _arguments(node: DictConfig) -> list[str]:
 def _misfit(key: str, value: str, cfg: DictConfig) -> str:
     """Return the error paragraph for a value that is invalid for the entry ``key``."""
     node = OmegaConf.select(cfg, key)
-    if not isinstance(node, DictConfig) or not node:
+    if not isinstance(node, DictConfig):
         return f"{key} cannot be {value}."
+    if not node:
+        return f"{key} cannot be {value}. To add an entry, write +{key}.NAME=VALUE."
     names = [str(name) for name in node]
     return (
         f"{key} cannot be {value}: it holds {', '.join(names)}. Set one of these: "

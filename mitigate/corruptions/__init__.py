@@ -11,6 +11,7 @@ from mitigate.corruptions.keying import Key
 from mitigate.corruptions.normalised import corrupt_normalised
 from mitigate.corruptions.record import Record
 from mitigate.corruptions.schedule import MODES, Schedule
+from mitigate.corruptions.stream import FrameStream
 from mitigate.corruptions.suite import (
     CLEAN,
     DEPTH,
@@ -33,6 +34,7 @@ __all__ = [
     "SUITE_VERSION",
     "Corruption",
     "DepthSensor",
+    "FrameStream",
     "Key",
     "NotApplicable",
     "Record",

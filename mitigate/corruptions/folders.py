@@ -4,6 +4,7 @@ atomically."""
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from hashlib import blake2b
 from pathlib import Path
@@ -13,22 +14,24 @@ from tqdm import tqdm
 
 from mitigate.core.files import read_regular, sha256, write_bytes
 from mitigate.core.names import escaped, short
-from mitigate.core.observation import Z_MAX
+from mitigate.core.observation import DEPTH, RGB, Z_MAX
 from mitigate.core.output import UnsafePathError, is_regular, lost, output_folder
 from mitigate.corruptions import frame_files
 from mitigate.corruptions.depth_sensor import DepthSensor
+from mitigate.corruptions.faults.temporal import GATE
 from mitigate.corruptions.frame_files import (
     MAX_COUNT,
     NO_READING,
-    RGB,
     Frame,
     Plan,
     count_suffixes,
     make_plan,
 )
 from mitigate.corruptions.keying import Key
-from mitigate.corruptions.registry import known, version
-from mitigate.corruptions.suite import SUITE_VERSION, Corruption, check_name, corrupt
+from mitigate.corruptions.record import CAMERA, TEMPORAL
+from mitigate.corruptions.registry import family, fault_names, known, parts, version
+from mitigate.corruptions.stream import FrameStream, shows_past
+from mitigate.corruptions.suite import SUITE_VERSION, Corruption, check_gate, check_name
 
 SUMMARY = "corrupt.json"
 UNITS = {"mm": 0.001, "cm": 0.01, "m": 1.0}
@@ -50,10 +53,13 @@ class Settings:
     z_max: float = Z_MAX  # maximum depth in metres; larger values are clipped
     missing: float = 0.0  # value of missing depth in metres
     no_reading: int = NO_READING  # count in a 16-bit PNG that means no reading, in addition to 0
+    hfov: float | None = None  # degrees, horizontal field of view for camera faults
 
     def __post_init__(self) -> None:
-        Corruption(self.corruption, self.severity)
-        check_name(self.corruption, ("clean", *known("rgb", "depth")))
+        check_gate(Corruption(self.corruption, self.severity))
+        if parts(self.corruption)[0] != GATE:
+            of_frames = (*known("rgb", "depth"), *fault_names(TEMPORAL, CAMERA))
+            check_name(self.corruption, ("clean", *of_frames))
         if self.corruption == "clean":
             raise ValueError("corruption=clean changes nothing. Copy the folder instead.")
         choices = (("episode", self.episode, EPISODES), ("format", self.format, FORMATS))
@@ -72,6 +78,16 @@ class Settings:
         if not 0 <= self.no_reading <= NO_READING:
             raise ValueError(f"no_reading must be 0 to {NO_READING}, got {self.no_reading}.")
         DepthSensor(z_max=self.z_max)  # checks z_max
+        if "camera_height" in parts(self.corruption):
+            raise ValueError(
+                "camera_height needs a world that renders; files show one height. Choose another "
+                "corruption."
+            )
+        if family(self.corruption) == CAMERA and self.hfov is None:
+            raise ValueError(
+                f"{self.corruption} needs the horizontal field of view: hfov=DEGREES, such as "
+                "hfov=90."
+            )
 
     @property
     def metres_per_count(self) -> float:
@@ -86,7 +102,8 @@ def run(source: Path | str, out: Path | str, settings: Settings) -> dict:
     """Corrupt the frames of ``source`` and its subfolders into the same folder tree in ``out``.
 
     Frames are numbered by name inside their episode, comparing digits as numbers ("9" before "10");
-    a damaged file keeps its number. A file that is already in ``out`` is not written again.
+    a damaged file keeps its number. A file that is already in ``out`` is not written again. RGB and
+    depth of an episode are numbered separately. A temporal fault shows earlier files of an episode.
 
     Args:
         source: Folder with frames.
@@ -104,14 +121,14 @@ def run(source: Path | str, out: Path | str, settings: Settings) -> dict:
         OSError: ``out`` cannot be written.
     """
     source, out = Path(source), Path(out)
-    _check_folders(source, out)
-    modality = Corruption(settings.corruption, settings.severity).modality
-    plan = make_plan(source, out, modality, settings.episode)
+    check_folders(source, out)
+    kinds = Corruption(settings.corruption, settings.severity).modalities
+    plan = make_plan(source, out, kinds, settings.episode)
     if not plan.frames:
-        raise FileNotFoundError(_no_frames(source, modality, settings, plan))
-    if any(frame.path.suffix.lower() == ".png" for frame in plan.frames) and modality != RGB:
+        raise FileNotFoundError(_no_frames(source, kinds, settings, plan))
+    if any(frame.path.suffix.lower() == ".png" for frame in plan.frames) and DEPTH in kinds:
         _check_counts(settings)
-    if modality != RGB and settings.unit is None:
+    if DEPTH in kinds and settings.unit is None:
         frames = [source / frame.path for frame in plan.frames]
         frame_files.check_scale(frames, settings.metres_per_count, settings.z_max)
     with output_folder(out, SUMMARY):
@@ -123,6 +140,7 @@ def _corrupt_all(source: Path, out: Path, settings: Settings, plan: Plan) -> dic
     summary = _begin(out, settings, plan)
     outputs = {frame.path: _output(frame.path, settings.format) for frame in plan.frames}
     names = set(outputs)
+    stream = FrameStream(settings.sensor, hfov=dict.fromkeys((RGB, DEPTH), settings.hfov))
     try:
         for frame in tqdm(plan.frames, desc=settings.corruption, unit="frame", disable=None):
             name, target = frame.path.as_posix(), outputs[frame.path]
@@ -131,7 +149,7 @@ def _corrupt_all(source: Path, out: Path, settings: Settings, plan: Plan) -> dic
             if target != frame.path and target in names:
                 plan.left_out[name] = f"would become {target.name}, which exists: use format=same"
             else:
-                _corrupt_frame(source, out, target, frame, settings, plan, summary)
+                _corrupt_frame(source, out, target, frame, settings, plan, summary, stream)
             names.add(target)
     finally:  # so that a resumed run does not compute these frames again
         _write_summary(out, summary)
@@ -155,21 +173,23 @@ def _corrupt_frame(
     settings: Settings,
     plan: Plan,
     summary: dict,
+    stream: FrameStream,
 ) -> None:
     """Write a frame unless ``out`` already contains the same file, and record its checksum."""
     name = target.as_posix()
     checksums = summary["checksums"]
     files = (source / frame.path, out / target)
     exists = is_regular(out / target)
-    if exists and name in checksums and checksums[name] == _checksum(*files):
+    corruption = Corruption(settings.corruption, settings.severity)
+    known_checksum = exists and name in checksums and not shows_past(corruption)
+    if known_checksum and checksums[name] == _checksum(*files):
         summary["there"] += 1
         return
     key = Key(settings.seed, frame.episode, frame.number)
 
     def change(pixels: np.ndarray) -> np.ndarray:
-        return corrupt(
-            pixels, settings.corruption, settings.severity, key=key, sensor=settings.sensor
-        )
+        kind = RGB if pixels.dtype == np.uint8 else DEPTH
+        return stream.corrupt({kind: pixels}, corruption, key)[kind]
 
     try:
         data = frame_files.corrupt_file(
@@ -295,7 +315,13 @@ def _write_summary(out: Path, summary: dict) -> None:
 # -------------------------------------------------------------------------------- user errors
 
 
-def _check_folders(source: Path, out: Path) -> None:
+def check_folders(source: Path, out: Path) -> None:
+    """Check that ``source`` exists, and that neither folder contains the other.
+
+    Raises:
+        FileNotFoundError: There is no folder ``source``.
+        ValueError: ``out`` is a file, or one folder contains the other.
+    """
     if not source.is_dir():
         hint = " Put single files into a folder." if source.is_file() else " Check the path."
         raise FileNotFoundError(f"There is no folder {source}.{hint}")
@@ -310,9 +336,11 @@ def _check_folders(source: Path, out: Path) -> None:
         )
 
 
-def _no_frames(source: Path, modality: str, settings: Settings, plan: Plan) -> str:
-    """Return the error message for a folder without frames of the modality."""
-    formats = "8-bit RGB PNG or JPEG" if modality == RGB else "16-bit grey PNG or NPY (metres)"
+def _no_frames(source: Path, kinds: Sequence[str], settings: Settings, plan: Plan) -> str:
+    """Return the error message for a folder without frames of these modalities."""
+    readable = {RGB: "8-bit RGB PNG or JPEG", DEPTH: "16-bit grey PNG or NPY (metres)"}
+    modality = " or ".join(kinds)
+    formats = " or ".join(readable[kind] for kind in kinds)
     other = ""
     if plan.other_modality:
         other += f"; {plan.other_modality} frames are of the other modality"

@@ -255,30 +255,32 @@ class Plan:
         return names
 
 
-def make_plan(source: Path, out: Path | None, kind: str, episode: str) -> Plan:
-    """Find the frames of a modality; a damaged file keeps its number but is skipped.
+def make_plan(source: Path, out: Path | None, kinds: Sequence[str], episode: str) -> Plan:
+    """Find the frames of some modalities; a damaged file keeps its number but is skipped.
 
     Args:
         source: The folder, which is searched recursively.
         out: Folder of the results, which is skipped even if a link leads there, or None.
-        kind: "rgb" or "depth".
+        kinds: "rgb", "depth" or both, each numbered separately.
         episode: "folder" (each folder is an episode) or "all" (one episode).
     """
     plan = Plan()
-    counts: dict[str, int] = {}
+    counts: Counter[tuple[str, str]] = Counter()
     for path in _files(source, out and out.resolve(), plan):
         if path.suffix.lower() not in SUFFIXES:
             plan.other_files[path.suffix.lower()] += 1
             continue
+        kind = kinds[0]
         try:
-            if modality(source / path) != kind:
+            kind = modality(source / path)
+            if kind not in kinds:
                 plan.other_modality += 1
                 continue
         except LeftOutError as error:
             plan.left_out[path.as_posix()] = str(error)
         name = path.parent.as_posix() if episode == "folder" else "all"
-        plan.frames.append(Frame(path, name, counts.get(name, 0)))
-        counts[name] = counts.get(name, 0) + 1
+        plan.frames.append(Frame(path, name, counts[name, kind]))
+        counts[name, kind] += 1
     return plan
 
 

@@ -1,11 +1,11 @@
-"""Corrupt a folder of frames: mitigate corrupt IN OUT corruption=... severity=...
+"""Corrupt recorded frames: mitigate corrupt IN OUT corruption=... severity=...
 
   IN          folder of frames, with any subfolders and links to folders: 8-bit RGB as PNG or
               JPEG; depth as 16-bit PNG, or as NPY float metres, [H, W], [H, W, 1] or with views
-              first
+              first. Or the folder of a LeRobot dataset, version 3 (pip install -e '.[lerobot]')
   OUT         folder for the corrupted frames, with the same tree and names
 
-  corruption  its name (see --list); frames of the other modality are skipped
+  corruption  its name (see --list), or intermittent+NAME; frames of the other modality are skipped
   severity    0 (clean) to 1 (worst)
   seed        corruption seed (0)
   episode     folder: each folder is an episode, frames in the order of their names (default);
@@ -13,10 +13,15 @@
   unit        of 16-bit PNG: mm, cm, m, or metres per count, such as 0.00025; default: mm, after a
               check that the depth may be in mm (and NPY in metres; unit=m skips this check)
   format      format of a corrupted JPEG: png, which keeps every pixel (default), or same: JPEG
-              with the same name, at quality 95
+              with the same name, at quality 95. For the videos of a LeRobot dataset, png means
+              lossless H.264 in RGB, and same the codec of the original, which is lossy
   z_max       depth range in metres (10): valid depth beyond it is clipped
   missing     value of missing data in metres (0: no reading)
   no_reading  count of a 16-bit PNG that means no reading, next to 0 (65535)
+  hfov        horizontal field of view in degrees, which the camera faults need
+  cameras     cameras of a LeRobot dataset, with commas; default: all that the corruption applies to
+  tolerance   most seconds between a row of a LeRobot dataset and its video frame (0.0001); episode,
+              unit and no_reading do not apply to such a dataset
 
   --list      list the corruptions: what they corrupt, what severity means, their draws and source
   --help      this help
@@ -37,19 +42,25 @@ from dataclasses import MISSING, fields
 
 from mitigate.core.names import escaped
 from mitigate.core.options import asks_help, paths_and_options
-from mitigate.corruptions import folders, registry
+from mitigate.corruptions import folders, lerobot, registry
 from mitigate.corruptions.folders import UNITS, Settings
 from mitigate.corruptions.frame_files import count_suffixes
-from mitigate.corruptions.suite import check_name
+from mitigate.corruptions.lerobot.dataset import TOLERANCE
 
+DATASET_OPTIONS = ("cameras", "tolerance")  # of LeRobot datasets only
 MAX_LISTED = 5  # number of skipped files that are printed; the summary lists all
 
 
-def parse(arguments: Sequence[str]) -> tuple[str, str, Settings]:
-    """Return IN, OUT and the settings; raise ValueError for invalid arguments."""
+def parse(arguments: Sequence[str]) -> tuple[str, str, Settings, dict[str, str]]:
+    """Return IN, OUT, the settings, and the options ``DATASET_OPTIONS``.
+
+    Raises:
+        ValueError: An argument is invalid.
+    """
     known = [option.name for option in fields(Settings)]
-    (source, out), options = paths_and_options(arguments, ("IN", "OUT"), known)
-    return source, out, _settings(options)
+    (source, out), options = paths_and_options(arguments, ("IN", "OUT"), [*known, *DATASET_OPTIONS])
+    of_dataset = {name: options.pop(name) for name in DATASET_OPTIONS if name in options}
+    return source, out, _settings(options), of_dataset
 
 
 def _settings(options: dict[str, str]) -> Settings:
@@ -59,7 +70,6 @@ def _settings(options: dict[str, str]) -> Settings:
                 f"The option {option.name}= is missing. Write for example corruption=spatter "
                 "severity=0.5. List the corruptions with --list."
             )
-    check_name(options["corruption"])
     return Settings(**{name: _value(name, text) for name, text in options.items()})  # type: ignore[arg-type]
 
 
@@ -86,7 +96,14 @@ def main(argv: Sequence[str] | None = None) -> int:
         print(registry.table())
         return 0
     try:
-        source, out, settings = parse(arguments)
+        source, out, settings, of_dataset = parse(arguments)
+        if lerobot.is_dataset(source):
+            return _corrupt_dataset(source, out, settings, of_dataset)
+        if of_dataset:
+            raise ValueError(
+                f"{', '.join(of_dataset)} applies only to a LeRobot dataset, which has "
+                f"meta/info.json, and {source} has none. Remove it."
+            )
         summary = folders.run(source, out, settings)
     except (OSError, ValueError) as error:
         print(f"corrupt: {error}", file=sys.stderr)
@@ -95,6 +112,16 @@ def main(argv: Sequence[str] | None = None) -> int:
         print("\ninterrupted: run the same command to resume", file=sys.stderr)
         return 130
     return _report(summary, out)
+
+
+def _corrupt_dataset(source: str, out: str, settings: Settings, options: dict[str, str]) -> int:
+    from mitigate.corruptions.lerobot import copying
+
+    cameras = [name for name in options.get("cameras", "").split(",") if name]
+    tolerance = float(_value("tolerance", options.get("tolerance", str(TOLERANCE))))
+    summary = copying.run(source, out, settings, cameras or None, tolerance)
+    print(copying.report(summary, out))
+    return 0
 
 
 def _report(summary: dict, out: str) -> int:

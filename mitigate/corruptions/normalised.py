@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import numpy as np
 from numba import njit
 
@@ -12,7 +14,11 @@ from mitigate.corruptions.suite import SENSOR, Corruption, check_corruption, cor
 
 
 def corrupt_normalised(
-    obs: dict, corruption: Corruption, key: Key | int | str, sensor: DepthSensor = SENSOR
+    obs: dict,
+    corruption: Corruption,
+    key: Key | int | str,
+    sensor: DepthSensor = SENSOR,
+    hfov: Mapping[str, float | None] | None = None,
 ) -> dict:
     """Call ``corrupt_observation`` on an observation whose ``depth`` is normalised.
 
@@ -25,8 +31,9 @@ def corrupt_normalised(
     Args:
         obs: The observation.
         corruption: The corruption.
-        key: Key of the random numbers.
-        sensor: Depth range, and value that marks missing depth.
+        key: Key of the random draws.
+        sensor: Depth range and value for no reading.
+        hfov: Horizontal field of view in degrees by entry, which camera faults need.
 
     Returns:
         A new dict; entries that are not corrupted are the same objects.
@@ -37,7 +44,7 @@ def corrupt_normalised(
     """
     check_sensor(sensor)
     if observation.DEPTH not in {*obs}.intersection(check_corruption(corruption).modalities):
-        return corrupt_observation(obs, corruption, key, sensor)
+        return corrupt_observation(obs, corruption, key, sensor, hfov)
     clean = np.ascontiguousarray(_checked(np.asarray(obs[observation.DEPTH])))
     metres = np.empty_like(clean)
     range_ = _range(sensor)
@@ -47,7 +54,8 @@ def corrupt_normalised(
             f"Normalised depth must be in 0-1, got {maximum:g}. For depth in metres, set "
             "normalised=False, or call corrupt_observation."
         )
-    corrupted = corrupt_observation({**obs, observation.DEPTH: metres}, corruption, key, sensor)
+    in_metres = {**obs, observation.DEPTH: metres}
+    corrupted = corrupt_observation(in_metres, corruption, key, sensor, hfov)
     depth = np.ascontiguousarray(corrupted[observation.DEPTH])
     out = np.empty_like(clean)
     _normalise(depth.reshape(-1), metres.reshape(-1), clean.reshape(-1), *range_, out.reshape(-1))

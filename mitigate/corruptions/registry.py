@@ -1,6 +1,6 @@
-"""Register all corruptions: the standard suite, unseen corruptions, and plugins of packages.
+"""All corruptions: the standard suite, unseen corruptions, faults, and plugins (packages).
 
-Every result row contains the version of the suite. Unseen corruptions and plugins have
+Every result row contains the version of the suite. Unseen corruptions, faults and plugins have
 separate versions, and are used only where they are named. Two corruptions at once are
 a pair, such as ``low_light+missing_data``: the first one is applied first, and each uses the same
 random numbers as when it is applied alone.
@@ -13,8 +13,8 @@ from functools import lru_cache, partial
 from importlib.metadata import entry_points
 
 from mitigate.core.names import unknown
-from mitigate.corruptions import broad, depth, rgb, unseen
-from mitigate.corruptions.record import MODALITIES, TEST, VALIDATION, Record
+from mitigate.corruptions import broad, depth, faults, rgb, unseen
+from mitigate.corruptions.record import ACTION, FRAMES, MODALITIES, TEST, VALIDATION, Record
 
 _record = partial(
     Record, modality="instruction", apply=None, episode="all draws", source="NavTrust"
@@ -42,6 +42,7 @@ UNSEEN = {
 }
 # names of the random compositions for training
 BROAD = {record.name: record for record in broad.RECORDS}
+FAULTS = {record.name: record for record in faults.RECORDS}
 AND = "+"  # separator between the names of a pair
 HEAD = ("name", "corrupts", "severity s", "per episode", "per frame", "source", "suite")
 
@@ -57,7 +58,7 @@ def plugin_records() -> dict[str, Record]:
     for point in entry_points(group=GROUP):
         try:
             record = point.load()
-            problem = _problem(record, {"clean", *SUITE, *UNSEEN, *BROAD, *records})
+            problem = _problem(record, {"clean", *SUITE, *UNSEEN, *BROAD, *FAULTS, *records})
         except Exception as error:  # code of an installed package may raise any error
             problem = f"cannot be imported ({type(error).__name__}: {error})"
         if problem:
@@ -79,6 +80,8 @@ def _problem(record: object, names: set[str]) -> str:
         return f"has the name {record.name!r} of another corruption"
     if record.modality == "instruction":
         return "corrupts instructions, which packages cannot add"
+    if record.family or record.draw or record.modality not in MODALITIES:
+        return "is a fault, which packages cannot add"
     return ""
 
 
@@ -109,6 +112,16 @@ def known(*modalities: str) -> tuple[str, ...]:
     return fixed + tuple(n for n, r in others if r.modality in modalities)
 
 
+def fault_names(*families: str) -> tuple[str, ...]:
+    """Return the names of the faults of ``families``, in order."""
+    return tuple(name for name, record in FAULTS.items() if record.family in families)
+
+
+def family(name: str) -> str:
+    """Return the family of a fault, or of any part of a pair; empty for other corruptions."""
+    return next((FAULTS[part].family for part in parts(name) if part in FAULTS), "")
+
+
 def broad_name(modality: str) -> str:
     """Return the name of the broad augmentation of a modality."""
     return next(name for name, record in BROAD.items() if record.modality == modality)
@@ -116,7 +129,10 @@ def broad_name(modality: str) -> str:
 
 def record(name: str) -> Record:
     """Return the record of a corruption; KeyError if it is unknown."""
-    return SUITE.get(name) or UNSEEN.get(name) or BROAD.get(name) or plugin_records()[name]
+    for records in (SUITE, UNSEEN, FAULTS, BROAD):
+        if name in records:
+            return records[name]
+    return plugin_records()[name]
 
 
 def parts(name: str) -> tuple[str, ...]:
@@ -128,7 +144,7 @@ def title(name: str) -> str:
     """Return the title of a corruption in tables; the corruption need not be installed."""
     if AND in name:
         return f" {AND} ".join(map(title, parts(name)))
-    if name in {**SUITE, **UNSEEN, **BROAD} or name in plugin_records():
+    if name in {**SUITE, **UNSEEN, **FAULTS, **BROAD} or name in plugin_records():
         return record(name).title
     return name.replace("_", " ").capitalize()
 
@@ -141,15 +157,16 @@ def version(name: str) -> dict[str, str]:
 
 
 def modality(name: str) -> str:
-    """Return the modality that a corruption changes."""
+    """Return the modality that a corruption changes; "rgb+depth" for a fault of both."""
     return record(name).modality
 
 
 def table() -> str:
     """Return a text table of all frame corruptions, in aligned columns with a heading."""
-    records = [record(name) for name in known("rgb", "depth")]
+    records = [*(record(name) for name in known("rgb", "depth")), *FAULTS.values()]
+    records = [record for record in records if record.modality != ACTION]
     rows = [
-        (r.name, r.modality, r.severity, r.episode, r.frame, r.source, _suite(r)) for r in records
+        (r.name, _sensor(r), r.severity, r.episode, r.frame, r.source, _suite(r)) for r in records
     ]
     rows = [HEAD, *rows]
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
@@ -157,7 +174,11 @@ def table() -> str:
     return "\n".join(lines)
 
 
+def _sensor(record: Record) -> str:
+    return "both" if record.modality == FRAMES else record.modality
+
+
 def _suite(record: Record) -> str:
     """Return the smallest suite in ``conf/suite`` that contains a corruption, or "-"."""
     short = {VALIDATION: "unseen_val", TEST: "unseen_test"}
-    return "full" if record.name in SUITE else short.get(record.half, "-")
+    return "full" if record.name in SUITE else record.family or short.get(record.half, "-")

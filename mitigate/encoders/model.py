@@ -209,7 +209,7 @@ class Encoder(nn.Module):
         if model is None:
             raise ValueError(
                 "agent.model is not set. Name your encoder: agent.model=package.module:callable, "
-                "or a TorchScript (.ts, .pt) or exported (.pt2) file (docs/encoder.md)."
+                "or an exported file (.pt2, docs/encoder.md)."
             )
         self.given = {"model": model, "kwargs": kwargs, "weights": weights, "prefix": prefix}
         self.sensor, self.output, self.pool, self.tune = sensor, output, pool, tune
@@ -233,15 +233,9 @@ class Encoder(nn.Module):
             self.add_adapters(**(adapters or {}))
         elif not any(p.is_floating_point() for p in self.model.parameters()):
             raise ValueError(
-                f"agent.tune=all, but {model} has no trainable parameters (as a frozen "
-                "TorchScript). Set agent.tune=adapters."
+                f"agent.tune=all, but {model} has no trainable parameters. Set agent.tune=adapters."
             )
         self.choose_trained()
-
-    @property
-    def wrapped(self) -> bool:
-        """Whether the model is a TorchScript program, which accepts no adapters inside."""
-        return isinstance(self.model, loading.Wrapped)
 
     def settings(self) -> dict[str, Any]:
         """Return an empty dict, because the config contains all settings."""
@@ -320,8 +314,6 @@ class Encoder(nn.Module):
         """Return regular expressions for the modules that get adapters."""
         if targets != AUTO:
             return [targets] if isinstance(targets, str) else list(targets)
-        if self.wrapped:
-            return ["before", "behind"]
         chosen = choose(find_sites(self.model, self._probe), self.model, count)
         return [re.escape(name) for name in chosen]
 

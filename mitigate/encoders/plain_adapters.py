@@ -40,16 +40,14 @@ def attach(model, folder, check=True):
             Disable the check if ``model`` was already converted to half precision.
 
     Returns:
-        The model to use: ``model`` itself, or a wrapper module for TorchScript, which supports no
-        hooks.
+        ``model`` itself.
 
     Raises:
         ValueError: The folder is damaged, it does not match the model, or the model already has
             adapters.
         OSError: A file is missing.
     """
-    # a TorchScript module may lack this attribute
-    hooks = [hook for m in model.modules() for hook in getattr(m, "_forward_hooks", {}).values()]
+    hooks = [hook for m in model.modules() for hook in m._forward_hooks.values()]
     if any(isinstance(hook, _Adapter) for hook in hooks):
         raise ValueError(
             f"This model has adapters already, and those in {folder} would be added to them. Build "
@@ -62,9 +60,6 @@ def attach(model, folder, check=True):
     if surplus:
         raise ValueError(f"{WEIGHTS} in {folder} has tensors of no adapter: {surplus[0]!a:.60}.")
     modules = dict(model.named_modules())
-    if set(shapes) <= {"before", "behind"} and "before" not in modules:
-        model = _Wrapped(model)
-        modules = dict(model.named_modules())
     missing = sorted(set(shapes) - set(modules))
     if missing:
         raise ValueError(
@@ -85,17 +80,6 @@ def attach(model, folder, check=True):
     for name, adapter in adapters.items():
         modules[name].register_forward_hook(adapter)
     return model
-
-
-class _Wrapped(torch.nn.Module):
-    """Wraps a model between two modules that support hooks."""
-
-    def __init__(self, model):
-        super().__init__()
-        self.before, self.model, self.behind = torch.nn.Identity(), model, torch.nn.Identity()
-
-    def forward(self, frames):
-        return self.behind(self.model(self.before(frames)))
 
 
 class _Adapter:

@@ -12,7 +12,7 @@ from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Protocol, runtime_checkable
+from typing import Any, Protocol, TypeVar, runtime_checkable
 
 import cv2
 import numpy as np
@@ -25,6 +25,7 @@ from mitigate.core.progress import Progress, say
 from mitigate.core.seeding import generator
 from mitigate.corruptions import Corruption, DepthSensor, Key, corrupt_observation, frame_files
 from mitigate.corruptions.frame_files import count_suffixes, make_plan
+from mitigate.corruptions.lerobot import is_dataset
 from mitigate.worlds.episodes import read_episodes
 from mitigate.worlds.world import Placeable
 
@@ -167,7 +168,7 @@ class FolderFrames:
     ) -> None:
         if path is None:
             raise FileNotFoundError("env.path is not set. Name the folder of the frames.")
-        _check(size, held_out, block, unit)
+        check_options(size, held_out, block, unit)
         self.path, self.sensor, self.size, self.unit = Path(path), sensor, size, unit
         self.held_out, self.block = held_out, block
         self._first: tuple[Path, tuple[int, ...]] | None = None  # the first file and its shape
@@ -175,14 +176,16 @@ class FolderFrames:
             raise FileNotFoundError(
                 f"There is no folder {path}. Name the folder of the frames: env.path=FOLDER."
             )
+        if is_dataset(path):
+            raise ValueError(
+                f"{path} is a LeRobot dataset: env=lerobot env.path={path} reads its frames."
+            )
         self._files = self._find_files()
 
     def scenes(self, split: str) -> Sequence[str]:
         files = self._files
         unseen = [name for name in files if name.lower().startswith(("val", "test"))]
-        if not unseen:
-            count = max(1, round(self.held_out * len(files)))
-            unseen = list(files)[-count:] if len(files) > 1 else []
+        unseen = unseen or last_scenes(list(files), self.held_out)
         train = [name for name in files if name not in unseen]
         if not unseen or not train:
             raise ValueError(
@@ -202,7 +205,7 @@ class FolderFrames:
 
     def _find_files(self) -> dict[str, list[Path]]:
         """Return the files of each scene, in the order of their names."""
-        plan = make_plan(self.path, None, self.sensor, "folder")
+        plan = make_plan(self.path, None, (self.sensor,), "folder")
         recorded = (self.path / RECORDING).is_file()  # <scene>/<episode>/<camera>/000000.png
         scenes: dict[str, list[Path]] = {}
         for frame in plan.frames:
@@ -219,12 +222,7 @@ class FolderFrames:
             )
         if plan.left_out:
             say(f"{self.path}: {self.left_out}")
-        if len(scenes) > 1:
-            return scenes
-        ((name, files),) = scenes.items()
-        size = max(1, min(self.block, int(len(files) * self.held_out / FEWEST_UNSEEN)))
-        starts = range(0, len(files), size)
-        return {f"{name}#{at // size:04d}": files[at : at + size] for at in starts}
+        return split_single(scenes, self.block, self.held_out)
 
     def _read(self, path: Path) -> np.ndarray:
         try:
@@ -233,13 +231,7 @@ class FolderFrames:
                 frame = _metres(frame)
         except (OSError, ValueError) as error:
             raise ValueError(f"{path} {error}. Fix it, or remove it from the folder.") from error
-        if self.size is not None and frame.shape[:2] != (self.size, self.size):
-            shrinks = self.size < max(frame.shape[:2])
-            kind = cv2.INTER_AREA if shrinks else cv2.INTER_LINEAR
-            # nearest-pixel resizing keeps holes in depth
-            kind = cv2.INTER_NEAREST if frame.shape[-1] == 1 else kind
-            frame = cv2.resize(frame, (self.size, self.size), interpolation=kind)
-        frame = frame.reshape(*frame.shape[:2], -1)
+        frame = resized(frame, self.size)
         self._first = self._first or (path, frame.shape)
         first, shape = self._first
         if frame.shape != shape:
@@ -250,7 +242,44 @@ class FolderFrames:
         return frame
 
 
-def _check(size: int | None, held_out: float, block: int, unit: float) -> None:
+Item = TypeVar("Item")
+
+
+def last_scenes(names: Sequence[str], held_out: float) -> list[str]:
+    """Return the last scenes, a share ``held_out`` of all, at least one; empty for one scene."""
+    count = max(1, round(held_out * len(names)))
+    return list(names)[-count:] if len(names) > 1 else []
+
+
+def split_single(
+    scenes: Mapping[str, list[Item]], block: int, held_out: float
+) -> dict[str, list[Item]]:
+    """Split a single scene into blocks of consecutive frames; several scenes stay unchanged.
+
+    Args:
+        scenes: frames of each scene.
+        block: frames per block, or fewer, so that ``FEWEST_UNSEEN`` blocks are unseen.
+        held_out: share of the blocks that are unseen.
+    """
+    if len(scenes) > 1:
+        return dict(scenes)
+    ((name, frames),) = scenes.items()
+    size = max(1, min(block, int(len(frames) * held_out / FEWEST_UNSEEN)))
+    starts = range(0, len(frames), size)
+    return {f"{name}#{at // size:04d}": frames[at : at + size] for at in starts}
+
+
+def resized(frame: np.ndarray, size: int | None) -> np.ndarray:
+    """Return a frame with ``size`` pixels on each side, [size, size, C]; None: unchanged."""
+    if size is not None and frame.shape[:2] != (size, size):
+        shrinks = size < max(frame.shape[:2])
+        kind = cv2.INTER_AREA if shrinks else cv2.INTER_LINEAR
+        kind = cv2.INTER_NEAREST if frame.shape[-1] == 1 else kind  # keeps holes in depth
+        frame = cv2.resize(frame, (size, size), interpolation=kind)
+    return frame.reshape(*frame.shape[:2], -1)
+
+
+def check_options(size: int | None, held_out: float, block: int, unit: float = 1.0) -> None:
     """Raise ValueError for the first invalid option."""
     for name, value, valid, words in (
         ("size", size, size is None or _is_count(size, LARGEST), f"1 to {LARGEST} pixels or null"),

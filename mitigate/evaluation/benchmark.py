@@ -26,18 +26,24 @@ from mitigate.core.observation import DEPTH, RGB, sensor_lines
 from mitigate.core.options import without_config_folder
 from mitigate.core.progress import duration, say
 from mitigate.core.workers import ALONE, packed
-from mitigate.corruptions import CLEAN, Corruption
+from mitigate.corruptions import CLEAN, Corruption, registry
 from mitigate.evaluation import evaluate as evaluation
 from mitigate.evaluation import provenance
 from mitigate.evaluation.comparison import RANDOM, Comparison, RandomPolicy, compare
 from mitigate.evaluation.config import EvaluateConfig, read
 from mitigate.evaluation.episode import run_episode
-from mitigate.evaluation.episode_lists import check_count, check_episodes, spread
+from mitigate.evaluation.episode_lists import (
+    check_count,
+    check_episodes,
+    spread,
+    training_episodes,
+)
 from mitigate.evaluation.evaluator import LOCAL, WORTH, evaluate
 from mitigate.evaluation.leaderboard.entry import LeaderboardEntry, check_texts
 from mitigate.evaluation.leaderboard.figures import entry_of
 from mitigate.evaluation.provenance import Known
 from mitigate.evaluation.rows import ROWS, Row
+from mitigate.guards.guard import Guard
 from mitigate.guards.opening import labels, open_guards
 from mitigate.worlds.episodes import Episode, read_episodes
 from mitigate.worlds.seeded import RETURN
@@ -63,6 +69,7 @@ def benchmark(
     seed: int = 0,
     safeguard: str | None = None,
     restore: str | None = None,
+    adapt: str | Guard | None = None,
     workers: int | None = 1,
     options: Sequence[str] = (),
     world: Callable[[], World] | None = None,
@@ -91,6 +98,8 @@ def benchmark(
         seed: corruption seed.
         safeguard: guard for instructions, such as "rules" or "module:callable".
         restore: guard for frames, such as "checkpoints/restorer".
+        adapt: test-time adaptation: "norm", "tent", "recentre", with ":never" to keep what was
+            learned from episode to episode; or a guard (``mitigate/guards/adaptation``).
         workers: number of processes; None means one per core if there is enough work. With more
             than one worker, the call must be under ``if __name__ == "__main__":``, because
             processes import the script.
@@ -120,12 +129,14 @@ def benchmark(
     if is_policy(agent):
         agent = as_policy(agent, first)
         name, version = name or agent.name, version or agent.version
-    agent, name = _agent(agent, name, config, seed, labels(safeguard, restore))
+    agent, name = _agent(agent, name, config, seed, labels(safeguard, restore, adapt))
     check_texts(name=name, **texts)
     check_fits(agent, first.sensors, type(first).__name__)
     split, chosen = _episodes(first, config, split, episodes, listed, world is not None)
     file = Path(out or OUT / f"{_plain(name)}-{split}-s{severity:g}") / ROWS
-    guards = open_guards(safeguard, restore, first.sensors)
+    guards = open_guards(safeguard, restore, first.sensors, adapt=adapt)
+    training = None if world is not None and _is_own(first, config) else config.env.training
+    guards.calibrate(agent, first, training_episodes(first, training))
     known = Known(agent, first, guards.fingerprint(), version).check(file, name)
     label: dict[str, Any] = {"name": name, "split": split, "seed": seed, "known": known}
     with known:
@@ -229,7 +240,11 @@ def _plain(name: str) -> str:
 def _visible(met: Sequence[Corruption], world: World, suite: str) -> list[Corruption]:
     """Return the conditions of a suite, except corruptions of frames that the world lacks."""
     unseen = {RGB, DEPTH} - {*world.sensors}
-    left_out = [one.name for one in met if unseen & {*one.modalities}]
+    left_out = [
+        one.name
+        for one in met
+        if any({*registry.record(part.name).modalities} <= unseen for part in one.parts)
+    ]
     conditions = [one for one in met if one.name not in left_out]
     if all(one.severity == 0 for one in conditions):
         raise ValueError(

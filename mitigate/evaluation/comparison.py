@@ -10,7 +10,7 @@ from __future__ import annotations
 import hashlib
 from collections import defaultdict
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -198,7 +198,9 @@ class _Scores:
             lines.append(self._line(f"**{label}, mean of {len(names)} corruptions**", averaged, 0))
         for name, values in by_condition.items():
             lines.append(self._line(f"{label}: {title(name)}", values, scale * (scale > 1)))
-        return lines
+        largest = max(np.abs(values).max() for v in by_condition.values() for values in v.values())
+        digits = 1 if largest >= 10 else 2  # returns of 0 to 1 need more than one decimal place
+        return [replace(line, digits=digits) for line in lines]
 
     def _line(self, heading: str, values: Mapping[str, np.ndarray], most: float) -> Line:
         """Return one line; ``most`` is the value of a success (for Wilson's interval), or 0."""

@@ -52,10 +52,10 @@ def conditions(names: list[str], severity: float, severity_depth: float | None) 
         ValueError: There are no names, a name is unknown, or a pair has two severities.
     """
     from mitigate.corruptions import CLEAN, Corruption
-    from mitigate.corruptions.registry import known, parts
-    from mitigate.corruptions.suite import check_severity
+    from mitigate.corruptions.registry import AND, FAULTS, known, parts
+    from mitigate.corruptions.suite import check_gate, check_severity
 
-    allowed = ("clean", *known("rgb", "depth", "instruction"))
+    allowed = ("clean", *known("rgb", "depth", "instruction"), *FAULTS)
     if not names:
         raise ValueError(
             "conditions must not be empty. Name some, such as [clean,spatter], or give null for "
@@ -67,12 +67,13 @@ def conditions(names: list[str], severity: float, severity_depth: float | None) 
     severity = check_severity(severity)  # checked even if all conditions are clean
     depth = severity if severity_depth is None else check_severity(severity_depth)
     corruptions = [
-        CLEAN if name == "clean" else Corruption(name, severity) for name in dict.fromkeys(names)
+        CLEAN if name == "clean" else check_gate(Corruption(name, severity))
+        for name in dict.fromkeys(names)
     ]
     for place, corruption in enumerate(corruptions):
         if corruption.modality == "depth":
             corruptions[place] = Corruption(corruption.name, depth)
-        elif "depth" in corruption.modalities and depth != severity:
+        elif AND in corruption.name and "depth" in corruption.modalities and depth != severity:
             raise ValueError(
                 f"The pair {corruption.name} has one severity, but severity is {severity:g} and "
                 f"severity_depth {depth:g}. Leave out severity_depth or the pair."
@@ -81,9 +82,20 @@ def conditions(names: list[str], severity: float, severity_depth: float | None) 
 
 
 def check_sensors(met: Iterable[Corruption], sensors: Iterable[str], world: str) -> None:
-    """Raise ValueError for corruptions of sensors that the world named ``world`` lacks."""
+    """Raise ValueError for corruptions of sensors that the world named ``world`` lacks.
+
+    A fault of both sensors needs only one of them.
+    """
+    from mitigate.corruptions.record import ACTION
+    from mitigate.corruptions.registry import record
+
     available = [*sensors]
-    missing = [c.name for c in met if not {*c.modalities} <= {*available, "instruction"}]
+    usable_parts = {*available, "instruction", ACTION}
+    missing = [
+        corruption.name
+        for corruption in met
+        if not all(usable_parts.intersection(record(p.name).modalities) for p in corruption.parts)
+    ]
     if missing:
         usable = [name for name in (RGB, DEPTH) if name in available]
         solution = (

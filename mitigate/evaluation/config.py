@@ -111,6 +111,7 @@ class EvaluateConfig:
     # plain text, which check_choice checks, because Hydra would print an invalid value
     safeguard: Any = "none"
     restore: str | None = None
+    adapt: str | None = None
     name: str | None = None
     version: str | None = None
     split: str = "val_unseen"

@@ -24,6 +24,7 @@ from mitigate.corruptions.registry import parts
 from mitigate.evaluation.rows import MEASURES
 from mitigate.guards.guard import NO_GUARDS, EpisodeStart, Guards, guarded
 from mitigate.worlds.episodes import Episode
+from mitigate.worlds.motion import with_motion
 from mitigate.worlds.world import Corrupted, World
 
 MOST_STEPS = 100_000  # maximum steps of an episode (heuristic: 200 times VLN-CE's limit of 500)
@@ -149,7 +150,7 @@ class _Rollout:
     ) -> None:
         self.name = _name(episode, corruption)
         self.steps = 0
-        self.corrupted = Corrupted(world, corruption, seed)
+        self.corrupted = Corrupted(with_motion(world, corruption, seed), corruption, seed)
         space = self.corrupted.action_space
         self.space = space if isinstance(space, ActionSpace) else None
         self.guarded = guarded(self.corrupted, guards)

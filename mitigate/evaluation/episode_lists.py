@@ -9,18 +9,20 @@ from __future__ import annotations
 import re
 import warnings
 from collections import Counter, defaultdict
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from numbers import Integral
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from mitigate.core.files import atomic_text, find, sha256
 from mitigate.core.names import counted, unknown
+from mitigate.core.seeding import generator
 from mitigate.evaluation.rows import ROWS, Row, read
 
 if TYPE_CHECKING:
     from mitigate.evaluation.config import EnvConfig
     from mitigate.worlds.episodes import Episode
+    from mitigate.worlds.world import World
 
 
 GOLDEN = (5**0.5 - 1) / 2
@@ -44,6 +46,33 @@ def episodes(env: EnvConfig, split: str, count: int | None) -> list[Episode]:
     listed = list(read_episodes(find(env.episodes[split])))
     check_episodes(env.episodes[split], listed)
     return spread(listed, count)
+
+
+def training_episodes(world: World, training: Any) -> Callable[[int], Episode]:
+    """Return a function from a number to a training episode, for guards that measure an agent.
+
+    Args:
+        world: the world.
+        training: the config of its training episodes; None: unknown.
+    """
+
+    def draw(number: int) -> Episode:
+        from mitigate.core import build
+        from mitigate.worlds.seeded import FIRST_TRAINING_SEED, SeededWorld, seeded_episodes
+
+        if isinstance(world, SeededWorld):
+            return seeded_episodes([FIRST_TRAINING_SEED + number])[0]
+        if training is None:
+            raise ValueError(
+                f"The training episodes of {type(world).__name__} are unknown, on which "
+                "adapt=recentre measures clean features. Measure them on episodes of yours: "
+                "guard = Recentre(); guard.calibrate(agent, world, lambda number: episodes[number])"
+                " (mitigate.guards.adaptation.recentre), and give adapt=guard."
+            )
+        source = build.maker(training)()
+        return source.draw(generator(0, "calibration", number), (0, 1))
+
+    return draw
 
 
 def spread(listed: Sequence[Episode], count: int | None) -> list[Episode]:

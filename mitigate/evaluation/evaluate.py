@@ -23,7 +23,7 @@ from mitigate.core.names import counted, name_of
 from mitigate.evaluation import config as options
 from mitigate.evaluation.conditions import check_sensors, conditions
 from mitigate.evaluation.config import EvaluateConfig, changed, default_folder
-from mitigate.evaluation.episode_lists import episodes, warn_of_tasks
+from mitigate.evaluation.episode_lists import episodes, training_episodes, warn_of_tasks
 from mitigate.evaluation.rows import ROWS
 
 DECISIONS = "safeguard.jsonl"  # name of the log with a safeguard's decision on each instruction
@@ -69,7 +69,10 @@ def evaluate_agent(config: EvaluateConfig, overrides: Sequence[str] = ()) -> Pat
     check_sensors(met, first.sensors, env.name)
     choices.check(config.safeguard)
     out = Path(config.out or default_folder(config, name))
-    guards = open_guards(config.safeguard, config.restore, first.sensors, log=out / DECISIONS)
+    guards = open_guards(
+        config.safeguard, config.restore, first.sensors, out / DECISIONS, config.adapt
+    )
+    guards.calibrate(agent, first, training_episodes(first, env.training))
     with FolderLock(out) as lock:
         provenance.keep(out, first, made_by, config.split, chosen, env.episodes[config.split])
         lock.expect(out / ROWS, *provenance.notes(out, config.split))
@@ -104,7 +107,7 @@ def _column(config: EvaluateConfig, overrides: Sequence[str]) -> str:
 
     default_name = name_of(config.checkpoint or config.agent["_target_"].rpartition(".")[2])
     parts = [config.name or default_name, *changed(overrides)]
-    return "+".join([*parts, *labels(config.safeguard, config.restore)])
+    return "+".join([*parts, *labels(config.safeguard, config.restore, config.adapt)])
 
 
 def check_walks(agent: Any) -> None:

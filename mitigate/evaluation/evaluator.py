@@ -14,8 +14,8 @@ import time
 import warnings
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from contextlib import contextmanager
-from dataclasses import dataclass
+from contextlib import contextmanager, nullcontext
+from dataclasses import dataclass, field
 from itertools import groupby
 from pathlib import Path
 from typing import Any, ClassVar
@@ -57,7 +57,8 @@ class EpisodeTask:
     measures.
 
     Each process calls ``make_world``. A label holds "seed". ``classes`` is the hash in ``Known``,
-    which worker processes compare with the hash of their classes.
+    which worker processes compare with their own. ``streams`` holds all jobs of a condition in
+    order if a guard is continual: episodes before an unfinished one run again, without a result.
     """
 
     agent: Any
@@ -65,6 +66,7 @@ class EpisodeTask:
     guards: Guards = NO_GUARDS
     world: World | None = None
     classes: str = ""
+    streams: dict[tuple[str, float], list[Job]] = field(default_factory=dict)
     preload: ClassVar[str] = "mitigate.evaluation.evaluator"
 
     def __getstate__(self) -> dict[str, Any]:
@@ -93,11 +95,18 @@ class EpisodeTask:
         """Yield the rows of ``jobs``, which should belong to one episode, because frames are
         cached."""
         assert self.world is not None, "work() is called while ready()"
-        with as_agent(self.agent).remembering(), as_world(self.world).remembering():
+        # features that were computed before an adaptation must not be used after it
+        agent_memory = nullcontext() if self.guards.adapts else as_agent(self.agent).remembering()
+        wanted = {rows.identity(label) for _, _, label in jobs}
+        if self.guards.continual:
+            jobs = self.streams[_condition(jobs[0])]
+            self.guards.restart()
+        with agent_memory, as_world(self.world).remembering():
             runs = [(episode, condition, label["seed"]) for episode, condition, label in jobs]
             measured = self._measures(self.world, runs)
             for (_, _, label), measures in zip(jobs, measured, strict=True):
-                yield {**label, **measures}
+                if rows.identity(label) in wanted:
+                    yield {**label, **measures}
 
     def _measures(
         self, world: Any, runs: Sequence[tuple[Episode, Corruption, int]]
@@ -129,7 +138,7 @@ def _together(agent: Any, world: Any) -> int:
 
 
 def _parameters(agent: Any) -> Iterator[torch.nn.Parameter]:
-    return (parameter for net in networks(agent) for parameter in net.parameters())
+    return (parameter for net in networks(agent).values() for parameter in net.parameters())
 
 
 def evaluate(
@@ -181,6 +190,7 @@ def evaluate(
         check_finite(agent, f"The weights of {name}")
     first = world()
     check_fits(agent, first.sensors, type(first).__name__)
+    guards.check_agent(agent)
     if known is None:
         known = Known(agent, first, guards.fingerprint(), version).check(out, name)
     label = {
@@ -226,9 +236,13 @@ def run_missing(
         print(f"{title}: {counted(len(jobs), 'walk')}, all already done, in {out}", flush=True)
         return _in_order(out, identities)
     at_once = _together(task.agent, world)
-    groups = _groups(todo, 4 * at_once if at_once > 1 else 1)
+    if task.guards.continual:
+        task.streams = _by_condition(jobs)
+        groups = [*_by_condition(todo).values()]
+    else:
+        groups = _groups(todo, 4 * at_once if at_once > 1 else 1)
     started = min(count(launcher, workers, len(todo), WORTH), len(groups))
-    with Progress(title, len(jobs), unit="walk", start=len(jobs) - len(todo)) as progress:
+    with Progress(title, len(jobs), unit="episode", start=len(jobs) - len(todo)) as progress:
         if started > 1:
             progress.say(f"{title}: {started} {launcher.name} workers")
         try:
@@ -286,6 +300,18 @@ def _warn_of_languages(jobs: list[Job]) -> None:
     }
     if languages:
         warnings.warn(passed_through(Counter(map(str, languages.values()))), stacklevel=3)
+
+
+def _condition(job: Job) -> tuple[str, float]:
+    return job[1].name, job[1].severity
+
+
+def _by_condition(jobs: list[Job]) -> dict[tuple[str, float], list[Job]]:
+    """Return the jobs of each condition, in order."""
+    streams: dict[tuple[str, float], list[Job]] = {}
+    for job in jobs:
+        streams.setdefault(_condition(job), []).append(job)
+    return streams
 
 
 def _groups(jobs: list[Job], least: int) -> list[list[Job]]:

@@ -14,7 +14,18 @@ from itertools import chain
 
 import numpy as np
 
-from mitigate.corruptions.registry import AND, HALVES, UNSEEN, names, unseen_names
+from mitigate.corruptions.faults.temporal import GATE
+from mitigate.corruptions.record import FAMILIES
+from mitigate.corruptions.registry import (
+    AND,
+    HALVES,
+    UNSEEN,
+    family,
+    fault_names,
+    names,
+    parts,
+    unseen_names,
+)
 from mitigate.evaluation import metrics
 from mitigate.evaluation.episode_lists import by_list
 from mitigate.evaluation.rows import Row, cuts, scene_of, upsert
@@ -25,19 +36,26 @@ BLOCKS = {  # blocks of this project's corruptions; those of other packages have
     "Instruction": names("instruction"),
     "unseen RGB": unseen_names("rgb"),
     "unseen depth": unseen_names("depth"),
+    **{f"{family} faults": fault_names(family) for family in FAMILIES},
 }
 FRAMES = frozenset((*BLOCKS["RGB"], *BLOCKS["Depth"]))  # the paper's corruptions of frames
 # each of these kinds has its own table
 SUITE, UNSEEN_KIND, PAIRS = "", "unseen corruptions", "pairs of corruptions"
+KINDS = (SUITE, UNSEEN_KIND, *(f"{family} faults" for family in FAMILIES), PAIRS)
 PROMPT_ONLY = "white_box"  # agents without a system prompt have no rows of this corruption
 
 
 def kind(corruption: str) -> str:
-    """Return the table to which a corruption belongs: ``SUITE``, ``UNSEEN_KIND`` or ``PAIRS``.
+    """Return the table of a corruption, one of :data:`KINDS`.
 
-    Corruptions of other packages belong to the table of the suite.
+    Corruptions of other packages belong to the table of the suite. A pair with ``intermittent`` is a
+    temporal fault.
     """
-    return PAIRS if AND in corruption else UNSEEN_KIND if corruption in UNSEEN else SUITE
+    if AND in corruption and parts(corruption)[0] != GATE:
+        return PAIRS
+    if fault := family(corruption):
+        return f"{fault} faults"
+    return UNSEEN_KIND if corruption in UNSEEN else SUITE
 
 
 def by_kind(rows: Iterable[Row]) -> dict[str, list[Row]]:
@@ -52,7 +70,7 @@ def by_kind(rows: Iterable[Row]) -> dict[str, list[Row]]:
     for row in rows:
         if row["corruption"] != "clean":
             members[_column(row)].add(kinds[row["corruption"]])
-    tables: dict[str, list[Row]] = {SUITE: [], UNSEEN_KIND: [], PAIRS: []}
+    tables: dict[str, list[Row]] = {name: [] for name in KINDS}
     for row in rows:
         default = {kinds[row["corruption"]]}
         for name in (members[_column(row)] or default) if row["corruption"] == "clean" else default:

@@ -8,15 +8,13 @@ world would be treated as finished. The notes that this module writes next to th
 from __future__ import annotations
 
 import hashlib
-import inspect
 import json
 import weakref
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import asdict, fields, is_dataclass
+from dataclasses import asdict, is_dataclass
 from enum import Enum
 from functools import partial
-from itertools import count
 from os.path import samefile
 from pathlib import Path, PurePath
 from types import FunctionType, MethodType
@@ -24,8 +22,15 @@ from typing import Any
 
 import numpy as np
 
-from mitigate.agents.fingerprint import contents, hash_of, says_all, source_of
-from mitigate.agents.state import array_sha
+from mitigate.agents.fingerprint import (
+    array_sha,
+    attributes_of,
+    code_of,
+    contents,
+    hash_of,
+    says_all,
+)
+from mitigate.agents.source import is_users, named_values
 from mitigate.core import output
 from mitigate.core.build import Maker
 from mitigate.core.files import atomic_text
@@ -233,7 +238,7 @@ def _described(world: World) -> dict[str, str]:
 
     The hash covers only the user's code, and not code of this project or of installed packages.
     """
-    sources = [source for layer in _layers(world) for source in source_of(type(layer))]
+    sources = code_of(*map(type, _layers(world))).parts.get("code", [])
     texts = {CLASS: kind_of(world), ENV: _spec(world), CODE: json_hash(sources) if sources else ""}
     return {key: value for key, value in texts.items() if value}
 
@@ -331,10 +336,7 @@ def _member(owner: Any, name: str) -> Any:
 
 MADE = "what makes it"  # keys and texts of stored notes, which must not change
 CHANGES = "changes while worlds are made"
-SHOWN = 100  # number of characters of a value that are stored; the rest is hashed (heuristic)
-# maximum depth of nested values, and maximum entries of a mapping (heuristic)
-DEEPEST, ENTRIES = 5, 50
-MOST = 100_000  # maximum number of lists, mappings and objects in a described value (heuristic)
+SHOWN = 100  # characters of a value that are stored; the rest is hashed (heuristic)
 
 
 def first_world(
@@ -349,10 +351,10 @@ def first_world(
 
     ``version`` is a string with which the user identifies class state that cannot be read.
     """
-    before = dict(_made_by(make))
+    before = {name: _text(value) for name, value in _made_by(make)}
     same = {place for place, (_, last) in _read_by.items() if last == _names_read(*place)[0]}
     world = make()
-    after = dict(_made_by(make))
+    after = {name: _text(value) for name, value in _made_by(make)}
     changed = {key for key in {**before, **after} if before.get(key) != after.get(key)}
     place = tuple(type(layer) for layer in _layers(world)), version
     digest, unreadable = _names_read(*place)
@@ -386,18 +388,11 @@ def _names_read(kinds: Sequence[type], version: str | None) -> tuple[str, str]:
 
     The hash covers their attributes, and the functions and global variables that their code names.
     """
-    classes = tuple(kind for kind in kinds if _is_users(kind))
-    if not classes:
-        return "", ""
-    # wrapped in a tuple, because a class may define settings() for its objects
-    content = contents(classes)
+    content = code_of(*kinds)
+    names = content.parts.get("names", {})
     if content.unreadable and version is not None:
-        content = contents(classes, version)
-    return json_hash(content.parts), content.explain() if content.unreadable else ""
-
-
-def _is_users(kind: type) -> bool:
-    return kind.__module__ == "__main__" or bool(source_of(kind))
+        return json_hash([names, version]), ""
+    return json_hash(names) if names else "", content.explain() if content.unreadable else ""
 
 
 def kind_of(value: object) -> str:
@@ -411,7 +406,8 @@ def json_hash(value: Any) -> str:
     return hashlib.sha256(json.dumps(value, default=float).encode()).hexdigest()[:12]
 
 
-def _made_by(make: Any) -> Iterator[tuple[str, str]]:
+def _made_by(make: Any) -> Iterator[tuple[str, Any]]:
+    """Yield the values that ``make`` makes a world from, by name."""
     if isinstance(make, Maker):
         yield from _flat("env.world", make.node)
     elif isinstance(make, partial):
@@ -420,86 +416,47 @@ def _made_by(make: Any) -> Iterator[tuple[str, str]]:
         yield from _made_by(make.func)
     elif isinstance(make, MethodType):
         yield from _made_by(make.__func__)
-        yield from _object(make.__self__)
+        yield from _made_by(make.__self__)
     elif isinstance(make, FunctionType):
-        if not str(make.__module__).startswith("mitigate."):
-            yield from _function(make)
+        if is_users(make):
+            code = make.__code__  # the bytecode, because the source lines may also hold other code
+            yield MADE, [code.co_names, [c for c in code.co_consts if c is not None]]
+            defaults = {str(number): value for number, value in enumerate(make.__defaults__ or ())}
+            yield from _flat(f"{MADE}, default", defaults | (make.__kwdefaults__ or {}))
+            yield from _flat(f"{MADE}, value", named_values(make))
     elif not isinstance(make, type):
-        yield from _object(make)
+        yield f"{MADE}, class", kind_of(make)
+        yield f"{MADE}, code", json_hash(code_of(type(make)).parts.get("code", []))
+        yield from _flat(f"{MADE}, attribute", dict(attributes_of(make)))
 
 
-def _function(make: FunctionType) -> Iterator[tuple[str, str]]:
-    # the bytecode is used, because the source lines may also contain other code
-    code = make.__code__
-    yield from _flat(MADE, [code.co_names, [c for c in code.co_consts if c is not None]])
-    defaults = {str(number): value for number, value in enumerate(make.__defaults__ or ())}
-    yield from _flat(f"{MADE}, default", defaults | (make.__kwdefaults__ or {}))
-    with suppress(ValueError):  # a value that the function uses does not exist yet
-        used = inspect.getclosurevars(make)
-        yield from _each(f"{MADE}, value", {**used.globals, **used.nonlocals})
-
-
-def _object(owner: Any) -> Iterator[tuple[str, str]]:
-    """Describe an object that constructs worlds when it or its method is called."""
-    if isinstance(owner, type):
-        yield f"{MADE}, class", owner.__qualname__
-        return
-    yield f"{MADE}, class", kind_of(owner)
-    yield f"{MADE}, code", json_hash(source_of(type(owner)))
-    with suppress(TypeError):  # the object may have slots
-        yield from _each(f"{MADE}, attribute", vars(owner))
-
-
-def _each(name: str, values: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
-    """Describe each value as one text, because constructing a world may change all of it."""
-    return ((f"{name}.{key}", _text(value)) for key, value in values.items())
-
-
-def _flat(name: str, value: Any, depth: int = 0) -> Iterator[tuple[str, str]]:
-    """Describe the entries of nested mappings as JSON, by dotted names."""
-    parts: list[tuple[Any, Any]] = []
-    if isinstance(value, Mapping) and depth < DEEPEST:
-        with suppress(Exception):  # a mapping of the user's class may raise any error
-            parts = [*value.items()] if len(value) <= ENTRIES else []
-    for key, part in parts:
-        yield from _flat(f"{name}.{key}", part, depth + 1)
-    if not parts and not (depth == 0 and type(value) is dict and not value):
-        yield name, _text(value)
+def _flat(name: str, values: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:
+    """Yield the entries of nested mappings by dotted names."""
+    for key, value in values.items():
+        nested = type(value) is dict and value and name.startswith("env.world")
+        yield from _flat(f"{name}.{key}", value) if nested else [(f"{name}.{key}", value)]
 
 
 def _text(value: Any) -> str:
+    """Return ``value`` as JSON; objects count with the name of their class."""
     try:
-        text = json.dumps(_data(value, 0, count()), sort_keys=True)
-    except Exception:  # an object of the user's class may raise any error
+        text = json.dumps(value, sort_keys=True, default=_as_data)
+    except (TypeError, ValueError, RecursionError):  # keys that are objects, or a cycle
         return kind_of(value)
     return text if len(text) <= SHOWN else f"{text[:SHOWN]}... ({json_hash(text)})"
 
 
-def _data(value: Any, depth: int, counter: Iterator[int]) -> Any:
-    """Return ``value`` as JSON data; objects, and values beyond the limits, become their class
-    name.
-
-    ``counter`` counts the described containers and objects.
-    """
+def _as_data(value: Any) -> Any:
+    """Return an object that JSON lacks as data, or the name of its class."""
     if isinstance(value, (Enum, PurePath)):
         return str(value)
-    if value is None or isinstance(value, (bool, int, float, str)):
-        return value
     if isinstance(value, np.generic) and not value.dtype.hasobject:
         return value.item()
-    if isinstance(value, np.ndarray) and not value.dtype.hasobject:
-        return f"array {value.dtype} {value.shape} {array_sha(value)}"
-    if depth < DEEPEST and next(counter) < MOST:
-        inner = partial(_data, depth=depth + 1, counter=counter)
-        if is_dataclass(value) and not isinstance(value, type):
-            # the object may have slots
-            entries = [getattr(value, one.name) for one in fields(value)]
-            return [kind_of(value), [*map(inner, entries)]]
-        if isinstance(value, dict):
-            return {json.dumps(inner(key)): inner(part) for key, part in value.items()}
-        if isinstance(value, (list, tuple)):
-            return [*map(inner, value)]
-        if isinstance(value, (set, frozenset)):
-            return sorted(map(inner, value), key=json.dumps)
+    if sha := array_sha(value):
+        return f"array {value.dtype} {value.shape} {sha}"
+    if is_dataclass(value) and not isinstance(value, type):
+        return [kind_of(value), vars(value)]
+    if isinstance(value, (set, frozenset)):
+        return sorted(map(_text, value))
     # classes and functions have a qualified name; objects do not
-    return str(getattr(value, "__qualname__", kind_of(value)))
+    return value.__qualname__ if isinstance(value, (type, FunctionType)) else kind_of(value)

@@ -311,16 +311,13 @@ def _numbered(stem: str, index: int) -> str:
 SEVERITY = 0.6
 
 
-def beside(
-    section: Section, paper: Mapping[str, Sequence], spent: Mapping[str, Mapping[str, float]]
-) -> str:
-    """Return ``section`` as Markdown, with the figures of the paper and the CPU minutes used.
+def beside(section: Section, paper: Mapping[str, Sequence]) -> str:
+    """Return Markdown of ``section`` with the paper's figures.
 
     Args:
         section: the results.
         paper: the paper's column names under "columns", and its figures in the same order by row
             ("PRS-SR (RGB)", "motion_blur").
-        spent: CPU minutes by kind of work and column.
     """
     theirs = {
         name: dict(zip(paper["columns"], values, strict=True))
@@ -346,9 +343,6 @@ def beside(
             lines.append(cells(label(name), name, rates))
     seeds = (" ".join(map(str, section.grid.seeds[c, section.severity])) for c in section.columns)
     lines.append(["Seeds", *seeds])
-    for kind, minutes in spent.items():
-        cost = (f"{minutes[c]:.1f}" if c in minutes else "–" for c in section.columns)
-        lines.append([f"CPU minutes, {kind}", *cost])
     table = markdown_table(["Corruption", *section.columns], lines)
     return f"{_header(section, bool(theirs))}\n\n{table}\n"
 

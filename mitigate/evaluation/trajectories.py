@@ -18,13 +18,13 @@ from mitigate.agents.agent import Agent
 from mitigate.core.files import write_figure
 from mitigate.core.observation import DEPTH, POSE, RGB, VIEWS, Observation
 from mitigate.core.pictures import depth_picture, draw_path, strip
-from mitigate.corruptions import CLEAN, Corruption, Key, corrupt_observation
+from mitigate.corruptions import CLEAN, Corruption
 from mitigate.evaluation.episode import run_episode
 from mitigate.evaluation.rows import Row
 from mitigate.evaluation.sections import label
 from mitigate.guards.guard import NO_GUARDS, Guards
 from mitigate.worlds.episodes import Episode, from_vlnce
-from mitigate.worlds.world import World, WorldWrapper, as_world, depth_sensor
+from mitigate.worlds.world import Corrupted, World, WorldWrapper, as_world
 
 # colours of Okabe and Ito, readable without colour vision; one per agent for corrupted runs
 REFERENCE, CLEAN_WALK = "#8a8a8a", "#0072b2"
@@ -127,9 +127,9 @@ def first_sight(
     The frames are pictures, uint8 [H, W, 3]. For a world without frames, the name is "" and there
     are no pictures.
     """
-    clean = dict(world.reset(episode))
-    key, sensor = Key(seed, episode.episode_id, 0), depth_sensor(world.sensors)
-    met = corrupt_observation(clean, corruption, key, sensor)
+    observation = Corrupted(world, corruption, seed).reset(episode)
+    met = dict(observation)
+    clean = dict(observation.clean)
     first = DEPTH if {DEPTH, RGB}.intersection(corruption.modalities) == {DEPTH} else RGB
     entry = next((name for name in (first, RGB, DEPTH) if name in clean), "")
     far = float(clean[DEPTH].max()) if DEPTH in clean else 0.0

@@ -2,15 +2,16 @@
 
 A guard may change the instruction of an episode (``begin``), the frames of an observation
 (``observe``), or the agent itself while an episode runs (``attach``). The default of each method
-changes nothing. The safeguard (text), the restorer (frames) and users' callables are guards;
-``opening.py`` builds them from the options ``safeguard=`` and ``restore=``.
+changes nothing. The safeguard (text), the restorer (frames), users' callables and test-time
+adaptation are guards; ``opening.py`` builds them from the options ``safeguard=``, ``restore=`` and
+``adapt=``.
 
 This module needs no torch.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import AbstractContextManager, ExitStack, contextmanager, nullcontext
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
@@ -21,6 +22,8 @@ from mitigate.worlds.world import World, WorldWrapper
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
+
+    from mitigate.worlds.episodes import Episode
 
 RESTORER = "restorer-"  # prefix of the fingerprints of guards from ``restore=``
 
@@ -52,11 +55,14 @@ class Guard:
         label: part of a table's column name.
         frames: frames that ``observe`` reads or changes.
         version: identifies state that :meth:`fingerprint` cannot read, such as weights in a file.
+        continual: whether ``attach`` continues from what earlier episodes left. The episodes of a
+            condition then run in order in one process.
     """
 
     label: str = ""
     frames: Sequence[str] = (RGB, DEPTH)
     version: str | None = None
+    continual: bool = False
 
     def begin(self, episode: EpisodeStart) -> str:
         """Return the instruction that the agent receives."""
@@ -85,6 +91,21 @@ class Guard:
         When the context ends, the changes to the agent must be undone.
         """
         return nullcontext()
+
+    def restart(self) -> None:
+        """Forget all earlier episodes; a continual guard gets this call before each condition."""
+
+    def calibrate(self, agent: Any, world: World, episode: Callable[[int], Episode]) -> None:
+        """Measure what the guard must know about the agent, before the evaluation.
+
+        Args:
+            agent: the agent.
+            world: a world, without corruptions.
+            episode: returns a training episode by its number.
+        """
+
+    def check_agent(self, agent: Any) -> None:
+        """Raise ValueError if the guard cannot adapt ``agent``."""
 
     def prepared(self, episodes: Sequence[EpisodeStart]) -> Guard:
         """Return the guard that is sent to the worker processes of these episodes.
@@ -174,12 +195,29 @@ class Guards(Guard):
             observations = guard.observe_all(observations)
         return [*observations]
 
+    @property
+    def continual(self) -> bool:  # type: ignore[override]
+        """Whether a guard continues from earlier episodes."""
+        return any(guard.continual for guard in self.guards)
+
     @contextmanager
     def attach(self, agent: Any) -> Iterator[None]:
         with ExitStack() as stack:
             for guard in self.guards:
                 stack.enter_context(guard.attach(agent))
             yield
+
+    def restart(self) -> None:
+        for guard in self.guards:
+            guard.restart()
+
+    def calibrate(self, agent: Any, world: World, episode: Callable[[int], Episode]) -> None:
+        for guard in self.guards:
+            guard.calibrate(agent, world, episode)
+
+    def check_agent(self, agent: Any) -> None:
+        for guard in self.guards:
+            guard.check_agent(agent)
 
     def prepared(self, episodes: Sequence[EpisodeStart]) -> Guards:
         guards = []

@@ -1,4 +1,7 @@
-"""Build guards from the options ``safeguard=`` and ``restore=``, importing only the chosen ones."""
+"""Build guards from the options ``safeguard=``, ``restore=`` and ``adapt=``.
+
+Only the chosen ones are imported.
+"""
 
 from __future__ import annotations
 
@@ -6,6 +9,7 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from mitigate.guards.adaptation import choices as adaptations
 from mitigate.guards.frames import choices as restorers
 from mitigate.guards.frames.choices import SENSORS, callable_of, parted
 from mitigate.guards.guard import EpisodeStart, Guard, Guards
@@ -66,14 +70,17 @@ def open_guards(
     restore: str | None,
     sensors: Iterable[str] = SENSORS,
     log: str | Path | None = None,
+    adapt: str | Guard | None = None,
 ) -> Guards:
-    """Build the guards of the two options, starting with the safeguard.
+    """Build the guards of the three options, starting with the safeguard.
 
     Args:
         safeguard: value of ``safeguard=`` (``text/guard.py``), or None.
         restore: value of ``restore=`` (:func:`open_restorer`).
         sensors: names of the world's sensors.
         log: file for the decisions of the safeguard.
+        adapt: a value as in ``adaptation/choices.py``, or a guard. Call ``calibrate`` before its
+            first episode.
     """
     guards: list[Guard] = []
     restorer = open_restorer(restore, sensors)
@@ -84,7 +91,7 @@ def open_guards(
         opened = open_safeguard(str(safeguard), log=log)
         assert opened is not None, "only none has no safeguard"
         guards.append(TextGuard(opened, label(str(safeguard))))
-    return Guards([*guards, *([] if restorer is None else [restorer])])
+    return Guards([*guards, *([] if restorer is None else [restorer]), *open_adaptations(adapt)])
 
 
 def open_restorer(choice: str | None, sensors: Iterable[str] = SENSORS) -> Guard | None:
@@ -112,8 +119,30 @@ def open_restorer(choice: str | None, sensors: Iterable[str] = SENSORS) -> Guard
     return guard
 
 
-def labels(safeguard: str | None, restore: str | None) -> list[str]:
-    """Return the labels of the guards of the two options, without building the guards."""
+def open_adaptations(choice: str | Guard | None) -> list[Guard]:
+    """Return the guards of ``adapt=``.
+
+    Raises:
+        ValueError: The method does not exist.
+    """
+    if isinstance(choice, Guard):
+        return [choice]
+    if choice in NONE:
+        return []
+    from mitigate.guards.adaptation.norm import Norm
+    from mitigate.guards.adaptation.recentre import Recentre
+    from mitigate.guards.adaptation.tent import Tent
+
+    kinds: dict[str, type[Norm | Tent | Recentre]] = {
+        kind.kind: kind for kind in (Norm, Tent, Recentre)
+    }
+    return [kinds[method](reset=reset) for method, reset in adaptations.parsed(str(choice))]
+
+
+def labels(
+    safeguard: str | None, restore: str | None, adapt: str | Guard | None = None
+) -> list[str]:
+    """Return the labels of the guards of the three options, without building the guards."""
     names = []
     if safeguard not in NONE:
         from mitigate.guards.text import choices
@@ -121,4 +150,8 @@ def labels(safeguard: str | None, restore: str | None) -> list[str]:
         names.append(choices.label(str(safeguard)))
     if restore not in NONE:
         names.append(restorers.label(str(restore)))
+    if isinstance(adapt, Guard):
+        names.append(adapt.label)
+    elif adapt not in NONE:
+        names.append(adaptations.label(str(adapt)))
     return names

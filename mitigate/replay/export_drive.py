@@ -2,7 +2,8 @@
 ``mitigate export_drive OUT``.
 
 OUT is a folder. Each episode is written to this folder as a drive, in the form that a robot with
-one 90-degree RGB-D camera would record: a folder of frames, or a bag of ROS 1 or ROS 2 (MCAP).
+one 90-degree RGB-D camera would record: a folder of frames, or a bag of ROS 1 or ROS 2 (MCAP). With form=lerobot, OUT
+becomes one LeRobot dataset with all episodes.
 """
 
 from __future__ import annotations
@@ -28,7 +29,7 @@ from mitigate.core.options import paths_and_overrides
 from mitigate.core.output import output_folder
 from mitigate.corruptions.frame_files import counts
 
-FORMS = ("frames", "bag", "mcap")
+FORMS = ("frames", "bag", "mcap", "lerobot")
 _NOT_IN_NAMES = re.compile(r"[^\w-]+")  # characters that are replaced in the name of a drive
 UNIT = 0.001  # metres per count of 16-bit depth
 SECOND = 1_000_000_000  # duration of a step in nanoseconds (one second)
@@ -75,6 +76,8 @@ def run(config: ExportDriveConfig, out: Path) -> list[Path]:
     if len(world.sensors[RGB].shape) != 3:
         raise ValueError("A drive has one camera. Set env.views=1.")
     listed = episodes(env, config.split, config.episodes)
+    if config.form == "lerobot":
+        return [_write_dataset(world, listed, out)]
     paths = _drive_paths(out, [episode.episode_id for episode in listed], config.form)
     progress = Progress("export_drive", len(listed), unit="drive")
     with output_folder(out) as root, progress:
@@ -94,6 +97,22 @@ def run(config: ExportDriveConfig, out: Path) -> list[Path]:
             root.expected.append(path)
             progress.advance(note=path.name)
     return paths
+
+
+def _write_dataset(world: Any, listed: Sequence[Any], out: Path) -> Path:
+    """Write the episodes as a LeRobot dataset and return its path."""
+    from mitigate.core.progress import Progress
+    from mitigate.replay.export_dataset import DatasetWriter
+
+    writer = DatasetWriter(out)
+    with output_folder(out), Progress("export_drive", len(listed), unit="episode") as progress:
+        for episode in listed:
+            actions: list[int] = []
+            steps = list(oracle(world, episode, actions))
+            writer.add(steps, actions, episode.instruction.text)
+            progress.advance(note=episode.episode_id)
+        writer.write()
+    return out
 
 
 def _drive_paths(out: Path, names: Sequence[str], form: str) -> list[Path]:
@@ -116,14 +135,25 @@ def _drive_paths(out: Path, names: Sequence[str], form: str) -> list[Path]:
     return paths
 
 
-def oracle(world: Any, episode: Any) -> Iterator[dict[str, np.ndarray]]:
-    """Yield the observation at each step of the expert, including the one before STOP."""
+def oracle(
+    world: Any, episode: Any, actions: list[int] | None = None
+) -> Iterator[dict[str, np.ndarray]]:
+    """Yield the observation of each step of the expert, the one before STOP included.
+
+    Args:
+        world: The world.
+        episode: The episode.
+        actions: The expert's action at each step is appended to this list.
+    """
     from mitigate.worlds.world import expert_of
 
     observation = world.reset(episode)
     while not world.done:
         yield {name: np.asarray(observation[name]).copy() for name in (RGB, DEPTH, POSE)}
-        observation = world.step(expert_of(world).action())
+        action = expert_of(world).action()
+        if actions is not None:
+            actions.append(int(action))
+        observation = world.step(action)
 
 
 def write_frames(path: Path, steps: Sequence[dict[str, np.ndarray]], instruction: str) -> None:

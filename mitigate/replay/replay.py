@@ -1,9 +1,9 @@
 """Run agents on recorded drives: ``mitigate replay DRIVE agents=[checkpoints/recurrent/base]``.
 
-DRIVE is a folder of frames or a bag of ROS 1, ROS 2 or MCAP; several are allowed. Each agent
-receives the frames of the drive, clean and under each corruption, and decides at each step what it
-would do. The output contains every decision (``decisions.jsonl``), the fraction of decisions that
-each corruption changes (``table.md``, ``changes.png``), and pictures of some changed decisions.
+DRIVE is a folder of frames, a bag of ROS 1, ROS 2 or MCAP, or a LeRobot dataset; several are
+allowed. Each agent gets the clean drive and the drive under each corruption, and decides at each
+step what it would do. The output is every decision (``decisions.jsonl``), the share that each
+corruption changes (``table.md``, ``changes.png``), and pictures of some changed decisions.
 """
 
 from __future__ import annotations
@@ -70,6 +70,8 @@ class ReplayConfig:
     unit: float | None = None
     yaw: float = 0.0
     cameras: list[str] | None = None
+    episodes: list[int] | None = None
+    tolerance: float | None = None
     step: StepConfig = field(default_factory=StepConfig)
     topics: TopicsConfig = field(default_factory=TopicsConfig)
     out: str | None = None
@@ -170,6 +172,8 @@ def load_recordings(
         unit=config.unit,
         yaw=config.yaw,
         cameras=config.cameras,
+        episodes=config.episodes,
+        tolerance=config.tolerance,
     )
     recordings: dict[int, list[Any]] = {count: [] for count in views}
     sources = [source for path in paths for source in open_drives(path)]
@@ -305,16 +309,15 @@ def replay(
 def inapplicable(corruption: Any, agent: Any, drives: Sequence[Any]) -> str:
     """Return the reason why a corruption does not apply to an agent and drives, or ""."""
     from mitigate.agents.agent import as_agent
-    from mitigate.corruptions.registry import parts
+    from mitigate.corruptions.registry import parts, record
 
-    lacking = [
-        (part, drive.name)
-        for drive in drives
-        for part in corruption.modalities
-        if part in ("rgb", "depth") and part not in drive.frames
-    ]
-    if lacking:
-        return f"{lacking[0][1]} has no {lacking[0][0]} frames"
+    if any(record(part.name).modality == "action" for part in corruption.parts):
+        return "the recording decides how the robot moves"
+    for drive in drives:
+        for part in corruption.parts:
+            sensors = {"rgb", "depth"} & {*record(part.name).modalities}
+            if sensors and not sensors & {*drive.frames}:
+                return f"{drive.name} has no {' or '.join(sorted(sensors))} frames"
     if "white_box" in parts(corruption.name) and not as_agent(agent).system_prompt:
         return "the agent has no system prompt"
     return ""

@@ -1,7 +1,7 @@
-"""``mitigate.harden(policy, world)`` makes a trained policy robust without expert or reward.
+"""``mitigate.harden(policy, world)``: make a trained policy robust, without an expert.
 
-The policy is the teacher of its copy (``recipes/self_distil.py``). The episodes for comparing both
-are never used in training.
+The policy teaches its copy (``recipes/self_distil.py``), or the copy learns from the reward of the
+world (``recipes/ppo.py``). The episodes that compare both are never trained on.
 """
 
 from __future__ import annotations
@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import torch
 from hydra.errors import HydraException
 from omegaconf.errors import OmegaConfBaseException
 from torch import nn
@@ -26,16 +27,17 @@ from mitigate.agents.adapters import (
     save_adapters,
     trainable_share,
 )
-from mitigate.agents.policies import Forward, Policy, as_policy, copied
+from mitigate.agents.policies import Forward, Policy, as_policy, copied, last_convolution
 from mitigate.agents.sites import find_sites
 from mitigate.core import checkpoint, conf, seeding
 from mitigate.core.locks import FolderLock
 from mitigate.core.names import counted, unknown
 from mitigate.core.observation import DEPTH, RGB
 from mitigate.core.progress import duration, say
+from mitigate.core.seeding import digest, generator
 from mitigate.core.workers import packed
 from mitigate.corruptions import CLEAN, Corruption, Schedule
-from mitigate.corruptions.registry import modality
+from mitigate.corruptions.registry import family, modality
 from mitigate.corruptions.suite import check_name
 from mitigate.evaluation import provenance
 from mitigate.evaluation.benchmark import checked_world
@@ -43,21 +45,24 @@ from mitigate.evaluation.comparison import RANDOM, Comparison, RandomPolicy, com
 from mitigate.evaluation.episode import run_episode
 from mitigate.evaluation.evaluator import evaluate
 from mitigate.evaluation.rows import ROWS, Row
-from mitigate.recipes.self_distil import SelfDistil, last_convolution
+from mitigate.recipes.ppo import Ppo
+from mitigate.recipes.self_distil import SelfDistil
+from mitigate.shipping import selection
 from mitigate.training import states
+from mitigate.training.objective import Objective
 from mitigate.training.trainer import Trainer
 from mitigate.worlds.episodes import Episode
-from mitigate.worlds.seeded import seeded_episodes
+from mitigate.worlds.seeded import FIRST_TRAINING_SEED, seeded_episodes
 from mitigate.worlds.world import World
 
 OUT = Path("runs/harden")
-EPISODES = 50  # default number of episodes in the comparison (heuristic): SR within about 10 points
-# first seed of training episodes; the seeds of the comparison are smaller
-FIRST_TRAINING_SEED = 1_000_000
+EPISODES = 50  # default episodes of the comparison (heuristic): SR within about 10 points
 TUNE = ("all", "adapters")
 SPLIT = "compared"
-# arguments of SelfDistil that harden() passes on; it sets the first six and the seed itself
-SETTINGS = [*signature(SelfDistil).parameters][6:-1]
+METHODS: dict[str, type[Objective]] = {"self_distil": SelfDistil, "ppo": Ppo}
+SCHEDULES = ("per_episode", "per_frame")
+# arguments of the objectives that harden() sets itself
+OWN = ("agent", "world", "training", "schedule", "folder", "steps", "seed")
 
 
 @dataclass(frozen=True)
@@ -71,6 +76,7 @@ class Hardened:
         rows: the result rows of both, named "before" and "after".
         folder: folder of the run, whose subfolder ``agent`` holds the weights
             (``mitigate.load_policy``).
+        chosen: which weights validation chose: "trained", "averaged" or "given".
     """
 
     policy: Any
@@ -78,6 +84,7 @@ class Hardened:
     report: Comparison
     rows: list[Row]
     folder: Path
+    chosen: str
 
     def __str__(self) -> str:
         return f"{self.report}\n\nWeights: {self.folder / 'agent'}"
@@ -89,6 +96,7 @@ def harden(
     *,
     forward: Forward | None = None,
     recurrent: bool = False,
+    method: str = "self_distil",
     listed: Sequence[Episode] | None = None,
     training: Sequence[Episode] | None = None,
     suite: str | Sequence[str] = "full",
@@ -98,6 +106,8 @@ def harden(
     steps: int = 1500,
     lr: float = 3e-4,
     broad_share: float = 0.5,
+    schedule: str = "per_episode",
+    validation: int = 16,
     seed: int = 0,
     workers: int | None = 1,
     out: Path | str | None = None,
@@ -105,8 +115,8 @@ def harden(
 ) -> Hardened:
     """Train a copy of ``policy`` to act under corruptions as ``policy`` acts on clean frames.
 
-    This needs no expert, no reward and no labels. If a run was interrupted, the same call continues
-    it.
+    Needs no expert and no labels, and a reward only for ``method="ppo"``. The same call continues
+    an interrupted run.
 
     Args:
         policy: a trained policy of stable-baselines3 or torchrl, or an ``nn.Module``
@@ -114,6 +124,8 @@ def harden(
         world: function that constructs a world, such as ``lambda: GymWorld(gymnasium.make(...))``.
         forward, recurrent: how to call an ``nn.Module``
             (:class:`~mitigate.agents.policies.ModulePolicy`).
+        method: "self_distil": the policy teaches its copy. "ppo": the copy learns from the reward
+            of the world.
         listed: episodes of the comparison; None means seeds 0 to 49 of the environment.
         training: training episodes; None means other seeds of the environment.
         suite: a name of ``conf/suite`` or a list of corruptions, for training and comparison;
@@ -126,53 +138,74 @@ def harden(
         broad_share: fraction of corrupted frames that get random compositions instead of the
             suite's corruptions. These prepare the policy for corruptions that the suite does not
             contain.
+        schedule: "per_episode" or "per_frame": how often the corruption of the training changes.
+        validation: number of training episodes that choose between the trained weights, the given
+            weights and an average of both (``shipping/selection.py``), under each corruption; 0:
+            the trained weights.
         seed: seed of training and corruptions.
         workers: processes for the comparison; None means one per core if there is enough work.
         out: folder of the run; None means a folder in runs/harden.
-        **settings: other arguments of :class:`~mitigate.recipes.self_distil.SelfDistil`, such as
-            ``episodes=16``.
+        **settings: other arguments of the method,
+            :class:`~mitigate.recipes.self_distil.SelfDistil` or
+            :class:`~mitigate.recipes.ppo.Ppo`, such as ``episodes=16``.
 
     Raises:
         TypeError: The policy has an unsupported type.
         ValueError: An argument is invalid, or the folder contains a different run.
     """
     seeding.check(seed)
-    if tune not in TUNE:
-        raise ValueError(f"tune must be one of {', '.join(TUNE)}, got {tune!r:.80}.")
+    choices = {"method": (method, METHODS), "tune": (tune, TUNE), "schedule": (schedule, SCHEDULES)}
+    for argument, (value, allowed) in choices.items():
+        if value not in allowed:
+            raise ValueError(f"{argument} must be one of {', '.join(allowed)}, got {value!r:.80}.")
     if type(steps) is not int or steps < 1:
         raise ValueError(f"steps must be a whole number >= 1, got {steps!r:.80}.")
-    unknown_names = sorted(set(settings) - set(SETTINGS))
+    if type(validation) is not int or validation < 0:
+        raise ValueError(f"validation must be a whole number >= 0, got {validation!r:.80}.")
+    parameters = signature(METHODS[method]).parameters
+    known = [name for name in parameters if name not in OWN]
+    unknown_names = sorted(set(settings) - set(known))
     if unknown_names:
-        raise ValueError(unknown("argument of harden", unknown_names[0], SETTINGS))
+        what = f"argument of harden(method={method!r})"
+        raise ValueError(unknown(what, unknown_names[0], known))
     first, made_by = checked_world(world, [])
     before = as_policy(policy, first, forward=forward, recurrent=recurrent)
     after = copied(before)
     names = _corruptions(suite, before)
-    folder = Path(out or OUT / f"{_plain(before.name)}-s{severity:g}-seed{seed}")
+    suffix = "" if method == "self_distil" else f"-{method}"
+    folder = Path(out or OUT / f"{_plain(before.name)}-s{severity:g}-seed{seed}{suffix}")
     compared = seeded_episodes(range(EPISODES)) if listed is None else list(listed)
     conditions = [CLEAN, *(Corruption(name, severity) for name in names)]
     if workers != 1:
         packed((before, world), "The policy or its world", "give workers=1")
     if tune == "adapters":
-        _insert_adapters(after, first, compared[0], targets)
-    objective = SelfDistil(
-        after,
-        world,
-        _Training(training, compared),
-        Schedule("per_episode", (0.3, 1.0), names=tuple(names), broad_share=broad_share),
-        folder / "frames",
-        steps,
-        seed=seed,
-        **settings,
-    )
-    identity = {
+        _insert_adapters(after, first, compared[0], targets, seed)
+    start = {name: value.clone() for name, value in after.network.state_dict().items()}
+    episodes = _Training(training, compared)
+    available: dict[str, Any] = {
+        "agent": after,
+        "world": world,
+        "training": episodes,
+        "schedule": Schedule(schedule, (0.3, 1.0), names=tuple(names), broad_share=broad_share),
+        "folder": folder / "frames",
+        "steps": steps,
+        "seed": seed,
+    }
+    own = {name: value for name, value in available.items() if name in parameters}
+    objective = METHODS[method](**own, **settings)
+    identity: dict[str, Any] = {
         "policy": before.version,
+        "losses": 2,  # version: the first had no imitation
         "settings_of_policy": before.settings(),
         "names": list(names),
         "broad_share": broad_share,
         "tune": tune,
         "settings": {name: str(value) for name, value in settings.items()},
     }
+    if method != "self_distil":  # runs of older versions have neither entry
+        identity["method"] = method
+    if schedule != "per_episode":
+        identity["schedule"] = schedule
     trainer = Trainer(
         objective,
         steps=steps,
@@ -200,6 +233,18 @@ def harden(
             say("harden: interrupted. The same call continues.")
             raise
         after.requires_grad_(True)
+        chosen = "trained"
+        if validation:
+            chosen = selection.choose(
+                after,
+                start,
+                world,
+                episodes.several(validation, seed),
+                conditions,
+                folder / "validation.jsonl",
+                seed,
+                workers,
+            )
         if tune == "adapters":
             save_adapters(after.network, folder / "agent")
         else:
@@ -213,7 +258,12 @@ def harden(
             "harden: the hardened policy is worse than the given one under these corruptions. Keep "
             "the given policy, or train with other settings (suite=, severity=, steps=, seed=)."
         )
-    return Hardened(_like(policy, after), after, report, rows, folder)
+    elif chosen == "given":
+        say(
+            "harden: no trained weights were better than the given ones in validation, so the "
+            "policy is unchanged. It may be robust already, or need other settings (steps=, lr=)."
+        )
+    return Hardened(_like(policy, after), after, report, rows, folder, chosen)
 
 
 def _check_folder(trainer: Trainer, folder: Path) -> None:
@@ -251,6 +301,18 @@ class _Training:
             return seeded_episodes([int(rng.integers(FIRST_TRAINING_SEED, 2**31 - 1))])[0]
         return self.listed[int(rng.integers(len(self.listed)))]
 
+    def several(self, count: int, seed: int) -> list[Episode]:
+        """Return ``count`` different episodes, or all that are listed if these are fewer."""
+        rng = generator(seed, "harden validation")
+        if self.listed is not None:
+            chosen = rng.permutation(len(self.listed))[:count]
+            return [self.listed[place] for place in chosen]
+        episodes: dict[str, Episode] = {}
+        while len(episodes) < count:
+            episode = self.draw(rng, (0, 1))
+            episodes[episode.episode_id] = episode
+        return list(episodes.values())
+
 
 def _corruptions(suite: str | Sequence[str], policy: Policy) -> list[str]:
     """Return the corruptions of a suite that change what the policy reads."""
@@ -261,6 +323,12 @@ def _corruptions(suite: str | Sequence[str], policy: Policy) -> list[str]:
             raise ValueError(conf.explain(error, "evaluate", [f"suite={suite}"])) from None
     else:
         listed = [check_name(name) for name in suite if name != "clean"]
+    if faults := [name for name in listed if family(name)]:
+        raise ValueError(
+            f"suite={suite} has {faults[0]}, a {family(faults[0])} fault, which training does not "
+            "draw. Harden with corruptions of single frames, and measure faults with "
+            "mitigate.benchmark."
+        )
     kinds = {name: modality(name) for name in listed if name != "clean"}
     sensors = [sensor for sensor in (RGB, DEPTH) if sensor in policy.sensors]
     names = [name for name, kind in kinds.items() if kind in sensors]
@@ -276,7 +344,7 @@ def _corruptions(suite: str | Sequence[str], policy: Policy) -> list[str]:
 
 
 def _insert_adapters(
-    policy: Policy, world: World, episode: Episode, targets: Sequence[str] | None
+    policy: Policy, world: World, episode: Episode, targets: Sequence[str] | None, seed: int
 ) -> None:
     """Insert adapters after the modules ``targets``, by default after every convolution."""
     observation = world.reset(episode)
@@ -293,7 +361,9 @@ def _insert_adapters(
             if isinstance(module, nn.Conv2d) and name in called
         ]
         targets = [re.escape(name) for name in convolutions or [last_convolution(policy)]]
-    adapted = insert_adapters(policy.network, targets, run=run, reduction=2)
+    with torch.random.fork_rng(devices=[]):
+        torch.manual_seed(digest("harden adapters", seed) & (2**63 - 1))
+        adapted = insert_adapters(policy.network, targets, run=run, reduction=2)
     for parameter in adapter_parameters(policy.network):
         parameter.requires_grad_(True)
     share = trainable_share(policy.network)

@@ -120,15 +120,6 @@ class Cell:
         """Return the folder of an additional evaluation's rows; "" means the main evaluation."""
         return self.folder / (f"evaluation-{name}" if name else "evaluation")
 
-    def left(self, kind: str) -> list[tuple[str, int]]:
-        """Return the output files of a program in ``commands`` with their modification times.
-
-        A program that has nothing to do does not change them.
-        """
-        rows = self.evaluation_folder(kind.removeprefix("evaluate").strip()) / ROWS
-        files = [*(self.folder / "run").glob("*/step-*.pt")] if kind == "train" else [rows]
-        return sorted((str(file), file.stat().st_mtime_ns) for file in files if file.is_file())
-
     def commands(self, config: TablesConfig) -> list[tuple[str, list[str]]]:
         """Return the programs that compute the cell.
 
@@ -279,7 +270,7 @@ def check(table_cells: Sequence[Cell], config: TablesConfig) -> None:
                 f"which takes {', '.join(CELLS)} from its columns and seeds. An additional "
                 "evaluation "
                 "may set suite, conditions, severity, severity_depth, split, episodes, safeguard, "
-                "restore and entries of env and agent.",
+                "restore, adapt and entries of env and agent.",
             )
             evaluation = evaluation_of(table_cells[0].measurement(config, name, options))
             names, severity = evaluation.condition_names, evaluation.severity
@@ -311,9 +302,10 @@ def evaluation_of(options: Sequence[str]) -> EvaluateConfig:
 
 
 def _check_guards(config: EvaluateConfig) -> None:
-    """Raise ValueError or FileNotFoundError for a missing safeguard or restorer."""
+    """Raise ValueError or FileNotFoundError for a missing guard."""
     choices.check(config.safeguard)
-    if config.restore is not None:
-        from mitigate.guards.opening import open_restorer
+    from mitigate.guards.opening import labels, open_restorer
 
+    labels(None, None, config.adapt)  # rejects unknown adaptations
+    if config.restore is not None:
         open_restorer(config.restore, build.maker(config.env.world)().sensors)

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import re
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import product
 from pathlib import Path
@@ -86,11 +86,10 @@ def run_chains(
     chains: Sequence[programs.Chain],
     jobs: int,
     place: Any,
-    ended: Callable[[int, programs.Outcome], None] = lambda *_: None,
 ) -> list[str]:
     """Run ``chains``, ``jobs`` at a time, on the machines of the launcher ``place``.
 
-    For each chain that ends, a line is printed and ``ended`` is called with its number and outcome.
+    Prints a line for each chain that ended.
 
     Returns:
         A list with one line for each failed chain.
@@ -98,10 +97,9 @@ def run_chains(
     problems = []
     with Progress(title, len(chains), unit=unit) as progress:
 
-        def report(number: int, outcome: programs.Outcome) -> None:
-            ended(number, outcome)
-            line = f"{chains[number].name}: {outcome.problem or 'done'}"
-            if outcome.problem:
+        def report(number: int, problem: str) -> None:
+            line = f"{chains[number].name}: {problem or 'done'}"
+            if problem:
                 problems.append(line)
             progress.say(line)
             progress.advance()

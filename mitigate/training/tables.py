@@ -9,21 +9,17 @@ suites; each suite has its own report.
 
 from __future__ import annotations
 
-import json
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 from omegaconf import DictConfig
 
-from mitigate.cluster import programs
 from mitigate.core import build
 from mitigate.core.files import atomic_text
-from mitigate.core.json_files import read_object
-from mitigate.core.names import short
 from mitigate.core.output import is_regular, output_folder
 from mitigate.core.progress import say
-from mitigate.evaluation.episode_lists import episodes
+from mitigate.evaluation.episode_lists import episodes, training_episodes
 from mitigate.evaluation.evaluate import load
 from mitigate.evaluation.rows import ROWS, Row, gather, read
 from mitigate.evaluation.sections import sections
@@ -38,7 +34,7 @@ from mitigate.training.cells import (
 )
 from mitigate.training.sweep import run_chains
 
-COST, REPORT = "cost.json", "overview.md"
+REPORT = "overview.md"
 
 
 def run(cfg: DictConfig) -> Path:
@@ -92,41 +88,7 @@ def make(table_cells: Sequence[Cell], config: TablesConfig) -> list[str]:
     chains = [cell.chain(config) for cell in table_cells]
     for cell in table_cells:
         cell.keep()
-    before = [
-        {kind: cell.left(kind) for kind, _ in chain.programs}
-        for cell, chain in zip(table_cells, chains, strict=True)
-    ]
-
-    def ended(number: int, outcome: programs.Outcome) -> None:
-        cell = table_cells[number]
-        idle = {kind for kind, left in before[number].items() if left == cell.left(kind) != []}
-        failed = bool(outcome.problem)
-        spent = {k: s for k, s in outcome.seconds.items() if failed or k not in idle}
-        _add_cost(cell.folder / COST, spent)
-
-    return run_chains("cells", "cell", chains, config.jobs, config.launcher, ended)
-
-
-def _add_cost(path: Path, spent: dict[str, float]) -> None:
-    """Add CPU seconds to the total of a cell, which includes all runs that did some work."""
-    cost = _read_cost(path) if is_regular(path) else {}
-    for kind, seconds in spent.items():
-        cost[kind] = round(cost.get(kind, 0.0) + seconds, 2)
-    with atomic_text(path) as file:
-        json.dump(cost, file)
-
-
-def _read_cost(path: Path) -> dict[str, float]:
-    """Return a cell's CPU seconds by program. Raises ValueError if the file with the times is
-    damaged."""
-    again = "Delete the file. The CPU time of the cell is then counted from the next run."
-    cost = read_object(path, again)
-    for kind, seconds in cost.items():
-        if isinstance(seconds, bool) or not isinstance(seconds, (int, float)):
-            raise ValueError(
-                f"{path}: {short(kind)} must be seconds, got {short(seconds)}. {again}"
-            )
-    return cost
+    return run_chains("cells", "cell", chains, config.jobs, config.launcher)
 
 
 def write_report(config: TablesConfig, out: Path, paths: Sequence[Path | str]) -> Path:
@@ -152,9 +114,8 @@ def write_report(config: TablesConfig, out: Path, paths: Sequence[Path | str]) -
             f"{', '.join(available)}. Set split= and severity=."
         )
     figures = {name: list(values) for name, values in config.paper.items()}
-    spent = {} if config.rows else costs(out)
     with atomic_text(out / REPORT) as file:
-        file.write("\n".join(report.beside(section, figures, spent) for section in chosen))
+        file.write("\n".join(report.beside(section, figures) for section in chosen))
     print((out / REPORT).read_text(encoding="utf-8"), flush=True)
     return out / REPORT
 
@@ -203,9 +164,11 @@ def draw_walks(config: TablesConfig, out: Path) -> list[Path]:
     env = next(iter(nodes.values())).env
     world, chosen = build.maker(env.world)(), episodes(env, config.split, config.episodes)
     guards = {
-        name: open_guards(node.safeguard, node.restore, world.sensors)
+        name: open_guards(node.safeguard, node.restore, world.sensors, adapt=node.adapt)
         for name, node in nodes.items()
     }
+    for name, chain in guards.items():
+        chain.calibrate(agents[name], world, training_episodes(world, env.training))
     episode_ids = {episode.episode_id for episode in chosen}
     rows = [
         row
@@ -216,22 +179,6 @@ def draw_walks(config: TablesConfig, out: Path) -> list[Path]:
     ]
     folder, seed = out / "pictures", config.seeds[0]
     return write_pictures(agents, world, chosen, rows, folder, seed=seed, guards=guards)
-
-
-def costs(out: Path) -> dict[str, dict[str, float]]:
-    """Return the mean CPU minutes per cell by program ("train", "evaluate", ...) and column.
-
-    Columns are named as in the rows.
-    """
-    spent: dict[str, dict[str, list[float]]] = {}
-    for path in sorted((out / "cells").glob(f"*/{COST}")):
-        column = _named(path.parent)
-        for kind, seconds in _read_cost(path).items():
-            spent.setdefault(kind, {}).setdefault(column, []).append(seconds / 60)
-    return {
-        kind: {column: sum(minutes) / len(minutes) for column, minutes in columns.items()}
-        for kind, columns in sorted(spent.items(), key=lambda item: (item[0] != "train", item[0]))
-    }
 
 
 def _named(folder: Path) -> str:

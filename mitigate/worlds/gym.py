@@ -73,6 +73,7 @@ class GymWorld(SeededWorld):
     def _step_env(self, action: Any) -> tuple[dict[str, Any], float, bool]:
         observation, reward, terminated, truncated, info = self.env.step(action)
         self._info = dict(info)
+        self.terminated = bool(terminated)
         return _by_name(observation), float(reward), bool(terminated or truncated)
 
     def _report(self) -> Mapping[str, Any]:

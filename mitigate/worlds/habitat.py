@@ -18,6 +18,7 @@ from mitigate.core.observation import DEPTH, POSE, RGB, VIEW_STEP_DEGREES, VIEWS
 from mitigate.corruptions.depth_sensor import DepthSensor
 from mitigate.corruptions.keying import Key
 from mitigate.corruptions.normalised import corrupt_normalised
+from mitigate.corruptions.registry import family
 from mitigate.corruptions.suite import (
     SENSOR,
     Corruption,
@@ -63,13 +64,19 @@ def corrupt_habitat(
 
     Raises:
         ValueError: No camera has the modality, a camera is not at a multiple of 30 degrees below
-            360, the cameras of a modality differ in size, or an error of ``corrupt_normalised``.
+            360, the cameras of a modality differ in size, the corruption is a fault, or as in
+            ``corrupt_normalised``.
     """
     if turn not in TURNS:
         raise ValueError(
             f"turn must be 'left' or 'right', the direction from rgb to rgb_30, got {turn!r}."
         )
-    if len(check_corruption(corruption).parts) > 1:
+    if fault := family(check_corruption(corruption).name):
+        raise ValueError(
+            f"corrupt_habitat corrupts one instant, and {corruption.name!r} is a {fault} fault. "
+            "Use mitigate run, the gymnasium wrapper, or a FrameStream (docs/faults.md)."
+        )
+    if len(corruption.parts) > 1:
         for part in corruption.parts:
             obs = corrupt_habitat(
                 obs, part, key, sensor, heading=heading, turn=turn, normalised=normalised

@@ -153,6 +153,28 @@ class HabitatWorld(World):
         self.steps += 1
         return self._observation()
 
+    def move(self, metres: float, degrees: float) -> Observation:
+        """Take a step that moves ``metres`` forward, then turns ``degrees`` to the left.
+
+        Raises:
+            RuntimeError: The episode is over.
+        """
+        if self.done:
+            raise RuntimeError("The episode is over. Call reset() before step().")
+        agent = self._sim.get_agent(0)
+        for action, amount in ((FORWARD, metres), (LEFT if degrees > 0 else RIGHT, abs(degrees))):
+            if amount > 0:
+                actuation = agent.agent_config.action_space[MOVES[action]].actuation
+                usual = actuation.amount
+                actuation.amount = amount
+                try:
+                    self.collisions += bool(agent.act(MOVES[action]))
+                finally:
+                    actuation.amount = usual
+        self.path.append(self._position())
+        self.steps += 1
+        return self._observation()
+
     def measures(self) -> dict[str, float]:
         """Return the measures of the episode so far, with lengths and distances in metres.
 

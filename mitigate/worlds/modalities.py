@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Container, Iterable
 
-from mitigate.corruptions.registry import modality
+from mitigate.corruptions.registry import record
 
 ENTRY_FIX = "name the entry: CorruptObservation(..., {0}=...)"
 
@@ -22,10 +22,10 @@ def check_available(names: Iterable[str], available: Container[str], lack: str, 
         ValueError: A modality is missing.
     """
     names = list(names)
-    missing = [name for name in names if modality(name) not in available]
+    missing = [name for name in names if not any(m in available for m in record(name).modalities)]
     if not missing:
         return
-    needed = modality(missing[0])
+    needed = record(missing[0]).modalities[0]
     usable = ", ".join(name for name in names if name not in missing)
     raise ValueError(
         f"{missing[0]!r} corrupts {needed}, but {lack.format(needed)}. "

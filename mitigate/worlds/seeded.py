@@ -50,6 +50,7 @@ def seeded_episodes(seeds: Iterable[int], instruction: str = "Reach the goal.") 
     ]
 
 
+FIRST_TRAINING_SEED = 1_000_000  # seeds of training episodes; those of comparisons are smaller
 RETURN = "return"  # name of a measure, and of the rule in worlds without a success criterion
 SCORES = ("success", RETURN)
 
@@ -152,6 +153,8 @@ class SeededWorld(World):
 
     Attributes:
         native: Converts frames to the environment's own observation (:class:`NativeFormat`).
+        reward: Reward of the last step.
+        terminated: Whether the task ended the episode. It is False if a limit ended it.
 
     Raises:
         ValueError: An argument is invalid, an entry is missing, or frames have a shape or dtype
@@ -162,6 +165,8 @@ class SeededWorld(World):
 
     done = True
     action_space: ActionSpace
+    reward = 0.0
+    terminated = False
 
     def __init__(
         self,
@@ -220,9 +225,9 @@ class SeededWorld(World):
 
     def reset(self, episode: Episode) -> Observation:
         """Start an episode from its seed: ``info["seed"]``, or one derived from the id."""
-        self.done = self._cut = False
+        self.done = self._cut = self.terminated = False
         self._name = episode.episode_id
-        self._reward = self._total = 0.0
+        self.reward = self._total = 0.0
         self._steps = 0
         seed = int(episode.info.get("seed", digest("episode", episode.episode_id))) % 2**31
         with self._calling(f"{type(self.env).__name__}.reset()"):
@@ -250,7 +255,10 @@ class SeededWorld(World):
         raise NotImplementedError(f"{type(self).__name__} defines no _reset_env()")
 
     def _step_env(self, action: Any) -> tuple[Mapping[str, Any], float, bool]:
-        """Step the environment; return its observation, the reward and whether it is over."""
+        """Step the environment; return its observation, the reward and whether it is over.
+
+        A subclass also sets ``terminated``.
+        """
         raise NotImplementedError(f"{type(self).__name__} defines no _step_env()")
 
     def measures(self) -> dict[str, float]:
@@ -276,7 +284,7 @@ class SeededWorld(World):
                 f"The reward of step {self._steps + 1} of episode {self._name} must be a number, "
                 "got NaN. The score needs numbers."
             )
-        self._reward = reward
+        self.reward = reward
         self._total += reward
         self._steps += 1
         self._cut = not over and self.limit is not None and self._steps >= self.limit
@@ -311,7 +319,7 @@ class SeededWorld(World):
             value = self._report().get(self.success, False)
         else:
             source = "The success function"
-            end = Ending(self._report(), self._reward, self._total, self._steps)
+            end = Ending(self._report(), self.reward, self._total, self._steps)
             with self._calling(source):
                 value = self.success(end)
         return _as_bool(value, source, self._name)

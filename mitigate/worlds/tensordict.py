@@ -217,6 +217,8 @@ class EnvWorld(SeededWorld):
         self._now = self.env.step(self._now)["next"]
         reward = float(self._now.get(self.env.reward_key).sum())
         over = any(bool(self._now[key].any()) for key in self.env.done_keys)
+        ends = [key for key in self._now.keys(True, True) if _dotted(key).endswith("terminated")]
+        self.terminated = any(bool(self._now[key].any()) for key in ends)
         return self._parts(), reward, over
 
     def _report(self) -> dict[str, Any]:

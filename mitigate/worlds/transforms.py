@@ -14,25 +14,28 @@ from mitigate.core.observation import DEPTH, EPISODE, FRAME, POSE, RGB
 from mitigate.corruptions import (
     Corruption,
     DepthSensor,
+    FrameStream,
     Key,
     Schedule,
-    corrupt_normalised,
-    corrupt_observation,
 )
 from mitigate.corruptions.registry import modality
 from mitigate.corruptions.schedule import drawn, names_of
+from mitigate.corruptions.stream import is_timed
 from mitigate.worlds.modalities import ENTRY_FIX, check_available
 
 
 class CorruptObservation(Transform):
     """Corrupt ``rgb`` and ``depth`` by a schedule, keyed by (seed, ``episode``, ``frame``).
 
-    The transform has no state: all properties of an episode (its corruption, the drops on its lens)
-    depend only on the name in ``episode``, which changes at every reset. The pixels therefore do
-    not depend on the number of parallel environments or on partial resets. The pixels are also the
-    same if clean frames are corrupted later, when they are sampled from a replay buffer
-    (``forward``, which also corrupts frames in ``("next", ...)``). An environment without episode
-    names needs an ``EpisodeCounter`` before this transform.
+    Everything about an episode (its corruption, the drops on its lens) is a function of the name in
+    ``episode``, which changes at every reset. The pixels therefore do not depend on the number of
+    parallel environments or on partial resets. They are also the same when a frame is corrupted
+    later, out of a replay buffer with clean frames (``forward``, which also corrupts
+    ``("next", ...)`` if it has frames). An environment without episode names needs an
+    ``EpisodeCounter`` before this transform.
+
+    The only state is the last frames of each row, under a temporal fault. A replay buffer does not
+    return frames in order, so ``forward`` rejects these faults.
 
     Frames are RGB uint8 [*batch, H, W, 3] or [*batch, V, H, W, 3] and depth float32
     [*batch, (V,) H, W, 1]. Put this transform before those that move channels or convert to float.
@@ -46,10 +49,11 @@ class CorruptObservation(Transform):
         depth: Name of the depth entry, which the data need not contain.
         sensor: Depth range, and value that marks missing depth.
         normalised: Whether depth is in [0, 1] over the sensor's range instead of in metres.
+        hfov: Horizontal field of view of the cameras in degrees, which camera faults need.
 
     Raises:
-        ValueError: Raised on data: episode or frame is missing, the schedule corrupts a missing
-            entry, or an error of ``corrupt_observation``.
+        ValueError: On data: episode or frame are missing, the schedule corrupts a missing entry, a
+            replay buffer meets a temporal fault, or as in ``corrupt_observation``.
     """
 
     def __init__(
@@ -61,13 +65,15 @@ class CorruptObservation(Transform):
         depth: NestedKey = DEPTH,
         sensor: DepthSensor | None = None,
         normalised: bool = False,
+        hfov: float | None = None,
     ) -> None:
         super().__init__(in_keys=[rgb, depth], out_keys=[rgb, depth])
         self.schedule, self.seed = schedule, seed
         self.entries = {RGB: rgb, DEPTH: depth, POSE: POSE}
         self.sensor = sensor or DepthSensor()
         self._normalised = normalised
-        self._corrupt_instant = corrupt_normalised if normalised else corrupt_observation
+        self._hfov = dict.fromkeys((RGB, DEPTH), hfov)
+        self._streams: dict[int, FrameStream] = {}  # by row
 
     def transform_observation_spec(self, observation_spec: Composite) -> Composite:
         """Return the spec; raise ValueError if normalised depth would be corrupted as metres."""
@@ -98,7 +104,16 @@ class CorruptObservation(Transform):
 
         The result is a new tensordict, because a buffer may return its storage. Other entries are
         shared with the input.
+
+        Raises:
+            ValueError: The corruption is a temporal fault.
         """
+        if isinstance(self.schedule, Corruption) and is_timed(self.schedule):
+            raise ValueError(
+                f"{self.schedule.name!r} depends on earlier frames, which a replay buffer does not "
+                "return in order. Put CorruptObservation into the environment "
+                "(TransformedEnv), and store its frames."
+            )
         out = self._corrupt(tensordict.copy())
         following = out.get("next", None)
         if following is not None and any(
@@ -123,8 +138,12 @@ class CorruptObservation(Transform):
             if not corruption.modalities:
                 continue
             instant = {entry: views[row] for entry, views in frames.items()}
-            result = self._corrupt_instant(instant, corruption, key, self.sensor)
-            for name in corruption.modalities:
+            if row not in self._streams:
+                self._streams[row] = FrameStream(
+                    self.sensor, normalised=self._normalised, hfov=self._hfov
+                )
+            result = self._streams[row].corrupt(instant, corruption, key)
+            for name in frames.keys() & {*corruption.modalities}:
                 corrupted.setdefault(name, frames[name].copy())[row] = result[name]
         for name, views in corrupted.items():
             value = stored[name]

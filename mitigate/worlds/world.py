@@ -20,14 +20,17 @@ from mitigate.core.observation import (
     DEPTH,
     FORWARD,
     LEFT,
+    RGB,
     RIGHT,
     TURN_DEGREES,
     Observation,
     Sensor,
 )
 from mitigate.core.spaces import ActionSpace
-from mitigate.corruptions import Corruption, DepthSensor, Schedule, corrupt_observation
+from mitigate.corruptions import Corruption, DepthSensor, FrameStream, Key, Schedule
+from mitigate.corruptions.faults.camera import Mount
 from mitigate.corruptions.schedule import drawn
+from mitigate.corruptions.stream import is_timed, mount_of, shows_past
 from mitigate.worlds.episodes import Episode
 
 MAX_MEDIAN_DEPTH = 100.0  # in metres (heuristic); the median of an indoor depth frame is smaller
@@ -118,6 +121,15 @@ class World:
         """Return the ground-truth labels of the current view, as arrays by name."""
         return {}
 
+    def displaced(self, mount: Mount) -> dict[str, np.ndarray] | None:
+        """Render the current instant with a displaced camera, for camera faults.
+
+        Returns:
+            The frames as in an observation; None if the world cannot. The frames of the
+            observation are then warped, which needs ``hfov`` of their sensors.
+        """
+        return None
+
     def remembering(self) -> AbstractContextManager:
         """Return a context manager that caches frames between the conditions of an episode.
 
@@ -174,7 +186,7 @@ class TrainingEpisodes(Protocol):
         """
 
 
-OPTIONAL = ("expert", "truth", "remembering", "draw", "action_space", "native")
+OPTIONAL = ("expert", "truth", "displaced", "remembering", "draw", "action_space", "native")
 
 
 def as_world(world: Any) -> World:
@@ -205,6 +217,10 @@ class WorldWrapper(World):
     def step(self, action: Any) -> Observation:
         return self._observe(self._inner.step(action))
 
+    def move(self, metres: float, degrees: float) -> Observation:
+        """Take a step as in ``worlds/motion.py``, if the world has ``move``."""
+        return self._observe(self._inner.move(metres, degrees))  # type: ignore[attr-defined]
+
     def measures(self) -> dict[str, float]:
         return self._inner.measures()
 
@@ -213,6 +229,9 @@ class WorldWrapper(World):
 
     def truth(self) -> Mapping[str, np.ndarray]:
         return self._inner.truth()
+
+    def displaced(self, mount: Mount) -> dict[str, np.ndarray] | None:
+        return self._inner.displaced(mount)
 
     def remembering(self) -> AbstractContextManager:
         return self._inner.remembering()
@@ -252,7 +271,8 @@ class Corrupted(WorldWrapper):
     """World whose frames are corrupted, by one corruption or by a schedule.
 
     Random numbers are keyed by seed, name, and index of the frame among those that were read. An
-    observation whose frames are never read is not counted. ``observation.clean`` is the clean
+    observation whose frames are never read is not counted. With a temporal fault it is the index of the step, and the frames are
+    rendered at every step if a later step may show them. ``observation.clean`` is the clean
     observation. Instructions are corrupted in ``evaluation/episode.py`` instead.
 
     Args:
@@ -270,14 +290,23 @@ class Corrupted(WorldWrapper):
         self.seed = seed
         self.name = name
         self.frames_read = 0
-        self.last: dict[str, np.ndarray] | None = None  # the corrupted frames of the last read
+        self.last: dict[str, np.ndarray] | None = None  # the corrupted frames that were read last
+        self._timed = isinstance(by, Corruption) and is_timed(by)
+        self._shows_past = isinstance(by, Corruption) and shows_past(by)
+        self._steps = 0
 
     def reset(self, episode: Episode) -> Observation:
-        """Start an episode and restart the count of frames."""
+        """Start an episode and restart the counts of frames and steps."""
         self.episode = episode
         self.frames_read = 0
         self.last = None
+        self._stream = FrameStream()
+        self._steps = 0
         return super().reset(episode)
+
+    def step(self, action: Any) -> Observation:
+        self._steps += 1
+        return super().step(action)
 
     def _observe(self, clean: Observation) -> Observation:
         if not isinstance(clean, Observation):
@@ -286,16 +315,35 @@ class Corrupted(WorldWrapper):
                 f"got {type(clean).__name__}. Return for example Observation({{'pose': pose}}, "
                 "lambda: {'rgb': rgb}, ('rgb',)) (docs/bring-your-own.md)."
             )
+        name = self.episode.episode_id if self.name is None else self.name
+        step = self._steps
+        if self._shows_past:
+            key = Key(self.seed, name, step)
+            self._stream.remember(self._displaced(clean, key) or clean, key)
 
         def corrupted() -> dict[str, np.ndarray]:
-            name = self.episode.episode_id if self.name is None else self.name
-            corruption, key = drawn(self.by, self.seed, name, self.frames_read)
+            number = step if self._timed else self.frames_read
+            corruption, key = drawn(self.by, self.seed, name, number)
             self.frames_read += 1
-            sensor = depth_sensor(self.world.sensors)
-            self.last = corrupt_observation(dict(clean), corruption, key, sensor)
+            frames = self._displaced(clean, key)
+            sensors = self.world.sensors
+            self._stream.sensor = depth_sensor(sensors)
+            self._stream.hfov = {n: sensors[n].hfov for n in {RGB, DEPTH}.intersection(sensors)}
+            self.last = self._stream.corrupt(
+                frames or clean, corruption, key, displaced=frames is not None
+            )
             return self.last
 
         return Observation(clean.ready, corrupted, clean.frames, clean=clean)
+
+    def _displaced(self, clean: Observation, key: Key) -> dict[str, Any] | None:
+        """Return the observation rendered with the camera fault, None without one.
+
+        None also if the world cannot render it.
+        """
+        mount = mount_of(self.by, key) if isinstance(self.by, Corruption) else None
+        frames = None if mount is None else self._inner.displaced(mount)
+        return None if frames is None else {**clean.ready, **frames}
 
 
 def depth_sensor(sensors: Mapping[str, Sensor]) -> DepthSensor:

@@ -22,10 +22,9 @@ from mitigate.core.observation import DEPTH, POSE, RGB
 from mitigate.corruptions import (
     Corruption,
     DepthSensor,
+    FrameStream,
     Key,
     Schedule,
-    corrupt_normalised,
-    corrupt_observation,
 )
 from mitigate.corruptions.normalised import check_sensor
 from mitigate.corruptions.schedule import drawn, names_of
@@ -45,10 +44,10 @@ class CorruptObservation(gymnasium.ObservationWrapper, gymnasium.utils.RecordCon
     separately.
 
     Episodes are named by the seed of ``reset(seed=n)`` and the number of resets since then: "n-0",
-    "n-1", ... Before the first seed, names are "unseeded-0" and so on. ``frame`` is the number of
-    steps since the reset. The pixels depend only on schedule, seed, reset seed, number of resets
-    and number of steps. If an environment resets itself (``gymnasium.wrappers.Autoreset``), the
-    step after the end of an episode counts as the reset.
+    "n-1", ...; before the first seed "unseeded-0" and so on. ``frame`` is the number of steps since
+    the reset. The pixels are a function of (schedule, seed, reset seed, resets, steps) only, and
+    under a temporal fault of the earlier frames of the episode. An environment that resets itself,
+    as in ``gymnasium.wrappers.Autoreset``, resets in the step after the end of an episode.
 
     Args:
         env: The environment.
@@ -61,6 +60,7 @@ class CorruptObservation(gymnasium.ObservationWrapper, gymnasium.utils.RecordCon
             The pose keeps a flare at its position in the world. None if there is no pose.
         sensor: Depth range, and value that marks missing depth.
         normalised: Whether depth is in [0, 1] over the sensor's range instead of in metres.
+        hfov: Horizontal field of view of the cameras in degrees, which camera faults need.
 
     Attributes:
         corruption: Corruption of the last frame.
@@ -82,6 +82,7 @@ class CorruptObservation(gymnasium.ObservationWrapper, gymnasium.utils.RecordCon
         pose: str | None = None,
         sensor: DepthSensor | None = None,
         normalised: bool = False,
+        hfov: float | None = None,
     ) -> None:
         gymnasium.utils.RecordConstructorArgs.__init__(
             self,
@@ -92,6 +93,7 @@ class CorruptObservation(gymnasium.ObservationWrapper, gymnasium.utils.RecordCon
             pose=pose,
             sensor=sensor,
             normalised=normalised,
+            hfov=hfov,
         )
         super().__init__(env)
         self.schedule, self.seed = schedule, seed
@@ -102,7 +104,8 @@ class CorruptObservation(gymnasium.ObservationWrapper, gymnasium.utils.RecordCon
         self._resets = 0
         self._frame = 0
         self._over = False
-        self._corrupt = corrupt_normalised if normalised else corrupt_observation
+        degrees = dict.fromkeys((RGB, DEPTH), hfov)
+        self._stream = FrameStream(self.sensor, normalised=normalised, hfov=degrees)
         # modality of an observation that is a single frame
         self._whole = _modality(env.observation_space)
         self._entries = {RGB: rgb, DEPTH: depth, **({} if pose is None else {POSE: pose})}
@@ -153,7 +156,7 @@ class CorruptObservation(gymnasium.ObservationWrapper, gymnasium.utils.RecordCon
         self.corruption, self.key = drawn(self.schedule, self.seed, self._episode, self._frame)
         parts = observation if self._whole is None else {self._whole: observation}
         frames = {name: parts[entry] for name, entry in self._entries.items() if entry in parts}
-        corrupted = self._corrupt(frames, self.corruption, self.key, self.sensor)
+        corrupted = self._stream.corrupt(frames, self.corruption, self.key)
         if self._whole is not None:
             return corrupted[self._whole]
         return {**observation, **{self._entries[name]: frame for name, frame in corrupted.items()}}

@@ -10,7 +10,7 @@ from gymnasium import spaces
 from torch import nn
 from torch.distributions import Categorical, Normal
 
-from mitigate.agents.policies import as_policy, copied, divergence, load_policy, mode
+from mitigate.agents.policies import as_policy, copied, divergence, imitation, load_policy, mode
 from mitigate.core import checkpoint
 from mitigate.worlds.gym import GymWorld
 from mitigate.worlds.seeded import seeded_episodes
@@ -215,6 +215,23 @@ def test_as_policy_rejects_objects_without_weights():
 def test_divergence_is_zero_only_for_equal_answers(make):
     assert float(divergence(make(0.0), make(0.0))) == 0
     assert float(divergence(make(0.0), make(1.0))) > 0.1
+
+
+def test_imitation_matters_where_the_teacher_is_undecided():
+    teacher = [Categorical(probs=torch.tensor([[0.51, 0.49]]))]
+    same = [Categorical(probs=torch.tensor([[0.51, 0.49]]))]
+    swapped = [Categorical(probs=torch.tensor([[0.49, 0.51]]))]
+    certain = [Categorical(probs=torch.tensor([[0.99, 0.01]]))]
+    assert float(divergence(teacher, swapped)) < 0.001
+    losses = [float(imitation(teacher, student)) for student in (certain, same, swapped)]
+    assert losses == sorted(losses)
+    assert losses[1] == pytest.approx(-np.log(0.51))
+
+
+def test_imitation_of_normals_is_the_relative_error_of_their_means():
+    teacher = [Normal(torch.tensor([[0.0], [2.0]]), 9.0)]
+    student = [Normal(torch.tensor([[1.0], [3.0]]), 1.0)]
+    assert float(imitation(teacher, student)) == pytest.approx(0.5)  # error 1, variance 2
 
 
 def test_divergence_of_normals_is_the_formula():

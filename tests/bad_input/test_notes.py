@@ -6,7 +6,6 @@ from mitigate.cluster import slurm_jobs
 from mitigate.core.json_files import read_object
 from mitigate.evaluation import provenance
 from mitigate.evaluation.episode_lists import keep_list_hash
-from mitigate.training import tables
 from mitigate.worlds import habitat_world
 
 NO_OBJECTS = ["null", "[]", '"x"', "3", "true", "", "{"]
@@ -39,15 +38,6 @@ def test_list_hash_rejects_a_damaged_hash(tmp_path, text):
     with pytest.raises(ValueError, match="must begin with a sha256"):
         keep_list_hash(tmp_path, "val", str(source))
     assert (tmp_path / "episodes-val.sha256").read_text() == text
-
-
-@pytest.mark.parametrize("text", [*NO_OBJECTS, '{"train": "x"}', '{"train": null}'])
-def test_add_cost_rejects_a_damaged_account(tmp_path, text):
-    file = tmp_path / "cost.json"
-    file.write_text(text)
-    with pytest.raises(ValueError, match=r"cost\.json"):
-        tables._add_cost(file, {"train": 1.0})
-    assert file.read_text() == text
 
 
 @pytest.mark.parametrize("text", NO_OBJECTS)

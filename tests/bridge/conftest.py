@@ -7,16 +7,21 @@ import subprocess
 import sys
 from dataclasses import dataclass
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 from omegaconf import OmegaConf
 
+from mitigate.bridge import program
+from mitigate.bridge import run as run_module
 from mitigate.bridge.condition import Condition, Words
 from mitigate.bridge.results import read
-from mitigate.bridge.run import run as run_command
 from mitigate.bridge.server import Listener
 from mitigate.core.conf import load_config
 from mitigate.corruptions import Corruption
+from mitigate.evaluation import plots
+
+from . import warm
 
 LAB = Path(__file__).parent / "lab"
 AGENT = f"{sys.executable} {LAB / 'agent.py'} {{out}}/seen"
@@ -37,15 +42,7 @@ def python(listener, code, *arguments):
     """Run code as a user's program."""
     environment = {**os.environ, **listener.environment()}
     environment["PYTHONPATH"] += os.pathsep + str(LAB)
-    return subprocess.run(
-        [sys.executable, "-c", code, *map(str, arguments)],
-        env=environment,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.STDOUT,
-        text=True,
-        timeout=30,
-        check=False,
-    )
+    return warm.run(["-c", code, *map(str, arguments)], environment, timeout=30)
 
 
 class CommandResult:
@@ -77,15 +74,20 @@ def command(tmp_path):
         with Listener(settings, folder, patience) as listener:
             variables = {**os.environ, **listener.environment(), "MITIGATE_TEST": "1"}
             variables["PYTHONPATH"] = os.pathsep.join([variables["PYTHONPATH"], str(LAB)])
-            process = subprocess.run(
-                [python, str(LAB / "agent.py"), str(folder / "seen"), *map(str, options)],
-                env={**variables, **environment},
-                stdout=subprocess.PIPE,
-                stderr=subprocess.STDOUT,
-                text=True,
-                timeout=60,
-                check=False,
-            )
+            variables.update(environment)
+            arguments = [str(LAB / "agent.py"), str(folder / "seen"), *map(str, options)]
+            if python == sys.executable:
+                process = warm.run(arguments, variables, timeout=60)
+            else:
+                process = subprocess.run(
+                    [python, *arguments],
+                    env=variables,
+                    stdout=subprocess.PIPE,
+                    stderr=subprocess.STDOUT,
+                    text=True,
+                    timeout=60,
+                    check=False,
+                )
         return CommandResult(process, folder, folder / "seen")
 
     return run
@@ -103,16 +105,29 @@ class RunResult:
         return int(bool(self.stderr))
 
 
+# Their tests start new interpreters, as a user's command does; others start forks.
+NEW_INTERPRETERS = {"test_run", "test_leftovers", "test_pythons"}
+
+
 @pytest.fixture
-def run(capsys, monkeypatch):
-    """Run a command as the command line does, in this process."""
+def run(request, capsys, monkeypatch):
+    """Run a command as the command line does, in this process, without drawing heat maps.
+
+    Tests of the report check those; a picture takes a third of the time of a short condition.
+    """
+    monkeypatch.setattr(plots, "heatmap", lambda section, path: path.touch())
+    monkeypatch.setattr(run_module, "PAUSE", 0.05)
+    if request.module.__name__.rpartition(".")[2] not in NEW_INTERPRETERS:
+        names = ("DEVNULL", "STDOUT", "TimeoutExpired")
+        used = {name: getattr(subprocess, name) for name in names}
+        monkeypatch.setattr(program, "subprocess", SimpleNamespace(Popen=warm.popen, **used))
 
     def call(out, options, command=AGENT, **environment):
         path = os.pathsep.join([str(LAB), environment.pop("PYTHONPATH", "")])
         monkeypatch.setenv("PYTHONPATH", path)
         problem = ""
         try:
-            run_command(config(f"out={out}", *options.split()), shlex.split(command))
+            run_module.run(config(f"out={out}", *options.split()), shlex.split(command))
         except ValueError as error:
             problem = str(error)
         return RunResult(capsys.readouterr().out, problem)

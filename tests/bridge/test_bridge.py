@@ -10,6 +10,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from mitigate.bridge.condition import Condition, Words
+from mitigate.bridge.connection import Connection
+from mitigate.core.observation import DEPTH, RGB
 from mitigate.corruptions import Corruption, Key
 from mitigate.worlds.habitat import corrupt_habitat
 
@@ -179,3 +182,29 @@ def test_hook_does_nothing_outside_a_run(tmp_path):
         check=True,
     )
     assert "mitigate" not in result.stdout
+
+
+def test_connection_keeps_frames_of_an_episode_across_calls(tmp_path):
+    """A program may take RGB and depth in separate calls, each with its own description."""
+    condition = Condition(Corruption("frame_delay", 0.4), 3, Words())
+    connection = Connection(None, condition, tmp_path, "token", tmp_path)
+    described = {
+        RGB: {"name": "rgb", "type": "rgb", "shape": [4, 4, 3], "dtype": "uint8"},
+        DEPTH: {"name": "depth", "type": "depth", "shape": [4, 4, 1], "dtype": "float32"},
+    }
+
+    def take(kind, number, call):
+        offsets = connection.on_spec({"cameras": [described[kind]]})["offsets"]
+        dtype = described[kind]["dtype"]
+        shape = described[kind]["shape"]
+        frame = np.frombuffer(
+            connection.shared.map, dtype, int(np.prod(shape)), offsets[kind]
+        ).reshape(shape)
+        frame[...] = number
+        connection.on_frame({"call": call})
+        return float(frame.flat[0])
+
+    for episode in ("7", "8"):  # the delay is 2 calls: the previous frame of the same sensor
+        connection.on_episode({"scene": "house.glb", "id": episode, "text": "Walk."})
+        shown = [(take(RGB, n, 2 * n), take(DEPTH, n + 0.5, 2 * n + 1)) for n in range(1, 6)]
+        assert shown == [(1, 1.5), (1, 1.5), (2, 2.5), (3, 3.5), (4, 4.5)]

@@ -106,7 +106,7 @@ def test_draw_sheet_draws_a_corrupted_call(monkeypatch):
     named = []
     rig = Rig([{"name": "left", "type": "rgb", "shape": [8, 8, 3], "dtype": "uint8"}])
 
-    def late(group, views, corruption, key, heading):
+    def late(group, views, corruption, key, heading, stream):
         return views + 1 if corruption.name == "spatter" and key.frame == 3 else views
 
     def note(axes, names, group, views):

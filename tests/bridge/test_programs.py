@@ -15,7 +15,6 @@ from mitigate.bridge.results import OWN, read, rows
 from mitigate.bridge.run import run as run_command
 from mitigate.bridge.server import Listener
 from mitigate.corruptions import Corruption, Key, corrupt
-from mitigate.encoders.loading import Wrapped
 from mitigate.worlds.measures import RULES
 from tests.encoders.test_token_adapters import shaken
 
@@ -182,60 +181,21 @@ def test_adapters_are_attached_to_an_encoder(tmp_path, monkeypatch):
         features("unclear", "Encoder")
 
 
-SCRIPTED = """
-import sys, torch, mitigate_hook
-from torch import nn
-class Encoder(nn.Module):
-    def __init__(self):
-        super().__init__()
-        self.model = torch.jit.load(sys.argv[1])
-    def forward(self, frames):
-        return self.model(frames)
-"""
-
-
-LOADING = "encoder.load_state_dict(torch.load(sys.argv[1], weights_only=True))\n"
-FRAMES = torch.full((1, 3, 9, 9), 90 / 255)
-
-
-def scripted(folder, program):
-    """A TorchScript convolution with saved adapters, and the same convolution of an agent."""
-    (folder / "their_encoder.py").write_text(SCRIPTED)
-    (folder / "program.py").write_text(program)
-    torch.manual_seed(0)
-    script = torch.jit.trace(nn.Conv2d(3, 8, 3).eval(), FRAMES)
-    wrapped = Wrapped(script).eval()
-    insert_adapters(wrapped, ["behind"], run=lambda n: wrapped(FRAMES.expand(n, -1, -1, -1)))
-    save_adapters(shaken(wrapped), folder / "adapters")
-    return script, wrapped
-
-
-def run_adapted(folder, place):
-    options = [f"out={folder / 'out'}", "conditions=[clean]"]
-    options += [f"adapters={folder / 'adapters'}:their_encoder:Encoder.{place}"]
-    command = [sys.executable, "program.py", "w.pt", "{out}/features.pt"]
-    run_command(config(*options), command)
-
-
 @pytest.mark.slow
-def test_adapters_wrap_a_torchscript_encoder(tmp_path, monkeypatch):
-    script, wrapped = scripted(tmp_path, PROGRAM.replace(LOADING, ""))
-    script.save(str(tmp_path / "w.pt"))
-    monkeypatch.chdir(tmp_path)
-    run_adapted(tmp_path, "model")
-    features = torch.load(tmp_path / "out/conditions/clean/features.pt", weights_only=True)
-    with torch.no_grad():
-        assert torch.equal(features, wrapped(FRAMES)) and not torch.equal(features, script(FRAMES))
-
-
-@pytest.mark.slow
-def test_adapters_stop_the_agent_inside_torchscript(tmp_path, monkeypatch):
-    """An agent that catches the error must not continue without adapters."""
+def test_adapters_that_do_not_fit_stop_an_agent_that_catches_errors(tmp_path, monkeypatch):
     call = "    features = encoder(torch.from_numpy(rgb).permute(2, 0, 1)[None] / 255)\n"
     assert call in PROGRAM
     again = f"    try:\n    {call}    except RuntimeError:\n    {call}"
-    script, _ = scripted(tmp_path, PROGRAM.replace(LOADING, "").replace(call, again))
-    torch.jit.trace(nn.Sequential(script), FRAMES).save(str(tmp_path / "w.pt"))
+    (tmp_path / "their_encoder.py").write_text(ENCODER)
+    (tmp_path / "program.py").write_text(PROGRAM.replace(call, again))
+    model = nn.Sequential(nn.Conv2d(3, 8, 3), nn.ReLU(), nn.Conv2d(8, 8, 3)).eval()
+    torch.save({f"model.{n}": t for n, t in model.state_dict().items()}, tmp_path / "w.pt")
+    frames = torch.full((1, 3, 9, 9), 90 / 255)
+    insert_adapters(model, ["2"], run=lambda n: model(frames.expand(n, -1, -1, -1)))
+    save_adapters(shaken(model), tmp_path / "adapters")
     monkeypatch.chdir(tmp_path)
-    with pytest.raises(ValueError, match="Encoder, which is TorchScript within TorchScript"):
-        run_adapted(tmp_path, "model.0")
+    options = [f"out={tmp_path / 'out'}", "conditions=[clean]"]
+    options += [f"adapters={tmp_path / 'adapters'}:their_encoder:Encoder.model.2"]
+    command = [sys.executable, "program.py", "w.pt", "{out}/features.pt"]
+    with pytest.raises(ValueError, match="the adapters do not fit Encoder"):
+        run_command(config(*options), command)

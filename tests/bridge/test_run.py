@@ -226,36 +226,6 @@ def test_run_rejects_invalid_options(run, tmp_path, options, words):
     assert words in run(tmp_path / "o", options).stderr
 
 
-def test_run_leaves_nothing_behind_when_terminated(tmp_path):
-    command = [
-        sys.executable,
-        "-m",
-        "mitigate",
-        "run",
-        f"out={tmp_path / 'o'}",
-        "conditions=[clean]",
-    ]
-    agent = [sys.executable, str(LAB / "agent.py"), str(tmp_path / "seen"), "--pause", "5"]
-    process = subprocess.Popen(
-        [*command, "--", *agent],
-        env={**os.environ, "PYTHONPATH": str(LAB)},
-        stdout=subprocess.PIPE,
-        stderr=subprocess.STDOUT,
-        text=True,
-    )
-    events = tmp_path / "o" / "conditions" / "clean" / "events.jsonl"
-    for _ in range(1200):  # a minute, because other work may use the cores
-        if events.is_file() and '"spec"' in events.read_text():
-            break
-        time.sleep(0.05)
-    pid = json.loads(events.read_text().splitlines()[0])["agent_pid"]
-    process.terminate()
-    process.communicate(timeout=20)
-    assert process.returncode == 143
-    with pytest.raises(ProcessLookupError):
-        os.kill(int(pid), 0)
-
-
 def test_run_skips_instruction_conditions_without_a_tokenizer(run, tmp_path):
     result = run(tmp_path / "o", "conditions=[capitalize,low_light,mask]", f"{AGENT} --tokens")
     assert result.returncode == 1 and "Without a tokenizer" in result.stderr
@@ -346,10 +316,10 @@ def test_run_says_how_to_resume_after_a_signal(tmp_path):
         if events.is_file():
             break
         time.sleep(0.05)
-    for _ in range(10):  # Python drops a signal that arrives during a fork, so it is sent again
+    for _ in range(3):  # Python drops a signal that arrives during a fork, so it is sent again
         process.send_signal(signal.SIGINT)
         try:
-            printed = process.communicate(timeout=4)[1]
+            printed = process.communicate(timeout=20)[1]
             break
         except subprocess.TimeoutExpired:
             continue
@@ -357,14 +327,13 @@ def test_run_says_how_to_resume_after_a_signal(tmp_path):
     assert f"suite=clean -- {shlex.join(agent)}" in printed
 
 
-def test_run_lists_the_launchers():
-    result = subprocess.run(
-        [sys.executable, "-m", "mitigate", "run", "launcher=foo", "--", "true"],
-        capture_output=True,
-        text=True,
-        check=False,
-    )
-    assert "Choose one of: local, ray, slurm." in result.stderr
+def test_run_lists_the_launchers(monkeypatch):
+    monkeypatch.setattr(sys, "argv", ["mitigate run", "launcher=foo", "--", "true"])
+    monkeypatch.delenv("HYDRA_FULL_ERROR", raising=False)
+    monkeypatch.setattr(run_module.signal, "signal", lambda *_: None)
+    monkeypatch.setattr(run_module, "_command", [])
+    with pytest.raises(SystemExit, match="Choose one of: local, ray, slurm."):
+        run_module.main()
 
 
 def test_run_prints_little_of_a_command_that_prints_much(run, tmp_path):

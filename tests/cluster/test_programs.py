@@ -53,9 +53,9 @@ def chain(folder: Path, name: str, deadly: bool = False, code: str = ROWS) -> pr
     )
 
 
-def run(chains, launcher, jobs=2) -> dict[int, programs.Outcome]:
+def run(chains, launcher, jobs=2) -> dict[int, str]:
     """Return the outcome of each chain, and check that each is reported once."""
-    results: dict[int, programs.Outcome] = {}
+    results: dict[int, str] = {}
 
     def reported(number, outcome):
         assert number not in results
@@ -66,12 +66,12 @@ def run(chains, launcher, jobs=2) -> dict[int, programs.Outcome]:
     return results
 
 
-def test_run_reports_cpu_seconds_of_each_chain(tmp_path):
+def test_run_runs_each_chain(tmp_path):
     result = [chain(tmp_path, name) for name in ("one", "two", "three")]
     results = run(result, LauncherConfig())
     assert sorted(results) == [0, 1, 2]
     for number, one in enumerate(result):
-        assert results[number].problem == "" and {*results[number].seconds} == {"train", "evaluate"}
+        assert results[number] == ""
         assert (tmp_path / one.name).read_text().split() == [*"abcd"]
         assert one.log.read_text() == "1\n"
 
@@ -81,8 +81,7 @@ def test_chain_resumes_after_its_worker_is_killed(kind, request, tmp_path):
     launcher = request.getfixturevalue(f"{kind}_launcher")
     result = [chain(tmp_path, "one", deadly=True), chain(tmp_path, "two")]
     results = run(result, launcher() if kind == "slurm" else launcher)
-    assert [results[n].problem for n in (0, 1)] == ["", ""]
-    assert all({*results[n].seconds} == {"train", "evaluate"} for n in (0, 1))
+    assert results == {0: "", 1: ""}
     assert (tmp_path / "died").exists()
     assert (tmp_path / "one").read_text().split() == [*"abcd"]  # the first program has also ended
 
@@ -90,8 +89,7 @@ def test_chain_resumes_after_its_worker_is_killed(kind, request, tmp_path):
 def test_failed_program_ends_only_its_chain(tmp_path):
     wrong = chain(tmp_path, "wrong", code="import sys; print('well'); sys.exit('no such recipe')")
     results = run([wrong, chain(tmp_path, "right")], LauncherConfig())
-    assert results[0].problem == "train ended with 1 (no such recipe)"
-    assert "evaluate" not in results[0].seconds and results[1].problem == ""
+    assert results == {0: "train ended with 1 (no such recipe)", 1: ""}
 
 
 SAVES = """
@@ -133,6 +131,6 @@ def test_chain_repeats_little_of_a_program_that_prints_much(tmp_path):
         "one", (("train", (sys.executable, "-c", code)),), tmp_path / "log", tmp_path
     )
     running = programs.Running(chain)
-    while (outcome := running.poll()) is None:
+    while (problem := running.poll()) is None:
         time.sleep(0.02)
-    assert outcome.problem.startswith("train ended with 3 (xxx") and len(outcome.problem) < 450
+    assert problem.startswith("train ended with 3 (xxx") and len(problem) < 450

@@ -52,9 +52,8 @@ def resolved(cfg: DictConfig) -> dict:
 def composed(path) -> dict:
     if len(path.parts) == 1:
         return resolved(conf.load_config(path.stem))
-    command = {"launcher": "evaluate", "table": "table1", "evaluations": "table2"}.get(
-        path.parts[0], "train"
-    )
+    commands = {"launcher": "evaluate", "suite": "evaluate", "table": "table1"}
+    command = {**commands, "evaluations": "table2"}.get(path.parts[0], "train")
     return resolved(conf.load_config(command, [f"{path.parent}={path.stem}"]))
 
 

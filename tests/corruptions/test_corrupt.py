@@ -343,8 +343,9 @@ def test_unit_too_small_for_the_range_is_rejected(run, tmp_path):
 def test_list_names_every_corruption(capsys):
     assert program.main(["--list"]) == 0
     lines = capsys.readouterr().out.splitlines()
-    assert [line.split()[0] for line in lines[1:]] == list(registry.known("rgb", "depth"))
-    assert all(len(line) <= 170 for line in lines)
+    listed = [*registry.known("rgb", "depth"), *registry.fault_names("temporal", "camera")]
+    assert [line.split()[0] for line in lines[1:]] == listed
+    assert all(len(line) <= 175 for line in lines)
 
 
 def test_help_names_every_option(capsys):

@@ -51,7 +51,7 @@ def slow_sample(levels, gain, severity, rng):
 @pytest.mark.parametrize("severity", [0.1, 0.3, 0.6, 0.8, 1.0])
 @pytest.mark.parametrize("level", [0, 12, 90, 220])
 def test_tables_match_the_slow_sampler(severity, level):
-    views = np.full((96, 64, 64, 3), level, np.uint8)
+    views = np.full((48, 64, 64, 3), level, np.uint8)
     key = Key(0, "a")
     slow = slow_sample(
         views,

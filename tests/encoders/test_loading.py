@@ -16,7 +16,7 @@ from omegaconf import OmegaConf
 from safetensors.torch import save_file
 
 from mitigate.encoders import loading
-from mitigate.encoders.loading import Wrapped, load_model, load_weights
+from mitigate.encoders.loading import load_model, load_weights
 from mitigate.encoders.model import Encoder, Transform
 from tests.encoders.shapes import TinyNet, tiny
 
@@ -203,19 +203,11 @@ def test_load_weights_reads_half_precision(tmp_path):
     assert result.stem.weight.dtype == torch.float32
 
 
-def test_torchscript_gets_outer_adapters(tmp_path):
-    torch.jit.trace(tiny().eval(), torch.randn(2, 3, 32, 32)).save(str(tmp_path / "net.ts"))
-    result = encoder(model=str(tmp_path / "net.ts"), output=None, adapters={"middle": 8})
-    assert isinstance(result.model, Wrapped)
-    expected = tiny().eval()(result.transform(FRAMES))
-    torch.testing.assert_close(result(FRAMES), expected)
-
-
-def test_torchscript_trains_with_tune_all(tmp_path):
-    torch.jit.trace(tiny().eval(), torch.randn(2, 3, 32, 32)).save(str(tmp_path / "net.pt"))
-    result = encoder(model=str(tmp_path / "net.pt"), output=None, tune="all")
-    result(FRAMES).sum().backward()
-    assert any(p.grad is not None for p in result.model.parameters())
+@pytest.mark.parametrize("name", ["net.ts", "net.pt"])
+def test_load_model_rejects_torchscript(tmp_path, name):
+    torch.jit.trace(tiny().eval(), torch.randn(2, 3, 32, 32)).save(str(tmp_path / name))
+    with pytest.raises(ValueError, match=r"must be an exported program .*torch\.export\.save"):
+        load_model(str(tmp_path / name))
 
 
 def test_exported_program_gets_inner_adapters(tmp_path):

@@ -19,7 +19,6 @@ from mitigate.agents.adapters import insert_adapters, load_adapters, save_adapte
 from mitigate.agents.fingerprint import contents, fingerprint
 from mitigate.core import folders
 from mitigate.encoders import plain_adapters
-from mitigate.encoders.loading import Wrapped
 from tests.encoders.test_token_adapters import ENCODERS, answer, shaken
 
 FILE = Path(plain_adapters.__file__)
@@ -41,18 +40,6 @@ def test_attach_equals_load_adapters(name, gate, tmp_path):
     with torch.no_grad():
         assert torch.equal(answer(other, frames), answer(model, frames))
     assert list(other.state_dict()) == list(state)
-
-
-def test_attach_wraps_a_torchscript(tmp_path):
-    frames = torch.randn(5, 3, 32, 32)
-    script = torch.jit.trace(nn.Sequential(nn.Conv2d(3, 8, 3, 2), nn.ReLU()).eval(), frames)
-    model = Wrapped(script)
-    insert_adapters(model, ["before", "behind"], run=lambda n: model(frames[:n]), middle=16)
-    save_adapters(shaken(model), tmp_path)
-    attached = plain_adapters.attach(script, tmp_path)
-    with torch.no_grad():
-        assert torch.equal(attached(frames), model(frames))
-        assert not torch.equal(attached(frames), script(frames))
 
 
 def saved(folder: Path, gate: bool = False) -> nn.Module:
@@ -139,13 +126,6 @@ def test_attach_rejects_a_second_call(tmp_path):
     model = plain_adapters.attach(saved(tmp_path), tmp_path)
     with pytest.raises(ValueError, match="has adapters already"):
         plain_adapters.attach(model, tmp_path)
-    script = torch.jit.trace(nn.Conv2d(3, 3, 1), torch.randn(2, 3, 8, 8))
-    wrapped = Wrapped(script)
-    insert_adapters(wrapped, ["before"], run=lambda n: wrapped(torch.randn(n, 3, 8, 8)))
-    save_adapters(wrapped, tmp_path / "script")
-    attached = plain_adapters.attach(script, tmp_path / "script")
-    with pytest.raises(ValueError, match="has adapters already"):
-        plain_adapters.attach(attached, tmp_path / "script")
 
 
 @pytest.mark.parametrize(("name", "value"), [("kind", "x"), ("gate", 1)])

@@ -124,36 +124,13 @@ def test_training_writes_a_folder_for_plain_torch(tmp_path, pictures, capsys):
     assert sum(p.abs().sum() for p in adapter_parameters(again.model)) > 0
 
 
-def test_training_of_a_torchscript_file(tmp_path, pictures):
-    torch.jit.trace(tiny().eval(), torch.randn(2, 3, 32, 32)).save(str(tmp_path / "net.ts"))
-    settings = ["agent=encoder", f"agent.model={tmp_path / 'net.ts'}", "agent.adapters.middle=8"]
-    cfg = config(tmp_path, pictures, *settings, "evaluation.enabled=false")
-    out = train.run(cfg)
-    script = torch.jit.load(str(tmp_path / "net.ts"))
-    again = build(cfg.agent)
-    again.load(out / "agent")
-    frames = torch.randint(0, 256, (3, 32, 32, 3), dtype=torch.uint8)
-    attached = plain_adapters.attach(script, out / "agent")
-    with torch.no_grad():
-        assert torch.equal(attached(again.transform(frames)), again.eval()(frames))
-
-
-def saved_network(kind: str, path) -> str:
-    """Write the tiny network to a file, with "ts" as a traced program, with "pt2" as an exported
-    program with dynamic batch size."""
-    file, frames = str(path / f"net.{kind}"), torch.randn(2, 3, 32, 32)
-    if kind == "ts":
-        torch.jit.trace(tiny().eval(), frames).save(file)
-        return file
-    shapes = ({0: torch.export.Dim("n")},)
-    torch.export.save(torch.export.export(tiny().eval(), (frames,), dynamic_shapes=shapes), file)
-    return file
-
-
-@pytest.mark.parametrize(("kind", "tune"), [("ts", "all"), ("pt2", "all"), ("pt2", "adapters")])
-def test_training_of_a_file_with_a_network(tmp_path, pictures, kind, tune):
+@pytest.mark.parametrize("tune", ["all", "adapters"])
+def test_training_of_an_exported_program(tmp_path, pictures, tune):
     adapters = {"targets": [r"blocks\.\d"]} if tune == "adapters" else None
-    net = saved_network(kind, tmp_path)
+    net = str(tmp_path / "net.pt2")
+    shapes = ({0: torch.export.Dim("n")},)
+    frames = torch.randn(2, 3, 32, 32)
+    torch.export.save(torch.export.export(tiny().eval(), (frames,), dynamic_shapes=shapes), net)
     encoder = result(model=net, tune=tune, adapters=adapters, output=None)
     before = {name: value.clone() for name, value in encoder.state_dict().items()}
     recipe = recipe_of(encoder, pictures)

@@ -143,9 +143,9 @@ def test_progress_counts_one_rollout_per_condition(tmp_path, capsys):
     options = {"name": "test", "out": tmp_path / "rows.jsonl", "split": "val_seen"}
     evaluate(Straight(1), partial(Won, SIZE), episodes, met, **options)
     printed = capsys.readouterr().out
-    assert "test, val_seen: 2 walks" in printed and "walk 2/2, done in" in printed
+    assert "test, val_seen: 2 episodes" in printed and "episode 2/2, done in" in printed
     evaluate(Straight(1), partial(Won, SIZE), episodes, [*met, Corruption("flare", 0.3)], **options)
-    assert "3 walks, 2 already done" in capsys.readouterr().out
+    assert "3 episodes, 2 already done" in capsys.readouterr().out
 
 
 def test_corruptions_change_what_the_agent_does(finished):

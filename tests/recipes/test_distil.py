@@ -171,8 +171,15 @@ def test_policy_kl_is_zero_for_equal_policies_and_ignores_masks():
     assert torch.isfinite(student.grad).all()
 
 
-@pytest.mark.parametrize("modality", ["rgb", "depth"])
-@pytest.mark.parametrize("kind", ["views", "adapters"])
+@pytest.mark.parametrize(
+    ("kind", "modality"),
+    [
+        ("views", "rgb"),
+        ("adapters", "depth"),
+        pytest.param("views", "depth", marks=pytest.mark.slow),
+        pytest.param("adapters", "rgb", marks=pytest.mark.slow),
+    ],
+)
 def test_resumed_run_ends_with_the_same_bits(kind, modality, teacher, tmp_path):
     def output():
         if kind == "views":

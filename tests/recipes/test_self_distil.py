@@ -5,9 +5,9 @@ import pytest
 import torch
 from torch import nn
 
-from mitigate.agents.policies import as_policy
+from mitigate.agents.policies import as_policy, last_convolution
 from mitigate.corruptions import Schedule
-from mitigate.recipes.self_distil import SelfDistil, last_convolution
+from mitigate.recipes.self_distil import SelfDistil
 from mitigate.shipping.harden import _Training
 from mitigate.worlds.gym import GymWorld
 from tests.shipping.test_harden import Lights, Net
@@ -24,13 +24,15 @@ def objective(tmp_path, schedule=None, net=None, recurrent=False, **options):
 def test_self_distil_loss_is_zero_for_clean_frames(tmp_path):
     task = objective(tmp_path, Schedule("clean", 0.0), curriculum=False)
     values = task(task.batch(0))
+    imitation = values.pop("imitation").item()  # cross-entropy of the policy with its own actions
+    assert values.pop("loss").item() == pytest.approx(imitation)
     assert {name: value.item() for name, value in values.items()} == dict.fromkeys(values, 0.0)
 
 
 def test_self_distil_loss_is_positive_for_corrupted_frames(tmp_path):
     task = objective(tmp_path, Schedule("per_frame", 1.0, names=("black_out",), clean_share=0.0))
     values = task(task.batch(90))
-    assert float(values["policy"]) > 0 and float(values["feat"]) > 0
+    assert values["policy"].item() > 0 and values["feat"].item() > 0
 
 
 def test_self_distil_batch_depends_on_seed_and_step_alone(tmp_path):

@@ -276,6 +276,30 @@ def test_interrupted_command_prints_how_to_repeat_it(
     assert status == 130 and f"SIGINT: stopped. {advice}: {command}\n" in errors
 
 
+def test_export_drive_writes_a_lerobot_dataset(tmp_path):
+    pytest.importorskip("pyarrow", reason="needs pyarrow: pip install -e '.[lerobot]'")
+    pytest.importorskip("av", reason="needs av: pip install -e '.[lerobot]'")
+    options = ["form=lerobot", "env.size=16", "episodes=2"]
+    config = OmegaConf.to_object(load_config("export_drive", options))
+    export_drive.run(config, tmp_path / "drives")
+    frames = OmegaConf.to_object(load_config("export_drive", ["env.size=16", "episodes=2"]))
+    folders = export_drive.run(frames, tmp_path / "frames")
+    episodes = open_recording(tmp_path / "drives")
+    for drive, folder in zip(episodes, folders, strict=True):
+        (expected,) = open_recording(folder)
+        assert drive.instruction == expected.instruction
+        assert np.allclose(drive.signals["observation.state"], expected.poses, atol=1e-5)
+        assert drive.signals["action"][-1] == STOP
+        every = range(len(drive.times))
+        for one, two in zip(drive.frames(every), expected.frames(every), strict=True):
+            assert np.array_equal(one["observation.images.front"], two[RGB])
+            metres = one["observation.images.front_depth"]
+            farthest = 10  # metres, of lerobot's codes
+            assert np.allclose(metres, np.minimum(two[DEPTH], farthest), atol=3e-3)
+    with pytest.raises(ValueError, match="must be a new or an empty folder"):
+        export_drive.run(config, tmp_path / "drives")
+
+
 @pytest.mark.parametrize("form", ["frames", "bag", "mcap"])
 def test_export_drive_makes_safe_paths_and_whole_drives(tmp_path, form, monkeypatch):
     options = [f"form={form}", "env.size=16", "episodes=2"]

@@ -10,6 +10,7 @@ from torch import nn
 import mitigate
 from mitigate.agents.policies import as_policy
 from mitigate.core import checkpoint
+from mitigate.recipes.ppo import Ppo
 from mitigate.recipes.self_distil import SelfDistil
 from mitigate.worlds.gym import GymWorld
 from mitigate.worlds.seeded import seeded_episodes
@@ -117,12 +118,17 @@ def test_harden_writes_weights_that_load_policy_restores(tmp_path):
     assert checkpoint.weights_sha(loaded) == checkpoint.weights_sha(result.policy)
 
 
-@pytest.mark.parametrize("tune", ["all", "adapters"])
-def test_harden_resumes_to_the_same_bits(tmp_path, tune, monkeypatch):
-    whole = mitigate.harden(
-        trained(), world, listed=FEW, tune=tune, out=tmp_path / "whole", **SHORT
-    )
-    forward, calls = SelfDistil.forward, []
+PPO = {"method": "ppo", "steps": 6, "rollout": 15, "epochs": 2, "batch": 7}
+PPO |= {"suite": ["low_light", "spatter"], "critic_rounds": 0}
+
+
+@pytest.mark.parametrize(
+    ("kind", "options"),
+    [(SelfDistil, SHORT), (SelfDistil, SHORT | {"tune": "adapters"}), (Ppo, PPO)],
+)
+def test_harden_resumes_to_the_same_bits(tmp_path, kind, options, monkeypatch):
+    whole = mitigate.harden(trained(), world, listed=FEW, out=tmp_path / "whole", **options)
+    forward, calls = kind.forward, []
 
     def interrupted(self, batch):
         calls.append(1)
@@ -130,12 +136,10 @@ def test_harden_resumes_to_the_same_bits(tmp_path, tune, monkeypatch):
             raise KeyboardInterrupt
         return forward(self, batch)
 
-    monkeypatch.setattr(SelfDistil, "forward", interrupted)
+    monkeypatch.setattr(kind, "forward", interrupted)
     with pytest.raises(KeyboardInterrupt):
-        mitigate.harden(trained(), world, listed=FEW, tune=tune, out=tmp_path / "cut", **SHORT)
-    resumed = mitigate.harden(
-        trained(), world, listed=FEW, tune=tune, out=tmp_path / "cut", **SHORT
-    )
+        mitigate.harden(trained(), world, listed=FEW, out=tmp_path / "cut", **options)
+    resumed = mitigate.harden(trained(), world, listed=FEW, out=tmp_path / "cut", **options)
     assert len(calls) > 5
     assert checkpoint.weights_sha(resumed.policy) == checkpoint.weights_sha(whole.policy)
     assert [r["success"] for r in resumed.rows] == [r["success"] for r in whole.rows]
@@ -149,6 +153,15 @@ def test_harden_with_adapters_leaves_the_policy_frozen(tmp_path):
     loaded = mitigate.load_policy(trained(), tmp_path / "agent")
     frames = torch.from_numpy(np.stack([Lights().reset(seed=s)[0] for s in range(4)]))
     assert torch.equal(loaded(frames), result.policy(frames))
+
+
+def test_harden_with_ppo_and_adapters_leaves_the_policy_frozen(tmp_path):
+    net = trained()
+    options = PPO | {"tune": "adapters", "schedule": "per_frame"}
+    result = mitigate.harden(net, world, listed=FEW, out=tmp_path, **options)
+    for name, value in net.state_dict().items():
+        assert torch.equal(result.policy.state_dict()[name], value)
+    assert len(result.policy.state_dict()) > len(net.state_dict())
 
 
 def test_harden_continuous_policy_reports_the_return(tmp_path):
@@ -185,6 +198,9 @@ def test_harden_stops_before_training_without_skill(tmp_path, continuous):
         ({"world": Lights}, "not a world"),
         ({"training": seeded_episodes([2, 3, 9])}, "share 2 episodes"),
         ({"w_policy": -1}, "w_policy"),
+        ({"method": "a2c"}, "self_distil, ppo"),
+        ({"schedule": "per_day"}, "per_episode, per_frame"),
+        ({"method": "ppo"}, "'episodes'.*rollout, epochs"),
     ],
 )
 def test_harden_rejects_arguments_before_any_episode(tmp_path, options, message):

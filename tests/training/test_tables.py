@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-import json
-import sys
 from collections.abc import Collection
 from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
-from mitigate.cluster import programs
 from mitigate.core import conf
 from mitigate.corruptions import DEPTH, RGB
 from mitigate.evaluation import plots, rows, trajectories
@@ -204,54 +201,15 @@ def test_table1_columns_are_agents_or_trainings(table, split, suite):
             assert node.env.split == split, "an agent that follows no routes"
 
 
-def test_report_has_pooled_seeds_costs_and_paper_figures(tmp_path, quick):
+def test_report_has_pooled_seeds_and_paper_figures(tmp_path, quick):
     cfg = config(tmp_path)
     finished(cfg)
     report = tables.make_table(cfg).read_text(encoding="utf-8")
     lines = {line.split(" | ")[0].strip("| "): line for line in report.splitlines()}
     assert lines["Corruption"] == "| Corruption | base | da_per_frame |"
-    # the value 52 in the paper for per-frame augmentation
-    assert "40.0 (52)" in lines["Motion blur"]
-    assert lines["CPU minutes, train"] == "| CPU minutes, train | 0.0 | 0.0 |"
+    assert "40.0 (52)" in lines["Motion blur"]  # the paper's 52 for per-frame augmentation
     assert lines["Seeds"] == "| Seeds | 0 1 | 0 1 |"
     assert lines["Clean SR"] == "| Clean SR | 70.0 | 70.0 |"  # 80 and 60
-    costs = sorted(tmp_path.glob("cells/*/cost.json"))
-    assert len(costs) == len(tables.cells(cfg))
-    first = json.loads(costs[0].read_text())["train"]
-    tables.make_table(cfg)
-    assert json.loads(costs[0].read_text())["train"] >= first > 0
-
-
-def test_program_without_work_costs_nothing(tmp_path, monkeypatch):
-    cell = tables.cells(config(tmp_path, seeds=[0]))[-1]
-    left = {
-        "train": cell.folder / "run" / "imitation" / "step-00000001.pt",
-        "evaluate": cell.evaluation / "rows.jsonl",
-    }
-    todo = {*left, "evaluate more"}  # the last cell fails and writes no rows
-    add = "import sys; open(sys.argv[1], 'a').write('x')"
-
-    def chain(self, cfg):
-        words = {kind: (add, str(left.get(kind, tmp_path / "other"))) for kind in todo}
-        kinds = ("train", "evaluate", "evaluate more")
-        output = ((kind, (sys.executable, "-c", *words.get(kind, ("pass",)))) for kind in kinds)
-        return programs.Chain("mine", tuple(output), self.folder / "log.txt", Path.cwd())
-
-    def cost() -> dict[str, float]:
-        assert tables.make([cell], config(tmp_path)) == []
-        return json.loads((cell.folder / "cost.json").read_text(encoding="utf-8"))
-
-    for path in left.values():
-        path.parent.mkdir(parents=True)
-    monkeypatch.setattr(tables.Cell, "chain", chain)
-    first = cost()
-    assert first.keys() == {"train", "evaluate", "evaluate more"}
-    todo = {"evaluate"}
-    second = cost()
-    assert second["train"] == first["train"] and second["evaluate"] > first["evaluate"]
-    todo = set()
-    third = cost()
-    assert (third["train"], third["evaluate"]) == (second["train"], second["evaluate"])
 
 
 def test_report_can_be_rebuilt_from_rows_only(tmp_path, quick):

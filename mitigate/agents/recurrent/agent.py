@@ -20,7 +20,14 @@ from torch import Tensor, nn
 from mitigate.agents import observation as checked
 from mitigate.agents import schema
 from mitigate.agents.adapters import insert_adapters
-from mitigate.agents.agent import Output, SideBySide, check_logits, check_started, stop_figures
+from mitigate.agents.agent import (
+    Output,
+    SideBySide,
+    check_logits,
+    check_started,
+    entropy_of,
+    stop_figures,
+)
 from mitigate.agents.encoders import (
     LABEL_LOSSES,
     LABELS,
@@ -53,11 +60,15 @@ POLICY = {  # allowed values of the keyword arguments of ``Policy``
 
 @dataclass
 class Walk:
-    """The memory of one episode holds its text, the state of the policy, and odometry."""
+    """The memory of one episode holds its text, the state of the policy, and odometry.
+
+    ``before`` holds the state and the motion before the last decision.
+    """
 
     text: Text
     state: State
     odometer: Odometer
+    before: tuple[State, np.ndarray] | None = None
 
 
 class RecurrentAgent(SideBySide, nn.Module):
@@ -300,13 +311,15 @@ class RecurrentAgent(SideBySide, nn.Module):
             for name in self.sensors
         }
         columns = self.policy.look(self._encode(frames))
-        moves = torch.from_numpy(np.stack([walk.odometer.moves() for walk in memories]))
+        motions = [walk.odometer.moves() for walk in memories]
+        moves = torch.from_numpy(np.stack(motions))
         text = Text(*map(torch.cat, zip(*(walk.text for walk in memories), strict=True)))
         state = State.join([walk.state for walk in memories])
         state = self.policy.step(text, columns, moves.to(self.device), state)
         logits = check_logits(self.policy.answer(state.hidden), self)
         actions = logits.argmax(-1).tolist()[:count]
         for row, (walk, action) in enumerate(zip(memories, actions, strict=False)):
+            walk.before = walk.state, motions[row]
             walk.state = state.rows(torch.tensor([row], device=self.device))
             walk.odometer.add(action)
         return actions
@@ -323,6 +336,25 @@ class RecurrentAgent(SideBySide, nn.Module):
         """
         check_started(self._walk is not None)
         return self.answers([observation], [self._walk], 1)[0]  # type: ignore[list-item]
+
+    def entropy(self, observation: Mapping[str, np.ndarray]) -> Tensor:
+        """Return the entropy of the last decision, with gradients (``KnowsEntropy``)."""
+        walk = self._walk
+        assert walk is not None and walk.before is not None, "act first"
+        frames = {
+            name: torch.from_numpy(np.array(checked.frame(observation, name, 1)))[None]
+            for name in self.sensors
+        }
+        on = {name: frame.to(self.device) for name, frame in frames.items()}
+        columns = self.policy.look(self._perceive(on, {})[0])
+        before, motion = walk.before
+        # copies, because tensors of inference mode have no gradients
+        text = Text(*(part.clone() for part in walk.text))
+        state = State(*(part.clone() for part in vars(before).values()))
+        moves = torch.from_numpy(motion)[None].to(self.device)
+        return entropy_of(
+            self.policy.answer(self.policy.step(text, columns, moves, state).hidden)[0]
+        )
 
     def taken(self, action: int, metres: float, radians: float) -> None:
         """Replace the last action in the odometry by a motion that the agent did not choose."""

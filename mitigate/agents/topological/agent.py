@@ -21,7 +21,14 @@ from torch import Tensor, nn
 from mitigate.agents import observation as checked
 from mitigate.agents import schema
 from mitigate.agents.adapters import insert_adapters
-from mitigate.agents.agent import Agent, Output, check_logits, check_started, stop_figures
+from mitigate.agents.agent import (
+    Agent,
+    Output,
+    check_logits,
+    check_started,
+    entropy_of,
+    stop_figures,
+)
 from mitigate.agents.controller import Controller
 from mitigate.agents.encoders import (
     LABELS,
@@ -35,7 +42,7 @@ from mitigate.agents.encoders import (
     presence_loss,
 )
 from mitigate.agents.text import THINGS, Vocabulary, pad
-from mitigate.agents.topological.mapping import TopologicalMap
+from mitigate.agents.topological.mapping import Decision, TopologicalMap
 from mitigate.agents.topological.perception import ImageNetEncoder, WaypointHead, select
 from mitigate.agents.topological.planner import Planner, collate
 from mitigate.agents.topological.rollout import LiveWalk, MapDecisions, Piece, join, roll_out
@@ -372,12 +379,26 @@ class TopologicalAgent(Agent, nn.Module):
                 dtype, shape or unit.
         """
         check_started(self._started)
+        self._decided: Decision | None = None  # the last decision of this call
         action = self.controller.action(checked.pose(observation))
         while action is None:
             if self._final or not self._decide(observation):
                 return STOP
             action = self.controller.action(checked.pose(observation))
         return action
+
+    def entropy(self, observation: Mapping[str, np.ndarray]) -> Tensor | None:
+        """Return the entropy of the last decision, with gradients (``KnowsEntropy``)."""
+        if self._decided is None:
+            return None
+        rgb, depth = (torch.from_numpy(np.array(f))[None] for f in checked.frames(observation))
+        views = self.perceive(rgb.to(self.device), depth.to(self.device))[0]
+        # copies, because tensors of inference mode have no gradients
+        earlier = [view.clone() for view in self._views[:-1]]
+        text = tuple(part.clone() for part in self._text)
+        batch = collate([self._decided], [0], [0]).to(self.device)
+        tokens = torch.cat([*earlier, self.planner.look(views)])
+        return entropy_of(self.planner(text, tokens, batch)["logits"][0])
 
     def taken(self, action: int, metres: float, radians: float) -> None:
         """Discard the route after a motion that the agent did not choose, and decide at the next
@@ -402,7 +423,7 @@ class TopologicalAgent(Agent, nn.Module):
             self.map.arrive(self._chosen)
             self._chosen = None
         self.map.add(pose, waypoints)
-        decision = self.map.decision(pose)
+        decision = self._decided = self.map.decision(pose)
         logits = self.planner(
             self._text, torch.cat(self._views), collate([decision], [0], [0]).to(self.device)
         )["logits"][0]

@@ -967,7 +967,7 @@ def _make_adapter_wrapper(folder, file, path):
 
 
 def _attach_adapters(encoder, folder, file, path):
-    owner, module = None, encoder
+    module = encoder
     for name in filter(None, path.split(".")):
         inner = _get(module, name)
         if inner is None:
@@ -976,30 +976,15 @@ def _attach_adapters(encoder, folder, file, path):
                 f"adapters= names {path} in {type(encoder).__name__}, but there is no {name}: its "
                 f"modules there are {children}."
             )
-        owner, module = (module, name), inner
+        module = inner
     spec = importlib.util.spec_from_file_location("mitigate_plain_adapters", file)
     plain_adapters = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(plain_adapters)
     half = any(str(p.dtype).endswith("16") for p in module.parameters())
     try:
-        adapted = plain_adapters.attach(module, folder, check=not half)
+        plain_adapters.attach(module, folder, check=not half)
     except (ValueError, OSError) as error:
         stop(f"the adapters do not fit {type(encoder).__name__}: {error}")
-    if adapted is not module:  # a wrapper is used because TorchScript modules support no hooks
-        if owner is None:
-            stop(
-                f"{type(encoder).__name__} itself is TorchScript, which takes no adapters in "
-                "place. Let adapters= name the attribute that holds it, "
-                "FOLDER:module:Class.attribute."
-            )
-        try:
-            setattr(*owner, adapted)
-        except RuntimeError as error:
-            stop(
-                f"adapters= names {path} in {type(encoder).__name__}, which is TorchScript within "
-                f"TorchScript and cannot be wrapped ({error}). Name the module that holds all of "
-                "it, and train adapters for that module."
-            )
     Channel().ask("adapted", module=f"{type(encoder).__name__}.{path}")
 
 

@@ -8,6 +8,7 @@ depth.
 
 from __future__ import annotations
 
+import math
 import weakref
 from collections import OrderedDict
 from collections.abc import Iterable
@@ -19,11 +20,13 @@ from numba import njit
 
 from mitigate.core.observation import HFOV_DEGREES, VIEW_STEP_DEGREES, VIEWS
 from mitigate.core.signals import uninterrupted
+from mitigate.corruptions.faults.camera import Mount
 from mitigate.worlds.apartments.apartment import Apartment
 from mitigate.worlds.apartments.faces import Faces, texture_coordinates
 from mitigate.worlds.apartments.palette import PATTERNS, TEXTURE_PIXELS, texture
 
 EYE = 1.25  # camera height, metres (VLN-CE)
+LEVEL = Mount()
 FARTHEST = 17.0  # far distance in metres, longer than any line through an apartment
 LEAST = 4  # minimum size of a view in pixels (heuristic)
 # number of cached scenes per renderer (heuristic); each takes 0.35 MB and 6 ms to build
@@ -87,6 +90,8 @@ class Renderer:
         self.buffer.set_clear_color((0, 0, 0, 1))
         self.textures = [self._texture(pattern) for pattern in PATTERNS]
         self.regions: list[list[Any]] = []  # one list for the RGB views and one for the id views
+        self.lenses: list[Any] = []
+        self.hfov = HFOV_DEGREES  # of all lenses
         self.rig_rgb, self.rig_ids = self._rig(0), self._rig(1)
         self.scenes: OrderedDict[int, tuple[Any, Any, Faces]] = OrderedDict()
         self.capacity, self.current = scenes, -1
@@ -113,6 +118,7 @@ class Renderer:
         *,
         views: Iterable[int] = range(VIEWS),
         rgb: bool = True,
+        mount: Mount = LEVEL,
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Render the current scene at a pose.
 
@@ -122,13 +128,20 @@ class Renderer:
             views: views to draw; all other views are 0, and -1 in ids. The pixels of drawn views do
                 not depend on this.
             rgb: whether to draw colours; otherwise rgb is 0.
+            mount: displacement of the cameras.
 
         Returns:
             rgb uint8 [12, S, S, 3], depth float32 metres [12, S, S, 1], ids int32 [12, S, S].
         """
+        eye = EYE + mount.height
         for rig in (self.rig_rgb, self.rig_ids):
-            rig.set_pos(x, y, EYE)
-            rig.set_h(np.degrees(heading))
+            rig.set_pos(x, y, eye)
+            rig.set_hpr(np.degrees(heading) + mount.yaw, mount.pitch, mount.roll)
+        hfov = mount.hfov(HFOV_DEGREES)
+        if hfov != self.hfov:
+            for lens in self.lenses:
+                lens.set_fov(hfov, hfov)
+            self.hfov = hfov
         is_drawn = np.zeros(VIEWS, np.bool_)
         is_drawn[list(views)] = True
         for layer, drawn in zip(self.regions, (is_drawn & rgb, is_drawn), strict=True):
@@ -140,7 +153,9 @@ class Renderer:
         raw = np.frombuffer(self.image.get_ram_image(), np.uint8)
         frame = raw.reshape(2 * _ROWS * self.size, _COLUMNS * self.size, 4)
         plane = self.faces.plane
-        return _split(frame, self.size, plane, x, y, EYE, heading, _NEAR, is_drawn, rgb)
+        edge = 1.0 if hfov == HFOV_DEGREES else math.tan(math.radians(hfov) / 2)
+        turn = _turn(mount, heading)
+        return _split(frame, self.size, plane, x, y, eye, heading, turn, edge, _NEAR, is_drawn, rgb)
 
     def _rig(self, layer: int) -> Any:
         core = self.core
@@ -150,6 +165,7 @@ class Renderer:
             lens = core.PerspectiveLens()
             lens.set_fov(HFOV_DEGREES, HFOV_DEGREES)
             lens.set_near_far(_NEAR, 40.0)
+            self.lenses.append(lens)
             camera = rig.attach_new_node(core.Camera(f"view{k}", lens))
             camera.set_h(-VIEW_STEP_DEGREES * k)
             column, row = k % _COLUMNS, layer * _ROWS + k // _COLUMNS
@@ -251,10 +267,30 @@ def _id_colours(ids: np.ndarray) -> np.ndarray:
     return (digits * 8 + 4).astype(np.float32) / 255
 
 
+def _turn(mount: Mount, heading: float) -> np.ndarray:
+    """Return the rotation [3, 3] of the directions of a level rig in the plan frame."""
+    if (mount.pitch, mount.roll, mount.yaw) == (0.0, 0.0, 0.0):
+        return np.eye(3)
+    cos, sin = math.cos(heading), math.sin(heading)
+    level = np.array([[cos, -sin, 0.0], [sin, cos, 0.0], [0.0, 0.0, 1.0]])
+    return level @ mount.rotation() @ level.T
+
+
+@njit(inline="always")
+def _turned(turn, x, y, z):
+    return (
+        turn[0, 0] * x + turn[0, 1] * y + turn[0, 2] * z,
+        turn[1, 0] * x + turn[1, 1] * y + turn[1, 2] * z,
+        turn[2, 0] * x + turn[2, 1] * y + turn[2, 2] * z,
+    )
+
+
 @njit(cache=True)
-def _split(frame, size, plane, x, y, z, heading, near, is_drawn, colours):
-    """Split bottom-up BGRA tiles into views (ids are in the upper half), and compute depth per
-    ray."""
+def _split(frame, size, plane, x, y, z, heading, turn, edge, near, is_drawn, colours):
+    """Split bottom-up BGRA tiles into views; ids are in the upper half; compute depth per ray.
+
+    ``turn`` rotates the level views, and ``edge`` is the tangent of half the field of view.
+    """
     rgb = np.zeros((12, size, size, 3), np.uint8)
     depth = np.zeros((12, size, size, 1), np.float32)
     ids = np.full((12, size, size), -1, np.int32)
@@ -262,13 +298,15 @@ def _split(frame, size, plane, x, y, z, heading, near, is_drawn, colours):
         if not is_drawn[k]:
             continue
         angle = heading - k * np.pi / 6
-        fx, fy, rx, ry = -np.sin(angle), np.cos(angle), np.cos(angle), np.sin(angle)
+        fx, fy, fz = _turned(turn, -np.sin(angle), np.cos(angle), 0.0)
+        rx, ry, rz = _turned(turn, np.cos(angle), np.sin(angle), 0.0)
+        ux, uy, uz = _turned(turn, 0.0, 0.0, 1.0)
         row0, column0 = (k // 4) * size, (k % 4) * size
         for i in range(size):
-            up = 1 - (2 * i + 1) / size
+            up = edge * (1 - (2 * i + 1) / size)
             r1 = row0 + size - 1 - i
             for j in range(size):
-                right = (2 * j + 1) / size - 1
+                right = edge * ((2 * j + 1) / size - 1)
                 if colours:
                     for c in range(3):
                         rgb[k, i, j, c] = frame[r1, column0 + j, 2 - c]
@@ -281,11 +319,11 @@ def _split(frame, size, plane, x, y, z, heading, near, is_drawn, colours):
                     continue
                 axis = int(plane[face, 0])
                 if axis == 0:
-                    t = (plane[face, 1] - x) / (fx + right * rx)
+                    t = (plane[face, 1] - x) / (fx + right * rx + up * ux)
                 elif axis == 1:
-                    t = (plane[face, 1] - y) / (fy + right * ry)
+                    t = (plane[face, 1] - y) / (fy + right * ry + up * uy)
                 else:
-                    t = (plane[face, 1] - z) / up
+                    t = (plane[face, 1] - z) / (fz + right * rz + up * uz)
                 # for a face that is seen edge-on, the pixel to the left is used
                 if not near <= t <= FARTHEST:
                     t = depth[k, i, j - 1, 0] if j > 0 else 0.0

@@ -20,8 +20,9 @@ from mitigate.core.observation import (
     TURN_DEGREES,
     VIEWS,
 )
+from mitigate.corruptions.faults.camera import Mount
 from mitigate.worlds.apartments.apartment import apartment_of
-from mitigate.worlds.apartments.renderer import Renderer
+from mitigate.worlds.apartments.renderer import LEVEL, Renderer
 from mitigate.worlds.episodes import Episode, Vector, from_vlnce, heading_of
 from mitigate.worlds.measures import Rule
 from mitigate.worlds.world import Expert, greedy_action
@@ -93,12 +94,12 @@ class Simulator:
         return {RGB: rgb, DEPTH: depth, **self.odometry()}
 
     def observe_faces(
-        self, views: Iterable[int] = range(VIEWS)
+        self, views: Iterable[int] = range(VIEWS), mount: Mount = LEVEL
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Render RGB, depth and face ids of ``views`` of the panorama at the current pose."""
         self.renderer.load(self.apartment)
         place = float(self.xy[0]), float(self.xy[1]), float(self.heading)
-        return self.renderer.render(*place, views=views)
+        return self.renderer.render(*place, views=views, mount=mount)
 
     def step(self, action: int) -> None:
         """Execute one low-level action.
@@ -121,6 +122,21 @@ class Simulator:
             raise ValueError(
                 f"The action must be 0 STOP, 1 FORWARD, 2 LEFT or 3 RIGHT, got {action}."
             )
+        self.steps += 1
+
+    def move(self, metres: float, degrees: float) -> None:
+        """Execute a step that moves ``metres`` forward, then turns ``degrees`` to the left.
+
+        Raises:
+            RuntimeError: The episode is over.
+        """
+        if self.done:
+            raise RuntimeError("The episode is over. Call reset() before step().")
+        if metres > 0:
+            self.xy, collided = self.space.move(self.xy, self.heading, metres)
+            self.collisions += collided
+            self.path.append(self.xy.copy())
+        self.heading += np.radians(degrees)
         self.steps += 1
 
     def distance_to_goal(self, xy: np.ndarray | None = None) -> float:

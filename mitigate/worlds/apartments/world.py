@@ -22,12 +22,13 @@ from mitigate.core.observation import (
     Sensor,
     cameras,
 )
+from mitigate.corruptions.faults.camera import Mount
 from mitigate.worlds import measures
 from mitigate.worlds.apartments.apartment import Apartment, apartment_of
 from mitigate.worlds.apartments.drawing import draw_plan
 from mitigate.worlds.apartments.labels import ahead, column_labels, free_directions, view_labels
 from mitigate.worlds.apartments.navigation import CELL
-from mitigate.worlds.apartments.renderer import shared_renderer
+from mitigate.worlds.apartments.renderer import LEVEL, shared_renderer
 from mitigate.worlds.apartments.simulator import GeodesicExpert, Simulator
 from mitigate.worlds.apartments.tasks import SUCCESS_METRES, landmarks, view_field
 from mitigate.worlds.episodes import Episode, from_vlnce
@@ -119,6 +120,11 @@ class ApartmentsWorld(World):
 
     def step(self, action: int) -> Observation:
         self.simulator.step(action)
+        return self._observation()
+
+    def move(self, metres: float, degrees: float) -> Observation:
+        """Take a step that moves ``metres`` forward, then turns ``degrees`` to the left."""
+        self.simulator.move(metres, degrees)
         return self._observation()
 
     def measures(self) -> dict[str, float]:
@@ -219,17 +225,25 @@ class ApartmentsWorld(World):
         """Return frames with the shapes in ``sensors``; a single camera has no axis for views."""
         return {RGB: rgb, DEPTH: depth} if self.views > 1 else {RGB: rgb[0], DEPTH: depth[0]}
 
+    def displaced(self, mount: Mount) -> dict[str, np.ndarray]:
+        """Render the current instant with a displaced camera."""
+        rgb, depth, _ = self._memory.recall((*self._pose(), mount), lambda: self._observe(mount))
+        return self._shaped(rgb.copy(), depth.copy())
+
+    def _pose(self) -> tuple[str, float, float, float]:
+        """Return the scene and the pose of the agent."""
+        simulator = self.simulator
+        place = (float(simulator.xy[0]), float(simulator.xy[1]), float(simulator.heading))
+        return simulator.episode.scene_id, *place
+
     def _frames(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         if self._rendered is None:
-            simulator = self.simulator
-            pose = (float(simulator.xy[0]), float(simulator.xy[1]), float(simulator.heading))
-            key = (simulator.episode.scene_id, *pose)
-            self._rendered = self._memory.recall(key, self._observe)
+            self._rendered = self._memory.recall(self._pose(), self._observe)
         return self._rendered
 
-    def _observe(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    def _observe(self, mount: Mount = LEVEL) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Render RGB, depth and face ids of the cameras."""
-        rgb, depth, ids = self.simulator.observe_faces(range(self.views))
+        rgb, depth, ids = self.simulator.observe_faces(range(self.views), mount)
         return rgb[: self.views], depth[: self.views], ids[: self.views]
 
     # poses ------------------------------------------------------------------------------------

@@ -79,6 +79,7 @@ class Bag(Source):
     def __init__(self, path: Path, topics: Topics, hfov: float | None, yaw: float = 0.0) -> None:
         resolved = path.resolve()  # resolved, because `.` has no name
         self.path = path
+        self.signals = {}
         self.name = resolved.name if path.is_dir() else path.stem
         self.instruction = read_instruction(resolved.parent / f"{self.name}.txt")
         with self._open() as reader:

@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 import warnings
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import cv2
 import numpy as np
@@ -37,6 +37,8 @@ from mitigate.worlds.world import World, check_metres
 # action number for a motion that is not an action of an agent, such as backwards or sideways
 NO_ACTION = -1
 
+OBSERVED = "observation."  # names of signals that an agent may read begin with this
+
 # Heuristic limits.
 # as a fraction of a step, so that rounding does not skip a step of exactly full length
 STEP_TOLERANCE = 0.98
@@ -61,6 +63,7 @@ class Recording:
         times: float64 [T], seconds since the first step.
         poses: float64 [T, 3], (x, y, heading), or None if unknown.
         driven: The driver's actions, or None if the poses are unknown.
+        signals: Recorded numbers by name, such as "action": float64 [T, size].
     """
 
     name: str
@@ -69,6 +72,7 @@ class Recording:
     times: np.ndarray
     poses: np.ndarray | None
     driven: Driven | None
+    signals: Mapping[str, np.ndarray] = field(default_factory=dict)
 
     @property
     def sensors(self) -> dict[str, Sensor]:
@@ -138,7 +142,8 @@ def load(source: Source, *, views: int, size: int, step: Step) -> Recording:
     driven = None if poses is None else driver_actions(poses)
     if poses is not None and driven is not None:
         _check_headings(source.name, poses, driven)
-    return Recording(source.name, source.instruction, frames, times, poses, driven)
+    signals = {name: values[chosen] for name, values in source.signals.items()}
+    return Recording(source.name, source.instruction, frames, times, poses, driven, signals)
 
 
 def kinds(source: Source, views: int) -> list[str]:
@@ -316,7 +321,13 @@ class RecordedWorld(World):
     def _observation(self) -> Observation:
         index = min(self.index, len(self.recording.times) - 1)
         poses = self.recording.poses
-        ready = {} if poses is None else {POSE: poses[index].astype(np.float32)}
+        ready = {
+            name: values[index].astype(np.float32)
+            for name, values in self.recording.signals.items()
+            if name.startswith(OBSERVED)  # not the recorded action
+        }
+        if poses is not None:
+            ready[POSE] = poses[index].astype(np.float32)
         frames = self.recording.frames
         return Observation(ready, lambda: {n: f[index].copy() for n, f in frames.items()}, frames)
 

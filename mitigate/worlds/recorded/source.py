@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
@@ -115,6 +115,7 @@ class Source:
             camera.
         dropped: Number of time steps that were skipped because no pose or no frame of the other
             camera was near in time.
+        signals: Recorded numbers by name, such as "action": float64 [N, size].
     """
 
     name: str
@@ -124,6 +125,7 @@ class Source:
     poses: np.ndarray | None
     stepped: bool
     dropped: int
+    signals: Mapping[str, np.ndarray] = field(default_factory=dict, kw_only=True)
 
     def frames(self, chosen: Sequence[int]) -> Iterator[dict[str, np.ndarray]]:
         """Yield the frames of all cameras at each chosen time step, in order.

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from mitigate.core.observation import VIEWS
-from mitigate.worlds.apartments import __main__ as show
 from mitigate.worlds.apartments.apartment import Apartment
 from mitigate.worlds.apartments.layout import CATEGORIES
 from mitigate.worlds.apartments.renderer import EYE, FARTHEST, Renderer
+from tools.pages import apartment as show
 
 SIZE = 48
 SEEDS = (3, 100_002, 200_005)

@@ -1,4 +1,4 @@
-"""Draw an apartment: ``python -m mitigate.worlds.apartments show seed=7`` writes a picture.
+"""Draw an apartment: ``python -m tools.pages.apartment show seed=7`` writes a picture.
 
 seed     seed of the apartment (0-99999 train, 100000- val_seen, 200000- val_unseen; default 7)
 episode  index of the episode in it (default 0)

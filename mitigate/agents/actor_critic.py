@@ -1,0 +1,159 @@
+"""Policies of other libraries as actor-critics, for reinforcement learning.
+
+:class:`ActorCritic` adds a critic to a :class:`~mitigate.agents.policies.Policy`: an estimate of
+the return from the current frame on.
+"""
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+import torch
+from torch import Tensor, nn
+from torch.distributions import Categorical, Distribution, OneHotCategorical
+
+from mitigate.agents.policies import Policy, StableBaselinesPolicy, copied
+
+_CATEGORICAL = (Categorical, OneHotCategorical)  # torchrl's OneHotCategorical is a Categorical
+HIDDEN = 64  # width of a new critic, the default of stable-baselines3
+
+
+class Joint(Distribution):
+    """The distribution of whole actions, made from the distributions of their parts.
+
+    A sample is [B] or [B, n] for whole numbers (indices, also of one-hot parts), and [B, ...] for
+    real numbers.
+    """
+
+    def __init__(self, parts: Sequence[Distribution]) -> None:
+        self.parts = [
+            Categorical(logits=part.logits) if isinstance(part, _CATEGORICAL) else part
+            for part in parts
+        ]
+        super().__init__(self.parts[0].batch_shape[:1], validate_args=False)
+
+    def sample(self, sample_shape: Any = ()) -> Tensor:
+        samples = [part.sample(sample_shape) for part in self.parts]
+        return samples[0] if len(samples) == 1 else torch.stack(samples, -1)
+
+    def log_prob(self, value: Tensor) -> Tensor:
+        """Return the logarithm of the probability (density) of each action, [B]."""
+        values = [value] if len(self.parts) == 1 else value.unbind(-1)
+        return sum(
+            _per_action(part.log_prob(one)) for part, one in zip(self.parts, values, strict=True)
+        )  # type: ignore[return-value]
+
+    def entropy(self) -> Tensor:
+        """Return the entropy of each action's distribution, [B].
+
+        Raises:
+            ValueError: The distribution of a part has no known entropy.
+        """
+        try:
+            return sum(_per_action(part.entropy()) for part in self.parts)  # type: ignore[return-value]
+        except NotImplementedError:
+            names = ", ".join(type(part).__name__ for part in self.parts)
+            raise ValueError(
+                f"The entropy of the policy's distribution ({names}) is unknown. Leave out the "
+                "bonus for entropy: w_entropy=0."
+            ) from None
+
+
+class ActorCritic(nn.Module):
+    """A policy with a critic.
+
+    The critic of an actor-critic of stable-baselines3 starts as a copy of the policy's own critic.
+    Other policies get a new one, a small network on the output of one of their modules. A critic
+    trains no module of the policy, so that wrong values cannot change the actions directly.
+
+    Args:
+        policy: the policy. It is not copied.
+        frames: an example of its frames by sensor, [1, ...], which gives the size of a new critic.
+        module: name of the module of the network whose output a new critic reads.
+
+    Raises:
+        ValueError: The policy has a memory, or gives no distribution of its actions.
+    """
+
+    def __init__(self, policy: Policy, frames: Mapping[str, np.ndarray], module: str) -> None:
+        super().__init__()
+        if policy.recurrent:
+            raise ValueError(
+                f"{policy.name} has a memory, and method='ppo' trains only policies without one. "
+                "Use method='self_distil'."
+            )
+        self.policy = policy
+        self.module = module
+        network: Any = policy.network
+        if isinstance(policy, StableBaselinesPolicy) and not hasattr(network, "predict_values"):
+            raise ValueError(
+                f"{policy.name} has no critic of states, which method='ppo' needs: in "
+                "stable-baselines3 PPO and A2C have one. Use method='self_distil'."
+            )
+        with torch.no_grad():
+            self.actions(frames)
+            self.critic: nn.Module = (
+                _StableBaselinesCritic(network)
+                if isinstance(policy, StableBaselinesPolicy)
+                else _new_critic(self._features(frames).shape[1])
+            )
+        self.critic.to(policy.device)
+
+    def actions(self, frames: Mapping[str, np.ndarray]) -> Joint:
+        """Return the distribution of the actions for frames [B, ...] by sensor."""
+        answer = self.policy.answers(frames)[0]
+        if isinstance(answer, Tensor):
+            raise ValueError(
+                f"{self.policy.name} returns actions or their values, but method='ppo' needs a "
+                "distribution of actions. Give forward= a function that returns one, such as "
+                "lambda net, observation: torch.distributions.Normal(net(observation), 0.1), or "
+                "use method='self_distil'."
+            )
+        return Joint(answer)
+
+    def values(self, frames: Mapping[str, np.ndarray]) -> Tensor:
+        """Return the values [B, 1] of frames [B, ...] by sensor."""
+        return self.critic(self._features(frames))
+
+    @torch.no_grad()
+    def _features(self, frames: Mapping[str, np.ndarray]) -> Any:
+        """Return what the critic reads, without gradients."""
+        if isinstance(self.policy, StableBaselinesPolicy):
+            network: Any = self.policy.network
+            arrays = {name: frames[name] for name in self.policy.sensors}
+            inputs, _ = network.obs_to_tensor(self.policy.native(arrays))
+            return network.extract_features(inputs, network.vf_features_extractor)
+        with self.policy.recording(self.module) as outputs:
+            self.policy.answers(frames)
+        return outputs[-1].float().flatten(1)
+
+    def copied(self) -> ActorCritic:
+        """Return a frozen copy with its own weights."""
+        twin = copy.copy(self)
+        twin._modules = {"policy": copied(self.policy), "critic": copy.deepcopy(self.critic)}
+        return twin.requires_grad_(False)
+
+
+class _StableBaselinesCritic(nn.Module):
+    """A copy of the critic of an actor-critic of stable-baselines3, on extracted features."""
+
+    def __init__(self, network: Any) -> None:
+        super().__init__()
+        self.layers = copy.deepcopy(network.mlp_extractor)
+        self.head = copy.deepcopy(network.value_net)
+        self.requires_grad_(True)
+
+    def forward(self, features: Tensor) -> Tensor:
+        return self.head(self.layers.forward_critic(features))
+
+
+def _new_critic(size: int) -> nn.Module:
+    return nn.Sequential(nn.Linear(size, HIDDEN), nn.Tanh(), nn.Linear(HIDDEN, 1))
+
+
+def _per_action(values: Tensor) -> Tensor:
+    """Return values [B, ...] of the numbers of an action, summed to [B]."""
+    return values.flatten(1).sum(1) if values.dim() > 1 else values

@@ -1,0 +1,114 @@
+"""The user's code: which classes and functions it defines, its source files, what it names."""
+
+from __future__ import annotations
+
+import ast
+import importlib.util
+import inspect
+import sys
+import sysconfig
+import types
+from contextlib import suppress
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from mitigate.core.contracts import read
+
+
+def is_users(code: Any) -> bool:
+    """Return whether a class or function belongs to the user.
+
+    This project, torch, Python and installed packages are identified by their versions instead.
+    """
+    function = isinstance(code, types.FunctionType)
+    name = code.__module__ or ""
+    return _is_users(name, code.__code__.co_filename if function else _file(name))
+
+
+@cache
+def _is_users(module: str, file: str) -> bool:
+    path = Path(file)
+    package = module.partition(".")[0]
+    shipped = package in ({"mitigate", "torch"} | sys.stdlib_module_names) - {"__main__"}
+    installed = {"site-packages", "dist-packages"} & {*path.parts}
+    return not (shipped or installed or path.is_relative_to(sysconfig.get_path("stdlib")))
+
+
+def named_values(function: types.FunctionType) -> dict[str, Any]:
+    """Return the global variables that ``function`` names, and its closure.
+
+    Attributes of the user's modules that it names are included.
+    """
+    codes = [function.__code__]
+    for code in codes:
+        codes += [part for part in code.co_consts if isinstance(part, types.CodeType)]
+    names = {name for code in codes for name in code.co_names}
+    values: dict[str, Any] = {}
+    scopes = [function.__globals__]
+    for scope in scopes:
+        found = {name: scope[name] for name in names if name in scope}
+        modules = [part for part in found.values() if isinstance(part, types.ModuleType)]
+        scopes += [vars(m) for m in modules if _is_users(m.__name__, _file(m.__name__))]
+        values = found | values
+    for name, cell in zip(function.__code__.co_freevars, function.__closure__ or (), strict=True):
+        with suppress(ValueError):  # the cell is empty
+            values[name] = cell.cell_contents
+    return values
+
+
+def source_files(modules: list[str]) -> dict[str, str | None]:
+    """Return the source of the user's ``modules``, and of the user's modules that they import.
+
+    A module without a source file, such as a notebook, has None.
+    """
+    sources: dict[str, str | None] = {}
+    waiting = [*modules]
+    for name in waiting:
+        if name not in sources and _is_users(name, _file(name.partition(".")[0])):
+            file = _file(name)
+            if Path(file).is_file():
+                sources[name], imports = _read(file, name, sys.modules.get(name))
+                waiting += [imported for imported in imports if _file(imported)]
+            else:
+                sources[name] = None
+    return sources
+
+
+def _file(module: str) -> str:
+    """Return the path of a module's file; "" if it has none or does not exist."""
+    if module in sys.modules:
+        return read(sys.modules[module], "__file__") or ""
+    with suppress(ImportError, ValueError):
+        spec = importlib.util.find_spec(module)
+        return (spec.origin or "") if spec else ""
+    return ""
+
+
+@cache
+def _read(file: str, name: str, module: Any) -> tuple[str, list[str]]:
+    """Return the source of a module, and the names that it imports.
+
+    It is read once, because a later edit of the file does not change a loaded ``module``.
+    """
+    source = Path(file).read_text(encoding="utf-8")
+    package = name if Path(file).stem == "__init__" else name.rpartition(".")[0]
+    imports: list[str] = []
+    for node in ast.walk(ast.parse(source)):
+        if isinstance(node, ast.Import):
+            imports += [alias.name for alias in node.names]
+        elif isinstance(node, ast.ImportFrom):
+            base = importlib.util.resolve_name("." * node.level + (node.module or ""), package)
+            imports += [base, *(f"{base}.{alias.name}" for alias in node.names)]
+    return source, imports
+
+
+def methods(kind: type) -> dict[str, types.FunctionType]:
+    """Return the functions that ``kind`` defines, without decorators, by name."""
+    output = {}
+    for name, member in vars(kind).items():
+        function = read(member, "__func__", "fget", "__wrapped__", default=member)
+        function = inspect.unwrap(function) if callable(function) else function
+        if isinstance(function, types.FunctionType):
+            output[name] = function
+    return output

@@ -1,0 +1,214 @@
+"""Faults of the camera's mounting: it is higher, tilted, turned or has another field of view.
+
+``draw(severity, key)`` of a record returns the displacement, a ``Mount``, which is constant in an
+episode. A world that can render again does so (``World.displaced``). For all other frames the exact
+homography of a rotation and of the field of view is applied to a pinhole camera with square pixels;
+what the camera did not see stays black, or without a reading. A change of height needs rendering.
+
+A panorama is one rigid rig: all views move together. Pitch of the rig is roll for a view to the
+side. In a pair, the camera comes first. The ranges are heuristic.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from dataclasses import astuple, dataclass
+from functools import partial
+
+import numpy as np
+from numba import njit
+
+from mitigate.core.observation import VIEW_STEP_DEGREES
+from mitigate.corruptions.depth_sensor import NEAREST, DepthSensor, is_valid
+from mitigate.corruptions.keying import Key, digest, uniform
+from mitigate.corruptions.record import CAMERA, FRAMES, Record
+
+HEIGHT = 0.6  # metres at severity 1
+PITCH, ROLL, YAW = 30.0, 20.0, 30.0  # degrees at severity 1
+FOV = 30.0  # degrees at severity 1
+NARROWEST, WIDEST = 10.0, 150.0  # degrees: limits of the field of view
+_DECIMALS = 12  # of a rotation, so that the last bit of a machine's sine does not reach the pixels
+
+
+@dataclass(frozen=True)
+class Mount:
+    """A displacement of the camera, or of the rig of a panorama.
+
+    Attributes:
+        height: Metres up.
+        pitch: Degrees up.
+        roll: Degrees clockwise, seen from behind the camera.
+        yaw: Degrees to the left.
+        fov: Degrees that the horizontal field of view is wider.
+    """
+
+    height: float = 0.0
+    pitch: float = 0.0
+    roll: float = 0.0
+    yaw: float = 0.0
+    fov: float = 0.0
+
+    def hfov(self, degrees: float) -> float:
+        """Return the horizontal field of view that a camera of ``degrees`` gets."""
+        return min(max(degrees + self.fov, NARROWEST), WIDEST)
+
+    def rotation(self) -> np.ndarray:
+        """Return the rotation [3, 3] of the axes right, forward, up: roll, then pitch, then yaw."""
+        yaw, pitch, roll = (math.radians(angle) for angle in (self.yaw, self.pitch, self.roll))
+        about_forward = np.array(
+            [[math.cos(roll), 0, math.sin(roll)], [0, 1, 0], [-math.sin(roll), 0, math.cos(roll)]]
+        )
+        about_right = np.array(
+            [
+                [1, 0, 0],
+                [0, math.cos(pitch), -math.sin(pitch)],
+                [0, math.sin(pitch), math.cos(pitch)],
+            ]
+        )
+        return np.round(_about_up(yaw) @ about_right @ about_forward, _DECIMALS)
+
+
+def _about_up(angle: float) -> np.ndarray:
+    """Return the rotation by ``angle`` radians to the left."""
+    cos, sin = math.cos(angle), math.sin(angle)
+    return np.array([[cos, -sin, 0.0], [sin, cos, 0.0], [0.0, 0.0, 1.0]])
+
+
+def total(mounts: Iterable[Mount]) -> Mount:
+    """Return the sum of displacements."""
+    return Mount(*map(sum, zip(*map(astuple, mounts), strict=True)))
+
+
+def warp(
+    views: np.ndarray, mount: Mount, hfov: float, sensor: DepthSensor | None = None
+) -> np.ndarray:
+    """Return what displaced cameras see of the frames of the original ones.
+
+    Args:
+        views: RGB uint8 [V, H, W, 3], or depth float32 metres [V, H, W]. View k has yaw -30 k
+            degrees and is level.
+        mount: The displacement; its height is ignored.
+        hfov: Horizontal field of view of the original cameras in degrees.
+        sensor: The depth sensor; None for RGB.
+
+    Returns:
+        RGB is interpolated bilinearly, depth is the nearest reading, converted to metres along the
+        new optical axis. Unseen pixels are black, or ``sensor.missing``.
+    """
+    rotation = mount.rotation()
+    turns = [_about_up(math.radians(-VIEW_STEP_DEGREES * view)) for view in range(len(views))]
+    rotations = np.round(np.stack([turn.T @ rotation @ turn for turn in turns]), _DECIMALS)
+    before, after = (math.tan(math.radians(angle) / 2) for angle in (hfov, mount.hfov(hfov)))
+    out = np.zeros_like(views)
+    if sensor is None:
+        _warp_rgb(views, rotations, before, after, out)
+    else:
+        limits = (NEAREST, np.float32(sensor.z_max), np.float32(sensor.missing))
+        _warp_depth(views, rotations, before, after, *limits, out)
+    return out
+
+
+@njit(inline="always")
+def _source(rotation, row, column, height, width, before, after):
+    """Return source row and column of a pixel, and the depth factor; 0 if it is behind."""
+    x = (2 * column + 1 - width) / width * after
+    z = (height - 1 - 2 * row) / width * after
+    right = rotation[0, 0] * x + rotation[0, 1] + rotation[0, 2] * z
+    forward = rotation[1, 0] * x + rotation[1, 1] + rotation[1, 2] * z
+    up = rotation[2, 0] * x + rotation[2, 1] + rotation[2, 2] * z
+    if forward <= 1e-6:
+        return -1.0, -1.0, 0.0
+    source_column = (right / forward / before * width + width - 1) / 2
+    source_row = (height - 1 - up / forward / before * width) / 2
+    return source_row, source_column, forward
+
+
+@njit(inline="always")
+def _is_inside(row, column, height, width):
+    return -0.5 <= row <= height - 0.5 and -0.5 <= column <= width - 0.5
+
+
+@njit(cache=True)
+def _warp_rgb(views, rotations, before, after, out):
+    count, height, width, channels = views.shape
+    for view in range(count):
+        for i in range(height):
+            for j in range(width):
+                row, column, forward = _source(rotations[view], i, j, height, width, before, after)
+                if forward == 0.0 or not _is_inside(row, column, height, width):
+                    continue
+                row = min(max(row, 0.0), height - 1.0)
+                column = min(max(column, 0.0), width - 1.0)
+                top, left = int(row), int(column)
+                bottom, right = min(top + 1, height - 1), min(left + 1, width - 1)
+                down, across = row - top, column - left
+                for c in range(channels):
+                    above = (1 - across) * views[view, top, left, c]
+                    above += across * views[view, top, right, c]
+                    below = (1 - across) * views[view, bottom, left, c]
+                    below += across * views[view, bottom, right, c]
+                    out[view, i, j, c] = int((1 - down) * above + down * below + 0.5)
+
+
+@njit(cache=True)
+def _warp_depth(views, rotations, before, after, nearest, z_max, missing, out):
+    count, height, width = views.shape
+    for view in range(count):
+        for i in range(height):
+            for j in range(width):
+                row, column, forward = _source(rotations[view], i, j, height, width, before, after)
+                if forward == 0.0 or not _is_inside(row, column, height, width):
+                    out[view, i, j] = missing
+                    continue
+                y = min(max(int(row + 0.5), 0), height - 1)
+                x = min(max(int(column + 0.5), 0), width - 1)
+                z = views[view, y, x]
+                if is_valid(z):
+                    z = min(max(np.float32(z / forward), nearest), z_max)
+                out[view, i, j] = z
+
+
+def _sign(key: Key, name: str) -> float:
+    """Return 1 or -1, for the episode."""
+    return 1.0 if uniform(digest(key, name)) < 0.5 else -1.0
+
+
+def camera_height(severity: float, key: Key) -> Mount:
+    """Return a camera that is higher or lower."""
+    return Mount(height=severity * HEIGHT * _sign(key, "camera_height"))
+
+
+def camera_pitch(severity: float, key: Key) -> Mount:
+    """Return a camera that looks up or down."""
+    return Mount(pitch=severity * PITCH * _sign(key, "camera_pitch"))
+
+
+def camera_roll(severity: float, key: Key) -> Mount:
+    """Return a camera that is tilted to a side."""
+    return Mount(roll=severity * ROLL * _sign(key, "camera_roll"))
+
+
+def camera_yaw(severity: float, key: Key) -> Mount:
+    """Return a camera that is turned to a side."""
+    return Mount(yaw=severity * YAW * _sign(key, "camera_yaw"))
+
+
+def camera_fov(severity: float, key: Key) -> Mount:
+    """Return a camera with a wider or narrower field of view."""
+    return Mount(fov=severity * FOV * _sign(key, "camera_fov"))
+
+
+_record = partial(
+    Record, modality=FRAMES, apply=None, family=CAMERA, source="heuristic", version="1"
+)
+RECORDS = tuple(
+    _record(draw.__name__, draw=draw, severity=severity, label=label, episode="direction")
+    for draw, severity, label in (
+        (camera_height, f"height, up to +-{HEIGHT:g} m", "Camera height"),
+        (camera_pitch, f"pitch, up to +-{PITCH:g} degrees", "Camera pitch"),
+        (camera_roll, f"roll, up to +-{ROLL:g} degrees", "Camera roll"),
+        (camera_yaw, f"yaw offset, up to +-{YAW:g} degrees", "Camera yaw"),
+        (camera_fov, f"field of view, up to +-{FOV:g} degrees", "Field of view"),
+    )
+)

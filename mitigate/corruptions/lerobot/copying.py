@@ -1,0 +1,475 @@
+"""Write a copy of a LeRobot dataset with corrupted frames: the command ``mitigate corrupt``.
+
+The copy has the same metadata and rows. Only the corrupted cameras differ. The copy is resumable:
+a file whose checksum is in ``corrupt.json`` is not written again.
+"""
+
+from __future__ import annotations
+
+import copy
+import json
+import shutil
+from bisect import bisect_left
+from collections import Counter
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import asdict, dataclass, field
+from functools import partial
+from hashlib import blake2b
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from mitigate.core.files import (
+    make_folder,
+    read_regular,
+    sha256,
+    write_atomically,
+    write_bytes,
+)
+from mitigate.core.names import counted, escaped, short
+from mitigate.core.observation import DEPTH, RGB
+from mitigate.core.output import is_regular, lost, open_output, output_folder
+from mitigate.core.progress import Progress
+from mitigate.corruptions.folders import SUMMARY, Settings, check_folders
+from mitigate.corruptions.keying import Key
+from mitigate.corruptions.lerobot import images, videos
+from mitigate.corruptions.lerobot.dataset import (
+    EPISODES,
+    INFO,
+    TOLERANCE,
+    VIDEO,
+    Camera,
+    Dataset,
+    open_dataset,
+    rows_of,
+)
+from mitigate.corruptions.lerobot.frames import check_images, stored_image
+from mitigate.corruptions.lerobot.tables import FIX, integers, open_table, parquet
+from mitigate.corruptions.lerobot.videos import Encoding
+from mitigate.corruptions.registry import version
+from mitigate.corruptions.suite import SUITE_VERSION, Corruption, corrupt
+
+UNUSED = ("episode", "unit", "no_reading")  # options for folders of frames only
+MAX_LISTED = 5  # files that are printed
+# keys of a feature's info that describe the encoder of the original video, as lerobot names them
+ENCODER_KEYS = ("g", "crf", "preset", "fast_decode", "extra_options", "video_backend")
+
+
+@dataclass
+class Copy:
+    """A copy in progress.
+
+    Attributes:
+        dataset: The original.
+        out: Folder of the copy.
+        settings: Corruption and format.
+        cameras: Cameras to corrupt.
+        encodings: Encoding of the videos of each camera.
+        tolerance: Most seconds between a row and its video frame.
+        summary: Content of ``corrupt.json``.
+        progress: Counts corrupted frames.
+    """
+
+    dataset: Dataset
+    out: Path
+    settings: Settings
+    cameras: Sequence[Camera]
+    tolerance: float
+    encodings: dict[str, Encoding] = field(default_factory=dict)
+    summary: dict[str, Any] = field(default_factory=dict)
+    progress: Progress | None = None
+
+
+def run(
+    source: Path | str,
+    out: Path | str,
+    settings: Settings,
+    cameras: Sequence[str] | None = None,
+    tolerance: float = TOLERANCE,
+) -> dict[str, Any]:
+    """Write a corrupted copy of a dataset.
+
+    The key of a frame is the seed, "episode-000003" and the number of the frame in its episode, so
+    all cameras of an instant get the same draws. Statistics in the metadata stay those of the
+    original.
+
+    Args:
+        source: Folder of the dataset.
+        out: Folder of the copy.
+        settings: Corruption, seed and format. "png": lossless, images as PNG (depth keeps its
+            format) and videos as H.264 in RGB; "same": JPEG stays JPEG and videos keep their
+            codec, with the quality of lerobot.
+        cameras: Cameras to corrupt; None: all of the sensor that the corruption changes.
+        tolerance: Most seconds between a row and its video frame.
+
+    Returns:
+        The summary, also written to ``out/corrupt.json``.
+
+    Raises:
+        FileNotFoundError: The folder or a file of the dataset is missing.
+        ValueError: The dataset is damaged, an option does not apply, or ``out`` has other content.
+        OSError: ``out`` cannot be written.
+    """
+    source, out = Path(source), Path(out)
+    check_folders(source, out)
+    defaults = Settings(settings.corruption, settings.severity)
+    for name in UNUSED:
+        if getattr(settings, name) != getattr(defaults, name):
+            raise ValueError(
+                f"{name}= does not apply to the LeRobot dataset {source}, whose metadata contain "
+                f"it. Remove {name}=."
+            )
+    if not 0 < tolerance < 1:
+        raise ValueError(f"tolerance must be above 0 and below 1 second, got {tolerance:g}.")
+    dataset = open_dataset(source)
+    work = Copy(dataset, out, settings, _choose_cameras(dataset, settings, cameras), tolerance)
+    for camera in work.cameras:
+        if camera.stored == VIDEO:
+            work.encodings[camera.name] = _encoding(dataset, camera, settings.format)
+    with output_folder(out, SUMMARY):
+        _begin(work)
+        try:
+            _copy(work)
+        finally:  # an interrupted run must not write its files again
+            _write_summary(work)
+    return work.summary
+
+
+def _choose_cameras(
+    dataset: Dataset, settings: Settings, names: Sequence[str] | None
+) -> list[Camera]:
+    kind = Corruption(settings.corruption, settings.severity).modality
+    chosen = dataset.choose_cameras(kind, names)
+    if not chosen or (names and len(chosen) < len(names)):
+        others = (f"{c.name} ({c.kind})" for c in dataset.cameras.values())
+        unread = (f"{name} ({reason})" for name, reason in dataset.other_cameras.items())
+        raise ValueError(
+            f"{settings.corruption} corrupts {kind}. Choose {kind} cameras of {dataset.path}: it "
+            f"has {', '.join([*others, *unread]) or 'no camera'}."
+        )
+    return chosen
+
+
+def _encoding(dataset: Dataset, camera: Camera, form: str) -> Encoding:
+    if camera.kind == DEPTH:
+        return videos.DEPTH
+    if form == "png":
+        return videos.LOSSLESS
+    file = next(iter(dataset.episodes.values())).videos[camera.name][0]
+    codec = videos.read_codec(dataset.path / file, camera)
+    if codec not in videos.LOSSY:
+        raise ValueError(
+            f"{dataset.path / file} has the codec {short(codec)}. format=same writes "
+            f"{', '.join(videos.LOSSY)}. Set format=png for lossless videos."
+        )
+    return videos.LOSSY[codec]
+
+
+# ------------------------------------------------------------------------------------ files
+
+
+def _copy(work: Copy) -> None:
+    """Write every file of the copy; meta/info.json is last, so that an incomplete copy is none."""
+    from_video = [camera for camera in work.cameras if camera.stored == VIDEO]
+    in_rows = [camera for camera in work.cameras if camera.stored != VIDEO]
+    episodes = work.dataset.episodes.values()
+    tables = {episode.data for episode in episodes} if in_rows else set()
+    films = {
+        episode.videos[camera.name][0]: camera for camera in from_video for episode in episodes
+    }
+    instants = _instants(work.dataset, from_video) if films else {}
+    others = [f for f in _files(work.dataset.path) if f not in tables and f not in films]
+    writers: dict[str, Callable[[Path], Any]] = {
+        name: partial(_copy_file, work.dataset.path / name) for name in others
+    }
+    for name in sorted(tables):
+        writers[name] = partial(_corrupt_rows, work, name, in_rows)
+    for name in sorted(films):
+        writers[name] = partial(_corrupt_video, work, name, films[name], instants[name])
+    writers[INFO] = partial(_write_info, work)
+    frames = _frames_per_file(work)
+    with Progress(work.settings.corruption, sum(frames.values()), unit="frame") as progress:
+        work.progress = progress
+        for name, write in writers.items():
+            if not _write(work, name, write):
+                progress.advance(frames.get(name, 0))
+    missing = [work.out / name for name in writers if not (work.out / name).is_file()]
+    if missing:
+        raise lost(missing[0])
+
+
+def _frames_per_file(work: Copy) -> Counter[str]:
+    """Return the number of frames to corrupt in each file that has some."""
+    frames: Counter[str] = Counter()
+    for episode in work.dataset.episodes.values():
+        for camera in work.cameras:
+            is_video = camera.stored == VIDEO
+            file = episode.videos[camera.name][0] if is_video else episode.data
+            frames[file] += episode.length
+    return frames
+
+
+def _files(source: Path) -> Iterator[str]:
+    """Yield the other files of a dataset by relative path, without hidden ones and ``INFO``."""
+    for path in sorted(source.rglob("*")):
+        relative = path.relative_to(source)
+        is_hidden = any(part.startswith(".") for part in relative.parts)
+        if not is_hidden and is_regular(path) and relative.as_posix() not in (INFO, SUMMARY):
+            yield relative.as_posix()
+
+
+def _write(work: Copy, name: str, write: Callable[[Path], Any]) -> bool:
+    """Write a file and record its checksum; False if ``out`` already has the same file."""
+    checksums = work.summary["checksums"]
+    paths = (work.dataset.path / name, work.out / name)
+    exists = is_regular(paths[1])
+    if exists and name in checksums and checksums[name] == _checksum(*paths):
+        work.summary["there"] += 1
+        return False
+    checksums.pop(name, None)
+    make_folder(paths[1].parent)
+    write_atomically(paths[1], write)
+    work.summary["written"] += 1
+    work.summary["replaced"] += [name] * exists
+    checksums[name] = _checksum(*paths)
+    return True
+
+
+def _copy_file(source: Path, path: Path) -> None:
+    with open(source, "rb") as original, open_output(path, "wb") as file:
+        shutil.copyfileobj(original, file)
+
+
+def _checksum(*paths: Path) -> str:
+    """Return one checksum of the input and the output of a file; "" if one cannot be read."""
+    try:
+        return _short_hash("".join(map(sha256, paths)))
+    except OSError:
+        return ""
+
+
+def _short_hash(text: str) -> str:
+    return blake2b(text.encode("utf-8", "surrogateescape"), digest_size=8).hexdigest()
+
+
+# ----------------------------------------------------------------------------------- frames
+
+
+def _corrupt(work: Copy, camera: Camera, frame: np.ndarray, episode: str, number: int) -> Any:
+    settings = work.settings
+    key = Key(settings.seed, episode, number)
+    try:
+        return corrupt(
+            frame, settings.corruption, settings.severity, key=key, sensor=settings.sensor
+        )
+    except ValueError as error:  # a shape or a unit that the suite does not support
+        raise ValueError(f"{camera.name}, {episode}, frame {number}: {error}") from error
+
+
+def _advance(work: Copy) -> None:
+    if work.progress is not None:
+        work.progress.advance()
+
+
+def _name(episode: int) -> str:
+    """Return the name of an episode in the key of its frames."""
+    return f"episode-{episode:06d}"
+
+
+@dataclass
+class Instants:
+    """The instants of the episodes in a video: increasing seconds, and (episode, frame) of each."""
+
+    times: list[float] = field(default_factory=list)
+    names: list[tuple[int, int]] = field(default_factory=list)
+
+
+def _instants(dataset: Dataset, cameras: Sequence[Camera]) -> dict[str, Instants]:
+    """Return the instants in each video of ``cameras``."""
+    unsorted: dict[str, list[tuple[float, tuple[int, int]]]] = {}
+    for episode, rows, _ in rows_of(dataset, list(dataset.episodes.values())):
+        times = rows.times.tolist()
+        for camera in cameras:
+            file, start = episode.videos[camera.name]
+            places = [(start + time, (episode.index, n)) for n, time in enumerate(times)]
+            unsorted.setdefault(file, []).extend(places)
+    instants = {}
+    for file, listed in unsorted.items():
+        listed.sort()
+        instants[file] = Instants([time for time, _ in listed], [name for _, name in listed])
+    return instants
+
+
+def _corrupt_video(work: Copy, name: str, camera: Camera, instants: Instants, path: Path) -> None:
+    """Write a corrupted video.
+
+    Frames that no episode uses are corrupted too: readers find frames by their number.
+    """
+    source = work.dataset.path / name
+    used: set[int] = set()
+
+    def change(frame: np.ndarray, time: float, number: int) -> np.ndarray:
+        place = bisect_left(instants.times, time - work.tolerance)
+        is_near = place < len(instants.times) and instants.times[place] <= time + work.tolerance
+        if not is_near:
+            return _corrupt(work, camera, frame, f"unused-{name}", number)
+        if place in used:
+            raise ValueError(
+                f"{source} has two frames within {work.tolerance:g} s of {time:.6f} s. {FIX} Or "
+                "set a smaller tolerance=."
+            )
+        used.add(place)
+        episode, index = instants.names[place]
+        _advance(work)
+        return _corrupt(work, camera, frame, _name(episode), index)
+
+    videos.corrupt_video(source, path, camera, work.encodings[camera.name], change)
+    absent = [index for index in range(len(instants.times)) if index not in used]
+    if absent:
+        episode, index = instants.names[absent[0]]
+        raise ValueError(
+            f"{source} must have a frame within {work.tolerance:g} s of "
+            f"{instants.times[absent[0]]:.6f} s, for frame {index} of episode {episode}. "
+            f"{len(absent)} of {len(instants.times)} frames are missing. Copy the dataset again, "
+            "or set tolerance= to a larger value if its clock is not exact."
+        )
+
+
+def _corrupt_rows(work: Copy, name: str, cameras: Sequence[Camera], path: Path) -> None:
+    """Write a file of data/ with corrupted images and the same row groups."""
+    source = work.dataset.path / name
+    with open_table(source) as table:
+        schema = table.schema_arrow
+        check_images(source, schema, cameras)
+        with (
+            open_output(path, "wb") as file,
+            parquet().ParquetWriter(file, schema, compression="snappy") as writer,
+        ):
+            for group in range(table.num_row_groups):
+                rows = table.read_row_group(group)
+                for camera in cameras:
+                    rows = _replace_images(work, source, rows, camera)
+                writer.write_table(rows, row_group_size=max(1, rows.num_rows))
+
+
+def _replace_images(work: Copy, source: Path, rows: Any, camera: Camera) -> Any:
+    import pyarrow
+
+    episodes = integers(rows, "episode_index", source)
+    numbers = integers(rows, "frame_index", source)
+    column = rows.column(camera.name)
+    values = []
+    for row, (episode, number) in enumerate(zip(episodes, numbers, strict=True)):
+        stored, form = stored_image(source, rows, row, camera, number)
+        clean = images.as_frame(stored, camera)
+        corrupted = _corrupt(work, camera, clean, _name(episode), number)
+        pixels = corrupted if camera.kind == RGB else images.store_depth(corrupted, stored, camera)
+        data = images.encode(pixels, form, keep_format=work.settings.format == "same")
+        _advance(work)
+        values.append({**column[row].as_py(), "bytes": data})
+    index = rows.schema.get_field_index(camera.name)
+    return rows.set_column(index, rows.schema.field(index), pyarrow.array(values, column.type))
+
+
+# --------------------------------------------------------------------------------- metadata
+
+
+def _write_info(work: Copy, path: Path) -> None:
+    """Write meta/info.json with the codecs of the new videos."""
+    info = copy.deepcopy(dict(work.dataset.info))
+    for name, encoding in work.encodings.items():
+        feature = info["features"][name]
+        place = feature["info"] if isinstance(feature.get("info"), dict) else {}
+        for key in ENCODER_KEYS:
+            place.pop(f"video.{key}", None)
+        place |= {"video.codec": encoding.name, "video.pix_fmt": encoding.stored}
+        feature["info"] = place
+    with open_output(path, "wb") as file:
+        file.write(json.dumps(info, indent=4, ensure_ascii=False).encode())
+
+
+def _digest(dataset: Dataset) -> str:
+    """Return a hash of what determines the keys of frames: metadata and files of data/."""
+    names = {INFO, *(episode.data for episode in dataset.episodes.values())}
+    names |= {
+        path.relative_to(dataset.path).as_posix()
+        for path in (dataset.path / EPISODES).glob("*/*.parquet")
+    }
+    return _short_hash("".join(name + sha256(dataset.path / name) for name in sorted(names)))
+
+
+def _begin(work: Copy) -> None:
+    """Check the results of an earlier run in ``out``, then write the settings there."""
+    settings = {k: v for k, v in asdict(work.settings).items() if k not in UNUSED}
+    now = {
+        "suite_version": SUITE_VERSION,
+        **version(work.settings.corruption),
+        **settings,
+        "cameras": [camera.name for camera in work.cameras],
+        "tolerance": work.tolerance,
+        "dataset": _digest(work.dataset),
+    }
+    checksums: dict[str, str] = {}
+    if any(path.name[0] != "." for path in work.out.iterdir()):
+        checksums = _earlier_checksums(work.out, now)
+    codecs = {name: f"{e.name} {e.stored}" for name, e in work.encodings.items()}
+    work.summary = {
+        "settings": now,
+        "episodes": len(work.dataset.episodes),
+        "frames": _frames_per_file(work).total(),
+        "videos": codecs,
+        "written": 0,
+        "there": 0,
+        "replaced": [],
+        "checksums": checksums,
+    }
+    _write_summary(work)
+
+
+def _earlier_checksums(out: Path, now: Mapping[str, Any]) -> dict[str, str]:
+    """Return the checksums of an earlier run; ValueError unless it had the same settings."""
+    fix = "Name another folder, or delete this one."
+    try:
+        earlier = json.loads(read_regular(out / SUMMARY))
+        before = dict(earlier["settings"])
+        checksums = {str(k): str(v) for k, v in dict(earlier["checksums"]).items()}
+    except FileNotFoundError:
+        raise ValueError(
+            f"{out} must be empty or have a {SUMMARY} of this program. {fix}"
+        ) from None
+    except (OSError, ValueError, KeyError, TypeError) as error:
+        raise ValueError(f"{out / SUMMARY} is damaged ({error!s:.200}). {fix}") from error
+    different = [
+        escaped(f"{name}={short(before.get(name))} there, {name}={short(now.get(name))} now")
+        for name in {**before, **now}
+        if before.get(name) != now.get(name)
+    ]
+    if different:
+        raise ValueError(f"{out} was made with other settings: {'; '.join(different)}. {fix}")
+    return checksums
+
+
+def _write_summary(work: Copy) -> None:
+    write_bytes(work.out / SUMMARY, (json.dumps(work.summary, indent=1) + "\n").encode())
+
+
+def report(summary: Mapping[str, Any], out: str) -> str:
+    """Return what a run did, for the command line."""
+    settings = summary["settings"]
+    lines = [
+        f"{counted(summary['frames'], 'frame')} of {', '.join(settings['cameras'])} corrupted; "
+        f"{counted(summary['written'], 'file')} written to {out}"
+    ]
+    if summary["there"]:
+        lines[0] += f"; {summary['there']} already existed"
+    for camera, codec in summary["videos"].items():
+        lossless = codec.endswith((videos.LOSSLESS.stored, videos.DEPTH.stored))
+        lines.append(f"video of {camera}: {codec}, {'lossless' if lossless else 'lossy'}")
+    if summary["replaced"]:
+        names = ", ".join(map(escaped, summary["replaced"][:MAX_LISTED]))
+        lines.append(
+            f"{counted(len(summary['replaced']), 'file')} differed from the results of this "
+            f"command and were written again: {names}"
+        )
+    return "\n".join(lines)

@@ -1,0 +1,91 @@
+"""Depth of LeRobot datasets: 12-bit codes in videos."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from mitigate.core.names import short
+
+MAX_CODE = 4095  # DEPTH_QMAX of lerobot: 12 bits
+MAX_METRES = 1e4  # heuristic limit of the parameters
+
+
+@dataclass(frozen=True)
+class DepthCode:
+    """How a depth video encodes metres.
+
+    A code c of 0 to ``MAX_CODE`` is ``near + (far - near) * c / MAX_CODE`` metres, or with
+    ``log`` the same for the logarithm of (metres + ``shift``): ``quantize_depth`` of lerobot. The
+    defaults are those of lerobot (``DepthEncoderConfig``).
+
+    Code 0 means no reading here: lerobot gives this code to pixels without a reading, and to depth
+    up to ``near``.
+
+    Attributes:
+        near: Metres of code 0.
+        far: Metres of code ``MAX_CODE``.
+        shift: Metres added before the logarithm.
+        log: Whether codes are logarithmic.
+    """
+
+    near: float = 0.01
+    far: float = 10.0
+    shift: float = 3.5
+    log: bool = True
+
+    @classmethod
+    def of(cls, info: Mapping[str, Any], place: str) -> DepthCode:
+        """Return the code that the ``info`` of a feature describes.
+
+        Raises:
+            ValueError: A parameter is missing its meaning; the message begins with ``place``.
+        """
+        names = ("depth_min", "depth_max", "shift")
+        defaults = (cls.near, cls.far, cls.shift)
+        values = []
+        for name, default in zip(names, defaults, strict=True):
+            value = info.get(f"video.{name}")
+            value = default if value is None else value
+            is_number = isinstance(value, (int, float)) and not isinstance(value, bool)
+            if not (is_number and abs(value) <= MAX_METRES):
+                raise ValueError(
+                    f"{place}: video.{name} must be a number up to {MAX_METRES:g} metres, got "
+                    f"{short(value)}."
+                )
+            values.append(float(value))
+        log = info.get("video.use_log")
+        log = cls.log if log is None else log
+        near, far, shift = values
+        if not isinstance(log, bool) or not 0 <= near < far or (log and near + shift <= 0):
+            raise ValueError(
+                f"{place}: the depth of a video must have 0 <= depth_min < depth_max, depth_min + "
+                f"shift > 0 and use_log true or false, got {near:g}, {far:g}, {shift:g} and "
+                f"{short(log)}."
+            )
+        return cls(near, far, shift, log)
+
+    def metres(self, codes: np.ndarray) -> np.ndarray:
+        """Return the metres of codes, float32; 0 for no reading."""
+        share = np.minimum(codes, MAX_CODE).astype(np.float64) / MAX_CODE
+        if self.log:
+            low, high = math.log(self.near + self.shift), math.log(self.far + self.shift)
+            metres = np.exp(low + share * (high - low)) - self.shift
+        else:
+            metres = self.near + share * (self.far - self.near)
+        return np.where(codes == 0, 0, np.clip(metres, self.near, self.far)).astype(np.float32)
+
+    def codes(self, metres: np.ndarray) -> np.ndarray:
+        """Return the nearest codes of float32 metres, uint16; 0 only for no reading."""
+        valid = np.isfinite(metres) & (metres > 0)
+        depth = np.clip(np.where(valid, metres, self.near), self.near, self.far)
+        if self.log:
+            low, high = math.log(self.near + self.shift), math.log(self.far + self.shift)
+            share = (np.log(depth + self.shift) - low) / (high - low)
+        else:
+            share = (depth - self.near) / (self.far - self.near)
+        return np.clip(np.rint(share * MAX_CODE), valid, MAX_CODE).astype(np.uint16)

@@ -1,0 +1,130 @@
+"""Read the frames of an episode of a LeRobot dataset."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from mitigate.corruptions.lerobot import images, videos
+from mitigate.corruptions.lerobot.dataset import VIDEO, Camera, Dataset, Episode
+from mitigate.corruptions.lerobot.tables import BATCH_ROWS, FIX, check_columns, integers, open_table
+
+
+def read_frames(
+    dataset: Dataset,
+    episode: Episode,
+    cameras: Sequence[Camera],
+    chosen: Sequence[int],
+    times: Sequence[float],
+    tolerance: float,
+) -> Iterator[dict[str, np.ndarray]]:
+    """Yield the frames of an episode, in order.
+
+    Args:
+        dataset: The dataset.
+        episode: The episode.
+        cameras: Cameras to read.
+        chosen: Increasing numbers of frames.
+        times: Seconds from the start of the episode to each chosen frame.
+        tolerance: Most seconds between a row and its video frame.
+
+    Yields:
+        uint8 [H, W, 3], or float32 metres [H, W] with 0 for no reading, by camera.
+
+    Raises:
+        FileNotFoundError: A file is missing.
+        ValueError: A file is damaged, or a video has no frame near a time.
+    """
+    streams: list[Iterator[dict[str, np.ndarray]]] = []
+    for camera in cameras:
+        if camera.stored == VIDEO:
+            streams.append(_video_frames(dataset, episode, camera, times, tolerance))
+    in_rows = [camera for camera in cameras if camera.stored != VIDEO]
+    if in_rows:
+        streams.append(_image_frames(dataset.path / episode.data, episode.index, in_rows, chosen))
+    for parts in zip(*streams, strict=True):
+        yield {name: frame for part in parts for name, frame in part.items()}
+
+
+def _video_frames(
+    dataset: Dataset, episode: Episode, camera: Camera, times: Sequence[float], tolerance: float
+) -> Iterator[dict[str, np.ndarray]]:
+    file, start = episode.videos[camera.name]
+    in_file = [start + time for time in times]
+    for frame in videos.decode(dataset.path / file, camera, in_file, tolerance):
+        yield {camera.name: frame}
+
+
+def _image_frames(
+    path: Path, episode: int, cameras: Sequence[Camera], chosen: Sequence[int]
+) -> Iterator[dict[str, np.ndarray]]:
+    left = list(chosen)[::-1]
+    names = [camera.name for camera in cameras]
+    with open_table(path) as file:
+        check_images(path, file.schema_arrow, cameras)
+        for batch in _batches(path, file, episode, names):
+            numbers = integers(batch, "frame_index", path)
+            mine = [number == episode for number in integers(batch, "episode_index", path)]
+            for row, number in enumerate(numbers):
+                if left and mine[row] and number == left[-1]:
+                    left.pop()
+                    yield {
+                        camera.name: read_image(path, batch, row, camera, number)
+                        for camera in cameras
+                    }
+    if left:
+        raise ValueError(f"{path} lacks frame {left[-1]} of episode {episode}. {FIX}")
+
+
+def _batches(path: Path, file: Any, episode: int, names: Sequence[str]) -> Iterator[Any]:
+    """Yield the rows of the row groups that an episode is in, a few at a time."""
+    for group in range(file.num_row_groups):
+        column = file.read_row_group(group, columns=["episode_index"])
+        if episode in integers(column, "episode_index", path):
+            columns = ["episode_index", "frame_index", *names]
+            yield from file.iter_batches(BATCH_ROWS, row_groups=[group], columns=columns)
+
+
+def check_images(path: Path, schema: Any, cameras: Sequence[Camera]) -> None:
+    """Raise ValueError unless each camera has a column of images with their bytes."""
+    from pyarrow import types
+
+    check_columns(path, schema.names, [camera.name for camera in cameras])
+    for camera in cameras:
+        kind = schema.field(camera.name).type
+        is_image = types.is_struct(kind) and kind.get_field_index("bytes") >= 0
+        if not (is_image and _is_binary(kind.field("bytes").type)):
+            raise ValueError(
+                f"{path}: the column {camera.name} must hold images (a struct with bytes), got "
+                f"{str(kind)[:80]}. {FIX}"
+            )
+
+
+def _is_binary(kind: Any) -> bool:
+    from pyarrow import types
+
+    return types.is_binary(kind) or types.is_large_binary(kind)
+
+
+def read_image(path: Path, table: Any, row: int, camera: Camera, number: int) -> np.ndarray:
+    """Return an image of a table as a frame: uint8 [H, W, 3], or float32 metres [H, W]."""
+    stored, _ = stored_image(path, table, row, camera, number)
+    return images.as_frame(stored, camera)
+
+
+def stored_image(
+    path: Path, table: Any, row: int, camera: Camera, number: int
+) -> tuple[np.ndarray, str]:
+    """Return an image of a table as it is stored, and the format of its file.
+
+    Raises:
+        ValueError: It is damaged, or has another type or size than the camera.
+    """
+    value = table.column(camera.name)[row].as_py()
+    try:
+        return images.decode(value and value.get("bytes"), camera)
+    except ValueError as error:
+        raise ValueError(f"{path}: {camera.name} of frame {number} {error}. {FIX}") from error

@@ -1,0 +1,99 @@
+"""Images in the rows of a LeRobot dataset: RGB as PNG or JPEG, depth as TIFF or 16-bit PNG."""
+
+from __future__ import annotations
+
+import io
+import math
+
+import numpy as np
+from PIL import Image
+
+from mitigate.core.observation import RGB
+from mitigate.corruptions.frame_files import JPEG_QUALITY, MAX_PIXELS, PNG_LEVEL, counts
+from mitigate.corruptions.lerobot.dataset import Camera
+
+FORMATS = {"rgb": ("PNG", "JPEG"), "depth": ("PNG", "TIFF")}
+MODES = {"rgb": ("RGB",), "depth": ("I;16", "F")}  # lerobot: uint16 is I;16, float32 is F
+MILLIMETRE = 0.001
+
+
+def decode(data: object, camera: Camera) -> tuple[np.ndarray, str]:
+    """Decode an image.
+
+    Args:
+        data: The bytes of the file.
+        camera: The camera that it must belong to.
+
+    Returns:
+        uint8 [H, W, 3], uint16 [H, W] or float32 [H, W], and the format of the file.
+
+    Raises:
+        ValueError: It is damaged, or of another format, type or size; the message is the end of a
+            sentence.
+    """
+    if not isinstance(data, bytes):
+        raise ValueError("must hold the bytes of an image. A file outside of the row is not read")
+    try:
+        with Image.open(io.BytesIO(data), formats=FORMATS[camera.kind]) as image:
+            if math.prod(image.size) > MAX_PIXELS:
+                raise ValueError(f"it has {image.size[0]} x {image.size[1]} pixels")
+            size, mode, form = image.size, image.mode, str(image.format)
+            if size == (camera.width, camera.height) and mode in MODES[camera.kind]:
+                image.load()
+                return np.array(image), form
+    except Exception as error:  # decoders raise many kinds of errors for untrusted files
+        formats = " or ".join(FORMATS[camera.kind])
+        raise ValueError(
+            f"cannot be decoded as {formats}: {' '.join(str(error).split())[:200]}"
+        ) from error
+    modes = " or ".join(MODES[camera.kind])
+    raise ValueError(
+        f"must have {camera.width} x {camera.height} pixels of type {modes}, got {size[0]} x "
+        f"{size[1]} of type {mode}"
+    )
+
+
+def metres(stored: np.ndarray, camera: Camera) -> np.ndarray:
+    """Return a depth image in float32 metres, 0 for no reading."""
+    depth = stored.astype(np.float32) * np.float32(_unit(stored, camera))
+    return np.where(np.isfinite(depth) & (depth > 0), depth, 0)
+
+
+def store_depth(depth: np.ndarray, stored: np.ndarray, camera: Camera) -> np.ndarray:
+    """Return corrupted metres in the type and unit of ``stored``.
+
+    Pixels that equal :func:`metres` of ``stored`` keep their stored values.
+    """
+    unit = _unit(stored, camera)
+    new = counts(depth, unit) if stored.dtype == np.uint16 else depth / np.float32(unit)
+    return np.where(depth == metres(stored, camera), stored, new).astype(stored.dtype)
+
+
+def _unit(stored: np.ndarray, camera: Camera) -> float:
+    if camera.unit is not None:
+        return camera.unit
+    return MILLIMETRE if stored.dtype == np.uint16 else 1.0
+
+
+def encode(pixels: np.ndarray, form: str, keep_format: bool) -> bytes:
+    """Encode an image as :func:`decode` returns it.
+
+    Args:
+        pixels: The image.
+        form: Format of the original file.
+        keep_format: Whether RGB from a JPEG becomes a JPEG; otherwise a PNG, which is lossless.
+    """
+    with io.BytesIO() as file:
+        image = Image.fromarray(pixels)
+        if form == "TIFF":
+            image.save(file, "TIFF", compression="raw")
+        elif form == "JPEG" and keep_format:
+            image.save(file, "JPEG", quality=JPEG_QUALITY, subsampling=0)
+        else:
+            image.save(file, "PNG", compress_level=PNG_LEVEL)
+        return file.getvalue()
+
+
+def as_frame(stored: np.ndarray, camera: Camera) -> np.ndarray:
+    """Return a stored image as a frame: uint8 [H, W, 3], or float32 metres [H, W]."""
+    return stored if camera.kind == RGB else metres(stored, camera)

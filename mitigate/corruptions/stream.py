@@ -1,0 +1,170 @@
+"""Corrupt the observations of a sequence, including faults that depend on earlier frames.
+
+The entry points for sequences pass each observation through a ``FrameStream``. For corruptions of
+single frames it equals ``corrupt_observation``.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from mitigate.core.observation import DEPTH, POSE, RGB
+from mitigate.corruptions import registry
+from mitigate.corruptions.depth_sensor import DepthSensor
+from mitigate.corruptions.faults.camera import Mount, total
+from mitigate.corruptions.faults.temporal import GATE, OLDEST
+from mitigate.corruptions.keying import Key, as_key
+from mitigate.corruptions.normalised import corrupt_normalised
+from mitigate.corruptions.record import CAMERA, TEMPORAL
+from mitigate.corruptions.suite import (
+    SENSOR,
+    Corruption,
+    changed_entries,
+    check_corruption,
+    check_gate,
+    corrupt_observation,
+)
+
+
+def is_timed(corruption: Corruption) -> bool:
+    """Return whether a corruption has a temporal fault."""
+    return any(registry.record(part.name).family == TEMPORAL for part in corruption.parts)
+
+
+def shows_past(corruption: Corruption) -> bool:
+    """Return whether a corruption may show the frame of an earlier instant."""
+    records = (registry.record(part.name) for part in corruption.parts if part.name != GATE)
+    return any(record.family == TEMPORAL and record.draw is not None for record in records)
+
+
+def mount_of(corruption: Corruption, key: Key) -> Mount | None:
+    """Return the displacement of the camera at an instant; None without an active camera fault."""
+    parts = corruption.parts
+    if parts and parts[0].name == GATE and not _draw(parts[0], key):
+        return None
+    mounts = [_draw(p, key) for p in parts if registry.record(p.name).family == CAMERA]
+    return total(mounts) if mounts else None
+
+
+def _draw(part: Corruption, key: Key) -> Any:
+    """Return what a fault does at the instant of ``key``."""
+    draw = registry.record(part.name).draw
+    assert draw is not None, "only faults are drawn"
+    return draw(part.severity, key)
+
+
+class FrameStream:
+    """Corrupt the observations of one episode after another, in the order of their frames.
+
+    For temporal faults it keeps the clean frames of the last instants, and forgets them when the
+    episode of the key changes or its frame number does not grow. So the result is a function of the
+    key and the frames of its episode only.
+
+    Args:
+        sensor: Depth range and value for no reading.
+        normalised: Whether depth is in [0, 1] over the sensor's range instead of in metres.
+        hfov: Horizontal field of view in degrees by entry, which camera faults need.
+    """
+
+    def __init__(
+        self,
+        sensor: DepthSensor = SENSOR,
+        *,
+        normalised: bool = False,
+        hfov: Mapping[str, float | None] | None = None,
+    ) -> None:
+        self.sensor = sensor
+        self.hfov = hfov
+        self._corrupt = corrupt_normalised if normalised else corrupt_observation
+        self._past: dict[str, list[tuple[int, np.ndarray]]] = {}  # by entry: frame number, frame
+        self._episode = (0, "")
+
+    def corrupt(
+        self,
+        obs: Mapping[str, Any],
+        corruption: Corruption,
+        key: Key | int | str,
+        *,
+        partial: bool = False,
+        displaced: bool = False,
+    ) -> dict:
+        """Corrupt the frames of the next observation.
+
+        Args:
+            obs: The observation (``core/observation.py``); it is not modified.
+            corruption: The corruption.
+            key: Key of the random draws; ``key.frame`` is the number of the instant.
+            partial: Whether to ignore corruptions of frames that ``obs`` lacks.
+            displaced: Whether the frames already show the camera faults (``World.displaced``).
+
+        Returns:
+            A new dict; entries that are not corrupted are the same objects.
+
+        Raises:
+            ValueError: As in ``corrupt_observation``.
+        """
+        key = as_key(key)
+        parts = check_gate(check_corruption(corruption)).parts
+        parts = tuple(p for p in parts if {*registry.record(p.name).modalities} & {RGB, DEPTH})
+        if partial:
+            parts = tuple(p for p in parts if {*registry.record(p.name).modalities} & {*obs})
+        if displaced:
+            parts = tuple(p for p in parts if registry.record(p.name).family != CAMERA)
+        if not is_timed(corruption):
+            for each in parts if partial or displaced else (corruption,):
+                obs = self._corrupt(dict(obs), each, key, self.sensor, self.hfov)
+            return dict(obs)
+        self.remember(obs, key)
+        if parts and parts[0].name == GATE:
+            parts = parts[1:] if _draw(parts[0], key) else ()
+        changed: dict[str, list[Corruption]] = {}
+        for part in parts:
+            for entry in changed_entries(obs, part):
+                changed.setdefault(entry, []).append(part)
+        return {**obs, **{entry: self._arriving(entry, p, key) for entry, p in changed.items()}}
+
+    def remember(self, obs: Mapping[str, Any], key: Key) -> None:
+        """Keep the frames and the pose of an instant, which later instants may show.
+
+        Raises:
+            ValueError: A frame has another shape than the frame before it.
+        """
+        if (key.seed, key.episode) != self._episode:
+            self._past.clear()
+            self._episode = (key.seed, key.episode)
+        for entry in {RGB, DEPTH, POSE}.intersection(obs):
+            past = self._past.setdefault(entry, [])
+            past[:] = [instant for instant in past if instant[0] < key.frame]
+            frame = np.array(obs[entry])
+            if past and past[-1][1].shape != frame.shape:
+                raise ValueError(
+                    f"All {entry} frames of an episode must have the same shape under a temporal "
+                    f"fault, got {list(frame.shape)} after {list(past[-1][1].shape)}."
+                )
+            past.append((key.frame, frame))
+            while len(past) > 1 and past[1][0] <= key.frame - OLDEST:
+                del past[0]
+
+    def _arriving(self, entry: str, parts: Sequence[Corruption], key: Key) -> np.ndarray:
+        """Return the frame that arrives, corrupted as when it was taken."""
+        taken = key.frame
+        for late in (part for part in parts if shows_past(part)):
+            taken -= _draw(late, replace(key, frame=taken))
+        taken = max(taken, key.frame - OLDEST)  # a pair may add two ages
+        instant, frame = self._recall(entry, taken)
+        arriving: dict[str, Any] = {entry: frame.copy()}
+        if POSE in self._past:
+            arriving[POSE] = self._recall(POSE, instant)[1]
+        then = replace(key, frame=instant)
+        for part in (part for part in parts if not shows_past(part)):
+            arriving = self._corrupt(arriving, part, then, self.sensor, self.hfov)
+        return arriving[entry]
+
+    def _recall(self, entry: str, number: int) -> tuple[int, np.ndarray]:
+        """Return the newest instant up to ``number`` and its entry, or else the oldest one."""
+        past = self._past[entry]
+        return next((instant for instant in reversed(past) if instant[0] <= number), past[0])

@@ -1,0 +1,97 @@
+"""Frames of a LeRobot dataset, for recipes that need frames alone."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+
+import numpy as np
+
+from mitigate.core.seeding import generator
+from mitigate.corruptions.lerobot import open_dataset
+from mitigate.corruptions.lerobot.dataset import TOLERANCE, Episode, rows_of
+from mitigate.corruptions.lerobot.frames import read_frames
+from mitigate.encoders.sources import (
+    TRAIN,
+    Shot,
+    check_options,
+    last_scenes,
+    resized,
+    split_single,
+)
+
+
+class DatasetFrames:
+    """The frames of one camera of a LeRobot dataset.
+
+    Each episode is a scene. The last scenes are unseen. A single episode is split into blocks of
+    consecutive frames.
+
+    Args:
+        path: folder of the dataset.
+        camera: name of the camera; None: the only one of ``sensor``.
+        sensor: "rgb" or "depth".
+        size: side in pixels to which frames are resized; None: unchanged.
+        held_out: share of the scenes that are unseen.
+        block: frames per block of a single episode, or fewer, so that five blocks are unseen.
+        episodes: numbers of the episodes to read; None: all.
+        tolerance: most seconds between a row and its video frame.
+
+    Raises:
+        FileNotFoundError: There is no such dataset, or a file is missing.
+        ValueError: The dataset is damaged, an argument is out of range, or several cameras fit.
+    """
+
+    files = True
+
+    def __init__(
+        self,
+        path: str | None,
+        camera: str | None = None,
+        sensor: str = "rgb",
+        size: int | None = None,
+        held_out: float = 0.2,
+        block: int = 50,
+        episodes: Sequence[int] | None = None,
+        tolerance: float = TOLERANCE,
+    ) -> None:
+        if path is None:
+            raise FileNotFoundError("env.path is not set. Name the folder of the dataset.")
+        check_options(size, held_out, block)
+        self.size, self.held_out, self.tolerance = size, held_out, tolerance
+        self.dataset = open_dataset(Path(path))
+        cameras = self.dataset.choose_cameras(sensor, camera and [camera])
+        if len(cameras) != 1:
+            names = ", ".join(c.name for c in self.dataset.cameras.values()) or "none"
+            raise ValueError(
+                f"env.camera must name one of the {sensor} cameras of {path}: {len(cameras)} fit. "
+                f"Its cameras: {names}."
+            )
+        self.camera = cameras[0]
+        frames: dict[str, list[tuple[Episode, int]]] = {}
+        self._times: dict[int, np.ndarray] = {}
+        for episode, rows, _ in rows_of(self.dataset, self.dataset.choose_episodes(episodes)):
+            frames[f"episode-{episode.index:06d}"] = [(episode, n) for n in range(episode.length)]
+            self._times[episode.index] = rows.times
+        self._frames = split_single(frames, block, held_out)
+
+    def scenes(self, split: str) -> Sequence[str]:
+        unseen = last_scenes(list(self._frames), self.held_out)
+        if not unseen:
+            raise ValueError(
+                f"{self.dataset.path} has one frame, but training and unseen frames must come from "
+                "different scenes. Use a dataset with several episodes."
+            )
+        return [name for name in self._frames if (name in unseen) != (split == TRAIN)]
+
+    def shots(self, scene: str, count: int, seed: int) -> Iterator[Shot]:
+        frames = self._frames[scene]
+        rng = generator(seed, "encoder frames", scene)
+        places = sorted(rng.permutation(len(frames))[:count])
+        episode = frames[0][0]
+        chosen = [frames[place][1] for place in places]
+        times = self._times[episode.index][chosen].tolist()
+        read = read_frames(self.dataset, episode, [self.camera], chosen, times, self.tolerance)
+        for images in read:
+            frame = images[self.camera.name]
+            yield Shot(resized(frame.reshape(*frame.shape[:2], -1), self.size))

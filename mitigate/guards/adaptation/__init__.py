@@ -1,0 +1,1 @@
+"""Guards that adapt an agent to the frames of its episode: test-time adaptation."""

@@ -1,0 +1,77 @@
+"""``adapt=norm``: estimate the statistics of BatchNorm again from the frames of the episode.
+
+A BatchNorm layer subtracts the mean that its inputs had in training. Under corruption the inputs
+have another mean and variance (Schneider et al. 2020). Before each call, this guard moves both
+towards those of the current input.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Any
+
+import torch
+from torch import Tensor
+from torch.nn.modules.batchnorm import _BatchNorm
+
+from mitigate.guards.adaptation.adaptation import NO_LAYER, Adaptation, modules_of
+from mitigate.guards.adaptation.choices import EPISODE
+
+
+class Norm(Adaptation):
+    """Move the statistics of BatchNorm layers towards those of the episode.
+
+    Args:
+        momentum: weight of the current input, from 0 to 1; 0 changes nothing.
+        reset: see :class:`Adaptation`.
+
+    Raises:
+        ValueError: A number is out of its range.
+    """
+
+    kind = "norm"
+
+    def __init__(self, momentum: float = 0.1, reset: str = EPISODE) -> None:
+        super().__init__(reset)
+        if not 0 <= momentum <= 1:
+            raise ValueError(f"momentum must be from 0 to 1, got {momentum!r:.80}.")
+        self.momentum = momentum
+
+    def settings(self) -> dict[str, Any]:
+        return {**super().settings(), "momentum": self.momentum}
+
+    def check_agent(self, agent: Any) -> None:
+        if not _layers(agent):
+            raise ValueError(
+                f"adapt=norm estimates the statistics of BatchNorm layers, and "
+                f"{type(agent).__name__} has none with running statistics. {NO_LAYER}."
+            )
+
+    def tensors(self, agent: Any) -> list[Tensor]:
+        return [t for layer in _layers(agent) for t in (layer.running_mean, layer.running_var)]
+
+    @contextmanager
+    def adapting(self, agent: Any) -> Iterator[None]:
+        handles = [layer.register_forward_pre_hook(self._update) for layer in _layers(agent)]
+        try:
+            yield
+        finally:
+            for handle in handles:
+                handle.remove()
+
+    def _update(self, layer: Any, inputs: tuple[Tensor, ...]) -> None:
+        if torch.is_grad_enabled():  # a guard computes a decision again for its gradients
+            return
+        values = inputs[0].detach().float().movedim(1, 0).flatten(1)
+        layer.running_mean.lerp_(values.mean(1), self.momentum)
+        if values.shape[1] > 1:
+            layer.running_var.lerp_(values.var(1), self.momentum)
+
+
+def _layers(agent: Any) -> list[Any]:
+    return [
+        module
+        for module in modules_of(agent)
+        if isinstance(module, _BatchNorm) and module.running_mean is not None
+    ]

@@ -1,0 +1,185 @@
+"""``adapt=recentre``: shift features back to the mean that they have on clean frames.
+
+A corruption moves the mean of features. This guard estimates the mean of the episode and subtracts
+its distance from the mean on clean frames, which it measures before the evaluation. It needs no
+normalisation layers and no gradients.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import math
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from typing import Any
+
+import torch
+from torch import Tensor, nn
+
+from mitigate.agents.agent import as_agent
+from mitigate.agents.networks import in_eval_mode
+from mitigate.agents.policies import Policy, last_convolution
+from mitigate.core.contracts import missing_members
+from mitigate.core.precision import computing
+from mitigate.guards.adaptation.adaptation import Adaptation, channel_means
+from mitigate.guards.adaptation.choices import EPISODE
+from mitigate.worlds.episodes import Episode
+
+EPISODES, STEPS = 8, 100  # clean episodes, and most steps of each (heuristic)
+
+
+class Recentre(Adaptation):
+    """Shift the features of some modules to their clean mean.
+
+    Args:
+        modules: names of the modules of the agent (of the network of a policy) whose outputs are
+            features; None: its image encoders, or the last convolution of a policy.
+        prior: number of observations that the clean mean counts in the mean of the episode. So the
+            first frames are shifted little.
+        reset: see :class:`Adaptation`.
+
+    Attributes:
+        means: clean mean [C] of each module, in order; set by :meth:`calibrate`.
+
+    Raises:
+        ValueError: A number is out of its range.
+    """
+
+    kind = "recentre"
+
+    def __init__(
+        self, modules: Sequence[str] | None = None, prior: float = 10.0, reset: str = EPISODE
+    ) -> None:
+        super().__init__(reset)
+        if not 0 < prior < math.inf:
+            raise ValueError(f"prior must be a number above 0, got {prior!r:.80}.")
+        self.modules = None if modules is None else tuple(modules)
+        self.prior = prior
+        self.means: list[Tensor] = []
+        self._now: list[Tensor] = []  # mean [C] of the episode, and number of observations [1]
+
+    def settings(self) -> dict[str, Any]:
+        digest = hashlib.sha256(b"".join(mean.numpy().tobytes() for mean in self.means))
+        modules = None if self.modules is None else list(self.modules)
+        own = {"modules": modules, "prior": self.prior, "means": digest.hexdigest()}
+        return {**super().settings(), **own}
+
+    def check_agent(self, agent: Any) -> None:
+        _modules(agent, self.modules)
+        if not self.means:
+            raise ValueError(
+                "Recentre does not know the clean means. Call calibrate(agent, world, episode) "
+                "first; mitigate.benchmark and mitigate evaluate do."
+            )
+
+    def calibrate(self, agent: Any, world: Any, episode: Callable[[int], Episode]) -> None:
+        """Measure the means on clean episodes that the agent runs, unless they are known.
+
+        Args:
+            agent: the agent.
+            world: a world.
+            episode: returns a training episode by its number.
+        """
+        modules = _modules(agent, self.modules)
+        if self.means:  # measured before
+            return
+        sums: list[Any] = [0.0] * len(modules)
+        counts = [0] * len(modules)
+
+        def record(place: int) -> Callable:
+            def hook(module: nn.Module, inputs: Any, output: Any) -> None:
+                sums[place] = sums[place] + _means(output).cpu()
+                counts[place] += 1
+
+            return hook
+
+        threads = torch.get_num_threads()
+        torch.set_num_threads(1)  # as in evaluations, so that sums round equally
+        handles = [module.register_forward_hook(record(i)) for i, module in enumerate(modules)]
+        device = next(modules[0].parameters(), torch.empty(0)).device
+        try:
+            with computing("fp32", device), in_eval_mode(agent):
+                for number in range(EPISODES):
+                    chosen = episode(number)
+                    observation = world.reset(chosen)
+                    agent.reset(chosen.instruction.text)
+                    steps = 0
+                    while not world.done and steps < STEPS:
+                        observation = world.step(agent.act(observation))
+                        steps += 1
+        finally:
+            torch.set_num_threads(threads)
+            for handle in handles:
+                handle.remove()
+        if not all(counts):
+            raise ValueError(
+                f"{type(agent).__name__} did not call all modules to recentre. Name others: "
+                "Recentre(modules=[...])."
+            )
+        self.means = [s / n for s, n in zip(sums, counts, strict=True)]
+
+    def tensors(self, agent: Any) -> list[Tensor]:
+        """Return the means of the episode, which are this guard's own."""
+        self._now = [t for mean in self.means for t in (mean.clone(), torch.zeros(1))]
+        return self._now
+
+    @contextmanager
+    def adapting(self, agent: Any) -> Iterator[None]:
+        modules = _modules(agent, self.modules)
+        handles = [module.register_forward_hook(self._shift(i)) for i, module in enumerate(modules)]
+        try:
+            yield
+        finally:
+            for handle in handles:
+                handle.remove()
+
+    def _shift(self, place: int) -> Callable:
+        def hook(module: nn.Module, inputs: Any, output: Any) -> Any:
+            mean, count = self._now[2 * place : 2 * place + 2]
+            if not torch.is_grad_enabled():  # else a guard computes a decision again
+                mean.lerp_(_means(output).cpu(), 1.0 / (self.prior + float(count) + 1.0))
+                count.add_(1.0)
+            features = output[0] if isinstance(output, (tuple, list)) else output
+            axis = _axis(features)
+            shape = [-1 if i == axis else 1 for i in range(features.dim())]
+            shift = (mean - self.means[place]).to(features).view(shape)
+            shifted = features - shift
+            return shifted if isinstance(output, Tensor) else type(output)((shifted, *output[1:]))
+
+        return hook
+
+
+def _modules(agent: Any, names: Sequence[str] | None) -> list[nn.Module]:
+    """Return the modules with these names; None: the image encoders of the agent.
+
+    Raises:
+        ValueError: A module does not exist, or the agent has no known encoder.
+    """
+    root: Any = agent.network if isinstance(agent, Policy) else agent
+    if names is None and isinstance(agent, Policy):
+        names = [last_convolution(agent)]
+    if names is None:
+        names = [parts[0] for parts in as_agent(agent).encoders.values()]
+    if not names or missing_members(root, ("get_submodule",)):
+        raise ValueError(
+            f"adapt=recentre does not know the features of {type(agent).__name__}, which declares "
+            "no encoders (mitigate/agents/agent.py). Name modules of the network: "
+            "adapt=Recentre(modules=[...]) of mitigate.guards.adaptation.recentre."
+        )
+    try:
+        return [root.get_submodule(name) for name in names]
+    except AttributeError as error:
+        known = [name for name, _ in root.named_modules() if name]
+        raise ValueError(
+            f"Recentre(modules=...): {error}. Names of modules are {', '.join(known[:12])}."
+        ) from None
+
+
+def _axis(features: Tensor) -> int:
+    """Return the axis of the channels: 1 for maps [B, C, h, w], else the last one."""
+    return 1 if features.dim() == 4 else features.dim() - 1
+
+
+def _means(output: Any) -> Tensor:
+    features = output[0] if isinstance(output, (tuple, list)) else output
+    return channel_means(features.detach(), _axis(features))

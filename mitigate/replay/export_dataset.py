@@ -1,0 +1,166 @@
+"""Write an oracle's episodes as a LeRobot dataset, version 3.
+
+RGB becomes a lossless video, depth a lossless video of lerobot's 12-bit codes. The state is the
+pose (x, y, heading), the action is the number of the oracle's action.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Sequence
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from mitigate.core.files import make_folder, write_atomically, write_bytes
+from mitigate.core.observation import DEPTH, POSE, RGB
+from mitigate.core.output import open_output
+from mitigate.corruptions.lerobot import Camera, videos
+from mitigate.corruptions.lerobot.dataset import EPISODES, INFO, TASKS, VIDEO
+from mitigate.corruptions.lerobot.depth import DepthCode
+from mitigate.corruptions.lerobot.tables import parquet
+
+FPS = 1  # a step lasts one second
+NAMES = {RGB: "observation.images.front", DEPTH: "observation.images.front_depth"}
+DATA = "data/chunk-{chunk_index:03d}/file-{file_index:03d}.parquet"
+VIDEOS = "videos/{video_key}/chunk-{chunk_index:03d}/file-{file_index:03d}.mp4"
+STATE = "observation.state"
+FIRST = {"chunk_index": 0, "file_index": 0}  # all episodes are in the first files
+
+
+class DatasetWriter:
+    """Collects episodes and writes them as one dataset.
+
+    Args:
+        out: Folder of the dataset.
+
+    Raises:
+        ValueError: ``out`` exists and is not an empty folder.
+    """
+
+    def __init__(self, out: Path) -> None:
+        if out.exists() and (not out.is_dir() or any(out.iterdir())):
+            raise ValueError(
+                f"{out} must be a new or an empty folder for form=lerobot. Name another folder, or "
+                "delete it."
+            )
+        self.out = out
+        self._episodes: list[list[dict[str, np.ndarray]]] = []
+        self._actions: list[list[int]] = []
+        self._tasks: list[str] = []
+
+    def add(self, steps: Sequence[dict[str, np.ndarray]], actions: list[int], task: str) -> None:
+        """Add an episode: frames and pose of each step, the action at each step, and the text."""
+        self._episodes.append([*steps])
+        self._actions.append(actions)
+        self._tasks.append(task)
+
+    def write(self) -> None:
+        """Write all files. ``meta/info.json`` is last, so that a part of a dataset is none."""
+        height, width = self._episodes[0][0][RGB].shape[:2]
+        tasks = list(dict.fromkeys(self._tasks))
+        cameras = {
+            RGB: Camera(NAMES[RGB], RGB, VIDEO, height, width),
+            DEPTH: Camera(NAMES[DEPTH], DEPTH, VIDEO, height, width, code=DepthCode()),
+        }
+        for kind, camera in cameras.items():
+            path = self.out / VIDEOS.format(video_key=camera.name, **FIRST)
+            frames = (np.squeeze(step[kind]) for steps in self._episodes for step in steps)
+            encoding = videos.LOSSLESS if kind == RGB else videos.DEPTH
+            make_folder(path.parent)
+            write_atomically(path, partial(_write_video, frames, camera, encoding))
+        self._table(DATA.format(**FIRST), self._rows(tasks))
+        self._table(TASKS, {"task_index": range(len(tasks)), "task": tasks})
+        self._table(f"{EPISODES}/chunk-000/file-000.parquet", self._index())
+        write_bytes(self.out / INFO, json.dumps(self._info(cameras, len(tasks)), indent=4).encode())
+
+    def _table(self, name: str, columns: dict[str, Any]) -> None:
+        import pyarrow
+
+        path = self.out / name
+        table = pyarrow.table({column: list(values) for column, values in columns.items()})
+        make_folder(path.parent)
+        write_atomically(path, partial(_write_table, table))
+
+    def _rows(self, tasks: list[str]) -> dict[str, Any]:
+        lengths = [len(steps) for steps in self._episodes]
+        numbers = np.concatenate([np.arange(length) for length in lengths])
+        return {
+            STATE: [step[POSE].astype(np.float32) for steps in self._episodes for step in steps],
+            "action": [action for actions in self._actions for action in actions],
+            "timestamp": (numbers / FPS).astype(np.float32),
+            "frame_index": numbers,
+            "episode_index": np.repeat(np.arange(len(lengths)), lengths),
+            "index": np.arange(sum(lengths)),
+            "task_index": np.repeat([tasks.index(task) for task in self._tasks], lengths),
+        }
+
+    def _index(self) -> dict[str, Any]:
+        lengths = np.array([len(steps) for steps in self._episodes])
+        ends = np.cumsum(lengths)
+        zeros = np.zeros(len(lengths), np.int64)
+        columns = {
+            "episode_index": np.arange(len(lengths)),
+            "tasks": [[task] for task in self._tasks],
+            "length": lengths,
+            "dataset_from_index": ends - lengths,
+            "dataset_to_index": ends,
+            "data/chunk_index": zeros,
+            "data/file_index": zeros,
+        }
+        for name in NAMES.values():
+            columns |= {
+                f"videos/{name}/chunk_index": zeros,
+                f"videos/{name}/file_index": zeros,
+                f"videos/{name}/from_timestamp": (ends - lengths) / FPS,
+                f"videos/{name}/to_timestamp": ends / FPS,
+            }
+        return columns
+
+    def _info(self, cameras: dict[str, Camera], tasks: int) -> dict[str, Any]:
+        features: dict[str, Any] = {}
+        for kind, camera in cameras.items():
+            encoding = videos.LOSSLESS if kind == RGB else videos.DEPTH
+            features[camera.name] = {
+                "dtype": VIDEO,
+                "shape": [camera.height, camera.width, 3 if kind == RGB else 1],
+                "names": ["height", "width", "channels"],
+                "info": {
+                    "video.codec": encoding.name,
+                    "video.pix_fmt": encoding.stored,
+                    "video.fps": FPS,
+                    "is_depth_map": kind == DEPTH,
+                },
+            }
+        features[STATE] = {"dtype": "float32", "shape": [3], "names": ["x", "y", "heading"]}
+        features["timestamp"] = {"dtype": "float32", "shape": [1], "names": None}
+        for name in ("action", "frame_index", "episode_index", "index", "task_index"):
+            features[name] = {"dtype": "int64", "shape": [1], "names": None}
+        return {
+            "codebase_version": "v3.0",
+            "robot_type": "mitigate",
+            "total_episodes": len(self._episodes),
+            "total_frames": sum(map(len, self._episodes)),
+            "total_tasks": tasks,
+            "chunks_size": 1000,
+            "data_files_size_in_mb": 100,
+            "video_files_size_in_mb": 200,
+            "fps": FPS,
+            "splits": {"train": f"0:{len(self._episodes)}"},
+            "data_path": DATA,
+            "video_path": VIDEOS,
+            "features": features,
+        }
+
+
+def _write_table(table: Any, path: Path) -> None:
+    with open_output(path, "wb") as file:
+        parquet().write_table(table, file)
+
+
+def _write_video(
+    frames: Iterable[np.ndarray], camera: Camera, encoding: videos.Encoding, path: Path
+) -> None:
+    videos.encode(path, frames, camera, encoding, FPS)

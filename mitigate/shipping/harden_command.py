@@ -1,0 +1,126 @@
+"""Harden a trained policy: ``mitigate harden policy=my_policy:load world=my_policy:make_world``.
+
+The options are the arguments of ``mitigate.harden``. The modules are imported from the working
+directory or from installed packages. The same command again continues an interrupted run, and
+``-m seed=0,1,2`` runs several.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from importlib import import_module
+from typing import Any
+
+import hydra
+from omegaconf import MISSING, DictConfig
+
+from mitigate.core import conf
+from mitigate.core.names import unknown
+from mitigate.evaluation.conditions import suite_conditions
+
+
+@dataclass
+class HardenConfig:
+    """The options of ``conf/harden.yaml``, which describes them."""
+
+    policy: str | None = None
+    world: str | None = None
+    forward: str | None = None
+    recurrent: bool = False
+    method: str = "self_distil"
+    test_episodes: int = 50
+    suite: Any = MISSING
+    conditions: list[str] | None = None
+    severity: float = 0.6
+    tune: str = "all"
+    targets: list[str] | None = None
+    steps: int = 1500
+    lr: float = 3e-4
+    broad_share: float = 0.5
+    schedule: str = "per_episode"
+    validation: int = 16
+    settings: dict[str, Any] = field(default_factory=dict)
+    seed: int = 0
+    workers: int | None = 1
+    out: str | None = None
+
+
+conf.register("harden", HardenConfig)
+
+
+def run(config: HardenConfig) -> Any:
+    """Harden the policy of ``config`` and return the result of ``mitigate.harden``.
+
+    Raises:
+        ValueError: An option is invalid.
+    """
+    if config.test_episodes < 1:
+        raise ValueError(f"test_episodes must be a whole number >= 1, got {config.test_episodes}.")
+    options = dict(vars(config))
+    load_policy = imported(options.pop("policy"), "policy")
+    world = imported(options.pop("world"), "world")
+    suite, conditions = options.pop("suite"), options.pop("conditions")
+    names = suite_conditions(suite) if conditions is None else conditions
+    forward = options.pop("forward")
+    episodes = options.pop("test_episodes")
+    settings = options.pop("settings")
+    if shared := sorted(set(settings) & set(vars(config))):
+        raise ValueError(f"settings.{shared[0]} is not needed. Write {shared[0]}=VALUE.")
+    # slow imports come after the checks of the options
+    from mitigate.shipping.harden import harden
+    from mitigate.worlds.seeded import seeded_episodes
+
+    return harden(
+        load_policy(),
+        world,
+        forward=None if forward is None else imported(forward, "forward"),
+        listed=seeded_episodes(range(episodes)),
+        suite=names,
+        **options,
+        **settings,
+    )
+
+
+def imported(name: str | None, option: str) -> Callable[..., Any]:
+    """Return the callable ``module:callable`` that an option names.
+
+    Raises:
+        ValueError: The module cannot be imported, or lacks the callable.
+    """
+    module_name, _, attribute = (name or "").partition(":")
+    if not (module_name and attribute):
+        raise ValueError(
+            f"{option} must be module:callable, such as {option}=my_policy:make_{option}, got "
+            f"{name!r:.200}."
+        )
+    try:
+        module = import_module(module_name)
+    except ImportError as error:
+        raise ValueError(
+            f"{option}={name} cannot be imported: {error}. Run the command in the folder of the "
+            "module, or install its package."
+        ) from error
+    if not hasattr(module, attribute):
+        callables = [n for n, v in vars(module).items() if callable(v) and not n.startswith("_")]
+        raise ValueError(f"{option}={name}: {unknown('callable', attribute, callables)}")
+    target = getattr(module, attribute)
+    if not callable(target):
+        raise ValueError(f"{option}={name} must be callable, got type {type(target).__name__}.")
+    return target
+
+
+@hydra.main(version_base="1.3", config_path=str(conf.CONF), config_name="harden")
+def hydra_main(cfg: DictConfig) -> None:
+    """Run as Hydra's entry point."""
+    config = conf.typed(cfg, "harden")
+    assert isinstance(config, HardenConfig)
+    print(run(config))
+
+
+def main() -> None:
+    """Run from the command line."""
+    if len(sys.argv) == 1:
+        sys.argv.append("--help")
+    conf.main(hydra_main, "harden")

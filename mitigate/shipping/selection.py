@@ -1,0 +1,105 @@
+"""Choose between the given policy, its trained copy and the average of their weights.
+
+Training for corruptions can lose what a policy could do before. The average of the weights before
+and after training often keeps both (WiSE-FT: Wortsman et al., "Robust fine-tuning of zero-shot
+models", CVPR 2022). Which of the three is best differs between policies, so validation episodes
+decide.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+
+import torch
+from torch import Tensor
+
+from mitigate.agents.policies import Policy, copied
+from mitigate.core.progress import say
+from mitigate.corruptions import Corruption
+from mitigate.evaluation.comparison import CLEAN as CLEAN_NAME
+from mitigate.evaluation.evaluator import evaluate
+from mitigate.evaluation.rows import Row
+from mitigate.worlds.episodes import Episode
+from mitigate.worlds.seeded import RETURN
+from mitigate.worlds.world import World
+
+SPLIT = "validation"
+# fraction of the trained weights in the average: trained, averaged, given (0.75: heuristic)
+MIXES = {"trained": 1.0, "averaged": 0.75, "given": 0.0}
+TIE = 1e-3  # relative difference of scores that counts as equal (heuristic)
+
+
+def choose(
+    policy: Policy,
+    start: Mapping[str, Tensor],
+    world: Callable[[], World],
+    episodes: Sequence[Episode],
+    conditions: Sequence[Corruption],
+    rows: Path,
+    seed: int,
+    workers: int | None,
+) -> str:
+    """Load the best weights into ``policy`` and return their name, a key of ``MIXES``.
+
+    The best weights have the highest score: the mean of the clean success rate and the mean success
+    rate under the corruptions, or of the returns where the world measures only these. If scores are
+    equal, the weights that come first in ``MIXES`` win.
+
+    Args:
+        policy: the trained policy, changed in place.
+        start: the weights of ``policy`` before training.
+        world: makes a world.
+        episodes: the validation episodes.
+        conditions: clean frames and the corruptions.
+        rows: file of the result rows; rows that it holds are not evaluated again.
+        seed: corruption seed.
+        workers: processes; None: one per core if there is enough work.
+    """
+    end = {name: value.clone() for name, value in policy.network.state_dict().items()}
+    scores: dict[str, float] = {}
+    for name, mix in MIXES.items():
+        candidate = copied(policy)
+        candidate.network.load_state_dict(average(start, end, mix))
+        scores[name] = score(
+            evaluate(
+                candidate,
+                world,
+                list(episodes),
+                list(conditions),
+                name=name,
+                out=rows,
+                split=SPLIT,
+                seed=seed,
+                workers=workers,
+                version=candidate.version,
+            )
+        )
+    least = max(scores.values()) - TIE * max(map(abs, scores.values()))
+    best = next(name for name, value in scores.items() if value >= least)
+    listed = ", ".join(f"{name} {value:.3g}" for name, value in scores.items())
+    say(f"harden: mean score of {len(episodes)} validation episodes: {listed}. Chosen: {best}.")
+    policy.network.load_state_dict(average(start, end, MIXES[best]))
+    return best
+
+
+def average(
+    start: Mapping[str, Tensor], end: Mapping[str, Tensor], mix: float
+) -> dict[str, Tensor]:
+    """Return ``(1 - mix) * start + mix * end``.
+
+    Integer tensors, such as counters, are copied from the nearer of the two.
+    """
+    nearer = end if mix >= 0.5 else start
+    return {
+        name: torch.lerp(start[name], end[name], mix) if value.is_floating_point() else nearer[name]
+        for name, value in end.items()
+    }
+
+
+def score(rows: Sequence[Row]) -> float:
+    """Return the mean of the clean score and of the mean score under corruptions."""
+    measure = RETURN if rows[0]["rule"] == RETURN else "success"
+    clean = [row[measure] for row in rows if row["corruption"] == CLEAN_NAME]
+    corrupted = [row[measure] for row in rows if row["corruption"] != CLEAN_NAME]
+    return (sum(clean) / len(clean) + sum(corrupted) / len(corrupted)) / 2

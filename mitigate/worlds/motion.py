@@ -1,0 +1,132 @@
+"""Execute actions with a fault of motion (``mitigate/corruptions/faults/motion.py``).
+
+What a fault does depends on the kind of action:
+
+* FORWARD, LEFT and RIGHT in a world that defines ``move`` (apartments, Habitat). Slip and gain
+  scale the 0.25 m and the 15 degrees, drift turns the robot after FORWARD, and a dropped action is
+  a step without movement. STOP is always executed.
+* A ``Box``: gain and slip scale the action, drift adds a bias to all its elements, a dropped action
+  is zero. The result is clipped to the box.
+* Other actions: only ``repeated_action``, which works everywhere.
+"""
+
+from __future__ import annotations
+
+from typing import Any, Protocol, runtime_checkable
+
+import numpy as np
+
+from mitigate.core.observation import (
+    FORWARD,
+    FORWARD_METRES,
+    LEFT,
+    RIGHT,
+    STOP,
+    TURN_DEGREES,
+    Observation,
+)
+from mitigate.core.spaces import Box
+from mitigate.corruptions import Corruption, Key, registry
+from mitigate.corruptions.faults.motion import DRIFT, Movement
+from mitigate.corruptions.record import MOTION
+from mitigate.worlds.episodes import Episode
+from mitigate.worlds.world import World, WorldWrapper
+
+BIAS = 0.25  # of half the range of an element of a Box, at severity 1 (heuristic)
+MOVES = {FORWARD: (FORWARD_METRES, 0.0), LEFT: (0.0, TURN_DEGREES), RIGHT: (0.0, -TURN_DEGREES)}
+
+
+@runtime_checkable
+class Movable(Protocol):
+    """A world in which a step can move by any distance and angle."""
+
+    def move(self, metres: float, degrees: float) -> Observation:
+        """Take a step: move forward by ``metres``, then turn by ``degrees`` to the left."""
+
+
+class FaultyMotion(WorldWrapper):
+    """A world whose actions are executed with one fault, keyed by (seed, episode, step).
+
+    Args:
+        world: The world.
+        fault: A fault of motion.
+        seed: Corruption seed.
+
+    Raises:
+        ValueError: The actions of the world cannot have this fault.
+    """
+
+    def __init__(self, world: World, fault: Corruption, seed: int) -> None:
+        super().__init__(world)
+        self.fault = fault
+        self.seed = seed
+        self._navigates = isinstance(_innermost(world), Movable)
+        space = self.action_space
+        self._box = space if isinstance(space, Box) else None
+        if not (self._navigates or self._box or fault.name == "repeated_action"):
+            raise ValueError(
+                f"{fault.name!r} cannot change the actions of {type(_innermost(world)).__name__}. "
+                "It needs continuous actions (a Box), or a world that defines move(metres, "
+                "degrees), such as the apartments. Of the motion faults, repeated_action works "
+                "with all actions."
+            )
+
+    def reset(self, episode: Episode) -> Observation:
+        self._episode = episode.episode_id
+        self._step = 0
+        self._previous: Any = None
+        return self._inner.reset(episode)
+
+    def step(self, action: Any) -> Observation:
+        """Take an action, or what the fault makes of it."""
+        draw = registry.record(self.fault.name).draw
+        assert draw is not None, "a fault has a function"
+        movement = draw(self.fault.severity, Key(self.seed, self._episode, self._step))
+        self._step += 1
+        if self._navigates and action == STOP:
+            return self._inner.step(action)
+        if movement.repeated and self._previous is not None:
+            action = self._previous
+        self._previous = action
+        if movement in (Movement(), Movement(repeated=True)):
+            return self._inner.step(action)
+        if self._box is not None:
+            return self._inner.step(_changed(action, movement, self._box))
+        return self._move(action, movement)
+
+    def _move(self, action: Any, movement: Movement) -> Observation:
+        """Take a step of a robot that drives."""
+        if action not in MOVES:  # the world reports the error
+            return self._inner.step(action)
+        robot: Any = self._inner  # a Movable, or a wrapper of one
+        metres, degrees = MOVES[action]
+        if movement.dropped:
+            return robot.move(0.0, 0.0)
+        drift = DRIFT * movement.drift if action == FORWARD else 0.0
+        return robot.move(movement.gain * metres, movement.turn * degrees + drift)
+
+
+def with_motion(world: World, corruption: Corruption, seed: int) -> World:
+    """Return ``world`` with the motion faults of a corruption, if it has any."""
+    for part in corruption.parts:
+        if registry.record(part.name).family == MOTION:
+            world = FaultyMotion(world, part, seed)
+    return world
+
+
+def _changed(action: Any, movement: Movement, box: Box) -> np.ndarray:
+    """Return what the fault makes of an action of ``box``."""
+    values = box.check(action)
+    if movement.dropped:
+        changed = np.zeros_like(values)
+    else:
+        bounded = np.isfinite(box.low) & np.isfinite(box.high)
+        half = np.where(bounded, (box.high - box.low) / 2.0, 1.0)
+        changed = movement.gain * values + movement.drift * BIAS * half
+    return np.clip(changed, box.low, box.high).astype(values.dtype)
+
+
+def _innermost(world: Any) -> Any:
+    while isinstance(world, WorldWrapper):
+        world = world.world
+    return world

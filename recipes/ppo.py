@@ -1,0 +1,372 @@
+"""Reinforcement learning under corruption: PPO on the reward of the world.
+
+A trained policy runs episodes with corrupted frames, samples its actions, and learns from the
+reward of the environment with the clipped loss of PPO (Schulman et al. 2017; ``ClipPPOLoss`` and
+generalised advantages of torchrl). With ``w_kl`` it also stays near the unchanged policy, which
+sees the clean frames.
+
+A round of rollouts is a number of whole episodes. Each round gives a fixed number of steps. The
+collectors of torchrl are not used, because their environments keep running between rounds: a
+resumed training could not return to their state. Here each episode starts from its seed, and a
+resumed training repeats the round that was interrupted with the weights of its start. So it ends
+with the same bits if the environment gives the same episode for the same seed and actions.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import Any
+
+import numpy as np
+import torch
+from torch import Tensor, nn
+
+from mitigate.agents.actor_critic import ActorCritic, Joint
+from mitigate.agents.policies import Policy, divergence, last_convolution
+from mitigate.core import checkpoint
+from mitigate.core.contracts import read
+from mitigate.core.pictures import picture
+from mitigate.core.seeding import digest, generator
+from mitigate.corruptions import Schedule
+from mitigate.recipes.self_distil import (
+    check_counts,
+    check_frames,
+    clean_teacher,
+)
+from mitigate.training.objective import Objective, check_share, check_weights
+from mitigate.worlds.world import Corrupted, TrainingEpisodes, World
+
+CHUNK = 256  # frames whose values are computed at once
+
+
+class Ppo(Objective):
+    """Train a policy by PPO while its frames are corrupted.
+
+    Args:
+        agent: trained in place; with adapters only these train. It must give a distribution of its
+            actions and have no memory.
+        world: makes a world with a ``reward`` (``GymWorld``, ``EnvWorld``).
+        training: source of the episodes.
+        schedule: draws the corruption of each episode or frame.
+        rollout: fewest environment steps of a round; the episode that reaches it is finished.
+        epochs: how often each environment step of a round is used.
+        batch: fewest environment steps per step of the training.
+        gamma: discount of rewards.
+        lmbda: decay of generalised advantages (GAE).
+        clip: largest change of the probability of an action in a round, as a share.
+        w_critic, w_entropy: weights of the losses of the critic and of the entropy.
+        w_kl: weight of the divergence from the unchanged policy on the clean frames.
+        critic_rounds: rounds at the start in which only the critic learns.
+        module: name of the module whose output a new critic reads; None: the last convolution.
+        seed: seed of episodes, corruptions and actions.
+
+    Raises:
+        ValueError: A number is out of its range, the policy reads no frames, has a memory or gives
+            no distribution, or the world has no reward.
+    """
+
+    loss: Any  # ClipPPOLoss
+    scale: Tensor
+
+    def __init__(
+        self,
+        agent: Policy,
+        world: Callable[[], World],
+        training: TrainingEpisodes,
+        schedule: Schedule,
+        rollout: int = 1024,
+        epochs: int = 4,
+        batch: int = 128,
+        gamma: float = 0.99,
+        lmbda: float = 0.95,
+        clip: float = 0.2,
+        w_critic: float = 0.5,
+        w_entropy: float = 0.0,
+        w_kl: float = 0.0,
+        critic_rounds: int = 2,
+        module: str | None = None,
+        seed: int = 0,
+    ) -> None:
+        super().__init__()
+        check_weights(w_critic=w_critic, w_entropy=w_entropy, w_kl=w_kl)
+        check_counts(rollout=rollout, epochs=epochs, batch=batch)
+        for name, share in {"gamma": gamma, "lmbda": lmbda, "clip": clip}.items():
+            check_share(name, share)
+        if critic_rounds < 0:
+            raise ValueError(f"critic_rounds must be >= 0, got {critic_rounds}.")
+        if not w_critic:
+            raise ValueError("w_critic must be above 0, because advantages need a critic, got 0.")
+        check_frames(agent)
+        self.training_episodes = training
+        self.schedule = schedule
+        self.rollout = rollout
+        self.parts = max(1, rollout // batch)  # steps per epoch
+        self.updates = epochs * self.parts  # steps per round
+        self.gamma = gamma
+        self.lmbda = lmbda
+        self.w_kl = w_kl
+        self.critic_rounds = critic_rounds
+        self.seed = seed
+        self.world: Any = world()  # made once, because making an environment takes time
+        if read(self.world, "reward") is None:
+            raise ValueError(
+                f"{type(self.world).__name__} has no reward, which method='ppo' maximises. "
+                "GymWorld and EnvWorld have one; your own world needs the attributes reward "
+                "(of the last step) and terminated. Or use method='self_distil'."
+            )
+        example = {
+            name: np.zeros((1, *sensor.shape), sensor.dtype)
+            for name, sensor in self.world.sensors.items()
+        }
+        with _random(agent.device, seed, "ppo critic"):
+            self.actor = ActorCritic(agent, example, module or last_convolution(agent))
+        self.behaviour = self.actor.copied()  # the weights that run the current round
+        self.teacher = clean_teacher(agent) if w_kl else None
+        self.loss = _loss(self.actor, clip, w_critic, w_entropy)
+        # standard deviation of the returns of the first round: the unit of the critic
+        self.register_buffer("scale", torch.ones(()))
+        self._rollouts: dict[str, Any] = {}
+        self._number = -1  # the round in ``_rollouts``
+        self._steps_before = 0  # environment steps of earlier rounds
+        self._steps_now = 0  # environment steps of the newest round
+        self._picture: np.ndarray | None = None
+
+    def identity(self) -> dict[str, str]:
+        if self.teacher is None:
+            return {}
+        return {"teacher_sha256": checkpoint.weights_sha(self.teacher)}
+
+    def pieces(self) -> int:
+        """Return 1 piece per step, because each process trains on the episodes that it ran."""
+        return 1
+
+    @torch.no_grad()
+    def batch(self, step: int) -> dict[str, Any]:
+        """Return a part of the environment steps of the round, each once per epoch."""
+        number, within = divmod(step, self.updates)
+        if number != self._number:
+            if within == 0:  # otherwise a resumed training repeats the round
+                self.behaviour.load_state_dict(self.actor.state_dict())
+                self._steps_before += self._steps_now
+            self._rollouts = self._run(number)
+            self._number = number
+            self._steps_now = len(self._rollouts["action"])
+        epoch, part = divmod(within, self.parts)
+        order = generator(self.seed, "ppo order", number, epoch).permutation(self._steps_now)
+        rows = np.array_split(order, self.parts)[part]
+        batch: dict[str, Any] = {
+            name: {sensor: frames[rows] for sensor, frames in value.items()}
+            if isinstance(value, dict)
+            else value[rows]
+            for name, value in self._rollouts.items()
+            if name != "return"
+        }
+        return batch | {
+            "critic_only": number < self.critic_rounds,
+            "return": self._rollouts["return"],
+            "environment_steps": self._steps_before + self._steps_now,
+        }
+
+    def forward(self, batch: dict[str, Any]) -> dict[str, Tensor]:
+        from tensordict import TensorDict
+
+        names = ("action", "log_prob", "advantage", "value_target")
+        inputs = TensorDict({name: batch[name] for name in names}, [len(batch["action"])])
+        inputs["frames"] = {name: torch.from_numpy(f) for name, f in batch["frames"].items()}
+        values = self.loss(inputs)
+        losses = {name: values[f"loss_{name}"] for name in ("objective", "critic")}
+        loss = losses["critic"]
+        if not batch["critic_only"]:
+            loss = loss + losses["objective"]
+            if "loss_entropy" in values:
+                loss = loss + values["loss_entropy"]
+        logged = {name: values[name] for name in ("clip_fraction", "kl_approx", "ESS")}
+        if self.teacher is not None:
+            answer = self.actor.policy.answers(batch["frames"])[0]
+            with torch.no_grad():
+                target = self.teacher.answers(batch["clean"])[0]
+            logged["kl_teacher"] = divergence(target, answer)
+            if not batch["critic_only"]:
+                loss = loss + self.w_kl * logged["kl_teacher"]
+        rollouts = {name: batch[name] for name in ("return", "environment_steps")}
+        return {**losses, **logged, **rollouts, "loss": loss}
+
+    def figures(self, step: int) -> dict[str, np.ndarray]:
+        return {} if self._picture is None else {"seen": self._picture}
+
+    def _run(self, number: int) -> dict[str, Any]:
+        """Run the episodes of a round and return their environment steps, with advantages."""
+        steps: list[dict[str, Any]] = []
+        returns: list[float] = []
+        with _random(self.behaviour.policy.device, self.seed, "ppo actions", number):
+            while len(steps) < self.rollout:
+                episode_steps = self._episode(number, len(returns))
+                returns.append(sum(step["reward"] for step in episode_steps))
+                steps += episode_steps
+        rollouts: dict[str, Any] = {
+            name: {sensor: np.stack([step[name][sensor] for step in steps]) for sensor in frames}
+            for name, frames in steps[0].items()
+            if isinstance(frames, dict)
+        }
+        rollouts |= {name: torch.stack([s[name] for s in steps]) for name in ("action", "log_prob")}
+        rewards = np.array([step["reward"] for step in steps], np.float32)
+        ends = np.array([step["done"] for step in steps])
+        if number == 0:
+            deviation = _discounted(rewards, ends, self.gamma).std()
+            self.scale.fill_(float(deviation) or 1.0)
+        values = self._values(rollouts["frames"])
+        after = torch.cat([values[1:], values[-1:]])
+        last = [place for place, step in enumerate(steps) if "last" in step]
+        if last:
+            frames = {
+                sensor: np.stack([steps[place]["last"][sensor] for place in last])
+                for sensor in steps[0]["frames"]
+            }
+            after[last] = self._values(frames)
+        advantage, target = _advantages(
+            torch.from_numpy(rewards)[:, None].to(values) / self.scale,
+            values,
+            after,
+            torch.from_numpy(ends)[:, None].to(values.device),
+            torch.tensor([[s["terminated"]] for s in steps], device=values.device),
+            self.gamma,
+            self.lmbda,
+        )
+        self._picture = picture(steps[0]["frames"])
+        return rollouts | {
+            "advantage": advantage,
+            "value_target": target,
+            "return": float(np.mean(returns)),
+        }
+
+    def _episode(self, number: int, index: int) -> list[dict[str, Any]]:
+        """Run an episode with sampled actions and return its steps.
+
+        A step that ends an episode which the task did not end holds the "last" frames.
+        """
+        policy = self.behaviour.policy
+        episode = self.training_episodes.draw(
+            generator(self.seed, "ppo episode", number, index), (0, 1)
+        )
+        world = Corrupted(self.world, self.schedule, self.seed, f"ppo {number}-{index}")
+        observation = world.reset(episode)
+        policy.reset(episode.instruction.text)
+        steps: list[dict[str, Any]] = []
+        while not world.done:
+            frames = {name: np.array(observation[name]) for name in policy.sensors}
+            distribution = self.behaviour.actions({n: f[None] for n, f in frames.items()})
+            action = distribution.sample()
+            step: dict[str, Any] = {
+                "frames": frames,
+                "action": action[0],
+                "log_prob": distribution.log_prob(action)[0],
+            }
+            if self.teacher is not None:
+                step["clean"] = {n: np.array(observation.clean[n]) for n in policy.sensors}
+            observation = world.step(policy.executable(action[0]))
+            step |= {
+                "reward": float(self.world.reward),
+                "done": world.done,
+                "terminated": bool(self.world.terminated),
+            }
+            steps.append(step)
+        if not steps[-1]["terminated"]:
+            steps[-1]["last"] = {name: np.array(observation[name]) for name in policy.sensors}
+        return steps
+
+    def _values(self, frames: dict[str, np.ndarray]) -> Tensor:
+        """Return the values [N, 1] of the current round's critic."""
+        count = len(next(iter(frames.values())))
+        return torch.cat(
+            [
+                self.behaviour.values({n: f[start : start + CHUNK] for n, f in frames.items()})
+                for start in range(0, count, CHUNK)
+            ]
+        )
+
+    def get_extra_state(self) -> dict[str, Any]:
+        return {"steps_before": self._steps_before, "steps_now": self._steps_now}
+
+    def set_extra_state(self, state: dict[str, Any]) -> None:
+        self._steps_before = int(state["steps_before"])
+        self._steps_now = int(state["steps_now"])
+
+
+class _Actor:
+    """The policy in the form of torchrl's losses."""
+
+    in_keys = ("frames",)
+
+    def __init__(self, actor: ActorCritic) -> None:
+        self.actor = actor
+
+    def get_dist(self, inputs: Any) -> Joint:
+        return self.actor.actions(_arrays(inputs))
+
+
+class _Critic:
+    """The critic in the form of torchrl's losses."""
+
+    in_keys = ("frames",)
+
+    def __init__(self, actor: ActorCritic) -> None:
+        self.actor = actor
+
+    def __call__(self, inputs: Any) -> Any:
+        return inputs.set("state_value", self.actor.values(_arrays(inputs)))
+
+
+def _arrays(inputs: Any) -> dict[str, np.ndarray]:
+    return {name: frames.numpy() for name, frames in inputs["frames"].items()}
+
+
+def _loss(actor: ActorCritic, clip: float, w_critic: float, w_entropy: float) -> nn.Module:
+    from torchrl.objectives import ClipPPOLoss
+
+    loss = ClipPPOLoss(
+        _Actor(actor),
+        _Critic(actor),
+        clip_epsilon=clip,
+        entropy_bonus=w_entropy > 0,
+        entropy_coeff=w_entropy,
+        critic_coeff=w_critic,
+        loss_critic_type="l2",
+        normalize_advantage=True,
+        functional=False,
+    )
+    loss.set_keys(sample_log_prob="log_prob")
+    return loss
+
+
+def _advantages(
+    reward: Tensor,
+    value: Tensor,
+    next_value: Tensor,
+    done: Tensor,
+    terminated: Tensor,
+    gamma: float,
+    lmbda: float,
+) -> tuple[Tensor, Tensor]:
+    """Return generalised advantages and targets of values, [N, 1] like all arguments."""
+    from torchrl.objectives.value.functional import generalized_advantage_estimate
+
+    return generalized_advantage_estimate(gamma, lmbda, value, next_value, reward, done, terminated)
+
+
+def _discounted(rewards: np.ndarray, ends: np.ndarray, gamma: float) -> np.ndarray:
+    """Return the discounted return from each step to the end of its episode, [N]."""
+    returns = np.zeros(len(rewards))
+    following = 0.0
+    for place in reversed(range(len(rewards))):
+        following = rewards[place] + gamma * following * (not ends[place])
+        returns[place] = following
+    return returns
+
+
+@contextmanager
+def _random(device: torch.device, *key: int | str) -> Iterator[None]:
+    """Draw torch's random numbers from ``key`` within the context."""
+    with torch.random.fork_rng([device] if device.type == "cuda" else []):
+        torch.manual_seed(digest(*key) & (2**63 - 1))
+        yield

@@ -1,0 +1,171 @@
+"""The examples of docs/lerobot.md, with a class that has the methods of a lerobot policy.
+
+lerobot cannot be installed next to this project. The methods and the decorators ``no_grad`` are
+those of ``PreTrainedPolicy`` and ``ACTPolicy`` in lerobot 0.6.
+"""
+
+from __future__ import annotations
+
+import re
+from collections import deque
+from pathlib import Path
+from typing import Any
+
+import gymnasium
+import numpy as np
+import pytest
+import torch
+from gymnasium import spaces
+from torch import Tensor, nn
+
+import mitigate
+from mitigate.worlds.gym import GymWorld
+from mitigate.worlds.seeded import seeded_episodes
+from tests.lerobot_files import write_dataset
+
+PAGE = Path(__file__).parents[2] / "docs/lerobot.md"
+CHUNK, STEPS = 3, 7
+EPISODES = seeded_episodes(range(2))
+
+
+def example(name: str) -> str:
+    """Return the Python example that follows a comment ``<!-- test: name -->``."""
+    text = PAGE.read_text(encoding="utf-8")
+    match = re.search(rf"<!-- test: {name} -->\n```python\n(.*?)```", text, re.S)
+    assert match is not None
+    return match[1]
+
+
+class Network(nn.Module):
+    """Returns a chunk of actions from the brightness of the frame, and None, as ACT does."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.layers = nn.Sequential(nn.AdaptiveAvgPool2d(2), nn.Flatten(), nn.Linear(12, CHUNK * 2))
+
+    def forward(self, batch: dict[str, Any]) -> tuple[Tensor, None]:
+        (image,) = batch["observation.images"]
+        return self.layers(image).tanh().view(-1, CHUNK, 2), None
+
+
+class ChunkPolicy(nn.Module):
+    """A policy with the methods of lerobot: a queue of actions, and forward as the loss."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.model = Network()
+        self.calls = 0
+        self.reset()
+
+    def reset(self) -> None:
+        self._action_queue: deque[Tensor] = deque(maxlen=CHUNK)
+
+    @torch.no_grad()
+    def select_action(self, batch: dict[str, Tensor]) -> Tensor:
+        if not self._action_queue:
+            self._action_queue.extend(self.predict_action_chunk(batch).transpose(0, 1))
+        return self._action_queue.popleft()
+
+    @torch.no_grad()
+    def predict_action_chunk(self, batch: dict[str, Tensor]) -> Tensor:
+        self.calls += 1
+        return self.model({"observation.images": [batch["observation.images.front"]]})[0]
+
+    def forward(self, batch: dict[str, Tensor]) -> tuple[Tensor, dict[str, float]]:
+        raise AssertionError("forward of a lerobot policy is its loss, which needs actions")
+
+
+class Reach(gymnasium.Env):
+    """The brighter half of the frame says whether the first action should be 1 or -1."""
+
+    def __init__(self) -> None:
+        self.observation_space = spaces.Box(0, 255, (32, 32, 3), np.uint8)
+        self.action_space = spaces.Box(-1.0, 1.0, (2,), np.float32)
+
+    def reset(self, *, seed=None, options=None):
+        super().reset(seed=seed)
+        self.steps = 0
+        return self._frame(), {}
+
+    def step(self, action):
+        reward = float(action[0] * self.side)
+        self.steps += 1
+        return self._frame(), reward, self.steps == STEPS, False, {}
+
+    def _frame(self):
+        self.side = 1 if self.np_random.random() < 0.5 else -1
+        frame = np.full((32, 32, 3), 40, np.uint8)
+        frame[:, :16] += np.uint8(150 * (self.side > 0))
+        frame[:, 16:] += np.uint8(150 * (self.side < 0))
+        return frame
+
+
+def world() -> GymWorld:
+    return GymWorld(Reach(), score="return")
+
+
+def trained() -> ChunkPolicy:
+    """Return a policy that solves the task: left minus right half of the frame."""
+    policy = ChunkPolicy()
+    linear = policy.model.layers[2]
+    with torch.no_grad():
+        linear.weight.zero_()
+        linear.bias.zero_()
+        linear.weight[::2, 0:12:2] = 1.0
+        linear.weight[::2, 1:12:2] = -1.0
+    return policy
+
+
+def test_examples_have_at_most_twelve_lines():
+    for name in ("agent", "forward"):
+        assert sum(bool(line.strip()) for line in example(name).splitlines()) <= 12
+
+
+def test_agent_example_replans_after_each_chunk_and_after_reset():
+    names: dict[str, Any] = {"torch": torch}
+    exec(example("agent"), names)
+    agent = names["LerobotAgent"](trained())
+    one = world()
+    for episode in EPISODES:
+        observation = one.reset(episode)
+        agent.reset("")
+        while not one.done:
+            observation = one.step(agent.act(observation))
+    assert agent.policy.calls == 2 * -(-STEPS // CHUNK)
+
+
+def test_agent_example_is_measured_by_benchmark(tmp_path):
+    names: dict[str, Any] = {"torch": torch}
+    exec(example("agent"), names)
+    agent = names["LerobotAgent"](trained())
+    options = {"world": world, "listed": EPISODES, "out": tmp_path}
+    mitigate.benchmark(agent, suite=["low_light"], **options)
+    assert (tmp_path / "rows.jsonl").is_file()
+
+
+def test_forward_example_is_hardened(tmp_path):
+    settings = {"listed": EPISODES, "suite": ["low_light"], "steps": 4, "episodes": 2, "batch": 4}
+
+    class Short:  # mitigate.harden with few steps
+        @staticmethod
+        def harden(policy, world, *, forward):
+            settings["training"] = seeded_episodes(range(10, 12))
+            return mitigate.harden(policy, world, forward=forward, out=tmp_path, **settings)
+
+    policy = trained()
+    names: dict[str, Any] = {"mitigate": Short, "policy": policy, "world": world}
+    exec(example("forward"), names)
+    result = names["result"]
+    assert type(result.policy) is ChunkPolicy
+    before, after = (list(p.parameters()) for p in (policy, result.policy))
+    assert any(not torch.equal(b, a) for b, a in zip(before, after, strict=True))
+
+
+def test_episode_example_reads_a_dataset(tmp_path, monkeypatch):
+    pytest.importorskip("pyarrow", reason="needs pyarrow: pip install -e '.[lerobot]'")
+    pytest.importorskip("av", reason="needs av: pip install -e '.[lerobot]'")
+    write_dataset(tmp_path / "my-dataset")
+    monkeypatch.chdir(tmp_path)
+    names: dict[str, Any] = {}
+    exec(example("episode"), names)
+    assert {*names["observation"]} == {"rgb", "observation.state"}
