@@ -271,9 +271,10 @@ class Corrupted(WorldWrapper):
     """World whose frames are corrupted, by one corruption or by a schedule.
 
     Random numbers are keyed by seed, name, and index of the frame among those that were read. An
-    observation whose frames are never read is not counted. With a temporal fault it is the index of the step, and the frames are
-    rendered at every step if a later step may show them. ``observation.clean`` is the clean
-    observation. Instructions are corrupted in ``evaluation/episode.py`` instead.
+    observation whose frames are never read is not counted. With a temporal fault it is the index
+    of the step, and the frames are rendered at every step if a later step may show them.
+    ``observation.clean`` is the clean observation. Instructions are corrupted in
+    ``evaluation/episode.py`` instead.
 
     Args:
         world: The world.

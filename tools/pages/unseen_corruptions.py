@@ -60,7 +60,10 @@ def _ranges(suite: Mapping[str, Curve], unseen: Mapping[str, Curve], at: int) ->
             f"{min(psnr):.0f} to {max(psnr):.0f} dB (RGB) and {min(error):.2f} to "
             f"{max(error):.2f} m (depth)"
         )
-    return f"The suite has {ranges[0]}, the unseen corruptions {ranges[1]}."
+    return (
+        f"The standard suite has a PSNR or mean error of {ranges[0]}; the unseen corruptions have "
+        f"{ranges[1]}."
+    )
 
 
 def _strengths(curves: Mapping[str, Curve], at: int) -> str:
