@@ -425,7 +425,7 @@ def changed_entries(obs: Mapping[str, Any], part: Corruption) -> tuple[str, ...]
     """Return the frames of an observation that a single corruption changes.
 
     Raises:
-        ValueError: The observation has none of them.
+        ValueError: The observation has none of the frames.
     """
     modalities = registry.record(part.name).modalities
     entries = tuple(name for name in modalities if name in obs)  # entries are named as modalities

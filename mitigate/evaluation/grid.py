@@ -48,8 +48,8 @@ PROMPT_ONLY = "white_box"  # agents without a system prompt have no rows of this
 def kind(corruption: str) -> str:
     """Return the table of a corruption, one of :data:`KINDS`.
 
-    Corruptions of other packages belong to the table of the suite. A pair with ``intermittent`` is a
-    temporal fault.
+    Corruptions of other packages belong to the table of the suite. A pair with ``intermittent``
+    is a temporal fault.
     """
     if AND in corruption and parts(corruption)[0] != GATE:
         return PAIRS

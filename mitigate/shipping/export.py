@@ -272,7 +272,7 @@ def _write(
         "format": loading.FORMAT,
         "name": name,
         **known,
-        "agent": checkpoint.weights_sha(shipped),  # hash of the weights, like run_agent
+        "agent": checkpoint.weights_sha(shipped),  # hash of the weights, as in run_agent
         "run_agent": checkpoint.weights_sha(agent),
         "rows_agent": rows_agent(result_rows_of_agent, weights),
         "adapters_only": adapters_only,

@@ -338,7 +338,7 @@ class Corrupted(WorldWrapper):
         return Observation(clean.ready, corrupted, clean.frames, clean=clean)
 
     def _displaced(self, clean: Observation, key: Key) -> dict[str, Any] | None:
-        """Return the observation rendered with the camera fault, None without one.
+        """Return the observation rendered with the camera fault, or None if there is no fault.
 
         None also if the world cannot render it.
         """

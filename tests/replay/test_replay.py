@@ -199,7 +199,7 @@ def mitigate(monkeypatch, capsys):
             cli.main(words)
         output = capsys.readouterr()
         status = ended.value.code or 0
-        if isinstance(status, str):  # a message, which the interpreter prints at exit
+        if isinstance(status, str):  # a message that the interpreter prints at exit
             return 1, output.out, output.err + status
         return status, output.out, output.err
 

@@ -128,7 +128,8 @@ def _over(costs: dict[str, dict[str, Cost]]) -> list[str]:
         "### Above the target",
         "",
         f"**call**: milliseconds of the same call on a frame of {TINY} x {TINY} pixels, which "
-        "measures the fixed overhead: checks, keys, look-ups and the call of compiled code. **kernel**: the rest.",
+        "measures the fixed overhead: checks, keys, look-ups and the call of compiled code. "
+        "**kernel**: the rest.",
         "",
         markdown_table(head, rows, words=2),
         "",
@@ -175,9 +176,8 @@ def _evaluation(paces: dict[str, Pace], by_workers: dict[int, float]) -> list[st
     return [
         "## Evaluation",
         "",
-        "Values are CPU times of one process. The two variants alternate in one run. An episode has "
-        "one condition of "
-        "the suite.",
+        "Values are CPU times of one process. The two variants alternate in one run. An episode "
+        "has one condition of the suite.",
         "",
         "- **alone**: every episode is run separately.",
         "- **together**: the conditions of an episode follow each other and share cached frames "
