@@ -217,7 +217,9 @@ def code_of(*kinds: type) -> Contents:
     classes = dict.fromkeys(each for kind in kinds for each in kind.__mro__ if each is not object)
     users = [each for each in classes if is_users(each)]
     sources = source_files([each.__module__ for each in users])
-    unreadable = {k: "a module without a source file" for k, text in sources.items() if not text}
+    unreadable = {
+        k: "a module without a source file" for k, text in sources.items() if text is None
+    }
     values: dict[str, Any] = {}
     for each in classes:
         functions = methods(each)

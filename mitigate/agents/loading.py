@@ -188,7 +188,8 @@ def _check_size(config: Path, weights: Path) -> None:
     kind = kind_of(config)
     arguments = agent_settings(config, kind)
     try:
-        with torch.device("meta"):
+        with torch.device("meta"), warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # a backbone's weights cannot be copied to this device
             agent = schema.class_of(kind)(**arguments)
     except (TypeError, RuntimeError):  # build_from explains it
         return

@@ -60,18 +60,18 @@ def named_values(function: types.FunctionType) -> dict[str, Any]:
 def source_files(modules: list[str]) -> dict[str, str | None]:
     """Return the source of the user's ``modules``, and of the user's modules that they import.
 
-    A module without a source file, such as a notebook, has None.
+    Comments and layout are left out. A module without Python source, such as a notebook, has None.
     """
     sources: dict[str, str | None] = {}
     waiting = [*modules]
     for name in waiting:
-        if name not in sources and _is_users(name, _file(name.partition(".")[0])):
-            file = _file(name)
-            if Path(file).is_file():
-                sources[name], imports = _read(file, name, sys.modules.get(name))
-                waiting += [imported for imported in imports if _file(imported)]
-            else:
-                sources[name] = None
+        file = _file(name)
+        if name not in sources and _is_users(name, file):
+            sources[name], imports = _read(file, name, sys.modules.get(name))
+            for imported in imports:
+                package = imported.partition(".")[0]  # only packages of the user are searched
+                if _is_users(package, _file(package)) and _file(imported):
+                    waiting.append(imported)
     return sources
 
 
@@ -79,28 +79,31 @@ def _file(module: str) -> str:
     """Return the path of a module's file; "" if it has none or does not exist."""
     if module in sys.modules:
         return read(sys.modules[module], "__file__") or ""
-    with suppress(ImportError, ValueError):
+    with suppress(Exception):  # it imports the package, and the user's code may raise any error
         spec = importlib.util.find_spec(module)
         return (spec.origin or "") if spec else ""
     return ""
 
 
 @cache
-def _read(file: str, name: str, module: Any) -> tuple[str, list[str]]:
-    """Return the source of a module, and the names that it imports.
+def _read(file: str, name: str, module: Any) -> tuple[str | None, list[str]]:
+    """Return the source of a module without comments and layout, and the names that it imports.
 
     It is read once, because a later edit of the file does not change a loaded ``module``.
     """
-    source = Path(file).read_text(encoding="utf-8")
+    try:
+        tree = ast.parse(Path(file).read_bytes(), file)
+    except (OSError, SyntaxError, ValueError):  # no file, or not Python
+        return None, []
     package = name if Path(file).stem == "__init__" else name.rpartition(".")[0]
     imports: list[str] = []
-    for node in ast.walk(ast.parse(source)):
+    for node in ast.walk(tree):
         if isinstance(node, ast.Import):
             imports += [alias.name for alias in node.names]
         elif isinstance(node, ast.ImportFrom):
             base = importlib.util.resolve_name("." * node.level + (node.module or ""), package)
             imports += [base, *(f"{base}.{alias.name}" for alias in node.names)]
-    return source, imports
+    return ast.unparse(tree), imports
 
 
 def methods(kind: type) -> dict[str, types.FunctionType]:

@@ -9,8 +9,9 @@ import numpy as np
 
 from mitigate.core.seeding import generator
 from mitigate.corruptions.lerobot import open_dataset
-from mitigate.corruptions.lerobot.dataset import TOLERANCE, Episode, rows_of
+from mitigate.corruptions.lerobot.dataset import TOLERANCE, rows_of
 from mitigate.corruptions.lerobot.frames import read_frames
+from mitigate.corruptions.lerobot.metadata import Episode
 from mitigate.encoders.sources import (
     TRAIN,
     Shot,

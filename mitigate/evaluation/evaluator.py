@@ -97,16 +97,19 @@ class EpisodeTask:
         assert self.world is not None, "work() is called while ready()"
         # features that were computed before an adaptation must not be used after it
         agent_memory = nullcontext() if self.guards.adapts else as_agent(self.agent).remembering()
-        wanted = {rows.identity(label) for _, _, label in jobs}
+        repeated: Sequence[Job] = ()
         if self.guards.continual:
-            jobs = self.streams[_condition(jobs[0])]
             self.guards.restart()
+            stream = self.streams[_condition(jobs[0])]
+            unfinished = {rows.identity(label) for _, _, label in jobs}
+            repeated = [job for job in stream if rows.identity(job[2]) not in unfinished]
+            jobs = stream
         with agent_memory, as_world(self.world).remembering():
             runs = [(episode, condition, label["seed"]) for episode, condition, label in jobs]
             measured = self._measures(self.world, runs)
-            for (_, _, label), measures in zip(jobs, measured, strict=True):
-                if rows.identity(label) in wanted:
-                    yield {**label, **measures}
+            for job, measures in zip(jobs, measured, strict=True):
+                if job not in repeated:
+                    yield {**job[2], **measures}
 
     def _measures(
         self, world: Any, runs: Sequence[tuple[Episode, Corruption, int]]

@@ -12,7 +12,7 @@ import json
 import weakref
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import asdict, is_dataclass
+from dataclasses import asdict, fields, is_dataclass
 from enum import Enum
 from functools import partial
 from os.path import samefile
@@ -440,10 +440,18 @@ def _flat(name: str, values: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:
 def _text(value: Any) -> str:
     """Return ``value`` as JSON; objects count with the name of their class."""
     try:
-        text = json.dumps(value, sort_keys=True, default=_as_data)
-    except (TypeError, ValueError, RecursionError):  # keys that are objects, or a cycle
+        text = json.dumps(_with_text_keys(value), sort_keys=True, default=_as_data)
+    except (TypeError, ValueError, RecursionError):  # a cycle, or an object that JSON rejects
         return kind_of(value)
     return text if len(text) <= SHOWN else f"{text[:SHOWN]}... ({json_hash(text)})"
+
+
+def _with_text_keys(value: Any) -> Any:
+    """Return ``value`` with the keys of its dicts as text, which JSON requires."""
+    if isinstance(value, dict):
+        items = value.items()
+        return {k if isinstance(k, str) else _text(k): _with_text_keys(v) for k, v in items}
+    return [*map(_with_text_keys, value)] if isinstance(value, (list, tuple)) else value
 
 
 def _as_data(value: Any) -> Any:
@@ -455,7 +463,7 @@ def _as_data(value: Any) -> Any:
     if sha := array_sha(value):
         return f"array {value.dtype} {value.shape} {sha}"
     if is_dataclass(value) and not isinstance(value, type):
-        return [kind_of(value), vars(value)]
+        return [kind_of(value), [getattr(value, one.name) for one in fields(value)]]  # with slots
     if isinstance(value, (set, frozenset)):
         return sorted(map(_text, value))
     # classes and functions have a qualified name; objects do not

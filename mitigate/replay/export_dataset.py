@@ -18,8 +18,8 @@ from mitigate.core.files import make_folder, write_atomically, write_bytes
 from mitigate.core.observation import DEPTH, POSE, RGB
 from mitigate.core.output import open_output
 from mitigate.corruptions.lerobot import Camera, videos
-from mitigate.corruptions.lerobot.dataset import EPISODES, INFO, TASKS, VIDEO
 from mitigate.corruptions.lerobot.depth import DepthCode
+from mitigate.corruptions.lerobot.metadata import EPISODES, INFO, TASKS, VIDEO
 from mitigate.corruptions.lerobot.tables import parquet
 
 FPS = 1  # a step lasts one second

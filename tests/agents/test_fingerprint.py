@@ -65,7 +65,8 @@ class Plain:
 def test_fingerprint_changes_with_code_without_settings(tmp_path, monkeypatch):
     monkeypatch.syspath_prepend(tmp_path)
     edited = PLAIN.replace("steps = 0", "steps = 1")
-    first, other, again = _hashes(tmp_path, "Plain", (PLAIN, edited, PLAIN))
+    commented = PLAIN.replace("    def act", "    # a comment\n\n    def act")
+    first, other, again = _hashes(tmp_path, "Plain", (PLAIN, edited, commented))
     assert first == again != other
 
 
@@ -613,3 +614,22 @@ def test_fingerprint_changes_with_replaced_code_and_data(what, monkeypatch):
         hashes.append(fingerprint(output, {}))
         unreadable.append(bool(contents(output).unreadable))
     assert hashes[0] == hashes[1] and (hashes[0] != hashes[2] or all(unreadable))
+
+
+def test_code_of_reads_packages_and_skips_what_is_not_python(tmp_path, monkeypatch):
+    monkeypatch.syspath_prepend(tmp_path)
+    package = tmp_path / "own_package"
+    package.mkdir()
+    (package / "__init__.py").write_text("")
+    (package / "agent.py").write_text("from . import parts\n\nclass Agent:\n    pass\n")
+    (package / "parts.py").write_text("LEVEL = 1\n")
+    content = code_of(importlib.import_module("own_package.agent").Agent)
+    assert not content.unreadable and "LEVEL = 1" in content.parts["code"]
+    sys.modules["own_package.agent"].Agent.__module__ = "own_binary"
+    (tmp_path / "own_binary.so").write_bytes(b"\x7fELF\x00")
+    binary = types.ModuleType("own_binary")
+    binary.__file__ = str(tmp_path / "own_binary.so")
+    monkeypatch.setitem(sys.modules, "own_binary", binary)
+    assert code_of(sys.modules["own_package.agent"].Agent).unreadable
+    for name in ("own_package.agent", "own_package.parts", "own_package"):
+        sys.modules.pop(name)

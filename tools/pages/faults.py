@@ -43,7 +43,7 @@ PICTURES = {
 TEXT = """# Faults
 
 Corruptions of the [standard suite](corruptions.md) act on single frames. A robot also fails over
-time, its camera is mounted wrongly, and it does not move as it was told. A fault has a severity s
+time, its camera may be mounted wrongly, and its motion is not exact. A fault has a severity s
 from 0 (no fault) to 1, a key and its own version in result rows, as an [unseen
 corruption](unseen-corruptions.md). Faults are not part of `suite=full` or `suite=all`, and no
 recipe trains on them.
@@ -95,14 +95,13 @@ clean frame at s = 0.5 and 1, which is what other worlds and files get.
 - `camera_height` needs rendering. A frame does not show what is behind an edge.
 - A **panorama** is one rigid rig: pitch of the rig is roll for a view to the side.
 - In a pair, the camera comes first: `spatter+camera_roll` has level dirt on a tilted view.
-- The pose is that of the robot. The agent is not told that its camera has moved.
+- The pose is that of the robot. The agent does not know that its camera has moved.
 
 ## Motion
 
 ![Paths of one list of commands under each fault of motion]({motion_picture})
 
-Paths of the expert's commands in apartment {apartment}, at s = {severity:g}: the robot executes
-them without looking.
+Paths of the expert's commands in apartment {apartment}, at s = {severity:g}, executed open loop.
 
 {motion}
 - **Steps of 0.25 m and 15 degrees** (apartments, Habitat): slip and gain scale both, drift turns

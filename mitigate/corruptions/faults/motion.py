@@ -1,4 +1,4 @@
-"""Faults of motion: the robot does not do what it is told.
+"""Faults of motion: the robot does not execute its actions exactly.
 
 ``draw(severity, key)`` of a record returns how the action of a step is executed, a ``Movement``;
 ``key.frame`` is the number of the step. ``mitigate/worlds/motion.py`` documents what that means for

@@ -8,6 +8,7 @@ at https://huggingface.co/docs/lerobot/lerobot-dataset-v3 and defined by
 need not be installed.
 """
 
-from mitigate.corruptions.lerobot.dataset import Camera, Dataset, Episode, is_dataset, open_dataset
+from mitigate.corruptions.lerobot.dataset import Dataset, is_dataset, open_dataset
+from mitigate.corruptions.lerobot.metadata import Camera, Episode
 
 __all__ = ["Camera", "Dataset", "Episode", "is_dataset", "open_dataset"]

@@ -34,18 +34,10 @@ from mitigate.core.progress import Progress
 from mitigate.corruptions.folders import SUMMARY, Settings, check_folders
 from mitigate.corruptions.keying import Key
 from mitigate.corruptions.lerobot import images, videos
-from mitigate.corruptions.lerobot.dataset import (
-    EPISODES,
-    INFO,
-    TOLERANCE,
-    VIDEO,
-    Camera,
-    Dataset,
-    open_dataset,
-    rows_of,
-)
+from mitigate.corruptions.lerobot.dataset import TOLERANCE, Dataset, open_dataset, rows_of
 from mitigate.corruptions.lerobot.frames import check_images, stored_image
-from mitigate.corruptions.lerobot.tables import FIX, integers, open_table, parquet
+from mitigate.corruptions.lerobot.metadata import EPISODES, INFO, VIDEO, Camera
+from mitigate.corruptions.lerobot.tables import FIX, check_file, integers, open_table, parquet
 from mitigate.corruptions.lerobot.videos import Encoding
 from mitigate.corruptions.registry import version
 from mitigate.corruptions.suite import SUITE_VERSION, Corruption, corrupt
@@ -396,6 +388,8 @@ def _digest(dataset: Dataset) -> str:
         path.relative_to(dataset.path).as_posix()
         for path in (dataset.path / EPISODES).glob("*/*.parquet")
     }
+    for name in names:
+        check_file(dataset.path / name)
     return _short_hash("".join(name + sha256(dataset.path / name) for name in sorted(names)))
 
 

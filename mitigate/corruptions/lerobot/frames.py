@@ -9,7 +9,8 @@ from typing import Any
 import numpy as np
 
 from mitigate.corruptions.lerobot import images, videos
-from mitigate.corruptions.lerobot.dataset import VIDEO, Camera, Dataset, Episode
+from mitigate.corruptions.lerobot.dataset import Dataset
+from mitigate.corruptions.lerobot.metadata import VIDEO, Camera, Episode
 from mitigate.corruptions.lerobot.tables import BATCH_ROWS, FIX, check_columns, integers, open_table
 
 
@@ -61,22 +62,22 @@ def _video_frames(
 def _image_frames(
     path: Path, episode: int, cameras: Sequence[Camera], chosen: Sequence[int]
 ) -> Iterator[dict[str, np.ndarray]]:
-    left = list(chosen)[::-1]
+    pending = list(chosen)[::-1]
     names = [camera.name for camera in cameras]
     with open_table(path) as file:
         check_images(path, file.schema_arrow, cameras)
         for batch in _batches(path, file, episode, names):
             numbers = integers(batch, "frame_index", path)
-            mine = [number == episode for number in integers(batch, "episode_index", path)]
+            is_in_episode = [number == episode for number in integers(batch, "episode_index", path)]
             for row, number in enumerate(numbers):
-                if left and mine[row] and number == left[-1]:
-                    left.pop()
+                if pending and is_in_episode[row] and number == pending[-1]:
+                    pending.pop()
                     yield {
                         camera.name: read_image(path, batch, row, camera, number)
                         for camera in cameras
                     }
-    if left:
-        raise ValueError(f"{path} lacks frame {left[-1]} of episode {episode}. {FIX}")
+    if pending:
+        raise ValueError(f"{path} lacks frame {pending[-1]} of episode {episode}. {FIX}")
 
 
 def _batches(path: Path, file: Any, episode: int, names: Sequence[str]) -> Iterator[Any]:

@@ -10,7 +10,7 @@ from PIL import Image
 
 from mitigate.core.observation import RGB
 from mitigate.corruptions.frame_files import JPEG_QUALITY, MAX_PIXELS, PNG_LEVEL, counts
-from mitigate.corruptions.lerobot.dataset import Camera
+from mitigate.corruptions.lerobot.metadata import Camera
 
 FORMATS = {"rgb": ("PNG", "JPEG"), "depth": ("PNG", "TIFF")}
 MODES = {"rgb": ("RGB",), "depth": ("I;16", "F")}  # lerobot: uint16 is I;16, float32 is F

@@ -28,6 +28,19 @@ def parquet() -> Any:
     return pyarrow.parquet
 
 
+def check_file(path: Path) -> None:
+    """Check that a file of a dataset exists.
+
+    Raises:
+        FileNotFoundError: It is missing.
+        ValueError: It is a pointer of Git LFS, a FIFO or a device.
+    """
+    if not is_regular(path):
+        raise FileNotFoundError(f"The dataset lacks the file {path}. {FIX}")
+    if pointer := lfs_problem(path):
+        raise ValueError(f"{path} {pointer}.")
+
+
 @contextmanager
 def open_table(path: Path) -> Iterator[Any]:
     """Open a parquet file, and explain the errors of reading it.
@@ -42,10 +55,7 @@ def open_table(path: Path) -> Iterator[Any]:
     pq = parquet()
     import pyarrow
 
-    if not is_regular(path):
-        raise FileNotFoundError(f"The dataset lacks the file {path}. {FIX}")
-    if pointer := lfs_problem(path):
-        raise ValueError(f"{path} {pointer}.")
+    check_file(path)
     try:
         with pq.ParquetFile(path, page_checksum_verification=True) as file:
             _check_size(path, file.metadata)

@@ -11,12 +11,11 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from mitigate.core.files import lfs_problem
 from mitigate.core.names import escaped, short
 from mitigate.core.observation import RGB
-from mitigate.core.output import is_regular, open_output
-from mitigate.corruptions.lerobot.dataset import Camera
-from mitigate.corruptions.lerobot.tables import FIX, INSTALL
+from mitigate.core.output import open_output
+from mitigate.corruptions.lerobot.metadata import Camera
+from mitigate.corruptions.lerobot.tables import FIX, INSTALL, check_file
 
 # Reading: only this container, so that a playlist cannot name other files or addresses.
 CONTAINER = "mp4"
@@ -95,10 +94,7 @@ def open_video(path: Path, camera: Camera) -> Iterator[tuple[Any, Any]]:
         ValueError: It is damaged, or has another size than ``camera``.
     """
     av = video_library()
-    if not is_regular(path):
-        raise FileNotFoundError(f"The dataset lacks the file {path}. {FIX}")
-    if pointer := lfs_problem(path):
-        raise ValueError(f"{path} {pointer}.")
+    check_file(path)
     with open(path, "rb") as file:
         try:
             with av.open(file, format=CONTAINER) as container:
@@ -155,22 +151,22 @@ def decode(
     """
     if not times:
         return
-    left = list(times)[::-1]
+    pending = list(times)[::-1]
     before: tuple[float, Any] | None = None  # the frame before, and its time
     with open_video(path, camera) as (container, stream):
         # one frame earlier: the first frame may lie a rounding error before its time
-        container.seek(max(0, round(left[-1] / stream.time_base) - 1), stream=stream)
+        container.seek(max(0, round(pending[-1] / stream.time_base) - 1), stream=stream)
         for frame in container.decode(stream):
             if frame.pts is None:
                 continue
             now = float(frame.pts * stream.time_base)
-            while left and before is not None and left[-1] - before[0] <= now - left[-1]:
-                yield _pixels(path, camera, before, left.pop(), tolerance)
-            if not left:
+            while pending and before is not None and pending[-1] - before[0] <= now - pending[-1]:
+                yield _pixels(path, camera, before, pending.pop(), tolerance)
+            if not pending:
                 return
             before = now, frame
-        while left:
-            yield _pixels(path, camera, before, left.pop(), tolerance)
+        while pending:
+            yield _pixels(path, camera, before, pending.pop(), tolerance)
 
 
 def _pixels(

@@ -89,7 +89,7 @@ def _fill(tensors: Sequence[Tensor], values: Sequence[Tensor]) -> None:
 
 def modules_of(agent: Any) -> list[nn.Module]:
     """Return all modules of an agent's networks, each once, in order."""
-    roots = [agent] if isinstance(agent, nn.Module) else networks(agent)
+    roots = [agent] if isinstance(agent, nn.Module) else networks(agent).values()
     return [*dict.fromkeys(module for root in roots for module in root.modules())]
 
 

@@ -13,8 +13,9 @@ from mitigate.corruptions import DepthSensor, Key, corrupt
 from mitigate.corruptions.folders import Settings
 from mitigate.corruptions.frames_command import main
 from mitigate.corruptions.lerobot import copying, open_dataset, videos
-from mitigate.corruptions.lerobot.dataset import VIDEO, rows_of
+from mitigate.corruptions.lerobot.dataset import rows_of
 from mitigate.corruptions.lerobot.frames import read_frames
+from mitigate.corruptions.lerobot.metadata import VIDEO
 from tests.lerobot_files import DEPTH, FRONT, LENGTHS, WRIST, depth, rgb, write_dataset
 
 pytest.importorskip("pyarrow", reason="needs pyarrow: pip install -e '.[lerobot]'")

@@ -132,6 +132,7 @@ def test_open_dataset_rejects_other_versions(folder, version, message):
         ("total_episodes", 9, "is incomplete: meta/info.json announces 9 episodes.* has 3"),
         ("data_path", "/etc/file-{file_index}", "data_path must be a path inside the dataset"),
         ("data_path", "../{file_index:03d}.parquet", "must be a path inside the dataset"),
+        ("data_path", "{video_key}", "must be a path inside the dataset"),
         ("data_path", "data//{file_index:03d}.parquet", "must be a path inside the dataset"),
         ("data_path", ".data/{file_index:03d}.parquet", "must be a path inside the dataset"),
         ("data_path", "data/{chunk_index.__class__}", "must be a path inside the dataset"),

@@ -12,6 +12,7 @@ from mitigate.core import checkpoint
 from mitigate.corruptions import CLEAN, Corruption
 from mitigate.evaluation.episode import run_episode
 from mitigate.evaluation.episode_lists import training_episodes
+from mitigate.evaluation.evaluator import EpisodeTask
 from mitigate.guards.adaptation.norm import Norm
 from mitigate.guards.adaptation.recentre import Recentre
 from mitigate.guards.adaptation.tent import Tent
@@ -236,6 +237,14 @@ def test_recentre_needs_calibration_and_known_modules():
         Recentre().check_agent(agent)
     with pytest.raises(ValueError, match="conv, head"):
         recentred(agent, modules=["stem"])
+
+
+def test_agent_caches_no_features_while_a_guard_adapts_it():
+    agent = as_policy(normalised(), world())
+    agent.remembering = lambda: pytest.fail("the agent caches features")
+    task = EpisodeTask(agent, world, Guards([Norm()]))
+    with task.ready():
+        assert [row["steps"] for row in task.work([(EPISODES[0], DARK, {"seed": 0})])] == [5]
 
 
 ARGUMENTS = {"world": world, "listed": EPISODES, "suite": ["low_light", "spatter"], "severity": 0.8}
