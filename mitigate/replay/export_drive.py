@@ -2,8 +2,8 @@
 ``mitigate export_drive OUT``.
 
 OUT is a folder. Each episode is written to this folder as a drive, in the form that a robot with
-one 90-degree RGB-D camera would record: a folder of frames, or a bag of ROS 1 or ROS 2 (MCAP). With form=lerobot, OUT
-becomes one LeRobot dataset with all episodes.
+one 90-degree RGB-D camera would record: a folder of frames, or a bag of ROS 1 or ROS 2 (MCAP).
+With form=lerobot, OUT becomes one LeRobot dataset with all episodes.
 """
 
 from __future__ import annotations
