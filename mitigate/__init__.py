@@ -1,4 +1,5 @@
-"""Corrupt, mitigate, measure and ship hardened navigation agents."""
+"""Corrupt the inputs of navigation agents, measure the effect, and train and ship hardened
+agents."""
 
 from __future__ import annotations
 
@@ -13,14 +14,14 @@ if TYPE_CHECKING:
     from mitigate.evaluation.leaderboard.entry import LeaderboardEntry
     from mitigate.shipping.harden import harden
 
-# OpenMP reads this when torch is imported. By default a waiting thread spins. If another process
-# runs at the same time, such as a worker that makes the next batch, the spinning thread occupies
-# the core that the process needs. Measured on 2 cores with one other busy process: a training
-# step of 200 ms took 2000 ms with the default and 450 ms with this setting; without that process
-# both are equal.
+# OpenMP reads this variable when torch is imported.
+# By default, a waiting OpenMP thread spins and occupies a core that other processes need,
+# such as a worker that prepares the next batch.
+# On 2 cores with one other busy process, a training step took 2000 ms with the default,
+# and 450 ms with this setting (200 ms without the other process, with either setting).
 os.environ.setdefault("OMP_WAIT_POLICY", "PASSIVE")
 
-# Modules such as ``python -m mitigate.train``, which torchrun needs, are in ``commands/``.
+# ``commands/`` holds modules such as ``mitigate.train``, which torchrun starts with ``python -m``.
 __path__.append(os.path.join(os.path.dirname(__file__), "commands"))
 
 __all__ = [
@@ -44,7 +45,7 @@ _MODULES = {
 
 
 def __getattr__(name: str) -> Any:
-    """Import the names of ``__all__``, and torch with them, on first use."""
+    """Import a name of ``__all__`` on first use, because this may import torch."""
     if name in _MODULES:
         try:
             return vars(import_module(_MODULES[name]))[name]

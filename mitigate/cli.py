@@ -1,6 +1,7 @@
 """The command ``mitigate``: ``mitigate train recipe=da_per_episode``.
 
-``python -m mitigate.train`` does the same; ``commands/`` holds such modules for the older commands.
+``python -m mitigate.train`` does the same; ``commands/`` contains such modules for the older
+commands.
 """
 
 from __future__ import annotations
@@ -20,10 +21,10 @@ class Command(NamedTuple):
     """A command of the command line.
 
     Attributes:
-        module: its ``main()`` reads ``sys.argv`` and returns an exit status.
-        about: description of the command, for the help.
-        example: example of its options, for the help.
-        extra: the extra of the package that it needs.
+        module: module whose ``main()`` reads ``sys.argv`` and returns an exit status.
+        about: description of the command for the help.
+        example: example options for the help.
+        extra: the extra of the package that the command needs.
     """
 
     module: str
@@ -129,7 +130,7 @@ COMMANDS = {
 
 def main(arguments: Sequence[str] | None = None) -> None:
     """Run a command from the command line, and exit with its status."""
-    # so that modules of the user can be imported, as python -m does
+    # as with python -m, so that modules of the user can be imported
     if os.getcwd() not in sys.path:
         sys.path.insert(0, os.getcwd())
     name, *options = [*(sys.argv[1:] if arguments is None else arguments), ""]
@@ -149,17 +150,18 @@ def main(arguments: Sequence[str] | None = None) -> None:
         if not message:
             raise
         sys.exit(message)
-    except KeyboardInterrupt:  # commands that can resume catch it themselves and print how
+    # commands that can resume catch this themselves and print how to resume
+    except KeyboardInterrupt:
         print(f"\nmitigate {name}: stopped.", file=sys.stderr)
         status = 128 + signal.SIGINT
-    except BrokenPipeError:  # the reader of the output, such as head, has closed it
+    except BrokenPipeError:  # the program that reads the output, such as head, has closed it
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         status = 128 + signal.SIGPIPE
     sys.exit(status)
 
 
 def usage() -> str:
-    """Return the help: every command with a description and an example."""
+    """Return the help text, which lists every command with a description and an example."""
     lines = ["Corrupt, train, measure and ship navigation agents.", ""]
     lines += ["usage: mitigate COMMAND [OPTIONS], each with --help", ""]
     for name, command in COMMANDS.items():

@@ -1,1 +1,1 @@
-"""Training methods, one file each; ``README.md`` is the menu."""
+"""Training methods, with one file per method; ``README.md`` lists them."""

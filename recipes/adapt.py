@@ -1,8 +1,8 @@
 """Train residual adapters in a frozen agent, so that corrupted frames give the clean features.
 
-Only the adapters train; the backbone does not change by one bit. A setting of the agent places them
-behind any module that returns a map (``agents/adapters.py``). ``Adapt`` trains on episodes of any
-trainable agent, ``AdaptViews`` on random poses.
+Only the adapters are trained; no bit of the backbone changes. A setting of the agent inserts them
+after any module that returns a map (``agents/adapters.py``). ``Adapt`` trains any trainable agent
+on episodes; ``AdaptViews`` trains on random poses.
 """
 
 from __future__ import annotations
@@ -24,14 +24,14 @@ from mitigate.training.parts import ADAPTERS, START
 from mitigate.training.poses import Poses
 from mitigate.training.rollouts import Rollouts
 
-HELD, FRESH = 1_000_000, 2_000_000  # step numbers that no training reaches
+HELD, FRESH = 1_000_000, 2_000_000  # step numbers that are never reached in training
 
 
 class Adapt(Distil):
     """Train adapters on rollouts; the teacher is the agent without its adapters.
 
-    The arguments are the same as for ``Distil``. By default only features are matched: w_il and
-    w_kl are 0.
+    The arguments are the same as for ``Distil``. By default, w_il and w_kl are 0, so that only
+    features are matched.
 
     Raises:
         ValueError: The agent has no adapters.
@@ -78,18 +78,19 @@ class AdaptViews(DistilViews):
     ``finish`` sets the thresholds of gates, if the encoders have any, and scales the adapters.
 
     Args:
-        agent: its adapters in the encoders for the sensor in ``poses`` are trained in place.
+        agent: the agent, whose adapters in the encoders for the sensor in ``poses`` are trained in
+            place.
         poses: the source of views.
         w_labels: same as in ``DistilViews``.
         w_feat: same as in ``DistilViews``.
-        w_gate: weight of the gates' cross-entropy (is a view corrupted or clean?).
-        touched: share of clean views for which a gate opens after training.
-        held: number of held-out clean panoramas that set the thresholds.
-        strength: share of the learned correction that the adapters apply after training
+        w_gate: weight of the gates' cross-entropy (whether a view is corrupted).
+        touched: fraction of clean views for which a gate opens after training.
+        held: number of held-out clean panoramas for setting the thresholds.
+        strength: fraction of the learned correction that the adapters apply after training
             (``agents.adapters.scale_adapters``).
 
     Raises:
-        ValueError: These encoders have no adapters, or a number is invalid.
+        ValueError: The encoders have no adapters, or a number is invalid.
     """
 
     teaches_gates = True
@@ -151,9 +152,10 @@ class AdaptViews(DistilViews):
             gate.calibrate(self._judged(gate, HELD, self.held, clean=True)[0], self.touched)
 
     def evaluate(self, step: int) -> dict[str, float]:
-        """Return whether the backbone is unchanged, and the shares of views that gates open for.
+        """Return whether the backbone is unchanged, and the fractions of views for which gates
+        open.
 
-        The views are not those that set the thresholds, which are set at the end.
+        These views differ from the ones for setting the thresholds, which are set at the end.
         """
         values = {"backbone_unchanged": float(backbone_sha(self.agent) == self.backbone)}
         for gate in self.gates:
@@ -179,13 +181,14 @@ class AdaptViews(DistilViews):
 
 
 def differ(frames: Tensor, clean: Tensor) -> Tensor:
-    """Return which views of two batches [P, V, H, W, c] differ: bool [P * V]; NaN equals NaN."""
+    """Return a mask [P * V] of the views that differ between two batches [P, V, H, W, c]."""
     other = (frames != clean) & ~(frames.isnan() & clean.isnan())
     return other.flatten(0, 1).flatten(1).any(1)
 
 
 def share(values: Tensor, where: Tensor) -> Tensor:
-    """Return the mean of ``values`` [n] where the mask ``where`` [n] is true; 0 if it never is."""
+    """Return the mean of ``values`` [n] where the mask ``where`` [n] is true, or 0 if it is never
+    true."""
     return (values * where).sum() / where.sum().clamp(min=1)
 
 

@@ -1,10 +1,10 @@
-"""DAgger: imitation on new rollouts and on stored rollouts of earlier steps.
+"""Imitate an expert on new rollouts and on stored rollouts of earlier steps (DAgger).
 
 Rollouts cost more time than learning. So the current policy runs some episodes every few steps, and
-their rollouts are stored on disk. Each step learns from a random sample of all stored rollouts, an
-aggregated data set as in Ross et al. 2011 that grows during the training. The oracle's share of the
-decisions falls over time. The loss is defined in ``recipes/imitate.py``. The rollouts of the agent
-must be plain data (tensors, lists, text).
+their rollouts are stored on disk. Each step learns from a random sample of all stored rollouts.
+They form an aggregated data set, as in Ross et al. 2011, that grows during training. The fraction
+of decisions by the oracle falls over time. The loss is defined in ``recipes/imitate.py``. The
+rollouts of the agent must be plain data (tensors, lists, text).
 """
 
 from __future__ import annotations
@@ -28,18 +28,19 @@ from mitigate.training.rollouts import Rollouts, batch_of
 class Dagger(Imitate):
     """Imitate the expert on new rollouts and on stored rollouts.
 
-    The rollouts of a step depend only on its weights and are stored before they are used, so a
-    resumed run draws the same ones.
+    The rollouts of a step depend only on the weights at that step and are stored before they are
+    used, so a resumed run samples the same ones.
 
     Args:
-        agent: trained in place.
-        rollouts: source of rollouts, used every ``every`` steps. ``follow_oracle`` is the final
-            share of decisions by the expert: it falls from 1 over the first 0.6 of ``steps``.
+        agent: the agent, which is trained in place.
+        rollouts: source of rollouts, used every ``every`` steps. Its ``follow_oracle`` is the final
+            fraction of decisions by the expert, which falls from 1 during the first 0.6 of
+            ``steps``.
         folder: folder of the stored rollouts, one file per piece.
-        steps: number of steps of the training.
+        steps: number of training steps.
         train_parts: same as in ``Imitate``.
-        every: steps between two rollouts.
-        walks: rollouts per step, new and stored.
+        every: number of steps between two rounds of rollouts.
+        walks: number of rollouts (new and stored) per step.
         losses: same as in ``Imitate``.
 
     Raises:
@@ -80,8 +81,8 @@ class Dagger(Imitate):
         self.walks = walks
 
     def jobs(self, step: int) -> list[tuple]:
-        """Return the jobs of ``Rollouts`` with the oracle's share; empty in steps without "
-        "rollouts."""
+        """Return the jobs of ``Rollouts`` with the oracle's share, or no jobs in steps without
+        rollouts."""
         if step % self.every:
             return []
         expert, jobs = falling_share(step, self.steps, self.least), super().jobs(step)
@@ -106,7 +107,7 @@ class Dagger(Imitate):
         return batch_of(self.rollouts.collate([*pieces, *((piece, None) for piece in again)]))
 
     def _drawn(self, step: int, count: int) -> list[Any]:
-        """Return ``count`` stored pieces, drawn from earlier steps."""
+        """Return ``count`` stored pieces, sampled from earlier steps."""
         pieces = range(self.rollouts.pieces)
         known = [(s, n) for s in range(0, step, self.every) for n in pieces]
         rng = generator(self.rollouts.seed, "kept walks", step)
@@ -152,7 +153,7 @@ def _is_plain(data: Any) -> bool:
 
 
 def _floats(data: Any, dtype: torch.dtype) -> Any:
-    """Return ``data`` with its floating tensors in ``dtype``."""
+    """Convert the floating tensors in ``data`` to ``dtype``."""
     if isinstance(data, torch.Tensor):
         return data.to(dtype) if data.is_floating_point() else data
     if isinstance(data, dict):

@@ -1,12 +1,13 @@
-"""Teacher-student distillation: a frozen teacher sees the clean frames of the student's views.
+"""Distil a frozen teacher, which sees clean frames, into a student, which sees corrupted ones.
 
 ``Distil`` works on episodes of any trainable agent:
 
     L = w_il L_imitation + w_kl T^2 KL(pi_T || pi_S) + w_feat sum of MSE(f_S, f_T)
 
-Under corruption the student may find other candidates than the teacher: without depth it finds
-other places to go to. Both therefore score the candidates of the student. ``DistilViews`` works on
-random poses: the student's encoders learn to give the teacher's clean features for corrupted views.
+Under corruption, the student may find different candidates than the teacher: for example, without
+depth it finds different places to go to. Therefore both score the candidates of the student.
+``DistilViews`` works on random poses: the student's encoders learn to give the teacher's clean
+features for corrupted views.
 """
 
 from __future__ import annotations
@@ -27,12 +28,13 @@ from mitigate.training.rollouts import OnEpisodes, Rollouts
 
 
 class Distil(OnEpisodes):
-    """Distil a teacher on rollouts: imitation, the teacher's policy and its features.
+    """Distil a teacher on rollouts, with losses for imitation, the teacher's policy and its
+    features.
 
-    With ``w_kl = w_feat = 0`` this equals imitation, bit for bit.
+    With ``w_kl = w_feat = 0``, this equals imitation bit for bit.
 
     Args:
-        agent: the student, trained in place.
+        agent: the student, which is trained in place.
         rollouts: the source of its decisions.
         teacher: weights, or "start" for a copy of ``agent`` at the start of the stage.
         train_parts: same as in ``Imitate``.
@@ -41,12 +43,12 @@ class Distil(OnEpisodes):
         w_kl: weight of the policy loss.
         w_feat: weight of the feature loss.
         temperature: temperature of the policy loss.
-        match: names of the features to match; None matches all. A feature that does not depend
-            on a trained weight is not matched.
+        match: names of the features to match, or None for all. Features that do not depend on a
+            trained weight are not matched.
 
     Raises:
         FileNotFoundError: The teacher is missing.
-        ValueError: A weight or the temperature is invalid; or raised by ``Imitate``.
+        ValueError: A weight or the temperature is invalid, or ``Imitate`` raised this error.
     """
 
     def __init__(
@@ -129,13 +131,13 @@ class DistilViews(OnViews):
         agent: the student; its encoders for the sensor in ``poses`` are trained in place.
         poses: the source of views.
         teacher: weights, or "start" for a copy of ``agent`` at the start of the stage.
-        w_labels: weight of the loss of labels.
-        w_feat: weight of the loss of features.
-        adapters_only: train only the agent's adapters.
+        w_labels: weight of the label loss.
+        w_feat: weight of the feature loss.
+        adapters_only: whether to train only the agent's adapters.
 
     Raises:
         FileNotFoundError: The teacher is missing.
-        ValueError: Adapters have gates, or a weight is invalid.
+        ValueError: The adapters have gates, or a weight is invalid.
     """
 
     teaches_gates: ClassVar[bool] = False
@@ -180,7 +182,7 @@ class DistilViews(OnViews):
 
 
 def matched(features: Mapping[str, Tensor], names: Sequence[str] | None) -> dict[str, Tensor]:
-    """Return the features of ``names`` (None: all); raise ValueError for an unknown name."""
+    """Return the features with ``names`` (all if None); raise ValueError for an unknown name."""
     unknown = sorted(set(names or ()) - set(features))
     if unknown:
         raise ValueError(f"match must be names of {', '.join(features)}, got {unknown}.")
@@ -188,9 +190,9 @@ def matched(features: Mapping[str, Tensor], names: Sequence[str] | None) -> dict
 
 
 def policy_kl(student: Tensor, teacher: Tensor, temperature: float) -> Tensor:
-    """Return KL(pi_T || pi_S) of logits [B, n] at ``temperature``, the mean over the batch.
+    """Return the batch mean of KL(pi_T || pi_S) for logits [B, n] at ``temperature``.
 
-    -inf marks entries that are not candidates; both must have the same ones.
+    Entries of -inf are not candidates; both logits must have the same candidates.
     """
     p = (teacher / temperature).log_softmax(-1)
     q = (student / temperature).log_softmax(-1)
@@ -201,9 +203,9 @@ def policy_kl(student: Tensor, teacher: Tensor, temperature: float) -> Tensor:
 def feature_loss(student: Tensor, teacher: Tensor) -> Tensor:
     """Return the mean squared error divided by the variance of the teacher's values.
 
-    So the overall scale does not matter, but the scale of a part does: probabilities next to larger
-    features contribute little (0.3 to 5 % of the error, measured by encoder and corruption). Labels
-    train them.
+    So the overall scale does not matter, but the relative scale of parts does. Probabilities next
+    to larger features contribute little (0.3 to 5 % of the error, measured for each encoder and
+    corruption). Labels train them.
     """
     error = (student.float() - teacher.float()).square().mean()
     return error / teacher.float().var().clamp(min=1e-6)

@@ -1,11 +1,11 @@
-"""Harden an image encoder with frames only: corrupted frames must give the clean features.
+"""Harden an image encoder using only frames: corrupted frames must give the clean features.
 
     L = w_feat mean of (f(corrupted) - f0(clean))^2 / v + w_gate BCE(gates, corrupted or not)
 
 f0 is the original encoder, and v the variance of its clean features between frames, so features
 that are independent of the frame have a loss of 1. No label, action, instruction or policy is
-needed. Some frames stay clean (``schedule.clean_share``): the rest of an agent expects unchanged
-clean features, and adapters with a gate learn not to change those frames.
+needed. Some frames stay clean (``schedule.clean_share``), because the rest of an agent expects
+unchanged clean features. Adapters with a gate learn not to change these frames.
 """
 
 from __future__ import annotations
@@ -33,9 +33,11 @@ from mitigate.encoders.sources import TRAIN, UNSEEN, Frames, Source, collect, co
 from mitigate.training import success
 from mitigate.training.objective import Objective, check_weights
 
-SHOWN = 12  # frames in the picture of the log
-MOST_KEPT = 1 << 30  # bytes of cached clean features; above, they are computed at each step
-LOOKED_AT = 48  # frames that estimate the variance if not all features are cached (heuristic)
+SHOWN = 12  # number of frames in the logged picture
+# maximum bytes of cached clean features; beyond this, they are computed at each step
+MOST_KEPT = 1 << 30
+# number of frames for estimating the variance if not all features are cached (heuristic)
+LOOKED_AT = 48
 
 
 def frame_source(
@@ -55,23 +57,23 @@ class HardenEncoder(Objective):
     Args:
         agent: the encoder; its adapters, or all of its weights, are trained in place.
         source: source of the frames.
-        schedule: schedule of corruptions; only corruptions of the encoder's sensor are drawn.
-        frames: number of frames, read once from the training scenes. Unseen files are read too, so
-            that an invalid one is found at once.
-        batch: frames per step.
-        micro_batch: frames in memory at once.
+        schedule: schedule of corruptions; only corruptions of the encoder's sensor are used.
+        frames: number of frames, which are read once from the training scenes. Unseen files are
+            also read, so that an invalid file is found at once.
+        batch: number of frames per step.
+        micro_batch: number of frames in memory at once.
         seed: seed of frames and corruptions.
-        w_feat: weight of the error of features.
-        w_gate: weight of the loss of gates.
-        per_channel: True divides by the variance of each channel, so that all count equally; False
-            divides by the mean variance.
+        w_feat: weight of the feature loss.
+        w_gate: weight of the gate loss.
+        per_channel: Whether the loss is divided by the variance of each channel, so that all
+            channels count equally, or by the mean variance.
 
     Raises:
-        ValueError: A number is invalid, or the schedule does not fit.
+        ValueError: A number is invalid, or the schedule has no corruption of the encoder's sensor.
     """
 
     sources: ClassVar[Mapping[str, Callable[..., Any]]] = {"source": frame_source}
-    here = True  # the frames are in this process
+    here = True  # jobs run here because the frames are in this process
     needs = ("choose_trained", "sensor", "model")
     otherwise = (
         "This recipe trains an image encoder: set agent=efficientnet_lite0, or agent=encoder with "
@@ -175,7 +177,7 @@ class HardenEncoder(Objective):
         chosen = [index for index, _ in pieces]
         changed = [frame for _, frame in pieces]
         clean = [self.frames.frames[index] for index in chosen]
-        # Black-out leaves some frames unchanged.
+        # The corruption black-out leaves some frames unchanged.
         hit = [float(not np.array_equal(a, b)) for a, b in zip(changed, clean, strict=True)]
         self._last = np.stack(changed[:SHOWN])
         return {
@@ -196,7 +198,7 @@ class HardenEncoder(Objective):
         return {"target": self.targets[torch.from_numpy(chosen).to(self.targets.device)]}
 
     def micro_batches(self, batch: dict[str, Any]) -> list[dict[str, Any]]:
-        """Split the frames of a step; each part has its share of the frames."""
+        """Split the frames of a step into parts, each with its fraction of the frames."""
         tensors = {name: batch[name].split(self.micro) for name in batch if name != "episode_ids"}
         parts = [
             dict(zip(tensors, part, strict=True)) for part in zip(*tensors.values(), strict=True)
@@ -236,12 +238,12 @@ class HardenEncoder(Objective):
 
 
 def variance(clean: Tensor, per_channel: bool) -> Tensor:
-    """Return the variance of features between frames, at the same position.
+    """Return the variance of features between frames at the same position.
 
     Args:
         clean: features [n, C], [n, C, h, w] or [n, T, C].
-        per_channel: return the variance of each channel, in a shape that broadcasts, at least a
-            hundredth of the mean; else the mean of all.
+        per_channel: whether to return the variance of each channel, in a shape that broadcasts and
+            at least a hundredth of the mean; otherwise return the mean of all variances.
     """
     each = clean.var(0)
     channel = 0 if each.dim() == 3 else each.dim() - 1
@@ -252,5 +254,5 @@ def variance(clean: Tensor, per_channel: bool) -> Tensor:
 
 
 def cosine(features: Tensor, target: Tensor) -> Tensor:
-    """Return the cosine [n] between the features of each frame."""
+    """Return the cosine similarity [n] between two features of each frame."""
     return nn.functional.cosine_similarity(features.float().flatten(1), target.float().flatten(1))

@@ -1,10 +1,10 @@
-"""Imitation of a world's expert with scheduled sampling, on corrupted frames.
+"""Imitate a world's expert with scheduled sampling, on corrupted frames.
 
-Every step rolls out a few training episodes with the current weights under the schedule's
-corruptions, then trains on all their decisions. The loss is the cross-entropy to the expert plus
-the auxiliary losses of the agent. The same recipe with three schedules gives ``da_per_frame``,
-``da_per_episode`` and ``da_success``. It trains any agent of ``agents/agent.py`` in any world with
-an expert.
+Every step runs a few training episodes with the current weights under the schedule's corruptions,
+and trains on all their decisions. The loss is the cross-entropy to the expert plus the auxiliary
+losses of the agent. The same recipe with three schedules gives ``da_per_frame``, ``da_per_episode``
+and ``da_success``. This objective trains any agent of ``agents/agent.py`` in any world with an
+expert.
 """
 
 from __future__ import annotations
@@ -19,18 +19,18 @@ from mitigate.training.objective import check_weights
 from mitigate.training.parts import train_only
 from mitigate.training.rollouts import OnEpisodes, Rollouts
 
-DECAY = 0.6  # share of the steps after which the expert's share is follow_oracle (heuristic)
+DECAY = 0.6  # fraction of the steps after which the expert's share equals follow_oracle (heuristic)
 
 
 class Imitate(OnEpisodes):
-    """Imitate the expert on rollouts.
+    """Imitates the expert on rollouts of the agent.
 
     Args:
-        agent: trained in place.
+        agent: the agent, which is trained in place.
         rollouts: the source of its decisions.
         train_parts: names of the agent's ``parts()``, or "adapters"; other parts stay frozen.
-            "policy" means all except the encoders, None all except the adapters.
-        losses: weights of auxiliary losses by name, over the defaults of the agent.
+            "policy" means all parts except the encoders, None means all except the adapters.
+        losses: weights of auxiliary losses by name, which override the agent's defaults.
 
     Raises:
         ValueError: A part is unknown, or a weight is invalid.
@@ -57,12 +57,12 @@ class Imitate(OnEpisodes):
 
 
 def imitation(out: Output, decisions: Decisions, weights: Mapping[str, float]) -> dict[str, Tensor]:
-    """Return the imitation loss: weighted cross-entropy to the expert, minus the expert's entropy.
+    """Return the imitation loss: weighted cross-entropy with the expert minus the expert's entropy.
 
     Auxiliary losses are added with their ``weights`` (default 1).
 
     Returns:
-        "loss", and values to log.
+        A dict with "loss" and values to log.
     """
     assert out.logits is not None, "decide() gave no logits"
     logits, target = masked(out.logits, out.mask), decisions.target
@@ -84,9 +84,9 @@ def imitation(out: Output, decisions: Decisions, weights: Mapping[str, float]) -
 
 
 def falling_share(step: int, steps: int, least: float) -> float:
-    """Return the expert's share of decisions at ``step``.
+    """Return the fraction of decisions by the expert at ``step``.
 
-    It falls from 1 to ``least`` over the first ``DECAY`` of ``steps``.
+    The fraction falls from 1 to ``least`` during the first ``DECAY`` of ``steps``.
     """
     return least + max(0.0, 1 - step / (DECAY * steps)) * (1 - least)
 
@@ -97,9 +97,10 @@ def masked(logits: Tensor, mask: Tensor | None) -> Tensor:
 
 
 def loss_weights(agent: Any, weights: Mapping[str, float] | None) -> dict[str, float]:
-    """Return the weights of an agent's auxiliary losses: its defaults, overridden by ``weights``.
+    """Return the weights of an agent's auxiliary losses, which are its defaults overridden by
+    ``weights``.
 
-    Raises ValueError if they are not a mapping, or if a weight is below 0.
+    Raises ValueError if ``weights`` is not a mapping, or if a weight is below 0.
     """
     if not isinstance(weights or {}, Mapping):
         raise ValueError(

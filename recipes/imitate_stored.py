@@ -1,7 +1,7 @@
-"""Imitation on stored features: no rendering, hundreds of decisions per step.
+"""Imitate an expert on stored features, without rendering, with hundreds of decisions per step.
 
 The encoders are frozen; their features on a grid of poses of every scene are computed once. The
-agent must have a ``store``. The loss is defined in ``recipes/imitate.py``.
+agent must have a method ``store``. The loss is defined in ``recipes/imitate.py``.
 """
 
 from __future__ import annotations
@@ -25,23 +25,24 @@ from mitigate.worlds.world import TrainingEpisodes, World
 
 @dataclass(eq=False, repr=False)
 class StoredRollouts:
-    """The source of batches of decisions on stored features.
+    """Source of batches with decisions on stored features.
 
     Args:
-        agent: acts with its current weights; it has a ``store``.
-        world: makes a world with the scenes whose features are stored.
+        agent: the agent, which acts with its current weights and has a method ``store``.
+        world: function that constructs a world with the scenes whose features are stored.
         training: source of the episodes.
         folder: folder of the stores.
-        steps: number of steps of the training.
-        episodes: number per step.
-        follow_oracle: final share of decisions by the expert; it falls from 1 over the first 0.6 of
-            ``steps``.
+        steps: number of training steps.
+        episodes: number of episodes per step.
+        follow_oracle: final fraction of decisions by the expert, which falls from 1 during the
+            first 0.6 of ``steps``.
         seed: seed of episodes, corruptions and actions.
         schedule: schedule of corruptions of the variants.
-        variants: number of corrupted copies of each scene's features, in addition to the clean one.
+        variants: number of corrupted copies of each scene's features, in addition to the clean
+            features.
 
     Raises:
-        ValueError: There are no episodes, the share is invalid, or the schedule is
+        ValueError: There are no episodes, the fraction is invalid, or the schedule is
             success-distributed.
     """
 
@@ -62,7 +63,7 @@ class StoredRollouts:
         success.refuse(self.schedule if self.variants else None)
 
     def start(self, workers: int | None) -> None:
-        """Make the store, in the precision of the training."""
+        """Compute the stored features, in the precision of the training run."""
         variants = {"schedule": self.schedule, "variants": self.variants, "seed": self.seed}
         self.store = self.agent.store(
             self.world, self.folder, **(variants if self.variants else {})
@@ -71,7 +72,7 @@ class StoredRollouts:
 
     @property
     def pieces(self) -> int:
-        """Number of jobs of every step."""
+        """The number of jobs in every step."""
         return min(PIECES, self.episodes)
 
     def jobs(self, step: int) -> list[tuple]:
@@ -92,7 +93,7 @@ class ImitateStored(Objective):
     """Imitate the expert on stored features.
 
     Args:
-        agent: its ``stored_parts`` are trained in place.
+        agent: the agent, whose ``stored_parts`` are trained in place.
         rollouts: the source of its decisions.
         losses: same as in ``Imitate``.
     """

@@ -1,8 +1,8 @@
 """Train an agent's encoders on random poses with labels from the simulator.
 
-In the apartments, RGB labels are the things, near things, colours and rooms in the middle of each
-view. Depth labels are the directions in which the agent can go straight. The encoders of the two
-sensors are independent, so each has its own stage.
+In the apartments, RGB labels describe visible things, near things, colours and rooms in the middle
+of each view. Depth labels are the directions in which the agent can go straight. The encoders of
+the two sensors are independent, so each has its own stage.
 """
 
 from __future__ import annotations
@@ -18,11 +18,11 @@ from mitigate.training.poses import OnViews, Poses
 
 
 class Pretrain(OnViews):
-    """Train encoders on labels of the world.
+    """Trains encoders on labels of the world.
 
     Args:
-        agent: its encoders for the sensor in ``poses`` are trained in place; it must be able to
-            ``see`` (``agents/agent.py``).
+        agent: the agent, whose encoders for the sensor in ``poses`` are trained in place. It must
+            have a method ``see`` (``agents/agent.py``).
         poses: the source of views.
     """
 
@@ -41,8 +41,8 @@ class Pretrain(OnViews):
 def views_to_learn(agent: Any, modality: str, adapters_only: bool = False) -> dict[str, Any]:
     """Unfreeze the encoders of ``modality``, or only their adapters.
 
-    RGB uses every second view: neighbours overlap, so half of the views are enough. Ring adapters
-    read all views of a panorama, so an agent with adapters uses all.
+    For RGB, every second view is used, because neighbours overlap. Ring adapters read all views of
+    a panorama, so for an agent with adapters all views are used.
 
     Returns:
         The arguments of ``Poses.learn``.

@@ -1,14 +1,14 @@
-"""Train a restorer from pairs of corrupted and clean frames; no agent, label or action is needed.
+"""Train a restorer on pairs of corrupted and clean frames, without agent, labels or actions.
 
     L = mean over scales of |out - clean| + w_grad |their image gradients|
-        + w_right mean of e / (e + TOLERANCE), e = |out - clean| of a pixel
+        + w_right mean of e / (e + TOLERANCE), where e = |out - clean| of a pixel
 
-The last term counts wrong pixels rather than the size of their error, so that correct pixels next
-to drops, stripes or noise stay unchanged. In the first term, depth that is too far is weighted by
-``w_far``: a path that does not exist can fail an episode, a path that is not seen costs a detour.
-RGB is in [0, 1], depth is divided by its range; depth pixels without a clean reading are ignored.
-The training does not use an agent, so one restorer fits all agents. Its gate is trained afterwards
-on fixed maps (``restore_gate.py``).
+The last term counts wrong pixels instead of measuring their error, so that correct pixels next to
+drops, stripes or noise are not changed. In the first term, depth that is too far is weighted by
+``w_far``. The reason is that a path that does not exist can make an episode fail, while a missed
+path only costs a detour. RGB is in [0, 1], depth is divided by its range; pixels that have no valid
+clean depth are ignored. Training does not use an agent, so one restorer can be used with all
+agents. The restorer's gate is trained afterwards on fixed maps (``restore_gate.py``).
 """
 
 from __future__ import annotations
@@ -28,20 +28,20 @@ from mitigate.guards.frames.sensor import TOLERANCE, SensorRestorer
 from mitigate.training.objective import Objective, check_share, check_weights
 from mitigate.training.restoration_pairs import Pairs, pairs_of
 
-SCALES = (1, 4)  # pixels: errors of edges and of surfaces (heuristic)
+SCALES = (1, 4)  # scales in pixels, for errors of edges and of surfaces (heuristic)
 RESTORER = "This recipe trains a restorer: set agent=restorer (docs/restoration.md)."
 
 
 class Restore(Objective):
-    """Train a restorer on pairs of corrupted and clean frames.
+    """Trains a restorer on pairs of corrupted and clean frames.
 
     Args:
         agent: the restorer; its network for the sensor in ``pairs`` is trained in place.
         pairs: the source of frames.
-        single: share of steps that process each view separately.
-        seed: seed that chooses these steps.
+        single: fraction of steps that process each view separately.
+        seed: seed for choosing these steps.
         w_grad: weight of the error of image gradients.
-        w_right: weight of the share of wrong pixels.
+        w_right: weight of the fraction of wrong pixels.
         w_far: factor on the error of depth that is too far.
 
     Raises:
@@ -113,8 +113,8 @@ class Restore(Objective):
         return {"loss": loss, "before": before, "after": after}
 
     def _error(self, out: Tensor, target: Tensor, valid: Tensor) -> Tensor:
-        """Return the sum of L1 at all scales, L1 of image gradients, and the share of wrong "
-        "pixels."""
+        """Return the sum of L1 errors over scales, the L1 error of gradients, and the wrong
+        fraction."""
         total = out.new_zeros(())
         difference = (out - target) * valid
         charged = torch.where(difference > 0, self.w_far * difference, difference)
@@ -136,5 +136,5 @@ class Restore(Objective):
         self._shown = np.concatenate([side_by_side(row.numpy()) for row in rows])
 
     def figures(self, step: int) -> dict[str, np.ndarray]:
-        """Return views of the last batch: corrupted, restored, clean."""
+        """Return corrupted, restored and clean views of the last batch."""
         return {} if self._shown is None else {"restored": self._shown}

@@ -1,12 +1,12 @@
-"""Train the gate of a restorer: it decides which frames are closer to the clean ones when restored.
+"""Train the gate of a restorer, which decides for which frames restoring reduces the error.
 
     L = BCE(gate, error after < ``BETTER`` error before, and at most ``SPENT`` fewer correct pixels)
 
-By the mean error alone, blurring a partly wrong frame would count as better, but an agent loses
-details. A frame that is neither clearly better when restored, nor clean, nor worse, is ignored. The
-inputs of the gate do not change here, so they are computed once for ``instants`` random instants
-and used many times. Finally the threshold is set on held-out clean frames of the training scenes:
-a share ``touched`` of them is above it.
+If only the mean error decided, blurring a partly wrong frame would count as better, although an
+agent loses details. A frame is ignored if it is not clean and restoring makes it neither clearly
+better nor worse. The inputs of the gate do not change in this stage, so they are computed once for
+``instants`` random time steps and used many times. At the end, the threshold is set such that a
+fraction ``touched`` of held-out clean frames of the training scenes is above it.
 """
 
 from __future__ import annotations
@@ -27,22 +27,23 @@ from mitigate.recipes.restore import RESTORER
 from mitigate.training.objective import Objective
 from mitigate.training.restoration_pairs import Pairs, pairs_of, with_clean_share
 
-CLEAN_SHARE = 0.35  # share of clean instants in the training (heuristic)
-BETTER = 0.85  # the restored error must be below this share of the error before (heuristic)
-SPENT = 0.15  # largest loss of correct pixels, as a share of all pixels (heuristic)
-# First step numbers, so that instants were not used to train the network and serve one purpose.
+CLEAN_SHARE = 0.35  # fraction of clean time steps in training (heuristic)
+# the error after restoring must be below this fraction of the error before (heuristic)
+BETTER = 0.85
+SPENT = 0.15  # maximum loss of correct pixels, as a fraction of all pixels (heuristic)
+# First step numbers, so that time steps are not from the network's training and have one purpose.
 OFFSETS = {"held": 1_000_000, "fresh": 2_000_000, "corrupted": 3_000_000, "learned": 4_000_000}
 
 
 class Judged(NamedTuple):
-    """Measures of N instants with V views.
+    """Measures of N time steps with V views.
 
     Attributes:
         stats: input of the gate [N, V, s].
         textures: input of the gate [N, V, t].
         before: mean error of the original frames [N], divided by the range.
         after: mean error of the restored frames [N].
-        spent: share of correct pixels before minus the share after [N] (``TOLERANCE``).
+        spent: fraction of correct pixels before minus the fraction after [N] (``TOLERANCE``).
     """
 
     stats: Tensor
@@ -53,23 +54,24 @@ class Judged(NamedTuple):
 
     @property
     def labels(self) -> tuple[Tensor, Tensor]:
-        """Return which instants should be restored, and which count in the loss: bool [N] each."""
+        """Return masks [N] of the time steps that should be restored, and of those used in the
+        loss."""
         intact = self.spent <= SPENT
         better = (self.before > 0) & (self.after < BETTER * self.before) & intact
         return better, better | (self.after >= self.before) | ~intact
 
 
 class RestoreGate(Objective):
-    """Train the gate of a restorer.
+    """Trains the gate of a restorer.
 
     Args:
         agent: the restorer; its network's gate for the sensor in ``pairs`` is trained in place.
         pairs: the source of frames.
-        instants: number of training instants, and of single views.
-        held: number of held-out clean instants that set the threshold.
-        batch: instants per step.
-        single: share of steps that train on single views.
-        touched: share of clean instants above the threshold.
+        instants: number of training time steps, and of single views.
+        held: number of held-out clean time steps for setting the threshold.
+        batch: number of time steps per training step.
+        single: fraction of training steps on single views.
+        touched: fraction of clean time steps above the threshold.
         seed: seed of the batches.
 
     Raises:
@@ -77,7 +79,7 @@ class RestoreGate(Objective):
     """
 
     sources: ClassVar[Mapping[str, Callable[..., Any]]] = {"pairs": pairs_of}
-    here = True  # a step takes milliseconds
+    here = True  # jobs run here because a step takes only milliseconds
     needs = ("restore", "doubt", "parts")
     otherwise = RESTORER
 
@@ -111,7 +113,7 @@ class RestoreGate(Objective):
         self.net.gate.requires_grad_(True)
         self.pairs = with_clean_share(pairs, CLEAN_SHARE)
         self.clean = with_clean_share(pairs, 1.0)
-        self.learned: list[Judged] = []  # panoramas (if any), single views
+        self.learned: list[Judged] = []  # data sets for panoramas (if any) and for single views
 
     def identity(self) -> dict[str, str]:
         return self.pairs.identity()
@@ -123,7 +125,7 @@ class RestoreGate(Objective):
         self.learned = [self._judged(self.pairs, self.instants, "learned", ring) for ring in kinds]
 
     def pieces(self) -> int:
-        """Return 1 piece per step, because ranks cannot share a step."""
+        """Return 1 piece per step, because a step cannot be divided among ranks."""
         return 1
 
     def batch(self, step: int) -> dict[str, Any]:
@@ -145,13 +147,14 @@ class RestoreGate(Objective):
         }
 
     def _logits(self, judged: Judged) -> Tensor:
-        """Return the logit of each instant [N]."""
+        """Return the logit of each time step [N]."""
         stats, textures = (part.flatten(0, 1) for part in judged[:2])
         return self.net.gate(stats, textures, judged.stats.shape[1]).float()
 
     @torch.no_grad()
     def _judged(self, pairs: Pairs, count: int, which: str, ring: bool) -> Judged:
-        """Measure ``count`` instants; ``ring`` processes panoramas, else each view separately."""
+        """Measure ``count`` time steps, as panoramas if ``ring`` is true, else each view
+        separately."""
         parts: list[tuple[Tensor, ...]] = []
         step, collected, device = OFFSETS[which], 0, self.net.threshold.device
         with Progress(f"{self.modality}, {which}", count, unit="instant") as progress:
@@ -165,7 +168,7 @@ class RestoreGate(Objective):
         return Judged(*(torch.cat(part)[:count] for part in zip(*parts, strict=True)))
 
     def _part(self, frames: Tensor, clean: Tensor, views: int) -> tuple[Tensor, ...]:
-        """Return the entries of :class:`Judged` for frames [n, H, W, c]."""
+        """Compute the fields of :class:`Judged` for frames [n, H, W, c]."""
         restored = self.net(frames, views)
         small = self.net.small(*self.net.scaled(frames))
         inputs = (self.net.judge(*small, views)[0].stats, texture(*small))
@@ -180,15 +183,16 @@ class RestoreGate(Objective):
 
     @torch.no_grad()
     def finish(self) -> None:
-        """Set the threshold on held-out clean instants."""
+        """Set the threshold on held-out clean time steps."""
         logits = self._logits(self._judged(self.clean, self.held, "held", self.pairs.ring))
         self.net.threshold.fill_(float(logits.quantile(1 - self.touched)))
 
     @torch.no_grad()
     def evaluate(self, step: int) -> dict[str, float]:
-        """Return the threshold, which is set at the end, and two shares above it.
+        """Return the threshold, which is set at the end, and two fractions above it.
 
-        They are measured on other clean instants, and on corrupted instants that become better.
+        The fractions are measured on other clean time steps, and on corrupted ones that restoring
+        improves.
         """
         ring = self.pairs.ring
         fresh = self._judged(self.clean, -(-self.held // 3), "fresh", ring)

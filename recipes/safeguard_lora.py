@@ -1,6 +1,6 @@
-"""LoRA fine-tuning of the safeguard's language model: corrupted text in, plain text out.
+"""Fine-tune the safeguard's language model with LoRA to rewrite corrupted text as plain text.
 
-The loss is the cross-entropy of the completion, averaged over its tokens in the whole step. The
+The loss is the cross-entropy of the completions, averaged over all their tokens in a step. The
 pairs of a step are grouped by length into micro-batches.
 """
 
@@ -19,20 +19,20 @@ from mitigate.guards.text.language_models.tokens import collate, encode_pair
 from mitigate.guards.text.learning.data import Pair, draw_pair, read_chats, read_texts
 from mitigate.training.objective import Objective
 
-Encoded = tuple[int, list[int], list[int]]  # number, prompt and completion of a pair
-_HELD = 10**9  # number of the first pair for evaluation
+Encoded = tuple[int, list[int], list[int]]  # index, prompt and completion of a pair
+_HELD = 10**9  # index of the first pair for evaluation
 
 
 class SafeguardLora(Objective):
     """Fine-tune the language model of the safeguard.
 
     Args:
-        agent: the language model; its adapter is trained in place.
-        pairs: pairs per step.
-        micro_batch: pairs in memory at once.
-        files: episode files of R2R or RxR, additional instructions to corrupt.
+        agent: the language model, whose adapter is trained in place.
+        pairs: number of pairs per step.
+        micro_batch: number of pairs in memory at once.
+        files: episode files of R2R or RxR with additional instructions to corrupt.
         chats: chat files (``messages``) with additional pairs.
-        share: share of pairs from these files; half from each kind if both are set.
+        share: fraction of pairs from these files; half from each kind if both are set.
         seed: seed of the pairs.
     """
 
@@ -71,7 +71,7 @@ class SafeguardLora(Objective):
         return {path: sha256(path) for path in self.read}
 
     def pair(self, index: int) -> Pair:
-        """Return the pair ``index``, a function of the seed."""
+        """Return the pair ``index``, which depends only on the seed."""
         if not self.chats:
             return draw_pair(self.seed, index, self.texts, self.share)
         rng = generator(self.seed, "chat", index)
@@ -87,14 +87,14 @@ class SafeguardLora(Objective):
         return (job, *self.encode_pair(self.pair(job)))
 
     def __getstate__(self) -> dict[str, Any]:
-        """Return the state for workers, without the large language model."""
+        """Return the state for workers, which excludes the large language model."""
         return {**self.__dict__, "_modules": {}}
 
     def collate(self, step: int, pieces: list[Encoded]) -> dict[str, Any]:
         return self._batch(pieces)
 
     def weight(self, batch: dict[str, Any]) -> float:
-        """Return the number of tokens of the completions."""
+        """Return the number of tokens in the completions."""
         return float(sum(int(group["completion"].sum()) for group in batch["groups"]))
 
     def _batch(self, pieces: list[Encoded]) -> dict[str, Any]:
@@ -109,7 +109,7 @@ class SafeguardLora(Objective):
         }
 
     def micro_batches(self, batch: dict[str, Any]) -> list[dict[str, Any]]:
-        """Return the groups, each with the number of tokens of the step."""
+        """Return the groups, each with the total number of tokens in the step."""
         tokens = self.weight(batch)
         return [{"group": group, "tokens": tokens} for group in batch["groups"]]
 
@@ -123,7 +123,7 @@ class SafeguardLora(Objective):
         }
 
     def evaluate(self, step: int) -> dict[str, float]:
-        """Return loss and accuracy on pairs that the training never draws."""
+        """Return loss and accuracy on pairs that are never used in training."""
         pieces = [self.work(index) for index in range(_HELD, _HELD + 4 * self.pairs)]
         batches = self.micro_batches(self._batch(pieces))
         values = [self(to_device(part, self.agent.device)) for part in batches]

@@ -1,4 +1,4 @@
-"""Self-distillation: a trained policy teaches its copy, without expert and without reward.
+"""Self-distil a trained policy, which teaches its copy without expert and reward.
 
 The copy (student) runs episodes under corruptions. For every frame that it meets, the unchanged
 policy (teacher) answers to the clean frame, and the student learns to give the same answer to the
@@ -12,12 +12,12 @@ corrupted one: DAgger (Ross et al. 2011) with the clean policy in place of an ex
 * ``w_feat``: the squared error of the features of one module, relative to their variance,
 * ``w_consistency``: the divergence between the answers to two corruptions of the same frame.
 
-The severity rises over the first part of the training, and the last part is mostly clean frames, so
+The severity rises during the first part of training, and the last part uses mostly clean frames, so
 that the student returns to the clean behaviour (the order of STRONG-VLA, 2026).
 
 Rollouts are slow and learning is fast, so the student runs episodes only every ``every`` steps.
-Their clean frames are stored, and each step draws a random sample of all stored frames and corrupts
-it with new draws.
+The clean frames of these episodes are stored, and each step corrupts a random sample of all stored
+frames with new random numbers.
 """
 
 from __future__ import annotations
@@ -45,31 +45,31 @@ from mitigate.recipes.distil import feature_loss
 from mitigate.training.objective import Objective, check_weights
 from mitigate.worlds.world import Corrupted, TrainingEpisodes, World, depth_sensor
 
-RISE = 0.6  # share of the training over which the severity rises (heuristic)
-SETTLE = 0.85  # from this share of the training on, most frames are clean (heuristic)
-SETTLED_CLEAN = 0.75  # share of clean frames then (heuristic)
+RISE = 0.6  # fraction of training during which the severity rises (heuristic)
+SETTLE = 0.85  # after this fraction of training, most frames are clean (heuristic)
+SETTLED_CLEAN = 0.75  # fraction of clean frames in that last part (heuristic)
 
 
 class SelfDistil(Objective):
-    """Train a policy to act under corruptions as it does on clean frames.
+    """Trains a policy to act under corruptions as it does on clean frames.
 
     Args:
-        agent: the student, trained in place; with adapters only these train. The teacher is a copy
-            of it at the start, without adapters.
-        world: makes a world.
+        agent: the student, which is trained in place; if it has adapters, only these are trained.
+            The teacher is a copy of the initial student without adapters.
+        world: function that constructs a world.
         training: source of the episodes.
-        schedule: draws the corruption of each frame.
+        schedule: samples the corruption of each frame.
         folder: folder of the stored frames, one file per round of rollouts.
-        steps: number of steps of the training.
-        every: steps between two rounds of rollouts.
-        episodes: episodes per round.
-        frames: most frames that are kept of an episode, spread evenly.
-        batch: frames per step.
-        window: consecutive frames that a recurrent policy sees; 1 for other policies.
+        steps: number of training steps.
+        every: number of steps between two rounds of rollouts.
+        episodes: number of episodes per round.
+        frames: maximum number of frames that are stored per episode, spread evenly.
+        batch: number of frames per step.
+        window: number of consecutive frames for a recurrent policy; 1 for other policies.
         w_policy, w_imitation, w_feat, w_consistency: weights of the losses.
-        module: name of the module of the network whose output is compared; None: its last
+        module: name of the network module whose output is compared; None means the last
             convolution.
-        curriculum: whether the severity rises and the end is mostly clean.
+        curriculum: whether the severity rises and the last part uses mostly clean frames.
         seed: seed of episodes and corruptions.
 
     Raises:
@@ -123,10 +123,12 @@ class SelfDistil(Objective):
         self.seed = seed
         self.teacher = clean_teacher(agent)
         self.module = module or last_convolution(agent)
-        self._stored: list[dict[str, np.ndarray]] = []  # windows of each round, [n, window, ...]
-        self._now = 0  # a resumed training has stored the rounds before this step
+        # windows of each round of rollouts, [n, window, ...]
+        self._stored: list[dict[str, np.ndarray]] = []
+        self._now = 0  # in a resumed run, the rounds before this step are already stored
         self._picture: np.ndarray | None = None
-        self._world: World | None = None  # made once, because making an environment takes time
+        # constructed only once, because constructing an environment takes time
+        self._world: World | None = None
 
     def identity(self) -> dict[str, str]:
         return {"teacher_sha256": checkpoint.weights_sha(self.teacher)}
@@ -205,7 +207,7 @@ class SelfDistil(Objective):
         return answers, torch.cat([output.float().flatten(1) for output in outputs])
 
     def _round(self, step: int) -> dict[str, np.ndarray]:
-        """Run the rollouts of ``step``, or read them if they are stored; return their windows."""
+        """Run the rollouts of ``step``, or read stored ones; return their windows."""
         file = self.folder / f"frames-{step:06d}.safetensors"
         if file.is_file():
             return _read(file)
@@ -220,7 +222,7 @@ class SelfDistil(Objective):
         return stored
 
     def _rollout(self, step: int, number: int) -> dict[str, np.ndarray]:
-        """Run an episode and return windows of the clean frames that the student met."""
+        """Run an episode, and return windows of the clean frames that occurred in it."""
         rng = generator(self.seed, "self-distil rollout", step, number)
         episode = self.training_episodes.draw(rng, (0, 1))
         schedule = self.schedule_at(step)
@@ -233,7 +235,7 @@ class SelfDistil(Objective):
             observation = world.step(self.agent.act(observation))
         met += [met[-1]] * (
             -len(met) % self.window
-        )  # the last window is filled with its last frame
+        )  # the last window is filled with copies of its last frame
         starts = np.arange(0, len(met), self.window)
         most = max(1, self.frames // self.window)
         if len(starts) > most:
@@ -282,7 +284,7 @@ def clean_teacher(policy: Policy) -> Policy:
 def _mean(
     loss: Callable[[Answer, Answer], Tensor], teacher: list[Answer], student: list[Answer]
 ) -> Tensor:
-    """Return the mean loss over the places of a window."""
+    """Return the mean loss over the positions in a window."""
     pairs = [loss(one, other) for one, other in zip(teacher, student, strict=True)]
     return torch.stack(pairs).mean()
 

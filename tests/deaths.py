@@ -1,4 +1,4 @@
-"""Ways in which processes die, for tests."""
+"""Functions that make processes die, for tests."""
 
 from __future__ import annotations
 
@@ -10,7 +10,8 @@ from multiprocessing.connection import Connection
 
 
 def die_in_a_message() -> None:
-    """Kill this process when its pipes have sent the length of a message, but not all of it."""
+    """Kill this process after its pipes have sent the length of a message but not all of its
+    content."""
     for pipe in gc.get_objects():
         if isinstance(pipe, Connection) and not pipe.closed and pipe.writable:
             os.write(pipe.fileno(), struct.pack("!i", 1000) + b"cut off")

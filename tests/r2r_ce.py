@@ -1,4 +1,4 @@
-"""The place of the real R2R-CE episodes, for tests that read them; they are never shipped."""
+"""Find the real R2R-CE episodes for tests that read them; these files are not shipped."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Imports point down only: read from the source of every package."""
+"""Tests, by reading the source, that each package imports only lower packages."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ SOURCES = sorted(
 
 
 def package_of(module: str) -> str:
-    """Return the package of a dotted module: ``mitigate.core.names`` is in ``core``."""
+    """Return the package of a dotted module, such as ``mitigate.core.names`` is in ``core``."""
     parts = module.split(".")
     return parts[1] if parts[0] == "mitigate" and len(parts) > 1 else parts[0]
 
@@ -48,7 +48,7 @@ def imported(source: str) -> set[str]:
 
 
 def climbing(module: str, names: set[str]) -> set[str]:
-    """Return the imported ``names`` above the package of ``module``, or on its level."""
+    """Return the imported ``names`` that are above the package of ``module`` or on its level."""
     own_value = package_of(module)
     others = {name for name in names if package_of(name) in RANK and package_of(name) != own_value}
     return {name for name in others if RANK[package_of(name)] >= RANK[own_value]}

@@ -1,4 +1,4 @@
-"""The world, the agent and the commands of docs/bring-your-own.md, from outside the package."""
+"""Tests of the world, agent and commands in docs/bring-your-own.md, from outside the package."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from mitigate.core.checkpoint import weights_sha
 from mitigate.training.config import read
 from mitigate.training.plan import leave_out_stages
 
-# one worker of pytest trains, instead of each
+# only one worker of pytest trains, instead of each
 pytestmark = pytest.mark.xdist_group("bring your own")
 
 ROOT = Path(__file__).parent.parent
@@ -28,7 +28,7 @@ PAGE = (ROOT / "docs/bring-your-own.md").read_text(encoding="utf-8")
 CODE = re.search(r"```python\n(.*?)```", PAGE, re.DOTALL)[1]
 CONFIGS = dict(re.findall(r"`(mine/[\w/]+\.yaml)`[^\n]*\n\n```yaml\n(.*?)```", PAGE, re.DOTALL))
 COMMANDS = re.search(r"```bash\n(.*?)```", PAGE, re.DOTALL)[1].splitlines()
-LONGEST = 80  # lines, of a world and an agent that are trained, evaluated and exported
+LONGEST = 80  # maximum lines of a world and an agent that can be trained, evaluated and exported
 
 
 def run(folder: Path, *command: str) -> None:
@@ -44,7 +44,7 @@ def run(folder: Path, *command: str) -> None:
 
 @pytest.fixture(scope="module")
 def files(tmp_path_factory) -> Iterator[Path]:
-    """The folder in which a user saved the files of the page."""
+    """The folder in which a user has saved the files of the page."""
     folder = tmp_path_factory.mktemp("mine")
     (folder / "corridor.py").write_text(CODE)
     for name, text in CONFIGS.items():
@@ -60,7 +60,7 @@ def files(tmp_path_factory) -> Iterator[Path]:
 
 @pytest.fixture(scope="module")
 def folder(files) -> Path:
-    """The same folder after the commands of the page: a training, an evaluation, an export."""
+    """The same folder after the commands of the page: training, evaluation and export."""
     for command in COMMANDS:
         run(files, *shlex.split(command)[1:])
     return files
@@ -88,7 +88,7 @@ def test_own_agent_trains_with_every_kind_of_recipe(folder):
 
 @pytest.mark.slow
 def test_saved_agent_equals_the_trained_one(folder):
-    """Its settings come with its weights: the command names no adapters."""
+    """The settings are read with the weights, so the command does not name adapters."""
     rows = "rows.jsonl"
     trained = folder / "runs/corridor-s0.6-seed0" / rows
     assert success(folder / "again" / rows) == success(trained)
@@ -104,7 +104,8 @@ def test_run_folder_fills_an_agent_built_by_the_user(folder):
     row = json.loads((folder / "again/rows.jsonl").read_text().splitlines()[0])
     agent = mitigate.load(place, agent=mine(adapters=True))
     assert weights_sha(agent) == row["weights"] and not agent.training
-    for reported in (mitigate.load, mitigate.load_hardened):  # the error names the call to use
+    # the error message contains the call to use
+    for reported in (mitigate.load, mitigate.load_hardened):
         with pytest.raises((ValueError, FileNotFoundError), match=r"mitigate\.load.*agent=\.\.\."):
             reported(place)
     with pytest.raises(ValueError, match="do not fit this Policy"):

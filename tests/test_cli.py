@@ -1,4 +1,4 @@
-"""The command ``mitigate``: its list of commands, and its messages about missing parts."""
+"""Tests of the command ``mitigate``: its list of commands, and messages about missing parts."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ ROOT = Path(__file__).parent.parent
 
 @pytest.fixture(autouse=True)
 def own_command_line(monkeypatch):
-    """A command sets ``sys.argv``; it is restored."""
+    """Restore ``sys.argv``, which a command sets."""
     monkeypatch.setattr(sys, "argv", [*sys.argv])
 
 
@@ -50,7 +50,7 @@ def test_modules_are_those_that_the_documentation_runs():
 
 
 def test_options_are_read_before_torch_is_imported():
-    """``--help`` and mistakes are answered at once, because importing torch takes seconds."""
+    """``--help`` and mistakes must be answered before torch is imported, which takes seconds."""
     modules = [command.module for command in cli.COMMANDS.values()]
     code = (
         f"import sys, importlib; [importlib.import_module(name) for name in {modules}]\n"

@@ -1,4 +1,4 @@
-"""Links, names and examples of the documentation."""
+"""Tests of links, names and examples in the documentation."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def test_every_link_and_picture_exists(page):
 
 
 def anchors(page: Path) -> set[str]:
-    """Return the anchors that GitHub gives to the headings of a page."""
+    """Return the anchors that GitHub assigns to the headings of a page."""
     text = re.sub(r"```.*?```", "", page.read_text(encoding="utf-8"), flags=re.S)
     titles = re.findall(r"^#+ (.*?)\s*$", text, re.M)
     return {re.sub(r"[^\w\- ]", "", title.lower()).replace(" ", "-") for title in titles}
@@ -87,7 +87,7 @@ def test_readme_python_examples_run(monkeypatch, tmp_path):
 
 @pytest.fixture
 def mitigate(monkeypatch, capsys):
-    """Run the command ``mitigate`` in this process and return what it prints."""
+    """Run the command ``mitigate`` in this process and return its output."""
     monkeypatch.chdir(ROOT)
     monkeypatch.setattr(sys, "argv", ["mitigate"])
     monkeypatch.setattr(sys, "path", [*sys.path])

@@ -1,4 +1,4 @@
-"""The inventory of methods: each has one test of the property that defines it.
+"""Inventory of methods, with one test per method for its defining property.
 
 Augmentation per frame, per episode and by success; distillation with policy KL and feature MSE;
 zero-initialised residual ConvAdapters; reliability-weighted panorama fusion; the LoRA fine-tune of
@@ -104,7 +104,7 @@ def test_fresh_conv_adapter_changes_no_bit_and_has_gradients():
 def test_fusion_weights_sum_to_one_and_follow_reliability(factor):
     views = torch.randn(4, 12, 32, generator=torch.Generator().manual_seed(0))
     views = views / views.norm(dim=-1, keepdim=True)
-    views[:, 5] *= factor  # a blank or an overexposed view
+    views[:, 5] *= factor  # a blank view or an overexposed view
     weights = reliability(views)
     torch.testing.assert_close(weights.sum(-1), torch.ones(4))
     others_ = torch.cat([weights[:, :5], weights[:, 6:]], 1)
@@ -129,7 +129,7 @@ def test_lora_on_8_bit_llama_trains_only_the_adapter(tmp_path):
 
 @pytest.fixture(scope="module")
 def runs(tmp_path_factory) -> list[Path]:
-    """Two tiny trainings of one Hydra multirun."""
+    """Two tiny training runs of one Hydra multirun."""
     folder = tmp_path_factory.mktemp("multirun")
     options = ["recipe=imitation", "debug=smoke", "agent=frontier", "stages.imitation=null"]
     options += ["agent.size=16", "agent.width=8", "env.size=16", "init=null", "workers=0"]

@@ -1,4 +1,4 @@
-"""An objective and an agent so small that a step takes a millisecond, for the trainer's tests."""
+"""A tiny objective and agent for the trainer's tests, whose steps take a millisecond."""
 
 from __future__ import annotations
 
@@ -12,7 +12,8 @@ from mitigate.training.objective import Objective, split_arguments
 
 
 class TinyAgent(nn.Module):
-    """Dropout makes its output depend on the random state; ``frozen`` must never move."""
+    """A network whose output depends on random state (dropout), and whose ``frozen`` must not
+    change."""
 
     def __init__(self, width: int = 8) -> None:
         super().__init__()
@@ -21,7 +22,7 @@ class TinyAgent(nn.Module):
 
 
 class TinyRecipe(Objective):
-    """Regression on noise drawn from global state; ``count`` is state beyond tensors."""
+    """Regression on noise from the global generator; ``count`` is state other than tensors."""
 
     def __init__(self, agent: nn.Module | None = None, *, bad_step: int = -1, pause: float = 0.0):
         super().__init__()
@@ -43,7 +44,7 @@ class TinyRecipe(Objective):
         return {"loss": error.square().mean(), "error": error.abs().mean()}
 
     def evaluate(self, step: int) -> dict:
-        return {"weight": float(torch.rand(()))}  # uses up global random numbers on purpose
+        return {"weight": float(torch.rand(()))}  # deliberately consumes global random numbers
 
     def figures(self, step: int) -> dict:
         return {"noise": torch.randint(0, 255, (8, 8, 3), dtype=torch.uint8).numpy()}
@@ -56,7 +57,7 @@ class TinyRecipe(Objective):
 
 
 def assemble(kind: type[Objective], agent: Any, **arguments: Any) -> Any:
-    """Build an objective and its source from built arguments, split as in a recipe."""
+    """Build an objective and its source from built arguments, which are split as in a recipe."""
     parameter = next((name for name in kind.sources if name not in arguments), "")
     own_value, others = split_arguments(kind, parameter, arguments, kind.__qualname__)
     if parameter:

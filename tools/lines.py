@@ -30,7 +30,7 @@ LAYOUT = {
 
 
 def count(source: str) -> tuple[int, int]:
-    """Return the lines of code of ``source``, and how many of them use getattr or hasattr."""
+    """Return the number of code lines in ``source``, and of lines that use getattr or hasattr."""
     code: set[int] = set()
     optional: set[int] = set()
     for token in tokenize.generate_tokens(io.StringIO(source).readline):
@@ -42,7 +42,7 @@ def count(source: str) -> tuple[int, int]:
 
 
 def _docstring_lines(source: str) -> set[int]:
-    """Return the lines of the docstrings of the module, its classes and its functions."""
+    """Return the line numbers of all docstrings of the module, its classes and its functions."""
     lines: set[int] = set()
     kinds = (ast.Module, ast.ClassDef, ast.FunctionDef, ast.AsyncFunctionDef)
     for node in ast.walk(ast.parse(source)):
@@ -61,7 +61,7 @@ def files(path: Path) -> list[Path]:
 
 
 def totals(paths: list[Path]) -> dict[str, tuple[int, int, int]]:
-    """Return files, lines of code and lines with getattr or hasattr, by subpackage."""
+    """Return the counts of files, code lines and lines with getattr or hasattr, by subpackage."""
     sums: dict[str, list[int]] = defaultdict(lambda: [0, 0, 0])
     for path in paths:
         for file in files(path):
@@ -74,7 +74,7 @@ def totals(paths: list[Path]) -> dict[str, tuple[int, int, int]]:
 
 
 def main(arguments: list[str] | None = None) -> None:
-    """Print the table; exit with an error above ``--most``."""
+    """Print the table; exit with an error if the count is above ``--most``."""
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )

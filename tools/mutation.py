@@ -22,11 +22,11 @@ from typing import NamedTuple
 ROOT = Path(__file__).parents[1]
 COPIED = ("conf", "mitigate", "recipes", "tests", "tools", "pyproject.toml")
 COMPILED = shutil.ignore_patterns("__pycache__")
-TESTS_FAILED = 1  # exit status of pytest; others mean that no test ran
+TESTS_FAILED = 1  # exit status of pytest for failed tests; others mean that no test ran
 
 
 class Mutation(NamedTuple):
-    """A wrong line, and the test file that must fail with it."""
+    """A wrong line of code, and the test file that must fail with it."""
 
     source: str
     test: str
@@ -34,7 +34,7 @@ class Mutation(NamedTuple):
     new: str
 
 
-# name, source, test file; then the part of a line to replace, and its replacement
+# name, source and test file, the part of a line to replace, and its replacement
 TABLE = """
 seeding mitigate/core/seeding.py tests/core/test_seeding.py
 - f"{type(part).__name__}:{part}" for part in key
@@ -86,7 +86,8 @@ def outcome(mutation: Mutation) -> str:
                 shutil.copytree(ROOT / name, copy / name, symlinks=True, ignore=COMPILED)
             else:
                 shutil.copy(ROOT / name, copy / name)
-        (copy / "checkpoints").symlink_to(ROOT / "checkpoints")  # large, and no test writes there
+        # folders that are large and to which no test writes
+        (copy / "checkpoints").symlink_to(ROOT / "checkpoints")
         source = (copy / mutation.source).read_text(encoding="utf-8")
         if source.count(mutation.old) != 1:
             return f"not applied: {mutation.source} must have {mutation.old!r} exactly once"
@@ -106,7 +107,7 @@ def outcome(mutation: Mutation) -> str:
 
 
 def main() -> None:
-    """Run the mutations that the command line names, or all."""
+    """Run the mutations that the command line names, or all mutations."""
     results = {}
     for name in sys.argv[1:] or MUTATIONS:
         start = time.monotonic()

@@ -2,9 +2,10 @@
 
     python tools/perception.py checkpoints/base runs/mine/agent
 
-Uses random poses of a validation split under every corruption. The score of RGB is the F1 of the
-objects in each view (labels of the id pass). The score of depth is the overlap of predicted and
-true free space. Closed-loop success is the final measure; these scores show where it is lost.
+The tool uses random poses of a validation split under every corruption. The score of RGB is the F1
+of the objects in each view (labels from the id pass of the renderer). The score of depth is the
+overlap of predicted and true free space. Closed-loop success is the final measure; these scores
+show where success is lost.
 """
 
 from __future__ import annotations
@@ -38,12 +39,12 @@ from mitigate.worlds.apartments.renderer import Renderer
 from mitigate.worlds.apartments.simulator import apartment_of
 from mitigate.worlds.apartments.tasks import load_episodes
 
-SIZE = 64  # pixels: the input of the reference agent
+SIZE = 64  # view size in pixels, as in the input of the reference agent
 SUITES = {"full": NAMES, **{half: unseen_names("rgb", "depth", half=half) for half in HALVES}}
 
 
 class Poses:
-    """``count`` random poses of a split's layouts: clean observations and their labels."""
+    """Return clean observations with labels at ``count`` random poses in a split's layouts."""
 
     def __init__(self, split: str, count: int, seed: int) -> None:
         scenes = sorted({episode.scene_id for episode in load_episodes(split)})
@@ -68,7 +69,8 @@ class Poses:
     def counts(
         self, agent: Any, corruption: Corruption, restorer: Guard | None = None
     ) -> tuple[np.ndarray, np.ndarray]:
-        """Return numerators and denominators per pose, for objects and for free space.
+        """Return numerators and denominators of the scores per pose, for objects and for free
+        space.
 
         Returns:
             Two arrays, float64 [2, poses]. The ratio of their sums is the micro F1 of objects, and
@@ -97,10 +99,10 @@ def measure(
     severity: float,
     restorer: Guard | None = None,
 ) -> dict[str, tuple[float, float, float]]:
-    """Return by condition the score with its 95 % interval over poses.
+    """Return the score of each condition with its 95 % interval over poses.
 
-    "clean" and RGB corruptions have the F1 of objects, "clean depth" and depth corruptions the
-    overlap of free space.
+    The score of "clean" and RGB corruptions is the F1 of objects; that of "clean depth" and depth
+    corruptions is the overlap of free space.
     """
     things, free = poses.counts(agent, CLEAN, restorer)
     scores = {"clean": _ratio(things), "clean depth": _ratio(free)}
@@ -136,7 +138,7 @@ def table(scores: dict[str, dict[str, tuple[float, float, float]]]) -> str:
 
 
 def _column(weights: str, used: Collection[str]) -> str:
-    """Return the name of ``weights``, or their path if ``used`` has that name."""
+    """Return the name of ``weights``, or their path if ``used`` already contains that name."""
     name = name_of(weights)
     return weights if name in used else name
 
@@ -172,7 +174,8 @@ def main(arguments: Sequence[str] | None = None) -> None:
     if options.poses < 1:
         raise ValueError(f"--poses must be >= 1, got {options.poses}.")
     agents: dict[str, Any] = {}
-    for weights in options.agents:  # all before the first measurement, to find wrong paths early
+    # all are loaded before the first measurement, to find wrong paths early
+    for weights in options.agents:
         agents[_column(weights, agents)] = load(_agent_node(), weights)
     poses = Poses(options.split, options.poses, options.seed)
     scores = {}

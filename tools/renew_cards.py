@@ -1,8 +1,8 @@
 """Rewrite the README of hardened folders from their cards: python tools/renew_cards.py DIR...
 
-For folders that an older version exported. Each folder is checked first. A copy with the new README
-and a manifest replaces it. Other files do not change, except that ``--rows FILE...`` adds to a card
-the agent of these rows, if they belong to its weights.
+This is for folders that an older version exported. Each folder is checked first. A copy with the
+new README and a manifest replaces the folder. Other files do not change, except that ``--rows
+FILE...`` adds the agent of these rows to a card, if the rows belong to its weights.
 """
 
 from __future__ import annotations
@@ -27,8 +27,8 @@ def renew(folder: Path, rows: Sequence[Row] = ()) -> None:
     """Rewrite ``folder``.
 
     Raises:
-        FileNotFoundError: A file is missing; the folder is not changed.
-        ValueError: A file is damaged; the folder is not changed.
+        FileNotFoundError: A file is missing (the folder is not changed).
+        ValueError: A file is damaged (the folder is not changed).
     """
     card = loading.check_hardened(folder)
     agent = rows_agent(rows, {card["agent"], card["run_agent"]})

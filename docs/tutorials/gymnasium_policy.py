@@ -75,7 +75,8 @@ network = torch.nn.Sequential(
     torch.nn.Linear(64, 2),
 )
 actor = TensorDictModule(network, in_keys=["depth"], out_keys=["logits"])
-actor(TensorDict({"depth": torch.zeros(1, 32, 32, 1)}, [1]))  # the lazy layer takes its shape
+# the lazy layer infers its shape from the input
+actor(TensorDict({"depth": torch.zeros(1, 32, 32, 1)}, [1]))
 optimizer = torch.optim.Adam(actor.parameters(), lr=0.003)
 for _ in range(150):
     distance = torch.rand(32) * 4.5 + 0.1
@@ -126,4 +127,4 @@ if __name__ == "__main__":
         out="runs/corridor-hardened",
     )
     print(result)
-    hardened_actor = result.policy  # a TensorDictModule, as before
+    hardened_actor = result.policy  # a TensorDictModule, as before hardening

@@ -1,16 +1,16 @@
-"""A small navigation program with its own loop, to try ``mitigate run`` on.
+"""A small navigation program with its own episode loop, as an example for ``mitigate run``.
 
     mitigate run "conditions=[clean,foreign_object,missing_data]" -- python docs/tutorials/my_program.py
 
-A robot drives along a corridor. A lamp at the end is red or green. The robot must stop within one
-metre of the wall if the lamp is red, and one to two metres before it if the lamp is green. Without
-``mitigate run`` the program works as before.
+A robot drives along a corridor. A lamp at the end of the corridor is red or green. The robot must
+stop within one metre of the wall if the lamp is red, and one to two metres before it if the lamp is
+green. Without ``mitigate run`` the program runs without corruption.
 """
 
 import numpy as np
 
 try:
-    import mitigate_hook  # available under `mitigate run` only; there is nothing to install
+    import mitigate_hook  # available under `mitigate run` only; no installation is needed
 except ImportError:
     mitigate_hook = None
 
@@ -19,7 +19,8 @@ STEP = 0.5  # metres
 
 
 def camera(distance, lamp_is_red):
-    """Return what the robot sees: RGB uint8 [64, 64, 3] and depth float32 [64, 64] in metres."""
+    """Return the camera frames of the robot: RGB uint8 [64, 64, 3] and depth float32 [64, 64] in
+    metres."""
     rgb = np.full((64, 64, 3), 90, np.uint8)
     size = int(24 / max(distance, 1.0)) + 4
     rgb[32 - size : 32 + size, 32 - size : 32 + size] = (
@@ -30,7 +31,7 @@ def camera(distance, lamp_is_red):
 
 
 def stop_here(rgb, depth):
-    """Return whether the robot stops: the policy of this program."""
+    """Return whether the robot stops; this function is the policy of the program."""
     centre = rgb[28:36, 28:36].mean(axis=(0, 1))
     lamp_is_red = centre[0] > centre[1]
     limit = 1.0 if lamp_is_red else 2.0

@@ -30,7 +30,7 @@ class AvoidObstacles:
     needs = ("depth",)
 
     def reset(self, instruction):
-        pass  # this policy does not read the instruction
+        pass  # the policy ignores the instruction
 
     def act(self, observation):
         depth = observation["depth"]

@@ -14,7 +14,7 @@ from mitigate.guards.text.guard import open_safeguard
 
 
 class StandIn(BaseHTTPRequestHandler):
-    """A stand-in for a language model: it replaces a few informal phrases."""
+    """A stand-in for a language model, which replaces a few informal phrases."""
 
     def do_POST(self):
         request = json.loads(self.rfile.read(int(self.headers["Content-Length"])))

@@ -1,1 +1,1 @@
-"""Agents: modules with ``reset`` and ``act``; the reference one is ``topological``."""
+"""Navigation agents, which have ``reset`` and ``act``; the reference agent is ``topological``."""

@@ -1,4 +1,4 @@
-"""Adapter layers: for feature maps, for tokens, for the views of a panorama, and gates.
+"""Adapter layers for feature maps, for tokens and for the views of a panorama, and their gates.
 
 Every adapter is residual, ``x + up(act(down(x)))``, and ``up`` is initialised to zero. A new
 adapter therefore changes nothing until it is trained.
@@ -16,8 +16,9 @@ from torch.utils.hooks import RemovableHandle
 
 from mitigate.core.observation import HFOV_DEGREES, VIEWS
 
-FLAT = (1e-3, 1e-2)  # second differences below these count as zero (heuristic; values span about 1)
-TEXTURES = 4 + 4 * (3 + len(FLAT))  # outputs of :func:`textures` per channel
+# absolute second differences below these values count as zero (heuristic; pixels span about 1)
+FLAT = (1e-3, 1e-2)
+TEXTURES = 4 + 4 * (3 + len(FLAT))  # number of outputs of :func:`textures` per channel
 HIDDEN = 32  # width of a gate's hidden layer (heuristic)
 
 
@@ -26,9 +27,10 @@ class Adapter(nn.Module):
 
     Attributes:
         settings: constructor arguments as plain data.
-        corrects: names of the layers that scale the correction (``scale_adapters``).
-        gates: the gate of the encoder; empty if it has none (``insert_adapters``).
-        hook: handle of the hook that calls the adapter after its module; None if
+        corrects: names of the layers that ``scale_adapters`` scales.
+        gates: list with the gate of the encoder, empty if the encoder has no gate
+            (``insert_adapters``).
+        hook: handle of the hook that calls the adapter after its module, or None if
             ``nn.Sequential`` calls it.
     """
 
@@ -39,7 +41,7 @@ class Adapter(nn.Module):
 
 
 def check_sizes(owner: str, kernel: int = 1, **sizes: int | None) -> None:
-    """Raise ValueError for a size below 1 or an even kernel; None sizes are unset."""
+    """Raise ValueError for a size below 1 or an even kernel; sizes of None are not checked."""
     for name, size in sizes.items():
         if size is not None and size < 1:
             raise ValueError(f"{name} of a {owner} must be >= 1, got {size}.")
@@ -48,33 +50,36 @@ def check_sizes(owner: str, kernel: int = 1, **sizes: int | None) -> None:
 
 
 class Judged:
-    """A gate's output for the last batch: logits ``[n]``, above 0 where the gate is open."""
+    """The gate's logits ``[n]`` for the last batch; the gate is open for frames with a logit above
+    0."""
 
     logits: Tensor
 
     def __getstate__(self) -> dict[str, Tensor]:
-        """Leave the logits out of copies: they belong to one forward pass and its gradients."""
+        """Return a copy without the logits, which belong to one forward pass and its gradients."""
         return {}
 
 
 class FrameGate(Adapter):
     """Classify each frame ``[n, C, h, w]`` that enters a module as clean or corrupted.
 
-    The adapters after the gate in the same encoder correct only the frames for which it is open
-    (:func:`through`). A frame classified as clean gets exactly the features of the encoder without
-    adapters. The gate reads the mean, the standard deviation and the maximum of two convolutions,
-    and :func:`textures`; for a panorama also their mean over its views. During training the gate
-    is always open, so that the adapters learn from all frames; the gate trains with them.
+    The adapters after the gate in the same encoder correct only the frames for which the gate is
+    open (:func:`through`). For a frame that is classified as clean, the features equal those of the
+    encoder without adapters. The gate reads the mean, the standard deviation and the maximum of two
+    convolutions, and :func:`textures`; for a panorama, it also reads the means of these features
+    over all views. During training the gate is always open, so that the adapters learn from all
+    frames; the gate is trained together with the adapters.
 
     Args:
-        channels: C.
+        channels: number of input channels.
         middle: channels of the convolutions.
-        views: views per panorama, consecutive in the batch; 1 classifies each frame separately.
+        views: number of views per panorama, which are consecutive in the batch; with 1, each frame
+            is classified separately.
 
-    ``threshold`` is subtracted from the logits; ``calibrate`` sets it.
+    ``threshold`` is subtracted from the logits; ``calibrate`` sets the threshold.
 
-    Source: this project. Learned statistics and a threshold on clean frames replace the paper's
-    rule on feature magnitudes.
+    Source: this project. Learned statistics and a threshold on clean frames replace the rule on
+    feature magnitudes in the NavTrust paper.
     """
 
     threshold: Tensor
@@ -109,23 +114,24 @@ class FrameGate(Adapter):
         self.judged.logits = self.judge(F.gelu(self.hidden(statistics)))[:, 0] - self.threshold
 
     def calibrate(self, logits: Tensor, touched: float) -> None:
-        """Move the threshold so that the gate opens for a share of clean frames.
+        """Set the threshold so that the gate opens for a given fraction of clean frames.
 
         Args:
             logits: the gate's logits [n] of clean frames.
-            touched: the share, in [0, 1].
+            touched: fraction of clean frames for which the gate may open, in [0, 1].
         """
         self.threshold += logits.float().quantile(1 - touched).to(self.threshold.dtype)
 
 
 def textures(x: Tensor) -> Tensor:
-    """Return statistics that separate noise, blur, quantisation, dark and holes from clean frames.
+    """Return statistics that distinguish noise, blur, quantisation, darkness and holes from clean
+    frames.
 
     Args:
-        x: frames ``[n, C, h, w]`` whose values span about 1.
+        x: frames ``[n, C, h, w]`` whose values have a range of about 1.
 
     Returns:
-        float32 [n, C * TEXTURES]; magnitudes as logarithms.
+        float32 [n, C * TEXTURES]; magnitudes are given as logarithms.
     """
     features = [x.mean((2, 3)), x.std((2, 3)), x.flatten(2).amin(2), x.flatten(2).amax(2)]
     for level in (x, F.avg_pool2d(x, 2)):
@@ -144,7 +150,7 @@ def through(gates: list[Adapter], x: Tensor, corrected: Tensor) -> Tensor:
     Without a gate, and during training, all frames are corrected.
 
     Args:
-        gates: the gate of the adapter; empty for none.
+        gates: the gate of the adapter; an empty list means no gate.
         x: the input of the adapter.
         corrected: output of the layer, of the same shape.
     """
@@ -159,9 +165,10 @@ def through(gates: list[Adapter], x: Tensor, corrected: Tensor) -> Tensor:
 class Gate(nn.Module):
     """Scale the correction of an adapter per frame: logits ``[n]`` from the bottleneck.
 
-    Reads the mean and the root mean square of each of the ``middle`` channels over a frame. It
-    should be closed on clean frames, so that their features do not change. A recipe may add a loss
-    for that (``recipes/encoder.py``); it trains with the adapter in any case.
+    The input is the mean and the root mean square of each of the ``middle`` channels over a frame.
+    The gate should be closed on clean frames, so that their features do not change. A recipe may
+    add a loss for this purpose (``recipes/encoder.py``). The gate is always trained together with
+    the adapter.
     """
 
     def __init__(self, middle: int) -> None:
@@ -169,24 +176,24 @@ class Gate(nn.Module):
         self.read = nn.Linear(2 * middle, 1)
 
     def forward(self, y: Tensor, over: tuple[int, ...]) -> Tensor:
-        """Return logits [n]; ``over`` are the axes of ``y`` other than frames and channels."""
+        """Return logits [n]; ``over`` lists the axes of ``y`` except frames and channels."""
         mean, power = (y.mean(over), (y * y).mean(over)) if over else (y, y * y)
         return self.read(torch.cat([mean, (power + 1e-6).sqrt()], 1))[:, 0]
 
 
 class TokenAdapter(Adapter):
-    """``x + up(gelu(down(norm(x))))`` on the last axis of ``[n, T, C]``, ``[T, n, C]``, ``[n, C]``
-    or ``[n, h, w, C]``; ``up`` starts at zero.
+    """Adapter ``x + up(gelu(down(norm(x))))`` on the last axis of ``[n, T, C]``, ``[T, n, C]``,
+    ``[n, C]`` or ``[n, h, w, C]``.
 
     Args:
-        channels: C.
+        channels: number of channels C.
         reduction: the bottleneck has ``max(4, C // reduction)`` channels.
         batch: the axis of the frames, 0 or 1 (as in OpenAI's CLIP).
         gate: whether to add a :class:`Gate`.
         middle: channels of the bottleneck; overrides ``reduction``.
 
-    ``norm`` is a layer norm without weights, because residual streams of transformers have a few
-    channels that are far larger than the rest. Source: as ``ConvAdapter``.
+    ``norm`` is a layer norm without weights, because in transformers a few channels of the residual
+    stream are far larger than the others. Source: as ``ConvAdapter``.
     """
 
     corrects = ("up",)
@@ -224,22 +231,22 @@ class TokenAdapter(Adapter):
 
 
 def optional_settings(gate: bool, middle: int | None) -> dict[str, bool | int]:
-    """Return the settings that are stored only if they are set."""
+    """Return the optional settings, which are stored only if they are set."""
     return {**({"gate": True} if gate else {}), **({"middle": middle} if middle else {})}
 
 
 class ConvAdapter(Adapter):
-    """``x + up(gelu(down(x)))`` on maps ``[n, C, h, w]``; ``up`` starts at zero.
+    """Adapter ``x + up(gelu(down(x)))`` for feature maps ``[n, C, h, w]``.
 
     Args:
-        channels: C.
+        channels: number of channels C.
         reduction: the bottleneck has ``max(4, C // reduction)`` channels.
-        kernel: size of the spatial convolution, odd.
+        kernel: size of the spatial convolution, which must be odd.
         gate: whether to add a :class:`Gate`.
         middle: channels of the bottleneck; overrides ``reduction``.
 
-    Source: bottleneck and zero initialisation after Houlsby et al. 2019, as in the paper's section
-    on adapters. This project chose reduction and kernel for 1-4 % of the weights.
+    Bottleneck and zero initialisation follow Houlsby et al. 2019, as in the NavTrust paper. This
+    project chose reduction and kernel so that adapters have 1 to 4 % of the weights.
     """
 
     corrects = ("up",)
@@ -274,32 +281,33 @@ class ConvAdapter(Adapter):
 
 
 class RingAdapter(Adapter):
-    """Zero-initialised residual adapter over a panorama's views: maps ``[P * views, C, h, w]``.
+    """Zero-initialised residual adapter that combines neighbouring views of a panorama.
 
-    With y = gelu(down(x)), and ``aligned`` warping the two neighbouring maps into each view:
+    The input x has the shape ``[P * views, C, h, w]``. With y = gelu(down(x)), and ``aligned``
+    warping the two neighbouring maps into each view:
 
         w = softmax(score(aligned(y)))            over the view and the neighbours that see a cell
         z = gelu(mix([y, sum w aligned(y)]))
         out = x + tanh(share(z)) * (sum w aligned(x) - x) + up(z)
 
-    ``up`` and ``share`` are initialised to zero, so nothing changes before training. ``up``
-    corrects, as in any adapter. ``share`` sets how much of a cell's features comes from the
-    neighbours, for all channels at once and without a bottleneck.
+    ``up`` and ``share`` are initialised to zero, so the output equals the input before training.
+    ``up`` computes the correction, as in any adapter. ``share`` sets how much of a cell's features
+    comes from the neighbours, for all channels at once and without a bottleneck.
 
     Args:
-        channels: C.
+        channels: number of channels C.
         reduction: the bottleneck y has ``max(4, C // reduction)`` channels.
-        kernel: size of the convolution ``mix``, odd.
-        views: views per panorama, at least 3.
+        kernel: size of the convolution ``mix``, which must be odd.
+        views: number of views per panorama, at least 3.
         hfov: horizontal field of view in degrees.
 
     Raises:
         ValueError: An argument is out of range.
 
-    Source: this project. The paper's adapters see one view at a time.
+    Source: this project. The adapters of the NavTrust paper read one view at a time.
     """
 
-    corrects = ("share", "up")  # the correction of a share goes through tanh
+    corrects = ("share", "up")  # the fraction is an output of tanh
 
     def __init__(
         self,
@@ -333,7 +341,7 @@ class RingAdapter(Adapter):
         parts = [x, y, self.score(y)]
         grid = neighbour_grid(x.shape[-2], x.shape[-1], 360 / self.views, self.hfov).to(x.device)
         maps = self.aligned(torch.cat([part.float() for part in parts], 1), grid)
-        unseen = (grid.abs() > 1).any(-1)  # [2, h, w]; a view sees all its cells
+        unseen = (grid.abs() > 1).any(-1)  # [2, h, w]; each view sees all of its own cells
         scores = torch.stack([each[:, -1] for each in maps], 1)
         scores = scores.masked_fill(F.pad(unseen, (0, 0, 0, 0, 1, 0)), -math.inf)
         weights = scores.softmax(1).unsqueeze(2).unbind(1)
@@ -352,8 +360,8 @@ class RingAdapter(Adapter):
             grid: result of :func:`neighbour_grid`.
 
         Returns:
-            Three tensors of the shape of ``maps``. A neighbour is zero where it does not see a
-            cell and fades to zero within half a cell of its border.
+            Three tensors with the shape of ``maps``. A warped neighbour is zero in cells that it
+            does not see, and fades to zero within half a cell of its border.
         """
         ring = maps.unflatten(0, (-1, self.views))
         left, right = (
@@ -368,7 +376,7 @@ class RingAdapter(Adapter):
 
 
 def neighbour_grid(height: int, width: int, step: float, hfov: float) -> Tensor:
-    """Return where the cells of a view lie in its left and right neighbour.
+    """Return the positions of a view's cells in its left and right neighbours.
 
     Args:
         height: rows of the map.
@@ -379,7 +387,7 @@ def neighbour_grid(height: int, width: int, step: float, hfov: float) -> Tensor:
     Returns:
         float32 ``[2, h, w, 2]``: (x, y) in the coordinates of ``grid_sample`` with
         ``align_corners=False``;
-        inside [-1, 1] where the neighbour sees the cell.
+        values are inside [-1, 1] for cells that the neighbour sees.
     """
     half = math.tan(math.radians(hfov) / 2)
     x = ((torch.arange(width) + 0.5) / width * 2 - 1) * half
@@ -388,7 +396,8 @@ def neighbour_grid(height: int, width: int, step: float, hfov: float) -> Tensor:
     sides = []
     for degrees in (-step, step):
         sine, cosine = math.sin(math.radians(degrees)), math.cos(math.radians(degrees))
-        ahead = x * sine + cosine  # the cell's direction (x, y, 1) along the neighbour's axis
+        # component of the cell's direction (x, y, 1) along the neighbour's optical axis
+        ahead = x * sine + cosine
         place = torch.stack([(x * cosine - sine) / ahead, y / ahead], -1) / half
         sides.append(torch.where(ahead[..., None] > 1e-3, place, torch.full_like(place, 2.0)))
     return torch.stack(sides)

@@ -1,12 +1,12 @@
 """Zero-initialised residual adapters for any frozen torch encoder.
 
 ``insert_adapters(model, target_modules=...)`` adds ``x + up(act(down(x)))`` after named modules, as
-PEFT does for attention. The backbone's weights keep their names and values, its ``forward`` is not
-changed, and its output stays the same until ``up`` is trained. Each adapter is a child of its
-module, called by a forward hook. The layers are in ``adapter_layers.py``: convolutional after a
-module that returns maps, linear after a module that returns tokens, a *ring* adapter that also
-reads the neighbours of each view of a panorama, and a *gate*, which restricts the correction to
-frames that it classifies as corrupted.
+PEFT does for attention. This changes neither the names and values of the backbone's weights nor its
+``forward``, and its output stays the same until ``up`` is trained. Each adapter is a child of its
+module, called by a forward hook. ``adapter_layers.py`` defines the layers: convolutional adapters
+for modules that return maps, linear adapters for modules that return tokens, *ring* adapters, which
+also read the neighbours of each view of a panorama, and *gates*, which restrict the correction to
+frames that they classify as corrupted.
 """
 
 from __future__ import annotations
@@ -55,41 +55,44 @@ def insert_adapters(
     gate: bool = False,
     middle: int | None = None,
 ) -> list[str]:
-    """Freeze ``model`` and add an adapter to every module that a target names.
+    """Freeze ``model`` and add an adapter to every module that a target pattern matches.
 
-    Train with the backbone in eval mode. In training mode batches change the running statistics of
-    a BatchNorm, even if it is frozen, and the adapters then fit no saved backbone
-    (``save_adapters`` warns).
+    Train with the backbone in eval mode. In training mode, batches change the running statistics of
+    BatchNorm layers, even frozen ones. The adapters then no longer fit the saved backbone, and
+    ``save_adapters`` warns.
 
     Args:
-        model: any module tree. Without ``run`` the targets must return one tensor
-            ``[n, C, h, w]``; with ``run`` also tokens or a vector, alone or as the first item of a
-            tuple or list.
+        model: any torch module. Without ``run``, each target must return one tensor ``[n, C, h,
+            w]``. With ``run``, a target may also return tokens or a vector, alone or as the first
+            item of a tuple or list.
         target_modules: regular expressions, each matched against the whole dotted name of a module
             or its end (``"stages\\.[01]"`` finds ``rgb_encoder.stages.0``).
-        reduction: divisor of the channels that gives the width of a bottleneck.
-        kernel: size of the convolution of an adapter for maps.
-        ring: targets that get a :class:`RingAdapter`; it takes precedence over
-            ``target_modules``. Views of a panorama are consecutive in the batch (n = P * views).
-        ring_reduction: ``reduction`` of the ring adapters.
-        gates: targets whose input a :class:`FrameGate` classifies, such as an encoder's first
-            module. It controls the adapters for maps in the nearest module that has some.
-        views: views per panorama; with 1 view ``ring`` adds plain adapters.
+        reduction: the number of channels is divided by this to get the bottleneck width.
+        kernel: convolution size of adapters for maps.
+        ring: targets that get a :class:`RingAdapter` instead of the adapter from
+            ``target_modules``. The views of a panorama must be consecutive in the batch (n = P *
+            views).
+        ring_reduction: same as ``reduction``, for ring adapters.
+        gates: targets that get a :class:`FrameGate` on their input, such as an encoder's first
+            module. The gate controls the adapters for maps in the nearest enclosing module that has
+            such adapters.
+        views: number of views per panorama; with 1 view, ``ring`` adds plain adapters.
         hfov: horizontal field of view in degrees.
-        run: calls the model on a number of frames, such as ``lambda n: model(frames[:n])``. The
-            outputs of the targets decide which adapter fits; tokens get a :class:`TokenAdapter`.
-        gate: whether each adapter scales its correction per frame.
+        run: function that calls the model on n frames, such as ``lambda n: model(frames[:n])``. The
+            shapes of the targets' outputs determine the kind of adapter; tokens get a
+            :class:`TokenAdapter`.
+        gate: whether each adapter learns to scale its correction per frame.
         middle: channels of the bottlenecks; overrides ``reduction``.
 
     Returns:
-        The names of the adapted modules, in the model's order.
+        The names of the adapted modules, in the order of the model.
 
     Raises:
-        TypeError: The targets are one string.
+        TypeError: The targets are a single string instead of a list.
         ValueError: There are no targets; a target matches no module or is not a regular
             expression; the channels of a module are unknown; a module has a child called
-            "adapter"; a gate controls no adapter; or the model has adapters already. The model is
-            then unchanged.
+            "adapter"; a gate controls no adapter; or the model has adapters already. In each case,
+            the model is not changed.
     """
     reject_adapted(model)
     target_modules, ring = listed("target_modules", target_modules), listed("ring", ring)
@@ -127,7 +130,7 @@ def insert_adapters(
 
 
 def remove_adapters(model: nn.Module) -> None:
-    """Remove all adapters and their hooks, which restores the backbone's output.
+    """Remove all adapters and their hooks, so that the backbone's output is as before.
 
     The backbone stays frozen; ``model.requires_grad_(True)`` makes it trainable again.
     """
@@ -144,15 +147,15 @@ def adapter_parameters(model: nn.Module) -> list[nn.Parameter]:
 
 
 def scale_adapters(model: nn.Module, strength: float) -> None:
-    """Multiply the correction of the adapters of ``model`` by ``strength``.
+    """Scale the corrections of all adapters in ``model`` by ``strength``.
 
-    1 keeps the correction. 0 removes it: the model then computes exactly what it does without
-    adapters. Values in between trade robustness for clean success. The weights of the adapters
-    change in place, so a checkpoint saved afterwards contains the scaled adapters.
+    A strength of 1 keeps the corrections. With 0, the model's output equals that of the model
+    without adapters. Values between 0 and 1 trade robustness for clean success. The weights of the
+    adapters change in place, so a checkpoint saved afterwards contains the scaled adapters.
 
-    Source: WiSE-FT (Wortsman et al., "Robust fine-tuning of zero-shot models", CVPR 2022), which
-    interpolates all weights between before and after a training. For adapters it is enough to
-    scale the layers that were initialised to zero.
+    Source: The method follows WiSE-FT (Wortsman et al., "Robust fine-tuning of zero-shot models",
+    CVPR 2022), which interpolates all weights between their values before and after training. For
+    adapters it is enough to scale the layers that were initialised to zero.
 
     Raises:
         ValueError: ``strength`` is outside [0, 1], or the model has no adapters.
@@ -168,7 +171,8 @@ def scale_adapters(model: nn.Module, strength: float) -> None:
 
 
 def trainable_share(model: nn.Module) -> float:
-    """Return the parameter count of the adapters, relative to the backbone."""
+    """Return the parameter count of the adapters, as a fraction of the backbone's parameter
+    count."""
     count = sum(p.numel() for p in adapter_parameters(model))
     return count / max(1, sum(p.numel() for p in model.parameters()) - count)
 
@@ -176,9 +180,9 @@ def trainable_share(model: nn.Module) -> float:
 def save_adapters(model: nn.Module, folder: str | Path) -> Path:
     """Write the adapters, without the backbone, and return the folder.
 
-    ``adapters.safetensors`` holds the weights; ``adapters.json`` the names, the settings and the
-    sha256 of the backbone. Warns if the backbone's running statistics changed after the adapters
-    were inserted.
+    ``adapters.safetensors`` holds the weights; ``adapters.json`` holds module names, settings and
+    the sha256 of the backbone. Warns if the backbone's running statistics changed after the
+    adapters were inserted.
 
     Raises:
         ValueError: The model has no adapters.
@@ -217,14 +221,14 @@ def load_adapters(model: nn.Module, folder: str | Path) -> list[str]:
 
     Raises:
         FileNotFoundError: A file is missing.
-        ValueError: A file is damaged, the model has adapters already or lacks a module, or the
-            adapters were trained on another backbone (or on this one in another dtype).
+        ValueError: A file is damaged, the model already has adapters, it lacks a module, or the
+            adapters were trained on a different backbone or dtype.
     """
     folder = Path(folder)
     reject_adapted(model)
     for file in (folder / WEIGHTS, folder / SETTINGS):
         if not file.is_file():
-            raise FileNotFoundError(f"There are no adapters in {folder}: {file.name} is missing.")
+            raise FileNotFoundError(f"No adapters were found in {folder}: {file.name} is missing.")
     try:
         if wrong := problem(folder / SETTINGS):
             raise ValueError(f"{SETTINGS} {wrong}")
@@ -263,13 +267,13 @@ def load_adapters(model: nn.Module, folder: str | Path) -> list[str]:
 
 
 def _build_adapter(settings: dict[str, Any], tensors: dict[str, Tensor]) -> Adapter:
-    """Return the adapter of ``settings`` with the weights ``tensors``.
+    """Return an adapter with these ``settings`` and the weights ``tensors``.
 
-    The settings and shapes are checked on the meta device, so that a damaged file allocates no
+    Settings and shapes are first checked on the meta device, so that a damaged file cannot allocate
     memory.
 
     Raises:
-        TypeError, RuntimeError: The settings or tensors do not fit.
+        TypeError, RuntimeError: The settings and the tensors do not match.
     """
     arguments = {name: value for name, value in settings.items() if name != "kind"}
     shape = RingAdapter if "views" in settings else ConvAdapter
@@ -304,12 +308,12 @@ def adapted(model: nn.Module) -> list[str]:
 
 
 def adapters_of(model: nn.Module) -> list[Adapter]:
-    """Return the adapters and gates of ``model``, in its order."""
+    """Return the adapters and gates of ``model``, in the order of the model."""
     return [*_attached(model).values()]
 
 
 def _attached(model: nn.Module) -> dict[str, Adapter]:
-    """Return the adapters by the name of their module."""
+    """Return a dict from module names to their adapters."""
     return {
         name: child
         for name, module in model.named_modules()
@@ -325,7 +329,7 @@ def reject_adapted(model: nn.Module) -> None:
 
 
 def attach_all(model: nn.Module, adapters: dict[str, Adapter]) -> None:
-    """Freeze ``model`` and attach all ``adapters``, or none if one does not fit."""
+    """Freeze ``model`` and attach all ``adapters``; if one does not fit, attach none of them."""
     gates = _gates_of(adapters)
     kinds = (name for name, adapter in adapters.items() if isinstance(adapter, FrameGate))
     idle = [name for name in kinds if name not in gates.values()]
@@ -358,7 +362,8 @@ def moved_statistics(model: nn.Module) -> bool:
 
 
 def _attach(module: nn.Module, adapter: Adapter, usual: Tensor) -> None:
-    """Add ``adapter`` to ``module``; ``usual`` gives device and dtype if it has no weights."""
+    """Add ``adapter`` to ``module``; ``usual`` provides device and dtype if the module has no
+    weights."""
     like = next(module.parameters(), usual)
     module.add_module(NAME, adapter.to(like.device, like.dtype))
     if isinstance(adapter, FrameGate):
@@ -372,7 +377,7 @@ def _adapt(module: nn.Module, inputs: Any, output: Any) -> Any:
     adapter = module.get_submodule(NAME)
     if isinstance(output, (tuple, list)):
         rest = (adapter(first(output)), *output[1:])
-        # the constructor of a named tuple takes one argument per item; only they have _make
+        # a named tuple (recognised by _make) takes one constructor argument per item
         return output._make(rest) if hasattr(output, "_make") else type(output)(rest)
     return adapter(output)
 
@@ -385,9 +390,9 @@ def _judge_input(module: nn.Module, inputs: Any) -> None:
 
 
 def _gates_of(adapters: dict[str, Adapter]) -> dict[str, str]:
-    """Return the gate of each adapter by name: the nearest one in the same encoder."""
+    """Return the nearest gate in the same encoder for each adapter, by the adapter's name."""
     controllable = [n for n, m in adapters.items() if isinstance(m, (ConvAdapter, RingAdapter))]
-    # name of an adapter -> names of its module and of the gate
+    # maps an adapter's name to the names of its module and its gate
     gates: dict[str, tuple[str, str]] = {}
     for name, gate in adapters.items():
         if not isinstance(gate, FrameGate):

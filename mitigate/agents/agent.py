@@ -1,11 +1,11 @@
-"""The interface of agents that evaluation and training use.
+"""Define the interface that evaluation and training expect from an agent.
 
-An agent receives an instruction and acts on observations; it does not depend on a world. A
-*trainable* agent also exposes its decisions as batches, and objectives train it from these alone.
-``docs/bring-your-own.md`` shows how to add an agent.
+An agent receives an instruction and acts on observations; it does not depend on a particular world.
+A *trainable* agent also exposes its decisions as batches, and objectives use only these batches to
+train it. ``docs/bring-your-own.md`` shows how to add an agent.
 
 A subclass of :class:`Agent` inherits defaults for all optional members. Objects of other classes
-work, too: :func:`as_agent` adds the defaults.
+also work: :func:`as_agent` adds the defaults.
 """
 
 from __future__ import annotations
@@ -30,30 +30,33 @@ if TYPE_CHECKING:
 
 
 class Agent:
-    """Base class of agents. A subclass defines ``reset`` and ``act``; the rest has defaults.
+    """Base class of agents. A subclass must define ``reset`` and ``act``; all other members have
+    defaults.
 
     Attributes:
-        views: 12 for a panorama, 1 for a forward camera; worlds with another number are rejected.
-            None accepts any number.
+        views: 12 for a panorama, 1 for a forward camera; worlds with a different number are
+            rejected. If None, any number is accepted.
         sensors: the entries of observations that the agent reads. Training does not corrupt other
-            frames. None: it may read all.
-        tasks: the tasks it can do, by ``info["task"]`` of episodes ("vln": follow a route, "ogn":
-            find an object). Evaluation warns about other tasks. None: all.
-        system_prompt: the prompt that it reads at ``reset``; None if it has none.
-        aim: the point [2] on the plan that it is walking to, or None.
-        together: how many episodes it can run at once; more than 1 needs ``begin`` and
-            ``act_all``.
-        encoders: names of the parts that read a sensor, by sensor; for ``see`` (:class:`Seeing`).
-        labels: the entry of a world's ``truth()`` that trains these parts, by sensor.
-        loss_weights: weights of its auxiliary losses by name; 1 by default.
-        frozen: names of modules that never train, such as a pretrained backbone; adapters inside
-            them do train.
+            frames. If None, the agent may read all entries.
+        tasks: the values of an episode's ``info["task"]`` that the agent supports ("vln": follow a
+            route, "ogn": find an object). Evaluation warns about other tasks. If None, the agent
+            supports all tasks.
+        system_prompt: the prompt that the agent reads at ``reset``, or None.
+        aim: position [2] in plan metres that the agent is moving to, or None.
+        together: number of episodes that the agent can run at once; more than 1 requires ``begin``
+            and ``act_all``.
+        encoders: names of the parts that read a sensor, by sensor; used by ``see``
+            (:class:`Seeing`).
+        labels: the entry of a world's ``truth()`` that these parts are trained on, by sensor.
+        loss_weights: weights of the auxiliary losses by name; 1 by default.
+        frozen: names of modules that are never trained, such as a pretrained backbone; adapters
+            inside them are trained.
         plain_walks: whether ``collect`` returns plain data (dicts, lists, strings, numbers and
             tensors), which DAgger stores on disk.
-        run_state: attributes of a shipped agent that change while it runs. Its fingerprint leaves
-            them out, and all attributes that a new agent lacks.
+        run_state: attributes of a shipped agent that change while it runs. The fingerprint excludes
+            these attributes, and all attributes that a new agent lacks.
         own_config_only: constructor arguments that name code or files. A config that comes with
-            weights cannot set them.
+            weights must not set these arguments.
     """
 
     views: int | None = None
@@ -79,7 +82,7 @@ class Agent:
         raise NotImplementedError(f"{type(self).__name__} defines no act(observation)")
 
     def begin(self, instruction: str) -> Any:
-        """Return the memory of a new episode; up to ``together`` episodes run at once."""
+        """Return the agent's memory for a new episode; up to ``together`` episodes run at once."""
         raise NotImplementedError(f"{type(self).__name__} defines no begin(instruction)")
 
     def act_all(
@@ -87,41 +90,43 @@ class Agent:
     ) -> list[int]:
         """Return one action per observation of n episodes, and update their memories.
 
-        An action must not depend on the other episodes or on their number.
+        The action for one episode must not depend on the other episodes or on their number.
         """
         raise NotImplementedError(f"{type(self).__name__} defines no act_all(...)")
 
     def taken(self, action: int, metres: float, radians: float) -> None:
-        """Account for a motion that another driver made since the agent's last action.
+        """Update the agent's state after a motion that it did not choose itself.
 
         The agent drops its plan.
 
         Args:
-            action: the action that is most like the motion; -1 for none.
+            action: the action that is most similar to the motion, or -1 if no action is similar.
             metres: distance moved forward.
             radians: angle turned to the left.
         """
 
     def remembering(self) -> AbstractContextManager:
-        """Return a context in which equal frames are encoded once; actions stay the same."""
+        """Return a context in which identical frames are encoded only once; actions do not
+        change."""
         return nullcontext()
 
     def precompute(self, piece: Any, *, clean: bool) -> Any:
-        """Return a piece of ``collect`` with the outputs of frozen weights computed.
+        """Return a piece of ``collect`` in which the outputs of frozen weights are precomputed.
 
-        Worker processes call it. ``clean``: also compute what ``decide(clean=True)`` needs.
+        Worker processes call it. With ``clean``, also precompute the values that
+        ``decide(clean=True)`` needs.
         """
         return piece
 
     def as_teacher(self) -> Any:
-        """Return a copy without its adapters, which were added for robustness."""
+        """Return a copy of the agent without its adapters."""
         teacher = copy.deepcopy(self)
         remove_adapters(teacher)  # type: ignore[arg-type]
         return teacher
 
 
 class SideBySide(Agent):
-    """Base class of agents that run ``together`` episodes at once.
+    """Base class of agents that can run several episodes at once (``together``).
 
     A subclass defines ``begin`` and ``answers``.
     """
@@ -133,7 +138,8 @@ class SideBySide(Agent):
 
         Raises the errors of ``agents/observation.py``.
         """
-        padding = self.together - len(memories)  # always a full batch, so that sums round equally
+        # the batch is always full, so that sums are rounded identically
+        padding = self.together - len(memories)
         observations = [*observations, *[observations[-1]] * padding]
         return self.answers(observations, [*memories, *[memories[-1]] * padding], len(memories))
 
@@ -156,15 +162,16 @@ OPTIONAL = [name for name in vars(Agent) if not name.startswith("_") and name no
 
 
 def as_agent(agent: Any) -> Agent:
-    """Return ``agent`` if it is an :class:`Agent`, else a view of it that adds the defaults.
+    """Return ``agent`` if it is an :class:`Agent`, otherwise a wrapper that adds the defaults.
 
-    The agent itself is not changed; fingerprints are computed from it, not from the view.
+    The agent itself is not changed; fingerprints are computed from the agent itself, not from the
+    wrapper.
     """
     return agent if isinstance(agent, Agent) else _AgentView(agent)
 
 
 class _AgentView(Agent):
-    """An object of a user's class as an :class:`Agent`."""
+    """Wrapper that makes an object of a user's class an :class:`Agent`."""
 
     def __init__(self, agent: Any) -> None:
         self._agent = agent
@@ -174,7 +181,7 @@ class _AgentView(Agent):
 
     @property
     def system_prompt(self) -> str | None:
-        return read(self._agent, "system_prompt")  # may be set later
+        return read(self._agent, "system_prompt")  # the attribute may be set later
 
     @system_prompt.setter
     def system_prompt(self, text: str | None) -> None:
@@ -182,7 +189,7 @@ class _AgentView(Agent):
 
     @property
     def aim(self) -> np.ndarray | None:  # type: ignore[override]
-        return read(self._agent, "aim")  # changes from step to step
+        return read(self._agent, "aim")  # the value changes from step to step
 
     def reset(self, instruction: str) -> None:
         self._agent.reset(instruction)
@@ -195,21 +202,22 @@ class _AgentView(Agent):
 
 
 def stated_settings(agent: Any) -> dict[str, Any] | None:
-    """Return the ``settings`` of ``agent``, a method or a mapping; None if it has none."""
+    """Return the ``settings`` of ``agent``, which are a method or a mapping, or None if there are
+    none."""
     settings = read(agent, "settings")
     return None if settings is None else dict(settings() if callable(settings) else settings)
 
 
 @dataclass
 class Output:
-    """An agent's output for B decisions.
+    """The output of an agent for B decisions.
 
     Attributes:
-        logits: [B, n] over the candidates of each decision; None if nothing is decided.
-        mask: bool [B, n], the candidates that may be chosen; None: all.
+        logits: [B, n] over the candidates of each decision, or None if there are no decisions.
+        mask: bool [B, n], True for candidates that may be chosen; None allows all.
         features: features by name, which distillation compares between student and teacher.
-        losses: the agent's auxiliary losses, scalars by name.
-        figures: more scalars to log, by name.
+        losses: auxiliary losses of the agent, as scalars by name.
+        figures: additional scalars to log, by name.
     """
 
     logits: Tensor | None = None
@@ -222,10 +230,10 @@ class Output:
 def check_logits(logits: Tensor, agent: Any) -> Tensor:
     """Return ``logits`` [..., n] if an action can be chosen from them; -inf marks forbidden ones.
 
-    Without this check argmax would return the first action, STOP.
+    Without this check, argmax would silently return the first action, STOP.
 
     Raises:
-        ValueError: There is NaN or infinity, or no action is allowed.
+        ValueError: A logit is NaN or +inf, or no action is allowed.
     """
     valid = torch.isfinite(logits.amax(-1))
     if not valid.all():
@@ -245,7 +253,7 @@ def entropy_of(logits: Tensor) -> Tensor:
 
 
 def stop_figures(logits: Tensor, target: Tensor) -> dict[str, Tensor]:
-    """Return the recall of STOP and the rate of false STOPs; targets are as in ``Decisions``."""
+    """Return the recall of STOP and the rate of false STOPs, for targets as in ``Decisions``."""
     stop = target[:, STOP] > 0
     chosen = logits.argmax(-1) == STOP
     return {
@@ -255,13 +263,13 @@ def stop_figures(logits: Tensor, target: Tensor) -> dict[str, Tensor]:
 
 
 def sample(probabilities: np.ndarray, rng: np.random.Generator) -> int:
-    """Return an index drawn from ``probabilities`` [n], which need not sum to 1."""
+    """Return a random index with probabilities proportional to ``probabilities`` [n]."""
     total = np.cumsum(probabilities.astype(np.float64))
     return int(min(np.searchsorted(total, rng.random() * total[-1], side="right"), len(total) - 1))
 
 
 class Decisions(Protocol):
-    """A batch of B decisions with the expert's answers; the agent defines its other contents.
+    """A batch of B decisions with the expert's answers; each agent adds its own fields.
 
     Attributes:
         target: [B, n], a distribution over the candidates of each decision, summing to 1.
@@ -278,7 +286,8 @@ class Decisions(Protocol):
 
 @runtime_checkable
 class Trainable(Protocol):
-    """An ``nn.Module`` that objectives can train, in addition to :class:`Agent`."""
+    """The interface of an agent that objectives can train: an :class:`Agent` and an
+    ``nn.Module``."""
 
     def parts(self) -> dict[str, nn.Module]:
         """Return the modules that can be frozen, trained and adapted; they hold all parameters."""
@@ -294,25 +303,25 @@ class Trainable(Protocol):
     ) -> Any:
         """Run ``episodes[i]`` in ``worlds[i]`` and return the decisions with the expert's answers.
 
-        Called in eval mode without gradients. The result must be picklable.
+        The method is called in eval mode without gradients. The result must be picklable.
 
         Args:
             worlds: one world per episode.
             episodes: the episodes.
-            expert_share: share of steps that follow the expert; the agent's policy samples the
-                others (DAgger).
-            rngs: one generator per episode, for all its random draws, so that an episode does not
-                depend on the others.
+            expert_share: fraction of steps that take the expert's action; the other actions are
+                sampled from the agent's policy (DAgger).
+            rngs: one random generator per episode, so that an episode does not depend on the
+                others.
             clean: also keep the observations before corruption (``observation.clean``).
         """
 
     def join(self, pieces: Sequence[Any]) -> Decisions:
-        """Return one batch of the results of several calls of :meth:`collect`."""
+        """Join the results of several calls of :meth:`collect` into one batch."""
 
     def decide(self, decisions: Any, *, clean: bool = False) -> Output:
         """Return the agent's output for ``decisions``.
 
-        ``clean``: use the observations before corruption, with the same candidates.
+        With ``clean``, use the observations before corruption but the same candidates.
         """
 
 
@@ -337,7 +346,7 @@ class Seeing(Protocol):
 
     Attributes:
         encoders: names of the parts that read a sensor, by sensor.
-        labels: the entry of a world's ``truth()`` that trains them, by sensor.
+        labels: the entry of a world's ``truth()`` that these parts are trained on, by sensor.
     """
 
     encoders: Mapping[str, tuple[str, ...]]

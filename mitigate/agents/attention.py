@@ -1,4 +1,5 @@
-"""Attention, transformer layers, and the instruction encoder of the planner and the policy."""
+"""Define attention, transformer layers, and the instruction encoder of the planner and the
+policy."""
 
 from __future__ import annotations
 
@@ -10,8 +11,8 @@ from mitigate.agents.text import MAX_WORDS, PAD, Vocabulary
 class Attention(nn.Module):
     """Multi-head attention; ``mask`` is bool, True where attention is allowed.
 
-    It is not written with PyTorch's fused kernel, which took four times as long on CPU for these
-    short sequences (torch 2.13).
+    This does not use PyTorch's fused kernel, which took four times as long on a CPU for these short
+    sequences (torch 2.13).
     """
 
     def __init__(self, width: int, heads: int) -> None:
@@ -56,8 +57,9 @@ class Layer(nn.Module):
 
         Args:
             x: [B, n, width].
-            mask: bool [B, n], True where attention is allowed; None: everywhere.
-            text: features [E, L, width], mask [B, L] and the text of each x: int [B].
+            mask: bool [B, n], True where attention is allowed; None allows it everywhere.
+            text: text features [E, L, width], their mask [B, L], and the index of the text for each
+                x: int [B].
         """
         if self.cross is not None and self.cross_norm is not None and text is not None:
             x = x + self.cross(self.cross_norm(x), *text)

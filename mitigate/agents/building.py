@@ -1,6 +1,7 @@
 """Build the agent of a run from its config, with the settings of the weights it starts from.
 
-``loading.py`` loads agents from folders without a config; it needs neither Hydra nor OmegaConf.
+``loading.py`` loads agents from folders without a config; that module needs neither Hydra nor
+OmegaConf.
 """
 
 from __future__ import annotations
@@ -28,16 +29,18 @@ LORA = "adapter_model.safetensors"  # PEFT's name
 def build_agent(
     node: Mapping[str, Any], *, weights: str | None, seed: int, parts: Sequence[str] | None = None
 ) -> nn.Module:
-    """Return the agent of ``node``.
+    """Build the agent that ``node`` describes.
 
     Args:
         node: the config of the agent, with ``_target_``.
-        weights: file or folder of the initial weights; None: drawn from ``seed``.
-        seed: the seed of the initial weights.
-        parts: names of the agent's ``parts()`` to load; None: all.
+        weights: file or folder of the initial weights; None initialises them randomly with
+            ``seed``.
+        seed: seed of random initial weights.
+        parts: names of the agent's ``parts()`` to load; None loads all.
     """
     weights = None if weights is None else str(find(weights))
-    if loading.is_ours(node["_target_"]):  # a huge width fills the memory, a pattern may not end
+    # a huge width would fill the memory, and a pattern may run without end
+    if loading.is_ours(node["_target_"]):
         config = plain(node)
         known = schema.schema_of(config["_target_"]).settings
         config = {name: value for name, value in config.items() if name in known}
@@ -45,7 +48,7 @@ def build_agent(
         schema.check(config, "The options", node["_target_"], again)
     seeding.seed_everything(seed, "agent")
     agent = build(node)
-    if weights is not None and not hasattr(agent, "state_dict"):  # any class of a config
+    if weights is not None and not hasattr(agent, "state_dict"):  # the config may name any class
         raise ValueError(
             f"A {type(agent).__name__} is not a torch.nn.Module, so weights cannot be loaded into "
             f"it. Leave out {weights}, and let the agent read its weights."
@@ -79,7 +82,8 @@ def settings_of(
     Args:
         node: the config of the agent.
         weights: file or folder of the weights.
-        overrides: options of the command line (``agent.blind=[rgb]``); they take precedence.
+        overrides: options of the command line (``agent.blind=[rgb]``); these options take
+            precedence.
     """
     keys = [override.lstrip("+").partition("=")[0].split(".") for override in overrides]
     overridden = {key[1] for key in keys if key[0] == "agent" and len(key) > 1}
@@ -93,8 +97,8 @@ def settings_of(
 def inherit_settings(node: Mapping[str, Any], weights: str | None) -> Mapping[str, Any]:
     """Return ``node`` with its unset settings (null or missing) taken from ``weights``.
 
-    Such settings are the adapters and the vocabulary. Without weights ``node`` is returned
-    unchanged. Raises the errors of :func:`stored_settings`.
+    Examples of such settings are the adapters and the vocabulary. Without weights, ``node`` is
+    returned unchanged. Raises the errors of :func:`stored_settings`.
     """
     if weights is None:
         return node
@@ -105,10 +109,10 @@ def inherit_settings(node: Mapping[str, Any], weights: str | None) -> Mapping[st
 def stored_settings(node: Mapping[str, Any], weights: str) -> dict[str, Any]:
     """Return the agent settings stored in ``config.yaml`` next to ``weights``, read as plain data.
 
-    Without such a file the result is empty.
+    If the file does not exist, the result is empty.
 
     Raises:
-        ValueError: The weights belong to another kind of agent than ``node``, or the file holds
+        ValueError: The weights belong to a different kind of agent than ``node``, or the file holds
             a value that the agent does not accept.
     """
     place = find(weights)
@@ -126,23 +130,24 @@ def stored_settings(node: Mapping[str, Any], weights: str) -> dict[str, Any]:
 
 
 def agent_option(options: Sequence[str], weights: str) -> list[str]:
-    """Return ``["agent=NAME"]`` for the kind of agent that ``weights`` belong to.
+    """Return ``["agent=NAME"]`` for the kind of agent to which ``weights`` belong.
 
-    That config also sets what the agent needs of the world. The result is empty if ``options``
-    already choose an agent, or if the kind is the default one, not shipped, or unknown.
+    This agent config also sets the world options that the agent needs. The result is empty if
+    ``options`` already choose an agent, or if the kind is the default one, not shipped, or unknown.
     """
     if any(option.lstrip("+~").partition("=")[0] == "agent" for option in options):
         return []
     try:
         kind = loading.kind_of(loading.config_of(find(weights)))
-    except (OSError, ValueError):  # loading the weights reports the error
+    except (OSError, ValueError):  # the error is reported later, when the weights are loaded
         return []
     name = "" if kind == loading.TARGET else settings.named(kind)
     return [f"agent={name}"] if name else []
 
 
 def with_kind(options: Sequence[str]) -> list[str]:
-    """Return the ``options`` of an evaluation with ``agent=`` for its ``checkpoint=``."""
+    """Return the ``options`` of an evaluation, with ``agent=`` added for the weights in
+    ``checkpoint=``."""
     weights = values(options, "checkpoint")
     added = agent_option(options, weights[0]) if len(weights) == 1 else []
     return [*options, *added]

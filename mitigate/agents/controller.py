@@ -1,4 +1,4 @@
-"""Low-level control: turn and step along a route of plan positions, using odometry only."""
+"""Follow a route of plan positions with low-level actions, using only odometry."""
 
 from __future__ import annotations
 
@@ -6,13 +6,13 @@ import numpy as np
 
 from mitigate.core.observation import FORWARD, LEFT, RIGHT, TURN_DEGREES
 
-_ARRIVED = 0.18  # metres; a step is 0.25 m
-_STUCK = 0.05  # metres of progress below which a forward step counts as blocked
-_PATIENCE = 2  # blocked steps before a position is given up
+_ARRIVED = 0.18  # distance in metres at which a position counts as reached; a step is 0.25 m
+_STUCK = 0.05  # a forward step with less progress than this (metres) counts as blocked
+_PATIENCE = 2  # number of blocked steps before the agent skips a position
 
 
 class Controller:
-    """Follows one route at a time; ``action`` is None when the route is done."""
+    """Controller that follows one route at a time; ``action`` is None when the route is done."""
 
     def __init__(self) -> None:
         self.route: list[np.ndarray] = []
@@ -27,7 +27,8 @@ class Controller:
 
     def action(self, pose: np.ndarray) -> int | None:
         """Return the next low-level action from pose [3], or None on arrival."""
-        xy = np.array(pose[:2], np.float64)  # a copy: a world may move its pose in place
+        # copied, because a world may change its pose array in place
+        xy = np.array(pose[:2], np.float64)
         if self._last is not None:
             self._blocked = self._blocked + 1 if np.hypot(*(xy - self._last)) < _STUCK else 0
             self._last = None

@@ -1,10 +1,10 @@
 """Encoders of views: small residual CNNs with GroupNorm for RGB and for depth, and their losses.
 
-Adapters are added after their ``stages``. All take raw sensor data (uint8 RGB or float32 metres,
-square views of any size) and resize and normalise it themselves. ``RGBEncoder`` and
+Adapters are added after their ``stages``. All encoders take raw sensor data (uint8 RGB or float32
+metres, square views of any size) and resize and normalise it themselves. ``RGBEncoder`` and
 ``DepthEncoder`` read the views of a panorama. ``CameraRGB`` and ``CameraDepth`` read one camera and
-return features for four columns of the view, because an agent with one camera steers by the
-position of an object in the view.
+return features for four vertical strips ("columns") of the view, because an agent with one camera
+steers by the horizontal position of an object.
 """
 
 from __future__ import annotations
@@ -19,16 +19,18 @@ from mitigate.agents.agent import Output
 from mitigate.agents.text import CONCEPTS, THINGS
 from mitigate.core.observation import DEPTH, RGB
 
-SIZE = 64  # pixels of a view that the shipped agents are trained on
-DEPTH_RANGE = 5.0  # metres; larger depth does not matter for legs of at most 3 m
+SIZE = 64  # side in pixels of the views that the shipped agents were trained on
+# maximum depth in metres; farther surfaces do not matter for moves of at most 3 m
+DEPTH_RANGE = 5.0
 GRID = 4  # rows and columns of the last feature map at 64 pixels
-DIRECTIONS, DISTANCES, STEP = 30, 12, 0.25  # bins of free space over 90 degrees; metres per bin
+# number of direction bins of free space over 90 degrees; metres per distance bin
+DIRECTIONS, DISTANCES, STEP = 30, 12, 0.25
 LABELS = {RGB: "concepts", DEPTH: "free"}
-POSITIVE = 2.0  # weight of positive labels: most concepts are absent from a view
+POSITIVE = 2.0  # weight of positive labels, because most concepts do not appear in a view
 
 
 class Block(nn.Module):
-    """Residual block of two 3x3 convolutions, which halves the map."""
+    """Residual block of two 3x3 convolutions, which halves the size of the map."""
 
     def __init__(self, inputs: int, outputs: int) -> None:
         super().__init__()
@@ -44,7 +46,7 @@ class Block(nn.Module):
 
 
 def halved(x: Tensor) -> Tensor:
-    """Return ``F.avg_pool2d(x, 2)``, bit for bit.
+    """Return the same result as ``F.avg_pool2d(x, 2)``, bit for bit.
 
     Without gradients it is a sum of four slices, which takes a third of the time on a CPU (torch
     2.13 pools one value at a time).
@@ -56,16 +58,17 @@ def halved(x: Tensor) -> Tensor:
 
 
 class Encoder(nn.Module):
-    """Stem and residual stages, from views of ``size`` pixels to a 4x4 map.
+    """Base network with a stem and residual stages, which reduces views of ``size`` pixels to a 4x4
+    map.
 
-    Frames of another size are resized.
+    Frames of a different size are resized.
 
     Attributes:
         channels: channels of the input.
         widths: channels of the stem and of each stage.
-        resize: how frames are resized, a mode of ``F.interpolate``.
-        stride: ``size`` must be a multiple of these pixels.
-        usual: an example of ``size``, for messages.
+        resize: mode of ``F.interpolate`` with which frames are resized. stride: ``size`` must be a
+        multiple of this number of pixels.
+        usual: an example value of ``size`` for error messages.
     """
 
     channels: int
@@ -110,7 +113,7 @@ class Encoder(nn.Module):
 def depth_channels(z: Tensor) -> Tensor:
     """Return the input ``[n, 2, H, W]`` of a depth encoder for metres ``[n, 1, H, W]``.
 
-    Invalid depth (0, NaN or infinite) becomes 0; the second channel marks it.
+    Invalid depth (0, NaN or infinite) becomes 0 and is marked in the second channel.
     """
     valid = torch.isfinite(z) & (z > 0)
     z = torch.where(valid, z.clamp(max=DEPTH_RANGE) / DEPTH_RANGE, torch.zeros_like(z))
@@ -143,7 +146,7 @@ class RGBEncoder(Encoder):
 class DepthEncoder(Encoder):
     """Encode float32 metres ``[n, H, W, 1]`` as features ``[n, width]`` of each view.
 
-    Resizing takes the nearest pixel, because a mean across an edge or a hole would create a
+    Frames are resized to the nearest pixel, because a mean across an edge or a hole would create a
     surface that does not exist.
     """
 
@@ -174,11 +177,12 @@ def f1(logits: Tensor, targets: Tensor) -> Tensor:
 
 
 def free_loss(logits: Tensor, target: Tensor) -> Tensor:
-    """Return the mean binary cross-entropy of free space ``[..., directions, distances]``."""
+    """Return the mean binary cross-entropy of free-space logits ``[..., directions,
+    distances]``."""
     return F.binary_cross_entropy_with_logits(logits.float(), target)
 
 
-LABEL_LOSSES = {RGB: presence_loss, DEPTH: free_loss}  # loss on the labels of each sensor
+LABEL_LOSSES = {RGB: presence_loss, DEPTH: free_loss}  # the loss on the labels, by sensor
 
 
 def agreement(logits: Tensor, target: Tensor) -> Tensor:
@@ -188,7 +192,8 @@ def agreement(logits: Tensor, target: Tensor) -> Tensor:
 
 
 def label_output(views: Tensor, logits: Tensor, sensor: str, truth: Tensor | None) -> Output:
-    """Return the output of ``see``: features "views"; with ``truth`` also losses and figures."""
+    """Return the output of ``see``: the features "views", and with ``truth`` also losses and
+    figures."""
     out = Output(features={"views": views})
     if truth is None:
         return out
@@ -251,10 +256,10 @@ def free_metres(logits: Tensor) -> Tensor:
 
 
 def encode_camera(encoder: nn.Module, sensor: str, frames: Tensor) -> tuple[Tensor, Tensor]:
-    """Return features [n, F] and logits of frames [n, H, W, c] of one camera.
+    """Return features [n, F] and logits for frames [n, H, W, c] of one camera.
 
-    The features are all columns and the encoder's predictions (RGB: probabilities of concepts;
-    depth: free metres).
+    The features contain all columns and the encoder's predictions (RGB: probabilities of concepts;
+    depth: free distances in metres).
     """
     features, logits = encoder(frames)
     predicted = free_metres(logits) if sensor == DEPTH else logits.sigmoid().flatten(-2)
@@ -262,7 +267,7 @@ def encode_camera(encoder: nn.Module, sensor: str, frames: Tensor) -> tuple[Tens
 
 
 def see_camera(encoder: nn.Module, sensor: str, frames: Tensor, truth: Tensor | None) -> Output:
-    """Return the output of ``see`` (``agents/agent.py``) for an encoder of one camera."""
+    """Return the output of ``see`` (``agents/agent.py``) for the encoder of a single camera."""
     encoded = encode_camera(encoder, sensor, frames.flatten(0, 1))
     views, logits = (x.unflatten(0, frames.shape[:2]) for x in encoded)
     return label_output(views, logits, sensor, truth)

@@ -1,4 +1,4 @@
-"""Fingerprint of an agent: a content hash of everything that determines its behaviour.
+"""Compute the fingerprint of an agent: a content hash of everything that determines its behaviour.
 
 It covers the kind of the agent, ``settings()``, weights, layers, sensors, and the user's source
 files. Result rows hold it in addition to a display name: agents with different fingerprints are
@@ -28,7 +28,8 @@ from mitigate.core.checksums import DIGITS
 from mitigate.core.contracts import read
 from mitigate.core.observation import Observation, Sensor
 
-KIND = "fingerprint_kind"  # attribute of shipped classes: a name that is stable when a module moves
+# attribute of shipped classes: a name that stays the same if a module is moved
+KIND = "fingerprint_kind"
 DEEPEST = 50  # depth of nested attributes (heuristic); deeper ones are probably a cycle
 _OWN_HOOKS = "mitigate.agents.adapters"  # its adapters are modules, so state_dict() holds them
 # attributes of torch modules, of adapters (handle of the hook, last output), and of adapters.py
@@ -40,7 +41,7 @@ _SOURCE = (type, types.FunctionType, property, types.MemberDescriptorType)  # in
 
 @dataclass(frozen=True)
 class Contents:
-    """The data that a fingerprint hashes, and the state that could not be read.
+    """The data that a fingerprint is computed from, and the state that could not be read.
 
     Attributes:
         parts: plain data by name.
@@ -60,13 +61,13 @@ class Contents:
 def fingerprint(
     agent: Any, sensors: Mapping[str, Sensor], front: str = "none", version: str | None = None
 ) -> str:
-    """Return the hash of ``agent`` with ``sensors``.
+    """Return the fingerprint of ``agent`` with the ``sensors`` of a world.
 
     Args:
         agent: any object.
         sensors: the sensors of the world.
         front: fingerprints of the guards between the world and the agent.
-        version: the user's name for state that cannot be read.
+        version: string with which the user identifies state that cannot be read.
     """
     return hash_of(contents(agent, version).parts, sensors, front)
 
@@ -106,9 +107,9 @@ def contents(agent: Any, version: str | None = None) -> Contents:
 
 
 def says_all(agent: Any) -> bool:
-    """Return whether ``settings`` covers all attributes.
+    """Return whether ``settings`` describes all attributes.
 
-    It does not if it is inherited, because a subclass may add attributes.
+    An inherited ``settings`` does not, because a subclass may add attributes.
     """
     return _definer(agent) in (agent, type(agent))
 
@@ -116,7 +117,7 @@ def says_all(agent: Any) -> bool:
 def _definer(agent: Any) -> Any:
     """Return the object or class that defines ``settings``, or None.
 
-    A ``settings`` that ``__getattr__`` provides does not count: it describes another object.
+    A ``settings`` from ``__getattr__`` does not count, because it describes a different object.
     """
     candidates = (agent, *type(agent).__mro__)
     definers = (one for one in candidates if "settings" in read(one, "__dict__", default=()))
@@ -306,14 +307,15 @@ def _join(*names: str) -> str:
 
 
 def hash_of(parts: Mapping[str, Any], sensors: Mapping[str, Sensor], front: str = "none") -> str:
-    """Return the hash of an agent with these ``parts``, ``sensors`` and guards (``front``)."""
+    """Return the fingerprint for these ``parts``, ``sensors`` and guards (``front``)."""
     plain = {name: asdict(sensor) for name, sensor in sorted(sensors.items())}
     text = json.dumps({**parts, "sensors": plain, "front": front}, sort_keys=True, default=_plain)
     return hashlib.sha256(text.encode()).hexdigest()[:DIGITS]
 
 
 def code_sha(objective: nn.Module) -> str:
-    """Return the hash of the user's code in an objective and its agent; "" without such code."""
+    """Return the hash of the user's code in an objective and its agent; "" if there is no such
+    code."""
     kinds = [type(module) for net in networks(objective).values() for module in net.modules()]
     code = "\n".join(code_of(type(objective), *kinds).parts.get("code", ()))
     return code and hashlib.sha256(code.encode()).hexdigest()[:DIGITS]

@@ -1,6 +1,6 @@
-"""Reliability-weighted fusion of the views of a panorama (the paper's section on adapters).
+"""Weight the views of a panorama by their reliability, as in the NavTrust paper.
 
-Weights come from the paper's rule on feature magnitudes or from a learned score.
+The weights are computed by the paper's rule on feature magnitudes or by a learned score.
 """
 
 from __future__ import annotations
@@ -11,8 +11,8 @@ from functools import partial
 import torch
 from torch import Tensor, nn
 
-RATE = 4.0  # k: decay per relative deviation of 1 (chosen on val_seen)
-CAP = 3.0  # largest exponent: a view weighs at least exp(-3) = 0.05 of a typical one (heuristic)
+RATE = 4.0  # k: decay rate for a relative deviation of 1 (chosen on val_seen)
+CAP = 3.0  # largest exponent; the weight is at least exp(-3) = 0.05 of a typical view's (heuristic)
 HIDDEN = 32  # width of the hidden layer of the learned score (heuristic)
 _TINY = 1e-6
 
@@ -20,7 +20,7 @@ _TINY = 1e-6
 def reliability(
     views: Tensor, rate: float = RATE, cap: float = CAP, valid: Tensor | None = None
 ) -> Tensor:
-    """Return weights of views by how far their magnitude is from the panorama's mean.
+    """Return weights that fall with the deviation of a view's magnitude from the panorama's mean.
 
     With m_v = |f_v| (Euclidean) and M = mean of m_v over the valid views,
 
@@ -30,11 +30,11 @@ def reliability(
         views: features ``[..., V, F]``.
         rate: k, >= 0.
         cap: the largest exponent, >= 0.
-        valid: bool ``[..., V]``, False for views to ignore; None: all count.
+        valid: bool ``[..., V]``, False for views to ignore; None uses all views.
 
     Returns:
-        Weights ``[..., V]`` that sum to 1. They are equal if every view is blank (M = 0) or none
-        is valid.
+        Weights ``[..., V]`` that sum to 1. All weights are equal if every view is blank (M = 0) or
+        no view is valid.
 
     Raises:
         ValueError: ``rate`` or ``cap`` is negative.
@@ -51,21 +51,21 @@ def reliability(
 
 
 class LearnedReliability(nn.Module):
-    """Weigh views by a learned score of their features and of the difference from their mean.
+    """Weight views by a learned score of their features and of the deviation from the mean.
 
         w_v = softmax over views of cap * tanh(score([f_v, f_v - mean f])).
 
-    ``score`` is initialised to zero, so all weights are equal before training. The loss on the
-    fused features trains it.
+    ``score`` is initialised to zero, so all weights are equal before training. It is trained by the
+    loss on the fused features.
 
     Args:
-        width: F.
+        width: number of features F.
         cap: >= 0; two weights differ at most by a factor of exp(2 cap).
 
     Raises:
         ValueError: ``cap`` is negative.
 
-    Source: this project. The paper's rule reads only the magnitude of a view.
+    Source: this project. Unlike this score, the paper's rule reads only the magnitude of a view.
     """
 
     def __init__(self, width: int, cap: float = CAP) -> None:
@@ -88,9 +88,9 @@ class LearnedReliability(nn.Module):
 def weigher(
     width: int, *, learned: bool = False, rate: float | None = None, cap: float = CAP
 ) -> Callable[[Tensor], Tensor]:
-    """Return the function that weighs views with ``width`` features.
+    """Return the function that computes the weights of views with ``width`` features.
 
-    It is :func:`reliability`, or with ``learned`` a :class:`LearnedReliability`.
+    The function is :func:`reliability`, or a :class:`LearnedReliability` if ``learned`` is set.
 
     Raises:
         ValueError: ``learned`` is combined with ``rate``.

@@ -1,12 +1,12 @@
-"""Load agents from folders: shipped weights, the agent of a run, hardened exports.
+"""Load agents from folders of shipped weights, training runs and hardened exports.
 
-No code in a folder is run. Files are compared with the manifest (``core/folders.py``), weights are
-safetensors, settings are plain YAML that the schema of the agent's class checks, and only classes
-of ``schema.KINDS`` are built. For other classes the user builds the agent, and the functions here
-load the weights into it (``agent=``).
+No code in a folder is run. Files are compared with the manifest (``core/folders.py``). Weights are
+safetensors files, and settings are plain YAML, which is checked by the schema of the agent's class.
+Only classes in ``schema.KINDS`` are built. For other classes the user builds the agent, and the
+functions here load the weights into it (``agent=``).
 
-``mitigate export`` writes a *hardened* folder. Its ``card.json`` records how the agent was made and
-the hash of its weights; see ``checkpoints/README.md``.
+``mitigate export`` writes a *hardened* folder. Its ``card.json`` records how the agent was trained
+and the hash of its weights; see ``checkpoints/README.md``.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ from mitigate.core.files import find, places, sha256
 from mitigate.core.json_files import read_object
 from mitigate.core.names import short
 
-FORMAT = 2  # format of a card; format 1 can also be read (core/older_folders.py)
+FORMAT = 2  # format number of a card; format 1 can also be read (core/older_folders.py)
 CARD, README = "card.json", "README.md"
 PROGRAM, INPUTS = "program.pt2", "program.json"
 FILES = (CONFIG, README, INPUTS)  # files of an agent with programs, in addition to the weights
@@ -38,10 +38,10 @@ ONNX = ("perceive.onnx", "decide.onnx")
 # files that an export may write; the manifest must list each of them that a folder holds
 KNOWN = (checkpoint.WEIGHTS, adapters.WEIGHTS, adapters.SETTINGS, *FILES, PROGRAM, *ONNX)
 ENTRIES = ("adapters_only", "base", "vocabulary", "commit", "agent")  # required in a card
-LONGEST_PATH = 1000  # characters of the path of a base (heuristic; the limit of Linux is 4095)
-FREE_WEIGHTS = 1 << 25  # of an agent that is built without a check (heuristic): 128 MiB
+LONGEST_PATH = 1000  # maximum length of the path of a base (heuristic; the limit of Linux is 4095)
+FREE_WEIGHTS = 1 << 25  # memory up to which an agent is built without a check (heuristic): 128 MiB
 TARGET = schema.KINDS[0]
-PAGES = {  # documentation of models that are not agents, by package; they need no export
+PAGES = {  # documentation pages of models that are not agents and need no export, by package
     "mitigate.encoders": "docs/encoder.md",
     "mitigate.guards.frames": "docs/restoration.md",
     "mitigate.guards.text": "docs/safeguard.md",
@@ -58,16 +58,16 @@ def load(folder: str | Path, *, agent: Any = None) -> Any:
     """Return the agent in ``folder`` on the CPU, in eval mode, ready for ``reset``.
 
     Args:
-        folder: a hardened folder (as :func:`load_hardened`), shipped weights
-            (``checkpoints/recurrent/base``), or the folder ``agent`` of a run. It is searched in
-            the current folder, then in this project.
-        agent: an agent of a user's class with the settings of the trained one, to load the weights
-            into, in place. None builds a shipped kind of agent.
+        folder: a hardened folder (as in :func:`load_hardened`), shipped weights
+            (``checkpoints/recurrent/base``), or the folder ``agent`` of a run. It is searched first
+            in the current folder, then in this project.
+        agent: an agent of a user's class with the settings of the trained one, into which the
+            weights are loaded in place. If it is None, a new agent of a shipped kind is built.
 
     Raises:
         FileNotFoundError, ValueError: Weights are missing or damaged; the settings of their agent
-            are missing; the agent is of a user's class and not passed; or ``agent`` has other
-            settings. The message names the file.
+            are missing; the agent's class is a user's and ``agent`` is missing; or ``agent`` has
+            different settings. The error message names the file.
         TypeError: ``folder`` is not a path, or ``agent`` has no weights.
     """
     _check_path(folder, "an agent's weights", "checkpoints/base")
@@ -83,7 +83,7 @@ def load(folder: str | Path, *, agent: Any = None) -> Any:
             f"{config} is missing, so the settings of the agent in {folder} are unknown."
         )
     folders.check(config.parent)
-    with torch.random.fork_rng(devices=[]):  # keeps the caller's random state
+    with torch.random.fork_rng(devices=[]):  # this keeps the caller's random state unchanged
         if agent is None:
             _check_size(config, checkpoint.weights_file(place))
         filled = _agent_to_fill(agent, config, _RUN)
@@ -97,16 +97,16 @@ def load_hardened(folder: str | Path, *, base: str | Path | None = None, agent: 
     """Return the agent of a hardened checkpoint on the CPU, in eval mode, ready for ``reset``.
 
     This needs neither Hydra nor the simulator. Warns if an attribute of ``agent`` has the name of a
-    setting, but another value.
+    setting but a different value.
 
     Args:
         folder: a folder such as ``checkpoints/hardened/ts_distill``.
-        base: for a folder of adapters, the weights they belong to (a file or folder). None: the
-            path in the card, searched below the current folder, the folders above ``folder`` and
-            the checkout.
-        agent: an agent of a user's class with the settings of the exported one, to load the
-            weights into, in place. Without ``settings()`` it gets the settings in the folder.
-            None builds a shipped kind of agent.
+        base: for a folder of adapters, the weights to which they belong (a file or folder). If
+            None, the path in the card is used; it is searched below the current folder, the folders
+            above ``folder``, and the checkout.
+        agent: an agent of a user's class with the settings of the exported one, into which the
+            weights are loaded in place. If this agent has no ``settings()``, it gets the settings
+            in the folder. If it is None, a new agent of a shipped kind is built.
 
     Raises:
         FileNotFoundError, ValueError: The folder is incomplete, or differs from its card.
@@ -126,7 +126,8 @@ def load_hardened(folder: str | Path, *, base: str | Path | None = None, agent: 
         if agent is None and card["vocabulary"] != vocabulary_sha(filled):
             commit = f" (commit {short(card['commit'])})" if card["commit"] else ""
             raise ValueError(
-                f"{folder} was exported with another vocabulary than its {CONFIG} gives the agent, "
+                f"{folder} was exported with a different vocabulary than its {CONFIG} gives the "
+                "agent, "
                 f"so instructions would be misread. Use the version that exported it{commit}."
             )
         _fill(filled, folder, card, base)
@@ -149,10 +150,11 @@ def _check_path(folder: object, what: str, example: str) -> None:
 
 
 def _agent_to_fill(agent: Any, config: Path, again: str) -> Any:
-    """Return ``agent`` if its settings match ``config``; for None, a new agent from it."""
+    """Return ``agent`` if its settings match ``config``; if it is None, build a new agent."""
     if agent is None:
         return build_from(config)
-    if isinstance(agent, type) or not hasattr(agent, "eval"):  # the user may pass anything
+    # the user may pass an object of any type
+    if isinstance(agent, type) or not hasattr(agent, "eval"):
         raise TypeError(
             f"agent must be a torch.nn.Module with weights, got {agent!r:.80}. Create an object of "
             "the class that was trained."
@@ -168,7 +170,7 @@ def build_from(config: Path) -> Any:
     The YAML file is read as plain data.
 
     Raises:
-        ValueError: The file is damaged or names another kind of agent.
+        ValueError: The file is damaged or names a different kind of agent.
     """
     kind = kind_of(config)
     arguments = agent_settings(config, kind)
@@ -205,7 +207,7 @@ def config_of(weights: Path) -> Path:
 
     Raises:
         FileNotFoundError: There are no weights.
-        ValueError: It is a file of a hardened folder; the folder must be named.
+        ValueError: ``weights`` is a file inside a hardened folder; the folder itself must be named.
     """
     if is_hardened(weights):
         return weights / CONFIG
@@ -217,7 +219,8 @@ def config_of(weights: Path) -> Path:
 
 
 def reject_other_models(run: Path) -> None:
-    """Raise ValueError for a run, or its folder ``agent``, that trained no navigation agent."""
+    """Raise ValueError for a run (or its folder ``agent``) whose model is not a navigation
+    agent."""
     config = run / CONFIG
     node = settings.read(config).get("agent") if config.is_file() else None
     target = str(node.get("_target_")) if isinstance(node, dict) else ""
@@ -236,11 +239,12 @@ def reject_other_models(run: Path) -> None:
 def check_same(agent: Any, config: Path, again: str) -> None:
     """Compare the settings of ``agent`` with those in ``config``.
 
-    Without ``settings()`` the plain attributes that have the name of a setting are compared. A
-    difference is then only a warning, because an attribute may mean something else.
+    If the agent has no ``settings()``, its plain attributes with the names of settings are
+    compared. A difference then causes only a warning, because an attribute may mean something else.
 
     Raises:
-        ValueError: The settings differ, or the file has none; that message ends in ``again``.
+        ValueError: The settings differ, or the file has no settings; the message for that ends with
+            ``again``.
     """
     stored = _settings_in(config, again)
     stated = stated_settings(agent)
@@ -261,7 +265,7 @@ def check_same(agent: Any, config: Path, again: str) -> None:
 
 
 def give_settings(agent: Any, config: Path, again: str) -> None:
-    """Give an agent without ``settings`` those in ``config``.
+    """Set ``settings`` of an agent that has none to the settings in ``config``.
 
     ``building.build_agent`` does the same, so the fingerprints are equal. Raises the errors of
     :func:`check_same`.
@@ -279,7 +283,8 @@ def _settings_in(config: Path, again: str) -> dict[str, Any]:
 
 
 def _as_json(value: Any) -> Any:
-    """Return ``value`` as JSON would read it back; a tuple becomes a list."""
+    """Return ``value`` as it would be after writing and reading it as JSON; a tuple becomes a
+    list."""
     return json.loads(json.dumps(value, default=lambda one: read(one, "tolist", "__str__")()))
 
 
@@ -287,14 +292,15 @@ def _as_json(value: Any) -> Any:
 
 
 def kind_of(config: Path) -> str:
-    """Return the kind (``schema.KINDS``) of the agent in ``config``; by default the first."""
+    """Return the kind (in ``schema.KINDS``) of the agent in ``config``; the default is the first
+    kind."""
     node = settings.read(config).get("agent")
     target = node.get("_target_") if isinstance(node, dict) else None
     return target if isinstance(target, str) and target in schema.KINDS else TARGET
 
 
 def is_ours(target: str) -> bool:
-    """Return whether ``target`` is a shipped class, which can be built from a folder."""
+    """Return whether ``target`` is a shipped class, so that it can be built from a folder."""
     return target in schema.KINDS
 
 
@@ -311,7 +317,7 @@ def agent_settings(config: Path, target: str = TARGET) -> dict[str, Any]:
 
 
 def is_hardened(folder: str | Path) -> bool:
-    """Return whether ``folder`` is hardened. Raises ValueError for a damaged manifest."""
+    """Return whether ``folder`` is hardened. Raises ValueError if the manifest is damaged."""
     manifest = folders.read_manifest(folder, _AGAIN)
     return manifest is not None and manifest.kind == "hardened"
 
@@ -327,8 +333,8 @@ def adapters_only(folder: str | Path) -> bool:
 def fill(agent: Any, folder: str | Path, *, base: str | Path | None = None) -> Any:
     """Load the weights of a hardened folder into ``agent``: adapters and base.
 
-    Adapters that ``agent`` has and the folder lacks are not changed. Arguments and errors as
-    :func:`load_hardened`; ValueError also if the agent has other adapters or weights.
+    Adapters of ``agent`` that are not in the folder are not changed. Arguments and errors are as in
+    :func:`load_hardened`. ValueError is also raised if the agent has different adapters or weights.
     """
     folder = Path(folder)
     _fill(agent, folder, check_hardened(folder), base)
@@ -344,7 +350,8 @@ def _fill(agent: Any, folder: Path, card: dict[str, Any], base: str | Path | Non
     checkpoint.load_weights(agent, _find_base(folder, card["base"], base))
     if adapters.load_adapters(agent, folder) != adapted:
         raise ValueError(
-            f"{folder} holds adapters of other modules than agent.adapters names. Build the agent "
+            f"{folder} holds adapters for different modules than agent.adapters names. Build "
+            "the agent "
             f"with its {CONFIG}."
         )
 
@@ -357,7 +364,7 @@ def check_hardened(folder: Path) -> dict[str, Any]:
 
     Raises:
         FileNotFoundError: Another file is missing.
-        ValueError: A file was changed, or the card is damaged.
+        ValueError: A file has been changed, or the card is damaged.
     """
     card = read_card(folder)
     manifest = folders.read_manifest(folder, _AGAIN)
@@ -419,17 +426,17 @@ def _is_path(value: Any) -> bool:
 
 
 def vocabulary_sha(agent: Any) -> str | None:
-    """Return 12 hex digits of the sha256 of an agent's words in id order.
+    """Return the first 12 hex digits of the sha256 of an agent's words in the order of their ids.
 
-    None for an agent without a vocabulary.
+    If the agent has no vocabulary, the result is None.
     """
-    if not hasattr(agent, "vocabulary"):  # only some kinds of agents have one
+    if not hasattr(agent, "vocabulary"):  # only some kinds of agents have a vocabulary
         return None
     return hashlib.sha256("\n".join(agent.vocabulary).encode()).hexdigest()[:12]
 
 
 def _find_base(folder: Path, reference: dict[str, str], base: str | Path | None) -> Path:
-    """Return the file of the weights that the adapters in ``folder`` belong to."""
+    """Return the file of the base weights to which the adapters in ``folder`` belong."""
     parents = [parent / reference["weights"] for parent in folder.resolve().parents]
     local, *shipped = places(reference["weights"])
     candidates = [local, *parents, *shipped] if base is None else [Path(base)]

@@ -64,7 +64,8 @@ def _parts(value: Any) -> Iterable[tuple[Any, Any]]:
 
 @contextmanager
 def in_eval_mode(agent: Any) -> Iterator[None]:
-    """Put every network of ``agent`` into eval mode, and restore the modes of all modules.
+    """Put every network of ``agent`` into eval mode, and restore the previous modes of all modules
+    at the end.
 
     Each network's ``eval()`` is called, because a class may override it.
     """
@@ -83,4 +84,4 @@ def in_eval_mode(agent: Any) -> Iterator[None]:
 
 
 def _has_mode(module: nn.Module) -> bool:
-    return hasattr(module, "training")  # an exported program lacks it
+    return hasattr(module, "training")  # an exported program has no such method

@@ -1,6 +1,6 @@
-"""Checks of observations before an agent uses them.
+"""Check observations before an agent uses them.
 
-A wrong unit or layout would not fail later: the agent would only navigate badly.
+Otherwise a wrong unit or layout would raise no error: the agent would only navigate badly.
 """
 
 from __future__ import annotations
@@ -15,8 +15,9 @@ from mitigate.agents.agent import as_agent
 from mitigate.agents.text import UNKNOWN, Vocabulary
 from mitigate.core.observation import DEPTH, POSE, RGB, VIEWS, Sensor
 
-FARTHEST = 50.0  # metres (heuristic): indoors, some pixel of twelve views is nearer, such as floor
-NEAREST = 1.0  # metres (heuristic): in almost all rooms some pixel is farther away
+# metres (heuristic); indoors, some pixel of twelve views is always nearer, such as the floor
+FARTHEST = 50.0
+NEAREST = 1.0  # metres (heuristic); in almost every room, some pixel is farther away
 
 CHANNELS = {RGB: 3, DEPTH: 1}
 
@@ -104,16 +105,16 @@ def frame(observation: Mapping[str, Any], name: str, views: int) -> np.ndarray:
         )
     if name == DEPTH:
         _check_unit(array, views)
-    # torch needs contiguous and writeable arrays; others are copied
+    # torch needs contiguous and writeable arrays, so other arrays are copied
     return np.require(array, np.uint8 if name == RGB else np.float32, ["C", "W"])
 
 
 def pose(observation: Mapping[str, Any]) -> np.ndarray:
-    """Return the pose [3], unchanged.
+    """Check the pose [3] and return it unchanged.
 
     Raises:
         KeyError: It is missing.
-        ValueError: It is not three finite numbers.
+        ValueError: The pose does not consist of three finite numbers.
     """
     array = _entry(observation, POSE)
     if array.shape != (3,) or not np.isfinite(array).all():
@@ -125,7 +126,7 @@ def pose(observation: Mapping[str, Any]) -> np.ndarray:
 
 
 def instruction(text: str, vocabulary: Vocabulary) -> str:
-    """Return ``text``; warn if it contains no word of ``vocabulary``.
+    """Return ``text``, and warn if it contains no word of ``vocabulary``.
 
     Raises:
         TypeError: ``text`` is not a string.

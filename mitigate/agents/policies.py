@@ -1,9 +1,9 @@
 """Use trained policies of other libraries as agents: stable-baselines3, torchrl, plain torch.
 
 :func:`as_policy` recognises a policy by its methods; no other library is imported. The agent reads
-the frames of a world, converts them back to the environment's own observation
-(``World.native``), and asks the policy. :meth:`Policy.answer` gives the action distributions
-for batches of frames, with gradients, which ``mitigate.harden`` trains.
+the frames of a world, converts them back to the environment's own observation format
+(``World.native``), and calls the policy. :meth:`Policy.answer` gives the action distributions for
+batches of frames, with gradients, which ``mitigate.harden`` trains.
 """
 
 from __future__ import annotations
@@ -37,15 +37,15 @@ from mitigate.core.observation import DEPTH, RGB
 from mitigate.core.spaces import ActionSpace, Box, Composite, Discrete, MultiDiscrete
 from mitigate.worlds.seeded import WHOLE
 
-# One distribution per part of the action, or the actions (or values of actions) [B, ...] themselves
+# Either one distribution per part of the action, or actions or action values [B, ...]
 Answer = Sequence[Distribution] | Tensor
 Forward = Callable[..., Any]
 
 
 class Policy(Agent, nn.Module):
-    """A trained network with actions of any kind, as an agent.
+    """Agent that wraps a trained network with actions of any kind.
 
-    A subclass defines ``answer`` for one library.
+    Each supported library has a subclass, which defines ``answer``.
 
     Args:
         network: all weights of the policy.
@@ -72,14 +72,15 @@ class Policy(Agent, nn.Module):
 
         Args:
             observation: the environment's own observation, arrays with a first axis B.
-            memory: the memory before it; None at the start of an episode.
+            memory: the policy's memory before this observation; None at the start of an episode.
         """
         raise NotImplementedError(f"{type(self).__name__} defines no answer(observation, memory)")
 
     def action(self, answer: Answer) -> Any:
-        """Return the likeliest action of the first answer of a batch.
+        """Return the most probable action for the first item of a batch.
 
-        A tensor holds the value of each action if actions are discrete, else the action.
+        If the answer is a tensor, it holds the value of each action for discrete actions, and
+        otherwise the action itself.
         """
         if isinstance(self.space, MultiDiscrete):
             return self.executable(torch.stack([mode(part)[0] for part in answer]))
@@ -110,12 +111,12 @@ class Policy(Agent, nn.Module):
 
     @property
     def name(self) -> str:
-        """Class of the policy, for messages and tables."""
+        """Class name of the policy, for messages and tables."""
         return type(self.network).__name__
 
     @property
     def version(self) -> str:
-        """Class and hash of the weights, the name of this policy's rows."""
+        """Class name and hash of the weights, which name this policy in result rows."""
         return f"{self.name}-{checkpoint.weights_sha(self.network)}"
 
     @property
@@ -129,11 +130,12 @@ class Policy(Agent, nn.Module):
         return next(self.network.parameters()).device
 
     def settings(self) -> dict[str, Any]:
-        """Return what determines its actions besides the weights."""
+        """Return the settings that determine the policy's actions, besides its weights."""
         return {"policy": self.name, "architecture": str(self.network), "native": repr(self.native)}
 
     def train(self, mode: bool = True) -> Any:
-        """Stay in eval mode: no dropout, and normalisations keep their statistics."""
+        """Keep the network in eval mode, so that dropout is off and normalisation statistics do not
+        change."""
         return super().train(False)
 
     def reset(self, instruction: str) -> None:
@@ -164,11 +166,12 @@ class Policy(Agent, nn.Module):
         return torch.stack([part.entropy().sum() for part in answer]).sum()
 
     def answers(self, frames: Mapping[str, np.ndarray], length: int = 1) -> list[Answer]:
-        """Return the answers to windows of consecutive frames, a list with one batch per place.
+        """Return the answers to windows of consecutive frames, as a list with one batch per
+        position in the window.
 
         Args:
-            frames: frames by sensor, [B * length, ...]; each window's frames follow each other.
-            length: frames per window. A recurrent policy starts each window without memory.
+            frames: frames by sensor, [B * length, ...]; the frames of a window are consecutive.
+            length: frames per window. A recurrent policy starts each window with an empty memory.
         """
         arrays = {name: frames[name] for name in self.sensors}
         if not self.recurrent:
@@ -181,11 +184,11 @@ class Policy(Agent, nn.Module):
         return answers
 
     def forget(self) -> None:
-        """Remove what the network keeps of its last call, so that it can be copied."""
+        """Remove data that the network stores from its last call, so that it can be copied."""
 
     @contextmanager
     def recording(self, module: str) -> Iterator[list[Tensor]]:
-        """Record the outputs of a module of the network in the yielded list."""
+        """Yield a list in which the outputs of a module of the network are recorded."""
         outputs: list[Tensor] = []
         target = self.network.get_submodule(module)
         handle = target.register_forward_hook(lambda *call: outputs.append(first(call[2])))
@@ -198,8 +201,8 @@ class Policy(Agent, nn.Module):
 class StableBaselinesPolicy(Policy):
     """A policy of stable-baselines3 or sb3-contrib.
 
-    PPO, A2C, RecurrentPPO, SAC and TQC give the distribution of actions, DDPG and TD3 the action,
-    DQN the values of the actions.
+    PPO, A2C, RecurrentPPO, SAC and TQC give a distribution of actions, DDPG and TD3 an action, and
+    DQN the values of all actions.
     """
 
     def __init__(self, network: Any, native: Any, space: ActionSpace) -> None:
@@ -238,7 +241,8 @@ class StableBaselinesPolicy(Policy):
             last_call = read(module, "action_dist")
             for name, value in vars(last_call).items() if last_call else ():
                 if isinstance(value, (Tensor, Distribution, list)):
-                    setattr(last_call, name, None)  # distributions and actions, with their graph
+                    # distributions and actions, with their autograd graph
+                    setattr(last_call, name, None)
 
     def executable(self, chosen: Tensor) -> Any:
         policy: Any = self.network
@@ -250,7 +254,7 @@ class StableBaselinesPolicy(Policy):
 class TorchrlPolicy(Policy):
     """A policy of torchrl or tensordict: a module with ``in_keys`` and ``out_keys``.
 
-    A probabilistic module gives the distribution of actions, another one ``logits``,
+    A probabilistic module gives a distribution of actions. Other modules give ``logits``,
     ``action_value`` or ``action``.
     """
 
@@ -261,7 +265,7 @@ class TorchrlPolicy(Policy):
         outputs = {_dotted(key) for key in network.out_keys}
         self._fed_back = [
             key for key in network.in_keys if f"next.{_dotted(key)}" in outputs
-        ]  # recurrent modules return their state as "next"
+        ]  # recurrent modules return their new state in the entry "next"
         self.recurrent = bool(self._fed_back)
 
     def answer(self, observation: Any, memory: Any = None) -> tuple[Answer, Any]:
@@ -305,7 +309,7 @@ class ModulePolicy(Policy):
     ``forward(network, observation)``, or with ``recurrent`` ``forward(network, observation,
     memory)``, returns logits of the actions [B, n] (discrete actions), actions [B, ...]
     (continuous ones), a ``torch.distributions`` object, or a list of these; with ``recurrent``
-    also the new memory. By default the network is called itself. ``observation`` holds tensors on
+    also the new memory. By default, the network itself is called. ``observation`` holds tensors on
     the network's device.
     """
 
@@ -352,7 +356,7 @@ class ModulePolicy(Policy):
 
 
 def is_policy(thing: Any) -> bool:
-    """Return whether ``thing`` is a policy of another library, and not an agent."""
+    """Return whether ``thing`` is a policy of a supported library rather than an agent."""
     network = thing if isinstance(thing, nn.Module) else read(thing, "policy")
     return isinstance(network, nn.Module) and bool(missing_members(thing, ("act",)))
 
@@ -360,19 +364,19 @@ def is_policy(thing: Any) -> bool:
 def as_policy(
     policy: Any, world: Any, *, forward: Forward | None = None, recurrent: bool = False
 ) -> Policy:
-    """Return a trained policy as an agent of ``world``.
+    """Wrap a trained policy as an agent for ``world``.
 
     Args:
         policy: a model or policy of stable-baselines3, a module of torchrl or tensordict, or any
-            ``nn.Module``. It is not copied.
-        world: a world of an environment (``GymWorld``, ``EnvWorld``).
+            ``nn.Module``. The policy is not copied.
+        world: the world of an environment (``GymWorld``, ``EnvWorld``).
         forward: how to call an ``nn.Module`` (:class:`ModulePolicy`).
         recurrent: whether ``forward`` takes and returns a memory.
 
     Raises:
-        TypeError: The policy is of another kind.
-        ValueError: The world does not name its actions or its own observation, or the policy reads
-            entries that the world's ``entries`` lack.
+        TypeError: The policy is of an unsupported type.
+        ValueError: The world lacks ``action_space`` or ``native``, or the policy reads entries that
+            are missing in the world's ``entries``.
     """
     if isinstance(policy, Policy):
         return policy
@@ -421,7 +425,7 @@ def as_policy(
 
 
 def _check_read(names: Any, world: Any) -> None:
-    """Raise ValueError if the policy reads entries that the world leaves out."""
+    """Raise ValueError if the policy reads entries that the world does not provide."""
     known = {entry.split(".")[0] for entry in world.entries.values()}
     missing = [name for name in names if name not in known]
     if missing:
@@ -433,15 +437,15 @@ def _check_read(names: Any, world: Any) -> None:
 
 
 def load_policy(policy: Any, folder: str | Path) -> Any:
-    """Load the weights that ``mitigate.harden`` wrote into ``policy``, in place, and return it.
+    """Load hardened weights (from ``mitigate.harden``) into ``policy``, in place, and return it.
 
     Args:
-        policy: a policy with the architecture of the hardened one; for adapters the original
-            policy, because they fit only its weights.
+        policy: a policy with the architecture of the hardened one; for adapters it must be the
+            original policy, because they fit only its weights.
         folder: the folder ``agent`` of the run.
 
     Raises:
-        FileNotFoundError, ValueError: The weights are missing, damaged, or do not fit.
+        FileNotFoundError, ValueError: The weights are missing or damaged, or they do not fit.
     """
     network = policy if isinstance(policy, nn.Module) else policy.policy
     if (Path(folder) / adapters.SETTINGS).is_file():
@@ -452,7 +456,7 @@ def load_policy(policy: Any, folder: str | Path) -> Any:
 
 
 def copied(policy: Policy) -> Policy:
-    """Return a copy of a policy with its own weights.
+    """Return a copy of a policy that shares no weights with the original.
 
     Raises:
         ValueError: The network cannot be copied.
@@ -491,7 +495,7 @@ def last_convolution(policy: Policy) -> str:
 
 
 def mode(distribution: Any) -> Tensor:
-    """Return the likeliest value of a distribution, [B, ...]."""
+    """Return the most probable value of a distribution, [B, ...]."""
     if isinstance(distribution, (Categorical, OneHotCategorical)):
         return distribution.logits.argmax(-1)
     if isinstance(distribution, Independent):
@@ -505,11 +509,11 @@ def mode(distribution: Any) -> Tensor:
 
 
 def divergence(teacher: Answer, student: Answer) -> Tensor:
-    """Return how far the student's answers are from the teacher's, the mean over the batch.
+    """Return the mean difference over the batch between the student's and the teacher's answers.
 
-    The KL divergence KL(teacher || student), summed over the parts of an action; for actions or
-    values without a distribution the squared error divided by the teacher's variance over the
-    batch.
+    For distributions it is the KL divergence KL(teacher || student), summed over the parts of an
+    action. For plain actions or values it is the squared error divided by the teacher's variance
+    over the batch.
     """
     if isinstance(teacher, Tensor) or isinstance(student, Tensor):
         assert isinstance(teacher, Tensor) and isinstance(student, Tensor)
@@ -549,7 +553,7 @@ def imitation(teacher: Answer, student: Answer) -> Tensor:
 
 
 def _base(distribution: Any) -> Distribution:
-    """Return the distribution below bijections, which leave the divergence unchanged."""
+    """Remove bijective transforms from a distribution, which do not change the divergence."""
     while isinstance(distribution, (Independent, TransformedDistribution)):
         distribution = distribution.base_dist
     return distribution
@@ -560,7 +564,7 @@ def _parts(distributions: Any) -> list[Distribution]:
 
 
 def _flat(observation: Any, prefix: str = "") -> dict[str, Any]:
-    """Return the arrays of an observation by dotted name."""
+    """Return a flat dict of the arrays of an observation, by dotted name."""
     if not isinstance(observation, Mapping):
         return {prefix: observation}
     parts: dict[str, Any] = {}

@@ -1,8 +1,8 @@
-"""Allowed values of settings that are stored with weights.
+"""Define the allowed values of settings that are stored with weights.
 
-Each class in ``KINDS`` defines ``settings_schema`` next to its constructor. No shipped agent
-comes near the limits. They prevent a file from allocating all memory, and patterns that take
-forever to match.
+Each class in ``KINDS`` defines ``settings_schema`` next to its constructor. The settings of shipped
+agents are far below the limits. The limits prevent a file from allocating all memory, and from
+using patterns that take too long to match.
 """
 
 from __future__ import annotations
@@ -17,29 +17,30 @@ from mitigate.core import names, settings
 from mitigate.core.observation import DEPTH, RGB, VIEWS
 
 SENSES = (RGB, DEPTH, "instruction")
-MOST_TARGETS = 64  # patterns of a list
+MOST_TARGETS = 64  # maximum number of patterns in a list
 MOST_WORDS = 50_000  # largest size of a vocabulary
 _WORD = re.compile(r"[a-z]{1,40}")
-_PATTERN = re.compile(r"[\w.\\\[\]|*+?-]{1,200}", re.ASCII)  # no groups, no counts
-_REPEATS = 2  # quantifiers of a pattern; more can backtrack for too long
+# patterns contain no groups and no counts
+_PATTERN = re.compile(r"[\w.\\\[\]|*+?-]{1,200}", re.ASCII)
+_REPEATS = 2  # maximum number of quantifiers in a pattern; more can backtrack for too long
 
 
 def check_blind(blind: Sequence[str], senses: Sequence[str] = SENSES) -> None:
-    """Raise ValueError if ``blind`` names an input that is not in ``senses``."""
+    """Raise ValueError if ``blind`` contains a name that is not in ``senses``."""
     for name in blind:
         if name not in senses:
             raise ValueError(names.unknown("sense to blank (agent.blind)", name, senses))
 
 
 class Kind(NamedTuple):
-    """Allowed values: ``words`` describes what ``fits`` accepts."""
+    """Allowed values: The text ``words`` describes the values that ``fits`` accepts."""
 
     words: str
     fits: Callable[[Any], bool]
 
 
 def whole(least: int, most: int) -> Kind:
-    """Return the kind of whole numbers from ``least`` to ``most`` inclusive, without booleans."""
+    """Return the type of integers from ``least`` to ``most`` inclusive, without booleans."""
     return Kind(
         f"a whole number from {least} to {most}",
         lambda value: type(value) is int and least <= value <= most,
@@ -47,7 +48,7 @@ def whole(least: int, most: int) -> Kind:
 
 
 def number(least: float, most: float) -> Kind:
-    """Return the kind of numbers from ``least`` to ``most`` inclusive, without booleans."""
+    """Return the type of numbers from ``least`` to ``most`` inclusive, without booleans."""
     return Kind(
         f"a number from {least:g} to {most:g}",
         lambda value: type(value) in (int, float) and least <= value <= most,
@@ -55,12 +56,12 @@ def number(least: float, most: float) -> Kind:
 
 
 def one_of(allowed: tuple[str, ...]) -> Kind:
-    """Return the kind of values in ``allowed``."""
+    """Return the type of values that are in ``allowed``."""
     return Kind(f"one of {', '.join(allowed)}", lambda value: value in allowed)
 
 
 def some_of(allowed: tuple[str, ...]) -> Kind:
-    """Return the kind of lists of ``allowed`` values."""
+    """Return the type of lists whose items are in ``allowed``."""
     return Kind(
         f"a list of {', '.join(allowed)}",
         lambda value: isinstance(value, list) and all(item in allowed for item in value),
@@ -93,7 +94,7 @@ def _are_words(value: Any) -> bool:
 
 VOCABULARY = Kind(f"null or a list of at most {MOST_WORDS} words of the letters a to z", _are_words)
 TRUTH = Kind("true or false", lambda value: type(value) is bool)
-ADAPTERS = {  # keyword arguments of ``insert_adapters``
+ADAPTERS = {  # allowed keyword arguments of ``insert_adapters``
     "target_modules": TARGETS,
     "ring": TARGETS,
     "gates": TARGETS,
@@ -105,7 +106,7 @@ ADAPTERS = {  # keyword arguments of ``insert_adapters``
     "views": Kind(f"{VIEWS}, as the agents' panoramas have", lambda value: value == VIEWS),
     "hfov": number(1, 179),
 }
-ENCODERS = {  # settings that all shipped agents share
+ENCODERS = {  # settings that all shipped agents have
     "size": whole(16, 1024),
     "blind": some_of(SENSES),
     "adapters": ADAPTERS,
@@ -113,11 +114,12 @@ ENCODERS = {  # settings that all shipped agents share
 
 
 class Schema(NamedTuple):
-    """Allowed settings of a kind of agent: the attribute ``settings_schema`` of its class.
+    """The allowed settings of a kind of agent, stored in ``settings_schema`` of its class.
 
     Attributes:
-        settings: the allowed values by name; nested mappings for arguments of a part.
-        part: the setting with the arguments of the part that has attention heads; "" for none.
+        settings: the allowed values by name; nested mappings describe the arguments of a part.
+        part: the setting with the arguments of the part that has attention heads, or "" if there is
+            no such part.
         usual: default width and heads of that part.
     """
 
@@ -134,14 +136,14 @@ KINDS = (  # the only classes that a folder may name
 
 
 def class_of(target: str) -> Any:
-    """Return the class of one of ``KINDS``; its module is imported only now."""
+    """Import and return the class of one of ``KINDS``."""
     assert target in KINDS, target
     module, _, name = target.rpartition(".")
-    return getattr(import_module(module), name)  # a name from KINDS
+    return getattr(import_module(module), name)  # always a name from KINDS
 
 
 def schema_of(target: str) -> Schema:
-    """Return the schema of one of ``KINDS``."""
+    """Return the settings schema of one of ``KINDS``."""
     return class_of(target).settings_schema
 
 
@@ -160,7 +162,8 @@ def check(
         again: advice after an error.
 
     Raises:
-        ValueError: A setting is unknown or has an invalid value; names the file and the setting.
+        ValueError: A setting is unknown or has an invalid value; the message names the file and the
+            setting.
     """
     kind = schema_of(target)
     _check(values, kind.settings, file, "agent", again)

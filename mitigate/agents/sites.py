@@ -18,14 +18,14 @@ MAP, TOKENS = "map", "tokens"
 
 @dataclass(frozen=True)
 class Site:
-    """The output of a module.
+    """Describes the output of a module.
 
     Attributes:
-        kind: "map" ``[n, C, h, w]``, or "tokens", whose last axis is C (including vectors).
-        channels: C.
+        kind: "map" for ``[n, C, h, w]``, or "tokens" if C is the last axis (including vectors).
+        channels: number of channels C.
         batch: the axis of the frames.
         shape: the shape for two frames.
-        order: position of its first call among all modules.
+        order: position of the module's first call among all modules.
         calls: number of calls in one forward pass.
     """
 
@@ -38,7 +38,8 @@ class Site:
 
 
 def first(output: Any) -> Any:
-    """Return ``output``, or the first item of a tuple or list, as Hugging Face blocks return."""
+    """Return ``output``; if it is a tuple or list, as from Hugging Face blocks, return the first
+    item."""
     return output[0] if isinstance(output, (tuple, list)) and len(output) else output
 
 
@@ -46,8 +47,8 @@ def first(output: Any) -> Any:
 def find_sites(model: nn.Module, run: Run) -> dict[str, Site | str]:
     """Return the output of every module that ``run`` calls, by name.
 
-    It is a :class:`Site`, or the reason why no adapter fits, in words. ``run(2)`` and ``run(3)``
-    are called; the axis that grows is the axis of the frames.
+    Each output is described by a :class:`Site`, or by a text that explains why no adapter fits.
+    ``run(2)`` and ``run(3)`` are called; the axis that grows from 2 to 3 is the axis of the frames.
     """
     with in_eval_mode(model):
         two, three = _shapes(model, run, 2), _shapes(model, run, 3)
@@ -58,7 +59,7 @@ def find_sites(model: nn.Module, run: Run) -> dict[str, Site | str]:
 
 
 def _shapes(model: nn.Module, run: Run, count: int) -> dict[str, tuple[Any, int]]:
-    """Return the output's shape (or type name) and the number of calls, in order of return."""
+    """Return each output's shape (or type name) and the module's number of calls, in call order."""
     seen: dict[str, tuple[Any, int]] = {}
 
     def watch(name: str) -> Callable:
@@ -105,11 +106,11 @@ def choose(sites: dict[str, Site | str], model: nn.Module, count: int) -> list[s
     """Return the names of up to ``count`` blocks, spread evenly from the first to the last.
 
     A block is a numbered item of a list (``layers.3``) that contains modules and returns a map or
-    tokens once per forward pass. In nested lists the outermost level with at least four blocks
-    counts, because a ResNet has few stages and many blocks.
+    tokens once per forward pass. In nested lists, the outermost level with at least four blocks is
+    used, because a ResNet has few stages and many blocks.
 
     Raises:
-        ValueError: There is no such level.
+        ValueError: No list has at least four blocks.
     """
     levels: dict[int, list[str]] = {}
     modules = dict(model.named_modules())
@@ -132,7 +133,7 @@ def choose(sites: dict[str, Site | str], model: nn.Module, count: int) -> list[s
 
 
 def listed(what: str, targets: Iterable[str]) -> list[str]:
-    """Return ``targets`` as a list. Raises TypeError for a single string."""
+    """Return the targets as a list. Raises TypeError for a single string."""
     if isinstance(targets, str):
         raise TypeError(
             f"{what} must be a list of names or regular expressions, got a string. Write "

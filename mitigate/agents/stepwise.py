@@ -1,4 +1,4 @@
-"""Base class of agents that choose each low-level action from the current observation alone.
+"""Define the base class of agents that choose each action from the current observation alone.
 
 A subclass declares its inputs and defines ``forward``. Acting, collecting decisions under an expert
 and evaluating batches of decisions are implemented here.
@@ -21,7 +21,7 @@ from mitigate.worlds.world import World, expert_of
 
 
 class Frames(dict[str, Tensor]):
-    """Inputs of ``forward`` by name."""
+    """The inputs of ``forward`` by name."""
 
     def __missing__(self, name: str) -> Tensor:
         raise ValueError(
@@ -32,11 +32,11 @@ class Frames(dict[str, Tensor]):
 
 @dataclass
 class StepDecisions:
-    """B steps with the expert's answers.
+    """A batch of B steps with the expert's answers.
 
     Attributes:
         frames: inputs by name, [B, ...].
-        clean: the inputs before corruption; empty if they were not kept.
+        clean: the inputs before corruption, or an empty dict if they were not kept.
         texts: the instruction of each step.
         target: [B, actions], one-hot.
         weight: [B].
@@ -51,7 +51,7 @@ class StepDecisions:
     episode_ids: list[str]
 
     def to(self, device: Any) -> StepDecisions:
-        """Return the steps on ``device``."""
+        """Return a copy of the batch on ``device``."""
         frames = Frames({name: tensor.to(device) for name, tensor in self.frames.items()})
         clean = Frames({name: tensor.to(device) for name, tensor in self.clean.items()})
         target, weight = self.target.to(device), self.weight.to(device)
@@ -61,32 +61,33 @@ class StepDecisions:
 class StepwiseAgent(Agent, nn.Module):
     """A trainable agent (``agents/agent.py``) without memory; a subclass defines ``forward``.
 
-    Its parts are its child modules.
+    The trainable parts of the agent are its child modules.
 
     Attributes:
         needs: entries of observations that ``forward`` reads.
         actions: number of actions; 0 is STOP.
-        limit: steps of a training rollout.
+        limit: maximum number of steps in a training rollout.
     """
 
     needs: tuple[str, ...] = (RGB,)
     actions = 4
     limit = 100
 
-    plain_walks = False  # steps hold numpy arrays
+    plain_walks = False  # the steps hold numpy arrays
 
     def forward(self, frames: Frames, texts: Sequence[str]) -> tuple[Tensor, dict[str, Tensor]]:
         """Return logits [B, actions] and features by name.
 
         Args:
-            frames: the entries in ``needs`` of B observations, as the world's sensors give them.
+            frames: the entries in ``needs`` of B observations, in the format of the world's
+                sensors.
             texts: the B instructions.
         """
         raise NotImplementedError(f"{type(self).__name__} defines no forward(frames, texts)")
 
     @property
     def sensors(self) -> tuple[str, ...]:  # type: ignore[override]
-        """The entries of observations that it reads."""
+        """The entries of observations that the agent reads."""
         return self.needs
 
     def parts(self) -> dict[str, nn.Module]:
@@ -124,10 +125,10 @@ class StepwiseAgent(Agent, nn.Module):
     ) -> list[dict[str, Any]]:
         """Run episodes and return one dict per step, with the expert's answer.
 
-        The agent's STOP is never taken, so that it also learns from the steps after a wrong one.
+        The agent's STOP is never taken, so that it also learns from the steps after a wrong STOP.
 
         Raises:
-            ValueError: A world has no expert, or the logits are invalid.
+            ValueError: One of the worlds has no expert, or the logits are invalid.
         """
         observations = [world.reset(e) for world, e in zip(worlds, episodes, strict=True)]
         experts = [expert_of(world) for world in worlds]
@@ -148,7 +149,7 @@ class StepwiseAgent(Agent, nn.Module):
         return steps
 
     def join(self, pieces: Sequence[list[dict[str, Any]]]) -> StepDecisions:
-        """Return one batch of all steps of the pieces."""
+        """Join all steps of several pieces into one batch."""
         steps = [step for piece in pieces for step in piece]
         answers = torch.tensor([step["answer"] for step in steps])
         frames, clean = (_stacked([step[kind] for step in steps]) for kind in ("frames", "clean"))
@@ -169,7 +170,7 @@ class StepwiseAgent(Agent, nn.Module):
     def _step(
         self, observation: Observation, expert: Any, episode: Episode, clean: bool
     ) -> dict[str, Any]:
-        # copies, because a world may reuse its arrays
+        # these are copies, because a world may reuse its arrays
         return {
             "frames": {name: np.array(observation[name]) for name in self.needs},
             "clean": {name: np.array(observation.clean[name]) for name in self.needs if clean},

@@ -1,12 +1,13 @@
-"""The words that agents know: concepts of views, and the vocabulary of instructions.
+"""Define the words that agents know: concepts of views, and the vocabulary of instructions.
 
 The RGB encoder predicts the concepts in the central 36 degrees of each view. The planner multiplies
 their probabilities with the text embeddings of their words, so that views and instructions share
 one embedding space.
 
-A vocabulary is closed and small, with tokens for ``[MASK]`` and unknown words. It is one of an
-agent's settings, so it is stored with the weights and is part of the fingerprint. With other words
-of the same number, the weights would load but be misread.
+A vocabulary is a small, fixed list of words, with extra tokens for ``[MASK]`` and unknown words.
+The vocabulary is one of an agent's settings, so it is stored with the weights and is part of the
+fingerprint. With the same number of different words, the weights would load but be assigned to
+wrong words.
 """
 
 from __future__ import annotations
@@ -24,7 +25,7 @@ THING_NAMES = (
 )
 COLOUR_NAMES = ("red", "orange", "yellow", "green", "blue", "purple", "brown", "white")
 ROOM_NAMES = ("bedroom", "bathroom", "kitchen", "living room", "office", "dining room")
-# visible objects, objects nearer than 2 m, colours of objects, kinds of visible rooms
+# concepts: visible objects, objects nearer than 2 m, colours of objects, kinds of visible rooms
 CONCEPTS = (*THING_NAMES, *(f"near {name}" for name in THING_NAMES), *COLOUR_NAMES, *ROOM_NAMES)
 THINGS = slice(0, len(THING_NAMES))
 NEAR = slice(len(THING_NAMES), 2 * len(THING_NAMES))
@@ -43,19 +44,19 @@ _WORDS = """
     straight swing table take that the then there through to toilet towards turn tv up wait
     walk wardrobe washing way when white with yellow you your
 """
-WORDS = tuple(_WORDS.split())  # all of the apartments' training templates
+WORDS = tuple(_WORDS.split())  # all words of the apartments' training templates
 _WORD = re.compile(r"\[MASK\]|[a-z]+")
 
 
 class Vocabulary:
-    """The words an agent knows, in the order of their ids.
+    """The words that an agent knows, in the order of their ids.
 
     Args:
-        words: lower-case words without the special ones; None: ``WORDS``.
+        words: lower-case words without the special tokens. None means ``WORDS``.
 
     Raises:
-        ValueError: A word is repeated or has other characters than a to z, or a concept's word is
-            missing.
+        ValueError: A word is repeated, has characters other than a to z, or the word of a concept
+            is missing.
     """
 
     def __init__(self, words: Sequence[str] | None = None) -> None:

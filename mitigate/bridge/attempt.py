@@ -1,7 +1,7 @@
-"""One attempt to measure a condition: the user's command and a server of frames.
+"""Make one attempt to measure a condition: run the user's command and a server for its frames.
 
-An attempt begins in an empty folder. It ends with a finished condition (``done.json``), or with
-the reason why it does not count, even if the command ended with status 0.
+An attempt begins in an empty folder. It ends with a finished condition (``done.json``), or with the
+reason why the condition is not finished, even if the command ended with status 0.
 """
 
 from __future__ import annotations
@@ -25,9 +25,10 @@ from mitigate.core.names import counted
 from mitigate.core.output import open_output
 from mitigate.core.signals import uninterrupted
 
-DISCONNECT_TIME = 5.0  # seconds in which connections of an ended command close (heuristic)
-MAX_SILENCE = 10  # times patience: a command that lost an episode counts as hanging (heuristic)
-MAX_NAMED = 3  # processes that a message names
+DISCONNECT_TIME = 5.0  # seconds to wait until the connections of an ended command close (heuristic)
+# after this many times ``patience``, a command that lost an episode is hanging (heuristic)
+MAX_SILENCE = 10
+MAX_NAMED = 3  # maximum number of processes that a message lists
 CRASH = (
     "If the agent crashes on corrupted input, a loop without Habitat can count that as a failure: "
     "try ... except, and episode.finish(success=False) (docs/bridge.md)."
@@ -35,13 +36,14 @@ CRASH = (
 
 
 class Attempt:
-    """Runs the command of a cell. Call :meth:`poll` until it ends, and :meth:`kill` in any case.
+    """Runs the command of a cell (one condition and its folder). Call :meth:`poll` until it ends,
+    and :meth:`kill` in any case.
 
     Attributes:
         cell: The condition.
         files: Size and hash of the command's files when it was started.
         loaded: Whether a Python process of the command loaded the hook.
-        left: Descriptions of processes that still ran after the command ended.
+        left: Descriptions of processes that were still running after the command ended.
     """
 
     def __init__(self, cell: Cell) -> None:
@@ -58,7 +60,7 @@ class Attempt:
     def start(self) -> None:
         """Start the server and the command in an empty folder.
 
-        Files of an earlier attempt are put aside.
+        Files of an earlier attempt are moved away first.
 
         Raises:
             ValueError: Another run uses the folder, or the command cannot be started.
@@ -98,7 +100,7 @@ class Attempt:
                 raise ValueError(f"{words[0]} cannot be started: {error.strerror}.") from error
 
     def _words(self) -> list[str]:
-        """Return the words of the command with the values of its placeholders."""
+        """Return the words of the command with all placeholders replaced."""
         cell = self.cell
         placeholders = {
             "{condition}": cell.name,
@@ -112,10 +114,11 @@ class Attempt:
         return words
 
     def poll(self) -> str | None:
-        """Return None while the command runs, then the problem, or an empty text."""
+        """Return None while the command runs, and then a description of the problem or an empty
+        text."""
         try:
             return self._poll()
-        except ValueError as error:  # its events are damaged
+        except ValueError as error:  # the events are damaged
             self.kill()
             return str(error)
 
@@ -137,7 +140,8 @@ class Attempt:
         self._check_events()
         self.kill()
         problem = self._describe_problem(status)
-        if cell.clean is not None and cell.extra_episodes():  # clean must be measured again
+        # the clean condition must be measured again
+        if cell.clean is not None and cell.extra_episodes():
             (cell.clean / DONE).unlink(missing_ok=True)
         if not problem:
             entries = {**cell.settings, "condition": cell.corruption.name}
@@ -180,14 +184,14 @@ class Attempt:
     def _is_connected(self) -> bool:
         try:
             return self.cell.reports().connected > 0
-        except ValueError:  # damaged events, which are reported elsewhere
+        except ValueError:  # damaged events are reported elsewhere
             return False
 
     def _settle(self) -> None:
-        """Wait until the server recorded all unfinished episodes.
+        """Wait until the server has recorded all unfinished episodes.
 
-        This includes episodes of processes that outlive the command, such as those in another
-        session or in a container.
+        This includes episodes of processes that run longer than the command, for example in a
+        different session or in a container.
         """
         assert self.listener is not None
         if not self._wait_for_disconnects(DISCONNECT_TIME):
@@ -195,7 +199,7 @@ class Attempt:
             self._wait_for_disconnects(GRACE)
 
     def _wait_for_disconnects(self, seconds: float) -> bool:
-        """Return whether the last connection ends within this time."""
+        """Return whether the last connection closes within this time."""
         until = time.monotonic() + seconds
         while self.cell.reports().connected > 0:
             if time.monotonic() > until:
@@ -204,7 +208,7 @@ class Attempt:
         return True
 
     def _describe_hang(self) -> str | None:
-        """Return why a running command will not end; None if it may."""
+        """Return the reason why a running command will never end, or None."""
         assert self.listener is not None
         if not self.listener.is_alive():
             return "the server of frames ended, and the command was stopped. Run again."
@@ -226,7 +230,7 @@ class Attempt:
         return None
 
     def _describe_problem(self, status: int) -> str:
-        """Return the problem of a command that ended with ``status``, or an empty text."""
+        """Describe the problem of a command that ended with ``status``, or return an empty text."""
         reports = self.cell.reports()
         if reports.problems:
             return reports.problems[0]
@@ -242,7 +246,7 @@ class Attempt:
         )
 
     def _describe_left(self) -> str:
-        """Return the problem that processes still ran after the command ended."""
+        """Describe the problem that processes were still running after the command ended."""
         names = ", ".join(self.left[:MAX_NAMED]) + ", ..." * (len(self.left) > MAX_NAMED)
         count = "1 process" if len(self.left) == 1 else f"{len(self.left)} processes"
         return (
@@ -253,7 +257,8 @@ class Attempt:
         )
 
     def _check_count(self, reports: Reports) -> str:
-        """Return the problem if fewer episodes ended than were announced or chosen, else ""."""
+        """Describe the problem if fewer episodes ended than were announced or chosen, else return
+        ""."""
         cell = self.cell
         chosen = cell.chosen.least() if cell.chosen is not None and cell.clean is None else 0
         least = max(reports.announced, chosen)
@@ -267,7 +272,7 @@ class Attempt:
         )
 
     def _check_interception(self, reports: Reports) -> str:
-        """Return the problem if the bridge received nothing from the agent, else ""."""
+        """Describe the problem if the bridge received nothing from the agent, else return ""."""
         if not reports.hellos and not self.loaded:
             return (
                 "the command ended, but no Python process of it loaded the hook. Does a script "
@@ -296,7 +301,8 @@ class Attempt:
         return ""
 
     def _check_episodes(self, reports: Reports) -> str:
-        """Return the problem if episodes are missing, unfinished or without a result, else ""."""
+        """Describe the problem if episodes are missing, unfinished or without result, else return
+        ""."""
         cell = self.cell
         if reports.lost:
             return (

@@ -1,7 +1,8 @@
-"""The cameras of an agent, the layout of their frames in shared memory, and their corruption.
+"""Describe an agent's cameras, lay out their frames in shared memory, and corrupt them.
 
-Cameras of one call with equal size, field of view and position that are level and multiples of 30
-degrees apart form a panorama. Every other camera is a separate group, with separate draws.
+Cameras in one call form a panorama if they have the same size, field of view and position, are
+level, and face directions that differ by multiples of 30 degrees. Each camera outside a panorama
+forms a separate group with separate random numbers.
 """
 
 from __future__ import annotations
@@ -18,18 +19,19 @@ from mitigate.core.observation import DEPTH, HFOV_DEGREES, POSE, RGB, VIEW_STEP_
 from mitigate.corruptions import Corruption, DepthSensor, FrameStream, Key
 from mitigate.guards.guard import Guards
 
-MAX_BYTES = 1 << 30  # bytes of all frames in a call (heuristic): 24 cameras of 1080 x 1920 have 5e8
-MAX_CAMERAS = 256  # cameras per call (heuristic)
-MAX_MEDIAN = 100.0  # metres: a larger median depth needs a declared range (heuristic)
+# maximum bytes of all frames in a call (heuristic): 24 cameras of 1080 x 1920 have 5e8
+MAX_BYTES = 1 << 30
+MAX_CAMERAS = 256  # maximum number of cameras per call (heuristic)
+MAX_MEDIAN = 100.0  # if the median depth in metres is larger, a range must be declared (heuristic)
 CHANNELS = {RGB: (3,), DEPTH: (1,)}
 _NAME_WITH_YAW = re.compile(r"(?:rgb|depth)_(\d+(?:\.\d+)?)")
-_LEVEL = 1e-3  # radians: a camera with smaller pitch and roll is level
+_LEVEL = 1e-3  # a camera with pitch and roll below this (radians) is level
 _DTYPES = {RGB: ("uint8",), DEPTH: ("float32", "float64", "float16")}
 
 
 @dataclass(frozen=True)
 class Camera:
-    """One camera as the agent's process describes it.
+    """Description of one camera by the agent's process.
 
     Attributes:
         name: Name of the camera in the observations.
@@ -41,7 +43,7 @@ class Camera:
         yaw: Degrees to the left of the agent.
         level: Whether pitch and roll are 0.
         sensor: Range of depth in metres.
-        normalised: Whether depth is divided by that range, to [0, 1].
+        normalised: Whether depth values are divided by that range, so that they lie in [0, 1].
     """
 
     name: str
@@ -60,12 +62,12 @@ class Camera:
         return math.prod(self.shape) * np.dtype(self.dtype).itemsize
 
     def read(self, memory: Any, offsets: Mapping[str, int]) -> np.ndarray:
-        """Return a copy of its frame in ``memory``."""
+        """Return a copy of the camera's frame in ``memory``."""
         frame = np.frombuffer(memory, self.dtype, math.prod(self.shape), offsets[self.name])
         return frame.reshape(self.shape).copy()
 
     def metres(self, depth: np.ndarray) -> np.ndarray:
-        """Return its depth in metres."""
+        """Return the camera's depth in metres."""
         return self.sensor.to_metres(depth) if self.normalised else depth
 
     def check_depth(self, median: float) -> None:
@@ -85,17 +87,17 @@ class Camera:
             )
 
     def panorama_key(self) -> tuple:
-        """Return the properties that cameras of one panorama share."""
+        """Return the properties that are equal for all cameras of a panorama."""
         depth = (self.sensor, self.normalised)
         return (self.kind, self.shape, self.dtype, self.hfov, self.place, *depth)
 
 
 def read_camera(description: Mapping[str, Any], sensor: DepthSensor) -> Camera:
-    """Return the camera that a message describes.
+    """Return the camera that is described in a message.
 
     Args:
-        description: From the agent's process.
-        sensor: Default range of depth, for a description without a range.
+        description: Description from the agent's process.
+        sensor: Default depth range for a description without a range.
 
     Raises:
         ValueError: Frames of the camera cannot be corrupted.
@@ -146,7 +148,7 @@ def _optional_float(value: Any) -> float | None:
 def _read_orientation(orientation: Sequence[float] | None, name: str) -> tuple[float, float, float]:
     """Return pitch and roll in radians and yaw in degrees to the left.
 
-    Without an orientation the yaw is read from the camera's name.
+    If there is no orientation, the yaw is read from the camera's name.
     """
     if orientation is not None and len(orientation) == 3:
         pitch, yaw, roll = map(float, orientation)
@@ -157,12 +159,12 @@ def _read_orientation(orientation: Sequence[float] | None, name: str) -> tuple[f
 
 @dataclass(frozen=True)
 class Group:
-    """Cameras that are corrupted together.
+    """A group of cameras that are corrupted together.
 
     Attributes:
         cameras: The cameras.
-        views: The view of each camera (``core/observation.py``).
-        suffix: Part of the keys; empty for the largest panorama.
+        views: The view number of each camera (``core/observation.py``).
+        suffix: Suffix in the random keys; empty for the largest panorama.
     """
 
     cameras: tuple[Camera, ...]
@@ -171,7 +173,7 @@ class Group:
 
     @property
     def shape(self) -> tuple[int, ...]:
-        """Shape of the array of all views; views without a camera are zero."""
+        """Shape of the array of all views, in which views without a camera are zero."""
         return (1 + max(self.views), *self.cameras[0].shape)
 
     def stream(self) -> FrameStream:
@@ -185,9 +187,9 @@ class Rig:
     """All cameras of a call.
 
     Args:
-        descriptions: From the agent's process.
-        missing: Value in metres of missing depth.
-        turn: Direction of a growing yaw, "left" (Habitat) or "right".
+        descriptions: Descriptions from the agent's process.
+        missing: Value in metres for missing depth.
+        turn: Direction of increasing yaw, "left" (Habitat) or "right".
         streams: Recent frames by group, which an earlier rig of this environment filled; None:
             there was none.
 
@@ -215,7 +217,7 @@ class Rig:
         self.streams = {} if streams is None else streams
 
     def describe(self) -> dict[str, dict[str, Any]]:
-        """Return by camera its kind, field of view, yaw (degrees to the right) and level."""
+        """Return the kind, field of view, yaw (degrees to the right) and level of each camera."""
         sign = 1 if self.turn == "right" else -1
         return {
             camera.name: {
@@ -228,7 +230,7 @@ class Rig:
         }
 
     def lay_out(self, kinds: Sequence[str]) -> tuple[dict[str, int], int]:
-        """Return the offset in memory of each camera of these kinds, and the size of all.
+        """Return the memory offset of each camera of these kinds, and the total size.
 
         Raises:
             ValueError: The size is above ``MAX_BYTES``.
@@ -260,7 +262,7 @@ class Rig:
         Args:
             memory: Shared memory.
             offsets: Offset of each camera in ``memory``.
-            corruption: Parts of other modalities are ignored.
+            corruption: Corruption to apply; parts for other modalities are ignored.
             key: Determines the draws.
             heading: The agent's heading in radians; None if unknown.
         """
@@ -274,10 +276,10 @@ class Rig:
         return changed
 
     def guard(self, memory: Any, offsets: Mapping[str, int], guards: Guards) -> list[str]:
-        """Let ``guards`` change the frames in ``memory``; return the names of the changed cameras.
+        """Apply ``guards`` to the frames in ``memory``; return the names of the changed cameras.
 
-        A panorama of 12 cameras is one frame; every other camera is a separate frame. One RGB and
-        one depth frame of the same position, direction and size form one observation.
+        A panorama of 12 cameras is one frame; each camera outside a panorama is a separate frame.
+        One RGB and one depth frame of the same position, direction and size form one observation.
         """
         frames = [
             frame
@@ -297,7 +299,7 @@ class Rig:
 
 @dataclass(frozen=True)
 class Frame:
-    """One frame for a guard: the views of a panorama, or of one camera, in memory."""
+    """One frame for a guard, which is the views of a panorama or of one camera in memory."""
 
     cameras: tuple[Camera, ...]
     views: np.ndarray
@@ -307,7 +309,7 @@ class Frame:
         return self.cameras[0].kind
 
     def read(self) -> np.ndarray:
-        """Return it as in an observation: uint8 [..., 3], or float32 metres [..., 1]."""
+        """Return the frame as in an observation: uint8 [..., 3], or float32 metres [..., 1]."""
         first = self.cameras[0]
         if first.kind != DEPTH:
             return self.views
@@ -323,14 +325,14 @@ class Frame:
         self.views[...] = frame.reshape(self.views.shape).astype(self.views.dtype, copy=False)
 
     def geometry(self) -> tuple:
-        """Return the properties that an RGB and a depth frame of one view share."""
+        """Return the properties that an RGB and a depth frame of the same view have in common."""
         first = self.cameras[0]
         poses = sorted((camera.yaw, camera.place or ()) for camera in self.cameras)
         return (*poses, first.hfov, first.shape[:2])
 
 
 def _make_frames(group: Group, views: np.ndarray) -> list[Frame]:
-    """Return a complete panorama as one frame, else each camera of the group."""
+    """Return a complete panorama as one frame, otherwise one frame per camera of the group."""
     cameras = group.cameras
     if len(cameras) == len(views) == VIEWS and cameras[0].hfov == HFOV_DEGREES:
         return [Frame(cameras, views)]
@@ -384,9 +386,9 @@ def _views(memory: Any, offsets: Mapping[str, int], group: Group) -> np.ndarray:
 
 
 def _make_groups(cameras: Sequence[Camera], kind: str, turn: str) -> list[Group]:
-    """Return the groups of a kind of camera, the largest first, then by name.
+    """Return the groups of a kind of camera, sorted by decreasing size and then by name.
 
-    So draws do not depend on the order in which cameras are described.
+    So random numbers do not depend on the order in which cameras are described.
     """
     rings: dict[tuple, dict[int, Camera]] = {}
     single = []

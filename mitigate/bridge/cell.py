@@ -1,4 +1,4 @@
-"""One condition of a run: its settings and the content of its folder.
+"""Represent one condition of a run, with its settings and the content of its folder.
 
 ``done.json`` marks a condition as finished. It records how many episodes ended, and the size and
 sha256 of the events at that moment. Every reader of a finished condition compares them first, so
@@ -38,7 +38,7 @@ from mitigate.worlds.measures import RULES
 
 LOG = "output.txt"
 TAIL = 12  # lines of the command's output that an error repeats
-MAX_HASHED = 1 << 30  # bytes; larger files of the command are compared by size only
+MAX_HASHED = 1 << 30  # maximum bytes; larger files in the command are compared only by size
 _SHA256 = re.compile(r"[0-9a-f]{64}")
 
 
@@ -75,20 +75,21 @@ def folder_name(condition: str, severity: float, repeat: int = 0) -> str:
 
 
 def write_done(folder: Path, entries: Mapping[str, Any]) -> None:
-    """Write ``done.json``: ``entries`` and a seal of the events. The condition is finished then."""
+    """Write ``done.json``: Write ``entries`` and a checksum of the events. After this, the
+    condition is finished."""
     seal = {"bytes": (folder / EVENTS).stat().st_size, "sha256": sha256(folder / EVENTS)}
     with atomic_text(folder / DONE) as file:
         json.dump({**entries, "events": seal}, file)
 
 
 def read_done(folder: Path) -> dict[str, Any] | None:
-    """Return the entries of a finished condition, None if it is not finished.
+    """Return the entries of a finished condition, or None if it is not finished.
 
-    Entries may be missing: older versions wrote fewer (:func:`missing_entries`).
+    Some entries may be missing, because older versions wrote fewer (:func:`missing_entries`).
 
     Raises:
-        ValueError: ``done.json`` is damaged or belongs to another condition, or the events changed
-            since it was written. The message names the file and what to do.
+        ValueError: ``done.json`` is damaged or belongs to a different condition, or the events
+            changed after it was written. The message names the file and the next step.
     """
     file = folder / DONE
     again = (
@@ -110,12 +111,12 @@ def read_done(folder: Path) -> dict[str, Any] | None:
 
 
 def missing_entries(entries: Mapping[str, Any]) -> list[str]:
-    """Return the missing ones of the entries that every version of this file has."""
+    """Return the names of missing entries, among those that every version of this file has."""
     return [name for name in SCHEMA if name not in entries and name not in OLDER]
 
 
 def _compare_name(folder: Path, entries: Mapping[str, Any]) -> None:
-    """Raise ValueError if ``folder`` is named after another condition than the entries."""
+    """Raise ValueError if the name of ``folder`` does not match the condition in the entries."""
     name = folder_name(entries["condition"], entries["severity"], entries["repeat"])
     if name != folder.name:
         raise ValueError(
@@ -127,12 +128,13 @@ def _compare_name(folder: Path, entries: Mapping[str, Any]) -> None:
 
 
 def _compare_events(folder: Path, entries: Mapping[str, Any]) -> None:
-    """Raise ValueError if the events in ``folder`` changed since the condition finished."""
+    """Raise ValueError if the events in ``folder`` changed after the condition finished."""
     events = folder / EVENTS
     count = entries["episodes_told"]
     if not output.is_regular(events):
         raise damaged(folder, f"the file is missing, and {DONE} records {count} episodes")
-    reports = results.read(folder, count_closed=True)  # its error names the damaged line
+    # the error from reading names the damaged line
+    reports = results.read(folder, count_closed=True)
     seal = entries.get("events")
     if seal is not None:
         size = events.stat().st_size
@@ -152,25 +154,25 @@ def check_finished(folder: Path) -> None:
 
 @dataclass
 class Cell:
-    """The command under one condition.
+    """One run of the command under one condition.
 
     Attributes:
         name: Name of the condition and of its folder.
         corruption: The corruption.
-        repeat: Number of the repeated clean run, else 0.
+        repeat: Number of the repetition for a repeated clean run, else 0.
         command: The words of the user's command.
-        folder: Gets the events and the output of the command.
+        folder: Folder for the events and the output of the command.
         condition: How frames and instructions are corrupted.
-        label: Entries of all rows.
-        rule: Success rule in place of the agent's own; None keeps it.
-        settings: The settings that the result depends on. A finished condition is reused only if
-            they are equal.
-        patience: Seconds after which a process stops without an answer.
+        label: Entries that are added to all rows.
+        rule: Success rule that replaces the agent's rule, or None to keep it.
+        settings: The settings on which the result depends. A finished condition is reused only if
+            these settings are equal.
+        patience: Seconds that a process waits for an answer before it stops.
         environment: Additional environment variables of the command.
-        clean: Folder of the clean condition, whose episodes must end under this one too; None for
-            the clean condition itself.
+        clean: Folder of the clean condition, whose episodes must also end under this condition;
+            None for the clean condition itself.
         recording: The folder for ``record=``.
-        chosen: Chooses the episodes; None runs all.
+        chosen: Object that chooses the episodes, or None to run all.
         count_closed: See ``results.read``.
     """
 
@@ -195,19 +197,20 @@ class Cell:
         return self.folder / LOG
 
     def entries(self) -> dict[str, Any] | None:
-        """Return the entries of ``done.json``; None if the condition is not finished.
+        """Return the entries of ``done.json``, or None if the condition is not finished.
 
         Raises ValueError for a damaged file, and if the events differ from the entries.
         """
         return read_done(self.folder)
 
     def changed_settings(self) -> list[str]:
-        """Return the settings that changed since the condition finished."""
+        """Return the names of settings that changed after the condition finished."""
         entries = self.entries() or self.settings
         return [name for name, value in self.settings.items() if entries.get(name) != value]
 
     def is_done(self) -> bool:
-        """Return whether it is finished and complete. Raises ValueError if settings changed."""
+        """Return whether the condition is finished and complete. Raises ValueError if settings
+        changed."""
         entries = self.entries()
         if entries is None:
             return False
@@ -226,20 +229,20 @@ class Cell:
         return not self.reason_to_repeat()
 
     def reason_to_repeat(self) -> str:
-        """Return why a finished condition must be measured again; empty if it need not be."""
+        """Return the reason why a finished condition must be measured again, or an empty text."""
         if self.entries() is None:
             return ""
         if missing := self.missing_episodes():
             return self.describe_missing(missing)
         reports = self.reports()
-        if reports.lost:  # measured with another count_closed, or by an older version
+        if reports.lost:  # measured with a different count_closed, or by an older version
             return describe_lost(reports)
         if self.recording is not None and not is_whole(self.recording, reports.ends.values()):
             return f"it was not recorded in {self.recording}, or only in part"
         return ""
 
     def changed_files(self, files: dict[str, Any]) -> list[str]:
-        """Return the files of the command that changed since the condition finished."""
+        """Return the files in the command that changed after the condition finished."""
         before = (self.entries() or {}).get("files", {})
         return [name for name, recorded in before.items() if files.get(name) != recorded]
 
@@ -248,7 +251,8 @@ class Cell:
         return sorted(self.clean_episodes() - self.reports().ends.keys())
 
     def clean_episodes(self) -> set[str]:
-        """Return the episodes that ended under the clean condition; empty for clean itself."""
+        """Return the episodes that ended under the clean condition, or none for the clean condition
+        itself."""
         if self.clean is None:
             return set()
         return set(results.read(self.clean, self.count_closed).ends)
@@ -259,7 +263,7 @@ class Cell:
         return sorted(self.reports().ends.keys() - clean) if clean else []
 
     def output_excerpt(self) -> str:
-        """Return the end of the command's output for an error message."""
+        """Return the last lines of the command's output, for an error message."""
         if not self.log.is_file():
             return " It printed nothing."
         with open(self.log, "rb") as file:
@@ -267,7 +271,7 @@ class Cell:
         return f"\nThe end of {self.log}:\n{tail}" if tail else " It printed nothing."
 
     def reports(self) -> Reports:
-        """Return what the processes of the command reported so far."""
+        """Return everything that the command's processes have reported so far."""
         return results.read(self.folder, self.count_closed)
 
     def rows(self) -> list[Row]:
@@ -276,7 +280,7 @@ class Cell:
         return results.rows(self.reports(), self.corruption, self.label, self.rule, clean)
 
     def rule_problem(self) -> str:
-        """Return why ``rule=`` cannot judge every episode; empty if it can.
+        """Return the reason why ``rule=`` cannot judge every episode, or an empty text.
 
         A success rate over only some of the episodes would be misleading.
         """
@@ -298,7 +302,7 @@ class Cell:
         return f"rule={self.rule} needs to know {what}, which {who}. {advice}"
 
     def describe_missing(self, missing: list[str]) -> str:
-        """Return "3 of clean's 6 episodes are missing"."""
+        """Return a text such as "3 of clean's 6 episodes are missing"."""
         verb = "is" if len(missing) == 1 else "are"
         return (
             f"{len(missing)} of clean's {counted(len(self.clean_episodes()), 'episode')} {verb} "
@@ -306,7 +310,7 @@ class Cell:
         )
 
     def depth_warning(self) -> str:
-        """Return a warning about depth that may be normalised, else an empty text."""
+        """Return a warning if depth may be normalised, otherwise an empty text."""
         names = maybe_normalised(self.reports())
         if not names:
             return ""
@@ -316,7 +320,8 @@ class Cell:
         )
 
     def summary(self) -> str:
-        """Return its progress: "41 episodes, success 58.5 (own: ...), 2 without a path ..."."""
+        """Return its progress: Return a summary such as "41 episodes, success 58.5 (own: ...), 2
+        without a path ..."."""
         reports, rows = self.reports(), self.rows()
         rule_text = "" if self.rule is None else str(RULES[self.rule])
         first_rule = rule_text or (rows[0]["rule"] if rows else "")
@@ -344,7 +349,7 @@ class Cell:
         return ", ".join(parts)
 
     def _describe_surplus(self, reports: Reports) -> str:
-        """Return why many more episodes ran than were asked for; empty if they did not."""
+        """Return the reason why many more episodes ran than requested, or an empty text."""
         count = len(reports.ends) if self.chosen is None else self.chosen.count
         if len(reports.ends) <= 1.5 * count:
             return ""
@@ -355,9 +360,9 @@ class Cell:
 
 
 def describe_lost(reports: Reports) -> str:
-    """Return "2 episodes were left unfinished, such as s0/2: a process of the command died ...".
+    """Return a text such as "2 episodes were left unfinished, such as s0/2: a process died ...".
 
-    The example is an episode whose reason is known, if there is one.
+    If possible, the example is an episode whose reason is known.
     """
     name = next((name for name in reports.lost if reports.dropped[name]), reports.lost[0])
     reason = reports.dropped[name] or "a process of the command died, or its loop gave up"
@@ -373,7 +378,7 @@ def describe_lost(reports: Reports) -> str:
 
 
 def hash_files(command: Sequence[str]) -> dict[str, dict[str, Any]]:
-    """Return size and sha256 of the files in a command: whole words, or the part after ``=``."""
+    """Return size and sha256 of the files in a command, given as words or after ``=``."""
     hashes = {}
     for path in dict.fromkeys(_files_in(command)):
         size = path.stat().st_size
@@ -384,5 +389,6 @@ def hash_files(command: Sequence[str]) -> dict[str, dict[str, Any]]:
 def _files_in(command: Sequence[str]) -> Iterator[Path]:
     for word in command:
         for text in (word, word.partition("=")[2]):
-            if os.path.isfile(text) and os.access(text, os.R_OK):  # a word may also be code
+            # a word may also be code instead of a file name
+            if os.path.isfile(text) and os.access(text, os.R_OK):
                 yield Path(text)

@@ -1,6 +1,6 @@
 """``mitigate run --check -- COMMAND``: run a program up to its first frames, and stop it.
 
-Prints its cameras and instruction and the conditions that apply, and draws corrupted frames.
+It prints the cameras, the instruction and the applicable conditions, and draws corrupted frames.
 """
 
 from __future__ import annotations
@@ -33,17 +33,18 @@ from mitigate.corruptions.registry import record
 from mitigate.evaluation.plots import plain
 from mitigate.guards.guard import NO_GUARDS, Guards
 
-FIRST_FRAME_LIMIT = 900.0  # seconds until the first frame (heuristic): models load before it
-MAX_DRAWN = 4  # cameras of a panorama in a row of the sheet
-SIDE = 1.64  # inches: side of a cell of the sheet
-LINE_WIDTH = 22  # characters of a line of the names
-HEADING = "heading"  # an entry in the file of the first frames
-TRIED_CALLS = 40  # calls until a corruption acts: some come and go (heuristic)
+# maximum seconds until the first frame (heuristic): models must load before
+FIRST_FRAME_LIMIT = 900.0
+MAX_DRAWN = 4  # number of panorama cameras in one row of the picture
+SIDE = 1.64  # side in inches of one picture in the sheet
+LINE_WIDTH = 22  # maximum characters per line of a name
+HEADING = "heading"  # name of an entry in the file of the first frames
+TRIED_CALLS = 40  # maximum calls until an intermittent corruption acts (heuristic)
 
 
 @dataclass
 class FirstFrames(Observer):
-    """Writes the frames of the first call to a file."""
+    """Observer that writes the frames of the first call to a file."""
 
     file: Path
     kinds: ClassVar[tuple[str, ...]] = (RGB, DEPTH)
@@ -62,7 +63,8 @@ class FirstFrames(Observer):
 
 
 def check(config: RunConfig, command: Sequence[str]) -> Path | None:
-    """Run ``command`` up to its first frames; return the path of the sheet, None without cameras.
+    """Run ``command`` up to its first frames; return the path of the picture, or None without
+    cameras.
 
     Args:
         config: The options of a run.
@@ -80,7 +82,8 @@ def check(config: RunConfig, command: Sequence[str]) -> Path | None:
     file = out / "first.npz"
     cell.folder = out / "check"
     file.unlink(missing_ok=True)
-    cell.condition.observers[:] = [FirstFrames(file)]  # an unfinished episode is not recorded
+    # this class does not record unfinished episodes
+    cell.condition.observers[:] = [FirstFrames(file)]
     print(f"check: started, its output is in {cell.log}", flush=True)
     attempt = Attempt(cell)
     try:
@@ -127,13 +130,13 @@ def _shows_past(part: Corruption) -> bool:
 
 
 def _wait(attempt: Attempt, file: Path) -> None:
-    """Wait until the first frames are in ``file``."""
+    """Wait until the first frames have been written to ``file``."""
     start = time.monotonic()
     last_print = start
     while not file.is_file():
         time.sleep(0.1)
         problem = attempt.poll()
-        if problem is not None and not file.is_file():  # a short program may have ended by now
+        if problem is not None and not file.is_file():  # a short program may already have ended
             raise ValueError(problem or "the command ended before its first frame.")
         if time.monotonic() - start > FIRST_FRAME_LIMIT:
             raise ValueError(
@@ -196,7 +199,7 @@ def _describe_depth(group: Group, frames: Mapping[str, np.ndarray]) -> str:
 
 
 def entry_name(camera: str) -> str:
-    """Return the name of a camera's frame in the file, which is no argument of `numpy.savez`."""
+    """Return the entry name of a camera's frame; it must not equal an argument of `numpy.savez`."""
     return f"camera {camera}"
 
 
@@ -207,16 +210,16 @@ def draw_sheet(
     first: Mapping[str, Any],
     seed: int,
 ) -> Figure:
-    """Draw a row for clean and each corruption, with the largest group of its modality.
+    """Draw a row for the clean frames and one per corruption, with the largest group of cameras.
 
-    A corruption that comes and goes is drawn at the first call in which it acts. Faults that show
+    An intermittent corruption is drawn at the first call in which it acts. Faults that show
     earlier frames are not drawn.
 
     Args:
         rig: The cameras.
         frames: The frames of the first call, by :func:`entry_name`, and the heading.
-        corruptions: Corruptions of modalities that ``rig`` has.
-        first: The event of the first episode, part of the keys.
+        corruptions: Corruptions whose modality ``rig`` has.
+        first: The event of the first episode, which is part of the random keys.
         seed: The corruption seed.
     """
     scene = str(first.get("scene", "")).rpartition("/")[2]

@@ -1,9 +1,9 @@
-"""One condition as applied to the user's command: corruption, instructions, choice of episodes.
+"""Apply one condition to the user's command: corruption, instructions and choice of episodes.
 
-An episode is chosen by a hash of its name, so the choice does not depend on the order and the
+An episode is chosen by a hash of its name, so the choice depends neither on the order nor on the
 number of processes. The first environments of a run report the names of their episodes. From these
-a bound on the hash is set such that the requested number passes. All later environments use the
-same bound.
+names, a bound on the hash is computed so that about the requested number of episodes is below it.
+All later environments use the same bound.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ from mitigate.worlds.episodes import read_extras
 if TYPE_CHECKING:
     from mitigate.bridge.cameras import Rig
 
-# all environments count as known after this many seconds without a new one (heuristic)
+# after this many seconds without a new environment, all are assumed to be known (heuristic)
 SETTLE_TIME = 4.0
 NO_TOKENIZER = (
     "the agent's episodes hold instruction tokens in addition to the text. Without a tokenizer the "
@@ -44,9 +44,9 @@ NO_TOKENIZER = (
 
 
 class Observer:
-    """Receives messages and frames before they are corrupted; this class ignores them."""
+    """Base class of observers, which receive messages and frames before they are corrupted."""
 
-    kinds: ClassVar[tuple[str, ...]] = ()  # kinds of the cameras whose frames it needs
+    kinds: ClassVar[tuple[str, ...]] = ()  # kinds of the cameras whose frames this observer needs
 
     def episode(self, message: Mapping[str, Any]) -> None:
         """Receive the message that begins an episode."""
@@ -57,10 +57,10 @@ class Observer:
         """Receive the frames of a call, which are in ``memory``."""
 
     def end(self, message: Mapping[str, Any]) -> None:
-        """Receive the result of the episode."""
+        """Receive the result of an episode."""
 
     def leave(self) -> None:
-        """Receive that the episode was left unfinished."""
+        """Called if an episode was left unfinished."""
 
 
 @dataclass
@@ -71,12 +71,14 @@ class Condition:
         corruption: The corruption.
         seed: The corruption seed.
         words: Corrupts instructions.
-        repeat: Number of this run of the same condition; part of the keys if it is not 0.
-        missing: Value in metres of missing depth.
-        turn: Direction of a growing yaw, "left" or "right".
-        keep: Chooses episodes (:meth:`Subset.keep`); None keeps all.
-        guards: Change instructions and frames after the corruption.
-        observers: Receive every episode and frame before the corruption (``recording.py``).
+        repeat: Number of the repetition of the same condition; part of the random keys if it is not
+            0.
+        missing: Value in metres for missing depth.
+        turn: Direction of increasing yaw, "left" or "right".
+        keep: Function that chooses episodes (:meth:`Subset.keep`), or None to keep all.
+        guards: Guards that change instructions and frames after the corruption.
+        observers: Objects that receive every episode and frame before the corruption
+            (``recording.py``).
     """
 
     corruption: Corruption
@@ -90,13 +92,13 @@ class Condition:
     observers: list[Observer] = field(default_factory=list)
 
     def key(self, scene: str, episode: str, frame: int) -> Key:
-        """Return the key of a draw: seed, scene file and episode id, number of the call."""
+        """Return the random key: seed, scene file with episode id, and number of the call."""
         name = f"{scene.rpartition('/')[2]}/{episode}" + (f"#{self.repeat}" if self.repeat else "")
         return Key(self.seed, name, frame)
 
 
 def why_not_applicable(corruption: Corruption, clean: Reports) -> str:
-    """Return why a corruption cannot reach the agent of a clean run; empty if it can."""
+    """Return the reason why a corruption cannot reach this agent, or an empty text."""
     kinds = {camera["type"] for camera in clean.cameras}
     for part in corruption.parts:
         sensors = {*record(part.name).modalities} & {"rgb", "depth"}
@@ -128,9 +130,10 @@ class Words:
     """Corrupts instructions.
 
     Attributes:
-        tokenizer: For agents that read tokens. With None, a change to the instruction of such an
-            agent is an error, because the agent would read the original tokens.
-        length: Length of padded tokens; None keeps the episode's own length.
+        tokenizer: The tokenizer for agents that read tokens. If it is None, changing the
+            instruction of such an agent is an error, because the agent would read the original
+            tokens.
+        length: Length of padded tokens, or None to keep the episode's length.
     """
 
     tokenizer: Tokenizer | None = None
@@ -143,16 +146,17 @@ class Words:
         key: Key,
         guards: Guards = NO_GUARDS,
     ) -> dict[str, Any]:
-        """Return ``text`` and ``tokens`` for the agent; empty if the instruction does not change.
+        """Return ``text`` and ``tokens`` for the agent, or an empty dict if nothing changes.
 
         Args:
-            message: Begins the episode; holds ``text``, ``tokens``, ``language``, ``category``.
+            message: The message that begins the episode, with ``text``, ``tokens``, ``language``,
+                ``category``.
             corruption: The corruption of the condition.
             key: Determines the draws.
-            guards: Change the instruction after the corruption.
+            guards: Guards that change the instruction after the corruption.
 
         Raises:
-            ValueError: The change cannot reach the agent.
+            ValueError: The changed instruction cannot reach the agent.
         """
         text, tokens = message.get("text"), message.get("tokens")
         parts = [part for part in corruption.parts if part.modality == "instruction"]
@@ -186,7 +190,7 @@ class Words:
         return (self.tokenizer and self.tokenizer.mask_token) or "[MASK]"
 
     def _tokenize(self, text: str, before: list[Any] | None) -> list[int] | None:
-        """Return the tokens of ``text``; None if the episode had none before."""
+        """Return the tokens of ``text``, or None if the episode had no tokens."""
         if before is None:
             return None
         if self.tokenizer is None:
@@ -195,13 +199,13 @@ class Words:
 
 
 def load_tokenizer(name: str) -> Tokenizer:
-    """Return the tokenizer in a folder, of a hub name, or of an R2R-CE file.
+    """Load a tokenizer from a folder, a hub name or an R2R-CE file.
 
     Args:
         name: A folder, a hub name, or a ``.json`` or ``.json.gz`` file with a vocabulary.
 
     Raises:
-        ValueError: The file or folder holds no tokenizer.
+        ValueError: The file or folder contains no tokenizer.
         FileNotFoundError: It does not exist.
     """
     if name.endswith((".json", ".json.gz")):
@@ -210,9 +214,9 @@ def load_tokenizer(name: str) -> Tokenizer:
 
 
 def padded_length(tokens: list[Any]) -> int | None:
-    """Return the length that a dataset pads its tokens to, None if it does not pad.
+    """Return the length to which a dataset pads its tokens, or None if it does not pad.
 
-    Padding is a token 0 or 1 that is repeated at the end.
+    Padding consists of tokens 0 or 1 that are repeated at the end.
     """
     repeated = len(tokens) > 2 and tokens[-1] == tokens[-2] and tokens[-1] in (0, 1)
     return len(tokens) if repeated else None
@@ -230,7 +234,8 @@ class Subset:
     Attributes:
         count: How many episodes.
         folder: The run's folder; the choice is stored there.
-        settled: Seconds without a new environment after which all are known.
+        settled: Seconds without a new environment after which all environments are assumed to be
+            known.
     """
 
     count: int
@@ -241,8 +246,9 @@ class Subset:
         """Return the indices of the episodes to keep.
 
         Args:
-            names: Episodes of one environment, like "scene.glb/17".
-            least: The smallest number to keep, 0 or 1: Habitat rejects an empty dataset.
+            names: Names of the episodes of one environment, such as "scene.glb/17".
+            least: The minimum number to keep, 0 or 1. This is 1 because Habitat rejects an empty
+                dataset.
         """
         bound = self._bound()
         if bound is None:
@@ -257,7 +263,7 @@ class Subset:
             (self.folder / name).unlink(missing_ok=True)
 
     def _bound(self) -> float | None:
-        """Return the stored bound, or None before the first is stored."""
+        """Return the stored bound, or None if no bound is stored yet."""
         file = self.folder / "episodes.json"
         if not output.is_regular(file):
             return None
@@ -276,7 +282,7 @@ class Subset:
         return bound
 
     def least(self) -> int:
-        """Return how many episodes the program must run; 0 if none were chosen yet."""
+        """Return how many episodes the program must run, or 0 if no episodes are chosen yet."""
         if self._bound() is None:
             return 0
         total = int(read_object(self.folder / "episodes.json", "")["of"])

@@ -1,4 +1,4 @@
-"""The options of ``mitigate run``: their types, and checks before anything runs."""
+"""Define the options of ``mitigate run`` and check them before anything runs."""
 
 from __future__ import annotations
 
@@ -44,7 +44,8 @@ class RunConfig:
     launcher: Any = MISSING
     split: str = "unnamed"
     rule: str | None = None
-    safeguard: Any = "none"  # text; check_choice checks it, because Hydra would print it
+    # plain text, which check_choice checks, because Hydra would print an invalid value
+    safeguard: Any = "none"
     restore: str | None = None
     tokenizer: str | None = None
     token_length: int | None = None
@@ -60,7 +61,7 @@ class RunConfig:
 
     @property
     def names(self) -> list[str]:
-        """The names of the requested conditions: clean first, each once."""
+        """The names of the requested conditions without duplicates, with clean first."""
         names = suite_conditions(self.suite) if self.conditions is None else self.conditions
         if self.corruption is not None:
             names = [self.corruption]
@@ -107,7 +108,7 @@ def check_options(config: RunConfig, command: Sequence[str]) -> None:
     if config.token_length is not None and config.token_length < 1:
         raise ValueError(f"token_length must be >= 1 or null, got {config.token_length}.")
     for option, text in (("split", config.split), ("name", config.name or command_name(command))):
-        if constraint := allowed(option, text):  # now, not after hours of measuring
+        if constraint := allowed(option, text):  # checked now rather than after hours of measuring
             raise ValueError(f"{option}={short(text)} cannot be written to rows: {constraint}.")
     for watched in config.watch or ():
         _check_watched(str(watched))
@@ -128,9 +129,9 @@ def check_options(config: RunConfig, command: Sequence[str]) -> None:
 
 
 def _check_watched(name: str) -> None:
-    """Raise ValueError if ``name`` is neither a file nor an environment variable that is set.
+    """Raise ValueError if ``name`` is neither a file nor a set environment variable.
 
-    A folder is rejected, because changes in it would not be noticed.
+    Folders are rejected, because changes in them would not be noticed.
     """
     if os.path.isdir(name):
         raise ValueError(
@@ -151,7 +152,7 @@ def _check_watched(name: str) -> None:
 
 
 def command_name(command: Sequence[str]) -> str:
-    """Return the name of a command's first script or module (``-m``), or of the program."""
+    """Return the name of the first script or module (``-m``) in a command, or of its program."""
     scripts = [Path(word).stem for word in command if word.endswith((".py", ".sh", ".bash"))]
     modules = [name for word, name in pairwise(command) if word == "-m"]
     return [*scripts, *modules, Path(command[0]).stem][0]

@@ -1,4 +1,4 @@
-"""One connection of the server: answers the messages of one environment of the user's command.
+"""Answer the messages of one environment of the user's command, over one connection.
 
 Episodes, errors and connections are written as events (``events.py``).
 """
@@ -28,13 +28,13 @@ from mitigate.corruptions import FrameStream, registry
 
 
 def numbered(message: Mapping[str, Any], answer: dict[str, Any]) -> dict[str, Any]:
-    """Return an answer with the number of its message, which identifies it."""
+    """Return an answer with the number of the message that it answers."""
     number = message.get("number")
     return {**answer, "number": number} if isinstance(number, int) else answer
 
 
 def _use_one_thread() -> None:
-    """Let torch compute on one thread: environments run in parallel, and this is a fork."""
+    """Let torch use one thread, because environments run in parallel and this process is a fork."""
     import torch
 
     torch.set_num_threads(1)
@@ -44,7 +44,7 @@ def _describe_error(kind: str, error: Exception) -> str:
     """Return the text for the agent's process about an error in a message of this kind."""
     if type(error) is ValueError:
         return str(error)
-    if isinstance(error, OSError):  # on this side, not in the agent's process
+    if isinstance(error, OSError):  # the error is on the server side, not in the agent's process
         if error.strerror is None:
             return str(error)
         return f"the run cannot write {error.filename}: {error.strerror}."
@@ -57,7 +57,8 @@ def _describe_error(kind: str, error: Exception) -> str:
 class SharedMemory:
     """Memory for frames that the server and an environment's process share.
 
-    It is a file in ``folder``, mapped as ``map``. The file is deleted once both sides mapped it.
+    It is a file in ``folder``, mapped as ``map``. The file is deleted as soon as both sides have
+    mapped it.
     """
 
     def __init__(self, folder: Path) -> None:
@@ -66,10 +67,10 @@ class SharedMemory:
         self.file: Path | None = None
 
     def make(self, size: int) -> dict[str, Any]:
-        """Map ``size`` new bytes; return path and size for the other side.
+        """Map ``size`` new bytes, and return the path and size for the other process.
 
         Raises:
-            ValueError: There is not enough space.
+            ValueError: There is not enough free space.
         """
         self.delete_file()
         self.file = self.folder / secrets.token_hex(8)
@@ -87,21 +88,21 @@ class SharedMemory:
         return {"file": str(self.file), "size": size}
 
     def delete_file(self) -> None:
-        """Delete the file; the memory stays until both processes unmap it."""
+        """Delete the file; the shared memory remains until both processes unmap it."""
         if self.file is not None:
             self.file.unlink(missing_ok=True)
             self.file = None
 
 
 class Connection:
-    """Serves one environment: each kind of message has a method that answers it.
+    """Serves one environment; for each kind of message, a method computes the answer.
 
     Args:
         channel: The socket.
         condition: How frames and instructions are corrupted.
         folder: The folder of the events.
-        token: The token that the other side must know.
-        memory: The folder for files of shared memory.
+        token: The secret token that the other side must send.
+        memory: The folder for shared-memory files.
     """
 
     def __init__(
@@ -112,7 +113,7 @@ class Connection:
         self.folder = folder
         self.token = token
         self.shared = SharedMemory(memory)
-        self.answers = {  # kind of a message (all after "hello") -> its method
+        self.answers = {  # maps a kind of message (all after "hello") to its method
             "spec": self.on_spec,
             "episode": self.on_episode,
             "frame": self.on_frame,
@@ -127,21 +128,21 @@ class Connection:
         self.scene = ""
         self.episode = ""
         self.open = False  # whether an episode is running
-        self.loop = False  # whether it belongs to a loop without Habitat
-        self.chosen = False  # whether the program let episodes be chosen
-        self.names: list[str] = []  # episode names of a dataset, received so far
-        self.described: list[Any] = []  # descriptions of cameras that were received so far
-        self.kinds: set[str] = set()  # kinds of the cameras in this episode's calls
+        self.loop = False  # whether the episode belongs to a loop without Habitat
+        self.chosen = False  # whether the program supports the choice of episodes
+        self.names: list[str] = []  # episode names of a dataset that were received so far
+        self.described: list[Any] = []  # camera descriptions that were received so far
+        self.kinds: set[str] = set()  # kinds of cameras in the calls of this episode
         self.calls = 0  # number of calls in this episode
-        self.seconds = 0.0  # spent in corruptions of this episode
+        self.seconds = 0.0  # seconds spent on corruptions in this episode
 
     def serve(self) -> None:
-        """Answer until the other side closes."""
+        """Answer messages until the other side closes the connection."""
         self.channel.settimeout(30.0)
         if not self._greet():
             return
         self.channel.settimeout(None)
-        if "torch" in sys.modules:  # a guard loaded it before the fork
+        if "torch" in sys.modules:  # a guard has loaded torch before the fork
             _use_one_thread()
         try:
             while (message := self._next()) is not None:
@@ -161,7 +162,7 @@ class Connection:
             if kind not in self.answers:
                 raise ValueError(unknown("kind of message", kind[:40], self.answers))
             answer = self.answers[kind](message)
-            os.utime(self.folder / EVENTS)  # a sign of life
+            os.utime(self.folder / EVENTS)  # shows that this process is alive
         except Exception as error:  # after any error, the agent's process must stop
             problem = _describe_error(kind, error)
             trace = traceback.format_exc()
@@ -170,17 +171,17 @@ class Connection:
         return answer
 
     def _next(self) -> dict[str, Any] | None:
-        """Return the next message; None at the end or after an invalid one."""
+        """Return the next message, or None at the end or after an invalid message."""
         try:
             return receive(self.channel)
         except (OSError, ValueError, RecursionError):
             return None
 
     def _leave(self, fault: str | None = None) -> None:
-        """Record that the current episode was left unfinished, because of ``fault`` if known.
+        """Record that the current episode was left unfinished, with the reason ``fault`` if known.
 
         Habitat's first call belongs to the reset, so an episode with one call was never stepped. In
-        a loop without Habitat each call is a step.
+        a loop without Habitat, each call is a step.
         """
         if self.open and self.calls > (0 if self.loop else 1):
             fields = {"scene": self.scene, "episode": self.episode, "fault": fault}
@@ -202,12 +203,12 @@ class Connection:
         left_out = ("token", "kind", "pid", "number")
         versions = {k: str(v)[:80] for k, v in hello.items() if k not in left_out}
         write_event(self.folder, event="hello", agent_pid=hello.get("pid"), **versions)
-        with suppress(OSError):  # the other side is gone, and the next read notices it
+        with suppress(OSError):  # the other process is gone, which the next read will notice
             send(self.channel, numbered(hello, {}))
         return True
 
     def on_spec(self, message: Mapping[str, Any]) -> dict[str, Any]:
-        """Answer a description of cameras with the memory for their frames."""
+        """Answer a description of cameras by providing shared memory for their frames."""
         condition = self.condition
         self.rig = Rig(message["cameras"], condition.missing, condition.turn, self.streams)
         kinds = (
@@ -263,7 +264,7 @@ class Connection:
         """Corrupt the frames of a call in memory; answer with the names of the changed cameras."""
         self.shared.delete_file()
         if self.rig is None:
-            raise ValueError("a frame came before its cameras were described.")
+            raise ValueError("a frame was received before its cameras were described.")
         for camera in self.rig.cameras:
             median = message.get("depth", {}).get(camera.name)
             if median is not None:
@@ -286,7 +287,8 @@ class Connection:
         return {"changed": list(dict.fromkeys(changed))}
 
     def on_end(self, message: Mapping[str, Any]) -> dict[str, Any]:
-        """Record the result of an episode; an exception leaves the episode unfinished."""
+        """Record the result of an episode; if an exception is raised, the episode stays
+        unfinished."""
         if message.get("how") == BROKEN:
             self._leave(_one_line(message.get("fault")))
             return {}
@@ -314,7 +316,7 @@ class Connection:
         return {}
 
     def _check_kinds(self) -> None:
-        """Raise ValueError if no camera of the episode suits the corruption or the guards."""
+        """Raise ValueError if no camera of the episode matches the corruption or the guards."""
         for part in self.condition.corruption.parts:
             sensors = {*registry.record(part.name).modalities} & {*CHANNELS}
             if sensors and not sensors & self.kinds:
@@ -327,10 +329,10 @@ class Connection:
         self.condition.guards.check_shown(sorted(self.kinds), f"episode {self.episode}")
 
     def on_dataset(self, message: Mapping[str, Any]) -> dict[str, Any]:
-        """Answer the names of an environment's episodes with the indices to keep (None: all).
+        """Answer the names of an environment's episodes with the indices to keep, or None for all.
 
-        Names come in several messages. The answer comes once all ``count`` names are known.
-        ``least`` is the smallest number to keep: Habitat rejects an empty dataset.
+        The names arrive in several messages. The final answer is sent when all ``count`` names are
+        known. ``least`` is the minimum number to keep, because Habitat rejects an empty dataset.
         """
         keep = self.condition.keep
         self.names += [str(key) for key in message["keys"]]
@@ -341,24 +343,24 @@ class Connection:
         least = 0 if message.get("least") == 0 else 1
         write_event(self.folder, event="dataset", episodes=count)
         indices = None if keep is None else keep(names, least)
-        if least == 0:  # from ``wanted``: the program runs exactly these episodes
+        if least == 0:  # names from ``wanted``: the program runs exactly these episodes
             number = count if indices is None else len(indices)
             write_event(self.folder, event="dataset", episodes=count, wanted=number)
         return {"keep": indices}
 
     def on_adapted(self, message: Mapping[str, Any]) -> dict[str, Any]:
-        """Record that an encoder got adapters."""
+        """Record that adapters were attached to an encoder."""
         write_event(self.folder, event="adapted", module=str(message["module"]))
         return {}
 
     def on_stopped(self, message: Mapping[str, Any]) -> dict[str, Any]:
-        """Record why a process of the command ended itself."""
+        """Record the reason why a process of the command ended itself."""
         write_event(self.folder, event="stopped", problem=_one_line(message["problem"]))
         return {}
 
 
 def _one_line(text: object) -> str | None:
-    """Return a process's text on one line, printable and at most ``MAX_TEXT`` long."""
+    """Return a text from a process as one printable line of at most ``MAX_TEXT`` characters."""
     if text is None:
         return None
     printable = "".join(c if c.isprintable() else " " for c in str(text))

@@ -1,4 +1,4 @@
-"""The events of a condition: JSON lines in its folder, which the command line reads.
+"""Write and read the events of a condition: JSON lines in its folder, which the command line reads.
 
 Reports of an agent's process about an episode are checked before they are written.
 """
@@ -24,9 +24,9 @@ from mitigate.worlds.measures import path_length
 
 EVENTS, LOCK, DONE = "events.jsonl", "lock", "done.json"
 COUNTS = ("steps", "calls")
-METRES = ("start_distance", "distance")  # infinite if a goal is out of reach
+METRES = ("start_distance", "distance")  # may be infinite if a goal cannot be reached
 FIELDS = ("metrics", *COUNTS, "path", *METRES, "stopped", "how", "farthest")
-HOW = (OVER, RESET, CLOSE)  # ends of an episode that count
+HOW = (OVER, RESET, CLOSE)  # ends of an episode that count as a result
 # metrics that rows hold in addition to success and SPL
 MEASURES = ("path_length", "geodesic_distance", "distance_to_goal", "ndtw", "collisions")
 
@@ -40,7 +40,7 @@ def write_event(folder: Path, **event: Any) -> None:
 
 
 def damaged(folder: Path, what: str) -> ValueError:
-    """Return the error for damaged events of a condition; ``what`` says where they are damaged."""
+    """Return the error for damaged events of a condition; ``what`` describes the damage."""
     return ValueError(
         f"{folder / EVENTS}: {what}, so the episodes of this condition cannot be trusted. No file "
         f"was changed. Copy the file back if you have it elsewhere. Or move {folder} "
@@ -51,10 +51,11 @@ def damaged(folder: Path, what: str) -> ValueError:
 def read_events(folder: Path) -> Iterator[tuple[int, dict[str, Any]]]:
     """Yield the number and the content of each line of the events in ``folder``.
 
-    A last line without its line break is left out: it is being written, or its writer was killed.
+    A last line without a line break is skipped, because it is still being written or its writer was
+    killed.
 
     Raises:
-        ValueError: Another line is not a JSON object with a text ``event``.
+        ValueError: Any other line is not a JSON object with a text ``event``.
     """
     file = folder / EVENTS
     lines = file.read_bytes().split(b"\n")[:-1] if is_regular(file) else []
@@ -69,10 +70,10 @@ def read_events(folder: Path) -> Iterator[tuple[int, dict[str, Any]]]:
 
 
 def put_aside(folder: Path, kind: str) -> None:
-    """Move the files of an earlier attempt to ``<folder>.<kind>``, which is replaced.
+    """Move the files of an earlier attempt to ``<folder>.<kind>``, replacing that folder.
 
-    The lock stays. The program's own results in ``folder`` are moved too. ``done.json`` is deleted
-    first, so that the condition counts as unfinished from then on.
+    The lock stays. Results that the program wrote to ``folder`` are also moved. ``done.json`` is
+    deleted first, so that the condition counts as unfinished from then on.
 
     Raises:
         UnsafePathError: ``<folder>.<kind>`` is a link, a FIFO or a file; nothing was changed.
@@ -87,13 +88,14 @@ def put_aside(folder: Path, kind: str) -> None:
 
 
 def episode_name(scene: str, episode: str) -> str:
-    """Return the name of an episode in rows, with its scene: ObjectNav repeats ids per scene."""
+    """Return the name of an episode in rows, which includes the scene because ObjectNav uses the
+    same ids in every scene."""
     stem = stem_of(scene)
     return f"{stem}/{episode}" if stem else str(episode)
 
 
 def read_start(message: Mapping[str, Any]) -> tuple[str, str]:
-    """Return scene and id of an episode that begins.
+    """Return scene and id from the message that begins an episode.
 
     Raises:
         ValueError: The name is not allowed in rows.
@@ -109,14 +111,14 @@ def read_start(message: Mapping[str, Any]) -> tuple[str, str]:
 
 
 def read_end(message: Mapping[str, Any], episode: str) -> dict[str, Any]:
-    """Return the ``FIELDS`` in the report of how ``episode`` ended.
+    """Return the checked ``FIELDS`` of the report about the end of ``episode``.
 
-    A distance that is NaN, or a path that contains NaN, is unknown and left out.
+    A distance that is NaN, or a path that contains NaN, is treated as unknown and omitted.
 
     Raises:
-        ValueError: Metrics that are not finite numbers by name (``distance_to_goal`` may be
-            infinite) or that rows reject, an SPL outside [0, 1], counts or distances that are
-            negative or not numbers, or a path that is not a list of points [2] or [3].
+        ValueError: A metric is not a finite number (only ``distance_to_goal`` may be infinite) or
+            not allowed in rows, the SPL is outside [0, 1], a count or distance is negative or not a
+            number, or the path is not a list of points [2] or [3].
     """
     try:
         return _check_end({name: message[name] for name in FIELDS if message.get(name) is not None})
@@ -125,7 +127,8 @@ def read_end(message: Mapping[str, Any], episode: str) -> dict[str, Any]:
 
 
 def _check_end(end: dict[str, Any]) -> dict[str, Any]:
-    """Return the fields of an end without unknown values. Raises ValueError as `read_end`."""
+    """Return the fields of an episode's end without unknown values. Raises ValueError as
+    `read_end`."""
     metrics = end.get("metrics", {})
     if not isinstance(metrics, dict):
         raise ValueError("metrics that are not numbers by name")
@@ -155,7 +158,7 @@ def _check_end(end: dict[str, Any]) -> dict[str, Any]:
 
 
 def _check_path(path: Any) -> list[list[float]]:
-    """Return a reported path; empty if a point of it is unknown."""
+    """Return a reported path, or an empty list if one of its points is unknown."""
     if not isinstance(path, list) or not all(map(_is_point, path)) or len({*map(len, path)}) > 1:
         raise _invalid("path", path, "a list of points [x, y] or [x, y, z] in metres")
     if any(x != x for point in path for x in point):

@@ -1,7 +1,7 @@
-"""The plan of a run: its conditions, and the settings that their results depend on.
+"""Plan a run: its conditions, and the settings on which their results depend.
 
 The settings decide whether a finished condition is reused. The labels of a run distinguish its rows
-from the rows of another agent.
+from those of a different agent.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ SETTINGS = ("seed", "episodes", "turn", "tokenizer", "missing", "token_length") 
 
 @dataclass(frozen=True)
 class Plan:
-    """A run whose options were checked.
+    """A planned run with checked options.
 
     Attributes:
         config: The options.
@@ -56,7 +56,7 @@ def make_plan(config: RunConfig, command: Sequence[str]) -> Plan:
 
 
 def make_cells(plan: Plan) -> list[Cell]:
-    """Return all conditions of a run: clean, repeated clean runs, then the others."""
+    """Return all conditions of a run: first clean, then repeated clean runs, then the others."""
     config, out = plan.config, plan.out
     clean, *others = conditions(config.names, config.severity, config.severity_depth)
     words = _open_words(config)
@@ -105,7 +105,8 @@ def make_cells(plan: Plan) -> list[Cell]:
 
 
 def _check_guards(guards: Guards) -> None:
-    """Raise ValueError for a guard that changes the agent, which runs in another process."""
+    """Raise ValueError for a guard that changes the agent, because that runs in a different
+    process."""
     if guards.adapts:
         raise ValueError(
             f"The guard {guards.label} adapts the agent itself, but the bridge cannot change the "
@@ -120,7 +121,7 @@ def _open_words(config: RunConfig) -> Words:
 
 
 def _adapter_environment(config: RunConfig) -> dict[str, str]:
-    """Return the environment variable that describes the adapters to the hook, if there are any.
+    """Return the environment variable that describes the adapters to the hook, if any.
 
     Raises ValueError for an invalid ``adapters=``.
     """
@@ -137,7 +138,7 @@ def _adapter_environment(config: RunConfig) -> dict[str, str]:
 
 
 def _settings(plan: Plan, guards: Guards) -> tuple[dict[str, Any], dict[str, Any]]:
-    """Return the settings that every result of a run depends on, without the corruption.
+    """Return the settings on which all results of a run depend, except the corruption.
 
     Returns:
         The command and options, and the hashes of everything that changes the agent.
@@ -145,7 +146,7 @@ def _settings(plan: Plan, guards: Guards) -> tuple[dict[str, Any], dict[str, Any
     config = plan.config
     options = {"command": shlex.join(plan.command)}
     options |= {name: vars(config)[name] for name in SETTINGS}
-    safeguard = "none"  # does not load torch
+    safeguard = "none"  # this import does not load torch
     if config.safeguard != "none":
         from mitigate.guards.text.choices import identity
 
@@ -155,7 +156,8 @@ def _settings(plan: Plan, guards: Guards) -> tuple[dict[str, Any], dict[str, Any
 
 
 def watched_values(config: RunConfig) -> dict[str, str | None] | None:
-    """Return the hashes of files and values of variables in ``watch=``; None without ``watch=``."""
+    """Return the hashes of files and the values of variables in ``watch=``, or None if it is
+    unset."""
     names = [str(name) for name in config.watch or ()]
     if not names:
         return None
@@ -187,7 +189,7 @@ def _make_label(plan: Plan, agent: dict[str, Any]) -> dict[str, Any]:
 
 
 def default_folder(config: RunConfig, name: str) -> Path:
-    """Return the folder of a run without ``out=``; it depends on agent, severity and episodes."""
+    """Return the default folder of a run, which depends on agent, severity and episodes."""
     parts = [part for part in (adapters_label(config), _as_text(watched_values(config))) if part]
     folder = "-".join([_column(config, name), *(_digest(part)[:6] for part in parts)])
     folder += f"-s{config.severity:g}" + (f"-e{config.episodes}" if config.episodes else "")
@@ -195,7 +197,7 @@ def default_folder(config: RunConfig, name: str) -> Path:
 
 
 def adapters_label(config: RunConfig) -> str | None:
-    """Return the hash of the adapters and the module that gets them; None without adapters."""
+    """Return the hash of the adapters and the target module's name, or None without adapters."""
     if config.adapters is None:
         return None
     from mitigate.encoders.plain_adapters import WEIGHTS
@@ -227,7 +229,7 @@ def split_adapters(adapters: str) -> tuple[str, str, str]:
 
 
 def _column(config: RunConfig, name: str) -> str:
-    """Return the column of the table: the command's name, and the labels of guards."""
+    """Return the column name for the table: the command's name and the labels of guards."""
     parts = [name, *labels(config.safeguard, config.restore)]
     parts += ["adapters"] if config.adapters is not None else []
     return "+".join(parts)

@@ -4,17 +4,18 @@
 
     python program.py PARENT PIPE PROGRAM ...
 
-A process that detaches itself (``setsid``, a double fork, ``nohup ... &``) leaves its session and,
-when its parent ends, its place among the children. The supervisor is a child subreaper (prctl(2),
-Linux): such orphans become its children, so that it knows every descendant. It stays until the last
-one is gone. When PARENT, which started it, is gone or it receives SIGTERM, it ends all of them.
+A process that detaches itself (``setsid``, a double fork, ``nohup ... &``) leaves its session. When
+its parent ends, it is no longer a descendant of the command. The supervisor is a child subreaper
+(prctl(2), Linux): such orphans become its children, so the supervisor knows every descendant. The
+supervisor runs until the last descendant has ended. When PARENT, which started it, is gone, or when
+it receives SIGTERM, it ends all descendants.
 
 A fork of the supervisor starts the program and waits for it. A program that kills its parent kills
-this fork, and the supervisor stays alive.
+only this fork, and the supervisor stays alive.
 
-It writes JSON lines to the file descriptor PIPE: first ``{"pid": N}`` or ``{"error": TEXT}``, and
-``{"status": N}`` when the program ends. A bare Python runs it, so this file imports the standard
-library only.
+The supervisor writes JSON lines to the file descriptor PIPE: first ``{"pid": N}`` or ``{"error":
+TEXT}``, and ``{"status": N}`` when the program ends. It runs in a plain Python, so this file
+imports only the standard library.
 """
 
 from __future__ import annotations
@@ -33,22 +34,23 @@ from typing import IO, Any
 
 PR_SET_CHILD_SUBREAPER = 36  # linux/prctl.h
 GRACE = 3.0  # seconds between SIGTERM and SIGKILL (heuristic)
-KILL_LIMIT = 10.0  # seconds in which killed processes must be gone (heuristic)
+KILL_LIMIT = 10.0  # seconds after which killed processes must be gone (heuristic)
 PAUSE = 0.05  # seconds between two checks
-MAX_LINE = 200  # characters of a process's command line in a message
+MAX_LINE = 200  # maximum characters of a process's command line in a message
 
 
 class Command:
     """Starts a command under a supervisor, and ends all of its processes.
 
-    A process belongs to the command if it descends from it, or if its environment holds
-    ``marker``: it may run in a container, or outlive its supervisor.
+    A process belongs to the command if it descends from it, or if its environment contains
+    ``marker``. The second case covers processes in a container, and those that outlive the
+    supervisor.
 
     Args:
         words: The command and its arguments.
         log: Gets its output.
-        environment: All of its environment variables.
-        marker: A text that only this command's environment holds.
+        environment: All environment variables of the command.
+        marker: A text that only this command's environment contains.
 
     Raises:
         OSError: The command cannot be started.
@@ -81,12 +83,13 @@ class Command:
         os.set_blocking(reader, False)
 
     def status(self) -> int | None:
-        """Return the exit status of the command, None while it runs; below 0 for a signal.
+        """Return the exit status of the command (negative for a signal), or None while it runs.
 
-        Processes that it started may still run.
+        Processes that the command started may still run.
         """
         if self._status is None:
-            supervisor_status = self.process.poll()  # first, so that its last line is in the pipe
+            # checked first, so that the last line is already in the pipe
+            supervisor_status = self.process.poll()
             line = self._next()
             if "status" in line:
                 self._status = int(line["status"])
@@ -100,7 +103,8 @@ class Command:
         return sorted({*known, *_marked(self.marker)} - {self.process.pid, os.getpid()})
 
     def left(self) -> list[str]:
-        """Wait up to ``GRACE`` for the processes of an ended command; describe the remaining."""
+        """Wait up to ``GRACE`` for the processes of an ended command; describe the remaining
+        ones."""
         until = time.monotonic() + GRACE
         while (pids := self.running()) and time.monotonic() < until:
             time.sleep(PAUSE)
@@ -110,8 +114,8 @@ class Command:
         """End all processes with SIGTERM, and after ``GRACE`` with SIGKILL.
 
         Args:
-            connected: Returns whether any of them is connected to the bridge. Without a connected
-                process, SIGKILL follows at once if the command ended.
+            connected: Returns whether any of them is connected to the bridge. If no process is
+                connected and the command has ended, SIGKILL follows at once.
         """
         until = time.monotonic() + GRACE
         signal_all(self.running(), signal.SIGTERM)
@@ -125,16 +129,16 @@ class Command:
             time.sleep(PAUSE)
         try:
             self.process.wait(KILL_LIMIT)
-        except subprocess.TimeoutExpired:  # a process of another user holds it
+        except subprocess.TimeoutExpired:  # a process of a different user holds it
             self.process.kill()
             self.process.wait()
         self.status()
         self._pipe.close()
 
     def _next(self) -> dict[str, Any]:
-        """Return the next line of the supervisor; empty without a new line.
+        """Return the next line from the supervisor, or an empty text if there is no new line.
 
-        The supervisor writes each line at once, so that no part of a line is read.
+        The supervisor writes each line at once, so a line is never read in part.
         """
         line = b"" if self._pipe.closed else self._pipe.readline()
         message: dict[str, Any] = json.loads(line) if line else {}
@@ -173,7 +177,7 @@ def processes() -> dict[int, tuple[int, bool]]:
             ):
                 text = file.read()
                 fields = text[text.rindex(b")") + 2 :].split()  # proc_pid_stat(5), from field 3
-                # if other threads remain, the process still runs although its main thread ended
+                # if other threads remain, the process still runs even if its main thread has ended
                 zombie = fields[0] in (b"Z", b"X") and int(fields[17]) <= 1
                 states[int(name)] = (int(fields[1]), not zombie)
     return states
@@ -195,7 +199,7 @@ def descendants(root: int) -> list[int]:
 
 
 def signal_all(pids: Iterable[int], number: int) -> None:
-    """Send a signal to processes; ignore those that are gone or belong to another user."""
+    """Send a signal to processes; ignore processes that are gone or belong to a different user."""
     for pid in pids:
         with suppress(ProcessLookupError, PermissionError):
             os.kill(pid, number)
@@ -208,7 +212,7 @@ def main() -> None:
     program = sys.argv[3:]
     ending: list[bool] = []
     for number in (signal.SIGINT, signal.SIGHUP):
-        # ignored here, because the parent decides; a handler is not inherited by the program
+        # ignored here, because the parent decides; the program does not inherit a handler
         signal.signal(number, lambda *_: None)
     signal.signal(signal.SIGTERM, lambda *_: ending.append(True))
     child = os.fork()
@@ -217,7 +221,7 @@ def main() -> None:
     if sys.platform == "linux":
         ctypes.CDLL(None).prctl(PR_SET_CHILD_SUBREAPER, 1)
     while _reap(child, pipe):
-        if os.getppid() != parent:  # killed: end at once, because the run may be repeated
+        if os.getppid() != parent:  # exits at once if killed, because the run may be repeated
             return _end(child, pipe, 0.0)
         if ending:
             return _end(child, pipe, GRACE)
@@ -225,7 +229,7 @@ def main() -> None:
 
 
 def _start(program: Sequence[str], pipe: int) -> None:
-    """Start the program, wait for its end and report its status, also after SIGTERM."""
+    """Start the program, wait for its end and report its status, even after SIGTERM."""
     try:
         child = subprocess.Popen(program, start_new_session=True)
     except OSError as error:
@@ -242,7 +246,7 @@ def _report(pipe: int, **message: object) -> None:
 def _reap(child: int, pipe: int) -> bool:
     """Reap ended processes; return whether any process is left.
 
-    Report the status of ``child``, which waits for the program, if it was killed.
+    If ``child``, which waits for the program, was killed, report its status.
     """
     while True:
         try:

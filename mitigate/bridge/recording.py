@@ -1,9 +1,9 @@
-"""Writes recordings of an agent: clean frames, instructions, poses, actions and measures as files.
+"""Write recordings of an agent: files with clean frames, instructions, poses, actions and measures.
 
 A recording has a folder ``<scene>/<episode>/`` per episode, with ``<camera>/000000.png`` per call
 (RGB, or depth as 16-bit millimetres), ``cameras.json``, ``episode.json``, ``steps.jsonl`` (a line
 per call) and ``end.json``. ``mitigate corrupt``, ``mitigate replay`` and ``recipe=encoder``
-(env=frames) read it.
+(env=frames) read such recordings.
 """
 
 from __future__ import annotations
@@ -32,18 +32,18 @@ from mitigate.corruptions.frame_files import counts
 from mitigate.evaluation.rows import stem_of
 
 CAMERAS = "cameras.json"
-MAX_NAME = 150  # characters of a name in a path (heuristic; a file name has <= 255 bytes)
+MAX_NAME = 150  # maximum characters of a name in a path (heuristic; a file name has <= 255 bytes)
 UNIT = 0.001  # metres per count of 16-bit depth
 _NOT_ALLOWED = re.compile(r"[^A-Za-z0-9._-]+")
 
 
 def path_part(name: str) -> str:
-    """Return ``name`` as a part of a path that stays inside its folder."""
+    """Convert ``name`` to a path component that cannot leave its folder."""
     return _NOT_ALLOWED.sub("-", name).lstrip(".") or "unnamed"
 
 
 def unique_part(name: str) -> str:
-    """Return a unique part of a path; it has a hash if ``name`` had to be changed."""
+    """Return a unique path component, with a hash if ``name`` had to be changed."""
     part = path_part(name)[:MAX_NAME]
     if part == name or not name:
         return part
@@ -52,15 +52,15 @@ def unique_part(name: str) -> str:
 
 @dataclass
 class Recorder(Observer):
-    """Writes frames, poses and results to ``folder``.
+    """Observer that writes frames, poses and results to ``folder``.
 
-    An episode is written to a temporary folder until it ends, then it replaces an earlier recording
-    of that episode.
+    An episode is first written to a temporary folder. When it ends, this folder replaces any
+    earlier recording of the episode.
 
     Attributes:
         folder: The folder of the condition.
-        root: The folder that the user named, if it is above ``folder``.
-        output_root: Checks that the folder is not replaced; only during an episode.
+        root: The folder that the user named, if it contains ``folder``.
+        output_root: Checks during an episode that the folder is not replaced.
         draft: The temporary folder of the current episode.
         target: The final folder of the current episode.
         cameras: The cameras of the current episode.
@@ -117,7 +117,7 @@ class Recorder(Observer):
             result = {name: value for name, value in message.items() if name != "kind"}
             with atomic_text(self.draft / "end.json") as file:
                 json.dump(result, file)
-            # left by an earlier run, or by an earlier end in this run
+            # left by an earlier run, or by an earlier end of the episode in this run
             output.delete_folder(self.target)
             output.forget(self.draft)
             os.replace(self.draft, self.target)
@@ -126,7 +126,7 @@ class Recorder(Observer):
     def leave(self) -> None:
         """Delete the files of an episode that did not end."""
         if self.draft is not None:
-            # the folder was replaced and is not this run's any more
+            # the folder was replaced and no longer belongs to this run
             with suppress(output.UnsafePathError, output.FolderLostError):
                 output.delete_folder(self.draft)
         self._close()
@@ -139,7 +139,7 @@ class Recorder(Observer):
 
 
 def delete_drafts(folder: Path) -> None:
-    """Delete the drafts that ended processes left in the recording ``folder`` of a condition.
+    """Delete unfinished recordings of ended processes in the recording ``folder`` of a condition.
 
     Raises:
         UnsafePathError: ``folder``, a scene or an episode in it is a link to a folder, a FIFO or a
@@ -154,7 +154,7 @@ def delete_drafts(folder: Path) -> None:
 
 
 def is_whole(folder: Path, ends: Iterable[Mapping[str, Any]]) -> bool:
-    """Return whether the recording ``folder`` holds all episodes in ``ends``."""
+    """Return whether the recording ``folder`` contains all episodes in ``ends``."""
     folders = [
         folder / unique_part(stem_of(end["scene"])) / unique_part(end["episode"]) for end in ends
     ]
@@ -162,7 +162,7 @@ def is_whole(folder: Path, ends: Iterable[Mapping[str, Any]]) -> bool:
 
 
 def png(camera: Camera, frame: np.ndarray) -> bytes:
-    """Return a frame as a PNG file: RGB, or depth in millimetres with holes as 0."""
+    """Return a frame as a PNG file: either RGB, or depth in millimetres with holes as 0."""
     if camera.kind == RGB:
         picture = frame[..., ::-1]
     else:

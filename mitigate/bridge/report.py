@@ -1,6 +1,6 @@
-"""Rows, table and figures of a run's folder.
+"""Write the rows, the table and the figures of a run's folder.
 
-They contain every finished condition in the folder, also from earlier calls.
+They contain all finished conditions in the folder, including those from earlier calls.
 """
 
 from __future__ import annotations
@@ -31,11 +31,11 @@ def write_report(cells: Sequence[Cell], out: Path) -> None:
     """Write ``rows.jsonl``, the table and its figures, and print the table.
 
     Args:
-        cells: The conditions of this call, clean first.
+        cells: The conditions of this call, with clean first.
         out: The run's folder.
 
     Raises:
-        ValueError: No episode has a result, or rows would be lost.
+        ValueError: No episode has a result, or existing rows would be lost.
     """
     done = [cell for cell in cells if cell.is_done()]
     others, left_out = find_earlier(cells, out)
@@ -60,14 +60,14 @@ def write_report(cells: Sequence[Cell], out: Path) -> None:
 
 
 def _write_rows(file: Path, new_rows: Sequence[Row], left_out: Sequence[str]) -> None:
-    """Write the rows of a run; rows of the existing file are never lost silently.
+    """Write the rows of a run, without silently losing rows of an existing file.
 
-    Rows of conditions that are ``left_out`` of the table, and rows of another agent, seed or split,
-    are kept in a copy of the file.
+    Rows of conditions that are ``left_out`` of the table, and rows of a different agent, seed or
+    split, are kept in a copy of the file.
 
     Raises:
-        ValueError: The file holds rows of another condition or episode that are not in
-            ``new_rows``. The file is not changed.
+        ValueError: The file holds rows of a condition or episode that is not in ``new_rows``. In
+            this case, the file is not changed.
     """
     before = rows.read(file) if file.exists() else []
     now = {_condition_and_episode(row) for row in new_rows}
@@ -88,16 +88,17 @@ def _write_rows(file: Path, new_rows: Sequence[Row], left_out: Sequence[str]) ->
         copy = _unused(file.with_name(f"{file.name}.before"))
         write_bytes(copy, file.read_bytes())
         print(f"The rows of {', '.join(removed)} are now only in {copy}.", flush=True)
-    rows.write(file, new_rows, fewer=True)  # another rule= gives other rows of the same episodes
+    # a different rule= gives different rows for the same episodes
+    rows.write(file, new_rows, fewer=True)
 
 
 def _condition_and_episode(row: Row) -> tuple[str, float, str]:
-    """Return condition and episode of a row, which do not depend on the success rule."""
+    """Return the condition and the episode of a row, which do not depend on the success rule."""
     return str(row["corruption"]), float(row["severity"]), str(row["episode_id"])
 
 
 def _folder_name(row: Row) -> str:
-    """Return the name of the condition's folder that a row comes from."""
+    """Return the name of the condition folder from which a row comes."""
     return folder_name(str(row["corruption"]), float(row["severity"]))
 
 
@@ -114,8 +115,8 @@ def find_earlier(cells: Sequence[Cell], out: Path) -> tuple[list[Cell], list[str
     """Return finished conditions in ``out`` that are not in ``cells``.
 
     Returns:
-        The conditions with the same agent and settings, and the names of the others. The reason why
-        these are left out of the table is printed.
+        The conditions with the same agent and settings, and the names of the other conditions. The
+        reason why the other conditions are left out of the table is printed.
     """
     known = {cell.name for cell in cells}
     earlier: list[Cell] = []
@@ -140,8 +141,8 @@ def find_earlier(cells: Sequence[Cell], out: Path) -> tuple[list[Cell], list[str
 def _read_cell(clean: Cell, file: Path) -> Cell | None:
     """Return the condition of a ``done.json``, with the options of ``clean``.
 
-    None if an older version wrote it or its corruption does not exist. Raises ValueError if the
-    file or its events are damaged.
+    The result is None if an older version wrote the file or if its corruption no longer exists.
+    Raises ValueError if the file or its events are damaged.
     """
     entries = read_done(file.parent) or {}
     if missing_entries(entries):
@@ -167,9 +168,9 @@ def _read_cell(clean: Cell, file: Path) -> Cell | None:
 def describe_randomness(runs: Sequence[Sequence[Row]]) -> str:
     """Return a Markdown paragraph on repeated clean runs.
 
-    It holds their SR, the share of episodes that end differently in another run, and the SR
-    difference of the first two runs with its interval. Only episodes of all runs count, by the rule
-    of the first row.
+    It states their SR, the fraction of episodes whose outcome differs between runs, and the SR
+    difference between the first two runs with its interval. Only episodes that all runs contain are
+    used, with the success rule of the first row.
     """
     rule = runs[0][0]["rule"]
     successes = [{r["episode_id"]: r["success"] for r in run if r["rule"] == rule} for run in runs]

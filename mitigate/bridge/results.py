@@ -1,4 +1,4 @@
-"""Result rows from what the processes of a command reported of their episodes."""
+"""Compute result rows from the reports of a command's processes about their episodes."""
 
 from __future__ import annotations
 
@@ -19,33 +19,36 @@ from mitigate.evaluation.rows import Row
 from mitigate.worlds.measures import RULES, Rule, path_length, spl
 
 OWN = "own: the agent's Success measure"
-NORMALISED_LIMIT = 1.01  # metres: depth that never exceeds it may be normalised (heuristic)
+# depth in metres that never exceeds this value may be normalised (heuristic)
+NORMALISED_LIMIT = 1.01
 NORMALISED_HINT = "is it normalised? If so, set normalize_depth, min_depth and max_depth"
 CUT_OFF = (
     "its Env was closed before the episode was over while other Envs ran in parallel, as when an "
     "evaluator stops after a number of episodes. Choose episodes by episodes= and let the program "
     "run all of them. If the program ends its episodes this way, set count_closed=true"
 )
-COMMON = {"words": RULES["etpnav"], "objects": RULES["wmnav"]}  # need no STOP: some never report it
+# rules that need no STOP, because some programs never report it
+COMMON = {"words": RULES["etpnav"], "objects": RULES["wmnav"]}
 
 
 @dataclass
 class Reports:
-    """What the processes of a command reported under one condition so far.
+    """The reports of a command's processes under one condition so far.
 
     Attributes:
-        hellos: The first message of each connection, with versions of Python and libraries.
-        cameras: The cameras of all calls, as first described.
-        ends: Name of an episode -> its first end at which it was over, else its first end.
-        repeated: How many episodes ended once more.
+        hellos: The first message of each connection, with the versions of Python and libraries.
+        cameras: The cameras of all calls, in their first description.
+        ends: The end of each episode by name: the first end at which it was over, or else the first
+            end.
+        repeated: Number of episodes that ended more than once.
         dropped: Episodes that were left unfinished, with the reason if it is known.
         parallel: Whether an episode ended while another one was running.
         problems: Failures of the server, and reasons why processes stopped themselves.
-        first: The event of the first episode.
+        first: The event that began the first episode.
         languages: Language of the instruction, by episode name.
-        adapted: Encoders that got adapters.
-        connected: How many environments are connected now.
-        announced: How many episodes the program is to run.
+        adapted: Encoders to which adapters were attached.
+        connected: Number of environments that are connected now.
+        announced: Number of episodes that the program must run.
         ended: How many episodes ended.
     """
 
@@ -65,16 +68,17 @@ class Reports:
 
     @property
     def lost(self) -> list[str]:
-        """Episodes that were left unfinished and did not end later."""
+        """The episodes that were left unfinished and did not end later."""
         return sorted(self.dropped.keys() - self.ends.keys())
 
     def announce(self, event: dict[str, Any]) -> None:
-        """Record how many episodes ``wanted`` returned to the program."""
+        """Record the number of episodes that ``wanted`` returned to the program."""
         if event.get("wanted") is not None:
             self.announced = max(self.announced, int(event["wanted"]))
 
     def end(self, name: str, event: dict[str, Any]) -> None:
-        """Record the end of an episode; an end that was over replaces an attempt that was not."""
+        """Record the end of an episode; a completed episode replaces an earlier incomplete
+        attempt."""
         before = self.ends.get(name)
         if before is None or (_how(event) == OVER != _how(before)):
             self.ends[name] = event
@@ -87,9 +91,11 @@ class Reports:
             )
 
     def without_closed(self) -> Reports:
-        """Drop episodes whose Env was closed before they were over, if Envs ran in parallel.
+        """Discard episodes whose Env was closed before they were over, if several Envs ran in
+        parallel.
 
-        An evaluator cuts them off in this way. A single Env ends its episode by a close.
+        An evaluator with parallel environments cuts episodes off in this way. A single Env,
+        however, may end its episode by being closed.
         """
         if self.parallel:
             closed = [name for name, end in self.ends.items() if _how(end) == CLOSE]
@@ -103,11 +109,11 @@ def read(folder: Path, count_closed: bool = False) -> Reports:
 
     Args:
         folder: The folder of a condition.
-        count_closed: Whether episodes count whose Env was closed before they were over while other
-            Envs ran in parallel.
+        count_closed: Whether to count episodes whose Env was closed before they were over, while
+            other Envs ran in parallel.
 
     Raises:
-        ValueError: Another line is damaged. The message names the file, the line and what to do.
+        ValueError: Another line is damaged. The message names the file, the line and the next step.
     """
     reports, began = Reports(), dict[int, int]()
     for number, event in read_events(folder):
@@ -122,9 +128,9 @@ def _add(reports: Reports, event: dict[str, Any], began: dict[int, int]) -> None
     """Add one event to the reports.
 
     Args:
-        reports: The reports of the events before it.
+        reports: The reports from all earlier events.
         event: One line of the events.
-        began: Connection -> number of episodes that had ended when its episode began.
+        began: Number of episodes that had ended when a connection's episode began, by connection.
     """
     kind = event["event"]
     name = episode_name(event.get("scene", ""), event.get("episode", ""))
@@ -166,15 +172,15 @@ def rows(
     rule: str | None,
     clean: Reports | None = None,
 ) -> list[Row]:
-    """Return the rows of one condition: by the agent's own success rule and by a common one.
+    """Return the rows of one condition, by the agent's success rule and by a common rule.
 
     Args:
         reports: The reports of the condition.
-        corruption: Corruption of the condition.
+        corruption: The corruption of the condition.
         label: Entries of all rows ("agent", "name", "split", "seed").
-        rule: A name in ``RULES`` that replaces the agent's Success measure. An agent without
-            either gets rows by the common rule only.
-        clean: The reports of the clean condition, if ``reports`` belong to another condition.
+        rule: A name in ``RULES`` that replaces the agent's Success measure. An agent with neither
+            gets rows only by the common rule.
+        clean: The reports of the clean condition, if ``reports`` belong to a different condition.
     """
     result = []
     rules = _choose_rules(reports, rule, clean)
@@ -201,10 +207,11 @@ def _common_rule(reports: Reports) -> Rule:
 
 
 def _choose_rules(reports: Reports, rule: str | None, clean: Reports | None = None) -> list[Rule]:
-    """Return the requested rule and the common rule.
+    """Return the requested success rule and the common success rule.
 
-    The common rule is left out if it would judge only some episodes: if it cannot judge an episode
-    that the agent's own rule judges, or if neither this condition nor clean reports a distance.
+    The common rule is omitted if it could judge only some episodes: if it cannot judge an episode
+    that the agent's own rule can judge, or if neither this condition nor the clean one reports a
+    distance.
     """
     common = _common_rule(reports)
     ends = [*reports.ends.values()]
@@ -216,7 +223,7 @@ def _choose_rules(reports: Reports, rule: str | None, clean: Reports | None = No
 
 
 def _judge(end: dict[str, Any], rule: str | None, rules: Iterable[Rule]) -> Iterable[Row]:
-    """Return success and SPL of one episode by each rule that can judge it, each rule once."""
+    """Return success and SPL of one episode by each rule that can judge it."""
     metrics, judged = end.get("metrics", {}), {}
     if rule is None and "success" in metrics:
         success = float(metrics["success"]) > 0
@@ -233,15 +240,15 @@ def _judge(end: dict[str, Any], rule: str | None, rules: Iterable[Rule]) -> Iter
 
 
 def _goal_distance(end: dict[str, Any]) -> Any:
-    """Return metres to the goal; None if unknown."""
+    """Return the distance to the goal in metres, or None if it is unknown."""
     return end.get("distance", end.get("metrics", {}).get("distance_to_goal"))
 
 
 def _missing(end: dict[str, Any], rule: Rule) -> str:
-    """Return the argument of ``finish`` that a rule needs and the episode lacks, or "".
+    """Return the name of an argument of ``finish`` that a rule needs but the episode lacks, or "".
 
-    A reported failure without a distance is a failure by every rule, and so is an episode that
-    ends too far away, with STOP or without.
+    A reported failure without a distance is a failure by every rule. So is an episode that ends too
+    far from the goal, with or without STOP.
     """
     metres = _goal_distance(end)
     if metres is None:
@@ -250,7 +257,7 @@ def _missing(end: dict[str, Any], rule: Rule) -> str:
 
 
 def count_missing(reports: Reports, rule: str) -> dict[str, int]:
-    """Return how many episodes lack each argument that ``rule`` needs; empty if none does."""
+    """Return how many episodes lack each argument that ``rule`` needs, or an empty dict."""
     counts = Counter(_missing(end, RULES[rule]) for end in reports.ends.values())
     return {name: count for name, count in counts.most_common() if name}
 
@@ -258,7 +265,7 @@ def count_missing(reports: Reports, rule: str) -> dict[str, int]:
 def _spl(end: dict[str, Any], success: bool) -> float:
     """Return SPL from the reported path, or the agent's own SPL.
 
-    A success without either has SPL 1, as if it had taken the shortest path
+    A success with neither has SPL 1, as if the agent had taken the shortest path
     (:func:`count_without_path` counts these).
     """
     start, length = _shortest_path(end), _path_length(end)
@@ -270,13 +277,13 @@ def _spl(end: dict[str, Any], success: bool) -> float:
 
 
 def _has_spl(end: dict[str, Any]) -> bool:
-    """Return whether the agent reported an SPL of a success."""
+    """Return whether the agent reported an SPL for a success."""
     metrics = end.get("metrics", {})
     return "spl" in metrics and metrics.get("success", 0) > 0
 
 
 def count_without_path(reports: Reports, rule: str | None) -> dict[str, int]:
-    """Return by rule how many successes have neither an SPL nor a start and path to compute it."""
+    """Return, by rule, how many successes have no SPL and no path from which to compute it."""
     counts: Counter[str] = Counter()
     rules = _choose_rules(reports, rule)
     for end in reports.ends.values():
@@ -287,7 +294,7 @@ def count_without_path(reports: Reports, rule: str | None) -> dict[str, int]:
 
 
 def maybe_normalised(reports: Reports) -> list[str]:
-    """Return the cameras whose depth counts as metres and never exceeds ``NORMALISED_LIMIT``."""
+    """Return the cameras whose depth is read as metres and never exceeds ``NORMALISED_LIMIT``."""
     maximum: dict[str, float] = {}
     for end in reports.ends.values():
         for name, metres in end.get("farthest", {}).items():
@@ -297,7 +304,7 @@ def maybe_normalised(reports: Reports) -> list[str]:
 
 
 def _shortest_path(end: dict[str, Any]) -> float | None:
-    """Return metres of the shortest path; None if it is unknown or the goal is out of reach."""
+    """Return the length of the shortest path in metres; None if unknown or if there is no path."""
     metres = end.get("start_distance", end.get("metrics", {}).get("geodesic_distance"))
     return metres if metres is not None and math.isfinite(metres) else None
 
@@ -310,7 +317,7 @@ def _path_length(end: dict[str, Any]) -> float | None:
 
 
 def _measures(end: dict[str, Any]) -> dict[str, Any]:
-    """Return the entries of a row that do not depend on a rule."""
+    """Return the entries of a row that do not depend on a success rule."""
     metrics = end.get("metrics", {})
     measures: dict[str, Any] = {name: metrics[name] for name in MEASURES if name in metrics}
     recorded = {

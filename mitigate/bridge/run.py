@@ -1,8 +1,9 @@
-"""Run a program of another project under the suite: ``mitigate run suite=full -- COMMAND``.
+"""Run a program of another project under the corruption suite: ``mitigate run suite=full --
+COMMAND``.
 
-The command runs unchanged, once per condition, clean first. The frames and instructions of its
-processes are corrupted (``hook/mitigate_hook.py``). The rows and the table with PRS go to the
-output folder. The same command again skips finished conditions.
+The command runs unchanged, once per condition, starting with clean. The frames and instructions of
+its processes are corrupted (``hook/mitigate_hook.py``). Rows and a table with PRS are written to
+the output folder. If the same command is run again, it skips finished conditions.
 """
 
 from __future__ import annotations
@@ -36,7 +37,8 @@ from mitigate.corruptions.language.text import is_english, passed_through
 
 PROGRESS_INTERVAL = 15.0  # seconds between two lines of progress (heuristic)
 PAUSE = 0.2  # seconds between two polls of a running command
-MAX_REASON = 100  # characters of a problem in a line of progress; the end prints all (heuristic)
+# maximum characters of a problem in a progress line; the end prints all of it (heuristic)
+MAX_REASON = 100
 
 
 def split_command(arguments: Sequence[str]) -> tuple[list[str], list[str]]:
@@ -55,8 +57,8 @@ def run(config: RunConfig, command: Sequence[str]) -> Path:
         command: The words of the user's command.
 
     Raises:
-        ValueError: An option is invalid; or the command failed under some conditions, after all
-            others were measured.
+        ValueError: An option is invalid, or the command failed under some conditions. The error is
+            raised after all other conditions were measured.
     """
     plan = make_plan(config, command)
     cells = make_cells(plan)
@@ -85,11 +87,12 @@ def _measure(plan: Plan, cells: Sequence[Cell]) -> Path:
     _check_rule([clean])
     depth_warning = clean.depth_warning()
     if depth_warning:
-        print(depth_warning, flush=True)  # now, before hours of measuring, and at the end
+        # checked now, before hours of measuring, and again at the end
+        print(depth_warning, flush=True)
     applicable, untokenized = _select_applicable(cells)
     if untokenized:
         problems = [f"{', '.join(untokenized)}: {NO_TOKENIZER}"]
-        print(*problems, flush=True)  # now, before hours of measuring
+        print(*problems, flush=True)  # checked now, before hours of measuring
     _check_rule(applicable)
     all_done = was_done and all(cell.is_done() for cell in applicable)
     if all_done:
@@ -101,11 +104,11 @@ def _measure(plan: Plan, cells: Sequence[Cell]) -> Path:
     problems += run_all(plan, applicable)
     _warn_changed_files([clean, *applicable], out, known if all_done else ())
     problems += _describe_removed(applicable, problems)
-    if not clean.is_done():  # another condition had episodes that clean lacks
+    if not clean.is_done():  # a corrupted condition had episodes that the clean one lacks
         raise ValueError("\n".join(problems) or f"{clean.name}: {clean.reason_to_repeat()}")
     try:
         write_report([clean, *applicable], out)
-    except ValueError as error:  # failed conditions come first
+    except ValueError as error:  # failed conditions are listed first
         raise ValueError("\n".join([*problems, str(error)])) from error
     if depth_warning:
         print(depth_warning, flush=True)
@@ -118,7 +121,7 @@ def _measure(plan: Plan, cells: Sequence[Cell]) -> Path:
 
 
 def _describe_removed(cells: Sequence[Cell], problems: Sequence[str]) -> list[str]:
-    """Return a problem for each condition that did not fail and whose result is missing."""
+    """Return a problem for each condition that did not fail but has no result."""
     failed = {problem.partition(":")[0] for problem in problems}
     return [
         f"{cell.name}: its result in {cell.folder} was removed or replaced by another program."
@@ -128,7 +131,7 @@ def _describe_removed(cells: Sequence[Cell], problems: Sequence[str]) -> list[st
 
 
 def _check_rule(cells: Sequence[Cell]) -> None:
-    """Raise ValueError if ``rule=`` cannot judge a condition that was measured before."""
+    """Raise ValueError if ``rule=`` cannot judge a condition that was measured earlier."""
     for cell in cells:
         if cell.is_done() and (problem := cell.rule_problem()):
             raise ValueError(
@@ -138,12 +141,12 @@ def _check_rule(cells: Sequence[Cell]) -> None:
 
 
 def _select_applicable(cells: Sequence[Cell]) -> tuple[list[Cell], list[str]]:
-    """Return the conditions, without clean, that can reach the agent.
+    """Return the corrupted conditions whose corruption can reach the agent.
 
-    Prints the others, and how many instructions are in other languages.
+    The other conditions, and the number of instructions in other languages, are printed.
 
     Returns:
-        The conditions, and the names of conditions that need a tokenizer and have none.
+        The conditions, and the names of conditions that need a tokenizer but have none.
     """
     applicable: list[Cell] = []
     untokenized: list[str] = []
@@ -163,7 +166,7 @@ def _select_applicable(cells: Sequence[Cell]) -> tuple[list[Cell], list[str]]:
 
 
 def _warn_changed_files(cells: Sequence[Cell], out: Path, known: Sequence[str] = ()) -> list[str]:
-    """Print and return the files of the command that changed since conditions finished.
+    """Print and return the files in the command that changed after conditions finished.
 
     Files in ``known`` are returned but not printed.
     """
@@ -188,7 +191,7 @@ def _warn_changed_files(cells: Sequence[Cell], out: Path, known: Sequence[str] =
 
 
 def run_all(plan: Plan, cells: Sequence[Cell]) -> list[str]:
-    """Run unfinished cells, ``plan.config.jobs`` at a time, by the launcher; return problems."""
+    """Run unfinished cells with the launcher, ``plan.config.jobs`` at a time; return problems."""
     waiting = [cell for cell in cells if not cell.is_done()]
     for cell in cells:
         if cell not in waiting:
@@ -208,7 +211,7 @@ def _run_here(cells: Sequence[Cell], jobs: int) -> list[str]:
         while waiting or running:
             while waiting and len(running) < jobs:
                 attempt = Attempt(waiting.pop(0))
-                running.append(attempt)  # first, so that an interrupted start is cleaned up
+                running.append(attempt)  # added first, so that an interrupted start is cleaned up
                 if start_problem := _start(attempt):  # the others continue
                     running.remove(attempt)
                     problems.append(f"{attempt.cell.name}: {start_problem}")
@@ -233,7 +236,7 @@ def _run_here(cells: Sequence[Cell], jobs: int) -> list[str]:
 
 
 def _start(attempt: Attempt) -> str:
-    """Start an attempt; return why it cannot be started, empty if it was."""
+    """Start an attempt; return the reason why it cannot be started, or an empty text."""
     cell = attempt.cell
     again = f", measured again: {reason}" if (reason := cell.reason_to_repeat()) else ""
     try:
@@ -247,9 +250,9 @@ def _start(attempt: Attempt) -> str:
 
 
 def _describe_outcome(cell: Cell, problem: str, single: bool) -> str:
-    """Return one line on a condition that ended: its summary, or that it failed.
+    """Return one line about a condition that ended, with its summary or failure.
 
-    The full problem is printed at the end, which follows at once for a ``single`` condition.
+    The full problem is printed at the end of the run, which is now for a ``single`` condition.
     """
     if not problem:
         return cell.summary()
@@ -258,14 +261,15 @@ def _describe_outcome(cell: Cell, problem: str, single: bool) -> str:
 
 
 class ConditionTask:
-    """Runs conditions by name (``core/workers.py``) as jobs on other machines.
+    """Task that runs conditions by name as jobs on other machines (``core/workers.py``).
 
-    The result of a job is its problem, or an empty text. The folder of the run is on a file
-    system that all machines share. Finished conditions are kept. If a machine dies, its condition
-    is measured again on another one, because an unchanged program cannot be resumed.
+    The result of a job is a description of its problem, or an empty text. The folder of the run
+    must be on a file system that all machines can access. Finished conditions are kept. If a
+    machine dies, its condition is measured again on a different machine, because an unchanged
+    program cannot be resumed.
 
     Args:
-        plan: The run; its output folder is absolute.
+        plan: The run; the path of its output folder must be absolute.
         folder: The folder in which the command runs.
     """
 
@@ -294,7 +298,7 @@ class ConditionTask:
                 attempt.start()
                 while (problem := attempt.poll()) is None:
                     time.sleep(PAUSE)
-            except ValueError as error:  # this command cannot be started; the others continue
+            except ValueError as error:  # if one command cannot be started, the others continue
                 problem = str(error)
             finally:
                 attempt.kill()
@@ -305,10 +309,10 @@ class ConditionTask:
 
 
 def _run_on_launcher(plan: Plan, cells: Sequence[Cell]) -> list[str]:
-    """Run cells on the machines of the launcher, ``jobs`` at a time; return the problems.
+    """Run cells on the launcher's machines, ``jobs`` at a time; return the problems.
 
     Raises:
-        WorkersDied: A condition ended several workers.
+        WorkersDied: Several workers died while running the same condition.
     """
     if not cells:
         return []
@@ -329,7 +333,7 @@ def _run_on_launcher(plan: Plan, cells: Sequence[Cell]) -> list[str]:
 
 @hydra.main(version_base="1.3", config_path=str(conf.CONF), config_name="run")
 def hydra_main(cfg: DictConfig) -> None:
-    """Run with the composed config."""
+    """Run the command with the composed config."""
     config = conf.typed(cfg, "run")
     assert isinstance(config, RunConfig)
     if config.check:
@@ -347,7 +351,8 @@ def main() -> None:
     """Run from the command line."""
     options, command = split_command(sys.argv[1:])
     _command[:] = command
-    signal.signal(signal.SIGHUP, raise_ended)  # a closed terminal; core/conf.py handles SIGTERM
+    # SIGHUP is sent when the terminal closes; core/conf.py handles SIGTERM
+    signal.signal(signal.SIGHUP, raise_ended)
     options = ["check=true" if option == "--check" else option for option in options]
     sys.argv[1:] = options
     conf.main(hydra_main, "run", lambda: _check_line(options), ["--", *command] if command else ())

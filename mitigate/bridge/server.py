@@ -1,8 +1,8 @@
-"""The server of the bridge: one process per connection, so that connections are independent.
+"""The server of the bridge, with one process per connection, so that connections are independent.
 
-``Listener`` runs in parallel to one command of the user. A process that connects must know its
-token. A fork serves each connection: corruptions use all cores, and an error ends only one
-environment, with a message.
+A ``Listener`` runs in parallel to one command of the user. A process that connects must send the
+listener's token. Each connection is served by a fork, so that corruptions use all cores, and an
+error ends only one environment, with a message.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ from mitigate.core.signals import raise_ended
 from mitigate.corruptions import Corruption, FrameStream
 
 HOOK = Path(mitigate_hook.__file__).parent
-MEMORY = Path("/dev/shm")  # Linux; other systems use the folder for temporary files
+MEMORY = Path("/dev/shm")  # used on Linux; other systems use the folder for temporary files
 
 
 class Listener:
@@ -35,8 +35,8 @@ class Listener:
 
     Args:
         condition: How frames and instructions are corrupted.
-        folder: Gets the events, one JSON line each.
-        patience: Seconds after which a process of the command stops without an answer.
+        folder: Folder to which the events are written as JSON lines.
+        patience: Seconds that a process of the command waits for an answer before it stops.
     """
 
     def __init__(self, condition: Condition, folder: Path, patience: float = 25.0) -> None:
@@ -52,7 +52,7 @@ class Listener:
 
     def __enter__(self) -> Listener:
         listening = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
-        listening.bind(self.address)  # the socket is in a folder that only this user may enter
+        listening.bind(self.address)  # the socket is in a folder that only this user can access
         os.chmod(self.address, 0o600)
         listening.listen(256)
         make_folder(self.folder)
@@ -62,14 +62,16 @@ class Listener:
                 os.setpgid(0, 0)
                 signal.signal(signal.SIGINT, signal.SIG_DFL)
                 signal.signal(signal.SIGTERM, signal.SIG_DFL)
-                signal.signal(signal.SIGCHLD, signal.SIG_IGN)  # forks are not waited for
+                # the parent does not wait for its forks
+                signal.signal(signal.SIGCHLD, signal.SIG_IGN)
                 self._accept(listening)
             except BaseException:
                 traceback.print_exc()
             finally:
                 os._exit(1)
         listening.close()
-        with suppress(PermissionError, ProcessLookupError):  # the child was first, or is gone
+        # the child has already done this, or is gone
+        with suppress(PermissionError, ProcessLookupError):
             os.setpgid(self.pid, self.pid)  # a process group, so that its forks end with it
         return self
 
@@ -87,12 +89,12 @@ class Listener:
         shutil.rmtree(self.memory, ignore_errors=True)
 
     def close_connections(self) -> None:
-        """End all connections; they record episodes that were left unfinished."""
+        """End all connections, which then record their unfinished episodes."""
         with suppress(ProcessLookupError):
             os.killpg(self.pid, signal.SIGTERM)
 
     def is_alive(self) -> bool:
-        """Return whether it still serves."""
+        """Return whether the server is still running."""
         with suppress(ChildProcessError):
             return os.waitpid(self.pid, os.WNOHANG) == (0, 0)
         return False
@@ -119,14 +121,14 @@ class Listener:
             try:
                 channel, _ = listening.accept()
             except TimeoutError:
-                if os.getppid() != parent:  # the parent was killed and could not end this process
+                if os.getppid() != parent:  # the parent was killed before it could end this process
                     self._delete_folders()
                     os.killpg(0, signal.SIGKILL)
                 continue
             channel.setblocking(True)
             if os.fork() == 0:
                 listening.close()
-                signal.signal(signal.SIGTERM, raise_ended)  # records an unfinished episode
+                signal.signal(signal.SIGTERM, raise_ended)  # this records an unfinished episode
                 try:
                     Connection(
                         channel, self.condition, self.folder, self.token, self.memory
@@ -142,12 +144,12 @@ def _make_memory_folder() -> Path:
 
 
 def _socket_folder(folder: str) -> str:
-    """Return ``folder``, or /tmp if it is too long: a socket's path has <= 107 bytes (unix(7))."""
+    """Return ``folder``, or /tmp if it is too long (a socket path has <= 107 bytes, unix(7))."""
     return folder if len(folder) < 60 else "/tmp"
 
 
 def warm_up(corruption: Corruption) -> None:
-    """Compile the code of a corruption before the first frame waits for it."""
+    """Compile the code of a corruption in advance, so that the first frame does not wait for it."""
     rgb, depth = np.zeros((32, 32, 3), np.uint8), np.ones((32, 32, 1), np.float32)
     frames: dict[str, np.ndarray] = {"rgb": rgb, "depth": depth}
     FrameStream().corrupt(frames, corruption, 0)

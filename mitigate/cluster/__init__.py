@@ -1,1 +1,1 @@
-"""Jobs on this machine, on a Ray cluster or under SLURM; the engines are theirs."""
+"""Run jobs on this machine, on a Ray cluster or under SLURM."""

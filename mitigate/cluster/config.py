@@ -1,4 +1,4 @@
-"""Options of the launchers: where the worker processes of a command run."""
+"""Define the options of launchers, which decide where a command's worker processes run."""
 
 from __future__ import annotations
 
@@ -10,14 +10,14 @@ from hydra.core.config_store import ConfigStore
 
 @dataclass
 class LauncherConfig:
-    """Worker processes on this machine. ``conf/launcher`` explains the entries."""
+    """Options for worker processes on this machine. ``conf/launcher`` explains the entries."""
 
     name: str = "local"
 
 
 @dataclass
 class RayConfig(LauncherConfig):
-    """Actors on a Ray cluster."""
+    """Options for actors on a Ray cluster."""
 
     name: str = "ray"
     address: str | None = None
@@ -28,7 +28,7 @@ class RayConfig(LauncherConfig):
 
 @dataclass
 class SlurmConfig(LauncherConfig):
-    """Jobs of a SLURM cluster, submitted by submitit."""
+    """Options for jobs of a SLURM cluster, which are submitted by submitit."""
 
     name: str = "slurm"
     cluster: str = "slurm"

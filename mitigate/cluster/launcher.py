@@ -38,10 +38,11 @@ def count(launcher: LauncherConfig, requested: int | None, jobs: int, worth: int
 
     Args:
         launcher: place where the workers run.
-        requested: the requested number; None: as many as are worth starting, or as the Ray cluster
-            has room for.
+        requested: the requested number, or None for as many as are worth starting or fit into the
+            Ray cluster.
         jobs: number of jobs.
-        worth: jobs per process below which its start takes longer than it saves.
+        worth: minimum number of jobs per process; with fewer, starting the process takes longer
+            than it saves.
 
     Raises:
         ValueError: ``requested`` is less than 1.
@@ -65,13 +66,13 @@ def results(
     started: int,
     progress: Progress,
 ) -> Iterator[tuple[int, Any] | None]:
-    """Yield (number of the job, its result) from ``started`` workers of the launcher.
+    """Yield (job number, result) pairs from ``started`` workers of the launcher.
 
     Works as ``core.workers.results``: each result is yielded once, even if workers die.
 
     Raises:
-        WorkersDied: A group of jobs was lost too often.
-        Exception: The error of a job.
+        WorkersDied: The worker of a group of jobs died too often.
+        Exception: A job raised this error.
     """
     if isinstance(launcher, RayConfig):
         return ray_actors.results(task, groups, started, progress, launcher)

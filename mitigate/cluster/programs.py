@@ -1,7 +1,7 @@
 """Run chains of programs, such as a training and its evaluation, as jobs of any launcher.
 
-Each chain has a folder that all machines can access, and its programs resume from that folder. If a
-machine dies, its chain starts again on another one and keeps its finished work.
+Each chain has a folder that all machines can access, and its programs can resume from that folder.
+If a machine dies, its chain starts again on a different machine and keeps its finished work.
 """
 
 from __future__ import annotations
@@ -25,16 +25,16 @@ from mitigate.core.output import open_output
 from mitigate.core.progress import Progress
 
 PAUSE = 0.1  # seconds between two checks of running programs
-GRACE = 30.0  # seconds that a program may take to save after SIGTERM (heuristic)
-REASON_WIDTH = 400  # characters of a program's last line in a problem (heuristic)
+GRACE = 30.0  # seconds that a program has to save its state after SIGTERM (heuristic)
+REASON_WIDTH = 400  # maximum characters of a program's last line in an error text (heuristic)
 
 
 @dataclass(frozen=True)
 class Chain:
-    """Programs that run one after the other while each exits with 0.
+    """Programs that run one after the other, as long as each exits with 0.
 
     Attributes:
-        name: name in messages.
+        name: name for messages.
         programs: (kind of program, words of its command line) of each program.
         log: file for their output.
         folder: working directory.
@@ -65,7 +65,8 @@ class Running:
                 tied.words(list(words)),
                 cwd=chain.folder,
                 env={**os.environ, **chain.environment},
-                start_new_session=True,  # so that Ctrl-C reaches it only through this process
+                # in a new session, so that Ctrl-C reaches it only through this process
+                start_new_session=True,
                 stdin=subprocess.DEVNULL,
                 stdout=log,
                 stderr=subprocess.STDOUT,
@@ -82,7 +83,7 @@ class Running:
         return None if code is None else ""
 
     def end(self) -> None:
-        """Ask the running program to save and end; kill it after ``GRACE`` seconds."""
+        """Ask the running program to save and exit, and kill it after ``GRACE`` seconds."""
         if self.process.returncode is not None:
             return
         with suppress(ProcessLookupError):
@@ -102,7 +103,7 @@ def _last_line(log: Path) -> str:
 
 
 class ChainTask:
-    """Run chains in workers (``core/workers.py``); a result is the problem, or ""."""
+    """Task that runs chains in workers (``core/workers.py``); a result is the problem, or ""."""
 
     preload: ClassVar[str] = "mitigate.cluster.programs"
 
@@ -137,7 +138,7 @@ def run(
     call is interrupted, the chains are stopped too; those on this machine can save first.
 
     Raises:
-        WorkersDied: A chain was lost with its worker too often.
+        WorkersDied: The worker of a chain died too often.
     """
     if launcher.name == "local":
         return _run_here(list(enumerate(chains)), jobs, progress, ended)
@@ -167,7 +168,8 @@ def _run_here(
             progress.advance(0)
             time.sleep(PAUSE)
     finally:
-        for one in running.values():  # signal all of them first, so that they save in parallel
+        # all programs are signalled first, so that they save in parallel
+        for one in running.values():
             with suppress(ProcessLookupError):
                 one.process.send_signal(signal.SIGTERM)
         for one in running.values():
@@ -175,5 +177,5 @@ def _run_here(
 
 
 def python(*arguments: str) -> tuple[str, ...]:
-    """Return the words of ``python -m ...`` for this Python."""
+    """Return the words of a ``python -m ...`` command for this Python."""
     return (sys.executable, "-m", *arguments)

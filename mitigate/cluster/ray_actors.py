@@ -1,7 +1,7 @@
 """Run workers as actors of a Ray cluster.
 
-The task, with the agent's weights, is in Ray's object store, so it is sent to each node once.
-Results stream back one by one. When an actor or its node dies, another actor takes over its
+The task, with the agent's weights, is in Ray's object store, so it is sent to each node only once.
+Results stream back one by one. When an actor or its node dies, a new actor takes over its
 unfinished jobs.
 """
 
@@ -24,7 +24,7 @@ GIGABYTE = 1 << 30
 
 
 class Worker:
-    """An actor: runs the jobs of a group one after the other."""
+    """Ray actor that runs the jobs of a group one after the other."""
 
     def __init__(self, task: Task) -> None:
         self.task = task
@@ -33,8 +33,8 @@ class Worker:
     def started(self) -> None:
         """Return once the actor runs and its task is ready.
 
-        Only then does it receive jobs: an actor may have to wait for room in the cluster. An error
-        of the setup is raised as itself.
+        The actor receives jobs only after this, because it may have to wait for room in the
+        cluster. Errors of the setup are raised unchanged.
         """
         self.contexts.enter_context(self.task.ready())
 
@@ -58,8 +58,8 @@ def check(launcher: RayConfig) -> None:
 def connect(launcher: RayConfig) -> Any:
     """Connect Ray to the cluster of ``launcher``, and return the module ray.
 
-    Without an address it starts a cluster on this machine, which ends with the process. Raises
-    ValueError as :func:`check`, and if there is no cluster.
+    Without an address, a cluster is started on this machine, which stops when the process ends.
+    Raises ValueError in the same cases as :func:`check`, and if there is no cluster.
     """
     check(launcher)
     import ray
@@ -92,7 +92,7 @@ def results(
     progress: Progress,
     launcher: RayConfig,
 ) -> Iterator[tuple[int, Any] | None]:
-    """Yield results as ``launcher.results`` does."""
+    """Yield results in the same form as ``launcher.results``."""
     crew = _Crew(connect(launcher), task, groups, workers, progress, launcher)
     try:
         yield from crew.results()
@@ -101,7 +101,8 @@ def results(
 
 
 class _Crew:
-    """The actors, their unfinished jobs, and the groups that no actor has received yet."""
+    """State of the run: actors, their unfinished jobs, and groups that no actor has received
+    yet."""
 
     def __init__(
         self,
@@ -128,8 +129,8 @@ class _Crew:
         self.make = ray.remote(Worker).options(**reserved).remote
         self.name = task.name
         self.idle: list[Any] = []
-        self.starting: dict[Any, Any] = {}  # answer of ``started``: actor
-        # stream of results: (actor, jobs left, number of the attempt)
+        self.starting: dict[Any, Any] = {}  # maps the pending answer of ``started`` to its actor
+        # maps a stream of results to (actor, remaining jobs, attempt number)
         self.busy: dict[Any, tuple[Any, deque, int]] = {}
 
     def results(self) -> Iterator[tuple[int, Any] | None]:
@@ -157,7 +158,7 @@ class _Crew:
         self.starting[actor.started.remote()] = actor
 
     def _welcome(self, answer: Any) -> None:
-        """Handle an actor that has started, or has died before its start."""
+        """Handle an actor that has started, or that died before it started."""
         actor = self.starting.pop(answer)
         try:
             self.ray.get(answer)
@@ -179,7 +180,7 @@ class _Crew:
         self.busy[stream] = (actor, deque(group), attempt)
 
     def _hear(self, stream: Any) -> Iterator[tuple[int, Any]]:
-        """Yield the next result of a stream, or handle the end of its group or of its actor."""
+        """Yield the next result of a stream, or handle the end of its group or its actor."""
         actor, left, attempt = self.busy[stream]
         try:
             result = self.ray.get(next(stream))
@@ -196,7 +197,7 @@ class _Crew:
             yield left.popleft()[0], result
 
     def _replace(self, left: deque, attempt: int, error: Exception) -> None:
-        """Start another actor for a lost one; it may run anywhere in the cluster."""
+        """Start a new actor to replace a lost one; it may run anywhere in the cluster."""
         self._start()
         if not left:
             return

@@ -1,10 +1,11 @@
 """Run workers as jobs of a SLURM cluster, submitted by submitit.
 
-``launcher.cluster=local`` runs them as processes of this machine, for a test.
+For tests, ``launcher.cluster=local`` runs the jobs as processes on this machine.
 
-Each job takes a share of the groups and runs them in its own worker processes. It appends one line
-per result to a file in a folder that all nodes can access. The submitting process reads the lines
-as they arrive. When a job ends before its share is done, the rest is submitted again.
+Each SLURM job receives a part of the groups and runs them in its own worker processes. The job
+appends one line per result to a file in a folder that all nodes can access. The submitting process
+reads the lines as they arrive. When a job ends before all its groups are done, the remaining ones
+are submitted again.
 """
 
 from __future__ import annotations
@@ -31,8 +32,8 @@ from mitigate.core.workers import SECOND, Task, lost, numbered
 from mitigate.core.workers import results as run_here
 
 CLUSTERS = ("slurm", "local")
-LATE = 30.0  # seconds that finished jobs may take to end (heuristic)
-TASK = "task.pickle"  # written by the submitting process; no file from elsewhere is unpickled
+LATE = 30.0  # maximum seconds until finished jobs end (heuristic)
+TASK = "task.pickle"  # the submitting process wrote this file; no file from elsewhere is unpickled
 
 
 @dataclass
@@ -45,7 +46,7 @@ class _Share:
         lines: file of its results.
         left: jobs without a result, by number.
         attempt: number of the attempt.
-        read: bytes of ``lines`` that were read.
+        read: number of bytes of ``lines`` that were read.
     """
 
     job: Any
@@ -63,10 +64,10 @@ def results(
     progress: Progress,
     launcher: SlurmConfig,
 ) -> Iterator[tuple[int, Any] | None]:
-    """Yield results as ``launcher.results`` does; ``workers`` is the number of SLURM jobs.
+    """Yield results in the same form as ``launcher.results``, from ``workers`` SLURM jobs.
 
-    The folder of the jobs is removed when all are done. After a failure their logs stay in it, but
-    not the task, which holds the agent's weights.
+    The folder of the jobs is removed when all are done. After a failure, the logs stay in this
+    folder, but not the task, which holds the agent's weights.
     """
     check(launcher)
     folder = Path(launcher.folder).resolve() / f"{int(time.time())}-{os.getpid()}"
@@ -109,12 +110,12 @@ def results(
         for current in running:
             current.job.cancel()
         (folder / TASK).unlink(missing_ok=True)
-        with suppress(OSError):  # the folder holds logs
+        with suppress(OSError):  # the folder then holds logs
             folder.rmdir()
 
 
 def _end(running: list[_Share], folder: Path) -> None:
-    """Wait until jobs end whose results have all arrived, and remove their folder."""
+    """Wait until finished jobs have ended, and remove their folder."""
     waited = time.monotonic()
     while running and time.monotonic() - waited < LATE:
         running[:] = [share for share in running if not share.job.done()]
@@ -158,7 +159,7 @@ def _submit(
     attempt: int,
     number: int,
 ) -> _Share:
-    """Submit a job for ``groups`` and return its share."""
+    """Submit a SLURM job for ``groups`` and return its ``Share``."""
     lines = folder / f"results-{number}.jsonl"
     job = executor.submit(serve, folder / TASK, list(groups), launcher.processes, lines)
     return _Share(job, groups, lines, {n: j for group in groups for n, j in group}, attempt)
@@ -190,7 +191,7 @@ def serve(
 
 
 def _fresh(share: _Share) -> Iterator[tuple[int, Any]]:
-    """Yield new results of a share, each once; an incomplete last line is read later.
+    """Yield each new result of a share; an incomplete last line is read later.
 
     Raises the ValueError that the job has written.
     """
@@ -210,7 +211,7 @@ def _fresh(share: _Share) -> Iterator[tuple[int, Any]]:
 
 
 def _parse(line: bytes, file: Path) -> dict[str, Any]:
-    """Return the record in one line; raise ValueError, which names the file, if it is damaged."""
+    """Return the record in one line; if it is damaged, raise a ValueError that names the file."""
     try:
         record: Any = json.loads(line)
     except ValueError:
@@ -228,7 +229,8 @@ def _parse(line: bytes, file: Path) -> dict[str, Any]:
 def _again(
     share: _Share, task: Task, launcher: SlurmConfig, progress: Progress, done: int, total: int
 ) -> int:
-    """Return the number of the next attempt for a share; raise WorkersDied after too many."""
+    """Return the number of the next attempt for a share; raise WorkersDied after too many
+    attempts."""
     try:
         problem: Any = share.job.exception()
     except Exception as error:  # submitit raises its own errors for jobs without a result

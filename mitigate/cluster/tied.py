@@ -1,8 +1,8 @@
-"""Run a program that does not outlive its parent: ``python tied.py PARENT PROGRAM ARGUMENTS``.
+"""Run a program that ends when its parent ends: ``python tied.py PARENT PROGRAM ARGUMENTS``.
 
-A killed worker of a cluster would leave its programs running, and they would write where the next
-worker writes. On Linux they end together with the worker (prctl(2)); on other systems they do not.
-This file runs in a plain Python, which then becomes the program.
+Otherwise, if a worker of a cluster is killed, its programs keep running and write to the same files
+as the next worker. On Linux, the programs end together with the worker (prctl(2)); on other systems
+they do not. This file runs in a plain Python, which then replaces itself by the program.
 """
 
 import ctypes
@@ -16,7 +16,7 @@ PR_SET_PDEATHSIG = 1  # linux/prctl.h
 
 
 def words(program):
-    """Return the command line that runs ``program`` (a list of words) tied to this process.
+    """Return a command line that runs ``program`` (a list of words) and ends it with this process.
 
     Raises OSError if there is no such program.
     """
@@ -26,14 +26,14 @@ def words(program):
 
 
 def main() -> None:
-    """Become the program that the command line names."""
+    """Replace this process by the program that the command line names."""
     parent = int(sys.argv[1])
     program = sys.argv[2:]
-    # Workers ignore it, and their programs would inherit that.
+    # Workers ignore SIGINT, and their programs would inherit this.
     signal.signal(signal.SIGINT, signal.SIG_DFL)
     if sys.platform == "linux":
         ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
-    if os.getppid() != parent:  # the parent ended before prctl
+    if os.getppid() != parent:  # the parent ended before the call of prctl
         sys.exit(f"process {parent}, which started {program[0]}, is gone")
     os.execvp(program[0], program)
 

@@ -1,1 +1,1 @@
-"""What all packages share: observations, files, seeds, checkpoints, processes."""
+"""Code that all packages use: observations, files, seeds, checkpoints and processes."""

@@ -1,6 +1,7 @@
-"""Reject passwords and keys in the addresses of chat endpoints before anything repeats them.
+"""Reject passwords and keys in the addresses of chat endpoints before any output can contain them.
 
-An address becomes part of messages, file names and result rows. No message here repeats a value.
+An address becomes part of messages, file names and result rows. No error message in this module
+contains such a value.
 """
 
 from __future__ import annotations
@@ -17,16 +18,16 @@ _EXAMPLE = (
 _MODEL = re.compile(r"[\w.:/+-]+")
 _SUSPECT = re.compile(r"//|[@?#]|^(?:https?|ftp)[:/]", re.IGNORECASE)
 _PLAIN = re.compile(r"[\w./~+ -]*")
-# What can stand around a value in a list, a mapping, a sweep or a quotation of Hydra.
+# Characters that can surround a value in a Hydra list, mapping, sweep or quotation.
 _SEPARATORS = re.compile(r"[\s,=\"'\\(){}\[\]]+")
-# Other options may hold an @ or a //, but not a URL with an @.
+# Other options may contain an @ or a //, but not a URL with an @.
 _NAMES_SAFEGUARD = re.compile(r"safeguard[\"']?\s*[=:]", re.IGNORECASE)
 _SECRET = re.compile(r"(?:https?|ftp)[:/]\S*[@?]", re.IGNORECASE)
-_EARLIER = re.compile(r"^(?:rules|tagger|reader)\+")  # prefixes of earlier versions
+_EARLIER = re.compile(r"^(?:rules|tagger|reader)\+")  # prefixes that earlier versions accepted
 
 
 def check_url(url: str) -> None:
-    """Raise ValueError if ``url`` is not a URL, or if it holds a user, a password or a key."""
+    """Raise ValueError if ``url`` is not a URL, or if it contains a user, a password or a key."""
     if any(mark in url for mark in "@?#"):
         raise ValueError(
             "The endpoint's URL holds a user, a password or a key (an @, ? or # in it), which "
@@ -43,10 +44,10 @@ def check_url(url: str) -> None:
 
 
 def check_choice(choice: object) -> None:
-    """Raise ValueError if a value of ``safeguard=`` is not text, or an invalid address.
+    """Raise ValueError if a value of ``safeguard=`` is not text or is an invalid address.
 
-    A name or an existing folder passes. Anything else with a mark of an address must be
-    ``URL@model``.
+    Names and existing folders are accepted. Any other value that contains a character of an address
+    must be ``URL@model``.
     """
     if not isinstance(choice, str):
         raise ValueError(f"safeguard must be text, got a {type(choice).__name__}. {_EXAMPLE}")
@@ -63,15 +64,16 @@ def check_choice(choice: object) -> None:
 
 
 def is_plain(choice: object) -> bool:
-    """Return whether a message may repeat a value of ``safeguard=``: it cannot be an address."""
+    """Return whether a value of ``safeguard=`` cannot be an address, so that messages may show
+    it."""
     return isinstance(choice, str) and bool(_PLAIN.fullmatch(choice)) and "//" not in choice
 
 
 def check_arguments(arguments: Iterable[str]) -> None:
     """Check the addresses in the words of a command line before Hydra parses and prints them.
 
-    The words are not parsed, because an invalid word must not be repeated either. Every part that
-    looks like an address is checked as :func:`check_choice` does.
+    The words are not parsed, because an error of the parser would show an invalid word. Every part
+    that looks like an address is checked as :func:`check_choice` does.
     """
     for word in arguments:
         is_suspect = _NAMES_SAFEGUARD.search(word) or _SECRET.search(word)
@@ -83,5 +85,5 @@ def check_arguments(arguments: Iterable[str]) -> None:
 def _is_folder(text: str) -> bool:
     try:
         return bool(text) and Path(text).is_dir()
-    except (OSError, ValueError):  # too long, or a zero byte
+    except (OSError, ValueError):  # the path is too long or contains a zero byte
         return False

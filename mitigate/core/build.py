@@ -1,4 +1,4 @@
-"""Build the objects that configs describe: the only place that instantiates ``_target_`` nodes.
+"""Build the objects that configs describe; only this module instantiates ``_target_`` nodes.
 
 Only configs of this checkout and of the user (``--config-dir``) are ever built. A config that came
 with downloaded weights is read as data, because a ``_target_`` in it could run anything.
@@ -17,8 +17,8 @@ from omegaconf import OmegaConf
 from mitigate.core.names import unknown
 
 NOT_LOADED = "Error loading"  # start of Hydra's message for a _target_ that cannot be imported
-PARTIAL = "_partial_"  # Hydra's key for "return a function that makes the object"
-COLLECT = "builtins.dict"  # a _target_ that only collects the built arguments
+PARTIAL = "_partial_"  # Hydra's key for "return a function that constructs the object"
+COLLECT = "builtins.dict"  # a _target_ that only returns the built arguments
 
 
 def build(node: Mapping[str, Any], **arguments: Any) -> Any:
@@ -32,7 +32,7 @@ def build(node: Mapping[str, Any], **arguments: Any) -> Any:
         arguments: additional keyword arguments.
 
     Raises:
-        ValueError, FileNotFoundError: raised by the constructor, passed on unchanged.
+        ValueError, FileNotFoundError: errors of the constructor are passed on unchanged.
     """
     config = plain(node)
     makers = {k: Maker(v) for k, v in config.items() if isinstance(v, dict) and v.get(PARTIAL)}
@@ -53,17 +53,18 @@ def build(node: Mapping[str, Any], **arguments: Any) -> Any:
 
 
 def arguments_of(node: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the arguments in ``node``, each built by :func:`build`."""
+    """Build each argument in ``node`` with :func:`build` and return the arguments."""
     return dict(build({**node, "_target_": COLLECT}))
 
 
 def argument_names(kind: Any) -> list[str]:
-    """Return the arguments that a config may give to ``kind``.
+    """Return the names of the arguments that a config may set for ``kind``.
 
-    A class with ``sources`` (``mitigate.training.objective``) also takes the arguments of its
+    A class with ``sources`` (``mitigate.training.objective``) also accepts the arguments of its
     sources, but not the sources themselves.
     """
-    sources: Mapping[str, Any] = getattr(kind, "sources", {})  # other classes and functions lack it
+    # other classes and functions have no ``sources``
+    sources: Mapping[str, Any] = getattr(kind, "sources", {})
     names = [name for name in signature(kind).parameters if name not in sources]
     for source in sources.values():
         names += [name for name in signature(source).parameters if name not in names]
@@ -71,7 +72,7 @@ def argument_names(kind: Any) -> list[str]:
 
 
 def _check_arguments(node: Mapping[str, Any], names: Iterable[str]) -> None:
-    """Raise ValueError for arguments that the class or function of ``node`` does not take."""
+    """Raise ValueError for arguments that the class or function of ``node`` does not accept."""
     target = str(node["_target_"])
     try:
         parameters = signature(get_object(target)).parameters
@@ -85,9 +86,9 @@ def _check_arguments(node: Mapping[str, Any], names: Iterable[str]) -> None:
 
 
 class Maker:
-    """Make the object that a config describes; each call makes a new one.
+    """Function object that constructs a new object from a config at each call.
 
-    A Maker can be pickled, so that worker processes can make their own objects.
+    A Maker can be pickled, so that worker processes can construct their own objects.
     """
 
     def __init__(self, node: Mapping[str, Any]) -> None:
@@ -108,7 +109,7 @@ def plain(node: Any) -> dict[str, Any]:
 
 
 def locate(target: str) -> Any:
-    """Return the object that ``target`` names (``module.Name``).
+    """Import and return the object that ``target`` names (``module.Name``).
 
     Raises:
         ValueError: if there is no such object.
@@ -127,5 +128,5 @@ def _not_loaded(error: object) -> str:
 
 
 def maker(node: Mapping[str, Any]) -> Maker:
-    """Return a function that makes what ``node`` describes."""
+    """Return a function that constructs the object that ``node`` describes."""
     return Maker(plain(node))

@@ -1,9 +1,10 @@
-"""Read and write weights: ``model.safetensors`` in a folder, or a single safetensors file.
+"""Read and write weights: Read and write weights: ``model.safetensors`` in a folder, or a single
+safetensors file.
 
 A folder has a manifest (``folders.py``); a single file has a sidecar with its sha256
 (``checksums.py``). Both are checked before the weights are read. Weights without a checksum, from
-an older version or another project, are read too. ``training/states.py`` holds the states that a
-training resumes from.
+an older version or another project, are also accepted. ``training/states.py`` handles the states
+from which training resumes.
 """
 
 from __future__ import annotations
@@ -24,14 +25,15 @@ from mitigate.core.names import short
 
 WEIGHTS = "model.safetensors"
 CONFIG = "config.yaml"
-ADAPTER = ".adapter."  # part of the names of adapter tensors (mitigate/agents/adapters.py)
+# text that is part of every adapter tensor's name (mitigate/agents/adapters.py)
+ADAPTER = ".adapter."
 
 
 def weights_file(path: str | Path) -> Path:
-    """Return the safetensors file at ``path``, which names the file or its folder.
+    """Return the safetensors file at ``path``, which is the file or its folder.
 
     Raises:
-        FileNotFoundError: There is no safetensors file.
+        FileNotFoundError: There is no safetensors file at ``path``.
     """
     path = Path(path)
     file = path if path.suffix == ".safetensors" else path / WEIGHTS
@@ -56,8 +58,8 @@ def save_weights(module: nn.Module, path: str | Path, *, half: bool = False) -> 
 
     Args:
         module: the module.
-        path: a folder, for ``model.safetensors`` and a manifest; or a ``.safetensors`` file, which
-            gets a sidecar with its sha256.
+        path: a folder, into which ``model.safetensors`` and a manifest are written; or a
+            ``.safetensors`` file, which gets a sidecar file with its sha256.
         half: round floats to float16, as in the shipped weights.
 
     Returns:
@@ -72,7 +74,7 @@ def save_weights(module: nn.Module, path: str | Path, *, half: bool = False) -> 
 
 
 def write_tensors(module: nn.Module, file: Path, *, half: bool = False) -> None:
-    """Write the tensors of ``module`` to the draft ``file``; see :func:`save_weights`."""
+    """Write the tensors of ``module`` to the unfinished ``file``; see :func:`save_weights`."""
     tensors = {
         name: (value.half() if half and value.is_floating_point() else value).cpu().clone()
         for name, value in module.state_dict().items()
@@ -85,7 +87,7 @@ def write_tensors(module: nn.Module, file: Path, *, half: bool = False) -> None:
 
 
 def unwritten(file: Path, error: Exception) -> OSError:
-    """Return the error for a checkpoint that could not be written, with its cause and the fix."""
+    """Return the error for a checkpoint that could not be written, with its cause and a fix."""
     cause = str(error).splitlines()[0][:200]
     return OSError(
         f"A checkpoint could not be written to {file.parent} ({cause}). Is the disk full "
@@ -97,14 +99,14 @@ def unwritten(file: Path, error: Exception) -> OSError:
 def load_weights(module: nn.Module, path: str | Path) -> None:
     """Load weights that :func:`save_weights` wrote into ``module``.
 
-    Names and shapes must match exactly. Float tensors may have another width; integers, booleans
-    and complex numbers must stay in their class. If the weights hold no adapters at all, as
-    weights trained before adapters were added, the adapters of ``module`` keep their values.
+    Names and shapes must match exactly. Float tensors may have a different precision; integers,
+    booleans and complex numbers must keep their type. If the weights contain no adapters (for
+    example weights of a base agent), the adapters of ``module`` keep their values.
 
     Raises:
-        FileNotFoundError: There is no safetensors file.
-        ValueError: The weights are damaged or do not fit; the message names the file and the first
-            differences.
+        FileNotFoundError: There is no safetensors file at ``path``.
+        ValueError: The weights are damaged or do not match the module; the message names the file
+            and the first differences.
     """
     file = weights_file(path)
     _fill(module, load_tensors(file), file)
@@ -113,14 +115,14 @@ def load_weights(module: nn.Module, path: str | Path) -> None:
 def not_finite(module: nn.Module) -> list[str]:
     """Return the names of parameters with NaN or infinity and of buffers with NaN.
 
-    Infinity is valid in a buffer: attention masks hold it.
+    Infinity is valid in a buffer, because attention masks contain it.
     """
     names = [n for n, p in module.named_parameters() if not torch.isfinite(p).all()]
     return names + [n for n, b in module.named_buffers() if torch.isnan(b).any()]
 
 
 def check_finite(module: nn.Module, what: str) -> None:
-    """Raise ValueError if weights of ``module`` are not finite; ``what`` names them."""
+    """Raise ValueError if weights of ``module`` are not finite; ``what`` names the weights."""
     bad = not_finite(module)
     if bad:
         raise ValueError(
@@ -131,9 +133,11 @@ def check_finite(module: nn.Module, what: str) -> None:
 
 
 def load_part(module: nn.Module, name: str, path: str | Path) -> None:
-    """Load the part ``name`` of the weights at ``path`` into ``module``, as :func:`load_weights`.
+    """Load the part ``name`` of the weights at ``path`` into ``module``, as in
+    :func:`load_weights`.
 
-    Tensors that ``module`` lacks are skipped, such as a layer for a sensor that it does not read.
+    Tensors that ``module`` lacks are skipped, such as a layer for a sensor that the module does not
+    read.
     """
     file = weights_file(path)
     prefix = f"{name}."
@@ -148,7 +152,7 @@ def load_part(module: nn.Module, name: str, path: str | Path) -> None:
 
 
 def _fill(module: nn.Module, tensors: dict[str, torch.Tensor], file: Path) -> None:
-    """Load the tensors of ``file`` into ``module``; raise ValueError if they do not fit."""
+    """Load the tensors of ``file`` into ``module``; raise ValueError if they do not match."""
     expected = {k: v for k, v in module.state_dict().items() if isinstance(v, torch.Tensor)}
     borrowed = _borrowed(module)
     expected = {k: v for k, v in expected.items() if k not in borrowed}
@@ -176,7 +180,7 @@ def _fits(value: torch.Tensor, expected: torch.Tensor) -> bool:
 
 
 def _kind(value: torch.Tensor) -> str:
-    """Return the class of numbers that a tensor holds, whatever their width."""
+    """Return the type of numbers that a tensor holds, without their precision."""
     if value.dtype == torch.bool:
         return "bool"
     if value.is_complex():
@@ -185,7 +189,7 @@ def _kind(value: torch.Tensor) -> str:
 
 
 def _borrowed(module: nn.Module) -> dict[str, torch.Tensor]:
-    """Return the public tensors, which state dicts leave out (:func:`borrow`)."""
+    """Return the public tensors, which state dicts do not contain (:func:`borrow`)."""
     return {
         f"{prefix}.{name}" if prefix else name: value
         for prefix, part in module.named_modules()
@@ -194,13 +198,14 @@ def _borrowed(module: nn.Module) -> dict[str, torch.Tensor]:
 
 
 def load_tensors(file: Path) -> dict[str, torch.Tensor]:
-    """Return the tensors of a safetensors file, after a check of its sha256 if that is recorded.
+    """Return the tensors of a safetensors file, after checking its sha256 if one is recorded.
 
     Raises:
         ValueError: The file is damaged.
-        PermissionError: The user may not read the file.
+        PermissionError: The user has no permission to read the file.
     """
-    file.open("rb").close()  # raises PermissionError, which does not mean damage
+    # may raise PermissionError, which does not mean that the file is damaged
+    file.open("rb").close()
     if pointer := lfs_problem(file):
         raise ValueError(f"The weights {file} cannot be read: {file.name} {pointer}.")
     problem = folders.problem(file)
@@ -220,7 +225,7 @@ def load_tensors(file: Path) -> dict[str, torch.Tensor]:
 
 
 def _again(file: Path) -> str:
-    """Return what to do about damaged weights."""
+    """Return advice for damaged weights."""
     folder = file.resolve().parent
     # the layout of a training run
     if folder.name == "agent" and any(folder.parent.glob("*/step-*.pt")):
@@ -236,7 +241,7 @@ def _again(file: Path) -> str:
 
 @runtime_checkable
 class OwnFormat(Protocol):
-    """An agent that writes its own format, such as an adapter in the format of PEFT."""
+    """Protocol of agents that write their own format, such as a PEFT adapter."""
 
     def save(self, folder: str | Path) -> Any: ...
 
@@ -247,10 +252,10 @@ def save_agent(agent: nn.Module, folder: str | Path, config: str | None = None) 
     """Write the weights of ``agent`` and its settings into ``folder``.
 
     Args:
-        agent: written by its ``save`` method if it has one (:class:`OwnFormat`), else as by
+        agent: the agent; its ``save`` method is used if it has one (:class:`OwnFormat`), otherwise
             :func:`save_weights`.
         folder: the folder.
-        config: text of ``config.yaml``; None writes no such file.
+        config: text of ``config.yaml``, or None to write no such file.
     """
     if isinstance(agent, OwnFormat):
         agent.save(folder)
@@ -264,7 +269,8 @@ def save_agent(agent: nn.Module, folder: str | Path, config: str | None = None) 
 
 
 def load_agent(agent: nn.Module, path: str | Path) -> None:
-    """Load what :func:`save_agent` wrote into ``agent``; raises as :func:`load_weights` does."""
+    """Load weights from :func:`save_agent` into ``agent``; errors are as in
+    :func:`load_weights`."""
     if isinstance(agent, OwnFormat):
         agent.load(path)
     else:
@@ -276,7 +282,7 @@ def weights_sha(module: nn.Module, leave_out: str | None = None) -> str:
 
     Args:
         module: the module.
-        leave_out: text; tensors whose name contains it do not count.
+        leave_out: tensors whose name contains this text are excluded.
     """
     sha = hashlib.sha256()
     for name, value in sorted(module.state_dict().items()):
@@ -287,20 +293,20 @@ def weights_sha(module: nn.Module, leave_out: str | None = None) -> str:
     return sha.hexdigest()[:12]
 
 
-# Public weights inside a module of this project are never copied into its checkpoints. Such a
-# checkpoint holds the tensors that differ from the public ones, such as adapters, and the sha256 of
-# the public file.
+# Public weights inside a module of this project are never copied into its checkpoints.
+# Such a checkpoint holds the tensors that differ from the public ones, such as adapters,
+# and the sha256 of the public file.
 
 
 def borrow(module: nn.Module, prefixes: tuple[str, ...], source: str, name: str) -> None:
-    """Leave public tensors of ``module`` out of its state dicts while they are unchanged.
+    """Exclude public tensors of ``module`` from its state dicts as long as they are unchanged.
 
-    Loading a state dict without them fills in the public values. Loading a state dict that was made
-    with another public file raises ValueError.
+    When such a state dict is loaded, the missing tensors get their public values. Loading a state
+    dict from a different public file raises ValueError.
 
     Args:
         module: the module.
-        prefixes: beginnings of the names of the public tensors.
+        prefixes: prefixes of the names of the public tensors.
         source: sha256 of the public file, in hex.
         name: name of the public weights in errors.
     """

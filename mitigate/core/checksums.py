@@ -1,9 +1,9 @@
 """Keep the sha256 of a file in a sidecar file, in the format of ``sha256sum -c``.
 
-The states of a training have sidecars. Folders have a manifest instead (``core/folders.py``).
+The states of training runs have sidecars. Folders have a manifest instead (``core/folders.py``).
 
-While a file is replaced, its sidecar lists the sums of the old and of the new file. A program that
-is killed at any moment therefore leaves a file that matches its sidecar.
+While a file is replaced, its sidecar lists the checksums of the old and the new file. Therefore,
+even if a program is killed at any moment, the file matches its sidecar.
 """
 
 from __future__ import annotations
@@ -16,13 +16,13 @@ from typing import Any
 from mitigate.core.files import atomic_text, sha256, write_atomically
 
 SUFFIX = ".sha256"
-LARGEST = 4096  # characters of a sidecar (heuristic; it has one or two lines)
-DIGITS = 12  # hex digits of a fingerprint: 48 bits
+LARGEST = 4096  # maximum characters of a sidecar (heuristic; it has one or two lines)
+DIGITS = 12  # number of hex digits of a fingerprint: 48 bits
 _LINE = re.compile(r"([0-9a-f]{64})  (.+)")
 
 
 def sidecar(path: Path) -> Path:
-    """Return the path of the sidecar of ``path``, which may not exist."""
+    """Return the path of the sidecar for ``path``, whether or not it exists."""
     return path.with_name(path.name + SUFFIX)
 
 
@@ -43,24 +43,25 @@ def write(path: Path, write: Callable[[Path], Any]) -> Path:
 
 
 def _sums_before(path: Path) -> list[str]:
-    """Return the sums of the file that is replaced; an empty list if there is no file."""
+    """Return the checksums of the file that is being replaced, or an empty list if there is no
+    file."""
     try:
         if sidecar(path).is_file() and path.is_file():
             return _sums(path)
         return [sha256(path)] if path.is_file() else []
-    except ValueError:  # a damaged sidecar is replaced together with its file
+    except ValueError:  # a damaged sidecar will be replaced together with its file
         return []
 
 
 def problem(path: Path) -> str:
-    """Compare ``path`` with its sidecar and return what is wrong with it.
+    """Compare ``path`` with its sidecar and describe the problem.
 
     Returns:
-        A predicate such as "does not have the sha256 ..."; empty if the file is sound or has no
-        sidecar.
+        A predicate such as "does not have the sha256 ...", or an empty text if the file is intact
+        or has no sidecar.
 
     Raises:
-        PermissionError: The file may not be read, which does not mean damage.
+        PermissionError: There is no permission to read the file, which does not mean damage.
     """
     note = sidecar(path)
     if not note.is_file():
@@ -74,20 +75,22 @@ def problem(path: Path) -> str:
 
 
 def delete(path: Path) -> None:
-    """Delete ``path`` and its sidecar. The sidecar goes first: a file without one is valid."""
+    """Delete ``path`` and its sidecar. The sidecar is deleted first, because a file without a
+    sidecar is valid."""
     sidecar(path).unlink(missing_ok=True)
     path.unlink(missing_ok=True)
 
 
 def delete_orphans(folder: Path, pattern: str) -> None:
-    """Delete sidecars in ``folder`` whose file is gone; ``pattern`` is a glob of these files."""
+    """Delete sidecars in ``folder`` whose file no longer exists; the glob ``pattern`` matches the
+    files."""
     for note in folder.glob(pattern + SUFFIX):
         if not note.with_suffix("").is_file():
             note.unlink(missing_ok=True)
 
 
 def _sums(path: Path) -> list[str]:
-    """Return the sums that the sidecar of ``path`` lists; ValueError if it is damaged."""
+    """Return the checksums in the sidecar of ``path``; raise ValueError if it is damaged."""
     with open(sidecar(path), encoding="utf-8") as file:
         text = file.read(LARGEST + 1)
     if len(text) > LARGEST:

@@ -1,7 +1,7 @@
 """Compose and check the options of a command, run its Hydra program, and explain its errors.
 
 Each command registers the dataclass of its options when its module is imported (:func:`register`).
-A user's mistake is explained in one paragraph: cause, allowed values, fix. Set
+A user's mistake is explained in one paragraph with the cause, the allowed values and a fix. Set
 ``HYDRA_FULL_ERROR=1`` to see the whole traceback instead.
 """
 
@@ -37,12 +37,13 @@ from mitigate.core.names import unknown
 from mitigate.core.options import check_dashes, config_folder, flags_first, without_config_folder
 from mitigate.core.signals import Ended, raise_ended
 
-CONF = PACKAGE / "conf"  # a checkout has a link to its conf/ here
-TYPES: dict[str, type] = {}  # dataclass of each registered conf/<name>.yaml
-FULL = "HYDRA_FULL_ERROR"  # environment variable: Hydra shows whole tracebacks
-# Set by main together with FULL. It tells programs that main starts that the user did not set FULL.
+CONF = PACKAGE / "conf"  # in a checkout, this is a link to its conf/
+TYPES: dict[str, type] = {}  # the dataclass of each registered conf/<name>.yaml
+FULL = "HYDRA_FULL_ERROR"  # environment variable with which Hydra shows whole tracebacks
+# Variable that main sets together with FULL, so that child programs know that the user did not set
+# FULL.
 OURS = "MITIGATE_FULL_ERROR"
-# printed by Hydra (hydra.core.utils, JobReturn.return_value)
+# line that Hydra prints (hydra.core.utils, JobReturn.return_value)
 HYDRA_LINE = "Error executing job with overrides"
 WHOLE = "# @package _global_"  # first line of a file that also sets entries outside its group
 KINDS = {
@@ -56,7 +57,8 @@ KINDS = {
 def register(primary: str, kind: type, schema: str | None = None) -> None:
     """Register the dataclass ``kind`` as the types of ``conf/<primary>.yaml``.
 
-    The file names ``<schema>_schema`` in its defaults; by default ``schema`` is ``primary``.
+    The defaults list of the file must contain ``<schema>_schema``, where ``schema`` defaults to
+    ``primary``.
     """
     TYPES[primary] = kind
     ConfigStore.instance().store(name=f"{schema or primary}_schema", node=kind)
@@ -65,10 +67,11 @@ def register(primary: str, kind: type, schema: str | None = None) -> None:
 def typed(cfg: DictConfig, primary: str) -> Any:
     """Return composed options as an object of the dataclass of ``conf/<primary>.yaml``.
 
-    Entries that the dataclass does not declare become attributes; nodes without types are dicts.
+    Entries that the dataclass does not declare become attributes, and nodes without types become
+    dicts.
 
     Raises:
-        ValueError: an entry refers to a missing one, or is mandatory and not set.
+        ValueError: an entry refers to a missing entry, or a mandatory entry is not set.
     """
     try:
         return OmegaConf.to_object(cfg)
@@ -85,18 +88,20 @@ def main(
 ) -> None:
     """Run the Hydra program of a command and explain its errors.
 
-    ``--help`` prints the first lines of the module of ``program`` and every option instead.
+    With ``--help``, it only prints every option and the first lines of ``program``'s module
+    docstring.
 
     Exits with status 1 and one paragraph for ValueError, OSError, errors in configs and requests
     for too much memory. Exits with 130 for Ctrl-C and 143 for SIGTERM, and prints the command that
-    resumes.
+    resumes the work.
 
     Args:
         program: a ``hydra.main`` function over ``conf/<primary>.yaml``.
         primary: name of the config.
         check: called before ``program``, after the check of addresses (``core/addresses.py``).
-        behind: words of the command line that are not Hydra's; they end the printed command.
-        again: purpose of the printed command, if it does not resume.
+        behind: words of the command line that are not for Hydra; they are appended to the printed
+            command.
+        again: purpose of the printed command, if it does not resume the work.
     """
     if {"--help", "-h"} & set(sys.argv[1:]):
         print(help_text(sys.modules[program.__module__].__doc__ or "", primary))
@@ -104,7 +109,7 @@ def main(
     if os.environ.get(FULL) and OURS not in os.environ:
         _prepare(primary, check)
         return program()
-    os.environ.update({FULL: "1", OURS: "1"})  # makes Hydra raise errors instead of exiting
+    os.environ.update({FULL: "1", OURS: "1"})  # this makes Hydra raise errors instead of exiting
     if threading.current_thread() is threading.main_thread():
         signal.signal(signal.SIGTERM, raise_ended)
     try:
@@ -129,7 +134,7 @@ def main(
 
 
 def _prepare(primary: str, check: Callable[[], None] | None) -> None:
-    """Check the command line before Hydra parses or prints it, and put it in Hydra's order."""
+    """Check the command line before Hydra parses or prints it, and order its words for Hydra."""
     check_arguments(sys.argv[1:])
     if check is not None:
         check()
@@ -140,9 +145,9 @@ def _prepare(primary: str, check: Callable[[], None] | None) -> None:
 
 
 class _WithoutHydraLine:
-    """A stream without the line with which Hydra announces an error.
+    """Output stream that omits the line with which Hydra announces an error.
 
-    Users' errors are explained in a paragraph, and others have a traceback.
+    The line is redundant, because users' errors are explained and other errors have a traceback.
     """
 
     def __init__(self, stream: TextIO) -> None:
@@ -152,11 +157,12 @@ class _WithoutHydraLine:
         return len(text) if text.startswith(HYDRA_LINE) else self._stream.write(text)
 
     def __getattr__(self, name: str) -> Any:
-        return getattr(self._stream, name)  # everything else behaves as the stream
+        return getattr(self._stream, name)  # all other attributes are those of the stream
 
 
 def explain(error: Exception, primary: str, options: Sequence[str] = ()) -> str:
-    """Return one paragraph for an error of composing ``conf/<primary>.yaml`` with ``options``."""
+    """Return a paragraph that explains an error in composing ``conf/<primary>.yaml`` with
+    ``options``."""
     text = f"{error}\n{error.__cause__ or ''}"
     if isinstance(error, MissingConfigException) and error.options is not None:
         group, _, name = (error.missing_cfg_file or "").rpartition("/")
@@ -197,7 +203,7 @@ def load_config(primary: str, words: Sequence[str] = ()) -> DictConfig:
 
     Raises:
         ValueError: no imported module has registered the types of this file, or an address in the
-            words holds a password.
+            words contains a password.
     """
     check_arguments(words)
     if primary not in TYPES:
@@ -218,8 +224,8 @@ def load_config(primary: str, words: Sequence[str] = ()) -> DictConfig:
 def notices(primary: str, options: Sequence[str]) -> list[str]:
     """Return warnings about entries that ``options`` add, such as ``+columns.mine=[...]``.
 
-    Without a warning, Hydra replaces an existing list or mapping, and adds an entry that no program
-    reads.
+    Hydra itself does not warn when it replaces an existing list or mapping, or adds an entry that
+    no program reads.
     """
     added = {
         option[1:].partition("=")[0]: option.partition("=")[2][:1] in "[{"
@@ -233,7 +239,7 @@ def notices(primary: str, options: Sequence[str]) -> list[str]:
         cfg = load_config(
             primary, [*folder_words, *(o for o in overrides if re.match(r"[^-+].*=|~", o))]
         )
-    except (HydraException, OmegaConfBaseException):  # the program itself explains it
+    except (HydraException, OmegaConfBaseException):  # the program itself explains this error
         return []
     folders = (CONF, config_folder(options) or CONF)
     return [
@@ -247,7 +253,7 @@ def notices(primary: str, options: Sequence[str]) -> list[str]:
 
 
 def _notice(key: str, whole: bool, exists: bool, names: list[str]) -> str:
-    """Return the warning for ``+key=``; ``whole``: its value is a list or a mapping."""
+    """Return the warning for ``+key=``; with ``whole``, its value is a list or a mapping."""
     if exists and not whole:
         return ""  # Hydra rejects it
     if exists:
@@ -266,7 +272,7 @@ def help_text(about: str, primary: str) -> str:
 
 
 def _recipes() -> str:
-    """Return one line per recipe, with the first sentence of its file."""
+    """Return one line per recipe, with the first sentence in its file."""
     lines = ["Recipes (recipes/README.md):", ""]
     for file in sorted((CONF / "recipe").glob("*.yaml")):
         text = file.read_text(encoding="utf-8").removeprefix(WHOLE).strip()
@@ -279,8 +285,8 @@ def _recipes() -> str:
 def options_text(primary: str) -> str:
     """Return every option of ``conf/<primary>.yaml`` with its comment.
 
-    Options that choose a file of ``conf/`` come first, with their choices. Options that recipes set
-    are listed too; in the file they are commented out.
+    Options that choose a file of ``conf/`` come first, with their allowed values. Options that
+    recipes set are also listed; in the file they are commented out.
     """
     text, _, _ = (CONF / f"{primary}.yaml").read_text(encoding="utf-8").partition("\nhydra:")
     lines = [re.sub(r"^# (\w+: .*#)", r"\1", line) for line in text.splitlines()]
@@ -293,10 +299,10 @@ def options_text(primary: str) -> str:
 
 
 def _choices(group: str, primary: str) -> str:
-    """Return the files of a group.
+    """Return the names of the config files in a group.
 
-    The group ``agent`` lists agents that can run episodes. A training lists the others separately,
-    since it has recipes for them.
+    The group ``agent`` lists agents that can run episodes. For training, the other agents are
+    listed separately, because recipes exist for them.
     """
     files = sorted((CONF / group).glob("*.yaml"))
     if group != "agent":
@@ -310,21 +316,20 @@ def _choices(group: str, primary: str) -> str:
 def walks(file: Path) -> bool:
     """Return whether the agent of a ``file`` of ``conf/agent`` can run episodes.
 
-    Such a file also names the shipped weights and options of the world, so it sets entries of the
-    whole config.
+    Such a file also sets entries outside its group: the shipped weights and options of the world.
     """
     return file.read_text(encoding="utf-8").startswith(WHOLE)
 
 
 def _chosen(primary: str) -> dict[str, str | None]:
-    """Return the groups of ``conf/<primary>.yaml`` and the file that it chooses from each."""
+    """Return the groups of ``conf/<primary>.yaml`` and the default file of each group."""
     entries = OmegaConf.load(CONF / f"{primary}.yaml").defaults
     pairs = [pair for entry in entries if isinstance(entry, DictConfig) for pair in entry.items()]
     return {str(name): chosen for name, chosen in pairs if "/" not in str(name)}
 
 
 def composed(primary: str, words: Sequence[str] = ()) -> DictConfig:
-    """Compose a config as :func:`load_config`, with every error explained as a ValueError."""
+    """Compose a config like :func:`load_config`, but explain every error as a ValueError."""
     try:
         return load_config(primary, words)
     except (HydraException, OmegaConfBaseException) as error:
@@ -332,14 +337,14 @@ def composed(primary: str, words: Sequence[str] = ()) -> DictConfig:
 
 
 def _chosen_by(options: Sequence[str], primary: str) -> DictConfig:
-    """Return the config with only the ``options`` that choose a file (``agent=recurrent``)."""
+    """Return the config composed only with ``options`` that choose a file (``agent=recurrent``)."""
     folder_words, overrides = without_config_folder(options)
     groups = [o for o in overrides if o.partition("=")[0] in _chosen(primary)]
     return load_config(primary, [*folder_words, *groups])
 
 
 def _unknown_key(key: str, cfg: DictConfig, primary: str) -> str:
-    """Return the paragraph for an option that the config does not have."""
+    """Return the error paragraph for an option that the config does not have."""
     parent = key.rpartition(".")[0]
     while parent and not isinstance(OmegaConf.select(cfg, parent), DictConfig):
         parent = parent.rpartition(".")[0]
@@ -357,7 +362,7 @@ def _unknown_key(key: str, cfg: DictConfig, primary: str) -> str:
 def _arguments(node: DictConfig) -> list[str]:
     """Return arguments of the ``_target_`` of ``node`` that ``node`` does not set.
 
-    Only targets of this project are imported; empty for others.
+    Only targets of this project are imported; for other targets the result is empty.
     """
     target = str(node.get("_target_", ""))
     if not target.startswith(f"{PACKAGE.name}."):
@@ -367,7 +372,7 @@ def _arguments(node: DictConfig) -> list[str]:
 
 
 def _misfit(key: str, value: str, cfg: DictConfig) -> str:
-    """Return the paragraph for a value that does not fit the entry ``key``."""
+    """Return the error paragraph for a value that is invalid for the entry ``key``."""
     node = OmegaConf.select(cfg, key)
     if not isinstance(node, DictConfig):
         return f"{key} cannot be {value}."

@@ -15,12 +15,12 @@ def read(thing: Any, *names: str, default: Any = None) -> Any:
 
 
 def take_over(view: Any, thing: Any, names: Iterable[str]) -> None:
-    """Copy the members ``names`` that ``thing`` has to ``view``, over its defaults."""
+    """Copy those members ``names`` that ``thing`` has to ``view``, replacing its defaults."""
     for name in names:
-        if hasattr(thing, name):  # the only place that reads them from a user's object
+        if hasattr(thing, name):  # only this function reads these members from a user's object
             setattr(view, name, getattr(thing, name))
 
 
 def missing_members(thing: Any, names: Sequence[str]) -> list[str]:
-    """Return the members ``names`` that ``thing`` lacks or that are empty (the default)."""
+    """Return those of ``names`` that ``thing`` lacks or that are empty (the default)."""
     return [name for name in names if not getattr(thing, name, None)]

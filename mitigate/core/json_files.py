@@ -1,4 +1,4 @@
-"""Read untrusted JSON: small files at once, large files value by value."""
+"""Read untrusted JSON files: small files at once, large files one value at a time."""
 
 from __future__ import annotations
 
@@ -14,9 +14,11 @@ from mitigate.core.files import lfs_problem, open_text
 from mitigate.core.names import short
 from mitigate.core.output import is_regular
 
-CHUNK = 1 << 16  # characters read at a time (heuristic)
-LARGEST_VALUE = 1 << 25  # characters of one JSON value; more means a broken file (heuristic)
-LARGEST_JSON = 1 << 24  # bytes of a JSON file that is read at once (heuristic; a card has 1e4)
+CHUNK = 1 << 16  # number of characters that are read at a time (heuristic)
+# maximum characters of one JSON value; more means a broken file (heuristic)
+LARGEST_VALUE = 1 << 25
+# maximum bytes of a JSON file that is read at once (heuristic; a card has 1e4)
+LARGEST_JSON = 1 << 24
 
 
 class JsonListError(ValueError):
@@ -28,7 +30,7 @@ def read_json(path: Path, again: str) -> Any:
 
     Raises:
         ValueError: The file has more than ``LARGEST_JSON`` bytes, holds a number that is not
-            finite, or is damaged. The message ends with ``again``.
+            finite, or is damaged. Each message ends with the advice ``again``.
         UnsafePathError: The path is a FIFO, a socket or a device.
     """
     is_regular(path)
@@ -48,8 +50,8 @@ def read_object(path: Path, again: str) -> dict[str, Any]:
     """Return the JSON object in ``path``, read by :func:`read_json`.
 
     Raises:
-        ValueError: The file is damaged or holds another kind of value, such as null or a list. The
-            message names the file and ends with ``again``.
+        ValueError: The file is damaged or holds a different kind of value, such as null or a list.
+            The message names the file and ends with ``again``.
     """
     value = read_json(path, again)
     if not isinstance(value, dict):
@@ -58,7 +60,7 @@ def read_object(path: Path, again: str) -> dict[str, Any]:
 
 
 def parse_json(text: str | bytes) -> Any:
-    """Parse JSON as ``json.loads``; raise ValueError for numbers that are not finite."""
+    """Parse JSON like ``json.loads``, but raise ValueError for numbers that are not finite."""
     return json.loads(text, parse_constant=_no_number, parse_float=_finite)
 
 
@@ -76,9 +78,9 @@ def _finite(digits: str) -> float:
 def json_members(path: Path | str, streamed: str) -> Iterator[tuple[str, Any]]:
     """Yield the (key, value) pairs of the JSON object in ``path``, one value in memory at a time.
 
-    If the value of the key ``streamed`` is a list, it is yielded as an iterator over its items.
-    Raises ValueError if the file is not a JSON object, is malformed, cut short or not text, or if
-    anything follows the object.
+    If the value of the key ``streamed`` is a list, an iterator over its items is yielded instead of
+    the list. Raises ValueError if the file is not a JSON object, is malformed, cut short or not
+    text, or if anything follows the object.
     """
     with open_text(path) as file:
         json_file = _JsonFile(file, path)
@@ -93,7 +95,7 @@ def json_members(path: Path | str, streamed: str) -> Iterator[tuple[str, Any]]:
             if key == streamed and json_file.accept("["):
                 items = (json_file.value() for _ in json_file.until("]"))
                 yield key, items
-                for _ in items:  # skip what the caller did not read
+                for _ in items:  # skip the items that the caller did not read
                     pass
             else:
                 yield key, json_file.value()
@@ -101,7 +103,7 @@ def json_members(path: Path | str, streamed: str) -> Iterator[tuple[str, Any]]:
 
 
 class _JsonFile:
-    """Read JSON from an open text file value by value; ``_at`` is the position in the buffer."""
+    """Reads JSON values from an open text file; ``_at`` is the position in the buffer."""
 
     _decode = json.JSONDecoder().raw_decode
     _space = re.compile(r"[ \t\r\n]*")
@@ -114,7 +116,7 @@ class _JsonFile:
         self._before = 0  # characters before the buffer
 
     def until(self, bracket: str) -> Iterator[None]:
-        """Yield before each comma-separated item, up to the closing ``bracket``."""
+        """Yield once before each comma-separated item, up to the closing ``bracket``."""
         if self.accept(bracket):
             return
         while True:
@@ -124,7 +126,7 @@ class _JsonFile:
             self.expect(",", f"',' or '{bracket}'")
 
     def expect(self, character: str, name: str) -> None:
-        """Skip ``character``, or raise ValueError."""
+        """Skip ``character``; raise ValueError if it does not come next."""
         if not self.accept(character):
             self._fail(f"expected {name}")
 
@@ -139,13 +141,13 @@ class _JsonFile:
         return accepted
 
     def end(self) -> None:
-        """Raise if anything but white space is left."""
+        """Raise ValueError if anything except white space is left."""
         self.accept("")
         if self._at < len(self._text):
             self._fail("expected the end of the file")
 
     def value(self) -> Any:
-        """Return the next JSON value; read more of the file until it is complete."""
+        """Return the next JSON value; read more of the file until the value is complete."""
         self.accept("")
         while True:
             try:
@@ -156,13 +158,13 @@ class _JsonFile:
             except json.JSONDecodeError as error:
                 if len(self._text) - self._at > LARGEST_VALUE or not self._more():
                     self._fail(error.msg)
-            except ValueError as error:  # a number with more digits than Python converts
+            except ValueError as error:  # the number has more digits than Python converts
                 self._fail(str(error))
             except RecursionError:
                 self._fail("too many levels")
 
     def _more(self) -> bool:
-        """Drop the parsed part of the buffer, and read as many characters as remain in it."""
+        """Discard the parsed part of the buffer, and double the remaining part by reading more."""
         self._before += self._at
         self._text = self._text[self._at :]
         self._at = 0

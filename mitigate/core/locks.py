@@ -1,4 +1,4 @@
-"""Lock a folder for one process, and delete what killed processes left in it."""
+"""Lock a folder for one process, and delete unfinished files of killed processes."""
 
 from __future__ import annotations
 
@@ -21,28 +21,29 @@ from mitigate.core.output import writing
 NAME = ".lock"
 # Names of unfinished files, as mitigate/core/files.py writes them.
 _DRAFT = re.compile(r"\..+\.(\d+)\.tmp")
-# Locks of this process. A record lock would let the same process in twice, and the process loses it
-# when it closes any file of that path.
+# Locks of this process. A record lock does not exclude a second lock by the same process,
+# and the process loses it when it closes any file of that path.
 _locks: dict[Path, IO[str]] = {}
 
 
 class FolderLock:
-    """Context manager that locks ``folder`` while a process writes to it; makes the folder.
+    """Context manager that creates ``folder`` and locks it while a process writes to it.
 
-    The lock is a record lock of the system (``fcntl``) on a file in the folder. It ends with its
-    process, however that ends. Workers do not inherit it. It holds for other machines if the file
-    system supports that; a file system without locks is not locked.
+    The lock is a record lock of the system (``fcntl``) on a file in the folder. The lock is
+    released when its process ends, in any way. Worker processes do not inherit the lock. The lock
+    also excludes other machines if the file system supports this. On a file system without locks,
+    nothing is locked.
 
-    While it is locked, every write below the folder checks that the folder and the lock file are
-    still the same (``core/output.py``). The end of the block checks it too.
+    While a folder is locked, every write below the folder checks that the folder and the lock file
+    are still the same (``core/output.py``). The same check is made at the end of the block.
 
     Args:
         folder: the folder.
-        within: names of folders inside it that the process also writes.
+        within: names of subfolders to which the process also writes.
 
     Raises:
-        ValueError: Another process has the lock (the message names it), or the lock file is not a
-            regular file.
+        ValueError: A different process has the lock (the message names it), or the lock file is not
+            a regular file.
         OSError: The folder cannot be written.
         FolderLostError: The folder was removed.
     """
@@ -67,7 +68,7 @@ class FolderLock:
                 problem = self._in_use_message(file)
                 file.close()
                 raise ValueError(problem) from None
-            except OSError:  # a file system without locks
+            except OSError:  # the file system does not support locks
                 file.close()
                 self._root = output.register(self.folder)
                 return self
@@ -84,7 +85,7 @@ class FolderLock:
         return self
 
     def expect(self, *paths: Path) -> None:
-        """Check at the end of the block that the files ``paths`` exist."""
+        """Register the files ``paths``, which must exist at the end of the block."""
         if self._root is not None:
             self._root.expected += paths
 
@@ -101,14 +102,15 @@ class FolderLock:
             self._root = None
         if self._file is not None:
             status = os.fstat(self._file.fileno())
-            if output.is_same(status, self.path):  # a different file is the lock of another process
+            # a different file means that another process has the lock
+            if output.is_same(status, self.path):
                 self.path.unlink(missing_ok=True)
             _locks.pop(self.path, None)
             self._file.close()
             self._file = None
 
     def _in_use_message(self, file: IO[str]) -> str:
-        """Return the message that another process has the lock."""
+        """Return the error message for a lock that another process has."""
         file.seek(0)
         try:
             note = json.loads(file.read(4096))
@@ -124,11 +126,11 @@ class FolderLock:
 def delete_leftovers(folder: Path, within: Iterable[str] = ()) -> list[Path]:
     """Delete unfinished files that ended processes left in ``folder``, and return them.
 
-    The folders ``within`` it are searched too, except those that have their own lock. Deeper
+    The subfolders ``within`` are also searched, except those that have their own lock. Deeper
     folders are not.
 
-    Call it with the lock: an unfinished file with the number of this process then belongs to an
-    earlier process, as in a container that was restarted.
+    Call this while the lock is held: then an unfinished file with this process's number must belong
+    to an earlier process, for example after a container was restarted.
     """
     inside = [folder / name for name in within if not (folder / name / NAME).exists()]
     inside = [place for place in inside if not place.is_symlink()]
@@ -140,7 +142,7 @@ def delete_abandoned(drafts: Iterable[Path], ours: bool = False) -> list[Path]:
     """Delete ``drafts`` whose process has ended, and return them.
 
     Args:
-        drafts: Files and folders that may be unfinished files of ``mitigate/core/files.py``.
+        drafts: Paths that may be unfinished files of ``mitigate/core/files.py``.
         ours: Also delete drafts of this process.
     """
     abandoned = []

@@ -1,4 +1,4 @@
-"""Names and tables in Markdown."""
+"""Write names and tables in Markdown."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from collections.abc import Iterable, Sequence
 
 
 def markdown_of(name: str) -> str:
-    """Escape a name from an untrusted file, so that Markdown shows it as text on one line."""
+    """Escape a name from an untrusted file, so that Markdown shows it as plain text on one line."""
     return re.sub(
         r"[\\|`*~\[\]!]|<(?=\S)|^#", lambda match: f"\\{match[0]}", " ".join(name.split())
     )
@@ -18,8 +18,8 @@ def markdown_table(head: Sequence[str], rows: Iterable[Iterable[object]], words:
 
     Args:
         head: titles of the columns.
-        rows: cells of each row, written without escaping.
-        words: number of leading columns that are left-aligned; the others are right-aligned.
+        rows: cells of each row, which are written without escaping.
+        words: number of leading columns that are left-aligned; the other columns are right-aligned.
     """
     sides = ["---" if column < words else "---:" for column in range(len(head))]
     lines = (map(str, cells) for cells in (head, sides, *rows))

@@ -1,4 +1,4 @@
-"""Phrases of messages: unknown names, counts, and values in short form."""
+"""Format parts of messages: unknown names, counts, and shortened values."""
 
 from __future__ import annotations
 
@@ -8,12 +8,12 @@ from pathlib import Path
 
 
 def unknown(what: str, name: object, allowed: Iterable[str]) -> str:
-    """Return the paragraph for an unknown ``name``, with the nearest and all allowed names.
+    """Return the error paragraph for an unknown ``name``, with the nearest and all allowed names.
 
     Args:
         what: kind of thing, such as "corruption".
         name: the unknown name.
-        allowed: the names that exist; sorted if they have no order.
+        allowed: the names that exist; they are sorted if they have no order.
     """
     allowed = list(allowed) if isinstance(allowed, (list, tuple, Mapping)) else sorted(allowed)
     near = difflib.get_close_matches(str(name), allowed, n=1)
@@ -22,7 +22,7 @@ def unknown(what: str, name: object, allowed: Iterable[str]) -> str:
 
 
 def counted(count: int, what: str) -> str:
-    """Return e.g. ``1 episode``, ``0 episodes`` or ``40 episodes``."""
+    """Return e.g. Return a count with its noun, such as ``1 episode`` or ``40 episodes``."""
     return f"{count} {what}" if count == 1 else f"{count} {what}s"
 
 
@@ -38,16 +38,16 @@ def short(value: object, most: int = 60) -> str:
 def escaped(text: str, most: int = 200) -> str:
     """Return an untrusted ``text`` without quotes, printable and with at most ``most`` characters.
 
-    It ends in "..." if it was cut.
+    The text ends in "..." if it was shortened.
     """
     printable = "".join(c if c.isprintable() else ascii(c)[1:-1] for c in text[: most + 1])
     return printable if len(printable) <= most else f"{printable[: most - 3]}..."
 
 
 def name_of(weights: str) -> str:
-    """Return a name for the weights at a path.
+    """Return a display name for the weights at a path.
 
-    It is the name of the run for the ``agent`` folder of a run. For shipped weights it is the kind
+    For the ``agent`` folder of a run, it is the name of the run. For shipped weights it is the kind
     of agent: ``checkpoints/frontier/base`` is "frontier", ``.../teacher`` "frontier_teacher".
     """
     path = Path(weights.removesuffix(".safetensors"))

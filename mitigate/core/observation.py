@@ -1,14 +1,15 @@
-"""Names, dtypes, shapes and units of every observation and batch entry, and the turning sense.
+"""Define names, dtypes, shapes and units of observations, and the direction of turns.
 
-An observation is one instant: a panorama of ``VIEWS`` RGB-D views and the pose of the agent.
+An observation describes one time step: a panorama of ``VIEWS`` RGB-D views and the pose of the
+agent.
 
 * ``rgb``    uint8   ``[12, H, W, 3]``
 * ``depth``  float32 ``[12, H, W, 1]``, metres along the optical axis; 0 means "no reading"
 * ``pose``   float32 ``[3]`` = (x, y, heading): metres, metres, radians, in the plan frame
 
-Turning sense: view ``k`` looks at yaw ``-30 k`` degrees from the heading, so a growing ``k`` turns
-RIGHT (clockwise from above). ``heading`` is counter-clockwise; forward is ``(-sin h, cos h)``.
-Plan frame to VLN-CE frame: ``x = x``, ``z = -y``, height ``y`` up.
+View ``k`` faces yaw ``-30 k`` degrees from the heading, so increasing ``k`` turns RIGHT (clockwise
+from above). ``heading`` is counter-clockwise; forward is ``(-sin h, cos h)``. Plan frame to VLN-CE
+frame: ``x = x``, ``z = -y``, height ``y`` up.
 """
 
 from __future__ import annotations
@@ -21,9 +22,9 @@ from typing import Any
 RGB = "rgb"
 DEPTH = "depth"
 POSE = "pose"
-CLEAN_RGB = "clean_rgb"  # entry of training batches: the frames before the corruption
+CLEAN_RGB = "clean_rgb"  # entry of training batches with the frames before the corruption
 CLEAN_DEPTH = "clean_depth"
-# added by torchrl environments: text, name of this run of the episode, low-level steps taken
+# entries of torchrl environments: text, name of the episode's run, number of low-level steps
 INSTRUCTION = "instruction"
 EPISODE = "episode"
 FRAME = "frame"
@@ -31,7 +32,7 @@ FRAME = "frame"
 VIEWS = 12
 VIEW_STEP_DEGREES = 30.0
 HFOV_DEGREES = 90.0
-Z_MAX = 10.0  # metres, the R2R-CE depth sensor range (VLN-CE config)
+Z_MAX = 10.0  # range of the R2R-CE depth sensor in metres (VLN-CE config)
 
 STOP, FORWARD, LEFT, RIGHT = 0, 1, 2, 3
 FORWARD_METRES = 0.25  # VLN-CE
@@ -41,7 +42,7 @@ MAX_STEPS = 500  # VLN-CE
 
 @dataclass(frozen=True)
 class Sensor:
-    """Description of one entry of an observation.
+    """Describes one entry of an observation.
 
     Attributes:
         kind: "rgb", "depth", "pose" or "text".
@@ -67,12 +68,12 @@ class Sensor:
 
 
 def cameras(size: int, views: int = VIEWS) -> dict[str, Sensor]:
-    """Return the sensors of this module's docstring.
+    """Return the sensors that this module's docstring describes.
 
     Args:
         size: height and width of a view in pixels.
-        views: number of views. 1 is a single camera that looks ahead; its frames ``[H, W, c]`` have
-            no axis of views.
+        views: number of views. 1 means a single forward camera, whose frames ``[H, W, c]`` have no
+            axis for views.
     """
     yaws = tuple(VIEW_STEP_DEGREES * k for k in range(views))
     shape = (views, size, size) if views > 1 else (size, size)
@@ -88,7 +89,7 @@ def sensor_lines(sensors: Mapping[str, Sensor], read: Any = None) -> tuple[str, 
 
     Args:
         sensors: the sensors of the world.
-        read: ``sensors`` of the agent; if it names none of them, all sensors are listed.
+        read: the agent's ``sensors``; if it contains none of the world's sensors, all are listed.
     """
     names = read if isinstance(read, Sequence) and {*map(str, read)} & {*sensors} else sensors
     lines = []
@@ -104,13 +105,13 @@ def sensor_lines(sensors: Mapping[str, Sensor], read: Any = None) -> tuple[str, 
 
 
 class Observation(Mapping[str, Any]):
-    """One instant, with frames that are made when one of them is first read.
+    """An observation whose frames are rendered when one of them is first read.
 
     Args:
         ready: available entries, such as the pose.
-        make: returns the frames; None if all entries are ready.
+        make: function that returns the frames, or None if all entries are ready.
         frames: names of the frames.
-        clean: the observation before its corruption; None if this one is clean.
+        clean: the observation before corruption, or None if this observation is clean.
     """
 
     def __init__(

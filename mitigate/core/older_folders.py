@@ -1,8 +1,8 @@
 """Read folders of earlier versions; only ``core/folders.py`` uses this module.
 
 - Weights, adapters, encoders, restorers and safeguards had a sidecar ``<file>.sha256``
-  (``core/checksums.py``), or no checksum.
-- The ``card.json`` of a hardened folder had the sha256 of every file and of the card itself.
+  (``core/checksums.py``) or no checksum.
+- The ``card.json`` of a hardened folder contained the sha256 of every file and of the card itself.
 """
 
 from __future__ import annotations
@@ -20,12 +20,13 @@ FORMAT = 1
 
 
 def card_files(folder: Path, again: str) -> dict[str, Any] | None:
-    """Return the sha256 of every file in the card of a hardened folder, by name.
+    """Return the sha256 of every file from the card of a hardened folder, by name.
 
     Returns None for any other folder.
 
     Raises:
-        ValueError: The card is damaged. The message ends with ``again``.
+        ValueError: The card is damaged. The card is invalid; the message ends with the advice
+            ``again``.
     """
     file = folder / CARD
     card = read_object(file, again) if file.is_file() else {}

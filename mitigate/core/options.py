@@ -1,4 +1,4 @@
-"""Read the words of a command line before any config: paths, ``key=value`` options and flags.
+"""Parse paths, ``key=value`` options and flags of a command line, before any config is read.
 
 Commands without Hydra use :func:`paths_and_options`. The other commands pass their options to Hydra
 (``core/conf.py``), after a check for words that Hydra would accept silently or reject with an
@@ -20,7 +20,7 @@ CONFIG_DIR = ("--config-dir", "-cd")
 
 
 def asks_help(arguments: Sequence[str]) -> bool:
-    """Return whether to show the help: a flag asks for it, or there are no arguments."""
+    """Return whether to show the help, because of a flag or because there are no arguments."""
     return not arguments or any(name in arguments for name in HELP)
 
 
@@ -82,7 +82,7 @@ def paths_and_overrides(arguments: Iterable[str]) -> tuple[list[str], list[str]]
 
 
 def values(options: Sequence[str], key: str) -> list[str]:
-    """Return the values that ``options`` set ``key`` to, without quotes and escapes.
+    """Return the values to which ``options`` set ``key``, without quotes and escapes.
 
     The last option counts. A sweep (``key=a,b``) has several values. The list is empty if ``key``
     is not set or Hydra cannot parse the options.
@@ -111,7 +111,7 @@ def config_folder(options: Sequence[str]) -> Path | None:
 
 
 def without_config_folder(options: Sequence[str]) -> tuple[list[str], list[str]]:
-    """Split ``options`` into the folder of configs (``--config-dir mine``) and the rest.
+    """Separate the folder of configs (``--config-dir mine``) from the other ``options``.
 
     Returns:
         The words that name the folder, and the other words.
@@ -143,7 +143,7 @@ def check_dashes(options: Sequence[str]) -> None:
 def flags_first(words: Sequence[str]) -> list[str]:
     """Move the multirun flag and the folder of configs to the front of ``words``.
 
-    Hydra does not read them between options.
+    Hydra does not recognise them between options.
     """
     flags = [word for word in words if word in MULTIRUN]
     folder, others = without_config_folder([word for word in words if word not in MULTIRUN])

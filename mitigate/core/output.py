@@ -1,8 +1,9 @@
 """Open files for writing, and notice when an output folder disappears.
 
 Every file that is written in place goes through :func:`open_output`, and every file that replaces
-another one goes through ``mitigate/core/files.py``. A folder that was cloned or unpacked may hold
-links, FIFOs and devices in place of our files. They are rejected before a byte is written.
+an existing file goes through ``mitigate/core/files.py``. A folder that was cloned or unpacked may
+contain links, FIFOs and devices instead of our files. Such files are rejected before a byte is
+written.
 """
 
 from __future__ import annotations
@@ -27,24 +28,25 @@ _KINDS = (
 
 
 class UnsafePathError(ValueError):
-    """A path to write to is a link, a FIFO or a device, or lies behind a link."""
+    """The path of an output file is a link, a FIFO or a device, or lies behind a link."""
 
 
 class FolderLostError(OSError):
-    """An output folder, or what a command wrote there, was removed or replaced by others."""
+    """An output folder, or a command's files in it, was removed or replaced by a different
+    process."""
 
 
 @dataclass
 class Root:
-    """An output folder in use.
+    """An output folder that is in use.
 
     Attributes:
-        folder: The folder as the user named it. It may be a link.
+        folder: The folder path as given by the user. It may be a link.
         places: Absolute path of the folder, with and without links.
         descriptor: Open descriptor of the folder; it keeps the inode from being reused.
-        lock: Path and status of the lock file, None without one.
+        lock: Path and status of the lock file, or None without a lock.
         expected: Files and folders that must exist when the command ends.
-        seen: Folders inside it that existed at an earlier write.
+        seen: Subfolders that existed at an earlier write.
     """
 
     folder: Path
@@ -55,7 +57,7 @@ class Root:
     seen: set[Path] = field(default_factory=set)
 
     def inner(self, path: Path) -> Path | None:
-        """Return the absolute ``path`` relative to the folder; None if it lies outside."""
+        """Return the absolute ``path`` relative to the folder, or None if it lies outside."""
         for place in self.places:
             if path.is_relative_to(place):
                 return path.relative_to(place)
@@ -69,11 +71,11 @@ class Root:
             raise lost(self.lock[0])
 
     def check_inside(self, inner: Path) -> None:
-        """Check the folders on the path ``inner``.
+        """Check each subfolder on the path ``inner``.
 
         Raises:
-            UnsafePathError: One of them is a link.
-            FolderLostError: One that existed is missing.
+            UnsafePathError: One of the subfolders is a link.
+            FolderLostError: A subfolder that existed before is missing.
         """
         place = self.places[0]
         for part in inner.parts:
@@ -103,7 +105,7 @@ _roots: list[Root] = []
 
 
 def is_same(status: os.stat_result, path: Path, follow_links: bool = False) -> bool:
-    """Return whether ``path`` still is the file or folder that was opened with ``status``."""
+    """Return whether ``path`` is still the same file or folder that had ``status``."""
     try:
         return os.path.samestat(status, os.stat(path, follow_symlinks=follow_links))
     except (FileNotFoundError, NotADirectoryError):
@@ -111,7 +113,7 @@ def is_same(status: os.stat_result, path: Path, follow_links: bool = False) -> b
 
 
 def lost(*paths: Path) -> FolderLostError:
-    """Return the error for files or folders that others removed."""
+    """Return the error for files or folders that a different process removed."""
     names = ", ".join(map(str, paths))
     verb = "was" if len(paths) == 1 else "were"
     return FolderLostError(
@@ -124,8 +126,8 @@ def lost(*paths: Path) -> FolderLostError:
 def register(folder: Path | str, lock: IO[str] | None = None) -> Root:
     """Watch an existing ``folder`` until :func:`unregister`.
 
-    Until then every write below it checks that the folder and its ``lock`` are still the same, and
-    that no folder in between is a link.
+    Until then, every write below the folder checks that the folder and its ``lock`` are unchanged,
+    and that no subfolder on the path is a link.
     """
     folder = Path(folder)
     places = (Path(os.path.abspath(folder)), folder.resolve())
@@ -145,9 +147,9 @@ def unregister(root: Root) -> None:
 
 @contextmanager
 def writing(path: Path | str) -> Iterator[None]:
-    """Explain errors of the system while the block writes the file or folder ``path``.
+    """Explain system errors while the block writes the file or folder ``path``.
 
-    The error keeps its type; its message says that the path cannot be written and what to do.
+    The error keeps its type, and its message states that the path cannot be written and what to do.
     """
     try:
         yield
@@ -162,14 +164,14 @@ def writing(path: Path | str) -> Iterator[None]:
 
 @contextmanager
 def output_folder(folder: Path | str, *expected: str) -> Iterator[Root]:
-    """Make ``folder`` and watch it while the block runs.
+    """Create ``folder`` and watch it while the block runs.
 
     Args:
         folder: The folder that the user named; it may be a link.
-        expected: Names of files that must be in it when the block ends.
+        expected: Names of files that must be in the folder when the block ends.
 
     Raises:
-        FolderLostError: If it is removed or replaced while the block runs.
+        FolderLostError: The folder is removed or replaced while the block runs.
     """
     folder = Path(folder)
     with writing(folder):
@@ -184,17 +186,17 @@ def output_folder(folder: Path | str, *expected: str) -> Iterator[Root]:
 
 
 def check(path: Path | str) -> None:
-    """Check the folder of ``path`` before a write to ``path``.
+    """Check the parent folder of ``path`` before writing to ``path``.
 
     Raises:
-        FolderLostError: If an output folder in use was removed or replaced.
-        UnsafePathError: If a folder between the output folder and ``path`` is a link.
+        FolderLostError: An output folder that is in use was removed or replaced.
+        UnsafePathError: A folder between the output folder and ``path`` is a link.
     """
     _check_folder(Path(os.path.abspath(path)).parent)
 
 
 def make_checked(folder: Path | str) -> None:
-    """Make ``folder`` with its parents unless it exists; raise as :func:`check` does."""
+    """Create ``folder`` and its parents unless it exists; errors are as in :func:`check`."""
     _check_folder(Path(os.path.abspath(folder)))
     Path(folder).mkdir(parents=True, exist_ok=True)
     _check_folder(Path(os.path.abspath(folder)))
@@ -208,12 +210,12 @@ def forget(folder: Path | str) -> None:
 
 
 def delete_folder(folder: Path | str) -> None:
-    """Delete ``folder`` with its content, if it exists. Never deletes through a link.
+    """Delete ``folder`` with its content, if it exists. This never deletes through a link.
 
     Raises:
-        UnsafePathError: If ``folder`` is a link, a FIFO or a file, or lies behind a link in an
+        UnsafePathError: ``folder`` is a link, a FIFO or a file, or it lies behind a link in an
             output folder. Nothing was deleted.
-        FolderLostError: If its output folder was removed or replaced.
+        FolderLostError: The output folder was removed or replaced.
     """
     check(folder)
     try:
@@ -233,7 +235,7 @@ def is_regular(path: Path | str) -> bool:
     """Return whether the file ``path`` exists; links are followed.
 
     Raises:
-        UnsafePathError: If it is a FIFO, a socket or a device: reading it could wait forever.
+        UnsafePathError: ``path`` is a FIFO, a socket or a device; reading it could wait forever.
     """
     try:
         mode = os.stat(path).st_mode
@@ -260,15 +262,15 @@ def open_output(path: Path | str, mode: str = "w", **options: Any) -> IO[Any]:
     """Open a regular file for writing.
 
     Args:
-        path: The file. Its folder must exist.
+        path: The file. Path of the file, whose folder must exist.
         mode: A mode of ``open``: "w", "a", "x" or "r+", with "b" and "+".
         options: Other arguments of ``open``, such as ``encoding``.
 
     Raises:
-        UnsafePathError: If ``path`` is a link, a FIFO, a socket or a device, has a second name (a
-            hard link), or lies behind a link in an output folder.
-        FolderLostError: If its output folder was removed or replaced.
-        OSError: If it cannot be opened.
+        UnsafePathError: ``path`` is a link, a FIFO, a socket or a device, has a second name (a hard
+            link), or lies behind a link in an output folder.
+        FolderLostError: The output folder was removed or replaced.
+        OSError: The file cannot be opened.
     """
     check(path)
     _check_file(path)

@@ -11,7 +11,7 @@ import numpy as np
 from mitigate.core.observation import DEPTH, RGB, VIEWS, Z_MAX
 
 AHEAD_IN_THE_MIDDLE = (6, 7, 8, 9, 10, 11, 0, 1, 2, 3, 4, 5)
-NO_READING = (255, 255, 255)  # the colour of invalid depth
+NO_READING = (255, 255, 255)  # the colour in which invalid depth is drawn
 
 
 def side_by_side(views: np.ndarray) -> np.ndarray:
@@ -30,7 +30,7 @@ def side_by_side(views: np.ndarray) -> np.ndarray:
 
 
 def strip(views: np.ndarray, order: Sequence[int] = AHEAD_IN_THE_MIDDLE) -> np.ndarray:
-    """Join the 12 views of a panorama, each cropped to 30 degrees, the front centred."""
+    """Join the 12 views of a panorama, each cropped to 30 degrees, with the front view centred."""
     size = views.shape[2]
     half = int(round(np.tan(np.radians(15)) * size / 2))
     low, high = size // 2 - half, size // 2 + half
@@ -38,7 +38,7 @@ def strip(views: np.ndarray, order: Sequence[int] = AHEAD_IN_THE_MIDDLE) -> np.n
 
 
 def picture(observation: Mapping[str, Any] | None) -> np.ndarray | None:
-    """Return RGB, or else depth, of an observation as uint8 [H, W, 3]; None if it has neither."""
+    """Return the RGB (or else depth) frame of an observation as uint8 [H, W, 3], or None."""
     entries = observation or {}
     frame = next((np.asarray(entries[name]) for name in (RGB, DEPTH) if name in entries), None)
     if frame is None:
@@ -62,8 +62,8 @@ def draw_path(
 
 
 def depth_picture(depth: np.ndarray, far: float = Z_MAX) -> np.ndarray:
-    """Return depth [H, W] as uint8 RGB [H, W, 3]: near is bright, ``far`` metres is dark, and
-    missing values are white."""
+    """Return depth [H, W] as uint8 RGB [H, W, 3], in which near is bright, ``far`` metres is dark,
+    and missing values are white."""
     valid = np.isfinite(depth) & (depth > 0)
     near = 1.0 - np.where(valid, np.clip(depth / far, 0.0, 1.0), 0.0)
     picture = cv2.applyColorMap(np.rint(255.0 * near).astype(np.uint8), cv2.COLORMAP_VIRIDIS)

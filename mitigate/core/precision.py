@@ -1,11 +1,11 @@
 """Choose the number format in which networks compute, once per run.
 
-The choice depends only on the device. It is not timed: on a busy machine the same command could
-choose another format and train other weights.
+The choice depends only on the device. The choice is not based on timing, because on a busy machine
+the same command could then choose a different format and train different weights.
 
-The trainer stores its choice in the checkpoint and applies :func:`computing` to everything that it
-runs: forward, rollouts, teachers, feature caches. Weights stay float32, and evaluations compute in
-float32, so that rows of two machines can be compared.
+The trainer stores its choice in the checkpoint and applies :func:`computing` to all its
+computations: forward passes, rollouts, teachers and feature caches. Weights stay float32, and
+evaluations compute in float32, so that rows from different machines can be compared.
 """
 
 from __future__ import annotations
@@ -21,10 +21,10 @@ import torch
 import torch.nn.functional as F
 
 CHOICES = ("auto", "fp32", "bf16")
-CAP = "ONEDNN_MAX_CPU_ISA"  # oneDNN's cap on the instructions that it uses
-_NATIVE = re.compile("BF16|FP16|AMX|AVX10|DEFAULT|ALL")  # caps that allow bf16 instructions
-# Milliseconds of the probe on the machine where the costs of stages were measured (2 cores of an
-# AMD EPYC, capped to AVX2).
+CAP = "ONEDNN_MAX_CPU_ISA"  # environment variable that limits the instructions that oneDNN uses
+_NATIVE = re.compile("BF16|FP16|AMX|AVX10|DEFAULT|ALL")  # limits that still allow bf16 instructions
+# Milliseconds of the probe on the machine where the costs of stages were measured
+# (2 cores of an AMD EPYC, limited to AVX2).
 REFERENCE = 12.0
 
 
@@ -38,7 +38,7 @@ def choose(precision: str, device: torch.device) -> str:
     """Return "fp32" or "bf16" for ``precision``, one of ``CHOICES``.
 
     "auto" is bf16 only if the device computes it natively. Emulated bf16 is 3 to 10 times slower
-    than fp32 (measured with AVX2). Raises ValueError for any other name.
+    than fp32 (measured with AVX2). Raises ValueError for any name that is not in ``CHOICES``.
     """
     check(precision)
     if precision != "auto":
@@ -49,7 +49,7 @@ def choose(precision: str, device: torch.device) -> str:
 
 
 def device_of(name: str) -> torch.device:
-    """Return the device of a ``name`` such as "cpu" or "cuda:1"; "auto" is CUDA if available.
+    """Return the device for a ``name`` such as "cpu" or "cuda:1"; "auto" is CUDA if available.
 
     Raises:
         ValueError: The device is not available.
@@ -60,7 +60,7 @@ def device_of(name: str) -> torch.device:
     devices = ["auto", "cpu", *(f"cuda:{n}" for n in range(gpus))]
     try:
         device = torch.device(name)
-        if device.type == "cuda":  # does not initialise CUDA, since workers are forked later
+        if device.type == "cuda":  # this does not initialise CUDA, because workers are forked later
             cause = "it is not available"
             usable = torch.cuda.is_available() and (device.index or 0) < gpus
         else:
@@ -80,9 +80,9 @@ def device_of(name: str) -> torch.device:
 def to_device(value: Any, device: torch.device) -> Any:
     """Move tensors and other objects with a method ``to`` to ``device``; return the rest unchanged.
 
-    Dicts, lists and tuples are searched.
+    Dicts, lists and tuples are searched recursively.
     """
-    if hasattr(value, "to"):  # users' agents define the class of their batches
+    if hasattr(value, "to"):  # users' agents define the class of their own batches
         return value.to(device)
     if isinstance(value, dict):
         return {name: to_device(item, device) for name, item in value.items()}
@@ -92,7 +92,7 @@ def to_device(value: Any, device: torch.device) -> Any:
 
 
 def computing(precision: str, device: torch.device) -> AbstractContextManager[None]:
-    """Return the context in which networks on ``device`` compute in ``precision``."""
+    """Return a context in which networks on ``device`` compute in ``precision``."""
     return torch.autocast(device.type, torch.bfloat16, enabled=precision == "bf16")
 
 
@@ -105,8 +105,8 @@ def native(capabilities: dict | None = None, cap: str | None = None) -> bool:
     """Return whether the CPU has instructions for bf16 and oneDNN may use them.
 
     Args:
-        capabilities: result of ``torch.cpu.get_capabilities``; None reads this machine's.
-        cap: replaces the value of the environment variable ``ONEDNN_MAX_CPU_ISA``.
+        capabilities: result of ``torch.cpu.get_capabilities``, or None to read it on this machine.
+        cap: value to use instead of the environment variable ``ONEDNN_MAX_CPU_ISA``.
     """
     has = torch.cpu.get_capabilities() if capabilities is None else capabilities
     cap = os.environ.get(CAP, "") if cap is None else cap
@@ -116,10 +116,10 @@ def native(capabilities: dict | None = None, cap: str | None = None) -> bool:
 
 @lru_cache(maxsize=1)
 def probe(rounds: int = 7) -> float:
-    """Measure the speed of this machine: milliseconds of a small fp32 training step.
+    """Measure the speed of this machine as the milliseconds of a small fp32 training step.
 
-    The step has convolutions and a matrix product; the fastest of ``rounds`` counts. It takes a
-    tenth of a second, once per process.
+    The step has convolutions and a matrix product, and the fastest of ``rounds`` runs is returned.
+    The measurement takes a tenth of a second and runs once per process.
     """
     with torch.random.fork_rng(devices=[]):
         x = torch.randn(48, 32, 32, 32)

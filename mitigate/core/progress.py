@@ -11,10 +11,10 @@ from tqdm import tqdm
 
 from mitigate.core.names import counted
 
-EVERY = 10.0  # least seconds between two plain lines of progress
+EVERY = 10.0  # minimum seconds between two plain lines of progress
 
 _open_bars: list[tqdm] = []
-_last_line = 0.0  # time.monotonic() of the last plain line
+_last_line = 0.0  # time (time.monotonic()) of the last plain line
 
 
 class Progress:
@@ -73,7 +73,7 @@ class Progress:
     def advance(self, count: int = 1, note: str = "") -> None:
         """Count ``count`` units as done; an empty ``note`` keeps the previous one.
 
-        A job that waits calls it with 0, which prints a line if the last one is ``EVERY`` seconds
+        A waiting job calls this with 0, which prints a line if the last line is ``EVERY`` seconds
         old.
         """
         self.done += count
@@ -90,7 +90,8 @@ class Progress:
         say(text)
 
     def line(self) -> str:
-        """Return e.g. ``train: step 120/700, 3.1 steps/s, 3 min 10 s left, loss 0.31``."""
+        """Return e.g. Return a line such as ``train: step 120/700, 3.1 steps/s, 3 min 10 s left,
+        loss 0.31``."""
         elapsed = time.monotonic() - self._began
         now = self.done - self.start
         if now <= 0:
@@ -99,7 +100,7 @@ class Progress:
         return self._line(f"{rate}, {duration(self.left())} left")
 
     def left(self) -> float:
-        """Return the seconds left at the mean pace so far; infinite before the first unit."""
+        """Return the seconds left at the mean speed so far, or infinity before the first unit."""
         now = self.done - self.start
         pace = (time.monotonic() - self._began) / now if now > 0 else math.inf
         return (self.total - self.done) * pace if self.done < self.total else 0.0
@@ -121,7 +122,8 @@ def say(text: str) -> None:
 
 
 def duration(seconds: float) -> str:
-    """Return e.g. ``8 s``, ``3 min 10 s``, ``1 h 05 min`` or, if infinite, ``unknown time``."""
+    """Return e.g. Format a duration: ``8 s``, ``3 min 10 s``, ``1 h 05 min`` or (if infinite)
+    ``unknown time``."""
     if math.isinf(seconds):
         return "unknown time"
     whole = round(seconds)

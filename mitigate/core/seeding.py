@@ -1,8 +1,8 @@
-"""Keyed random numbers: every draw depends only on a key, never on earlier draws.
+"""Generate keyed random numbers, which depend only on a key and never on earlier draws.
 
 A key is a tuple of integers and strings, such as ``(seed, "rollout", step)``. The same key gives
-the same numbers in any process and in any order; Python's ``hash()`` (salted per process) is
-never used.
+the same numbers in any process and in any order; Python's ``hash()``, which is salted per process,
+is never used.
 """
 
 from __future__ import annotations
@@ -13,25 +13,26 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-if TYPE_CHECKING:  # torch is slow to import, and most callers need only numpy's generators
+# torch is imported later, because it is slow and most callers need only numpy's generators
+if TYPE_CHECKING:
     import torch
 
 Key = int | str
 
 
 def digest(*key: Key) -> int:
-    """Return a 128-bit integer that depends on every part of ``key`` and on their types."""
+    """Return a 128-bit integer that depends on the value and type of every part of ``key``."""
     text = "\x1f".join(f"{type(part).__name__}:{part}" for part in key)
     return int.from_bytes(hashlib.blake2b(text.encode(), digest_size=16).digest(), "little")
 
 
 def generator(*key: Key) -> np.random.Generator:
-    """Return a fresh numpy generator (Philox, counter-based) for ``key``."""
+    """Return a new numpy generator (Philox, counter-based) for ``key``."""
     return np.random.Generator(np.random.Philox(key=digest(*key)))
 
 
 def torch_generator(*key: Key) -> torch.Generator:
-    """Return a fresh CPU torch generator for ``key``."""
+    """Return a new CPU torch generator for ``key``."""
     import torch
 
     rng = torch.Generator()
@@ -40,7 +41,7 @@ def torch_generator(*key: Key) -> torch.Generator:
 
 
 def check(seed: int) -> None:
-    """Raise ValueError for a seed that does not fit into a row."""
+    """Raise ValueError for a seed that cannot be stored in a result row."""
     if not -(2**63) < seed < 2**63:
         raise ValueError(
             f"seed must be a whole number between -2^63 and 2^63, got {seed}. Set e.g. seed=1."

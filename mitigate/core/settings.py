@@ -1,4 +1,4 @@
-"""Read the settings that come with weights: plain data of a fixed schema.
+"""Read the settings that come with weights, which are plain data with a fixed schema.
 
 A folder of weights may be untrusted. Its ``config.yaml`` is YAML without anchors, tags and
 interpolations; nothing in it is resolved, instantiated or run. Only this module reads such files.
@@ -18,24 +18,24 @@ from mitigate.core import names
 from mitigate.core.files import PACKAGE
 from mitigate.core.output import is_regular
 
-LARGEST = 1 << 16  # bytes of a file (heuristic; the config of a run has about 4000)
-DEEPEST = 16  # levels of lists and mappings (heuristic; the config of a run has 8)
-GREATEST = 1 << 53  # greatest whole number; greater floats are not exact (IEEE 754)
-UNRESOLVED = ("${", "???")  # OmegaConf would resolve these, or read them as missing values
-_SHOWN = 60  # characters of a key or value that a message repeats
+LARGEST = 1 << 16  # maximum bytes of a file (heuristic; the config of a run has about 4000)
+DEEPEST = 16  # maximum nesting of lists and mappings (heuristic; the config of a run has 8)
+GREATEST = 1 << 53  # greatest allowed integer; greater floats are not exact (IEEE 754)
+UNRESOLVED = ("${", "???")  # OmegaConf would resolve such values, or read them as missing values
+_SHOWN = 60  # maximum characters of a key or value in a message
 _WARNING = "Settings that come with weights are plain data: do not use this folder."
 
 
 def read(file: Path) -> dict[str, Any]:
     """Return the YAML mapping in ``file``.
 
-    Values are None, bools, finite numbers, strings, and lists and str-keyed dicts of these.
+    Allowed values are None, bools, finite numbers, strings, and lists and str-keyed dicts of these.
 
     Raises:
-        ValueError: The file holds another type of value, more than ``LARGEST`` bytes or ``DEEPEST``
-            levels, a repeated key, or an OmegaConf interpolation.
+        ValueError: The file contains a different type of value, a repeated key or an OmegaConf
+            interpolation, or it has more than ``LARGEST`` bytes or ``DEEPEST`` levels.
     """
-    is_regular(file)  # a FIFO would wait forever
+    is_regular(file)  # reading a FIFO would wait forever
     with open(file, "rb") as stream:
         raw = stream.read(LARGEST + 1)
     if len(raw) > LARGEST:
@@ -61,12 +61,12 @@ def read_agent(file: Path, target: str, known: Collection[str]) -> dict[str, Any
 
     Args:
         file: the YAML file.
-        target: required value of ``_target_``, if the file has one.
+        target: required value of ``_target_``, if the file contains this key.
         known: names of the settings of the agent.
 
     Raises:
-        ValueError: as :func:`read`; or the settings are missing, belong to another agent, are not
-            in ``known``, or have a key that begins with "_", as keys of Hydra do.
+        ValueError: as in :func:`read`; or the settings are missing, belong to a different agent,
+            are not in ``known``, or have a key that begins with "_", as Hydra's keys do.
     """
     settings = read(file).get("agent")
     if not isinstance(settings, dict):
@@ -94,7 +94,7 @@ def read_agent(file: Path, target: str, known: Collection[str]) -> dict[str, Any
 
 
 def named(target: object) -> str:
-    """Return the value of ``agent=`` for the class ``target``; empty without one."""
+    """Return the value of ``agent=`` for the class ``target``, or "" if there is none."""
     files = sorted((PACKAGE / "conf" / "agent").glob("*.yaml"))
     for file in files:
         lines = file.read_text(encoding="utf-8").splitlines()
@@ -111,7 +111,8 @@ def unknown(file: Path | str, key: str, allowed: Collection[str]) -> str:
 
 
 class _PlainLoader(yaml.SafeLoader):
-    """SafeLoader that rejects what plain data does not need, before it is expanded."""
+    """SafeLoader that rejects YAML features which plain data does not need, before expanding
+    them."""
 
     _depth = 0
 
@@ -137,12 +138,12 @@ class _PlainLoader(yaml.SafeLoader):
 
 
 def _entries(value: Any, key: str = "") -> Iterator[tuple[str, Any]]:
-    """Yield every value below ``value`` with its dotted key, and each invalid key as a tuple."""
+    """Yield every nested value with its dotted key, and each invalid key as a tuple."""
     if isinstance(value, dict):
         for name, item in value.items():
             inner = f"{key}.{name}" if key else str(name)
             if not isinstance(name, str) or _problem(name):
-                yield inner, (name,)  # a tuple is never plain data
+                yield inner, (name,)  # a tuple is never valid plain data
             yield inner, item
             yield from _entries(item, inner)
     elif isinstance(value, list):
@@ -152,7 +153,7 @@ def _entries(value: Any, key: str = "") -> Iterator[tuple[str, Any]]:
 
 
 def _problem(value: Any) -> str:
-    """Return why ``value`` is not plain data, without its items; empty if it is."""
+    """Return why ``value`` itself (without its items) is not plain data, or an empty text."""
     if isinstance(value, tuple):
         return "is not a plain key"
     if isinstance(value, str):

@@ -1,6 +1,8 @@
-"""Signals that end a command: Ctrl-C, and SIGTERM as ``timeout``, SLURM and containers send it.
+"""Handle signals that end a command: Ctrl-C (SIGINT), and SIGTERM, which is sent by ``timeout``,
+SLURM and containers.
 
-A command that is ended prints how to resume, and exits as a shell expects: 130 or 143.
+A command that is ended prints how to resume, and exits with the status that a shell expects, 130 or
+143.
 """
 
 from __future__ import annotations
@@ -17,7 +19,7 @@ ENDING = (signal.SIGINT, signal.SIGTERM)
 
 
 class Ended(KeyboardInterrupt):
-    """A signal ended the command; ``status`` is its exit status."""
+    """Raised when a signal ended the command; ``status`` is the exit status."""
 
     def __init__(self, number: int) -> None:
         super().__init__(signal.Signals(number).name)
@@ -25,7 +27,7 @@ class Ended(KeyboardInterrupt):
 
 
 def raise_ended(number: int, frame: FrameType | None) -> None:
-    """Raise :class:`Ended`; a signal handler."""
+    """Signal handler that raises :class:`Ended`."""
     raise Ended(number)
 
 
@@ -33,9 +35,9 @@ class SignalDelay:
     """The signal handler of a block that delays signals.
 
     Attributes:
-        number: number of the first signal; None before it.
-        again: whether another signal followed.
-        outer: the previous handlers. A signal is passed to them if they delay signals too.
+        number: number of the first signal, or None before a signal.
+        again: whether a second signal was received.
+        outer: the previous handlers. A signal is passed on to them if they also delay signals.
     """
 
     def __init__(self) -> None:
@@ -59,7 +61,7 @@ class SignalDelay:
 
     @property
     def nested(self) -> bool:
-        """Whether an outer block delays signals too."""
+        """Whether an outer block also delays signals."""
         return any(isinstance(handler, SignalDelay) for handler in self.outer.values())
 
 
@@ -67,8 +69,9 @@ class SignalDelay:
 def delay_signals(on: bool = True) -> Iterator[SignalDelay]:
     """Delay the first signal during the block, so that current work can be finished and saved.
 
-    The signal sets ``number``, here and in each outer block of this kind. A second signal ends the
-    command immediately. Only the main thread can delay signals.
+    The signal sets ``number`` in this block and in each outer block of this kind. A second signal
+    ends the command immediately. Only the main thread can delay signals; in other threads this has
+    no effect.
 
     Args:
         on: False delays nothing.
@@ -88,10 +91,10 @@ def delay_signals(on: bool = True) -> Iterator[SignalDelay]:
 
 @contextmanager
 def uninterrupted() -> Iterator[None]:
-    """Do not interrupt the block, for native code and for writes that must be complete.
+    """Protect the block from interrupts; use this for native code and writes that must be complete.
 
     A signal raises :class:`Ended` at the end of the block, unless an outer block delays signals. A
-    second signal raises it immediately.
+    second signal raises :class:`Ended` immediately.
     """
     with delay_signals() as ending:
         yield
@@ -100,12 +103,12 @@ def uninterrupted() -> Iterator[None]:
 
 
 def start_worker(process: BaseProcess) -> None:
-    """Start the ``process`` of a worker with these signals blocked.
+    """Start the ``process`` of a worker with SIGINT and SIGTERM blocked.
 
-    They stay blocked until the worker calls :func:`leave_to_parent`, so they cannot interrupt its
-    imports.
+    The signals stay blocked until the worker calls :func:`leave_to_parent`, so they cannot
+    interrupt its imports.
     """
-    resource_tracker.ensure_running()  # its start unblocks signals
+    resource_tracker.ensure_running()  # starting it would unblock the signals
     before = signal.pthread_sigmask(signal.SIG_BLOCK, ENDING)
     try:
         process.start()
@@ -114,10 +117,10 @@ def start_worker(process: BaseProcess) -> None:
 
 
 def leave_to_parent() -> None:
-    """Ignore these signals in a worker.
+    """Ignore SIGINT and SIGTERM in a worker.
 
-    They reach the whole process group of a command. The parent finishes the current work and ends
-    the workers.
+    These signals reach the whole process group of a command. The parent finishes the current work
+    and ends the workers.
     """
     for number in ENDING:
         signal.signal(number, signal.SIG_IGN)

@@ -1,7 +1,7 @@
-"""Action spaces: what a world accepts as an action.
+"""Define action spaces, which state the actions that a world accepts.
 
 The classes correspond to the spaces of gymnasium with the same names; :func:`from_gymnasium`
-converts them. gymnasium itself is not needed, and random actions depend on a key alone.
+converts them. gymnasium itself is not needed, and random actions depend only on a key.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ class ActionSpace:
     """Base class of action spaces."""
 
     def check(self, action: Any) -> Any:
-        """Return ``action`` as the world takes it.
+        """Check ``action`` and convert it to the format that the world accepts.
 
         Raises:
             ValueError: The action is not in the space.
@@ -32,7 +32,7 @@ class ActionSpace:
 
 @dataclass(frozen=True)
 class Discrete(ActionSpace):
-    """A whole number from ``start`` to ``start + n - 1``."""
+    """An integer from ``start`` to ``start + n - 1``."""
 
     n: int
     start: int = 0
@@ -55,7 +55,7 @@ class Discrete(ActionSpace):
 
 @dataclass(frozen=True, eq=False)
 class Box(ActionSpace):
-    """An array of real numbers between ``low`` and ``high``, which have its shape and dtype."""
+    """An array of real numbers between ``low`` and ``high``, with the same shape and dtype."""
 
     low: np.ndarray
     high: np.ndarray
@@ -73,7 +73,7 @@ class Box(ActionSpace):
         return values
 
     def sample(self, rng: np.random.Generator) -> np.ndarray:
-        # an unbounded dimension is drawn from the standard normal distribution, as in gymnasium
+        # unbounded dimensions are sampled from the standard normal distribution, as in gymnasium
         bounded = np.isfinite(self.low) & np.isfinite(self.high)
         low, high = (np.where(bounded, end, 0.0) for end in (self.low, self.high))
         values = np.where(bounded, rng.uniform(low, high), rng.standard_normal(self.low.shape))
@@ -82,7 +82,7 @@ class Box(ActionSpace):
 
 @dataclass(frozen=True, eq=False)
 class MultiDiscrete(ActionSpace):
-    """An array of whole numbers, each from 0 to below its entry of ``counts``."""
+    """An array of integers; each is at least 0 and below its entry in ``counts``."""
 
     counts: np.ndarray
 
@@ -103,7 +103,7 @@ class MultiDiscrete(ActionSpace):
 
 @dataclass(frozen=True)
 class Composite(ActionSpace):
-    """A dictionary with an action of each of ``spaces``."""
+    """A dictionary with one action for each of ``spaces``."""
 
     spaces: Mapping[str, ActionSpace]
 
@@ -129,7 +129,7 @@ def from_gymnasium(space: Any) -> ActionSpace:
     """Return the action space that corresponds to ``space`` of gymnasium or gym.
 
     Raises:
-        ValueError: The space is of another kind, such as text or a graph.
+        ValueError: The space is of an unsupported kind, such as text or a graph.
     """
     kind = type(space).__name__
     if kind == "Discrete":
@@ -152,7 +152,7 @@ def from_gymnasium(space: Any) -> ActionSpace:
 
 
 def _scalar(action: Any) -> Any:
-    """Return the only element of an array or tensor; another object unchanged."""
+    """Return the only element of an array or tensor; other objects are returned unchanged."""
     return action.item() if getattr(action, "shape", None) in ((), (1,)) else action
 
 

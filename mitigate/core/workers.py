@@ -1,8 +1,8 @@
-"""Run jobs in worker processes; a worker that dies is noticed at once and its jobs run again.
+"""Run jobs in worker processes; if a worker dies, its jobs are run again at once.
 
-Each worker has its own pipe and receives one group of jobs at a time; results come back one by one.
-When a worker dies, its pipe closes, so nothing waits for it. The process that started the workers
-ends them; if that process was killed, each worker ends after its current job.
+Each worker has its own pipe and receives one group of jobs at a time; results are returned one by
+one. When a worker dies, its pipe closes, so nothing waits for it. The parent process ends the
+workers; if the parent was killed, each worker ends after its current job.
 """
 
 from __future__ import annotations
@@ -26,19 +26,19 @@ from mitigate.core.errors import error_message
 from mitigate.core.progress import Progress, duration
 from mitigate.core.signals import delay_signals, leave_to_parent, start_worker
 
-SECOND = 1.0  # seconds to wait for messages before silent workers are checked
-STUCK = 60.0  # seconds with one job between two reports of a worker
-DEATHS = 1  # workers that are replaced
+SECOND = 1.0  # seconds to wait for messages before checking whether silent workers are alive
+STUCK = 60.0  # seconds after which a worker that is still busy with one job is reported
+DEATHS = 1  # maximum number of workers that are replaced
 ALONE = "set workers=1, or define its classes at the top level of a module"
 
 
 class Task(Protocol):
-    """The work of worker processes; each worker receives a pickled copy."""
+    """Base class of the work of worker processes; each worker receives a pickled copy."""
 
-    preload: ClassVar[str]  # module that all workers need; imported once
+    preload: ClassVar[str]  # module that all workers need, which is imported once
 
     def ready(self) -> AbstractContextManager[None]:
-        """Return the context around all jobs of a process, for setup and cleanup."""
+        """Return a context manager around all jobs of a process, for setup and cleanup."""
         ...
 
     def work(self, jobs: Sequence[Any]) -> Iterator[Any]:
@@ -51,7 +51,7 @@ class Task(Protocol):
 
 
 class WorkersDied(ValueError):
-    """More workers died than are replaced; the results so far were yielded."""
+    """Too many workers died; the results so far have been yielded."""
 
 
 def lost(what: str, attempts: int, done: int, total: int) -> WorkersDied:
@@ -65,7 +65,7 @@ def lost(what: str, attempts: int, done: int, total: int) -> WorkersDied:
 def cores() -> int:
     """Return the number of processor cores that this process may use.
 
-    The environment variable PYTHON_CPU_COUNT overrides it, as in Python 3.13 and later.
+    The environment variable PYTHON_CPU_COUNT overrides this number, as in Python 3.13 and later.
     """
     override = os.environ.get("PYTHON_CPU_COUNT", "")
     if override.isdigit() and int(override) > 0:
@@ -79,7 +79,8 @@ def count(requested: int | None, jobs: int, worth: int) -> int:
     Args:
         requested: number from the options; None uses one per core.
         jobs: number of jobs.
-        worth: jobs per process below which its start takes longer than it saves.
+        worth: minimum number of jobs per process; with fewer, starting it takes longer than it
+            saves.
 
     Raises:
         ValueError: ``requested`` is less than 1.
@@ -92,17 +93,17 @@ def count(requested: int | None, jobs: int, worth: int) -> int:
 def results(
     task: Task, groups: Sequence[Sequence[Any]], workers: int, progress: Progress
 ) -> Iterator[tuple[int, Any] | None]:
-    """Yield (number of the job, its result) as results arrive.
+    """Yield (job number, result) pairs as results arrive.
 
-    Jobs are numbered across all groups. The jobs of a group run in order in one process: in this
-    one if ``workers`` is 1, else in a worker. None is yielded at least every ``SECOND`` while
-    workers are awaited.
+    Jobs are numbered across all groups. The jobs of a group run in order in one process: in the
+    current process if ``workers`` is 1, otherwise in a worker. While waiting for workers, the
+    generator yields None at least every ``SECOND``.
 
     The first worker that dies is replaced, and its unfinished jobs run again in a new process.
 
     Raises:
         WorkersDied: A second worker died.
-        Exception: The error of a job.
+        Exception: A job raised this error.
     """
     work = numbered(groups)
     workers = min(workers, len(work))
@@ -126,13 +127,13 @@ def numbered(groups: Sequence[Sequence[Any]]) -> list[list[tuple[int, Any]]]:
 
 
 class _Worker:
-    """One process, its unfinished jobs, and the time of its last message."""
+    """One worker process, its unfinished jobs, and the time of its last message."""
 
     def __init__(self, context: Any, task: bytes) -> None:
         self.pipe, theirs = context.Pipe()
         self.process = context.Process(target=_serve, args=(theirs, task), daemon=True)
         start_worker(self.process)
-        theirs.close()  # so that the death of the process closes the pipe
+        theirs.close()  # closed here, so that the pipe closes when the process dies
         self.left: deque[tuple[int, Any]] = deque()
         self.heard = time.monotonic()
         self.reported = self.heard
@@ -142,12 +143,12 @@ class _Worker:
         self.left.extend(group)
         self.heard = time.monotonic()
         self.reported = self.heard
-        with suppress(OSError):  # the process is dead; the reader of the pipe will notice
+        with suppress(OSError):  # the process is dead, which the reader of the pipe will notice
             self.pipe.send_bytes(jobs)
 
     def end(self) -> str:
-        """Make sure that the process has ended, and return the cause."""
-        self.process.join(SECOND)  # the exit code may arrive after the pipe closed
+        """Ensure that the process has ended, and return the cause."""
+        self.process.join(SECOND)  # the exit code may arrive after the pipe has closed
         code = self.process.exitcode
         self.process.kill()
         self.process.join()
@@ -176,7 +177,8 @@ class _Crew:
         self.done = 0
         self.deaths = 0
         self.context = context(task.preload)
-        self.copy = packed(task, "The agent or its world", ALONE)  # tensors are copied, not shared
+        # tensors are copied instead of shared
+        self.copy = packed(task, "The agent or its world", ALONE)
         self.crew: list[_Worker] = []
         self.size = workers
 
@@ -185,7 +187,8 @@ class _Crew:
             for _ in range(self.size):
                 self.crew.append(_Worker(self.context, self.copy))
             while self.done < self.total:
-                with delay_signals() as ending:  # yield results that have arrived before ending
+                # results that have already arrived are yielded before the error
+                with delay_signals() as ending:
                     for worker in self.crew:
                         if not worker.left and self.waiting:
                             worker.give(self.waiting.popleft())
@@ -208,7 +211,7 @@ class _Crew:
                 if not worker.pipe.poll():
                     return
                 result, error = worker.pipe.recv()
-            except (EOFError, OSError):  # the worker died, possibly within a message
+            except (EOFError, OSError):  # the worker died, possibly in the middle of a message
                 self._replace(worker)
                 return
             if error is not None:
@@ -219,7 +222,7 @@ class _Crew:
             yield worker.left.popleft()[0], result
 
     def _replace(self, worker: _Worker) -> None:
-        """Replace a dead worker by a new process, if it is the first; else raise WorkersDied."""
+        """Replace the first dead worker by a new process; for later ones raise WorkersDied."""
         cause = worker.end()
         self.crew.remove(worker)
         self.deaths += 1
@@ -251,20 +254,20 @@ class _Crew:
 
 
 def packed(thing: Any, what: str, instead: str, *, shared: bool = False) -> bytes:
-    """Return ``thing`` pickled for other processes.
+    """Pickle ``thing`` for other processes.
 
     Args:
         thing: the object.
         what: name of the object in the error.
         instead: advice in the error if it cannot be pickled.
-        shared: pass its tensors by shared memory, for one process that reads them once.
+        shared: whether to pass tensors in shared memory, for one process that reads them once.
 
     Raises:
         ValueError: ``thing`` cannot be pickled.
     """
     try:
         return bytes(ForkingPickler.dumps(thing)) if shared else pickle.dumps(thing)
-    except Exception as error:  # objects inside may raise any error
+    except Exception as error:  # pickling nested objects may raise any error
         cause = " ".join(str(error).split())[:300]
         raise ValueError(
             f"{what} cannot be sent to other processes ({type(error).__name__}: {cause}). To fix "
@@ -275,8 +278,8 @@ def packed(thing: Any, what: str, instead: str, *, shared: bool = False) -> byte
 def context(preload: str) -> Any:
     """Return the multiprocessing context that starts workers.
 
-    If available it is a fork server that has imported ``preload``, so that later workers start
-    fast; else each worker is a new interpreter.
+    If available, it is a fork server that has imported ``preload``, so that workers start fast.
+    Otherwise each worker is a new interpreter.
     """
     if "forkserver" not in multiprocessing.get_all_start_methods():
         return multiprocessing.get_context("spawn")
@@ -286,7 +289,7 @@ def context(preload: str) -> Any:
 
 
 def _serve(pipe: Connection, copy: bytes) -> None:
-    """Run a worker: receive groups of jobs, send (result, None) or (None, error)."""
+    """Run a worker, which receives groups of jobs and sends (result, None) or (None, error)."""
     leave_to_parent()
     try:
         task: Task = _unpacked(copy)
@@ -301,7 +304,7 @@ def _serve(pipe: Connection, copy: bytes) -> None:
 
 
 def _unpacked(copy: bytes) -> Any:
-    """Unpickle; raise ValueError for a class below ``if __name__ == "__main__":``."""
+    """Unpickle a task; raise ValueError for a class below ``if __name__ == "__main__":``."""
     try:
         return pickle.loads(copy)
     except AttributeError as error:
@@ -321,8 +324,8 @@ def _next(pipe: Connection) -> list[Any]:
 def portable(error: Exception) -> tuple[Exception, Exception]:
     """Return an error that can be sent to the parent, and a cause with the worker's traceback.
 
-    A ValueError gets its place in the user's code. An error that cannot be pickled becomes a
-    RuntimeError with the same text.
+    For a ValueError, the file and line in the user's code are added. An error that cannot be
+    pickled becomes a RuntimeError with the same text.
     """
     cause = RuntimeError(f"in a worker process:\n{traceback.format_exc()}")
     error = ValueError(error_message(error)) if type(error) is ValueError else error

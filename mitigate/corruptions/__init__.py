@@ -1,4 +1,4 @@
-"""Corruptions of frames and instructions: pure functions of input, severity and key."""
+"""Corrupt frames and instructions with pure functions of input, severity and key."""
 
 from mitigate.corruptions.depth_sensor import DepthSensor
 from mitigate.corruptions.example import example_depth, example_rgb

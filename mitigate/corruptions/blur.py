@@ -1,8 +1,9 @@
-"""Compiled blurs of uint8 panoramas: a line and a Gaussian. Edges are replicated.
+"""Compiled blur filters for uint8 panoramas, along a line or with a Gaussian kernel. Edges are
+replicated.
 
-All arithmetic is on whole rows of 16-bit integers. Every intermediate value is cast back to 16
-bits, so that LLVM uses full-width vector instructions. They are about three times as fast as 32
-bits.
+All arithmetic works on whole rows of 16-bit integers. Every intermediate value is cast back to 16
+bits, so that LLVM uses full-width vector instructions. Arithmetic with 16 bits is about three times
+as fast as with 32 bits.
 """
 
 from __future__ import annotations
@@ -10,14 +11,16 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
-LINE_UNITS = 256  # largest weight of a group of line taps: 256 * 255 still fits 16 bits
+# maximum total weight of a group of line taps, because 256 * 255 still fits 16 bits
+LINE_UNITS = 256
 
 _I16, _I32 = np.int16, np.int32
 
 
 @njit(cache=True)
 def _pad(view, y, rx, scale, row):
-    """Write row y of uint8 [H, W, 3], times scale, to row [3 (W + 2 rx)], replicating the edges."""
+    """Write row y of uint8 [H, W, 3], multiplied by scale, to row [3 (W + 2 rx)] with repeated
+    edges."""
     height, width, _ = view.shape
     source = view[min(max(y, 0), height - 1)].reshape(-1)
     middle = row[3 * rx : 3 * (rx + width)]
@@ -31,7 +34,8 @@ def _pad(view, y, rx, scale, row):
 
 @njit(cache=True)
 def _hat(row, out):
-    """Set out = (left + 2 row + right) / 4, rounded, per colour; out is 6 entries shorter."""
+    """Smooth a row: out = (left + 2 row + right) / 4, rounded, per colour; out is 6 entries
+    shorter."""
     left, centre, right = row, row[3:], row[6:]
     for i in range(out.size):
         outer = _I16(_I16(left[i]) + _I16(right[i]))
@@ -49,7 +53,8 @@ def _add_taps(total, a, b, c, d, wa, wb, wc, wd):
 
 @njit(cache=True)
 def _mix(total, blurred, source, remainder, target):
-    """Set target = (total blurred + source remainder) / 65536, rounded; reset total to zero."""
+    """Write (total blurred + source remainder) / 65536, rounded, to target, and set total to
+    zero."""
     for i in range(target.size):
         mean = _I32(_I32(total[i]) * blurred)
         target[i] = _I32(_I32(mean + _I32(_I32(source[i]) * remainder)) + _I32(32768)) >> 16
@@ -58,11 +63,12 @@ def _mix(total, blurred, source, remainder, target):
 
 @njit(cache=True)
 def line(views, dy, dx, weights, step, strength, out):
-    """Set out = (1 - strength) x + strength (mean of the taps), for uint8 [V, H, W, 3].
+    """Blur uint8 [V, H, W, 3] along a line: out = (1 - strength) x + strength (mean of the taps).
 
-    ``dy, dx`` int64 [4 n] are offsets in pixels. ``weights`` int16 [4 n] are small integers; each
-    group of four sums to at most LINE_UNITS. With ``step`` 2 the taps of a row are 2 px apart, and
-    the picture is first smoothed along x by (1 2 1)/4, so that no pixel between them is lost.
+    ``dy, dx`` int64 [4 n] are offsets in pixels. ``weights`` int16 [4 n] are small integers; the
+    sum of each group of four is at most LINE_UNITS. With ``step`` 2, taps in a row are 2 px apart,
+    and the image is first smoothed along x by (1 2 1)/4, so that pixels between taps also
+    contribute.
     """
     count, height, width, _ = views.shape
     ry, rx = np.max(np.abs(dy)), np.max(np.abs(dx))
@@ -70,7 +76,8 @@ def line(views, dy, dx, weights, step, strength, out):
     wide = np.empty(padded.shape[1] + 6, np.uint8)
     part, total = np.zeros(3 * width, np.int16), np.zeros(3 * width, np.int32)
     sums = part.view(np.uint16)  # int16 sums may wrap; they are never negative
-    full = np.zeros(dy.size, np.bool_)  # before these taps, the sums are moved to total
+    # before these taps, the 16-bit sums are added to total and reset, so that they do not overflow
+    full = np.zeros(dy.size, np.bool_)
     used = 0
     for k in range(0, dy.size, 4):
         four = np.sum(weights[k : k + 4])
@@ -111,7 +118,8 @@ def line(views, dy, dx, weights, step, strength, out):
 
 @njit(cache=True)
 def _smooth(row, near, far):
-    """Set row = (row + 2 near + far) / 4, int16 in [0, 2^14]; row overlaps neither of them."""
+    """Smooth rows: row = (row + 2 near + far) / 4, int16 in [0, 2^14]; row must not overlap the
+    others."""
     for i in range(near.size):
         outer = _I16(_I16(row[i] + far[i]) >> _I16(1))
         row[i] = _I16(_I16(_I16(outer + near[i]) + _I16(1)) >> _I16(1))
@@ -163,11 +171,12 @@ def _weigh_columns(row, centre, step, weights, rounding, total):
 
 @njit(cache=True)
 def gaussian(views, weights, levels, out):
-    """Convolve uint8 [V, H, W, 3] with a separable kernel.
+    """Convolve images uint8 [V, H, W, 3] with a separable kernel.
 
-    ``weights`` int16 [r + 1] in 1/65536, r even, belong to taps 2^levels pixels apart; the first is
-    half of the centre weight. The picture is first smoothed by (1 2 1)/4 with steps of 1, 2, ...
-    2^(levels - 1) pixels, so that no pixel between the taps is lost ("a trous").
+    ``weights`` int16 [r + 1], in units of 1/65536 with r even, are for taps that are 2^levels
+    pixels apart. The first weight is half of the centre weight. The image is first smoothed by (1 2
+    1)/4 with steps of 1, 2, ... 2^(levels - 1) pixels, so that pixels between the taps also
+    contribute ("a trous").
     """
     count, height, width, _ = views.shape
     r, step = weights.size - 1, 1 << levels
@@ -175,7 +184,7 @@ def gaussian(views, weights, levels, out):
     padded = np.empty((height + 2 * reach, 3 * (width + 2 * reach)), np.int16)
     tall, spare = np.empty(padded.shape[1], np.int16), np.empty(padded.shape[1], np.int16)
     total = np.empty(size, np.int16)
-    rounding = _I16((r + 1) // 2)  # truncation of each product loses half a unit on average
+    rounding = _I16((r + 1) // 2)  # truncating each product loses half a unit on average
     for v in range(count):
         rows = height + 2 * reach
         for y in range(rows):

@@ -1,8 +1,8 @@
 """The four depth corruptions of float32 panoramas [V, H, W] in metres.
 
-A pixel is invalid where z <= 0, NaN or infinite. It is returned unchanged and is ignored in
-neighbourhoods. Only missing data makes valid depth invalid; all other valid depth is clipped to
-[0.001, z_max]. Formulas and sources: docs/corruptions.md.
+A pixel is invalid where z <= 0, NaN or infinite. Invalid pixels are returned unchanged and are
+ignored in neighbourhoods. Only ``missing_data`` makes valid depth invalid; all other valid depth is
+clipped to [0.001, z_max]. Formulas and sources: docs/corruptions.md.
 """
 
 from __future__ import annotations
@@ -26,7 +26,8 @@ from mitigate.corruptions.keying import (
 )
 from mitigate.corruptions.record import Record
 
-ECHO_REACH = 0.03  # share of min(H, W): half side of the square searched for an echo
+# half side of the square that is searched for an echo, as a fraction of min(H, W)
+ECHO_REACH = 0.03
 ECHO_GAP = 2.5  # metres
 ECHO_STRENGTH = 0.9
 ECHO_HERTZ = 20e6
@@ -35,7 +36,7 @@ ECHO_HERTZ = 20e6
 def echo_shift(gap: np.ndarray, severity: float) -> np.ndarray:
     """Return the over-estimation in metres for a surface ``gap`` metres farther.
 
-    It is the phasor sum of two light paths.
+    The value is computed from the phasor sum of two light paths.
     """
     scale = LIGHT_SPEED / (4.0 * math.pi * ECHO_HERTZ)
     beta, phase = ECHO_STRENGTH * severity, gap / scale
@@ -44,10 +45,10 @@ def echo_shift(gap: np.ndarray, severity: float) -> np.ndarray:
 
 @lru_cache(maxsize=32)
 def echo_polynomial(severity: float) -> np.ndarray:
-    """Return float32 [8]: p with echo_shift = gap p(gap) up to 0.01 mm, lowest power first.
+    """Return coefficients float32 [8] of p, lowest power first: echo_shift = gap p(gap) to 0.01 mm.
 
-    It interpolates at the Chebyshev nodes of [0, 2.5] m, where the shift is smooth. The compiler
-    can vectorise a polynomial, but not table look-ups.
+    The polynomial interpolates at the Chebyshev nodes of [0, 2.5] m, where the shift is smooth. The
+    compiler can vectorise a polynomial, but not table look-ups.
     """
     degree = 7
     nodes = 0.5 * ECHO_GAP * (1.0 + np.cos(np.pi * (np.arange(degree + 1) + 0.5) / (degree + 1)))
@@ -58,14 +59,15 @@ def echo_polynomial(severity: float) -> np.ndarray:
 
 @njit(cache=True)
 def larger(row, other):
-    """Set row = max(row, other) in place, float32; the two must not overlap."""
+    """Compute row = max(row, other) in place, float32; the two must not overlap."""
     for x in range(row.size):
         row[x] = row[x] if row[x] > other[x] else other[x]
 
 
 @njit(cache=True)
 def farthest_along(row, spare, reach):
-    """Replace each entry by the maximum of the 2 reach + 1 entries from it on, by doubling."""
+    """Replace each entry by the maximum of the 2 reach + 1 entries that start with it, by
+    doubling."""
     have, want, size = 1, 2 * reach + 1, row.size
     while have < want:
         step = min(have, want - have)
@@ -77,7 +79,8 @@ def farthest_along(row, spare, reach):
 
 @njit(cache=True)
 def extremes(view, reach, sign, out):
-    """Set out [H, W] to the maximum of sign z in a square of 2 reach + 1; -inf if none is valid."""
+    """Write to out [H, W] the maximum of sign z in a square of 2 reach + 1, or -inf if none is
+    valid."""
     height, width = view.shape
     rows = height + 2 * reach
     wide = np.full((rows, width + 2 * reach), np.float32(-np.inf), np.float32)
@@ -118,20 +121,22 @@ def _echo(views, reach, polynomial, z_max, out):
 
 
 def multipath(views: np.ndarray, severity: float, key: Key, sensor: DepthSensor) -> np.ndarray:
-    """Over-estimate depth next to farther surfaces, like a second light path."""
+    """Over-estimate depth next to farther surfaces, as if light took a second path."""
     reach = max(1, round(ECHO_REACH * min(views.shape[1:])))
     out = np.empty_like(views)
     _echo(views, reach, echo_polynomial(severity), np.float32(sensor.z_max), out)
     return out
 
 
-NOISE_BASE, NOISE_SQUARE = 0.02, 0.02  # D435: RMS grows with z^2; s = 0.1 is similar to a Kinect
-HOLE_CORRELATION = 0.025  # share of min(H, W)
-HOLE_SHARE = 0.5  # share of the pixels at s = 1 (Zhang & Funkhouser 2018: often over half indoors)
-FAR_SHARE = 0.25  # share of the holes that read z_max ("incorrectly large")
-HOLE_FRAMES = 5  # frames after which the holes move
-STEP = 0.5  # metres at s = 1
-STEP_LEAST = 1e-30  # metres: depth over a smaller step would overflow float32
+# as in a D435, the RMS error grows with z^2; s = 0.1 is similar to a Kinect
+NOISE_BASE, NOISE_SQUARE = 0.02, 0.02
+HOLE_CORRELATION = 0.025  # as a fraction of min(H, W)
+# fraction of missing pixels at s = 1 (Zhang & Funkhouser 2018: often over half indoors)
+HOLE_SHARE = 0.5
+FAR_SHARE = 0.25  # fraction of the holes that have the value z_max ("incorrectly large")
+HOLE_FRAMES = 5  # number of frames after which the holes move
+STEP = 0.5  # in metres, at s = 1
+STEP_LEAST = 1e-30  # minimum step in metres: depth divided by a smaller step would overflow float32
 
 _U = np.uint64
 
@@ -165,9 +170,9 @@ def gaussian_noise(views: np.ndarray, severity: float, key: Key, sensor: DepthSe
 
 @cached
 def hole_map(value: int, severity: float, height: int, width: int) -> np.ndarray:
-    """Return uint8 [H, 2 W]: 0 unchanged, 1 no reading, 2 reads z_max.
+    """Return a map uint8 [H, 2 W]: 0 means unchanged, 1 no reading, and 2 the value z_max.
 
-    It holds the map twice, side by side, so that a shifted row is one contiguous slice.
+    The array holds the map twice, side by side, so that a shifted row is one contiguous slice.
     """
     smooth, cells = field(value, height, width, HOLE_CORRELATION)
     holes = smooth >= top_share(cells, HOLE_SHARE * severity)
@@ -201,7 +206,8 @@ def _drop(views, holes, streams, missing, z_max, out):
 
 
 def missing_data(views: np.ndarray, severity: float, key: Key, sensor: DepthSensor) -> np.ndarray:
-    """Remove the top 0.5 s of a random field; a quarter reads z_max. It moves every 5 frames."""
+    """Remove depth where a random field is in its top 0.5 s; a quarter of these pixels becomes
+    z_max. The field moves every 5 frames."""
     count, height, width = views.shape
     holes = hole_map(digest(key, "missing_data"), severity, height, width)
     placement = int(key.frame) // HOLE_FRAMES
@@ -221,7 +227,7 @@ def _round_off(views, step, z_max, out):
 
 
 def quantization(views: np.ndarray, severity: float, key: Key, sensor: DepthSensor) -> np.ndarray:
-    """Round to steps of 0.5 s metres."""
+    """Round depth to multiples of 0.5 s metres."""
     out = np.empty_like(views)
     step, z_max = np.float32(max(STEP * severity, STEP_LEAST)), np.float32(sensor.z_max)
     _round_off(views.reshape(-1), step, z_max, out.reshape(-1))

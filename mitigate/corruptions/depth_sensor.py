@@ -1,4 +1,4 @@
-"""The range of a depth camera, and the validity of its pixels.
+"""Define the range of a depth camera and the validity of its pixels.
 
 A pixel is invalid if z <= 0, NaN or infinite.
 """
@@ -13,10 +13,12 @@ from numba import njit
 
 from mitigate.core import observation
 
-NEAREST = np.float32(1e-3)  # metres, minimum of corrupted valid depth
-LEAST = np.float32(1e-6)  # normalised value of valid depth at or below z_min, as 0 is no reading
-# Heuristic check of the unit: at least one of MIN_NEAR valid pixels is nearer than MAX_RANGES times
-# z_max (outdoors only the ground is). About UNIT_SAMPLES pixels are checked.
+NEAREST = np.float32(1e-3)  # minimum of corrupted valid depth, in metres
+# normalised value of valid depth at or below z_min, because 0 means no reading
+LEAST = np.float32(1e-6)
+# Heuristic check of the unit: at least one of MIN_NEAR valid pixels must be nearer than
+# MAX_RANGES times z_max (outdoors, only the ground is that near).
+# About UNIT_SAMPLES pixels are checked.
 MAX_RANGES = 3.0
 MIN_NEAR = 10
 UNIT_SAMPLES = 8192
@@ -25,15 +27,15 @@ LIGHT_SPEED = 299_792_458.0  # metres per second
 
 @dataclass(frozen=True)
 class DepthSensor:
-    """Range of a depth camera, and its value for no reading.
+    """The range of a depth camera, and its value for missing depth.
 
-    Agents interpret no reading differently: R2R-CE agents read 0 as missing, VLFM as far, and L3MVN
-    as the maximum of the column.
+    Agents interpret missing depth differently: R2R-CE agents treat 0 as missing, VLFM as far away,
+    and L3MVN as the maximum of the image column.
 
     Attributes:
         z_min: Minimum depth in metres.
         z_max: Maximum depth in metres.
-        missing: Value of missing data in metres.
+        missing: Value in metres that marks missing depth.
 
     Raises:
         ValueError: The range is invalid.
@@ -63,32 +65,34 @@ class DepthSensor:
 
 @njit(inline="always")
 def is_valid(z):
-    """Return whether depth is a reading."""
+    """Return a mask of valid depth."""
     return (z > np.float32(0)) & (z < np.float32(np.inf))
 
 
 def flat(views: np.ndarray) -> np.ndarray:
-    """Return views [V, ...] as [V, pixels]."""
+    """Reshape views [V, ...] to [V, pixels]."""
     return views.reshape(views.shape[0], -1)
 
 
 @njit(cache=True)
 def _is_near(pixels, limit):
-    """Return whether one valid pixel in ``MIN_NEAR`` is at most ``limit``, or none is valid."""
+    """Return whether at least 1 of ``MIN_NEAR`` valid pixels is at most ``limit``, or no pixel is
+    valid."""
     near = valid = 0
     step = pixels.size // UNIT_SAMPLES + 1
     for i in range(0, pixels.size, step):
         valid += is_valid(pixels[i])
         near += is_valid(pixels[i]) & (pixels[i] <= limit)
-        if MIN_NEAR * near * step >= pixels.size:  # enough, even if all others are valid and far
+        # enough near pixels, even if all others are valid and far
+        if MIN_NEAR * near * step >= pixels.size:
             return True
     return MIN_NEAR * near >= valid
 
 
 def check_unit(views: np.ndarray, sensor: DepthSensor) -> None:
-    """Raise ValueError if nearly all depth [V, H, W] is far beyond z_max, so not in metres.
+    """Raise ValueError if nearly all depth [V, H, W] is far beyond z_max, so it is not in metres.
 
-    Clipped to the sensor's range, it would be a flat wall.
+    Such depth, clipped to the sensor's range, would be a flat wall.
     """
     if not _is_near(views.reshape(-1), np.float32(MAX_RANGES * sensor.z_max)):
         median = float(np.median(views[(views > 0) & (views < np.inf)]))

@@ -1,9 +1,10 @@
-"""Low light with sensor noise: an implementation of the ELD model.
+"""Simulate low light with sensor noise, using the ELD model.
 
 Source: Wei et al., "Physics-based noise modeling for extreme low-light photography", IEEE TPAMI
 2021. D = K Poisson(I) + TukeyLambda + row noise, rounded by the ADC. Simplifications: sRGB is
-treated as a 2.2 power, noise is drawn per channel without a Bayer pattern, and the three channels
-of a row share its row noise. Clipping at 0 brightens deep shadows, as in real cameras.
+approximated by an exponent of 2.2, noise is sampled per channel without a Bayer pattern, and the
+three channels of a row have the same row noise. Clipping at 0 brightens dark areas, as in real
+cameras.
 
 Sampling needs two table look-ups per channel: a (signal level x quantile) table of photon counts
 and a quantile table of read noise, indexed by the bits of one hash per pixel.
@@ -21,14 +22,14 @@ from numba import njit
 from mitigate.corruptions.keying import Key, digest, mix, normal_table, unit_normals, view_streams
 from mitigate.corruptions.masks import low_light_mask
 
-WHITE = 15583.0  # sensor units at full scale: 14 bits less the black level (Sony A7S2)
+WHITE = 15583.0  # sensor units at full scale: 14 bits minus the black level (Sony A7S2)
 DARKEST = 300.0  # exposure ratio at s = 1 (ELD trains on 100-300)
 GAMMA = 2.2
-# Calibration of the camera in the paper: range of the gain K, and (a, b) of ln sigma = a ln K + b.
+# Camera calibration in the paper: range of the gain K, and (a, b) in ln sigma = a ln K + b.
 GAINS = (0.0939, 6.011)
 READ = (0.4621, 0.5657)
 ROW = (0.5275, -0.5917)
-LEVELS = 4 * 255 + 1  # signal levels of the photon table: quarters of a grey level
+LEVELS = 4 * 255 + 1  # number of signal levels in the photon table, in quarters of a grey level
 PHOTON_BITS = 8
 READ_BITS = 12
 
@@ -37,7 +38,7 @@ _U = np.uint64
 
 @dataclass(frozen=True)
 class Noise:
-    """Noise parameters at one severity: exposure ratio, gain K, Tukey lambda, two sigmas."""
+    """Noise parameters at one severity: exposure ratio, gain K, Tukey lambda and two sigmas."""
 
     ratio: float
     gain: float
@@ -57,7 +58,7 @@ def noise_at(severity: float) -> Noise:
 def tukey_lambda(u: np.ndarray, shape: float) -> np.ndarray:
     """Return quantiles (u^l - (1 - u)^l) / l of the Tukey lambda distribution.
 
-    At l = 0 it is the logistic distribution.
+    For l = 0, this is the logistic distribution.
     """
     if abs(shape) < 1e-9:
         return np.log(u / (1.0 - u))
@@ -66,7 +67,7 @@ def tukey_lambda(u: np.ndarray, shape: float) -> np.ndarray:
 
 @njit(cache=True)
 def _photon_table(means, points, deviates, out):
-    """Compute Poisson quantiles [means, points]: exact up to mean 64, else Cornish-Fisher."""
+    """Compute Poisson quantiles [means, points], exactly up to mean 64, above by Cornish-Fisher."""
     for level in range(means.size):
         mean = means[level]
         if mean > 64.0:
@@ -88,10 +89,10 @@ def _photon_table(means, points, deviates, out):
 
 @dataclass(frozen=True)
 class Tables:
-    """Look-up tables of one severity. Tables of int32 hold sensor units in 1/256.
+    """The look-up tables of one severity. int32 tables hold values in 1/256 of a sensor unit.
 
     photons int32 [LEVELS * 256], read int32 [4096], row int32 [4096]. decode uint8 [D] maps the sum
-    of the three plus ``offset``, in whole sensor units, to a grey level.
+    of the three values plus ``offset``, in whole sensor units, to a grey level.
     """
 
     photons: np.ndarray
@@ -121,7 +122,7 @@ def tables(severity: float) -> Tables:
 
 @njit(cache=True)
 def _levels(source, opacity, part, out):
-    """Darken one row like ``low_light``, but in quarters of a grey level."""
+    """Darken one row like ``low_light``, but with a resolution of a quarter grey level."""
     for i in range(part.size):
         gap = np.int16(np.int16(-np.int16(source[i])) << 7)
         part[i] = (np.int32(gap) * np.int32(opacity[i])) >> np.int32(16)
@@ -131,7 +132,8 @@ def _levels(source, opacity, part, out):
 
 @njit(cache=True)
 def _sample(views, opacity, streams, row_streams, photons, read, row, decode, offset, out):
-    """Sample uint8 [V, H, W, 3]; unsigned indices save numba's test for negative ones."""
+    """Sample noisy frames uint8 [V, H, W, 3]; unsigned indices avoid numba's check for negative
+    ones."""
     count, height, width, _ = views.shape
     size = 3 * width
     flat, into = views.reshape(count, height, size), out.reshape(count, height, size)
@@ -156,8 +158,9 @@ def _sample(views, opacity, streams, row_streams, photons, read, row, decode, of
 def low_light_noise(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
     """Apply ``low_light`` and add sensor noise; uint8 [V, H, W, 3].
 
-    The mask is the same. Up to s = 0.6 the mean is the same within 1 %. Above that, clipping noise
-    at 0 brightens the frame: s = 1 is not darker than s = 0.8.
+    The darkness mask is that of ``low_light``. Up to s = 0.6, the mean brightness equals that of
+    ``low_light`` within 1 %. At higher severities, clipping noise at 0 brightens the frame, so that
+    s = 1 is not darker than s = 0.8.
     """
     count, height, width, _ = views.shape
     t = tables(severity)

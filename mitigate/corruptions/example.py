@@ -1,4 +1,4 @@
-"""Two frames to try corruptions on, shipped with the package."""
+"""Provide two example frames for trying corruptions."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ def example_rgb() -> np.ndarray:
     Returns:
         uint8 array of shape [400, 600, 3], RGB.
     """
-    import cv2  # here, since agents load without it
+    import cv2  # imported here, because agents must load without OpenCV
 
     picture = cv2.imread(str(_FOLDER / "photograph.jpg"), cv2.IMREAD_COLOR)
     assert picture is not None

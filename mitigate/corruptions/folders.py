@@ -1,4 +1,5 @@
-"""Corrupt the frames of a folder into another folder; resumable, files are written atomically."""
+"""Corrupt the frames of a folder into a new folder; runs can resume, and files are written
+atomically."""
 
 from __future__ import annotations
 
@@ -40,17 +41,18 @@ FORMATS = ("png", "same")
 
 @dataclass(frozen=True)
 class Settings:
-    """Options of the corruption of a folder; ValueError for an invalid value."""
+    """Options for corrupting a folder; raises ValueError for an invalid value."""
 
     corruption: str
     severity: float
     seed: int = 0
-    episode: str = "folder"  # "folder": each folder is an episode; "all": one episode
-    format: str = "png"  # format of a corrupted JPEG: "png" or "same"
-    unit: float | None = None  # metres per count of a 16-bit PNG; None: mm, after a check
-    z_max: float = Z_MAX  # metres, maximum that depth is clipped to
-    missing: float = 0.0  # metres, value of missing data
-    no_reading: int = NO_READING  # count of a 16-bit PNG without a reading, next to 0
+    # "folder": each folder is an episode; "all": all frames are one episode
+    episode: str = "folder"
+    format: str = "png"  # output format of a corrupted JPEG: "png" or "same"
+    unit: float | None = None  # metres per count of a 16-bit PNG; None assumes mm, after a check
+    z_max: float = Z_MAX  # maximum depth in metres; larger values are clipped
+    missing: float = 0.0  # value of missing depth in metres
+    no_reading: int = NO_READING  # count in a 16-bit PNG that means no reading, in addition to 0
     hfov: float | None = None  # degrees, horizontal field of view for camera faults
 
     def __post_init__(self) -> None:
@@ -97,10 +99,10 @@ class Settings:
 
 
 def run(source: Path | str, out: Path | str, settings: Settings) -> dict:
-    """Corrupt the frames of ``source`` and its folders into the same tree in ``out``.
+    """Corrupt the frames of ``source`` and its subfolders into the same folder tree in ``out``.
 
     Frames are numbered by name inside their episode, comparing digits as numbers ("9" before "10");
-    a damaged file keeps its number. A file that already is in ``out`` is not written again. RGB and
+    a damaged file keeps its number. A file that is already in ``out`` is not written again. RGB and
     depth of an episode are numbered separately. A temporal fault shows earlier files of an episode.
 
     Args:
@@ -109,12 +111,13 @@ def run(source: Path | str, out: Path | str, settings: Settings) -> dict:
         settings: The options.
 
     Returns:
-        The summary, also written to ``out/corrupt.json``: settings, counts and files left out.
+        The summary, which is also written to ``out/corrupt.json``: settings, counts and skipped
+        files.
 
     Raises:
-        FileNotFoundError: The folder does not exist or has no frame.
-        ValueError: One folder contains the other, or ``out`` was written with other settings or
-            frames, or by another program.
+        FileNotFoundError: The folder does not exist or contains no frame.
+        ValueError: One folder contains the other, or ``out`` was written with different settings or
+            frames, or by a different program.
         OSError: ``out`` cannot be written.
     """
     source, out = Path(source), Path(out)
@@ -148,7 +151,7 @@ def _corrupt_all(source: Path, out: Path, settings: Settings, plan: Plan) -> dic
             else:
                 _corrupt_frame(source, out, target, frame, settings, plan, summary, stream)
             names.add(target)
-    finally:  # an interrupted run must not compute its frames again
+    finally:  # so that a resumed run does not compute these frames again
         _write_summary(out, summary)
     missing = [
         out / outputs[frame.path]
@@ -172,7 +175,7 @@ def _corrupt_frame(
     summary: dict,
     stream: FrameStream,
 ) -> None:
-    """Write a frame, unless ``out`` already has the same file, and record its checksum."""
+    """Write a frame unless ``out`` already contains the same file, and record its checksum."""
     name = target.as_posix()
     checksums = summary["checksums"]
     files = (source / frame.path, out / target)
@@ -192,7 +195,8 @@ def _corrupt_frame(
         data = frame_files.corrupt_file(
             files[0], target.suffix, settings.metres_per_count, change, settings.no_reading
         )
-    except ValueError as error:  # LeftOutError, or a shape that the suite does not support
+    # catches LeftOutError, and errors for shapes that the suite does not support
+    except ValueError as error:
         plan.left_out[frame.path.as_posix()] = str(error)
         checksums.pop(name, None)
         return
@@ -214,7 +218,7 @@ def _checksum(source: Path, output: Path) -> str:
 
 
 def _output(path: Path, form: str) -> Path:
-    """Return the path of the result of a file."""
+    """Return the output path for an input file."""
     jpeg = path.suffix.lower() in (".jpg", ".jpeg")
     return path.with_suffix(".png") if jpeg and form == "png" else path
 
@@ -223,7 +227,8 @@ def _output(path: Path, form: str) -> Path:
 
 
 def _begin(out: Path, settings: Settings, plan: Plan) -> dict:
-    """Check the results of an earlier run in ``out``, then write settings and episodes there."""
+    """Check the results of an earlier run in ``out``, and then write settings and episodes
+    there."""
     versions = {"suite_version": SUITE_VERSION, **version(settings.corruption)}
     settings_now = {**versions, **asdict(settings), "unit": settings.metres_per_count}
     checksums: dict[str, str] = {}
@@ -248,15 +253,15 @@ def _begin(out: Path, settings: Settings, plan: Plan) -> dict:
 
 
 def _check_earlier(out: Path, settings: dict, episodes: dict[str, list[str]]) -> dict[str, str]:
-    """Return the checksums of an earlier run; empty if an earlier version wrote none.
+    """Return the checksums of an earlier run, or an empty dict if an earlier version wrote none.
 
     Raises:
-        ValueError: ``out`` was written with other settings or frames.
+        ValueError: ``out`` was written with different settings or frames.
     """
     try:
         earlier = json.loads(read_regular(out / SUMMARY))
         earlier_settings = dict(earlier["settings"])
-        # earlier versions knew no other count than 0, so no_reading=0 resumes their folders
+        # earlier versions used only the count 0, so no_reading=0 resumes their folders
         is_rgb = Corruption(settings["corruption"], settings["severity"]).modality == RGB
         earlier_settings.setdefault("no_reading", settings["no_reading"] if is_rgb else 0)
         recorded = dict(earlier["episodes"]).items()
@@ -332,7 +337,7 @@ def check_folders(source: Path, out: Path) -> None:
 
 
 def _no_frames(source: Path, kinds: Sequence[str], settings: Settings, plan: Plan) -> str:
-    """Return the message for a folder without frames of these modalities."""
+    """Return the error message for a folder without frames of these modalities."""
     readable = {RGB: "8-bit RGB PNG or JPEG", DEPTH: "16-bit grey PNG or NPY (metres)"}
     modality = " or ".join(kinds)
     formats = " or ".join(readable[kind] for kind in kinds)
@@ -348,7 +353,7 @@ def _no_frames(source: Path, kinds: Sequence[str], settings: Settings, plan: Pla
 
 
 def _check_counts(settings: Settings) -> None:
-    """Raise ValueError if depth does not fit into a 16-bit PNG."""
+    """Raise ValueError if depth cannot be stored in a 16-bit PNG."""
     largest = max(settings.z_max, settings.missing)
     limit = MAX_COUNT * settings.metres_per_count
     if largest > limit:

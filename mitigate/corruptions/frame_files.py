@@ -1,7 +1,7 @@
 """Read and write frame files: 8-bit RGB in PNG and JPEG, depth in 16-bit PNG and in NPY.
 
-Also finds the frames of a folder and their order. Files are untrusted: they are decoded completely
-before anything is written, and never unpickled.
+This module also finds the frames of a folder and their order. Files are untrusted, so they are
+decoded completely before anything is written, and are never unpickled.
 """
 
 from __future__ import annotations
@@ -24,26 +24,28 @@ from mitigate.core.files import lfs_problem
 from mitigate.core.observation import DEPTH, RGB
 
 SUFFIXES = (".png", ".jpg", ".jpeg", ".npy")
-JPEG_QUALITY = 95  # heuristic, with full colour resolution; used only with format=same
-PNG_LEVEL = 3  # level of zlib: half the time of the default 6 for a few per cent more bytes
+# JPEG quality (heuristic), with full colour resolution; used only with format=same
+JPEG_QUALITY = 95
+PNG_LEVEL = 3  # zlib level that takes half the time of the default 6, for a few per cent more bytes
 PNG_START = b"\x89PNG\r\n\x1a\n"  # PNG specification, section 5.2
 COLOUR_TYPES = {0: "grey", 2: "RGB", 3: "palette", 4: "grey with alpha", 6: "RGB with alpha"}
-MAX_PIXELS = 1 << 26  # pixels per frame, a heuristic limit: 8192 x 8192
-MAX_COUNT = 65534  # largest reading in a 16-bit PNG
-NO_READING = 65535  # count without a reading, next to 0: in 7-Scenes, and of a saturated sensor
-SCALE_FILES = 16  # files of a folder whose scale is checked (heuristic)
-SCALE_PIXELS = 8192  # pixels that are checked per file (heuristic)
+MAX_PIXELS = 1 << 26  # maximum pixels per frame (heuristic): 8192 x 8192
+MAX_COUNT = 65534  # greatest depth count in a 16-bit PNG
+# count that, besides 0, means no reading: in 7-Scenes, and for a saturated sensor
+NO_READING = 65535
+SCALE_FILES = 16  # number of files in a folder whose depth scale is checked (heuristic)
+SCALE_PIXELS = 8192  # number of pixels that are checked per file (heuristic)
 
 
 class LeftOutError(ValueError):
-    """A file that cannot be corrupted; the message is the reason."""
+    """Raised for a file that cannot be corrupted; the message is the reason."""
 
 
 def modality(path: Path) -> str:
     """Return the modality of a file, "rgb" or "depth", from its name and, for PNG, its header.
 
     Raises:
-        LeftOutError: It is neither, or a pipe or device, which may never end.
+        LeftOutError: The file is neither, or it is a pipe or device, which may never end.
     """
     if os.path.exists(path) and not os.path.isfile(path):
         raise LeftOutError("is not a regular file")
@@ -76,18 +78,18 @@ def corrupt_file(
     corrupt_frame: Callable[[np.ndarray], np.ndarray],
     no_reading: int = NO_READING,
 ) -> bytes:
-    """Return the content of a file with the corrupted frame of ``path``.
+    """Return the content of an output file with the corrupted frame of ``path``.
 
     Args:
         path: The file to read.
-        suffix: Suffix of the format of the result.
+        suffix: File suffix that determines the format of the result.
         unit: Metres per count of a 16-bit PNG.
-        corrupt_frame: Takes uint8 [H, W, 3] or float32 metres in the shape of the file. Pixels that
-            it does not change keep their stored values.
-        no_reading: Count of a 16-bit PNG without a reading, next to 0.
+        corrupt_frame: Function of uint8 [H, W, 3], or of float32 metres in the shape of the file.
+            Pixels that this function does not change keep their stored values.
+        no_reading: Count in a 16-bit PNG that means no reading, in addition to 0.
 
     Raises:
-        LeftOutError: The file is damaged or of another format.
+        LeftOutError: The file is damaged or has an unsupported format.
     """
     if modality(path) == RGB:
         return _encode(Image.fromarray(corrupt_frame(_decode(path))), suffix)
@@ -109,47 +111,47 @@ def corrupt_file(
 def counts(metres: np.ndarray, unit: float) -> np.ndarray:
     """Convert metres to uint16 counts of ``unit`` metres, the pixels of a 16-bit PNG.
 
-    No reading becomes 0, all other depth 1 or more.
+    Missing depth becomes 0, and all other depth at least 1.
     """
     valid = np.isfinite(metres) & (metres > 0)
     return np.clip(np.rint(np.where(valid, metres, 0) / unit), valid, MAX_COUNT).astype(np.uint16)
 
 
 def read(path: Path, unit: float) -> np.ndarray:
-    """Read a frame: uint8 [H, W, 3], or float32 metres [H, W, 1].
+    """Read a frame as uint8 [H, W, 3], or as float32 metres [H, W, 1].
 
     Args:
         path: The file.
         unit: Metres per count of a 16-bit PNG.
 
     Raises:
-        LeftOutError: The file is damaged or of another format.
+        LeftOutError: The file is damaged or has an unsupported format.
     """
     if modality(path) == RGB:
         return _decode(path)
     metres = _load(path) if path.suffix.lower() == ".npy" else _metres(_decode(path), unit)
     if metres.ndim < 2 or metres.shape[2:] not in ((), (1,)) or not metres.size:
         raise LeftOutError(f"has the shape {list(metres.shape)}: depth must be [H, W] or [H, W, 1]")
-    with np.errstate(over="ignore"):  # float64 beyond float32 becomes infinite
+    with np.errstate(over="ignore"):  # float64 values beyond float32 become infinite
         return metres.astype(np.float32).reshape(*metres.shape[:2], 1)
 
 
 def check_scale(paths: Sequence[Path], unit: float, z_max: float) -> None:
-    """Check that depth files may be in the assumed unit. Reads a sample of the files.
+    """Check that the assumed unit of depth files is plausible. Only a sample of the files is read.
 
     Args:
-        paths: Files of 16-bit PNG and NPY.
+        paths: Depth files, 16-bit PNG and NPY.
         unit: Assumed metres per count of a 16-bit PNG.
         z_max: Far limit of the camera in metres.
 
     Raises:
-        ValueError: Most readings of PNG are at the far limit or beyond, or no reading of NPY
-            exceeds 1, as in depth that is normalised.
+        ValueError: Most PNG depth values are at or beyond the far limit, or no NPY depth value
+            exceeds 1, as in normalised depth.
     """
     samples: dict[str, list[np.ndarray]] = {".png": [], ".npy": []}
     for path in paths[:: -(-len(paths) // SCALE_FILES) or 1]:
         suffix = path.suffix.lower()
-        with suppress(LeftOutError):  # reported when the file is read
+        with suppress(LeftOutError):  # damaged files are reported later, when they are read
             if modality(path) == DEPTH:
                 stored = (_load(path) if suffix == ".npy" else _decode(path)).reshape(-1)
                 readings = stored[:: stored.size // SCALE_PIXELS + 1].astype(np.float32)
@@ -175,12 +177,12 @@ def check_scale(paths: Sequence[Path], unit: float, z_max: float) -> None:
 
 
 def _metres(stored: np.ndarray, unit: float, no_reading: int = NO_READING) -> np.ndarray:
-    """Convert uint16 counts to float32 metres, 0 for no reading."""
+    """Convert uint16 counts to float32 metres, with 0 for missing depth."""
     return np.where(stored == no_reading, 0, stored * unit).astype(np.float32)
 
 
 def _decode(path: Path) -> np.ndarray:
-    """Decode uint8 [H, W, 3] or uint16 [H, W]; a JPEG is rotated by its EXIF data."""
+    """Decode an image to uint8 [H, W, 3] or uint16 [H, W]; a JPEG is rotated by its EXIF data."""
     try:
         with Image.open(path, formats=("PNG", "JPEG")) as image:
             if math.prod(image.size) > MAX_PIXELS:
@@ -198,7 +200,7 @@ def _decode(path: Path) -> np.ndarray:
 def _load(path: Path) -> np.ndarray:
     """Load floating-point depth from NPY."""
     try:
-        # a memory map, so that a header with a false shape allocates nothing
+        # memory-mapped, so that a header with a false shape allocates no memory
         mapped = np.load(path, mmap_mode="r", allow_pickle=False)
         if isinstance(mapped, np.ndarray) and mapped.size > MAX_PIXELS:
             raise ValueError(f"it has {mapped.shape} numbers")
@@ -228,7 +230,7 @@ def _encode(image: Image.Image, suffix: str) -> bytes:
 
 @dataclass(frozen=True)
 class Frame:
-    """An input file, by its path in the folder, with the episode and the number of its key."""
+    """An input file with its relative path, and the episode and frame number of its key."""
 
     path: Path
     episode: str
@@ -237,10 +239,11 @@ class Frame:
 
 @dataclass
 class Plan:
-    """The content of a folder: frames in order, files left out, and suffixes of other files."""
+    """The content of a folder: frames in order, skipped files, and suffixes of other files."""
 
     frames: list[Frame] = field(default_factory=list)
-    left_out: dict[str, str] = field(default_factory=dict)  # file, or folder/ -> reason
+    # maps a skipped file or folder/ to the reason
+    left_out: dict[str, str] = field(default_factory=dict)
     other_modality: int = 0
     other_files: Counter[str] = field(default_factory=Counter)  # suffix -> files
 
@@ -253,11 +256,11 @@ class Plan:
 
 
 def make_plan(source: Path, out: Path | None, kinds: Sequence[str], episode: str) -> Plan:
-    """Find the frames of some modalities; a damaged file keeps its number but is left out.
+    """Find the frames of some modalities; a damaged file keeps its number but is skipped.
 
     Args:
-        source: The folder, searched recursively.
-        out: Folder of the results, which is skipped even if a link leads there; None: none.
+        source: The folder, which is searched recursively.
+        out: Folder of the results, which is skipped even if a link leads there, or None.
         kinds: "rgb", "depth" or both, each numbered separately.
         episode: "folder" (each folder is an episode) or "all" (one episode).
     """
@@ -282,15 +285,16 @@ def make_plan(source: Path, out: Path | None, kinds: Sequence[str], episode: str
 
 
 def count_suffixes(suffixes: Mapping[str, int]) -> str:
-    """Return counts of files by suffix as text, the most frequent first: "3 .tif, 1 .webp"."""
+    """Return counts of files by suffix as text, with the most frequent suffix first: "3 .tif, 1
+    .webp"."""
     ordered = sorted(suffixes, key=lambda suffix: (-suffixes[suffix], suffix))
     return ", ".join(f"{suffixes[suffix]} {suffix or 'without suffix'}" for suffix in ordered)
 
 
 def _files(source: Path, out: Path | None, plan: Plan) -> Iterator[Path]:
-    """Yield relative paths, folder by folder in natural order, without hidden files and folders.
+    """Yield relative paths, one folder after the other in natural order, without hidden ones.
 
-    Links to folders are followed, but not in a circle and not into the real path ``out``.
+    Links to folders are followed, except for loops and links into the real path ``out``.
     """
 
     def note_unreadable(error: OSError) -> None:
@@ -308,7 +312,7 @@ def _files(source: Path, out: Path | None, plan: Plan) -> Iterator[Path]:
 
 
 def _skip_reason(source: Path, folder: Path, out: Path | None) -> str:
-    """Return why a folder must be skipped; empty if it must not."""
+    """Return the reason why a folder must be skipped, or an empty text."""
     real = (source / folder).resolve()
     if out in (real, *real.parents):
         return "is the folder of the results"

@@ -1,6 +1,6 @@
 """Corrupt recorded frames: mitigate corrupt IN OUT corruption=... severity=...
 
-  IN          folder of frames, with any folders inside and links to folders: 8-bit RGB as PNG or
+  IN          folder of frames, with any subfolders and links to folders: 8-bit RGB as PNG or
               JPEG; depth as 16-bit PNG, or as NPY float metres, [H, W], [H, W, 1] or with views
               first. Or the folder of a LeRobot dataset, version 3 (pip install -e '.[lerobot]')
   OUT         folder for the corrupted frames, with the same tree and names
@@ -26,10 +26,10 @@
   --list      list the corruptions: what they corrupt, what severity means, their draws and source
   --help      this help
 
-The same command resumes an interrupted run, and writes changed frames again. OUT/corrupt.json has
-the settings, counts, the files left out with the reason, and a checksum of each frame. Files of
-other formats are not read, and counted by suffix. Exit status: 0 done, 1 done but bad files were
-left out, 2 not done.
+The same command resumes an interrupted run, and writes changed frames again. OUT/corrupt.json holds
+the settings, counts, skipped files with the reason, and a checksum of each frame. Files of other
+formats are not read but counted by suffix. Exit status: 0 done, 1 done but bad files were skipped,
+2 not done.
 
 Example: mitigate corrupt recorded/ corrupted/ corruption=spatter severity=0.5
 """
@@ -48,7 +48,7 @@ from mitigate.corruptions.frame_files import count_suffixes
 from mitigate.corruptions.lerobot.dataset import TOLERANCE
 
 DATASET_OPTIONS = ("cameras", "tolerance")  # of LeRobot datasets only
-MAX_LISTED = 5  # files that are printed; the summary has all
+MAX_LISTED = 5  # number of skipped files that are printed; the summary lists all
 
 
 def parse(arguments: Sequence[str]) -> tuple[str, str, Settings, dict[str, str]]:

@@ -1,9 +1,9 @@
-"""Instruction corruptions, applied before an episode begins.
+"""Corrupt instructions before an episode begins.
 
-There are five families, after NavTrust: style (four of them), capitals, masks, and misleading
-sentences in front of the instruction (black box) or in the agent's system prompt (white box). Each
-is a pure function of (text, severity, key). Severity 0 changes nothing, and a higher severity
-changes everything that a lower one does.
+There are five families, as in NavTrust: four styles, capitals, masks, and misleading sentences
+before the instruction (black box) or in the agent's system prompt (white box). Each family is a
+pure function of (text, severity, key). Severity 0 changes nothing. A higher severity changes all
+words that a lower one changes.
 """
 
 from __future__ import annotations
@@ -21,10 +21,11 @@ from mitigate.corruptions.language.tagger import Token, named
 from mitigate.corruptions.language.text import check_text
 from mitigate.corruptions.suite import INSTRUCTION, check_name, check_severity
 
-SPOKEN = words.bag("NOUN PROPN VERB ADP")  # tags of the words that capitals change
+# part-of-speech tags of words that the family "capitals" may change
+SPOKEN = words.bag("NOUN PROPN VERB ADP")
 SLIGHT = words.bag(
     "DET AUX CCONJ SCONJ PRON ADJ ADV PART ADP INTJ"
-)  # tags of the words that masks may hide
+)  # part-of-speech tags of words that the family "masks" may hide
 _SLOT = re.compile(
     r"\{\{?\s*(?:instruction|task|goal|command|query|input)\s*\}?\}|<task>|<instruction>",
     re.IGNORECASE,
@@ -33,7 +34,7 @@ _SLOT = re.compile(
 
 @dataclass(frozen=True)
 class NotApplicable:
-    """The result of a corruption that does not apply to an agent."""
+    """Result of a corruption that does not apply to an agent."""
 
     name: str
     reason: str
@@ -56,14 +57,16 @@ def corrupt_instruction(
         text: the instruction, in English.
         name: one of INSTRUCTION, except "white_box", which corrupts a system prompt
             (``inject_system_prompt``).
-        severity: s in [0, 1]: the probability of a rewrite (styles), the share of eligible words
-            (capitals, masks), the share of the prefix bank (black box); 0 returns ``text``.
-        key: determines the random draws; its frame is not used. An integer is a seed, a string an
-            episode.
-        split: split of the prefix bank: "train", "validation" or "test".
-        mask_token: replaces a hidden word.
-        rewrite: (text, style) -> text, a language model that replaces the rules for styles.
-        tagger: finds the eligible words: "own" or "spacy".
+        severity: s in [0, 1]: the probability of a rewrite (styles), the fraction of eligible words
+            (capitals, masks), or the fraction of the sampled attack sentences (black box); 0
+            returns ``text``.
+        key: determines the random numbers; its frame is not used. An integer is used as the seed, a
+            string as the episode.
+        split: split of the attack sentences: "train", "validation" or "test".
+        mask_token: text that replaces a hidden word.
+        rewrite: function (text, style) -> text, such as a language model, that replaces the rules
+            for styles.
+        tagger: method that finds the eligible words: "own" or "spacy".
 
     Raises:
         ValueError: An argument is invalid, or the text is empty.
@@ -107,17 +110,18 @@ def check_options(split: str, mask_token: str, tagger: str) -> None:
 
 
 def is_rewritten(manner: str, severity: float, key: Key) -> bool:
-    """Return whether the instruction of this episode is rewritten; the probability is s."""
+    """Return whether the instruction of this episode is rewritten, with probability s."""
     return uniform(digest(key, manner)) < severity
 
 
 def inject_system_prompt(
     prompt: str | None, severity: float, key: Key | int | str, split: str = "test"
 ) -> str | NotApplicable:
-    """Return ``prompt`` with misleading sentences in front of its task slot, or at its end.
+    """Insert misleading sentences into ``prompt``, before the placeholder for the task or at the
+    end.
 
-    The slot is the first ``{instruction}``, ``{task}`` or similar. Severity is the same as for
-    "black_box". Without a prompt (None or empty) the result is NotApplicable.
+    The placeholder is the first ``{instruction}``, ``{task}`` or similar. Severity is the same as
+    for "black_box". Without a prompt (None or empty) the result is NotApplicable.
 
     Raises:
         ValueError: The severity, key or split is invalid.
@@ -135,7 +139,7 @@ def inject_system_prompt(
 
 
 def stacked(severity: float, key: Key, split: str) -> list[str]:
-    """Draw one misleading sentence per kind; return the share ``severity`` of them."""
+    """Sample one misleading sentence per kind, and return the fraction ``severity`` of them."""
     bank, stream = prefixes(split), digest(key, "prefixes")
     drawn = [
         sentences[int(uniform(stream, index) * len(sentences))]
@@ -147,7 +151,7 @@ def stacked(severity: float, key: Key, split: str) -> list[str]:
 
 
 def _eligible(text: str, name: str, tagger: str) -> list[Token]:
-    """Return the tokens that capitals (or masks) may change."""
+    """Return the tokens that the family "capitals" (or "masks") may change."""
     candidates = [token for token in named(tagger)(text) if token.is_word]
     if name == "capitalize":
         return [token for token in candidates if token.tag in SPOKEN]
@@ -157,7 +161,7 @@ def _eligible(text: str, name: str, tagger: str) -> list[Token]:
 def _replaced(
     text: str, eligible: list[Token], severity: float, stream: int, change: Callable[[str], str]
 ) -> str:
-    """Return ``text`` with the share ``severity`` of the eligible words changed."""
+    """Return ``text`` with the fraction ``severity`` of the eligible words changed."""
     order = sorted(range(len(eligible)), key=lambda i: (uniform(stream, i), i))
     chosen = order[: math.floor(severity * len(eligible) + 0.5)]
     for place in sorted(chosen, reverse=True):

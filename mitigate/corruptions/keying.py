@@ -1,13 +1,14 @@
-"""Keyed randomness: a draw is a function of (seed, episode, corruption, frame, view, pixel) only.
+"""Keyed random numbers, which depend only on seed, episode, corruption, frame, view and pixel.
 
-A blake2b digest of the named parts gives 64 bits. An integer hash (splitmix64, Steele et al. 2014)
-of that digest plus a counter gives the numbers. There is no global state, no Python ``hash()`` and
-no generator with state: the same frame gets the same pixels in any batch, process, order or resumed
+A blake2b digest of the key's parts has 64 bits. An integer hash (splitmix64, Steele et al. 2014)
+of that digest plus a counter gives the numbers. Global state, Python's ``hash()`` and generators
+with state are not used. So a frame gets the same pixels in any batch, process, order or resumed
 run.
 
 Tables and masks are computed in float64 and rounded to fixed point or float32, and kernels use only
 basic arithmetic, so the last bit of a machine's ``exp`` does not reach the pixels. (After editing
-``mix``, delete ``__pycache__``: numba does not notice that callers in other files changed.)
+``mix``, delete ``__pycache__``: numba does not notice that functions inlined in other files have
+changed.)
 """
 
 from __future__ import annotations
@@ -25,7 +26,7 @@ from numba import njit
 
 from mitigate.core.memory import Memory
 
-MAX_CACHE_BYTES = 256 << 20  # per process (heuristic): 20 masks of 1080p
+MAX_CACHE_BYTES = 256 << 20  # cache size per process in bytes (heuristic): 20 masks of 1080p
 
 P = ParamSpec("P")
 T = TypeVar("T")
@@ -46,9 +47,11 @@ def cached(function: Callable[P, T]) -> Callable[P, T]:
 GOLDEN = 0x9E3779B97F4A7C15  # splitmix64 increment
 MIX_A, MIX_B = 0xBF58476D1CE4E5B9, 0x94D049BB133111EB  # splitmix64 multipliers
 MASK = (1 << 64) - 1
-NORMAL_BITS = 12  # size of the normal quantile table: |n| <= 3.7, and 16 KB stay in the L1 cache
-FIELD_SIDE = 128  # cells along the shorter side of a random field, at every frame size
-FIELD_LONGEST = 32 * FIELD_SIDE  # cells along the longer side at most: they get longer beyond 32:1
+# size of the normal quantile table, for |n| <= 3.7; its 16 KB fit into the L1 cache
+NORMAL_BITS = 12
+FIELD_SIDE = 128  # number of cells along the shorter side of a random field, at every frame size
+# maximum number of cells along the longer side; beyond 32:1 the cells get longer
+FIELD_LONGEST = 32 * FIELD_SIDE
 
 _U = np.uint64
 _GOLDEN, _A, _B = _U(GOLDEN), _U(MIX_A), _U(MIX_B)
@@ -57,10 +60,10 @@ _S30, _S27, _S31 = _U(30), _U(27), _U(31)
 
 @dataclass(frozen=True)
 class Key:
-    """The key of an instant, which determines every random draw.
+    """The key of a time step, which determines all its random numbers.
 
-    Lens dirt, flare position and the like depend on (seed, episode); pixel noise also on the frame.
-    A per-frame schedule uses a new ``episode`` for every frame.
+    Lens dirt, flare position and similar properties depend on seed and episode; pixel noise also
+    depends on the frame. A per-frame schedule uses a new ``episode`` for every frame.
 
     Attributes:
         seed: Corruption seed.
@@ -68,7 +71,7 @@ class Key:
         frame: Number of the frame in the episode.
 
     Raises:
-        ValueError: Seed or frame is not a whole number.
+        ValueError: Seed or frame is not an integer.
     """
 
     seed: int
@@ -86,7 +89,7 @@ class Key:
 
 
 def as_key(key: Key | int | str) -> Key:
-    """Return a Key: an int n becomes Key(n, "0"), a str t becomes Key(0, t).
+    """Convert ``key`` to a Key: an int n becomes Key(n, "0"), a str t becomes Key(0, t).
 
     Raises:
         ValueError: ``key`` is neither a Key, an int nor a str.
@@ -105,14 +108,14 @@ def as_key(key: Key | int | str) -> Key:
 
 @lru_cache(maxsize=256)
 def _episode_hash(seed: int, episode: str, name: str) -> tuple:
-    """Return the hash state of these parts, which callers copy and extend, and its digest."""
+    """Return the hash state of these parts, which callers can copy and extend, and its digest."""
     text = "".join(f"{len(part)}:{part}" for part in (str(seed), episode, name))
     state = blake2b(text.encode("utf-8", "surrogatepass"), digest_size=8, person=b"mitigate")
     return state, int.from_bytes(state.digest(), "little")
 
 
 def digest(key: Key, name: str, *, frame: bool = False) -> int:
-    """Return the 64-bit digest of the draw ``name`` for the episode, or for the frame.
+    """Return the 64-bit digest of the random number ``name``, for the episode or for the frame.
 
     View k of a frame uses ``scramble(digest, k)``.
     """
@@ -125,7 +128,7 @@ def digest(key: Key, name: str, *, frame: bool = False) -> int:
 
 
 def scramble(value: int, counter: int) -> int:
-    """Return the splitmix64 output ``counter`` of the stream ``value`` (Python integers)."""
+    """Return output number ``counter`` of the splitmix64 stream ``value`` (Python integers)."""
     z = (value + (counter + 1) * GOLDEN) & MASK
     z = ((z ^ (z >> 30)) * MIX_A) & MASK
     z = ((z ^ (z >> 27)) * MIX_B) & MASK
@@ -133,13 +136,13 @@ def scramble(value: int, counter: int) -> int:
 
 
 def uniform(value: int, counter: int = 0) -> float:
-    """Return number ``counter`` of the stream ``value``, uniform in [0, 1), 53 bits."""
+    """Return number ``counter`` of the stream ``value``, uniform in [0, 1) with 53 bits."""
     return (scramble(value, counter) >> 11) * 2.0**-53
 
 
 @njit(inline="always")
 def mix(value, counter):
-    """Compute ``scramble`` in compiled code: arguments and result are uint64."""
+    """Compute ``scramble`` in compiled code; arguments and result are uint64."""
     z = value + (counter + _U(1)) * _GOLDEN
     z = (z ^ (z >> _S30)) * _A
     z = (z ^ (z >> _S27)) * _B
@@ -153,14 +156,15 @@ def _fill_streams(value, out):
 
 
 def view_streams(key: Key, name: str, views: int) -> np.ndarray:
-    """Return the digests of the draw ``name`` for each view of a frame, uint64 [views]."""
+    """Return the digests of the random number ``name`` for each view of a frame, uint64 [views]."""
     out = np.empty(views, np.uint64)
     _fill_streams(_U(digest(key, name, frame=True)), out)
     return out
 
 
 def unit_normals(bits: int) -> np.ndarray:
-    """Return standard normal quantiles of 2^bits equal bins, variance one, float64."""
+    """Return standard normal quantiles of 2^bits equally likely bins, with variance one,
+    float64."""
     count = 1 << bits
     half = np.array([NormalDist().inv_cdf((i + 0.5) / count) for i in range(count // 2)])
     table = np.concatenate([half, -half[::-1]])
@@ -169,7 +173,7 @@ def unit_normals(bits: int) -> np.ndarray:
 
 @lru_cache(maxsize=1)
 def normal_table() -> np.ndarray:
-    """Return the quantiles that pixel noise looks up, float32 [4096]."""
+    """Return the table of quantiles for pixel noise, float32 [4096]."""
     return unit_normals(NORMAL_BITS).astype(np.float32)
 
 
@@ -181,7 +185,7 @@ def _fill_normals(value, table, out):
 
 
 def normals(value: int, count: int) -> np.ndarray:
-    """Return standard normals of the stream ``value``, float32 [count]."""
+    """Return standard normal numbers from the stream ``value``, float32 [count]."""
     out = np.empty(count, np.float32)
     _fill_normals(_U(value), normal_table(), out)
     return out
@@ -237,10 +241,11 @@ def _resize_torus(cells, height, width):
 
 @cached
 def field(value: int, height: int, width: int, correlation: float) -> tuple:
-    """Draw a Gaussian random field on a torus.
+    """Sample a Gaussian random field on a torus.
 
-    The field is drawn on a grid whose shorter side has ``FIELD_SIDE`` cells and resampled, so a
-    frame and its half-size copy get the same pattern. A frame longer than 32:1 gets longer cells.
+    The field is sampled on a grid whose shorter side has ``FIELD_SIDE`` cells, and then resampled.
+    So a frame and its half-size copy get the same pattern. For frames longer than 32:1, the cells
+    are longer.
 
     Args:
         value: Random stream.
@@ -265,6 +270,6 @@ def field(value: int, height: int, width: int, correlation: float) -> tuple:
 
 
 def top_share(cells: np.ndarray, share: float) -> float:
-    """Return the level that the top ``share`` of the cells reach; infinity for share 0."""
+    """Return the level that a fraction ``share`` of the cells reach; infinity for a share of 0."""
     place = cells.size - round(share * cells.size)
     return float("inf") if place == cells.size else float(np.partition(cells, place)[place])

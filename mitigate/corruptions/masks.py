@@ -1,9 +1,9 @@
-"""Opacity masks of the RGB corruptions: darkness, dirt, glare and a disk.
+"""Compute opacity masks of RGB corruptions for darkness, dirt, glare and a disk.
 
 Darkness, dirt and glare use one operation, ``out = x + (colour - x) alpha``, with a 16-bit opacity
-mask. Masks are cached by the 64-bit digest of their episode, so later frames of an episode only
-look them up. Formulas and sources: docs/corruptions.md; constants without a source were chosen by
-this project.
+mask. Masks are cached by the 64-bit digest of their episode, so they are computed only for the
+first frame of an episode. Formulas and sources are in docs/corruptions.md. Constants without a
+source were chosen by this project.
 """
 
 from __future__ import annotations
@@ -17,23 +17,25 @@ from numba import njit
 from mitigate.core import observation
 from mitigate.corruptions.keying import cached, field, top_share, uniform
 
-DARK_BASE, DARK_RAMP = 0.60, 0.37  # between RobustNav (0.57-0.31 of the mean) and 3DCC (0.24-0.12)
-SPATTER_CORRELATION = 0.018  # share of min(H, W)
+# the mean brightness is between RobustNav (factor 0.57-0.31) and 3DCC (0.24-0.12)
+DARK_BASE, DARK_RAMP = 0.60, 0.37
+SPATTER_CORRELATION = 0.018  # as a fraction of min(H, W)
 SPATTER_COVER = 0.45  # ImageNet-C covers 0.04-0.57 of the frame
-SPATTER_EDGE = 0.25  # multiple of the field's standard deviation
+SPATTER_EDGE = 0.25  # as a multiple of the field's standard deviation
 SPATTER_COLOURS = ((63, 42, 20), (175, 238, 238))  # mud, water (ImageNet-C)
-FLARE_CORE, FLARE_CORE_WIDTH = 0.85, 0.18  # width over the image diagonal
+FLARE_CORE, FLARE_CORE_WIDTH = 0.85, 0.18  # width as a fraction of the image diagonal
 FLARE_HALO, FLARE_HALO_WIDTH = 0.30, 0.35
 FLARE_TINT = (1.0, 0.96, 0.88)
-# reach and size of the radial table: less than 0.04 grey levels per cell
+# range and size of the radial table; cells differ by less than 0.04 grey levels
 GLOW_REACH, GLOW_CELLS = 1.5, 16384
-DISK_RADIUS = 0.5  # share of min(H, W)
+DISK_RADIUS = 0.5  # as a fraction of min(H, W)
 NEUTRAL = (1.0, 1.0, 1.0)
 
 
 @njit(cache=True)
 def _expand(share, weight, out):
-    """Set out int16 [H, 3 W] = min(share [H, W] times channel weight, 1) in 1/32768."""
+    """Write min(share [H, W] times channel weight, 1) to out int16 [H, 3 W], in units of
+    1/32768."""
     for y in range(share.shape[0]):
         row, target = share[y], out[y]
         for c in range(3):
@@ -46,7 +48,8 @@ def _expand(share, weight, out):
 def opacity_mask(
     share: np.ndarray, strength: float, tint: tuple[float, float, float]
 ) -> np.ndarray:
-    """Return the opacity mask int16 [H, 3 W] = share [H, W] (>= 0) times strength and tint."""
+    """Return the opacity mask int16 [H, 3 W], which is share [H, W] (>= 0) times strength and
+    tint."""
     out = np.empty((share.shape[0], 3 * share.shape[1]), np.int16)
     _expand(share, strength * np.array(tint), out)
     return out
@@ -54,15 +57,15 @@ def opacity_mask(
 
 @lru_cache(maxsize=64)
 def colour_row(colour: tuple[int, int, int], width: int) -> np.ndarray:
-    """Return int16 [3 W]: a row of one colour, as ``cover`` needs it."""
+    """Return an image row of one colour, int16 [3 W], in the format that ``cover`` needs."""
     return np.tile(np.array(colour, np.int16), width)
 
 
 @njit(cache=True)
 def cover(views, alpha, colour, out):
-    """Set out = x + (colour - x) alpha for uint8 [V, H, W, 3]; int16 alpha [H, 3 W], colour [3 W].
+    """Blend uint8 [V, H, W, 3] with a colour row int16 [3 W] by the opacity alpha int16 [H, 3 W].
 
-    Two loops over a row of 16-bit numbers compile to full-width vector code.
+    Two separate loops over a row of 16-bit numbers compile to full-width vector code.
     """
     count, height, _, _ = views.shape
     flat, into = views.reshape(count, height, -1), out.reshape(count, height, -1)
@@ -79,7 +82,7 @@ def cover(views, alpha, colour, out):
 
 @cached
 def light_ramp(value: int, height: int, width: int) -> np.ndarray:
-    """Return float32 [H, W] in [0, 1]: a linear ramp, or the distance to a light."""
+    """Return a gradient float32 [H, W] in [0, 1]: a linear ramp, or the distance to a light."""
     y, x = (np.arange(height) + 0.5) / height, (np.arange(width) + 0.5) / width
     if uniform(value, 0) < 0.5:
         angle = 2.0 * math.pi * uniform(value, 1)
@@ -93,20 +96,20 @@ def light_ramp(value: int, height: int, width: int) -> np.ndarray:
 
 
 def light_loss(value: int, severity: float, height: int, width: int) -> np.ndarray:
-    """Return float32 [H, W]: the lost share of light, s (0.60 + 0.37 t)."""
+    """Return the fraction of light that is lost, s (0.60 + 0.37 t), float32 [H, W]."""
     ramp = light_ramp(value, height, width)
     return ramp * np.float32(severity * DARK_RAMP) + np.float32(severity * DARK_BASE)
 
 
 @cached
 def low_light_mask(value: int, severity: float, height: int, width: int) -> np.ndarray:
-    """Return int16 [H, 3 W]: the opacity of the darkness, in 1/32768."""
+    """Return the opacity of the darkness, int16 [H, 3 W] in units of 1/32768."""
     return opacity_mask(light_loss(value, severity, height, width), 1.0, NEUTRAL)
 
 
 @cached
 def spatter_mask(value: int, severity: float, height: int, width: int) -> np.ndarray:
-    """Return int16 [H, 3 W]: the opacity of the dirt, in 1/32768."""
+    """Return the opacity of the dirt, int16 [H, 3 W] in units of 1/32768."""
     smooth, cells = field(value, height, width, SPATTER_CORRELATION)
     level = top_share(cells, SPATTER_COVER * severity)
     share = np.clip((smooth - np.float32(level)) * np.float32(1.0 / SPATTER_EDGE), 0.0, 1.0)
@@ -115,7 +118,7 @@ def spatter_mask(value: int, severity: float, height: int, width: int) -> np.nda
 
 @lru_cache(maxsize=64)
 def spatter_row(value: int, width: int) -> np.ndarray:
-    """Return int16 [3 W]: a ``colour_row`` of mud or water."""
+    """Return a ``colour_row`` of mud or water, int16 [3 W]."""
     return colour_row(SPATTER_COLOURS[uniform(value) < 0.5], width)
 
 
@@ -123,16 +126,19 @@ def spatter_row(value: int, width: int) -> np.ndarray:
 def flare_centres(
     value: int, views: int, height: int, width: int, heading: float | None
 ) -> tuple[tuple[float, float] | None, ...]:
-    """Return the position of the light in each view: (x, y) in pixels, None if not visible.
+    """Return the position of the light in each view, which is (x, y) in pixels, or None if the
+    light is not visible.
 
-    The light has a fixed direction in the world: column U(0.1, 0.9) W, row U(0, 0.5) H of a camera
-    at a random world yaw. View k looks level at ``heading`` - 30 k degrees (``heading`` in rad,
-    counter-clockwise), for any number of views. Without a heading, that camera is view 0.
+    The direction of the light is fixed in the world. It is sampled in the image of a camera with a
+    random yaw, at column U(0.1, 0.9) W and row U(0, 0.5) H. View k faces the direction ``heading``
+    - 30 k degrees without pitch (``heading`` in rad, counter-clockwise), for any number of views.
+    If the heading is unknown, the camera with the random yaw is view 0.
     """
     column, row = 0.1 + 0.8 * uniform(value, 0), 0.5 * uniform(value, 1)
     focal = 0.5 / math.tan(math.radians(observation.HFOV_DEGREES) / 2.0)  # over the width
-    yaw = math.atan2(0.5 - column, focal)  # from the camera, counter-clockwise
-    tangent = (0.5 - row) * height / width / focal * math.cos(yaw)  # tangent of the elevation
+    # angle of the light from the camera's axis, counter-clockwise
+    yaw = math.atan2(0.5 - column, focal)
+    tangent = (0.5 - row) * height / width / focal * math.cos(yaw)  # tangent of the elevation angle
     if heading is not None:
         yaw += 2.0 * math.pi * uniform(value, 2) - heading
     centres = []
@@ -148,7 +154,8 @@ def flare_centres(
 
 @lru_cache(maxsize=1)
 def _glow_table() -> np.ndarray:
-    """Return float32 [GLOW_CELLS + 1]: the light at r = 0 .. 1.5 diagonals, at severity 1."""
+    """Return the glow at distances of 0 to 1.5 diagonals at severity 1, float32 [GLOW_CELLS +
+    1]."""
     r = np.arange(GLOW_CELLS + 1) * (GLOW_REACH / GLOW_CELLS)
     glow = FLARE_CORE * np.exp(-0.5 * (r / FLARE_CORE_WIDTH) ** 2)
     return (glow + FLARE_HALO * np.exp(-r / FLARE_HALO_WIDTH)).astype(np.float32)
@@ -156,7 +163,7 @@ def _glow_table() -> np.ndarray:
 
 @njit(cache=True)
 def _look_up(down, right, table, out):
-    """Set out[y, x] = table at the nearest cell to sqrt(down[y] + right[x]), all float32."""
+    """Write to out[y, x] the table value nearest to sqrt(down[y] + right[x]), all float32."""
     for y in range(down.size):
         for x in range(right.size):
             out[y, x] = table[np.int32(np.sqrt(down[y] + right[x]) + np.float32(0.5))]
@@ -164,7 +171,8 @@ def _look_up(down, right, table, out):
 
 @cached
 def flare_mask(x: float, y: float, severity: float, height: int, width: int) -> np.ndarray:
-    """Return int16 [H, 3 W]: the opacity of the glow around (x, y) pixels, in 1/32768."""
+    """Return the opacity of the glow around the pixel (x, y), int16 [H, 3 W] in units of
+    1/32768."""
     cells = GLOW_CELLS / GLOW_REACH / math.hypot(height, width)
     down = ((np.arange(height) + 0.5 - y) * cells) ** 2
     right = ((np.arange(width) + 0.5 - x) * cells) ** 2
@@ -175,7 +183,7 @@ def flare_mask(x: float, y: float, severity: float, height: int, width: int) -> 
 
 @lru_cache(maxsize=32)
 def disk_spans(severity: float, height: int, width: int) -> np.ndarray:
-    """Return int64 [H, 2]: the first and end column of the disk in each row."""
+    """Return the first and end column of the disk in each row, int64 [H, 2]."""
     radius = DISK_RADIUS * severity * min(height, width)
     reach = radius**2 - (np.arange(height) + 0.5 - 0.5 * height) ** 2
     half = np.sqrt(np.maximum(reach, 0.0))
@@ -186,7 +194,7 @@ def disk_spans(severity: float, height: int, width: int) -> np.ndarray:
 
 @njit(cache=True)
 def blacken(frames, spans):
-    """Make uint8 [V, H, W, 3] black inside the spans (int64 [H, 2]), in place."""
+    """Set the pixels of uint8 [V, H, W, 3] inside the spans (int64 [H, 2]) to black, in place."""
     count, height, _, _ = frames.shape
     flat = frames.reshape(count, height, -1)
     for v in range(count):

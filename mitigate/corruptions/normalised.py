@@ -20,12 +20,13 @@ def corrupt_normalised(
     sensor: DepthSensor = SENSOR,
     hfov: Mapping[str, float | None] | None = None,
 ) -> dict:
-    """``corrupt_observation`` for an observation whose ``depth`` is normalised.
+    """Call ``corrupt_observation`` on an observation whose ``depth`` is normalised.
 
-    ``depth`` is float32 in [0, 1]: 0 means no reading (or not beyond ``sensor.z_min``), other
-    values v are z_min + v (z_max - z_min) metres. Pixels that the corruption does not change, and
-    all that are 0, negative, NaN or infinite, are returned bit for bit. Missing data become
-    ``sensor.missing`` metres: 0 by default, 1 for ``DepthSensor(missing=z_max)``.
+    ``depth`` is float32 in [0, 1]: 0 means no reading (or depth not beyond ``sensor.z_min``), and
+    other values v mean z_min + v (z_max - z_min) metres. Pixels that the corruption does not
+    change, and all pixels that are 0, negative, NaN or infinite, are returned unchanged bit for
+    bit. Pixels that the corruption removes become the normalised ``sensor.missing``: 0 by default,
+    1 for ``DepthSensor(missing=z_max)``.
 
     Args:
         obs: The observation.
@@ -38,8 +39,8 @@ def corrupt_normalised(
         A new dict; entries that are not corrupted are the same objects.
 
     Raises:
-        ValueError: Depth is above 1 (in metres), ``sensor.missing`` is negative, or as in
-            ``corrupt_observation``.
+        ValueError: Depth is above 1 (so probably in metres), ``sensor.missing`` is negative, or an
+            error of ``corrupt_observation``.
     """
     check_sensor(sensor)
     if observation.DEPTH not in {*obs}.intersection(check_corruption(corruption).modalities):
@@ -85,7 +86,7 @@ def _range(sensor: DepthSensor) -> tuple[np.float32, np.float32]:
 
 @njit(cache=True)
 def _to_metres(clean, z_min, span, out):
-    """Write the metres of valid depth, 0 for the rest, and return the largest valid value."""
+    """Write valid depth in metres and 0 for other pixels; return the largest valid value."""
     maximum = np.float32(0)
     for i in range(clean.size):
         value = clean[i]
@@ -99,7 +100,7 @@ def _to_metres(clean, z_min, span, out):
 
 @njit(cache=True)
 def _normalise(corrupted, metres, clean, z_min, span, out):
-    """Normalise to [0, 1]; unchanged pixels keep their clean values."""
+    """Normalise depth to [0, 1]; unchanged pixels keep their clean values."""
     for i in range(clean.size):
         depth = corrupted[i]
         if depth == metres[i]:

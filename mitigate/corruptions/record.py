@@ -1,6 +1,6 @@
-"""The record of a corruption: its function and what tables and suites print about it.
+"""Define the record of a corruption: its function, and its description for tables and suites.
 
-A package can add a corruption by a record in the entry point group ``mitigate.corruptions``
+A package can add a corruption with a record in the entry point group ``mitigate.corruptions``
 (``docs/bring-your-own.md``). The records of this project are at the end of ``rgb.py``,
 ``depth.py``, ``registry.py``, ``broad/__init__.py`` and the files of ``unseen`` and ``faults``.
 """
@@ -20,7 +20,7 @@ FRAMES = "rgb+depth"  # modality of a fault of both sensors, or of the only one
 ACTION = "action"  # modality of a fault of motion
 TEMPORAL, CAMERA, MOTION = "temporal", "camera", "motion"
 FAMILIES = (TEMPORAL, CAMERA, MOTION)  # of faults, each with a suite of this name
-VALIDATION, TEST = "validation", "test"  # halves of the unseen corruptions
+VALIDATION, TEST = "validation", "test"  # the two halves of the unseen corruptions
 
 
 @dataclass(frozen=True)

@@ -2,8 +2,8 @@
 
 Every result row contains the version of the suite. Unseen corruptions, faults and plugins have
 separate versions, and are used only where they are named. Two corruptions at once are
-a pair, such as ``low_light+missing_data``: the first is applied first, and each makes the same
-draws as alone.
+a pair, such as ``low_light+missing_data``: the first one is applied first, and each uses the same
+random numbers as when it is applied alone.
 """
 
 from __future__ import annotations
@@ -30,7 +30,8 @@ INSTRUCTIONS = (  # applied by instruction.py
     _record("white_box", severity="the same, in the system prompt", label="White-box prompt"),
 )
 
-GROUP = "mitigate.corruptions"  # entry point group: name = "package.module:RECORD"
+# entry point group with entries of the form name = "package.module:RECORD"
+GROUP = "mitigate.corruptions"
 SUITE = {record.name: record for record in (*rgb.RECORDS, *depth.RECORDS, *INSTRUCTIONS)}
 HALVES = (VALIDATION, TEST)
 UNSEEN = {
@@ -39,9 +40,10 @@ UNSEEN = {
         unseen.RECORDS, key=lambda r: (MODALITIES.index(r.modality), HALVES.index(r.half))
     )
 }
-BROAD = {record.name: record for record in broad.RECORDS}  # random compositions for training
+# names of the random compositions for training
+BROAD = {record.name: record for record in broad.RECORDS}
 FAULTS = {record.name: record for record in faults.RECORDS}
-AND = "+"  # between the names of a pair
+AND = "+"  # separator between the names of a pair
 HEAD = ("name", "corrupts", "severity s", "per episode", "per frame", "source", "suite")
 
 
@@ -49,14 +51,15 @@ HEAD = ("name", "corrupts", "severity s", "per episode", "per frame", "source", 
 def plugin_records() -> dict[str, Record]:
     """Return the records of installed packages.
 
-    An invalid record is left out with a warning, so that a package that is not used stops nothing.
+    An invalid record is skipped with a warning, so that a broken package that is not used causes no
+    error.
     """
     records: dict[str, Record] = {}
     for point in entry_points(group=GROUP):
         try:
             record = point.load()
             problem = _problem(record, {"clean", *SUITE, *UNSEEN, *BROAD, *FAULTS, *records})
-        except Exception as error:  # another package's code may raise anything
+        except Exception as error:  # code of an installed package may raise any error
             problem = f"cannot be imported ({type(error).__name__}: {error})"
         if problem:
             warnings.warn(
@@ -70,7 +73,7 @@ def plugin_records() -> dict[str, Record]:
 
 
 def _problem(record: object, names: set[str]) -> str:
-    """Return why a record of another package cannot be used; empty if it can."""
+    """Return the reason why a package's record cannot be used, or an empty text."""
     if not isinstance(record, Record):
         return f"is a {type(record).__name__}, not a mitigate.corruptions.Record"
     if record.name in names:
@@ -103,7 +106,7 @@ def unseen_names(*modalities: str, half: str = "") -> tuple[str, ...]:
 
 
 def known(*modalities: str) -> tuple[str, ...]:
-    """Return all names of ``modalities``: suite, unseen, broad, and installed packages."""
+    """Return all corruption names of ``modalities``, including unseen, broad and packages' ones."""
     others = {**BROAD, **plugin_records()}.items()
     fixed = names(*modalities) + unseen_names(*modalities)
     return fixed + tuple(n for n, r in others if r.modality in modalities)
@@ -133,12 +136,12 @@ def record(name: str) -> Record:
 
 
 def parts(name: str) -> tuple[str, ...]:
-    """Return the names in a pair, in order, or the one name."""
+    """Return the names in a pair in order, or a tuple with the single name."""
     return tuple(name.split(AND))
 
 
 def title(name: str) -> str:
-    """Return the title of a corruption in tables; it need not be installed."""
+    """Return the title of a corruption in tables; the corruption need not be installed."""
     if AND in name:
         return f" {AND} ".join(map(title, parts(name)))
     if name in {**SUITE, **UNSEEN, **FAULTS, **BROAD} or name in plugin_records():
@@ -147,7 +150,7 @@ def title(name: str) -> str:
 
 
 def version(name: str) -> dict[str, str]:
-    """Return the entry ``version`` of a row; empty if all parts belong to the suite."""
+    """Return the entry ``version`` of a row, or "" if all parts belong to the suite."""
     others = (part for part in parts(name) if part != "clean" and part not in SUITE)
     versions = [record(part).version for part in others]
     return {"version": AND.join(versions)} if versions else {}
@@ -159,7 +162,7 @@ def modality(name: str) -> str:
 
 
 def table() -> str:
-    """Return all corruptions of frames as text in aligned columns, with a heading."""
+    """Return a text table of all frame corruptions, in aligned columns with a heading."""
     records = [*(record(name) for name in known("rgb", "depth")), *FAULTS.values()]
     records = [record for record in records if record.modality != ACTION]
     rows = [

@@ -1,8 +1,9 @@
 """The eight RGB corruptions of uint8 panoramas [V, H, W, 3].
 
 Every public function takes (views, severity in (0, 1], key, heading) and returns a new array of the
-same shape. Lengths are fractions of the frame. Formulas and sources: docs/corruptions.md; constants
-without a source were chosen by this project. Masks are in ``masks``, compiled blurs in ``blur``.
+same shape. Lengths are fractions of the frame. Formulas and sources are in docs/corruptions.md.
+Constants without a source were chosen by this project. Masks are defined in ``masks``, and compiled
+blurs in ``blur``.
 """
 
 from __future__ import annotations
@@ -17,13 +18,14 @@ from mitigate.corruptions.eld import low_light_noise
 from mitigate.corruptions.keying import Key, digest, scramble, uniform
 from mitigate.corruptions.record import Record
 
-BLUR_LENGTH = 0.10  # share of W at s = 1; ImageNet-C kernels are 3-14 % of W
-LONG_BLUR = 12.0  # px: from this length on, every second column is enough
-BLUR_ANGLE = 10.0  # degrees either side of horizontal: yaw turns dominate
-DEFOCUS_SIGMA = 5.0 / 224.0  # share of min(H, W); ImageNet-C disks have radii 3-10 px at 224
+BLUR_LENGTH = 0.10  # as a fraction of W at s = 1; ImageNet-C kernels are 3-14 % of W
+LONG_BLUR = 12.0  # length in px from which every second column is enough
+BLUR_ANGLE = 10.0  # maximum angle from horizontal in degrees, because yaw turns dominate
+# as a fraction of min(H, W); ImageNet-C disks have radii of 3-10 px at 224
+DEFOCUS_SIGMA = 5.0 / 224.0
 DEFOCUS_SPREAD = 0.2
-DEFOCUS_LEAST = 0.15  # px: a narrower Gaussian has no effect
-# multiple of the distance of two taps: keeps the mean error under 0.4 grey levels
+DEFOCUS_LEAST = 0.15  # sigma in px; a narrower Gaussian has no effect
+# minimum sigma as a multiple of the tap distance, which keeps the mean error under 0.4 grey levels
 LEAST_TAP_SIGMA = 1.15
 BLACK, WHITE = (0, 0, 0), (255, 255, 255)
 
@@ -32,9 +34,9 @@ BLACK, WHITE = (0, 0, 0), (255, 255, 255)
 def line_taps(length: float, angle: float, step: int = 1) -> tuple:
     """Return the taps (dy, dx, weights) of a line of ``length`` px at ``angle`` rad.
 
-    Their number is a multiple of four. The weight of every ``step``-th column is the part of it
-    that the segment covers, shared between the two nearest rows. Weights are small integers: a full
-    column has step LINE_UNITS / length, at least 2.
+    The number of taps is a multiple of four. The weight of every ``step``-th column is the part of
+    the column that the line covers. It is divided between the two nearest rows. Weights are small
+    integers: a full column has step LINE_UNITS / length, at least 2.
     """
     half = 0.5 * length * math.cos(angle)
     units = max(2.0, math.floor(step * blur.LINE_UNITS / length)) / step
@@ -45,7 +47,7 @@ def line_taps(length: float, angle: float, step: int = 1) -> tuple:
         y = abs(x) * math.tan(abs(angle))
         low = math.floor(y)
         upper = round(weight * (y - low))
-        sign = 1 if x * angle >= 0 else -1  # a line is symmetric
+        sign = 1 if x * angle >= 0 else -1  # the line is symmetric, so only half is computed
         for row, share in ((low, weight - upper), (low + 1, upper)):
             if share > 0:
                 taps[sign * row, x] = share
@@ -56,7 +58,8 @@ def line_taps(length: float, angle: float, step: int = 1) -> tuple:
 
 
 def motion_blur(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
-    """Blend with a nearly horizontal line blur of length 0.10 s W; below 1 px, no change."""
+    """Blend with a nearly horizontal line blur of length 0.10 s W; lengths below 1 px have no
+    effect."""
     length = BLUR_LENGTH * severity * views.shape[2]
     if length < 1.0:
         return views.copy()
@@ -75,21 +78,23 @@ def _covered(views: np.ndarray, alpha: np.ndarray, colours: np.ndarray) -> np.nd
 
 
 def low_light(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
-    """Darken by a gradient mask that all views of the episode share."""
+    """Darken with a gradient mask, which is the same for all views of the episode."""
     height, width = views.shape[1:3]
     mask = masks.low_light_mask(digest(key, "low_light"), severity, height, width)
     return _covered(views, mask, masks.colour_row(BLACK, width))
 
 
 def spatter(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
-    """Cover the top 0.45 s of a random field with mud or water, fixed for the episode."""
+    """Cover the image with mud or water where a random field, fixed per episode, is in its top 0.45
+    s."""
     height, width = views.shape[1:3]
     mask = masks.spatter_mask(digest(key, "spatter"), severity, height, width)
     return _covered(views, mask, masks.spatter_row(digest(key, "spatter_colour"), width))
 
 
 def flare(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
-    """Screen-blend the views that see a light, at a fixed world direction, with a glow."""
+    """Add a glow (screen blending) to the views that see a light with a fixed direction in the
+    world."""
     count, height, width, _ = views.shape
     out, white = np.empty_like(views), masks.colour_row(WHITE, width)
     centres = masks.flare_centres(digest(key, "flare"), count, height, width, heading)
@@ -106,8 +111,8 @@ def flare(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndar
 def gaussian_weights(sigma: float) -> tuple[np.ndarray, int]:
     """Return ``weights, levels`` of ``blur.gaussian`` for ``sigma`` px, cut at 3 sigma.
 
-    Smoothing by (1 2 1)/4 with a step of h pixels has variance h^2 / 2. The taps add the rest of
-    the variance; their sigma is at least LEAST_TAP_SIGMA times their distance.
+    Smoothing by (1 2 1)/4 with a step of h pixels has variance h^2 / 2. The taps add the remaining
+    variance, and their sigma is at least LEAST_TAP_SIGMA times their distance.
     """
     levels, variance = 0, sigma**2
     while variance - 0.5 * 4**levels >= (LEAST_TAP_SIGMA * 2 ** (levels + 1)) ** 2:
@@ -122,7 +127,7 @@ def gaussian_weights(sigma: float) -> tuple[np.ndarray, int]:
 
 
 def defocus(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
-    """Blur by a Gaussian, sigma = 5 s u min(H, W) / 224, u ~ U(0.8, 1.2) per episode."""
+    """Blur with a Gaussian of sigma = 5 s u min(H, W) / 224, with u ~ U(0.8, 1.2) per episode."""
     spread = 1.0 + DEFOCUS_SPREAD * (2.0 * uniform(digest(key, "defocus")) - 1.0)
     sigma = DEFOCUS_SIGMA * severity * spread * min(views.shape[1:3])
     if sigma < DEFOCUS_LEAST:

@@ -1,4 +1,4 @@
-"""Schedules that draw the corruption of each frame in training."""
+"""Sample the corruption of each training frame with a schedule."""
 
 from __future__ import annotations
 
@@ -21,33 +21,34 @@ from mitigate.corruptions.suite import (
 )
 
 MODES = ("clean", "per_frame", "per_episode", "success_distributed")
-Severity = float | Sequence[float]  # a value, or the two ends of a range
+Severity = float | Sequence[float]  # a value, or the lower and upper end of a range
 
 
 @dataclass
 class Schedule:
-    """Draw the corruption and the key of each frame.
+    """Samples the corruption and the key of each frame.
 
     Modes:
         ``clean``: nothing is corrupted.
-        ``per_frame``: a corruption and a random state per frame (transient).
-        ``per_episode``: a corruption and a random state per episode (persistent).
-        ``success_distributed``: per episode, corruption k with p_k proportional to
-        (1 - SR_k)^alpha + floor, where SR_k is its success rate in an earlier evaluation.
+        ``per_frame``: each frame gets its own corruption and random numbers (transient faults).
+        ``per_episode``: each episode gets its own corruption and random numbers (persistent
+        faults). ``success_distributed``: each episode gets corruption k with a probability
+        proportional to (1 - SR_k)^alpha + floor, where SR_k is the success rate under k in an
+        earlier evaluation.
 
     Args:
         mode: One of MODES.
-        severity: s in [0, 1] of RGB corruptions, and of depth corruptions unless ``severity_depth``
-            is set (the paper also trains at 0.9 / 0.8). Either may be a range (low, high), from
-            which each frame (per frame) or episode draws uniformly.
-        severity_depth: s of depth corruptions; None: ``severity``.
-        clean_share: Share of frames (per frame) or episodes that stay clean, in [0, 1].
-        names: Corruptions to draw from.
-        broad_share: Share in [0, 1] of the corrupted frames or episodes that get a random
-            composition (``broad``) of the drawn corruption's modality instead.
-        alpha: Exponent of the success-distributed weights, >= 0.
-        floor: Minimum of the weights, >= 0; above 0, every corruption can be drawn.
-        success: SR_k in [0, 1] by name; None: uniform weights until ``refresh``.
+        severity: s in [0, 1] for RGB corruptions, and for depth corruptions unless
+            ``severity_depth`` is set (the paper also trains at 0.9 / 0.8). Either value may be a
+            range (low, high), from which a severity is sampled uniformly per frame or episode.
+        severity_depth: s for depth corruptions; None means ``severity``.
+        clean_share: Fraction of frames (``per_frame``) or episodes that stay clean, in [0, 1].
+        names: Corruptions to choose from.
+        broad_share: Fraction in [0, 1] of corrupted frames or episodes that get a random
+            composition (``broad``) with the modality of the sampled corruption instead.
+        alpha: Exponent in the weights of ``success_distributed``, >= 0.
+        floor: Minimum of the weights, >= 0; if above 0, every corruption can be sampled.
+        success: SR_k in [0, 1] by name; None means uniform weights until ``refresh``.
 
     Raises:
         ValueError: An argument is out of range.
@@ -107,16 +108,18 @@ class Schedule:
 
     @classmethod
     def always(cls, name: str, severity: float) -> Schedule:
-        """Return a schedule with one corruption at ``severity`` in every frame, as evaluated."""
+        """Return a schedule that applies one corruption at ``severity`` to every frame, as in
+        evaluation."""
         return cls("per_episode", severity, clean_share=0.0, names=(name,))
 
     @property
     def weights(self) -> dict[str, float]:
-        """Probability of each corruption given that the frame is not clean; the sum is 1."""
+        """The probability of each corruption, given that the frame is not clean; the sum is 1."""
         return dict(zip(self.names, self._weights, strict=True))
 
     def only(self, modality_: str) -> Schedule:
-        """Return this schedule with the corruptions of one modality only; ValueError if none."""
+        """Return this schedule with only the corruptions of one modality; raise ValueError if there
+        is none."""
         names = tuple(name for name in self.names if modality(name) == modality_)
         if not names:
             raise ValueError(
@@ -127,11 +130,11 @@ class Schedule:
     def refresh(self, success: dict[str, float]) -> None:
         """Recompute the weights from success rates by name ("clean" and others are ignored).
 
-        A missing name keeps its last rate. Only success_distributed uses the rates; the other modes
-        keep uniform weights.
+        A corruption without a new rate keeps its last rate. Only ``success_distributed`` uses the
+        rates; the other modes keep uniform weights.
 
         Raises:
-            ValueError: A corruption never had a rate, or a rate is outside [0, 1].
+            ValueError: A corruption has never had a rate, or a rate is outside [0, 1].
         """
         known = {**(self.success or {}), **success}
         missing = [name for name in self.names if name not in known]
@@ -151,7 +154,8 @@ class Schedule:
             self._weights = [w / total if total > 0 else 1.0 / len(raw) for w in raw]
 
     def draw(self, seed: int, episode: str, frame: int) -> tuple[Corruption, Key]:
-        """Draw the corruption and the key of a frame, a function of arguments and weights."""
+        """Return the corruption and the key of a frame, which depend only on the arguments and
+        weights."""
         episode = str(episode)
         if self.mode == "clean":
             return CLEAN, Key(seed, episode, frame)
@@ -172,7 +176,7 @@ class Schedule:
 
         Args:
             name: Name of the corruption.
-            place: Position in a range of severities, from 0 (low) to 1 (high).
+            place: Position in the range of severities, from 0 (low) to 1 (high).
         """
         depth = modality(name) == "depth" and self.severity_depth is not None
         severity: Any = self.severity_depth if depth else self.severity
@@ -180,11 +184,12 @@ class Schedule:
         return Corruption(name, low + place * (high - low))
 
     def state_dict(self) -> dict:
-        """Return the state for a checkpoint as JSON data, so that a resume has the same weights."""
+        """Return the state for a checkpoint as JSON data, so that a resumed run has the same
+        weights."""
         return {"success": None if self.success is None else dict(self.success)}
 
     def load_state_dict(self, state: dict) -> None:
-        """Restore ``state_dict()``; ValueError if it lacks a corruption of this schedule."""
+        """Restore ``state_dict()``; raise ValueError if it lacks a corruption of this schedule."""
         if "success" not in state:
             raise ValueError(
                 f"The state of a Schedule must have the entry 'success', got only {sorted(state)}. "
@@ -208,7 +213,7 @@ def drawn(by: Corruption | Schedule, seed: int, episode: str, frame: int) -> tup
 
 
 def names_of(by: Corruption | Schedule) -> tuple[str, ...]:
-    """Return the names of the corruptions that ``by`` may apply; empty if all frames are clean.
+    """Return the names of corruptions that ``by`` may apply, or an empty tuple for clean frames.
 
     Raises:
         ValueError: ``by`` is neither a Corruption nor a Schedule.

@@ -1,4 +1,5 @@
-"""Apply corruptions to frames: ``corrupt`` for a frame, ``corrupt_observation`` for an observation.
+"""Apply corruptions to frames: Corrupt a frame with ``corrupt``, or an observation with
+``corrupt_observation``.
 
 Both are pure functions of (frame, name, severity, key, heading).
 """
@@ -21,11 +22,13 @@ from mitigate.corruptions.faults.temporal import GATE
 from mitigate.corruptions.keying import Key, as_key
 from mitigate.corruptions.record import ACTION, CAMERA, FRAMES, MODALITIES, MOTION, TEMPORAL
 
-MAX_VIEWS = 36  # views per instant: R2R's discrete panoramas have 3 elevations of 12; VLN-CE has 12
+# maximum views per time step; R2R's discrete panoramas have 3 elevations of 12, VLN-CE has 12
+MAX_VIEWS = 36
 
 
 def rgb_views(frame: np.ndarray) -> np.ndarray:
-    """Return the frame as contiguous uint8 [V, H, W, 3]; ValueError for another shape or dtype."""
+    """Return the frame as contiguous uint8 [V, H, W, 3]; raise ValueError if it is not an RGB
+    frame."""
     if frame.dtype != np.uint8:
         raise ValueError(
             f"RGB frames must be uint8 in 0-255, got {frame.dtype}. Convert them: "
@@ -42,7 +45,8 @@ def rgb_views(frame: np.ndarray) -> np.ndarray:
 
 
 def depth_views(frame: np.ndarray, sensor: DepthSensor, name: str) -> np.ndarray:
-    """Return the frame as contiguous float32 [V, H, W]; ValueError for RGB and millimetres too."""
+    """Return the frame as contiguous float32 [V, H, W]; raise ValueError for RGB or other
+    dtypes."""
     if frame.ndim > 2 and frame.shape[-1] == 3:
         raise ValueError(
             f"{name} needs a depth frame, but the last axis of {frame.shape} is 3, as in "
@@ -69,7 +73,7 @@ def depth_views(frame: np.ndarray, sensor: DepthSensor, name: str) -> np.ndarray
 
 
 def _one_instant(views: np.ndarray) -> np.ndarray:
-    """Return ``views`` [V, ...]; ValueError for more views than a panorama has."""
+    """Return ``views`` [V, ...]; raise ValueError for more views than a panorama has."""
     if len(views) > MAX_VIEWS:
         raise ValueError(
             f"An instant must have at most {MAX_VIEWS} views, got {len(views)}. The leading "
@@ -79,14 +83,14 @@ def _one_instant(views: np.ndarray) -> np.ndarray:
     return views
 
 
-# Raise it when any pixel or word of any corruption changes, for inputs that follow
-# docs/corruptions.md and docs/instructions.md.
+# Increase this version when any pixel or word of any corruption changes,
+# for inputs that follow docs/corruptions.md and docs/instructions.md.
 SUITE_VERSION = "1.1"
 
 RGB = registry.names("rgb")
 DEPTH = registry.names("depth")
 NAMES = RGB + DEPTH
-# applied by instruction.py before an episode starts
+# these are applied by instruction.py before an episode starts
 INSTRUCTION = registry.names("instruction")
 SENSOR = DepthSensor()
 
@@ -94,7 +98,7 @@ SENSOR = DepthSensor()
 def check_name(name: str, allowed: tuple[str, ...] | None = None) -> str:
     """Return ``name``, or raise ValueError with the nearest allowed name.
 
-    By default all corruptions of frames are allowed, including plugins.
+    By default, all corruptions of frames are allowed, including plugins.
     """
     if name in (NAMES if allowed is None else allowed):
         return name
@@ -122,7 +126,8 @@ def check_name(name: str, allowed: tuple[str, ...] | None = None) -> str:
 
 
 def check_severity(severity: float) -> float:
-    """Return ``severity`` as a float in [0, 1]; ValueError also for NaN, str and bool."""
+    """Return ``severity`` as a float in [0, 1]; raise ValueError otherwise, and for str and
+    bool."""
     try:
         value = math.nan if isinstance(severity, (str, bool, np.bool_)) else float(severity)
     except (TypeError, ValueError):
@@ -138,7 +143,7 @@ def check_severity(severity: float) -> float:
 
 @dataclass(frozen=True)
 class Corruption:
-    """A corruption, or a pair, at a severity.
+    """A corruption, or a pair of corruptions, with a severity.
 
     Attributes:
         name: "clean", the name of a corruption, or a pair such as "low_light+missing_data"; the
@@ -243,7 +248,7 @@ def check_corruption(corruption: Corruption) -> Corruption:
 
 
 def check_heading(heading: float | None) -> float | None:
-    """Return ``heading`` as a float or None, or raise ValueError for NaN, infinity and text."""
+    """Return ``heading`` as a float or None; raise ValueError for NaN, infinity and text."""
     if heading is None or (type(heading) is float and math.isfinite(heading)):
         return heading
     try:
@@ -269,16 +274,17 @@ def corrupt(
     sensor: DepthSensor = SENSOR,
     hfov: float | None = None,
 ) -> np.ndarray:
-    """Corrupt one modality of one instant.
+    """Corrupt the frame of one modality at one time step.
 
     Args:
         frame: uint8 [H, W, 3] or [V, H, W, 3] for RGB names; float32 metres [H, W], [H, W, 1],
-            [V, H, W] (W not 3) or [V, H, W, 1] for depth names. View k of V has yaw -30 k degrees
-            and is level. V is the number of views of one instant, at most 36, which share one mask.
-            It is not a batch axis; corrupt a batch one instant at a time, each with its own key.
+            [V, H, W] (W not 3) or [V, H, W, 1] for depth names. View k of V faces yaw -30 k degrees
+            without pitch. V is the number of views of one time step (at most 36), which share one
+            mask. The axis is not a batch axis; corrupt a batch one time step at a time, each with
+            its own key.
         name: One of NAMES, or another known corruption of frames.
         severity: s in [0, 1]; 0 returns a bit-exact copy.
-        key: Key of the random draws; an int is a seed, a str an episode.
+        key: Key of the random numbers; an int is used as the seed, a str as the episode.
         heading: Heading of the agent in radians, counter-clockwise, so that a flare keeps its
             direction in the world. None (unknown): the flare keeps its place in view 0.
         sensor: Depth range and value for no reading.
@@ -376,7 +382,7 @@ def corrupt_observation(
 
     Raises:
         ValueError: The modality is missing, the pose is not [3], ``corruption`` is not a
-            Corruption, or as in ``corrupt``.
+            Corruption, or an error of ``corrupt``.
     """
     result = dict(obs)
     for part in check_corruption(corruption).parts:
@@ -419,7 +425,7 @@ def changed_entries(obs: Mapping[str, Any], part: Corruption) -> tuple[str, ...]
     """Return the frames of an observation that a single corruption changes.
 
     Raises:
-        ValueError: The observation has none of them.
+        ValueError: The observation has none of the frames.
     """
     modalities = registry.record(part.name).modalities
     entries = tuple(name for name in modalities if name in obs)  # entries are named as modalities

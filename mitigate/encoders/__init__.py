@@ -1,1 +1,1 @@
-"""Encoders of users: loading them, frames to train on, measuring their features, adapters."""
+"""Load users' encoders, read frames for their training, measure features, and save adapters."""

@@ -1,8 +1,9 @@
-"""Save and load the result of training an encoder: a folder that plain PyTorch can load.
+"""Save and load the result of training an encoder, as a folder that plain PyTorch can load.
 
-Adapters are ``adapters.safetensors`` and ``adapters.json``; ``tune=all`` writes
-``model.safetensors``. ``encoder.json`` describes the frames and the output that they belong to. The
-manifest lists all files. Loading runs no code from the folder: the caller gives the encoder.
+Adapters are stored in ``adapters.safetensors`` and ``adapters.json``; with ``tune=all``, all
+weights are stored in ``model.safetensors``. ``encoder.json`` describes the frames and the output
+for which the weights were trained. The manifest lists all files. Loading runs no code from the
+folder; the caller must construct the encoder.
 """
 
 from __future__ import annotations
@@ -46,7 +47,7 @@ encoder.load_state_dict(parse(open("{folder}/model.safetensors", "rb").read()))
 
 
 def write(encoder: Encoder, folder: str | Path) -> Path:
-    """Write the trained weights of ``encoder`` into ``folder``; return it."""
+    """Write the trained weights of ``encoder`` into ``folder``, and return the folder."""
     with folders.write_folder(folder, "encoder") as draft:
         if encoder.tune == "adapters":
             adapters.write_adapters(encoder.model, draft)
@@ -74,7 +75,7 @@ def described(encoder: Encoder) -> dict[str, Any]:
 
 
 def lines(encoder: Encoder, folder: str | Path) -> str:
-    """Return the lines of plain PyTorch that load ``folder``."""
+    """Return the lines of plain PyTorch code that load ``folder``."""
     return _LINES[encoder.tune].format(folder=folder)
 
 
@@ -83,11 +84,11 @@ def _inner(encoder: Encoder) -> Any:
 
 
 def card(folder: str | Path) -> dict[str, Any]:
-    """Return the content of ``encoder.json``.
+    """Return the checked content of ``encoder.json``.
 
     Raises:
         FileNotFoundError: The file is missing.
-        ValueError: It is damaged, or an entry is invalid.
+        ValueError: The file is damaged, or one of its entries is invalid.
     """
     file = Path(folder) / CARD
     if not file.is_file():
@@ -107,10 +108,10 @@ def card(folder: str | Path) -> dict[str, Any]:
 
 
 def fill(encoder: Encoder, folder: str | Path) -> None:
-    """Load what :func:`write` wrote into an encoder with the original weights.
+    """Load weights that :func:`write` wrote into an encoder with the original weights.
 
-    Raises the errors of :func:`card` and ``load_adapters``; ValueError also if the folder belongs
-    to an encoder with other settings.
+    Raises the errors of :func:`card` and ``load_adapters``; ValueError is also raised if the folder
+    belongs to an encoder with different settings.
     """
     stored = card(folder)
     actual = described(encoder)

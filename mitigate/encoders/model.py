@@ -1,4 +1,4 @@
-"""An encoder of the user with its transform, its target output, and adapters."""
+"""Wrap a user's encoder with its input transform, its target output, and adapters."""
 
 from __future__ import annotations
 
@@ -25,8 +25,8 @@ from mitigate.encoders import folder as folders
 from mitigate.encoders import loading
 
 RESIZE = ("bilinear", "bicubic", "area", "nearest")
-FROM_UINT8 = 255.0  # largest value of RGB frames
-MOST = 4096  # pixels of a side (heuristic)
+FROM_UINT8 = 255.0  # maximum value of RGB frames
+MOST = 4096  # maximum side in pixels (heuristic)
 
 
 @dataclass
@@ -34,21 +34,22 @@ class Transform:
     """Convert uint8 ``[n, H, W, 3]`` or metres ``[n, H, W, 1]`` to ``[n, c, size, size]`` floats.
 
     Args:
-        size: pixels of a side.
+        size: side in pixels.
         resize: one of ``RESIZE``; bilinear and bicubic are antialiased when they shrink, as in
             torchvision and PIL.
-        crop: resize the shorter side and take the centre square (as CLIP), instead of resizing
-            both sides.
+        crop: whether to resize the shorter side and take the centre square (as CLIP does), instead
+            of resizing both sides.
         mean: mean of each channel, after ``scale``.
         std: standard deviation of each channel, after ``scale``.
         scale: divisor of RGB: 255 for values 0 to 1 (most encoders), 1 for 0 to 255.
         bgr: whether to reverse the channels.
-        near: metres; see ``far``.
-        far: depth is clipped to ``near`` and ``far``, scaled to (depth - near) / (far - near), as
-            in habitat-lab, and then normalised by ``mean`` and ``std``. None: metres, unscaled.
+        near: minimum depth in metres; see ``far``.
+        far: maximum depth in metres; depth is clipped to ``near`` and ``far``, scaled to (depth -
+            near) / (far - near), as in habitat-lab, and then normalised by ``mean`` and ``std``.
+            None: metres, unscaled.
 
     Raises:
-        ValueError: An argument is invalid; names the option.
+        ValueError: An argument is invalid; the message names the option.
     """
 
     size: int
@@ -101,7 +102,7 @@ class Transform:
 
 
 def transform_of(options: Mapping[str, Any]) -> Transform:
-    """Return the transform with the arguments ``options``.
+    """Return a transform with the arguments ``options``.
 
     Raises:
         ValueError: An argument is unknown or invalid.
@@ -154,31 +155,32 @@ def _numbers(values: Any) -> bool:
 
 TUNE = ("adapters", "all")
 POOL = ("mean", "first", "flatten")
-SENSORS = {"rgb": 3, "depth": 1}  # channels of a frame
+SENSORS = {"rgb": 3, "depth": 1}  # number of channels of a frame
 AUTO, SITES = "auto", 6
 
 
 class Encoder(nn.Module):
-    """Map frames to features; the recipe for encoders trains it in place of an agent.
+    """Maps frames to features; the recipe for encoders trains this module instead of an agent.
 
     Args:
         model: same as in :func:`mitigate.encoders.loading.load_model`.
         transform: arguments of :class:`Transform`.
         kwargs: arguments of ``model``.
-        weights: same as in :func:`mitigate.encoders.loading.load_weights`; None: the model's
+        weights: same as in :func:`mitigate.encoders.loading.load_weights`; None keeps the model's
             weights.
         prefix: same as in :func:`mitigate.encoders.loading.load_weights`.
         sensor: "rgb" or "depth".
-        output: the target features. None: the output of the model; a number or a name: that item
-            of the output (``pooler_output``); else the dotted name of a module.
-        pool: how the report turns features into a vector: "mean" over places or tokens, "first"
-            token (CLIP's class token), or "flatten". The target is not pooled.
+        output: the target features. None means the output of the model, a number or a name means
+            that item of the output (``pooler_output``), and any other text is the dotted name of a
+            module.
+        pool: how the report converts features to a vector: "mean" over places or tokens, "first"
+            token (CLIP's class token), or "flatten". The training target itself is not pooled.
         tune: "adapters", or "all" weights of the encoder (BatchNorm statistics stay fixed).
-        adapters: targets ("auto", or regular expressions), sites (number of blocks for "auto"),
-            and reduction, kernel, middle and gate as for ``insert_adapters``.
+        adapters: a mapping with targets ("auto", or regular expressions), sites (number of blocks
+            for "auto"), and reduction, kernel, middle and gate as in ``insert_adapters``.
 
     Raises:
-        ValueError, FileNotFoundError: An argument is invalid; the message lists valid ones.
+        ValueError, FileNotFoundError: An argument is invalid; the message lists valid values.
     """
 
     own_config_only = ("model", "kwargs", "weights", "prefix")  # core/build.py
@@ -236,7 +238,7 @@ class Encoder(nn.Module):
         self.choose_trained()
 
     def settings(self) -> dict[str, Any]:
-        """Return no settings, because the config contains all."""
+        """Return an empty dict, because the config contains all settings."""
         return {}
 
     def choose_trained(self) -> None:
@@ -255,9 +257,10 @@ class Encoder(nn.Module):
         return self
 
     def forward(self, frames: Tensor) -> Tensor:
-        """Return features ``[n, C]``, ``[n, C, h, w]`` or ``[n, T, C]``, as the model gives them.
+        """Return features ``[n, C]``, ``[n, C, h, w]`` or ``[n, T, C]``, in the shape of the
+        model's output.
 
-        ``frames``: uint8 ``[n, H, W, 3]`` or metres ``[n, H, W, 1]``.
+        ``frames`` are uint8 ``[n, H, W, 3]`` or metres ``[n, H, W, 1]``.
         """
         inputs = self.transform(frames)
         modules = dict(self.model.named_modules()) if isinstance(self.output, str) else {}
@@ -315,14 +318,15 @@ class Encoder(nn.Module):
         return [re.escape(name) for name in chosen]
 
     def _probe(self, count: int) -> Any:
-        """Return the output for noise; some normalisations give NaN for constant frames."""
+        """Return the output for noise frames, because some normalisations give NaN for constant
+        frames."""
         size, channels = self.transform.size, SENSORS[self.sensor]
         noise = torch.rand(count, channels, size, size, generator=torch.Generator().manual_seed(0))
         like = next(self.model.parameters(), noise)
         return self.model(noise.to(like.device, like.dtype))
 
     def _item(self, output: Any) -> Tensor:
-        """Return the target features in the output of the model."""
+        """Select the target features in the output of the model."""
         items: dict[Any, Any] = dict(output) if isinstance(output, Mapping) else {}
         if isinstance(output, (tuple, list)):
             items = dict(enumerate(output))
@@ -383,14 +387,14 @@ class Encoder(nn.Module):
         return folders.write(self, folder)
 
     def load(self, folder: str | Path) -> None:
-        """Load what :meth:`save` wrote; errors as ``folder.fill``."""
+        """Load weights that :meth:`save` wrote; errors are as in ``folder.fill``."""
         folders.fill(self, folder)
 
 
 def _check_fixed(model: str, first_model: nn.Module, second_model: nn.Module) -> None:
-    """Raise ValueError if two results of the callable ``model`` have different weights.
+    """Raise ValueError if two calls of ``model`` return different weights.
 
-    Adapters fit only the weights that they were trained with, and these would be lost.
+    Adapters fit only the weights that they were trained with, and random weights would be lost.
     """
     if inserted.backbone_sha(first_model) == inserted.backbone_sha(second_model):
         return

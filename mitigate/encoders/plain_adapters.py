@@ -5,8 +5,9 @@
     encoder.eval()
     encoder = attach(encoder, "runs/encoder/agent")  # the folder of `make train RECIPE=encoder`
 
-Needs Python 3.6, torch 1.7 and numpy or newer, and nothing else. The folder is data: JSON of a
-fixed form and safetensors, compared with their sha256 and read here; nothing in it is run.
+It needs only Python 3.6, torch 1.7 and numpy, or newer versions. The folder is data: The folder
+contains JSON with fixed entries, and safetensors. Both are compared with their sha256 and parsed in
+this file; nothing in the folder is run.
 """
 
 import hashlib
@@ -20,29 +21,30 @@ import torch.nn.functional as F
 
 WEIGHTS, SETTINGS, SUM = "adapters.safetensors", "adapters.json", ".sha256"
 MANIFEST = "manifest.json"
-LONGEST = 1 << 24  # bytes of a header (heuristic)
-# numpy types of safetensors types; BF16, which numpy lacks, is the upper half of a float32
+LONGEST = 1 << 24  # maximum bytes of a header (heuristic)
+# numpy types of safetensors types; BF16, which numpy lacks, is read as half of a float32
 TYPES = {"F64": "<f8", "F32": "<f4", "F16": "<f2", "BF16": "<u2", "I64": "<i8", "U8": "<u1"}
 NUMBERS = {"channels": 1 << 20, "reduction": 1 << 20, "middle": 1 << 20, "kernel": 99, "batch": 1}
 
 
 def attach(model, folder, check=True):
-    """Attach the adapters of ``folder`` to the modules of ``model`` they were trained for.
+    """Attach the adapters in ``folder`` to the modules of ``model`` for which they were trained.
 
-    They are forward hooks that do not train and move to the device and dtype of the frames.
+    The adapters are frozen forward hooks that move to the device and dtype of the frames.
     ``model`` keeps its weights and its state dict.
 
     Args:
         model: the encoder.
         folder: the folder of the adapters.
         check: whether ``model`` must have exactly the weights that the adapters were trained with.
-            Disable it if ``model`` was converted to half precision first.
+            Disable the check if ``model`` was already converted to half precision.
 
     Returns:
         ``model`` itself.
 
     Raises:
-        ValueError: The folder is damaged or does not fit, or the model has adapters already.
+        ValueError: The folder is damaged, it does not match the model, or the model already has
+            adapters.
         OSError: A file is missing.
     """
     hooks = [hook for m in model.modules() for hook in m._forward_hooks.values()]
@@ -81,7 +83,7 @@ def attach(model, folder, check=True):
 
 
 class _Adapter:
-    """A forward hook: ``x + gate * up(gelu(down(x)))``."""
+    """A forward hook: Adapter that computes ``x + gate * up(gelu(down(x)))``."""
 
     def __init__(self, folder, name, shape, tensors):
         prefix = name.replace(".", "/") + "."
@@ -101,7 +103,7 @@ class _Adapter:
     def __call__(self, module, inputs, output):
         if isinstance(output, (tuple, list)):
             rest = (self.adapt(output[0]),) + tuple(output[1:])
-            # named tuples have no common base class; only they have _make
+            # named tuples have no common base class, but only they have _make
             return output._make(rest) if hasattr(output, "_make") else type(output)(rest)
         return self.adapt(output)
 
@@ -131,7 +133,7 @@ class _Adapter:
 
 
 def _shapes(shape):
-    """Return the shapes of an adapter's tensors by name, from its settings."""
+    """Compute the shapes of an adapter's tensors, by name, from its settings."""
     channels = shape["channels"]
     middle = shape.get("middle") or max(4, channels // shape["reduction"])
     kernel = () if shape.get("kind") == "tokens" else (shape["kernel"],) * 2
@@ -145,7 +147,7 @@ def _shapes(shape):
 
 
 def _sums(folder):
-    """Return the allowed sha256 of the weights: from the manifest, or a file of older versions."""
+    """Return the allowed sha256 values of a file, from the manifest or a file of older versions."""
     manifest = os.path.join(folder, MANIFEST)
     if not os.path.isfile(manifest):
         with open(os.path.join(folder, WEIGHTS + SUM), encoding="utf-8") as file:
@@ -187,7 +189,7 @@ def read(folder):
 
 
 def _known(shape):
-    """Return whether the settings of an adapter are valid and supported here."""
+    """Return whether the settings of an adapter are valid and supported by this file."""
     if not isinstance(shape, dict) or not {"channels", "reduction"} <= set(shape):
         return False
     rest = {name: value for name, value in shape.items() if name not in ("kind", "gate")}
@@ -201,10 +203,10 @@ def _known(shape):
 
 
 def parse(data, path="the file"):
-    """Return the tensors in the bytes of a safetensors file, by name.
+    """Parse the bytes of a safetensors file, and return its tensors by name.
 
-    The format is: length of the header (8 bytes), the header (JSON), the bytes of the tensors.
-    Raises ValueError if the data are damaged.
+    The format is the length of the header (8 bytes), the header (JSON), and the bytes of the
+    tensors. Raises ValueError if the data are damaged.
     """
     try:
         length = int.from_bytes(data[:8], "little")
@@ -241,7 +243,7 @@ def tensors_sha(tensors):
         if isinstance(value, torch.Tensor):
             sha.update(f"{name} {value.dtype} {tuple(value.shape)}".encode())
             value = value.detach().cpu().contiguous()
-            if value.dtype == torch.bfloat16:  # its bytes are the upper half of a float32
+            if value.dtype == torch.bfloat16:  # the bytes of BF16 are the upper half of a float32
                 sha.update((value.float().numpy().view("<u4") >> 16).astype("<u2").tobytes())
             else:
                 sha.update(value.numpy().tobytes())

@@ -1,4 +1,4 @@
-"""Measure an encoder's features under corruptions: cosine, a linear probe and retrieval.
+"""Measure an encoder's features under corruptions with cosine, a linear probe and retrieval.
 
 Each measure has a 95 % interval over scenes.
 """
@@ -19,14 +19,15 @@ from mitigate.encoders.sources import Frames, corrupted
 from mitigate.evaluation.bootstrap import LEVEL, Estimate
 
 RESAMPLES = 1000  # bootstrap resamples of the scenes (heuristic)
-FEWEST = 10  # a label counts with this many positive and negative frames (heuristic)
-RIDGES = (1e-3, 1e-2, 1e-1, 1.0, 10.0)  # times the number of frames; chosen on training frames
-PROBE_SHARE = 0.25  # share of the training scenes on which the ridge is chosen (heuristic)
+FEWEST = 10  # a label is used if it has this many positive and negative frames (heuristic)
+# candidates for the ridge, times the number of frames; chosen on training frames
+RIDGES = (1e-3, 1e-2, 1e-1, 1.0, 10.0)
+PROBE_SHARE = 0.25  # fraction of the training scenes on which the ridge is chosen (heuristic)
 
 
 @dataclass
 class Score:
-    """One measure under one condition: over all frames, and over each resample of the scenes."""
+    """One measure under one condition, for all frames and for each resample of the scenes."""
 
     value: float
     samples: np.ndarray
@@ -75,8 +76,8 @@ def features(
 class Resamples:
     """Scenes drawn with replacement.
 
-    ``weights`` float32 [R, N] is how often each frame counts. With a single scene R = 0, because
-    the differences between scenes are unknown.
+    ``weights`` float32 [R, N] states how often each frame counts in each resample. With a single
+    scene, R is 0, because the differences between scenes are unknown.
     """
 
     def __init__(self, scene: np.ndarray, seed: int = 0, count: int = RESAMPLES) -> None:
@@ -94,17 +95,18 @@ class Resamples:
 
 
 def cosine(corrupted: np.ndarray, clean: np.ndarray, centre: np.ndarray) -> np.ndarray:
-    """Return the cosine [N] of corrupted and clean features [N, C].
+    """Return the cosine similarity [N] of corrupted and clean features [N, C].
 
-    ``centre`` [C] is subtracted from both: most encoders' features have a large common mean, with
-    which all frames seem alike.
+    ``centre`` [C] is subtracted from both: most encoders' features have a large common mean, which
+    makes all frames look similar.
     """
     a, b = _unit(corrupted - centre), _unit(clean - centre)
     return (a * b).sum(1)
 
 
 def retrieval(corrupted: np.ndarray, clean: np.ndarray, centre: np.ndarray) -> np.ndarray:
-    """Return [N] whether the nearest clean frame (centred cosine) is the same frame."""
+    """Return for each frame [N] whether the nearest clean frame (centred cosine) is the same
+    frame."""
     similarity = _unit(corrupted - centre) @ _unit(clean - centre).T
     return (similarity.argmax(1) == np.arange(len(corrupted))).astype(np.float32)
 
@@ -116,8 +118,8 @@ def _unit(x: np.ndarray) -> np.ndarray:
 class LinearProbe:
     """Ridge regression from clean features [N, C] to labels [N, L] in {0, 1}.
 
-    The ridge has the highest mean average precision of ``RIDGES`` on the frames of a quarter of the
-    training scenes. ``used`` are the labels with enough training frames.
+    The ridge is the value in ``RIDGES`` with the highest mean average precision on a quarter of the
+    training scenes. ``used`` contains the labels with enough training frames.
     """
 
     def __init__(self, clean: np.ndarray, labels: np.ndarray, scene: np.ndarray) -> None:
@@ -127,7 +129,8 @@ class LinearProbe:
         validation = np.isin(scene, np.unique(scene)[:: round(1 / PROBE_SHARE)])
         usable = frequent_labels(y[validation])
         scores = []
-        for ridge in RIDGES if not validation.all() else ():  # one scene has no validation part
+        # a single scene has no validation part
+        for ridge in RIDGES if not validation.all() else ():
             weights = _ridge(x[~validation], y[~validation], ridge)
             guess = x[validation] @ weights
             ones = np.ones((1, int(validation.sum())), np.float32)
@@ -141,7 +144,7 @@ class LinearProbe:
         return np.concatenate([x, np.ones((len(x), 1))], 1)
 
     def score(self, features: np.ndarray, labels: np.ndarray, resamples: Resamples) -> Score:
-        """Return the mean average precision over the labels with enough of these frames."""
+        """Return the mean average precision over the labels that have enough frames."""
         guess, labels = self._scaled(features) @ self.weights, labels[:, self.used]
         usable = frequent_labels(labels)
         ones = np.ones((1, len(features)), np.float32)
@@ -159,14 +162,14 @@ def frequent_labels(labels: np.ndarray) -> np.ndarray:
 
 def _ridge(x: np.ndarray, y: np.ndarray, ridge: float) -> np.ndarray:
     gram = x.T @ x
-    gram[np.diag_indices(len(gram) - 1)] += ridge * len(x)  # the constant is not regularised
+    gram[np.diag_indices(len(gram) - 1)] += ridge * len(x)  # the constant term is not regularised
     return np.linalg.solve(gram, x.T @ y)
 
 
 def average_precision(guess: np.ndarray, label: np.ndarray, weights: np.ndarray) -> np.ndarray:
     """Return the average precision [R] of scores [N] for labels [N] with frame weights [R, N].
 
-    NaN where no frame with a weight has the label.
+    The result is NaN if no frame with a weight has the label.
     """
     order = np.argsort(-guess, kind="stable")
     w = weights[:, order]
@@ -184,10 +187,10 @@ def measure(
     unseen: Frames,
     seed: int,
 ) -> dict[tuple[str, str, str], Score]:
-    """Return the score of every (encoder, condition, measure).
+    """Return the score for every (encoder, condition, measure).
 
-    The clean features of the first encoder are the reference of all, and the probe is fitted to
-    them.
+    The clean features of the first encoder are the reference for all encoders, and the probe is
+    fitted to them.
     """
     original = next(iter(encoders.values()))
     clean = Corruption("clean", 0.0)
@@ -217,7 +220,7 @@ def measure(
 
 
 def average(scores: Iterable[Score]) -> Score:
-    """Return the mean over conditions, resampled together."""
+    """Return the mean over conditions, which are resampled together."""
     listed = list(scores)
     return Score(
         float(np.mean([s.value for s in listed])), np.mean([s.samples for s in listed], axis=0)

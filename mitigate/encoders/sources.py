@@ -1,7 +1,7 @@
-"""Sources of frames: a world that renders from any pose, or a folder of files.
+"""Read frames from a world that renders from any pose, or from a folder of files.
 
-A source has scenes in two disjoint splits, ``TRAIN`` and ``UNSEEN``, and reads a number of frames
-of each scene.
+A source has scenes in two disjoint splits, ``TRAIN`` and ``UNSEEN``, and reads a given number of
+frames from each scene.
 """
 
 from __future__ import annotations
@@ -30,10 +30,11 @@ from mitigate.worlds.episodes import read_episodes
 from mitigate.worlds.world import Placeable
 
 TRAIN, UNSEEN = "train", "unseen"
-FEWEST_UNSEEN = 5  # unseen blocks of a single folder, for an interval over scenes (heuristic)
-NEAR = 0.05  # smallest share of depth that is closer than ``FARTHEST`` in metres (heuristic)
-NEAREST = 0.02  # metres; at least a share ``NEAR`` of depth in metres is farther (heuristic)
-LARGEST = 4096  # pixels of a side (heuristic)
+# number of unseen blocks of a single folder, for an interval over scenes (heuristic)
+FEWEST_UNSEEN = 5
+NEAR = 0.05  # minimum fraction of depth that must be closer than ``FARTHEST`` metres (heuristic)
+NEAREST = 0.02  # in metres; at least a fraction ``NEAR`` of valid depth is farther (heuristic)
+LARGEST = 4096  # maximum side in pixels (heuristic)
 
 
 @dataclass(frozen=True)
@@ -43,7 +44,7 @@ class Shot:
     Attributes:
         frame: uint8 [H, W, 3] or float32 metres [H, W, 1].
         heading: direction of the camera in radians (``core/observation.py``), or None.
-        labels: labels in {0, 1} [L], or None.
+        labels: labels [L] in {0, 1}, or None.
     """
 
     frame: np.ndarray
@@ -53,7 +54,8 @@ class Shot:
 
 @runtime_checkable
 class Source(Protocol):
-    """A source of frames; ``files``: whether they are files, which may be damaged or change."""
+    """A source of frames; ``files`` states whether these are files, which may be damaged or
+    change."""
 
     files: bool
 
@@ -65,17 +67,17 @@ class Source(Protocol):
 
 
 class WorldFrames:
-    """Single views of random poses of a world, with labels of its truth.
+    """Source of single views from random poses in a world, with labels from its truth.
 
     Args:
         world: a ``Placeable`` world (``worlds/world.py``), whose ``scenes`` are for training.
         sensor: "rgb" or "depth".
         unseen: an episode list whose scenes are the unseen ones.
-        label: the entry of the truth, [views, L] or [L] in {0, 1}; None: no labels.
+        label: the entry of the truth, [views, L] or [L] in {0, 1}, or None for no labels.
         every: use every n-th view of a panorama.
 
     Raises:
-        ValueError: The world does not render from any pose or lacks the sensor, or a scene is in
+        ValueError: The world cannot render from any pose, it lacks the sensor, or a scene is in
             both splits.
     """
 
@@ -130,26 +132,27 @@ class WorldFrames:
 
 
 class FolderFrames:
-    """The PNG, JPEG and NPY files of a folder and its subfolders.
+    """Source of frames from the PNG, JPEG and NPY files of a folder and its subfolders.
 
-    Each folder with frames is a scene; for a recording by ``mitigate run``, each of its scenes. A
-    single folder is split into blocks of consecutive frames. Files that cannot be used are
+    Each folder with frames is a scene. In a recording by ``mitigate run``, the recorded scenes are
+    used. A single folder is split into blocks of consecutive frames. Files that cannot be used are
     reported. Depth that is not a positive number becomes 0.
 
     Args:
         path: the folder.
         sensor: "rgb" or "depth".
-        size: side in pixels to which frames are resized; None: unchanged, and all must have the
-            same size.
-        held_out: share of the scenes that are unseen. If the paths of some scenes begin with "val"
-            or "test", exactly these are unseen.
-        block: frames per block of a single folder, or fewer, so that five blocks are unseen.
+        size: side in pixels to which frames are resized; None keeps the size, which must then be
+            the same for all frames.
+        held_out: fraction of the scenes that are unseen. If the paths of some scenes begin with
+            "val" or "test", exactly these scenes are unseen.
+        block: maximum number of frames per block of a single folder; blocks are smaller if needed,
+            so that five blocks are unseen.
         unit: metres per count of a 16-bit PNG.
 
     Raises:
-        FileNotFoundError: There is no folder or no frame.
+        FileNotFoundError: The folder does not exist or contains no frame.
         ValueError: An argument is out of range, there are too few frames, or a file cannot be read,
-            is not depth in metres, or has another size than the first one.
+            is not depth in metres, or differs in size from the first file.
     """
 
     files = True
@@ -299,7 +302,7 @@ def _is_between(value: object, below: float) -> bool:
 def _metres(depth: np.ndarray) -> np.ndarray:
     """Return depth with invalid pixels set to 0.
 
-    Raises ValueError with the end of a sentence if the values cannot be metres.
+    If the values cannot be metres, a ValueError is raised whose text is the end of a sentence.
     """
     metres = np.where(np.isfinite(depth) & (depth > 0), depth, 0)
     known = metres[metres > 0]
@@ -316,7 +319,7 @@ def _metres(depth: np.ndarray) -> np.ndarray:
 
 
 def _left_out(files: Mapping[str, str]) -> str:
-    """Describe how many files are left out, with one example per reason."""
+    """Describe how many files are skipped, with one example per reason."""
     first = {why: name for name, why in reversed([*files.items()])}
     counted = Counter(files.values()).most_common(3)
     reasons = [f"{count} as {first[why]}, which {why}" for why, count in counted]
@@ -332,11 +335,12 @@ def source_of(
 ) -> Source:
     """Return the source of frames of an ``env`` config.
 
-    It is the result of ``world`` if that is a source (a folder of frames). Otherwise frames come
-    from random poses of that world, and the scenes of the list ``split`` are the unseen ones.
+    If the result of ``world`` is already a source (a folder of frames), it is returned. Otherwise
+    frames come from random poses of that world, and the scenes of the list ``split`` are the unseen
+    ones.
 
     Raises:
-        ValueError: There is no such list, or the source cannot be used.
+        ValueError: The list does not exist, or the source cannot be used.
     """
     result = world()
     if isinstance(result, Source):
@@ -346,18 +350,18 @@ def source_of(
     return WorldFrames(result, sensor, (episodes or {})[split], label)
 
 
-MOST_BYTES = 6 << 30  # largest size of frames in memory (heuristic)
+MOST_BYTES = 6 << 30  # maximum size of frames in memory (heuristic)
 
 
 @dataclass
 class Frames:
-    """Frames of a split in memory.
+    """The frames of a split, in memory.
 
     Attributes:
         frames: uint8 [N, H, W, 3] or float32 metres [N, H, W, 1].
         headings: direction of each frame in radians, or None.
         labels: [N, L] in {0, 1}, or None.
-        scene: number of the scene of each frame.
+        scene: index of each frame's scene.
         names: names of the scenes.
     """
 

@@ -1,1 +1,1 @@
-"""Evaluation: result rows, metrics, paired bootstrap intervals and the report."""
+"""Evaluate agents: result rows, metrics, paired bootstrap intervals and reports."""

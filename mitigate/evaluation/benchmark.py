@@ -49,9 +49,11 @@ from mitigate.worlds.episodes import Episode, read_episodes
 from mitigate.worlds.seeded import RETURN
 from mitigate.worlds.world import Corrupted, World
 
-EPISODES = 20  # default number (heuristic): an SR then has an error of about 17 points
+# default number of episodes (heuristic), for which an SR has an error of about 17 points
+EPISODES = 20
 OUT = Path("runs/benchmark")
-TIMED = 2  # clean episodes; the last one gives the time estimate (heuristic)
+# number of clean episodes that are run first; the last one gives the time estimate (heuristic)
+TIMED = 2
 OPTION = re.compile(r"[+~]*(agent|env)[.=]|--config-dir\b")  # options that ``options=`` may contain
 
 
@@ -78,42 +80,44 @@ def benchmark(
 ) -> LeaderboardEntry | Comparison:
     """Evaluate ``agent`` clean and under a suite of corruptions, and return its entry.
 
-    It first prints how long the evaluation takes. The rows are in ``out``; the same call continues
-    from them.
+    The function first prints how long the evaluation will take. The rows are in ``out``; the same
+    call continues from them.
 
     Args:
         agent: any object with the interface in ``mitigate/agents/agent.py``, a path of weights, or
-            a policy of another library (``mitigate/agents/policies.py``).
-        name: heading of the entry; None: the folder of the weights, or the class of the agent.
-        version: the user's name for state of the agent that cannot be read, such as hooks; without
-            it rows of such an agent are not reused.
-        split: list of episodes of the world; None: the default list, or the name of your world.
-        episodes: number of episodes, spread over the list; None: all, as for the leaderboard. By
-            default 20 of a split, and all of ``listed``.
-        suite: a name of ``conf/suite`` or a list of corruptions.
+            a policy of a supported library (``mitigate/agents/policies.py``).
+        name: heading of the entry; the default is the folder of the weights or the class of the
+            agent.
+        version: string that identifies state of the agent that cannot be read, such as hooks;
+            without it, rows of such an agent are not reused.
+        split: episode list of the world; None means the default list, or the name of your world.
+        episodes: number of episodes, spread over the list; None means all, as for the leaderboard.
+            The default is 20 episodes of a split, or all of ``listed``.
+        suite: a name in ``conf/suite`` or a list of corruptions.
         severity: from 0 to 1.
         seed: corruption seed.
         safeguard: guard for instructions, such as "rules" or "module:callable".
         restore: guard for frames, such as "checkpoints/restorer".
         adapt: test-time adaptation: "norm", "tent", "recentre", with ":never" to keep what was
             learned from episode to episode; or a guard (``mitigate/guards/adaptation``).
-        workers: processes; None: one per core if there is enough work. With more than one the
-            call must be under ``if __name__ == "__main__":``, because processes import the script.
+        workers: number of processes; None means one per core if there is enough work. With more
+            than one worker, the call must be under ``if __name__ == "__main__":``, because
+            processes import the script.
         options: options of the agent and the world: "agent=recurrent", "env.views=1",
             "--config-dir=mine".
-        world: function that creates your world; it replaces the world of ``options``. A world of
-            a different class needs ``listed``.
-        listed: the episodes, or a file of episodes.
-        training_data: for the entry.
-        link: for the entry.
-        out: folder of the rows; None: a folder in runs/benchmark.
+        world: function that creates your world; it replaces the world of ``options``. A world of a
+            different class requires ``listed``.
+        listed: the episodes, or an episode file.
+        training_data: description of the training data in the entry.
+        link: link in the entry.
+        out: folder of the rows; None means a folder in runs/benchmark.
 
     Returns:
-        The entry; for a world with score "return" the returns with their retention.
+        The leaderboard entry, or for a world with score "return" the returns with their retention.
 
     Raises:
-        ValueError: The agent, an option or a text of the entry is invalid, or ``out`` holds rows of
-            another world.
+        ValueError: The agent, an option or a text of the entry is invalid, or ``out`` contains rows
+            of a different world.
         FileNotFoundError: Weights are missing.
     """
     config, met = _conditions(agent, suite, severity, seed, options)
@@ -153,9 +157,9 @@ def benchmark(
 def _conditions(
     agent: Any, suite: str | Sequence[str], severity: float, seed: int, options: Sequence[str]
 ) -> tuple[EvaluateConfig, list[Corruption]]:
-    """Return the config of an evaluation and the conditions of the suite, clean first.
+    """Return the config of an evaluation and the conditions of the suite, starting with clean.
 
-    If ``agent`` is a path of weights, the config has the kind of agent that they belong to.
+    If ``agent`` is a path of weights, the config contains the kind of agent to which they belong.
     """
     seeding.check(seed)
     if isinstance(options, str) or not all(isinstance(one, str) for one in options or ()):
@@ -194,7 +198,7 @@ def _conditions(
 def _agent(
     agent: Any, name: str | None, config: EvaluateConfig, seed: int, guards: Sequence[str]
 ) -> tuple[Any, str]:
-    """Return the agent, loaded if it is a path, and its heading with the labels ``guards``."""
+    """Return the agent (loaded if it is a path), and its heading with the labels of ``guards``."""
     usual = type(agent).__name__
     if isinstance(agent, (str, Path)):
         usual = evaluation.name_of(str(agent))
@@ -234,7 +238,7 @@ def _plain(name: str) -> str:
 
 
 def _visible(met: Sequence[Corruption], world: World, suite: str) -> list[Corruption]:
-    """Return the conditions of a suite without corruptions of frames that the world lacks."""
+    """Return the conditions of a suite, except corruptions of frames that the world lacks."""
     unseen = {RGB, DEPTH} - {*world.sensors}
     left_out = [
         one.name
@@ -255,11 +259,11 @@ def _visible(met: Sequence[Corruption], world: World, suite: str) -> list[Corrup
 def checked_world(
     make_world: Any, met: Sequence[Corruption], version: str | None = None
 ) -> tuple[World, dict[str, str]]:
-    """Return a world and the description of how it was made (``provenance.first_world``).
+    """Construct a world and describe how it was constructed (``provenance.first_world``).
 
     Raises:
-        ValueError: ``make_world`` does not make a world, or the world lacks sensors of the agent
-            or of the conditions, or has another number of views.
+        ValueError: ``make_world`` does not return a world, or the world lacks sensors of the agent
+            or of the conditions, or has a different number of views.
     """
     if not callable(make_world):
         raise ValueError(
@@ -267,7 +271,7 @@ def checked_world(
             "Each process makes its own world."
         )
     world, made_by = provenance.first_world(make_world, version)
-    if not hasattr(world, "sensors"):  # the user may give any object by mistake
+    if not hasattr(world, "sensors"):  # the user may pass any object by mistake
         kind = type(world).__name__
         raise ValueError(
             f"A {kind} is not a world: it has no sensors (docs/bring-your-own.md). For a "
@@ -282,11 +286,12 @@ def checked_world(
 def _is_own(world: World, config: EvaluateConfig) -> bool:
     """Return whether the class of the world differs from the config.
 
-    The lists of episodes of the config are then meaningless.
+    In that case, the episode lists in the config do not apply.
     """
     node = config.env.world
     target = locate(node["_target_"])
-    kind = target if isinstance(target, type) else type(maker(node)())  # the target is a function
+    # the target may be a function
+    kind = target if isinstance(target, type) else type(maker(node)())
     return not isinstance(world, kind)
 
 
@@ -301,8 +306,8 @@ def _episodes(
     """Return the split and the episodes to run.
 
     Raises:
-        ValueError: There are no episodes, or the user's (``custom``) world has another class than
-            the config and no list of episodes.
+        ValueError: There are no episodes, or the user's (``custom``) world has a different class
+            than in the config and no episode list.
     """
     other_class = custom and _is_own(world, config)
     split = split or (provenance.name_of(world) if other_class else config.split)
@@ -336,16 +341,16 @@ def _print_estimate(
     conditions: Sequence[Corruption],
     workers: int | None,
 ) -> None:
-    """Print the number of rollouts and an estimate of the time, measured on a few clean ones."""
+    """Print the number of rollouts and a time estimate, measured on a few clean episodes."""
     total = len(episodes) * len(conditions)
     processes = min(count(LOCAL, workers, total, WORTH), len(episodes))
-    if processes > 1:  # now, not after the episodes that are timed
+    if processes > 1:  # checked now rather than after the timed episodes
         packed((agent, make_world), "The agent or its world", ALONE)
     world = make_world()
     for condition in conditions:  # compiles the corruptions
         dict(Corrupted(world, condition, 0).reset(episodes[0]))
     with in_eval_mode(agent):
-        for episode in episodes[:TIMED]:  # the first one also pays for lazy loading
+        for episode in episodes[:TIMED]:  # the first episode also includes the time of lazy loading
             started = time.monotonic()
             run_episode(agent, world, episode, CLEAN, 0)
             each = time.monotonic() - started

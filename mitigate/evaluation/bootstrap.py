@@ -1,10 +1,10 @@
-"""Paired bootstrap over episodes: intervals for SR, SPL, PRS and differences of PRS.
+"""Compute intervals for SR, SPL, PRS and PRS differences by a paired bootstrap over episodes.
 
-Values are ``[..., N]``, one column per episode. All conditions and agents use the same resamples of
-the episodes, so that the difficulty of an episode cancels. Several seeds of an episode must be
-averaged first, because the episode is the unit that is drawn. Episodes in one scene are similar, so
-intervals for new scenes are wider: episodes with equal ``units`` [N] are drawn together (cluster
-bootstrap: Davison and Hinkley 1997, section 3.8).
+Values have the shape ``[..., N]``, with one column per episode. All conditions and agents use the
+same resamples of the episodes, so that the difficulty of an episode cancels. If an episode has
+several seeds, their mean must be computed first, because episodes are the units that are resampled.
+Episodes in one scene are similar, so intervals for new scenes are wider: episodes with equal
+``units`` [N] are resampled together (cluster bootstrap: Davison and Hinkley 1997, section 3.8).
 """
 
 from __future__ import annotations
@@ -23,19 +23,20 @@ RESAMPLES = 10_000
 LEVEL = 0.95
 Z = 1.959964  # quantile of the normal distribution at LEVEL
 _BOUNDS = ((1 - LEVEL) / 2, (1 + LEVEL) / 2)
-ROUNDING = 1e-9  # tolerance for equal resamples (heuristic)
+ROUNDING = 1e-9  # tolerance within which resamples are equal (heuristic)
 NO_INTERVAL = "[–]"
 NO_WIDTH = f"{NO_INTERVAL}: no interval, as no resample differs (only one episode, or all equal)."
-CHUNK = 1 << 20  # draws at a time (heuristic): 8 MiB of indices
-PART = 1 << 14  # draws in one product (heuristic): 128 KiB of float64 fit in a core's cache
+CHUNK = 1 << 20  # number of resamples per block (heuristic): 8 MiB of indices
+# number of resamples per matrix product (heuristic): 128 KiB of float64 fit into a core's cache
+PART = 1 << 14
 
 
 @dataclass(frozen=True)
 class Estimate:
-    """A value and its percentile interval.
+    """A value with its percentile interval.
 
-    The interval is undefined if its bounds are NaN, or if it has no width: for one episode, or if
-    all resamples are equal.
+    The interval is undefined if its bounds are NaN or equal, as for a single episode or if all
+    resamples are equal.
     """
 
     value: float
@@ -53,9 +54,10 @@ class Estimate:
         return self.high - self.low > ROUNDING
 
     def interval(self, form: str, scale: float = 1.0) -> str:
-        """Return the interval as text, each bound times ``scale`` in the format ``form``.
+        """Return the interval as text, with each bound multiplied by ``scale`` and formatted by
+        ``form``.
 
-        ``NO_INTERVAL`` if it is undefined.
+        If the interval is undefined, the text is ``NO_INTERVAL``.
         """
         if not self.has_width:
             return NO_INTERVAL
@@ -71,17 +73,18 @@ def resampled_means(
 ) -> np.ndarray:
     """Return the means of ``values`` [C, N] over resampled episodes, float64 [resamples, C].
 
-    The draws depend only on the number of units and on ``seed``, so calls on the same episodes are
-    paired.
+    The resamples depend only on the number of units and on ``seed``, so calls on the same episodes
+    are paired.
 
     Args:
         values: [C, N] or [N].
         resamples: number of resamples.
-        seed: seed of the draws.
-        units: numbers [N]; episodes with equal numbers are drawn together. None: each separately.
+        seed: seed of the resampling.
+        units: numbers [N]; episodes with equal numbers are resampled together. None: each
+            separately.
 
     Raises:
-        ValueError: There are no values, or some are not finite.
+        ValueError: There are no values, or some values are not finite.
     """
     table = np.atleast_2d(np.asarray(values, float))
     if table.ndim != 2 or not table.size or not np.isfinite(table).all():
@@ -99,7 +102,7 @@ def resampled_means(
 
 @lru_cache(maxsize=4)
 def _times_drawn(units: int, resamples: int, seed: int) -> np.ndarray:
-    """Return how often each resample draws each unit, uint16 [resamples, units]."""
+    """Return how often each resample contains each unit, uint16 [resamples, units]."""
     generator = np.random.Generator(np.random.PCG64(seed))
     times = np.empty((resamples, units), np.uint16)
     for part in np.array_split(times, math.ceil(times.size / CHUNK)):
@@ -118,10 +121,9 @@ def mean(values: ArrayLike, **options: Any) -> Estimate:
 
 
 def share(values: ArrayLike, **options: Any) -> Estimate:
-    """Return the mean of ``values`` [N] in 0..1 (successes, SPLs) with its interval.
+    """Return the mean of ``values`` [N] between 0 and 1 (successes, SPLs) with its interval.
 
-    If all values are 0 or all are 1, all resamples are equal; the bound is then from Wilson's
-    score interval.
+    If all values are 0 or all are 1, all resamples are equal, and Wilson's score interval is used.
     """
     estimate, known = mean(values, **options), np.asarray(values, float)
     units = options.get("units")
@@ -133,10 +135,10 @@ def share(values: ArrayLike, **options: Any) -> Estimate:
 
 
 def means(table: ArrayLike, *, shares: bool = False, **options: Any) -> list[Estimate | None]:
-    """Return the mean of each row of ``table`` [K, N] with its interval, None for a row of NaN.
+    """Return the mean of each row of ``table`` [K, N] with its interval, or None for a row of NaN.
 
-    Each is computed over the row's episodes that are not NaN, as :func:`mean`, or as :func:`share`
-    with ``shares``. Rows with the same episodes are resampled at once.
+    Each mean is computed over the row's episodes that are not NaN, with :func:`mean`, or with
+    :func:`share` if ``shares`` is true. Rows with the same episodes are resampled together.
     """
     values = np.asarray(table, float)
     groups: dict[bytes, list[int]] = {}
@@ -156,7 +158,8 @@ def means(table: ArrayLike, *, shares: bool = False, **options: Any) -> list[Est
 
 
 def prs(clean: ArrayLike, corrupted: ArrayLike, **options: Any) -> Estimate:
-    """Return PRS with its interval; ``clean`` [N] and ``corrupted`` [K, N] share their episodes."""
+    """Return PRS with its interval, for ``clean`` [N] and ``corrupted`` [K, N] on the same
+    episodes."""
     value, samples = _prs(clean, corrupted, options)
     return _estimate(value, samples)
 
@@ -169,7 +172,8 @@ def ratio(parts: ArrayLike, wholes: ArrayLike, **options: Any) -> Estimate:
 def prs_difference(
     first: tuple[ArrayLike, ArrayLike], second: tuple[ArrayLike, ArrayLike], **options: Any
 ) -> Estimate:
-    """Return PRS(first) - PRS(second), paired; each is (clean [N], corrupted [K, N]), N equal."""
+    """Return the paired difference PRS(first) - PRS(second) of two (clean [N], corrupted [K,
+    N])."""
     counts = {np.shape(part)[-1] for pair in (first, second) for part in pair}
     if len(counts) > 1:
         raise ValueError(
@@ -192,7 +196,7 @@ def _prs(
 
 
 def _estimate(value: float, samples: np.ndarray) -> Estimate:
-    """Return percentiles of ``samples`` without those that are undefined (clean value 0)."""
+    """Return percentiles of ``samples`` without undefined ones (whose clean value is 0)."""
     known = samples[np.isfinite(samples)]
     if not len(known) or math.isnan(value):
         return Estimate(value, math.nan, math.nan)

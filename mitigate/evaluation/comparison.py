@@ -1,8 +1,8 @@
-"""Compare a few agents over the same episodes: success, return and retention, with paired
+"""Compare success, return and retention of a few agents on the same episodes, with paired
 intervals.
 
-This is the report of ``mitigate.harden``, and of ``mitigate.benchmark`` for tasks without a
-success. The tables of recipes are in ``report.py``.
+``mitigate.harden`` uses this report, and so does ``mitigate.benchmark`` for tasks without a success
+criterion. ``report.py`` writes the tables of recipes.
 """
 
 from __future__ import annotations
@@ -26,17 +26,17 @@ from mitigate.evaluation.rows import Row
 from mitigate.worlds.seeded import RETURN
 
 CLEAN = "clean"
-RANDOM = "random"  # name of the rows of random actions
+RANDOM = "random"  # name in the rows of random actions
 LABELS = {"rgb": "RGB", "depth": "Depth", "instruction": "Instruction"}
 _BOUNDS = ((1 - LEVEL) / 2, (1 + LEVEL) / 2)
 
 
 class RandomPolicy(Agent):
-    """An agent with uniformly random actions, keyed by a seed and the first observation.
+    """Agent with uniformly random actions, keyed by a seed and the first observation.
 
     Args:
-        space: actions of the world.
-        seed: seed.
+        space: action space of the world.
+        seed: seed of the random actions.
     """
 
     def __init__(self, space: ActionSpace, seed: int = 0) -> None:
@@ -45,7 +45,7 @@ class RandomPolicy(Agent):
         self._rng: np.random.Generator | None = None
 
     def settings(self) -> dict[str, Any]:
-        """Return what determines its actions."""
+        """Return the settings that determine the actions."""
         return {"space": str(self.space), "seed": self.seed}
 
     def reset(self, instruction: str) -> None:
@@ -64,12 +64,12 @@ class RandomPolicy(Agent):
 
 @dataclass(frozen=True)
 class Line:
-    """A line of a comparison.
+    """One line of a comparison table.
 
     Attributes:
         title: name of the measure, such as "SR (%): Clean".
         values: the value of each agent, by name.
-        changes: the paired difference of each later agent from the first agent, by name.
+        changes: the paired difference of each other agent from the first agent, by name.
         digits: decimal places.
     """
 
@@ -86,7 +86,7 @@ class Comparison:
     Attributes:
         lines: the lines.
         agents: names of the agents.
-        about: how it was measured.
+        about: text on how the agents were measured.
     """
 
     lines: tuple[Line, ...]
@@ -115,15 +115,16 @@ class Comparison:
 
 
 def compare(rows: Iterable[Row]) -> Comparison:
-    """Compare the agents in ``rows``, which share a list, a severity and a success rule.
+    """Compare the agents in ``rows``, which must have the same list, severity and success rule.
 
-    An episode under several seeds counts as the mean over the seeds.
+    If an episode was run under several seeds, the mean over the seeds is used.
 
-    Rows with the name ``RANDOM`` are not an agent: the retention of returns is measured against
-    them, (R_corrupted - R_random) / (R_clean - R_random).
+    Rows with the name ``RANDOM`` do not belong to an agent. They are needed for the retention of
+    returns, (R_corrupted - R_random) / (R_clean - R_random).
 
     Raises:
-        ValueError: Agents share no episodes, or the first one is no better than random actions.
+        ValueError: The agents have no episodes in common, or the first one is no better than random
+            actions.
     """
     rows = list(rows)
     cells: dict[tuple[str, str], dict[str, list[Row]]] = defaultdict(lambda: defaultdict(list))
@@ -178,12 +179,12 @@ class _Scores:
         self.agents = agents
 
     def values(self, agent: str, corruption: str, measure: str) -> np.ndarray:
-        """Return the values [N] of the episodes, each the mean over its seeds."""
+        """Return the values [N] of the episodes, each as the mean over its seeds."""
         by_episode = self.cells[agent, corruption]
         return np.array([np.mean([row[measure] for row in by_episode[e]]) for e in self.episodes])
 
     def lines(self, measure: str, label: str, names: Sequence[str], scale: float) -> list[Line]:
-        """Return the lines of a measure: mean over corruptions, clean, and each corruption."""
+        """Return the lines of a measure: the mean over corruptions, clean, and each corruption."""
         by_condition = {
             name: {agent: scale * self.values(agent, name, measure) for agent in self.agents}
             for name in (CLEAN, *names)
@@ -202,7 +203,7 @@ class _Scores:
         return [replace(line, digits=digits) for line in lines]
 
     def _line(self, heading: str, values: Mapping[str, np.ndarray], most: float) -> Line:
-        """Return a line; ``most`` is the value of a success, for Wilson's interval, or 0."""
+        """Return one line; ``most`` is the value of a success (for Wilson's interval), or 0."""
         first, *others = self.agents
         estimates = {agent: _mean(values[agent], most) for agent in self.agents}
         changes = {agent: mean(values[agent] - values[first]) for agent in others}
@@ -230,7 +231,8 @@ class _Scores:
             )
 
     def prs(self, names: Sequence[str]) -> list[Line]:
-        """Return the lines of PRS-SR by sensor; none if an agent never succeeds on clean frames."""
+        """Return the lines of PRS-SR by sensor, or no lines if an agent never succeeds on clean
+        frames."""
         if not all(self.values(agent, CLEAN, "success").any() for agent in self.agents):
             return []
         groups: dict[str, list[str]] = {}
@@ -270,7 +272,7 @@ def _mean(values: np.ndarray, most: float) -> Estimate:
 
 
 def _estimate(value: float, samples: np.ndarray) -> Estimate:
-    known = samples[np.isfinite(samples)]  # a resample may hold no clean success
+    known = samples[np.isfinite(samples)]  # a resample may contain no clean success
     low, high = np.quantile(known, _BOUNDS) if len(known) else (np.nan, np.nan)
     return Estimate(value, float(low), float(high))
 

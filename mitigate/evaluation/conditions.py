@@ -1,4 +1,4 @@
-"""Conditions of an evaluation: names of a suite as corruptions."""
+"""Convert the names in a suite to the conditions of an evaluation."""
 
 from __future__ import annotations
 
@@ -15,14 +15,16 @@ if TYPE_CHECKING:
 
 
 def suite_of(*modalities: str) -> list[str]:
-    """Resolve ``${suite:rgb,depth}`` in a config: clean and the suite's corruptions of these."""
+    """Resolve ``${suite:rgb,depth}`` in a config to clean and the suite's corruptions of these
+    sensors."""
     from mitigate.corruptions.registry import names
 
     return ["clean", *names(*modalities)]
 
 
 def unseen_of(half: str, *modalities: str) -> list[str]:
-    """Resolve ``${unseen:test,rgb,depth}`` in a config: clean and unseen corruptions of these.
+    """Resolve ``${unseen:test,rgb,depth}`` in a config to clean and unseen corruptions of these
+    sensors.
 
     ``half``: "validation", "test" or "both".
     """
@@ -36,7 +38,8 @@ OmegaConf.register_new_resolver("unseen", unseen_of, replace=True)
 
 
 def suite_conditions(suite: Mapping[str, Any]) -> list[str]:
-    """Return the names of a suite's conditions. Raises ValueError for a suite without them."""
+    """Return the names of a suite's conditions. Raises ValueError for a suite without
+    conditions."""
     if "conditions" not in suite:
         raise ValueError("suite has no conditions. List them in its file: conditions: [clean, ...]")
     return list(suite["conditions"])
@@ -61,7 +64,7 @@ def conditions(names: list[str], severity: float, severity_depth: float | None) 
     for part in (part for name in names for part in parts(name)):
         if part not in allowed:
             raise ValueError(unknown("condition", part, allowed))
-    severity = check_severity(severity)  # even if all conditions are clean
+    severity = check_severity(severity)  # checked even if all conditions are clean
     depth = severity if severity_depth is None else check_severity(severity_depth)
     corruptions = [
         CLEAN if name == "clean" else check_gate(Corruption(name, severity))

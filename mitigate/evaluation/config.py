@@ -1,6 +1,6 @@
-"""The options of ``conf/evaluate.yaml`` as dataclasses, and names that follow from options.
+"""Define the options of ``conf/evaluate.yaml``, and column and folder names that depend on them.
 
-Trainings share parts of these options. The names are names of columns and folders.
+Training uses parts of these options. The names are those of table columns and output folders.
 """
 
 from __future__ import annotations
@@ -19,10 +19,11 @@ from mitigate.core.addresses import check_choice
 from mitigate.core.conf import CONF
 from mitigate.evaluation import conditions  # noqa: F401 - registers ${suite:...} of conf/suite
 
-# the report at the end of an agent's training
+# name of the report at the end of an agent's training
 REPORT = "mitigate.training.reports.before_after.report_before_after"
-TRAINING_OPTIONS = ("finetune.", "cost.")  # options that affect only the training of an agent
-MOST_WORKERS = 100_000  # on all machines of a launcher together (heuristic)
+TRAINING_OPTIONS = ("finetune.", "cost.")  # agent options that affect only training
+# maximum number of workers on all machines of a launcher together (heuristic)
+MOST_WORKERS = 100_000
 
 Entries = TypeVar("Entries")
 
@@ -39,7 +40,7 @@ class EvaluationConfig:
 
 @dataclass
 class WeightsConfig:
-    """The shipped weights of the chosen kind of agent, if any."""
+    """Paths of the shipped weights for the chosen kind of agent, if there are any."""
 
     base: str | None = None
     teacher: str | None = None
@@ -55,10 +56,10 @@ class FinetuneConfig:
 
 @dataclass
 class CostConfig:
-    """Cost of the chosen kind of agent, relative to the topological agent; None: unknown.
+    """Cost of the chosen kind of agent, relative to the topological agent; None if unknown.
 
-    The estimate at the start of a training uses a step on random views, a step on rollouts and an
-    evaluated episode.
+    The estimate at the start of training uses the costs of a step on random views, a step on
+    rollouts and an evaluated episode.
     """
 
     views: float | None = None
@@ -67,7 +68,8 @@ class CostConfig:
 
 
 def times(cost: float, factor: float | None) -> float | None:
-    """Resolve ``${times:2.7,${cost.episodes}}`` in a config; None where a factor is unknown."""
+    """Resolve ``${times:2.7,${cost.episodes}}`` in a config to the product, or None if a factor is
+    unknown."""
     return None if factor is None else cost * factor
 
 
@@ -76,7 +78,7 @@ OmegaConf.register_new_resolver("times", times, replace=True)
 
 @dataclass
 class EnvConfig:
-    """A file of ``conf/env``; other entries become attributes, too."""
+    """Options in a file of ``conf/env``; entries without a field also become attributes."""
 
     name: str = ""
     world: dict[str, Any] = field(default_factory=dict)
@@ -87,13 +89,13 @@ class EnvConfig:
 
 @dataclass
 class SuiteConfig:
-    """A file of ``conf/suite``; other entries become attributes, too."""
+    """Options in a file of ``conf/suite``; entries without a field also become attributes."""
 
     conditions: list[str] = field(default_factory=list)
 
 
 def open_entries(kind: type[Entries], entries: Mapping[str, Any]) -> Entries:
-    """Return a ``kind`` with ``entries``; entries without a field become attributes, too."""
+    """Construct a ``kind`` from ``entries``; entries without a field also become attributes."""
     declared = {entry.name for entry in fields(kind)}  # type: ignore[arg-type]
     config = kind(**{name: value for name, value in entries.items() if name in declared})
     vars(config).update(entries)
@@ -102,11 +104,12 @@ def open_entries(kind: type[Entries], entries: Mapping[str, Any]) -> Entries:
 
 @dataclass
 class EvaluateConfig:
-    """Types of ``conf/evaluate.yaml``; the meaning of each entry is written there."""
+    """Types of the options in ``conf/evaluate.yaml``, which documents each of them."""
 
     runs: str = "runs"
     checkpoint: str | None = None
-    safeguard: Any = "none"  # text; check_choice checks it, because Hydra would print it
+    # plain text, which check_choice checks, because Hydra would print an invalid value
+    safeguard: Any = "none"
     restore: str | None = None
     adapt: str | None = None
     name: str | None = None
@@ -140,7 +143,7 @@ def read(cfg: DictConfig) -> EvaluateConfig:
     """Return the composed options of an evaluation as typed data.
 
     Raises:
-        ValueError: for an entry that refers to a missing one.
+        ValueError: an entry refers to a missing entry.
     """
     config: EvaluateConfig = conf.typed(cfg, "evaluate")
     config.env = open_entries(EnvConfig, config.env)
@@ -166,16 +169,16 @@ def check(config: EvaluateConfig, overrides: Sequence[str] = ()) -> None:
 
 
 def changed(overrides: Sequence[str]) -> list[str]:
-    """Return the options that change the agent or its input, as parts of a column's name."""
+    """Return the options that change the agent or its input, as parts of a column name."""
     stripped = [option.lstrip("+") for option in overrides]
     relevant = [option for option in stripped if option.startswith(("agent.", "env.size="))]
     return [_plain(option.removeprefix("agent.")).strip("-") for option in relevant]
 
 
 def column_of(name: str, seed: int, folder: Path) -> str:
-    """Return the column of a training: the recipe and the options in the name of its folder.
+    """Return the column name of a training run: its recipe and the options in its folder name.
 
-    Otherwise trainings with other settings would count as other seeds of one column.
+    Otherwise runs with different settings would be treated as different seeds of the same column.
     """
     options = folder.name.partition(f"-seed{seed}-")[2]
     return f"{name}+{options}" if options else name
@@ -184,7 +187,7 @@ def column_of(name: str, seed: int, folder: Path) -> str:
 def default_folder(config: EvaluateConfig, name: str) -> str:
     """Return ``runs/evaluate/<name>-[<world>-]<split>-s<severity>``.
 
-    Worlds of this project are left out, because their names of splits are unique.
+    Worlds of this project are omitted, because their split names are unique.
     """
     custom = not (CONF / "env" / f"{config.env.name}.yaml").is_file()
     split = f"{config.env.name}-{config.split}" if custom else config.split
@@ -192,7 +195,7 @@ def default_folder(config: EvaluateConfig, name: str) -> str:
 
 
 def _severities(config: EvaluateConfig) -> str:
-    """Return the severities, as part of a folder's name."""
+    """Return the severities in the form of a folder name's part."""
     depth = "" if config.severity_depth is None else f"-d{config.severity_depth:g}"
     return f"{config.severity:g}{depth}"
 

@@ -1,4 +1,4 @@
-"""The shortest-path oracle and the random agent of ``mitigate controls``, and their episodes."""
+"""Run the shortest-path oracle and the random agent for ``mitigate controls``."""
 
 from __future__ import annotations
 
@@ -18,11 +18,12 @@ from mitigate.evaluation.episode_lists import episodes
 from mitigate.evaluation.evaluator import EpisodeTask, Job, run_missing
 from mitigate.worlds.world import World, expert_of
 
-_STOP_SHARE = 0.01  # share of STOP in random actions: about 100 actions per episode
+# probability of STOP in random actions, which gives about 100 actions per episode
+_STOP_SHARE = 0.01
 
 
 class OracleAgent:
-    """Takes the actions of the world's expert; it reads no frames."""
+    """Agent that takes the actions of the world's expert and reads no frames."""
 
     def __init__(self, world: World) -> None:
         self.world = world
@@ -35,9 +36,9 @@ class OracleAgent:
 
 
 class RandomAgent:
-    """Random forward, left and right actions, with a small chance of STOP.
+    """Agent with random forward, left and right actions and a small probability of STOP.
 
-    The generator is keyed by ``episode``, an id, because episodes may have equal texts.
+    The random generator is keyed by the id ``episode``, because episodes may have equal texts.
     """
 
     episode = ""
@@ -52,7 +53,7 @@ class RandomAgent:
 
 
 class ControlTask(EpisodeTask):
-    """Runs episodes of a control, one per group; the random agent is keyed by the episode."""
+    """Task that runs episodes of a control agent, one per group."""
 
     def work(self, jobs: Sequence[Job]) -> Iterator[rows.Row]:
         if isinstance(self.agent, RandomAgent):
@@ -61,9 +62,9 @@ class ControlTask(EpisodeTask):
 
 
 def run(config: EvaluateConfig, out: Path) -> list[rows.Row]:
-    """Run both on the episodes of ``config`` and return their rows.
+    """Run both control agents on the episodes of ``config`` and return their rows.
 
-    The rows are also in the folder ``out``; rows that are there already are reused.
+    The rows are also written to the folder ``out``; rows that are already there are reused.
     """
     env, split = config.env, config.split
     chosen = episodes(env, split, config.episodes)

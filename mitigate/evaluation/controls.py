@@ -1,9 +1,9 @@
 """Evaluate the shortest-path oracle and a random agent: ``mitigate controls split=val_unseen``.
 
-They are the bounds of every result: the oracle shows that the episodes of a world can be solved
-with the low-level actions, the random agent shows the success of chance. Both run without
+They bound every result: the oracle shows that the episodes of a world can be solved with the
+low-level actions, and the random agent shows how often chance succeeds. Both run without
 corruption, on the episodes of split=, episodes= and env= (as for mitigate evaluate). out= names the
-folder of the rows (runs/controls). The same command again runs only missing episodes.
+folder of the rows (runs/controls). If the command is run again, it runs only missing episodes.
 """
 
 from __future__ import annotations
@@ -20,11 +20,12 @@ from mitigate.evaluation.bootstrap import share
 from mitigate.evaluation.config import read
 
 OUT = "runs/controls"
-OPTIONS = ("env", "split", "episodes", "out")  # options of an evaluation that apply here
+# options of an evaluation that also apply to this command
+OPTIONS = ("env", "split", "episodes", "out")
 
 
 def main() -> int:
-    """Run from the command line; return the exit status (2 for a bad input)."""
+    """Run from the command line; return the exit status (2 for invalid input)."""
     if {"-h", "--help"} & {*sys.argv[1:]}:
         print(__doc__)
         return 0

@@ -1,4 +1,4 @@
-"""SR against severity: the curves of ``severity.png`` and of the HTML page."""
+"""Compute SR against severity, for the curves of ``severity.png`` and of the HTML page."""
 
 from __future__ import annotations
 
@@ -10,17 +10,17 @@ from mitigate.evaluation import bootstrap
 from mitigate.evaluation.bootstrap import Estimate
 from mitigate.evaluation.grid import METRICS, Grid
 
-RESAMPLES = 2000  # resamples of a point's interval (heuristic)
+RESAMPLES = 2000  # number of resamples for a point's interval (heuristic)
 
 
 @dataclass(frozen=True)
 class Curve:
-    """SR of one column under one corruption.
+    """SR against severity of one column under one corruption.
 
     Attributes:
         column: label of the column.
-        count: number of episodes; all points are over the same seeds and episodes.
-        severities: ascending; begins with 0 if clean episodes were measured.
+        count: number of episodes; all points use the same seeds and episodes.
+        severities: severities in ascending order, starting with 0 if clean episodes were measured.
         points: SR at each severity.
     """
 
@@ -31,7 +31,8 @@ class Curve:
 
 
 def curves(grid: Grid, corruption: str, least: int = 1) -> list[Curve]:
-    """Return the curve of each column that has ``corruption`` at ``least`` or more severities."""
+    """Return the curve of each column that has ``corruption`` at no fewer than ``least``
+    severities."""
     lines = (_curve(grid, column, corruption, least) for column in grid.columns)
     return [line for line in lines if line is not None]
 

@@ -27,7 +27,7 @@ from mitigate.worlds.episodes import Episode
 from mitigate.worlds.motion import with_motion
 from mitigate.worlds.world import Corrupted, World
 
-MOST_STEPS = 100_000  # step limit of an episode (heuristic: 200 times VLN-CE's limit of 500)
+MOST_STEPS = 100_000  # maximum steps of an episode (heuristic: 200 times VLN-CE's limit of 500)
 
 
 def run_episode(
@@ -43,8 +43,8 @@ def run_episode(
     ``decisions`` is the number of observations that the agent read.
 
     Raises:
-        ValueError: A step failed, an action is not a whole number, or the agent or the world
-            raised SystemExit. The message names the episode, the condition and the step.
+        ValueError: A step failed, an action is not an integer, or the agent or the world raised
+            SystemExit. The message names the episode, the condition and the step.
     """
     with _no_exit(_name(episode, corruption)):
         rollout = _Rollout(world, episode, corruption, seed, guards)
@@ -63,7 +63,7 @@ def _name(episode: Episode, corruption: Corruption) -> str:
 
 @contextmanager
 def _no_exit(name: str) -> Iterator[None]:
-    """Raise ValueError in place of SystemExit, which would look like a finished evaluation."""
+    """Raise ValueError instead of SystemExit, which would look like a finished evaluation."""
     try:
         yield
     except SystemExit as error:
@@ -76,10 +76,10 @@ def _no_exit(name: str) -> Iterator[None]:
 
 
 def action_of(answer: Any, agent: Any, space: ActionSpace | None = None) -> Any:
-    """Return the ``answer`` of ``agent`` as an action of ``space``; None: whole numbers.
+    """Return the ``answer`` of ``agent`` as an action of ``space`` (None means integer actions).
 
     Raises:
-        ValueError: It is not such an action.
+        ValueError: The answer is not an action of the space.
     """
     if space is not None:
         try:
@@ -102,10 +102,10 @@ def run_side_by_side(
     jobs: Sequence[tuple[Episode, Corruption, int]],
     guards: Guards = NO_GUARDS,
 ) -> Iterator[dict[str, Any]]:
-    """Run (episode, corruption, seed) of each job, and yield their measures in order.
+    """Run each job (episode, corruption, seed), and yield the measures in order.
 
-    As many episodes run at once as there are worlds. Measures are the same as of
-    :func:`run_episode`. No guard may change the agent.
+    The number of episodes that run at once equals the number of worlds. The measures are the same
+    as with :func:`run_episode`. Guards must not change the agent here.
     """
     waiting, free = deque(enumerate(jobs)), list(worlds)
     running: dict[int, tuple[_Rollout, World, Any]] = {}
@@ -172,7 +172,7 @@ class _Rollout:
         self.steps += 1
 
     def failed(self, error: ValueError) -> ValueError:
-        """Return ``error`` with the episode, the condition and the step in its message."""
+        """Return ``error`` with the episode, the condition and the step added to its message."""
         return ValueError(f"{self.name}, step {self.steps + 1}: {error_message(error)}")
 
     def measures(self) -> dict[str, Any]:
@@ -188,7 +188,7 @@ class _Rollout:
 def instruction(episode: Episode, corruption: Corruption, seed: int) -> str:
     """Return the instruction of ``episode`` under ``corruption``.
 
-    Only English instructions are corrupted.
+    Instructions in other languages are not corrupted.
     """
     text, key = episode.instruction.text, Key(seed, episode.episode_id)
     for part in corruption.parts if is_english(episode.instruction.language, text) else ():
@@ -201,7 +201,7 @@ def start_of(agent: Agent, episode: Episode, corruption: Corruption, seed: int) 
     """Return the input of guards: the corrupted instruction and prompt of an episode.
 
     Raises:
-        ValueError: "white_box" is applied to an agent without a prompt.
+        ValueError: "white_box" is used with an agent that has no system prompt.
     """
     key = Key(seed, episode.episode_id)
     prompt = as_agent(agent).system_prompt
@@ -223,7 +223,7 @@ def instructed(
 ) -> Iterator[None]:
     """Reset the agent with the corrupted and guarded instruction.
 
-    Within the block the agent has the corrupted prompt, and guards are attached to it.
+    Inside the block, the agent has the corrupted prompt, and guards are attached to it.
     """
     contract = as_agent(agent)
     prompt = contract.system_prompt

@@ -1,7 +1,7 @@
-"""Choose the episodes of an evaluation, and keep apart rows of different lists.
+"""Choose the episodes of an evaluation, and separate the rows of different episode lists.
 
-Rows name their split but not the file of its episodes. Therefore the hash of the list is stored
-next to the rows, and rows without common episodes are in different tables.
+Rows contain the split but not the episode file. Therefore the hash of the episode list is stored
+next to the rows, and rows without common episodes appear in different tables.
 """
 
 from __future__ import annotations
@@ -30,11 +30,11 @@ TASKS = {"vln": "follow a route", "ogn": "find an object"}  # descriptions of in
 
 
 def episodes(env: EnvConfig, split: str, count: int | None) -> list[Episode]:
-    """Return ``count`` episodes of a split's shipped list (all, if None), as :func:`spread`.
+    """Return ``count`` episodes of a split's shipped list (all if None), chosen by :func:`spread`.
 
     Raises:
-        ValueError: The split is unknown, the count is below 1, or the list is empty, repeats an id
-            or has an episode without an instruction.
+        ValueError: The split is unknown, the count is below 1, or the list is empty, contains an id
+            twice or has an episode without an instruction.
     """
     from mitigate.worlds.episodes import read_episodes
 
@@ -76,13 +76,12 @@ def training_episodes(world: World, training: Any) -> Callable[[int], Episode]:
 
 
 def spread(listed: Sequence[Episode], count: int | None) -> list[Episode]:
-    """Return ``count`` of the episodes (all, if None), spread evenly over them, in their order.
+    """Return ``count`` episodes (all if None) that are spread evenly over the list, in list order.
 
-    A list is ordered by layout: the first 40 of ``val_unseen`` cover only 4 of its 30 layouts.
-    The chosen indices are those whose multiples of the golden ratio have the smallest fractional
-    parts, which spreads any count evenly. A smaller choice is always a subset of a larger one, so
-    rows of 40 episodes
-    count towards 100.
+    Lists are ordered by layout, so the first 40 episodes of ``val_unseen`` cover only 4 of its 30
+    layouts. The chosen indices are those whose multiples of the golden ratio have the smallest
+    fractional parts, which spreads any count evenly. A smaller choice is always a subset of a
+    larger one, so rows of 40 episodes can be reused for 100.
     """
     chosen = sorted(range(len(listed)), key=lambda i: i * GOLDEN % 1)[:count]
     return [listed[i] for i in sorted(chosen)]
@@ -112,13 +111,13 @@ def check_episodes(source: str, listed: Sequence[Episode]) -> None:
 
 
 def warn_of_tasks(agent: Any, chosen: Sequence[Episode], name: str, split: str) -> None:
-    """Warn about episodes of a task that is not in the agent's ``tasks`` (``agents/agent.py``).
+    """Warn about episodes whose task is not in the agent's ``tasks`` (``agents/agent.py``).
 
     Args:
         agent: the agent.
         chosen: the episodes.
         name: name of the agent.
-        split: a list with tasks of the agent, for the message.
+        split: name of a split with tasks that the agent supports, for the message.
     """
     from mitigate.agents.agent import as_agent
 
@@ -138,18 +137,19 @@ def _in_words(tasks: Sequence[str]) -> str:
     return " or ".join(TASKS.get(task, task) for task in sorted(set(tasks)))
 
 
-LIST_HASH = "episodes-{split}.sha256"  # hash of the episode file of a split
-LARGEST = 1 << 16  # characters of such a file that are read (heuristic; it has one line)
+LIST_HASH = "episodes-{split}.sha256"  # name of the file with the hash of a split's episode file
+LARGEST = 1 << 16  # number of characters of this file that are read (heuristic; it has one line)
 _SHA256 = re.compile(r"[0-9a-f]{64}")
-OLD_LIST = "episodes.sha256"  # the same by older versions: one line per file, for all splits
+# the corresponding file of older versions: one line per episode file, for all splits
+OLD_LIST = "episodes.sha256"
 
 
 def keep_list_hash(folder: Path, split: str, source: str) -> None:
-    """Store the hash of a split's episode file next to the rows, as ``sha256sum`` writes it.
+    """Store the hash of a split's episode file next to the rows, in the format of ``sha256sum``.
 
     Raises:
-        ValueError: The rows belong to another list. Rows name episodes only by id, so they would
-            otherwise count as finished.
+        ValueError: The rows belong to a different episode list. Without this check, such rows would
+            be treated as finished, because rows identify episodes only by id.
     """
     note = folder / LIST_HASH.format(split=split)
     digest = sha256(find(source))
@@ -164,7 +164,7 @@ def keep_list_hash(folder: Path, split: str, source: str) -> None:
 
 
 def _list_hashes(folder: Path, split: str, source: str) -> list[str]:
-    """Return the hashes of the lists that the rows of ``split`` may belong to; empty if unknown.
+    """Return the hashes of the lists to which rows of ``split`` may belong, or none if unknown.
 
     Older versions stored the hashes of all splits in one file, by path.
     """
@@ -186,9 +186,9 @@ def _list_hashes(folder: Path, split: str, source: str) -> list[str]:
 
 
 def by_list(rows: Iterable[Row]) -> list[list[Row]]:
-    """Return the rows of each list, in the order of their first rows.
+    """Return the rows of each episode list, ordered by the first row of each list.
 
-    Agents with a common episode belong to one list, directly or through other agents.
+    Agents that have an episode in common belong to the same list, directly or through other agents.
     """
     rows = list(rows)
     by_agent: dict[tuple[str, str], set[str]] = defaultdict(set)

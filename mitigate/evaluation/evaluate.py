@@ -1,7 +1,7 @@
 """Evaluate an agent: ``mitigate evaluate checkpoint=checkpoints/base split=val_seen``.
 
-Writes one JSON line per episode and condition to ``rows.jsonl`` in the output folder. The same
-command again runs only what is missing.
+One JSON line per episode and condition is written to ``rows.jsonl`` in the output folder. If the
+command is run again, it runs only missing episodes.
 """
 
 from __future__ import annotations
@@ -26,19 +26,20 @@ from mitigate.evaluation.config import EvaluateConfig, changed, default_folder
 from mitigate.evaluation.episode_lists import episodes, training_episodes, warn_of_tasks
 from mitigate.evaluation.rows import ROWS
 
-DECISIONS = "safeguard.jsonl"  # log of a safeguard's decision on each instruction
+DECISIONS = "safeguard.jsonl"  # name of the log with a safeguard's decision on each instruction
 
 
 def run(cfg: DictConfig, overrides: Sequence[str] = ()) -> Path:
-    """Evaluate the weights ``cfg.checkpoint`` and return the folder with the rows and the table.
+    """Evaluate the weights in ``cfg.checkpoint``, and return the folder with the rows and the
+    table.
 
     Args:
         cfg: the composed options.
-        overrides: options of the command line. Those of the agent (``agent.blind=[rgb]``) take
-            precedence over the settings of the weights and are part of the column's name.
+        overrides: options of the command line. Options of the agent (``agent.blind=[rgb]``) take
+            precedence over the settings of the weights and become part of the column name.
 
     Raises:
-        ValueError: The split or a condition is unknown, weights are not named, the agent lacks
+        ValueError: The split or a condition is unknown, no weights are given, the agent lacks
             ``reset`` or ``act``, or the world lacks a sensor.
         FileNotFoundError: Weights are missing.
     """
@@ -48,7 +49,7 @@ def run(cfg: DictConfig, overrides: Sequence[str] = ()) -> Path:
 
 
 def evaluate_agent(config: EvaluateConfig, overrides: Sequence[str] = ()) -> Path:
-    """Evaluate as :func:`run`, with typed options that were checked."""
+    """Evaluate like :func:`run`, but with typed options that were already checked."""
     env = config.env
     where = launcher.chosen(config.launcher)
     chosen = episodes(env, config.split, config.episodes)
@@ -75,7 +76,7 @@ def evaluate_agent(config: EvaluateConfig, overrides: Sequence[str] = ()) -> Pat
     with FolderLock(out) as lock:
         provenance.keep(out, first, made_by, config.split, chosen, env.episodes[config.split])
         lock.expect(out / ROWS, *provenance.notes(out, config.split))
-        print(  # after all checks, so that an error is the only output
+        print(  # printed after all checks, so that an error is the only output
             f"evaluate: {config.checkpoint or name} on {config.split}, "
             f"{counted(len(chosen), 'episode')} x {counted(len(met), 'condition')} at severity "
             f"{config.severity:g}",
@@ -101,7 +102,7 @@ def evaluate_agent(config: EvaluateConfig, overrides: Sequence[str] = ()) -> Pat
 
 
 def _column(config: EvaluateConfig, overrides: Sequence[str]) -> str:
-    """Return the table's column: the weights, options that change the agent, and its guards."""
+    """Return the column name: the weights, the options that change the agent, and its guards."""
     from mitigate.guards.opening import labels
 
     default_name = name_of(config.checkpoint or config.agent["_target_"].rpartition(".")[2])
@@ -127,14 +128,14 @@ def load(
     """Return an agent in eval mode.
 
     Args:
-        node: the config of the agent; settings stored with the weights replace its values.
-        weights: file or folder of the weights; None: an agent without weights.
-        seed: seed of initial weights.
+        node: the config of the agent; settings that are stored with the weights replace its values.
+        weights: file or folder of the weights, or None for an agent without weights.
+        seed: seed of random initial weights.
         overrides: options of the command line, which take precedence.
 
     Raises:
         FileNotFoundError: The weights are missing.
-        ValueError: The weights do not fit, or the agent needs weights.
+        ValueError: The weights do not match the agent, or the agent needs weights.
     """
     from mitigate.agents import building
 
@@ -154,7 +155,7 @@ def load(
 def write_table(files: list[Path], out: Path, selected: list[dict[str, Any]] | None = None) -> None:
     """Join row files into ``out/table.md`` and pictures, and print the table.
 
-    ``selected``: rows to print if the files hold others, too; None: all.
+    ``selected`` contains the rows to use if the files also hold other rows; None uses all.
     """
     from mitigate.evaluation import report, rows
     from mitigate.evaluation.sections import sections
@@ -172,12 +173,12 @@ def write_table(files: list[Path], out: Path, selected: list[dict[str, Any]] | N
 
 @hydra.main(version_base="1.3", config_path=str(conf.CONF), config_name="evaluate")
 def hydra_main(cfg: DictConfig) -> None:
-    """Run as Hydra's entry point."""
+    """Entry point for Hydra."""
     run(cfg, HydraConfig.get().overrides.task)
 
 
 def _add_kind_of_agent() -> None:
-    """Add the kind of agent of its weights to the command line."""
+    """Add the kind of agent that the weights belong to to the command line."""
     if any("checkpoint=" in option for option in sys.argv[1:]):
         from mitigate.agents.building import with_kind
 

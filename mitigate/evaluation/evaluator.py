@@ -1,10 +1,10 @@
-"""Closed-loop evaluation: all agents run the same episodes with the same random keys.
+"""Evaluate agents in closed loop, on the same episodes with the same random keys.
 
-The result of an episode does not depend on other episodes. Each row is written once it is computed,
-and an interrupted evaluation continues where it stopped. All conditions of an episode run in one
-process, which caches renderings and features. Equal frames give equal features, so the cache does
-not change results. An agent with ``together`` > 1 (``agents/agent.py``) runs several episodes at
-once.
+The result of an episode does not depend on other episodes. Each row is written as soon as it is
+computed, and an interrupted evaluation resumes where it stopped. All conditions of an episode run
+in one process, which caches renderings and features. Identical frames give identical features, so
+the cache does not change results. An agent with ``together`` > 1 (``agents/agent.py``) runs several
+episodes at once.
 """
 
 from __future__ import annotations
@@ -43,17 +43,18 @@ from mitigate.guards.guard import NO_GUARDS, Guards
 from mitigate.worlds.episodes import Episode
 from mitigate.worlds.world import World, as_world
 
-WORTH = 40  # episodes that justify starting a process (heuristic): 4 s of 0.1 s each
-LOCAL = LauncherConfig()  # worker processes on this machine
-_PAUSE = 1.0  # smallest time between two writes in seconds
+WORTH = 40  # minimum number of episodes per process (heuristic): 4 s at 0.1 s each
+LOCAL = LauncherConfig()  # the default launcher: worker processes on this machine
+_PAUSE = 1.0  # minimum seconds between two writes
 
-# episode, corruption and the row's entries other than measures
+# episode, corruption, and the entries of the row except measures
 Job = tuple[Episode, Corruption, dict[str, Any]]
 
 
 @dataclass
 class EpisodeTask:
-    """Run jobs (``mitigate/core/workers.py``); the result of a job is its label with its measures.
+    """Task that runs jobs (``mitigate/core/workers.py``) and returns each row's label with
+    measures.
 
     Each process calls ``make_world``. A label holds "seed". ``classes`` is the hash in ``Known``,
     which worker processes compare with their own. ``streams`` holds all jobs of a condition in
@@ -73,10 +74,10 @@ class EpisodeTask:
 
     @contextmanager
     def ready(self) -> Iterator[None]:
-        """Use one torch thread, fp32 and eval mode within the context.
+        """Use one torch thread, fp32 and eval mode inside the context.
 
-        Results then do not depend on the number of processes, nor on a surrounding training in
-        bf16. Afterwards the networks have their former mode.
+        So results do not depend on the number of processes, nor on a surrounding training run in
+        bf16. Afterwards, the previous modes of the networks are restored.
         """
         threads = torch.get_num_threads()
         torch.set_num_threads(1)
@@ -91,7 +92,8 @@ class EpisodeTask:
             torch.set_num_threads(threads)
 
     def work(self, jobs: Sequence[Job]) -> Iterator[dict[str, Any]]:
-        """Yield the rows of ``jobs``, preferably of one episode, because frames are cached."""
+        """Yield the rows of ``jobs``, which should belong to one episode, because frames are
+        cached."""
         assert self.world is not None, "work() is called while ready()"
         # features that were computed before an adaptation must not be used after it
         agent_memory = nullcontext() if self.guards.adapts else as_agent(self.agent).remembering()
@@ -114,8 +116,8 @@ class EpisodeTask:
     ) -> Iterator[dict[str, Any]]:
         """Yield the measures of each (episode, corruption, seed), in order.
 
-        Episodes run one after the other if the agent itself changes: its prompt by a corruption, or
-        the agent by a guard.
+        Episodes run one after the other if a corruption changes the agent's prompt or a guard
+        changes the agent.
         """
         count = _together(self.agent, world)
         prompted = any("white_box" in parts(corruption.name) for _, corruption, _ in runs)
@@ -127,13 +129,13 @@ class EpisodeTask:
             yield run_episode(self.agent, world, *run, self.guards)
 
     def name(self, job: Job) -> str:
-        """Return the episode and its condition."""
+        """Return a text with the episode and its condition."""
         return f"episode {job[0].episode_id}, {job[1].name}"
 
 
 def _together(agent: Any, world: Any) -> int:
-    """Return how many episodes the agent can run at once in such worlds."""
-    # an inherited or delegated ``beside()`` may make worlds of another class
+    """Return how many episodes the agent can run at once in worlds of this kind."""
+    # an inherited or delegated ``beside()`` may return worlds of a different class
     defined = "beside" in vars(type(world))
     return as_agent(agent).together if defined else 1
 
@@ -160,28 +162,29 @@ def evaluate(
 ) -> list[dict[str, Any]]:
     """Evaluate an agent and return its rows, which are also in the file ``out``.
 
-    The entry ``agent`` of a row is the fingerprint of the agent with its sensors and guards. Rows
-    do not depend on ``workers`` and ``launcher``.
+    The entry ``agent`` in a row is the fingerprint of the agent, including its sensors and guards.
+    Rows do not depend on ``workers`` or ``launcher``.
 
     Args:
         agent: any object with the interface in ``agents/agent.py``.
-        world: makes a world, in each process.
+        world: function that constructs a world in each process.
         episodes: the episodes.
-        conditions: corruptions, with ``CLEAN`` for the PRS. "white_box" is left out with a warning
-            if the agent has no ``system_prompt``.
+        conditions: the corruptions, including ``CLEAN`` for the PRS. "white_box" is skipped with a
+            warning if the agent has no ``system_prompt``.
         name: column of the table.
         out: file of the rows.
-        split: entry of the rows.
+        split: name of the split in the rows.
         seed: corruption seed.
-        workers: processes; None: one per core if there is enough work.
-        launcher: the machines of the workers (``cluster/launcher.py``).
+        workers: number of processes; None means one per core if there is enough work.
+        launcher: where the workers run (``cluster/launcher.py``).
         guards: guards between the world and the agent (``guards/guard.py``).
-        version: the user's name for state of the agent that cannot be read, so that its rows can be
-            reused (``agents/fingerprint.py``).
-        known: the agent's fingerprint, if it was computed before.
+        version: string that identifies state of the agent that cannot be read, so that its rows can
+            be reused (``agents/fingerprint.py``).
+        known: the agent's fingerprint, if it was computed earlier.
 
     Raises:
-        ValueError: ``out`` holds rows of this fingerprint, and the agent cannot be read completely.
+        ValueError: ``out`` already holds rows of this fingerprint, but the agent's state cannot be
+            read completely.
         WorkersDied: Worker processes died more than once; ``out`` holds the finished rows.
     """
     out = Path(out)
@@ -257,7 +260,8 @@ def run_missing(
 def _jobs(
     episodes: list[Episode], conditions: list[Corruption], label: dict[str, Any]
 ) -> list[Job]:
-    """Return all jobs, episode by episode, each with the entries of its row except measures."""
+    """Return all jobs in the order of episodes, each with the entries of its row except
+    measures."""
     return [
         (
             episode,
@@ -276,7 +280,7 @@ def _jobs(
 
 
 def _applicable(agent: Any, conditions: list[Corruption], name: str) -> list[Corruption]:
-    """Return the conditions that apply to the agent, and warn about the others."""
+    """Return the conditions that apply to the agent, and warn about other conditions."""
     if as_agent(agent).system_prompt:
         return conditions
     applicable = [one for one in conditions if "white_box" not in parts(one.name)]
@@ -314,7 +318,7 @@ def _by_condition(jobs: list[Job]) -> dict[tuple[str, float], list[Job]]:
 
 
 def _groups(jobs: list[Job], least: int) -> list[list[Job]]:
-    """Return groups of at least ``least`` jobs, each of one or more whole episodes."""
+    """Return groups of at least ``least`` jobs, each with one or more complete episodes."""
     groups: list[list[Job]] = []
     for _, group in groupby(jobs, lambda job: job[0].episode_id):
         if groups and len(groups[-1]) < least:
@@ -325,7 +329,7 @@ def _groups(jobs: list[Job], least: int) -> list[list[Job]]:
 
 
 def _write(results: Iterable[tuple[int, Any] | None], out: Path, progress: Progress) -> None:
-    """Append rows to ``out`` every ``_PAUSE`` seconds, and at the end, also after an error."""
+    """Append rows to ``out`` every ``_PAUSE`` seconds and at the end, even after an error."""
     pending: list[dict[str, Any]] = []
     last_write = time.monotonic()
     try:
@@ -335,7 +339,7 @@ def _write(results: Iterable[tuple[int, Any] | None], out: Path, progress: Progr
                 progress.advance()
             if pending and time.monotonic() - last_write >= _PAUSE:
                 done = pending
-                pending = []  # reset first, so that a failing write is not repeated below
+                pending = []  # reset before writing, so that a failing write is not repeated below
                 last_write = time.monotonic()
                 rows.append(out, done)
     finally:
@@ -344,10 +348,9 @@ def _write(results: Iterable[tuple[int, Any] | None], out: Path, progress: Progr
 
 
 def _in_order(out: Path, identities: list[tuple]) -> list[dict[str, Any]]:
-    """Sort the rows with these identities in the file ``out`` and return them (``rows.unique``).
+    """Sort the rows with these identities in the file ``out``, and return them (``rows.unique``).
 
-    They only exchange places with each other; the file then does not depend on the number of
-    processes.
+    Only these rows change places, so that the file does not depend on the number of processes.
 
     Raises:
         FolderLostError: Rows are missing.

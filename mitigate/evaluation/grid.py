@@ -1,6 +1,6 @@
-"""Result rows arranged for tables: columns (agents) x conditions x episodes, and their gaps.
+"""Arrange result rows for tables by column (agent), condition and episode, and find gaps.
 
-Rows of different splits, lists of episodes, suite versions or success rules are in different
+Rows with different splits, episode lists, suite versions or success rules are in different
 :class:`Grid` objects.
 """
 
@@ -30,7 +30,7 @@ from mitigate.evaluation import metrics
 from mitigate.evaluation.episode_lists import by_list
 from mitigate.evaluation.rows import Row, cuts, scene_of, upsert
 
-BLOCKS = {  # corruptions of this project; other packages have no block
+BLOCKS = {  # blocks of this project's corruptions; those of other packages have no block
     "RGB": names("rgb"),
     "Depth": names("depth"),
     "Instruction": names("instruction"),
@@ -39,7 +39,7 @@ BLOCKS = {  # corruptions of this project; other packages have no block
     **{f"{family} faults": fault_names(family) for family in FAMILIES},
 }
 FRAMES = frozenset((*BLOCKS["RGB"], *BLOCKS["Depth"]))  # the paper's corruptions of frames
-# each kind has its own table
+# each of these kinds has its own table
 SUITE, UNSEEN_KIND, PAIRS = "", "unseen corruptions", "pairs of corruptions"
 KINDS = (SUITE, UNSEEN_KIND, *(f"{family} faults" for family in FAMILIES), PAIRS)
 PROMPT_ONLY = "white_box"  # agents without a system prompt have no rows of this corruption
@@ -48,8 +48,8 @@ PROMPT_ONLY = "white_box"  # agents without a system prompt have no rows of this
 def kind(corruption: str) -> str:
     """Return the table of a corruption, one of :data:`KINDS`.
 
-    Corruptions of other packages are in the table of the suite. A pair with ``intermittent`` is a
-    temporal fault.
+    Corruptions of other packages belong to the table of the suite. A pair with ``intermittent``
+    is a temporal fault.
     """
     if AND in corruption and parts(corruption)[0] != GATE:
         return PAIRS
@@ -61,8 +61,8 @@ def kind(corruption: str) -> str:
 def by_kind(rows: Iterable[Row]) -> dict[str, list[Row]]:
     """Return the rows of each table, with the clean rows of its agents.
 
-    The numbers of the suite then do not depend on other measurements. Agents without corrupted rows
-    are in the table of the suite.
+    So the numbers in the table of the suite do not depend on other measurements. Agents without
+    corrupted rows are in the table of the suite.
     """
     rows = list(rows)
     kinds = {row["corruption"]: kind(row["corruption"]) for row in rows}
@@ -83,10 +83,10 @@ def _column(row: Row) -> tuple:
 
 
 def expected_corruptions(block: str, measured: Sequence[str]) -> tuple[str, ...]:
-    """Return the corruptions that a complete PRS over ``block`` covers, given those ``measured``.
+    """Return the corruptions that a complete PRS over ``block`` needs, given those ``measured``.
 
-    :data:`PROMPT_ONLY` counts only if it was measured, and a half of the unseen corruptions only if
-    at least one of them was.
+    :data:`PROMPT_ONLY` is needed only if it was measured, and a half of the unseen corruptions only
+    if at least one of them was measured.
     """
     every = tuple(n for n in BLOCKS.get(block, measured) if n in measured or n != PROMPT_ONLY)
     halves = {UNSEEN[name].half for name in measured if name in UNSEEN}
@@ -108,10 +108,10 @@ def halves(blocks: dict[str, tuple[str, ...]]) -> dict[str, dict[str, tuple[str,
 def label_columns(
     measured: Iterable[tuple[str, str, int]],
 ) -> dict[str, tuple[str, tuple[str, ...]]]:
-    """Return label -> (name, agents) of all (name, agent sha, seed).
+    """Return a dict from column labels to (name, agents), given all (name, agent sha, seed).
 
-    Agents of one name with distinct seeds are the training seeds of one column. Otherwise each
-    agent has its column, with its sha in the label.
+    Agents with the same name and different seeds are the training seeds of one column. Otherwise
+    each agent has a separate column, with its sha in the label.
     """
     seeds: dict[str, dict[str, set[int]]] = defaultdict(lambda: defaultdict(set))
     for name, agent, seed in measured:
@@ -128,7 +128,7 @@ def label_columns(
 
 
 def _unique_digits(agents: Iterable[str]) -> int:
-    """Return how many first digits, at least 6, distinguish ``agents``."""
+    """Return how many leading digits (at least 6) distinguish ``agents``."""
     agents = set(agents)
     digits = 6
     while len({agent[:digits] for agent in agents}) < len(agents):
@@ -136,16 +136,17 @@ def _unique_digits(agents: Iterable[str]) -> int:
     return digits
 
 
-COVERAGE = 0.9  # share of the clean episodes that a corruption in a PRS must have (heuristic)
+# minimum fraction of the clean episodes that a corruption in a PRS must have (heuristic)
+COVERAGE = 0.9
 METRICS = {"SR": "success", "SPL": "spl"}
-STEPS = "steps"  # the cells also have this value, for the HTML page
-DRAWN = ("episode", "scene")  # units that the bootstrap may draw
-_Run = dict[tuple[str, float, str], np.ndarray]  # (corruption, severity, metric): values [N]
+STEPS = "steps"  # the cells also contain this value for the HTML page
+DRAWN = ("episode", "scene")  # units that the bootstrap can resample
+_Run = dict[tuple[str, float, str], np.ndarray]  # maps (corruption, severity, metric) to values [N]
 
 
 @dataclass(frozen=True)
 class Gap:
-    """A cell with missing episodes: it has ``have`` of ``want``."""
+    """A table cell with missing episodes, which has ``have`` of ``want`` episodes."""
 
     column: str
     corruption: str
@@ -156,13 +157,13 @@ class Gap:
 
 @dataclass(frozen=True, eq=False)
 class Retention:
-    """The values of a PRS.
+    """The values from which a PRS is computed.
 
     Attributes:
         corruptions: names of the K corruptions.
         clean: [N].
-        corrupted: [K, N], on the same N episodes.
-        units: [N]; the bootstrap draws episodes with equal numbers together.
+        corrupted: [K, N], for the same N episodes.
+        units: [N]; the bootstrap resamples episodes with equal numbers together.
     """
 
     corruptions: tuple[str, ...]
@@ -172,31 +173,31 @@ class Retention:
 
     @property
     def prs(self) -> float:
-        """The PRS; NaN if the clean value is 0."""
+        """The PRS, or NaN if the clean value is 0."""
         return metrics.prs(float(self.clean.mean()), self.corrupted.mean(axis=1))
 
 
 @dataclass(frozen=True, eq=False)
 class Grid:
-    """All results of one split, list of episodes, suite version and success rule.
+    """All results of one split, episode list, suite version and success rule.
 
     Attributes:
         split: name of the split.
         suite: version of the corruption suite.
         rule: success rule.
-        columns: (name, agent shas) by the label of a column.
+        columns: (name, agent shas) by column label.
         agents: ``agents[label][seed]`` is the sha of the agent of a seed.
         seeds: pooled seeds by (label, severity).
-        unfinished: seeds that are left out, by (label, severity), with the number of their rows and
+        unfinished: seeds that are excluded, by (label, severity), with the number of their rows and
             the number of rows of a complete seed.
         episodes: ids of the N episodes.
-        cells: float64 [N] by (label, corruption, severity, metric), the mean over ``seeds``; NaN
-            where a row is missing. There is one clean cell per severity, over its seeds.
-        runs: ``runs[label][seed]`` are the cells of a seed by (corruption, severity, metric).
-        drawn: unit that the bootstrap draws, one of :data:`DRAWN`.
-        units: [N]; episodes with equal numbers are drawn together.
-        cut: text by label on how many episodes a limit cut, if any.
-        begins: id of the first episode if another grid differs only in its list, else empty.
+        cells: float64 [N] by (label, corruption, severity, metric), the mean over ``seeds``, or NaN
+            if a row is missing. There is one clean cell per severity, over its seeds.
+        runs: ``runs[label][seed]`` holds the cells of a seed by (corruption, severity, metric).
+        drawn: unit that the bootstrap resamples, one of :data:`DRAWN`.
+        units: [N]; episodes with equal numbers are resampled together.
+        cut: text by label on how many episodes were cut by a limit, if any.
+        begins: id of the first episode if a different grid differs only in its list, else empty.
     """
 
     split: str
@@ -216,16 +217,17 @@ class Grid:
 
     @property
     def heading(self) -> str:
-        """The split, and with several lists also the first episode of this one."""
+        """The name of the split, with the first episode if there are several lists."""
         return f"{self.split} from {self.begins}" if self.begins else self.split
 
     def cell(self, label: str, corruption: str, severity: float, metric: str) -> np.ndarray:
-        """Return the values [N] of a cell; all NaN if nothing was measured."""
+        """Return the values [N] of a cell, which are all NaN if nothing was measured."""
         empty = np.full(len(self.episodes), np.nan)
         return self.cells.get((label, corruption, severity, metric), empty)
 
     def over(self, labels: Iterable[str], seeds: Iterable[int], severity: float) -> Grid:
-        """Return the grid of columns at ``severity`` with only ``seeds``, which all must have."""
+        """Return the grid of columns at ``severity`` with only ``seeds``, which all columns must
+        have."""
         seeds = tuple(seeds)
         cells = {
             (label, name, severity, metric): values
@@ -237,42 +239,42 @@ class Grid:
         return replace(self, cells=cells)
 
     def paired(self, labels: Iterable[str], severity: float) -> Grid:
-        """Return the grid for comparing columns, over their common seeds if there are any.
+        """Return a grid for comparing columns, with only their common seeds if there are any.
 
-        Corruptions of common seeds have the same keys.
+        With common seeds, corruptions have the same random keys.
         """
         labels = tuple(labels)
         common = self.common(labels, severity)
         return self.over(labels, common, severity) if common else self
 
     def common(self, labels: Iterable[str], severity: float) -> list[int]:
-        """Return the seeds that all of ``labels`` have at ``severity``."""
+        """Return the seeds that all columns ``labels`` have at ``severity``."""
         return sorted(set.intersection(*(set(self.seeds[label, severity]) for label in labels)))
 
     @cached_property
     def severities(self) -> list[float]:
-        """The severities of the corrupted cells, ascending, without 0."""
+        """The severities of the corrupted cells in ascending order, without 0."""
         return sorted({severity for _, _, severity, _ in self.cells if severity > 0})
 
     @cached_property
     def corruptions(self) -> list[str]:
-        """The measured corruptions, in the order of the blocks, then others."""
+        """The measured corruptions in the order of the blocks, followed by all others."""
         measured = {name for _, name, _, _ in self.cells if name != "clean"}
         known = [name for block in BLOCKS.values() for name in block if name in measured]
         return known + sorted(measured.difference(known))
 
     def columns_at(self, severity: float) -> list[str]:
-        """Return the columns with a cell at ``severity``."""
+        """Return the columns that have a cell at ``severity``."""
         measured = {label for label, _, at, _ in self.cells if at == severity}
         return [label for label in self.columns if label in measured]
 
     def agents_at(self, label: str, severity: float) -> list[str]:
-        """Return the shas of the agents of a column at ``severity``, seed by seed."""
+        """Return the shas of a column's agents at ``severity``, in the order of seeds."""
         return [*dict.fromkeys(self.agents[label][s] for s in self.seeds[label, severity])]
 
     def blocks_at(self, severity: float) -> dict[str, tuple[str, ...]]:
-        """Return the measured corruptions at ``severity`` by block; "Pairs" holds the pairs of
-        corruptions, "Other" the rest."""
+        """Return the measured corruptions at ``severity`` by block; the block "Pairs" holds pairs
+        of corruptions, and "Other" all remaining ones."""
         measured = {name for _, name, at, _ in self.cells if at == severity and name != "clean"}
         rest = sorted(measured.difference(*BLOCKS.values()))
         more = {"Pairs": [n for n in rest if AND in n], "Other": [n for n in rest if AND not in n]}
@@ -283,17 +285,17 @@ class Grid:
         return {block: names for block, names in blocks.items() if names}
 
     def measured(self, label: str, severity: float, metric: str = "success") -> np.ndarray:
-        """Return which episodes [N] the clean cell of a column at ``severity`` has."""
+        """Return a mask [N] of the episodes in the clean cell of a column at ``severity``."""
         return ~np.isnan(self.cell(label, "clean", severity, metric))
 
     def retention(
         self, labels: Sequence[str], names: Iterable[str], severity: float, metric: str
     ) -> list[Retention] | None:
-        """Return the values of each column's PRS over ``names``, or None without values.
+        """Return the values for each column's PRS over ``names``, or None if there are none.
 
-        All columns have the same corruptions and episodes: the corruptions that every column
-        measured on at least :data:`COVERAGE` of the episodes, and the episodes without a gap in
-        these.
+        All columns use the same corruptions and episodes: those corruptions that every column
+        measured on at least a fraction :data:`COVERAGE` of the episodes, and the episodes that have
+        no gap under these.
         """
         known = np.all([self.measured(label, severity, metric) for label in labels], axis=0)
         complete = {
@@ -315,7 +317,7 @@ class Grid:
         ]
 
     def gaps(self, severity: float) -> list[Gap]:
-        """Return the cells of the table at ``severity`` with missing episodes."""
+        """Return the cells of the table at ``severity`` that have missing episodes."""
         blocks = self.blocks_at(severity)
         conditions = ["clean", *(name for names in blocks.values() for name in names)]
         gaps = []
@@ -329,14 +331,15 @@ class Grid:
 
 
 def grids(rows: Iterable[Row], drawn: str = DRAWN[0]) -> list[Grid]:
-    """Return the grids of ``rows``, ordered by split, suite and rule, then by first rows of lists.
+    """Return the grids of ``rows``, ordered by split, suite and rule, and then by list.
 
     Args:
         rows: result rows.
-        drawn: unit that the bootstrap draws, one of :data:`DRAWN`.
+        drawn: unit that the bootstrap resamples, one of :data:`DRAWN`.
 
     Raises:
-        ValueError: There are no rows, or scenes are drawn and rows do not name their scene.
+        ValueError: There are no rows, or scenes are to be resampled but rows do not name their
+            scene.
     """
     groups: dict[tuple[str, str, str], list[Row]] = defaultdict(list)
     for row in upsert(rows):
@@ -398,10 +401,11 @@ def _cells(rows: list[Row], place: dict[str, int]) -> _Run:
 def _complete_seeds(
     runs: dict[int, _Run], severity: float
 ) -> tuple[tuple[int, ...], dict[int, tuple[int, int]]]:
-    """Return the seeds to pool at ``severity``, and the others with (their rows, expected rows).
+    """Return the seeds to pool at ``severity``, and the other seeds with (actual rows, expected
+    rows).
 
-    A seed is pooled if it has :data:`COVERAGE` of the largest number of rows, both clean and
-    corrupted. Seeds without rows at ``severity`` are in neither result.
+    A seed is pooled if it has at least a fraction :data:`COVERAGE` of the largest number of rows,
+    both clean and corrupted. Seeds without rows at ``severity`` are in neither result.
     """
 
     def rows(run: _Run, at: float) -> int:
@@ -425,7 +429,7 @@ def _complete_seeds(
 
 
 def _pooled(runs: list[_Run], severity: float) -> dict[tuple[str, str], np.ndarray]:
-    """Return the mean over seeds of the clean and the corrupted cells of ``severity``."""
+    """Return the mean over seeds of the clean and the corrupted cells at ``severity``."""
     keys = {
         (name, at, metric)
         for run in runs

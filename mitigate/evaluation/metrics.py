@@ -1,4 +1,4 @@
-"""The paper's Performance Retention Score (PRS)."""
+"""Compute the Performance Retention Score (PRS) of the NavTrust paper."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import math
 import numpy as np
 from numpy.typing import ArrayLike
 
-FLOOR = 0.10  # a PRS is meaningless for a lower clean SR or SPL (heuristic; random walks: < 0.05)
+FLOOR = 0.10  # minimum clean SR or SPL for a meaningful PRS (heuristic; random walks have < 0.05)
 
 
 def prs(clean: float, corrupted: ArrayLike) -> float:
@@ -17,10 +17,10 @@ def prs(clean: float, corrupted: ArrayLike) -> float:
 
     Args:
         clean: the agent's SR or SPL without corruption.
-        corrupted: [K], the same under each corruption.
+        corrupted: [K], the SR or SPL under each corruption.
 
     Returns:
-        The PRS; NaN if ``clean`` is 0.
+        The PRS, or NaN if ``clean`` is 0.
     """
     values = np.asarray(corrupted, float)
     if values.ndim != 1 or not len(values):

@@ -1,4 +1,4 @@
-"""Pictures of the results: a heatmap like the paper's, and SR against severity."""
+"""Draw pictures of the results: a heatmap as in the paper, and SR against severity."""
 
 from __future__ import annotations
 
@@ -15,20 +15,22 @@ from mitigate.evaluation.curves import curves
 from mitigate.evaluation.grid import Grid
 from mitigate.evaluation.sections import Section, label
 
-COLOURS = mpl.colormaps["viridis"]  # readable without colour vision; bright is good
+COLOURS = mpl.colormaps["viridis"]  # readable without colour vision; bright means good
 LINES = [mpl.colormaps["tab10"](index) for index in range(10)]
 DASHES = ("-", "--", "-.", ":")
-WIDTH, MARKER = 1.2, 3.0  # points: width of a line and size of its markers
-RIM, LARGEST = 1.4, 8.0  # points: how much markers shrink per column; the largest marker
+WIDTH, MARKER = 1.2, 3.0  # width of a line and size of its markers, in points
+# decrease of the marker size per column, and the largest marker size, in points
+RIM, LARGEST = 1.4, 8.0
 DPI = 150
 STACKED = 5  # number of columns from which the panels of a heatmap are stacked vertically
 
 
 def heatmap(section: Section, path: Path | str) -> Path:
-    """Draw one panel per block: rows PRS-SR, PRS-SPL, clean and the corruptions; columns agents.
+    """Draw one panel per block, with rows for PRS-SR, PRS-SPL, clean and corruptions, one column
+    per agent.
 
-    A cell shows SR (%) / SPL; its colour is SR divided by the best clean SR. The colour of a PRS is
-    the PRS. With many agents the panels are stacked vertically.
+    A cell shows SR (%) / SPL; its colour is SR divided by the best clean SR. A PRS is coloured by
+    its own value. With many agents the panels are stacked vertically.
     """
     rows = [3 + len(names) for names in section.blocks.values()]
     width, narrow = 1.6 + 1.15 * len(section.columns), len(section.columns) < STACKED
@@ -54,7 +56,7 @@ def heatmap(section: Section, path: Path | str) -> Path:
 def severity_curves(grid: Grid, path: Path | str) -> Path:
     """Draw SR (%) against severity, one panel per corruption, with 95 % bootstrap bands.
 
-    Where lines coincide, all are visible: later ones have dashes and smaller markers.
+    If lines coincide, all remain visible, because later lines have dashes and smaller markers.
     """
     names = grid.corruptions
     across = min(4, len(names))
@@ -86,7 +88,7 @@ def severity_curves(grid: Grid, path: Path | str) -> Path:
 
 def text_colour(value: float) -> str:
     """Return the colour of text on a cell with ``value`` in [0, 1] in :data:`COLOURS`."""
-    return "white" if value < 0.6 else "black"  # NaN has no colour: black
+    return "white" if value < 0.6 else "black"  # NaN has no colour, so the text is black
 
 
 def _panel(axis: Axes, section: Section, block: str, names: tuple[str, ...]) -> None:
@@ -118,7 +120,7 @@ def _panel(axis: Axes, section: Section, block: str, names: tuple[str, ...]) -> 
 
 
 def _draw_curves(axis: Axes, grid: Grid, name: str) -> None:
-    """Draw the curves of one panel; coinciding curves have other dashes and smaller markers."""
+    """Draw the curves of one panel; coinciding curves have different dashes and smaller markers."""
     columns = list(grid.columns)
     rim = min(RIM, (LARGEST - MARKER) / len(columns))
     for curve in curves(grid, name):
@@ -140,7 +142,7 @@ def _draw_curves(axis: Axes, grid: Grid, name: str) -> None:
 
 
 def plain(name: str) -> str:
-    """Escape a name for matplotlib: no formula, and visible in the legend."""
+    """Escape a name for matplotlib, so that it is not a formula and is visible in the legend."""
     return name.replace("$", r"\$").replace("_", " _", name.startswith("_"))
 
 

@@ -1,8 +1,8 @@
-"""Record which agent, world and episodes the rows in a folder belong to.
+"""Record to which agent, world and episodes the rows in a folder belong.
 
-A row holds the rule of its world, the agent's hash (with the sensors) and the id of its episode.
-Nothing else in it describes the world or the episode, so rows of another world would count as
-finished. Notes next to the rows prevent that.
+A row contains the world's success rule, the agent's hash (which includes the sensors) and the
+episode id. It contains no other description of the world or the episode, so rows of a different
+world would be treated as finished. The notes that this module writes next to the rows prevent this.
 """
 
 from __future__ import annotations
@@ -41,24 +41,24 @@ from mitigate.evaluation.rows import read
 from mitigate.worlds.episodes import Episode
 from mitigate.worlds.world import World
 
-# id() of an agent that lacks settings() -> the agent, its parts after the last run and those before
-# the first run
+# maps the id() of an agent without settings() to the agent, its parts after the last run
+# and its parts before the first run
 _last: dict[int, tuple[Callable[[], Any], Any, Any]] = {}
-# (classes of the layers, user's version) -> hashes of the names that the code of worlds reads,
-# before the first episode and after the last
+# maps (classes of the layers, user's version) to hashes of the names that the code of worlds
+# reads, before the first episode and after the last
 _read_by: dict[tuple[tuple[type, ...], str | None], tuple[str, str]] = {}
 
 
 class Known:
-    """Hashes of an agent and of classes, computed before episodes change them.
+    """Hashes of an agent and of classes, which are computed before episodes change them.
 
     ``hash`` is the fingerprint of ``agent`` in ``world`` with the guards ``front``; ``classes`` is
-    a hash of the names that the classes of agent and world read. The object is a context manager
-    around all episodes.
+    a hash of the names that the classes of agent and world read. The object is used as a context
+    manager around all episodes.
 
-    The attributes of an agent without ``settings()`` are part of the hash. If only episodes have
-    changed the object since the last call, the hash from before these episodes is used. The same
-    holds for the attributes of the world's classes.
+    If an agent has no ``settings()``, its attributes are part of the hash. If only episodes have
+    changed the object since the last call, the hash from before these episodes is used. The same is
+    done for the attributes of the world's classes.
     """
 
     def __init__(self, agent: Any, world: World, front: str, version: str | None = None) -> None:
@@ -93,7 +93,7 @@ class Known:
         key = id(agent)
         try:
             same: Callable[[], Any] = weakref.ref(agent, lambda _: _last.pop(key, None))
-        except TypeError:  # its class allows no weak references, so the agent is kept alive
+        except TypeError:  # the class allows no weak references, so the agent is kept alive
 
             def same() -> Any:
                 return agent
@@ -101,7 +101,8 @@ class Known:
         _last[key] = same, contents(agent, self.version).parts, self.parts
 
     def check(self, file: Path, name: str) -> Known:
-        """Print a message if all rows of ``name`` in ``file`` belong to another agent; return self.
+        """Print a message if all rows of ``name`` in ``file`` belong to a different agent; return
+        self.
 
         Raises:
             ValueError: There are earlier rows, and the agent cannot be read completely.
@@ -129,10 +130,10 @@ class Known:
 
 
 NOTE = "walked.json"
-CLASS, CODE, ENV = "its class", "its code", "its env"  # keys of stored notes: do not change
+CLASS, CODE, ENV = "its class", "its code", "its env"  # keys of stored notes, which must not change
 READ = "what its code reads"
 UNREADABLE = "what cannot be read of it"
-MOST_LAYERS = 20  # wrappers around an environment (heuristic)
+MOST_LAYERS = 20  # maximum number of wrappers around an environment (heuristic)
 
 
 def keep(
@@ -145,19 +146,21 @@ def keep(
 ) -> None:
     """Store in ``folder`` a description of the world and hashes of the episodes.
 
-    Worlds with other sensors or another rule can share a folder, because their rows differ. Without
-    a note nothing is compared; entries that an older note lacks are not compared either.
+    Worlds with different sensors or success rules can use the same folder, because their rows
+    differ. Without a note, nothing is compared. Entries that an older note lacks are not compared
+    either.
 
     Args:
         folder: folder of the rows.
         world: the world.
-        made_by: description of how the world was made (:func:`first_world`).
-        split: name of the list of episodes.
+        made_by: description of how the world was constructed (:func:`first_world`).
+        split: name of the episode list.
         episodes: the episodes.
-        source: file of the episodes; None if they come from no file.
+        source: file of the episodes, or None if there is no file.
 
     Raises:
-        ValueError: The folder has rows of another world or other episodes; names the difference.
+        ValueError: The folder contains rows of a different world or different episodes; the message
+            names the difference.
     """
     if source is not None:
         keep_list_hash(folder, split, source)
@@ -172,7 +175,7 @@ def keep(
         owner = "the classes of this world"
         _report_unreadable(folder, name_of(world), "world", owner, unreadable, kind in worlds)
     before = worlds.get(kind, described | _older(entry))
-    if READ in described:  # older versions did not store it
+    if READ in described:  # older versions did not store this entry
         before = {**before, READ: before.get(READ, described[READ])}
     keys = {**before, **described}
     different = [k for k in keys if not _is_same(before.get(k), described.get(k))]
@@ -192,7 +195,7 @@ def keep(
 def _report_unreadable(
     place: Path, name: str, kind: str, owner: str, unreadable: str, earlier: bool
 ) -> None:
-    """Print that rows of an agent or a world cannot be reused.
+    """Print a message that rows of an agent or a world cannot be reused.
 
     Raises:
         ValueError: There are earlier rows in ``place``.
@@ -217,7 +220,8 @@ def notes(folder: Path, split: str) -> list[Path]:
 
 
 def _read(note: Path) -> dict[str, dict[str, Any]]:
-    """Return the entries of a folder's ``note`` by split. Raises ValueError if it is damaged."""
+    """Read the entries of a folder's ``note``, by split. Raises ValueError if the note is
+    damaged."""
     again = f"Copy the file back, or move {note.parent} aside and evaluate again."
     known = read_object(note, again)
     for split, entry in known.items():
@@ -230,9 +234,9 @@ def _read(note: Path) -> dict[str, dict[str, Any]]:
 
 
 def _described(world: World) -> dict[str, str]:
-    """Return a description of ``world`` by name: its class, its environment and a hash of the code.
+    """Describe ``world`` by its class, its environment and a hash of the code.
 
-    The hash covers only the user's code, not code of this project or of installed packages.
+    The hash covers only the user's code, and not code of this project or of installed packages.
     """
     sources = code_of(*map(type, _layers(world))).parts.get("code", [])
     texts = {CLASS: kind_of(world), ENV: _spec(world), CODE: json_hash(sources) if sources else ""}
@@ -240,7 +244,7 @@ def _described(world: World) -> dict[str, str]:
 
 
 def _is_same(before: str | None, now: str | None) -> bool:
-    """Return whether two texts are equal, or two paths of one file."""
+    """Return whether two texts are equal, or are two paths of the same file."""
     if before == now or CHANGES in (before, now):
         return True
     with suppress(OSError, TypeError, ValueError):
@@ -270,14 +274,14 @@ def name_of(world: World) -> str:
 
 
 def _rule_and_sensors(world: World) -> str:
-    """Return the hash of a world's rule and sensors, which rows depend on."""
+    """Return the hash of a world's success rule and sensors, which are also part of rows."""
     return json_hash(
         [world.rule, {name: asdict(one) for name, one in sorted(world.sensors.items())}]
     )
 
 
 def _older(entry: Mapping[str, Any]) -> dict[str, str]:
-    """Return the description of the world in a note of an older version, with current keys."""
+    """Convert the world description in a note of an older version to the current keys."""
     keys = {"world": CLASS, "env": ENV}
     return {key: entry[name] for name, key in keys.items() if entry.get(name)}
 
@@ -297,7 +301,7 @@ def _difference(key: str, before: Mapping[str, str], now: Mapping[str, str]) -> 
 def _sum(episode: Episode) -> str:
     """Return the hash of the parts of an episode that an agent and a world use.
 
-    Other parts may differ between processes.
+    Other parts of the episode may differ between processes.
     """
     content = {
         "ids": [episode.episode_id, episode.trajectory_id, episode.scene_id],
@@ -310,13 +314,13 @@ def _sum(episode: Episode) -> str:
 
 
 def _spec(world: World) -> str:
-    """Return the id and arguments of the environment inside a world, else an empty text.
+    """Return the id and arguments of the environment inside a world, or an empty text.
 
-    Worlds of one class may differ only in these.
+    Worlds of the same class may differ only in these values.
     """
     spec = _member(_member(world, "env"), "spec")
     entries: Mapping[str, Any] = {}
-    with suppress(TypeError):  # None, or an object with slots
+    with suppress(TypeError):  # the value may be None or an object with slots
         entries = vars(spec)
     if entries.get("id") is None:
         return ""
@@ -327,10 +331,10 @@ def _spec(world: World) -> str:
 
 def _member(owner: Any, name: str) -> Any:
     """Return the attribute ``name`` of an environment, or None."""
-    return getattr(owner, name, None)  # classes of gymnasium and torchrl have no common base
+    return getattr(owner, name, None)  # the classes of gymnasium and torchrl have no common base
 
 
-MADE = "what makes it"  # keys and texts of stored notes: do not change
+MADE = "what makes it"  # keys and texts of stored notes, which must not change
 CHANGES = "changes while worlds are made"
 SHOWN = 100  # characters of a value that are stored; the rest is hashed (heuristic)
 
@@ -338,14 +342,14 @@ SHOWN = 100  # characters of a value that are stored; the rest is hashed (heuris
 def first_world(
     make: Callable[[], World], version: str | None = None
 ) -> tuple[World, dict[str, str]]:
-    """Return a world and a description of how it was made.
+    """Construct a world, and describe how it was constructed.
 
-    The description has the entries of a config, or the arguments, defaults and used values of a
-    function, or the class and attributes of a callable object. It also has a hash of the names that
-    the code of the world's classes reads. For a value that making a world changes, such as a cache,
-    it has ``CHANGES``.
+    The description contains the entries of a config; or the arguments, defaults and used values of
+    a function; or the class and attributes of a callable object. It also contains a hash of the
+    names that the code of the world's classes reads. A value that changes while the world is
+    constructed, such as a cache, is described as ``CHANGES``.
 
-    ``version`` is the user's name for state of the classes that cannot be read.
+    ``version`` is a string with which the user identifies class state that cannot be read.
     """
     before = {name: _text(value) for name, value in _made_by(make)}
     same = {place for place, (_, last) in _read_by.items() if last == _names_read(*place)[0]}
@@ -361,7 +365,7 @@ def first_world(
 
 
 def check_classes(agent: Any, world: World, expected: str) -> None:
-    """Raise ValueError if classes in a worker process differ from its parent process.
+    """Raise ValueError if classes in a worker process differ from those in its parent process.
 
     ``expected`` is ``Known.classes`` of the parent.
     """
@@ -380,7 +384,7 @@ def _hash_of_classes(agent: Any, of_world: str) -> str:
 
 
 def _names_read(kinds: Sequence[type], version: str | None) -> tuple[str, str]:
-    """Return a hash of the user's classes among ``kinds``, and a text on what cannot be read.
+    """Return a hash of the user's classes among ``kinds``, and a text on state that cannot be read.
 
     The hash covers their attributes, and the functions and global variables that their code names.
     """
@@ -397,7 +401,8 @@ def kind_of(value: object) -> str:
 
 
 def json_hash(value: Any) -> str:
-    """Return 12 hex digits of the hash of JSON data, which may have numbers of other libraries."""
+    """Return 12 hex digits of the hash of JSON data, which may contain numbers of other
+    libraries."""
     return hashlib.sha256(json.dumps(value, default=float).encode()).hexdigest()[:12]
 
 

@@ -1,4 +1,4 @@
-"""The report: the paper's Table II as Markdown with paired intervals, and its pictures.
+"""Write the report: Table II of the paper in Markdown, with paired intervals and pictures.
 
 All numbers are computed from result rows. Incomplete rows give a table that lists its gaps.
 """
@@ -21,7 +21,7 @@ from mitigate.evaluation.rows import Row
 from mitigate.evaluation.sections import Difference, Retained, Section, label, sections
 
 NO_DIFFERENCE = Difference(None, None, {})
-# Limits of pictures (heuristic): their time grows with panels and cells, and rows may be foreign
+# Limits for pictures (heuristic): their time grows with panels and cells, and rows may be untrusted
 MOST_CORRUPTIONS = 100  # of a picture
 MOST_COLUMNS = 50  # of a picture
 MOST_HEATMAPS = 50  # of a report
@@ -29,11 +29,12 @@ NO_PICTURE = (
     f"No picture: it would show more than {MOST_CORRUPTIONS} corruptions or {MOST_COLUMNS} "
     f"columns, or this report has {MOST_HEATMAPS} heatmaps."
 )
-FEW = 10  # with fewer episodes, the table prints no difference in bold (heuristic)
+FEW = 10  # with fewer episodes than this, the table prints no difference in bold (heuristic)
 
 
 def markdown(parts: Sequence[Section], pictures: Sequence[Sequence[str]] = ()) -> str:
-    """Return the tables as Markdown; ``pictures[i]`` are file names to show under section i."""
+    """Return the tables as Markdown; ``pictures[i]`` contains the picture files to show under
+    section i."""
     texts = []
     for index, section in enumerate(parts):
         names = pictures[index] if index < len(pictures) else ()
@@ -56,16 +57,16 @@ def write(
 ) -> list[Path]:
     """Write ``table.md``, ``heatmap.png`` and ``severity.png`` to ``folder``; return their paths.
 
-    More sections and grids get ``heatmap-2.png``, ``severity-2.png`` and so on. Sections that are
-    too large, or beyond ``MOST_HEATMAPS``, have no pictures.
+    Further sections and grids get ``heatmap-2.png``, ``severity-2.png`` and so on. Sections that
+    are too large, or beyond ``MOST_HEATMAPS``, have no pictures.
 
     Args:
         rows: result rows.
         folder: output folder.
         first: the success rule whose sections come first.
-        least: smallest number of severities for which curves are drawn.
+        least: minimum number of severities for drawing curves.
         against: the reference column, as in :func:`sections`.
-        drawn: unit that the bootstrap draws, as in :func:`sections`.
+        drawn: unit that the bootstrap resamples, as in :func:`sections`.
     """
     from mitigate.evaluation import plots  # matplotlib is slow to import
 
@@ -116,7 +117,7 @@ def _heading(section: Section) -> str:
 
 
 def _drawn(grid: Grid) -> str:
-    """Return what the bootstrap draws, with the number of scenes."""
+    """Return the unit that the bootstrap resamples as text, with the number of scenes."""
     if grid.drawn == DRAWN[0]:
         return "episodes"
     return f"{counted(len(np.unique(grid.units)), grid.drawn)} with their episodes"
@@ -155,12 +156,12 @@ def _table(section: Section) -> str:
 
 
 def _changes(section: Section) -> list[Difference]:
-    """Return the difference of each column to the reference; nothing for the reference itself."""
+    """Return the difference of each column from the reference, with "" for the reference itself."""
     return [section.differences.get(c, NO_DIFFERENCE) for c in section.columns]
 
 
 def _mean_sr(section: Section) -> list[list[str]]:
-    """Return the lines of the mean SR over all corruptions, and of its differences."""
+    """Return the lines with the mean SR over all corruptions and its differences."""
 
     def cell(value: Retained | None, text: Callable[[Estimate], str]) -> str:
         marks = "" if value is None else _escaped(section.marks(value, *section.blocks))
@@ -180,7 +181,7 @@ def _mean_sr(section: Section) -> list[list[str]]:
 def _by_seed(
     section: Section, key: str, title: str, text: Callable[[float], str]
 ) -> list[list[str]]:
-    """Return a line with the value of each seed, or nothing if no column has several seeds."""
+    """Return a line with the value of each seed, or no line if no column has several seeds."""
     columns = [section.by_seed.get((column, key), {}) for column in section.columns]
     if not any(len(values) > 1 for values in columns):
         return []
@@ -286,7 +287,7 @@ def _bold_if_sure(section: Section, text: str, change: Estimate) -> str:
 
 
 def _is_few(section: Section) -> bool:
-    """Return whether there are too few episodes for an interval to reach its level."""
+    """Return whether there are too few episodes for an interval to be reliable."""
     return len(section.grid.episodes) < FEW
 
 
@@ -306,7 +307,8 @@ def _numbered(stem: str, index: int) -> str:
     return f"{stem}.png" if index == 0 else f"{stem}-{index + 1}.png"
 
 
-SEVERITY = 0.6  # severity of the paper's Table II (its caption); other severities are not compared
+# severity of Table II in the paper (see its caption); other severities are not compared
+SEVERITY = 0.6
 
 
 def beside(section: Section, paper: Mapping[str, Sequence]) -> str:
@@ -314,7 +316,7 @@ def beside(section: Section, paper: Mapping[str, Sequence]) -> str:
 
     Args:
         section: the results.
-        paper: names of its columns under "columns", and figures in their order by row
+        paper: the paper's column names under "columns", and its figures in the same order by row
             ("PRS-SR (RGB)", "motion_blur").
     """
     theirs = {

@@ -1,6 +1,6 @@
-"""Result rows: one JSON line per episode, with everything that identifies the measurement.
+"""Read and write result rows, which are JSON lines with everything that identifies a measurement.
 
-A row holds its identity (:data:`IDENTITY`) and its measures (:data:`MEASURES`). Files end in
+A row contains its identity (:data:`IDENTITY`) and its measures (:data:`MEASURES`). Files end in
 ``.jsonl`` (appended to during an evaluation) or ``.jsonl.gz`` (shipped). If a plain file ends in an
 incomplete line, as after a kill, that line is ignored, and the next append repairs the file.
 """
@@ -26,10 +26,10 @@ if TYPE_CHECKING:
     from mitigate.worlds.episodes import Episode
 
 Row = dict[str, Any]
-ROWS = "rows.jsonl"  # name of the row file in the folder of an evaluation
+ROWS = "rows.jsonl"  # name of the row file in an evaluation folder
 IDENTITY: dict[str, Any] = {
-    "agent": str,  # agents/fingerprint.py: weights, code, settings, sensors and guards
-    "name": str,  # column of a table, such as "base" or "da_per_episode"
+    "agent": str,  # hash of weights, code, settings, sensors and guards (agents/fingerprint.py)
+    "name": str,  # column name in tables, such as "base" or "da_per_episode"
     "corruption": str,  # "clean" or a corruption
     "severity": (int, float),
     "split": str,
@@ -44,19 +44,21 @@ MEASURES = (
     *("success", "spl", "path_length", "geodesic_distance", "distance_to_goal", "ndtw"),
     *("collisions", "decisions", "steps", "cut", "limit"),
 )
-SCENE = "scene"  # the entry with the scene of the episode
+SCENE = "scene"  # the entry for the scene of the episode
 SUFFIXES = (".jsonl", ".jsonl.gz")
-LONGEST_LINE = 1 << 16  # characters (heuristic); a row has about 450
-LONGEST_TEXT = 200  # characters of an entry (heuristic)
-GREATEST = 1e9  # largest value of a measure, in metres or steps (heuristic)
-_NAME = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.+-]*")  # a corruption; + joins a pair
+LONGEST_LINE = 1 << 16  # maximum characters of a row (heuristic); a row has about 450
+LONGEST_TEXT = 200  # maximum characters of an entry (heuristic)
+GREATEST = 1e9  # maximum value of a measure, in metres or steps (heuristic)
+# pattern of corruption names, where + joins a pair
+_NAME = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.+-]*")
 _HASH = re.compile(r"[A-Za-z0-9_.-]+")
 _TEXTS = (*(key for key, kind in IDENTITY.items() if kind is str), "version", "weights", SCENE)
-_OF_A_SCENE = re.compile(r"(\d+)-\w+-\d+|(.+)/[^/]+")  # episode ids of apartments; of the bridge
-_SHARES = ("severity", "success", "spl", "ndtw", "cut")  # numbers from 0 to 1
+# patterns of episode ids: those of apartments, and those of the bridge
+_OF_A_SCENE = re.compile(r"(\d+)-\w+-\d+|(.+)/[^/]+")
+_SHARES = ("severity", "success", "spl", "ndtw", "cut")  # entries that are numbers from 0 to 1
 _NUMBERS = ("severity", "seed", *MEASURES)
 _ROUNDING = 1e-9
-_MARK = "\ufeff"  # byte order mark of Windows editors; joined files have it in the middle
+_MARK = "\ufeff"  # byte order mark of Windows editors, which joined files may have in the middle
 
 
 def identity(row: Row) -> tuple:
@@ -66,21 +68,22 @@ def identity(row: Row) -> tuple:
 
 
 def of_episode(episode: Episode) -> Row:
-    """Return the entries of a row that identify its episode, and its scene if it has a name."""
+    """Return the entries of a row that identify its episode, and its scene if the scene has a
+    name."""
     scene = stem_of(episode.scene_id)
     valid = scene and not allowed(SCENE, scene)
     return {"episode_id": episode.episode_id, **({SCENE: scene} if valid else {})}
 
 
 def stem_of(scene: str) -> str:
-    """Return the name of a scene: its file without the folder and the suffixes of GLB files."""
+    """Return the name of a scene, which is its file name without folder and GLB suffixes."""
     return scene.rpartition("/")[2].removesuffix(".glb").removesuffix(".basis")
 
 
 def scene_of(row: Row) -> str:
     """Return the scene of a row's episode, from its entry or from the id.
 
-    Rows of older versions and of the bridge name the scene only in the id.
+    In rows of older versions and of the bridge, only the id contains the scene.
 
     Raises:
         ValueError: The row names no scene.
@@ -101,7 +104,7 @@ def read(path: Path | str) -> list[Row]:
     An incomplete last line of a plain file is ignored.
 
     Raises:
-        ValueError: A row is invalid; names file, line and key.
+        ValueError: A row is invalid; the message names file, line and key.
     """
     rows: list[Row] = []
     try:
@@ -134,7 +137,7 @@ def read(path: Path | str) -> list[Row]:
 def append(path: Path | str, rows: Iterable[Row]) -> None:
     """Append ``rows`` to the file ``path`` and flush them to disk; create it if needed.
 
-    A plain file grows by one write; a ``.gz`` file is rewritten atomically.
+    A plain file is extended by a single write; a ``.gz`` file is rewritten atomically.
     """
     path, rows = Path(path), list(rows)
     text = "".join(_line(row) for row in rows)
@@ -155,10 +158,11 @@ def write(path: Path | str, rows: Iterable[Row], *, fewer: bool = False) -> None
     Args:
         path: the file, which need not exist.
         rows: all rows of the new file.
-        fewer: whether they may be fewer than in the file; the caller has compared them.
+        fewer: whether the new file may have fewer rows; the caller must have compared them.
 
     Raises:
-        ValueError: The file has more rows than ``rows``, or is damaged. It is not changed.
+        ValueError: The existing file has more rows than ``rows``, or it is damaged. It is not
+            changed.
     """
     path, rows = Path(path), list(rows)
     before = len(read(path)) if path.exists() and not fewer else 0
@@ -173,12 +177,13 @@ def write(path: Path | str, rows: Iterable[Row], *, fewer: bool = False) -> None
 
 
 def upsert(*parts: Iterable[Row]) -> list[Row]:
-    """Return the rows of all ``parts``, one per identity: the last row at the first one's place."""
+    """Return the rows of all ``parts``, one per identity: the last row, at the position of the
+    first."""
     return list({identity(row): row for row in chain(*parts)}.values())
 
 
 def cuts(rows: Iterable[Row]) -> str:
-    """Return a text on how many episodes a world's ``limit=`` cut, else an empty text."""
+    """Return a text on how many episodes were cut by a world's ``limit=``, or an empty text."""
     rows = list(rows)
     cut = [row for row in rows if row.get("cut")]
     if not cut:
@@ -191,18 +196,18 @@ def cuts(rows: Iterable[Row]) -> str:
 
 
 def gather(paths: Iterable[Path | str]) -> list[Row]:
-    """Return the rows of files and of all row files in folders, one per identity (:func:`unique`).
+    """Return the rows in files and in all row files of folders, one per identity (:func:`unique`).
 
     Other JSON lines in a folder are ignored.
 
     Raises:
-        FileNotFoundError: A path does not exist, or a folder has no rows.
+        FileNotFoundError: A path does not exist, or a folder contains no rows.
     """
     return unique(row for path in paths for file in files(path) for row in read(file))
 
 
 def unique(rows: Iterable[Row]) -> list[Row]:
-    """Return one row per identity, the last at the place of the first.
+    """Return one row per identity: the last row, at the position of the first.
 
     Warns about rows whose success or SPL differs from an earlier one.
     """
@@ -218,16 +223,16 @@ def unique(rows: Iterable[Row]) -> list[Row]:
             f"{len(different)} rows have another success or SPL than an earlier row of the same "
             f"agent, episode and condition (first {first['name']}, episode {first['episode_id']}, "
             f"{first['corruption']}). The last row counts. Name the files of one evaluation.",
-            stacklevel=1,  # a fixed place, so that the same text is printed once
+            stacklevel=1,  # a fixed location, so that the same warning is printed only once
         )
     return list(by_identity.values())
 
 
 def files(path: Path | str) -> list[Path]:
-    """Return ``path``, or all row files in and below a folder.
+    """Return ``path`` itself, or all row files in and below a folder.
 
     Raises:
-        FileNotFoundError: The folder has no row files.
+        FileNotFoundError: The folder contains no row files.
     """
     path = Path(path)
     if not path.is_dir():
@@ -247,7 +252,7 @@ def _holds_rows(path: Path) -> bool:
         with open_text(path) as file:
             line = file.readline(LONGEST_LINE + 1)
     except (UnicodeDecodeError, OSError):
-        return True  # damaged; read() raises the error
+        return True  # the file is damaged; read() raises the error
     first = _parse(line)
     if first is None and line.strip() and len(line) <= LONGEST_LINE:
         return True
@@ -255,7 +260,7 @@ def _holds_rows(path: Path) -> bool:
 
 
 def _parse(line: str) -> Any:
-    """Return the value of a line; None if it is damaged or too long."""
+    """Return the value of a line, or None if it is damaged or too long."""
     try:
         line.encode()  # bytes that are not UTF-8 were read as surrogates, which raise ValueError
         return parse_json(line.removeprefix(_MARK)) if len(line) <= LONGEST_LINE else None
@@ -285,7 +290,7 @@ def _problem(row: Any) -> str:
 
 
 def allowed(key: str, value: Any) -> str:
-    """Return the allowed values of a row's ``key`` if ``value`` is invalid, else an empty text."""
+    """If ``value`` is invalid for a row's ``key``, return a text on the allowed values, else ""."""
     if key in _NUMBERS and isinstance(value, bool):  # bool is a subclass of int
         return "a number: 1 for true, 0 for false"
     if key in _SHARES and value is not None and not _number(value, 0, 1):
@@ -328,7 +333,7 @@ def _line(row: Row) -> str:
 
 
 def _repair(file: Any) -> None:
-    """Make ``file`` end in a complete line: terminate the last line, or remove it if incomplete."""
+    """Terminate the last line of ``file``, or remove it if it is incomplete."""
     size = file.seek(0, os.SEEK_END)
     tail = b""
     while b"\n" not in tail and len(tail) < size:

@@ -1,4 +1,4 @@
-"""The numbers of one table: clean values, PRS and paired PRS differences with intervals."""
+"""Compute the numbers of a table: clean values, PRS and paired differences with intervals."""
 
 from __future__ import annotations
 
@@ -37,9 +37,10 @@ label = title  # name of a corruption in the paper's table
 
 @dataclass(frozen=True)
 class Retained:
-    """A PRS, a mean SR or a difference of two, with the corruptions and episodes that it covers.
+    """A PRS, a mean SR or a difference, with the corruptions and episodes over which it is
+    computed.
 
-    ``near_floor``: whether a clean value is too low for a meaningful PRS.
+    ``near_floor`` states whether a clean value is too low for a meaningful PRS.
     """
 
     estimate: Estimate
@@ -50,13 +51,14 @@ class Retained:
 
 @dataclass(frozen=True)
 class Difference:
-    """Paired differences of one column to another, over the seeds that both have.
+    """Paired differences of one column from another, over the seeds that both have.
 
-    Without a common seed nothing is measured, because corruptions of other seeds have other keys.
+    Without a common seed there are no differences, because corruptions with different seeds have
+    different keys.
 
     Attributes:
-        clean: difference of clean SR; None if not measured.
-        corrupted: difference of the mean SR under corruption; None if not measured.
+        clean: difference of clean SR, or None if not measured.
+        corrupted: difference of the mean SR under corruption, or None if not measured.
         retained: difference of PRS by (block or half, metric).
     """
 
@@ -71,7 +73,7 @@ class Section:
 
     Attributes:
         grid: the results.
-        kind: the corruptions of the table; empty for the suite.
+        kind: the kind of corruptions in the table; empty for the suite.
         severity: severity of the corruptions.
         columns: labels of the columns; the first one is the reference of differences.
     """
@@ -83,7 +85,7 @@ class Section:
 
     @property
     def reference(self) -> str:
-        """The column that the others are compared with."""
+        """The column with which the others are compared."""
         return self.columns[0]
 
     @cached_property
@@ -93,18 +95,18 @@ class Section:
 
     @cached_property
     def halves(self) -> dict[str, dict[str, tuple[str, ...]]]:
-        """Parts of a block with a separate PRS, by block and heading."""
+        """The parts of a block that have a separate PRS, by block and heading."""
         return halves(self.blocks)
 
     @cached_property
     def parts(self) -> dict[str, tuple[str, ...]]:
-        """Corruptions of everything that has a PRS: the blocks, then their halves."""
+        """The corruptions of each block, and then of each half, that has a PRS."""
         parts = self.halves.values()
         return self.blocks | {half: names for part in parts for half, names in part.items()}
 
     @cached_property
     def corruptions(self) -> tuple[str, ...]:
-        """All measured corruptions, block by block."""
+        """All measured corruptions, in the order of the blocks."""
         return tuple(name for names in self.blocks.values() for name in names)
 
     @cached_property
@@ -114,7 +116,7 @@ class Section:
 
     @cached_property
     def clean(self) -> dict[tuple[str, str], Estimate]:
-        """Clean values by (column, metric)."""
+        """The clean values by (column, metric)."""
         values = {}
         for column in self.columns:
             for metric, key in METRICS.items():
@@ -126,13 +128,13 @@ class Section:
 
     @cached_property
     def corrupted(self) -> dict[str, Retained]:
-        """Mean SR over all corruptions by column."""
+        """The mean SR over all corruptions, by column."""
         by_column = {column: self.mean_sr(column, self.corruptions) for column in self.columns}
         return {column: value for column, value in by_column.items() if value is not None}
 
     @cached_property
     def retained(self) -> dict[tuple[str, str, str], Retained]:
-        """PRS by (column, block or half, metric)."""
+        """The PRS by (column, block or half, metric)."""
         return {
             (column, part, metric): _retained(retention)
             for column in self.columns
@@ -143,14 +145,14 @@ class Section:
 
     @cached_property
     def differences(self) -> dict[str, Difference]:
-        """Differences of the other columns to the reference."""
+        """The differences of the other columns from the reference."""
         return {column: self.compare(column, self.reference) for column in self.columns[1:]}
 
     @cached_property
     def by_seed(self) -> dict[tuple[str, str], dict[int, float]]:
-        """Clean SR by (column, "clean") and PRS-SR by (column, block), for each pooled seed.
+        """For each pooled seed, the clean SR by (column, "clean") and PRS-SR by (column, block).
 
-        Only of columns with several seeds.
+        Only columns with several seeds are included.
         """
         values: dict[tuple[str, str], dict[int, float]] = defaultdict(dict)
         for column in self.columns:
@@ -166,12 +168,12 @@ class Section:
         return dict(values)
 
     def mean_sr(self, column: str, names: Sequence[str]) -> Retained | None:
-        """Return the mean SR of a column over corruptions; None if nothing was measured."""
+        """Return the mean SR of a column over corruptions, or None if nothing was measured."""
         retention = self.grid.retention([column], names, self.severity, METRICS["SR"])
         return _mean_sr(retention) if retention else None
 
     def compare(self, column: str, reference: str) -> Difference:
-        """Return the difference of ``column`` to ``reference``, any two columns."""
+        """Return the difference of any ``column`` from any ``reference`` column."""
         pair, severity = (column, reference), self.severity
         if not self.grid.common(pair, severity):
             return Difference(None, None, {})
@@ -190,7 +192,7 @@ class Section:
         return Difference(clean, _mean_sr(retention) if retention else None, retained)
 
     def value(self, column: str, corruption: str, metric: str = "SR") -> float:
-        """Return the mean of a cell over its episodes; NaN if it is empty."""
+        """Return the mean of a cell over its episodes, or NaN if the cell is empty."""
         return _mean(self.grid.cell(column, corruption, self.severity, METRICS[metric]))
 
     def partial(self, column: str, corruption: str) -> bool:
@@ -202,12 +204,13 @@ class Section:
         return frozenset((gap.column, gap.corruption) for gap in self.gaps)
 
     def whole(self, part: str) -> int:
-        """Return how many corruptions a complete PRS over a block, or a half of it, covers."""
+        """Return how many corruptions a complete PRS over a block, or half a block, needs."""
         block = part if part in self.blocks else part.rpartition(",")[0]
         return len(expected_corruptions(block, self.parts[part]))
 
     def marks(self, value: Retained, *parts: str) -> str:
-        """Return the marks of a value: missing episodes (*) or corruptions (†), near floor (‡)."""
+        """Return the marks of a value: * missing episodes, † missing corruptions, ‡ low clean
+        value."""
         measured, expected = len(value.corruptions), sum(map(self.whole, parts))
         fewer = "*" * (value.episodes < len(self.grid.episodes))
         return fewer + f" † {measured}/{expected}" * (measured < expected) + " ‡" * value.near_floor
@@ -215,7 +218,7 @@ class Section:
     def notes(self, escape: Callable[[str], str] = str) -> list[str]:
         """Return a line for each unfinished seed and for columns with cut episodes.
 
-        ``escape`` is applied to labels of columns.
+        ``escape`` is applied to the column labels.
         """
         unfinished = [
             f"Seed {seed} of {escape(column)} is not finished and left out: {have:,} of {want:,} "
@@ -236,8 +239,8 @@ def sections(
 
     Args:
         rows: result rows.
-        against: the reference column, in sections that have it; None: :data:`REFERENCES`.
-        drawn: unit that the bootstrap draws, as in :func:`grids`.
+        against: the reference column in sections that contain it; None means :data:`REFERENCES`.
+        drawn: unit that the bootstrap resamples, as in :func:`grids`.
 
     Raises:
         ValueError: No row belongs to the column ``against``.
@@ -267,7 +270,7 @@ def sections(
 
 
 def _retained(parts: list[Retention]) -> Retained:
-    """Return the PRS of one part, or the difference of the first to the second."""
+    """Return the PRS of one part, or the first part's PRS minus the second's."""
     pairs, units = [(part.clean, part.corrupted) for part in parts], parts[0].units
     estimate = (
         bootstrap.prs(*pairs[0], units=units)
@@ -279,7 +282,7 @@ def _retained(parts: list[Retention]) -> Retained:
 
 
 def _mean_sr(parts: list[Retention]) -> Retained:
-    """Return the mean SR under corruption of one part, or the first's minus the second's."""
+    """Return the mean SR under corruption of one part, or the first part's minus the second's."""
     means, units = [part.corrupted.mean(axis=0) for part in parts], parts[0].units
     estimate = (
         bootstrap.share(means[0], units=units)

@@ -2,8 +2,8 @@
 
 ``--draw scene`` computes intervals for new scenes, instead of new episodes in the same scenes.
 
-Takes row files and run or sweep folders, also partial ones. Prints the table and writes
-``table.md``, ``heatmap.png`` and ``severity.png``.
+The command accepts row files, and run or sweep folders that may be incomplete. It prints the table
+and writes ``table.md``, ``heatmap.png`` and ``severity.png``.
 """
 
 from __future__ import annotations
@@ -25,18 +25,18 @@ def run(
     against: str | None = None,
     drawn: str = "episode",
 ) -> list[Path]:
-    """Join the rows of ``paths`` and write the report to ``out``; return its files, table first.
+    """Join the rows of ``paths``, write the report to ``out``, and return its files (table first).
 
     Args:
         paths: row files or folders.
         out: folder of the report.
-        seeds: the seeds to use; None: all.
-        against: the column that the others are compared with; None: "base" or "before", or else
-            the first.
-        drawn: unit that the bootstrap draws, "episode" or "scene".
+        seeds: the seeds to use, or None for all.
+        against: the column with which the others are compared. The default is "base" or "before",
+            or else the first column.
+        drawn: unit that the bootstrap resamples, "episode" or "scene".
 
     Raises:
-        FileNotFoundError: A path has no rows.
+        FileNotFoundError: A path contains no rows.
         ValueError: Rows are damaged, or a seed or the column does not exist.
     """
     from mitigate.evaluation import report, rows
@@ -54,7 +54,7 @@ def run(
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Run from the command line; return the exit status (2 for a bad input)."""
+    """Run from the command line; return the exit status (2 for invalid input)."""
     parser = argparse.ArgumentParser(prog="mitigate table", description=__doc__)
     parser.add_argument("rows", nargs="+", metavar="ROWS", help="row files or run folders")
     parser.add_argument(

@@ -1,4 +1,4 @@
-"""Pictures of trajectories: one episode clean, corrupted, and corrupted after training."""
+"""Draw trajectories of one episode: clean, corrupted, and corrupted after training."""
 
 from __future__ import annotations
 
@@ -26,26 +26,26 @@ from mitigate.guards.guard import NO_GUARDS, Guards
 from mitigate.worlds.episodes import Episode, from_vlnce
 from mitigate.worlds.world import Corrupted, World, WorldWrapper, as_world
 
-# colours of Okabe and Ito, readable without colour vision; corrupted: one per agent, in order
+# colours of Okabe and Ito, readable without colour vision; one per agent for corrupted runs
 REFERENCE, CLEAN_WALK = "#8a8a8a", "#0072b2"
 CORRUPTED_WALKS = ("#d55e00", "#009e73", "#cc79a7", "#8c564b")
 INCHES, DPI = (9.0, 10.5), 80
-PICTURES = 4  # episodes drawn after a training (heuristic)
+PICTURES = 4  # number of episodes that are drawn after training (heuristic)
 
 
 @dataclass(frozen=True)
 class Walk:
-    """One agent's trajectory in an episode.
+    """The trajectory of one agent in an episode.
 
     Attributes:
-        name: entry of the legend.
-        path: float64 [n, 2], plan metres.
+        name: text in the legend.
+        path: float64 [n, 2], in plan metres.
         won: whether the episode succeeded.
         metres_left: geodesic metres to the goal at the end.
         colour: colour of the line.
         agent: name of the agent.
         corruption: the corruption.
-        measures: the measures of a row.
+        measures: the measures as in a result row.
     """
 
     name: str
@@ -59,7 +59,7 @@ class Walk:
 
     @property
     def legend(self) -> str:
-        """The name, the result and the geodesic distance to the goal."""
+        """The text of the legend: name, result and geodesic distance to the goal."""
         end = "success" if self.won else "fail"
         return f"{self.name}: {end}, {self.metres_left:.1f} m from the goal"
 
@@ -73,13 +73,15 @@ def draw_trajectories(
     seed: int = 0,
     guards: Mapping[str, Guards] | None = None,
 ) -> Path:
-    """Run an episode and write one PNG: start panorama, plan, reference path, trajectories.
+    """Run an episode and write a PNG with the start panorama, plan, reference path and
+    trajectories.
 
-    The first agent runs clean and corrupted, the others corrupted. The ``seed`` of an evaluation
-    gives the trajectories of its rows. A world with ``draw(axes)`` draws its plan.
+    The first agent runs the episode clean and corrupted; the others run it only corrupted. With the
+    ``seed`` of an evaluation, the trajectories are those of its rows. If the world has a method
+    ``draw(axes)``, it draws the plan.
 
     Args:
-        agents: agents by name, as in the legend.
+        agents: agents by their names in the legend.
         world: the world.
         episode: the episode.
         corruption: the corruption of corrupted runs.
@@ -119,10 +121,11 @@ def draw_episode(
 def first_sight(
     world: World, episode: Episode, corruption: Corruption, seed: int
 ) -> tuple[str, list[np.ndarray]]:
-    """Return the name of a sensor and its frames at the start of an episode, clean and corrupted.
+    """Return a sensor's name and its clean and corrupted frames at the start of an episode.
 
     The sensor is "depth" if ``corruption`` changes only depth or the world has no RGB, else "rgb".
-    Pictures are uint8 [H, W, 3]. A world without frames gives "" and no pictures.
+    The frames are pictures, uint8 [H, W, 3]. For a world without frames, the name is "" and there
+    are no pictures.
     """
     observation = Corrupted(world, corruption, seed).reset(episode)
     met = dict(observation)
@@ -140,9 +143,9 @@ def _picture(frames: np.ndarray, far: float) -> np.ndarray:
 
 
 def won_back(rows: Sequence[Row], before: str, after: str) -> Iterator[tuple[str, Corruption]]:
-    """Yield (episode id, corruption) where agent ``before`` fails and ``after`` succeeds.
+    """Yield each (episode id, corruption) at which ``before`` fails and ``after`` succeeds.
 
-    The order follows the rows; no episode and no corruption is repeated.
+    The order is that of the rows, and each episode and each corruption occurs only once.
     """
     won = {(r["name"], r["episode_id"], r["corruption"], r["severity"]): r["success"] for r in rows}
     done: set[str] = set()
@@ -166,8 +169,8 @@ def write_pictures(
 ) -> list[Path]:
     """Draw the first ``PICTURES`` episodes that the last agent solves and the first one fails.
 
-    If none was won back (:func:`won_back`), or there is only one agent, the first corrupted row is
-    drawn. A world without poses gives no pictures.
+    If there is no such episode (:func:`won_back`), or only one agent, the first corrupted row is
+    drawn. For a world without poses, no pictures are drawn.
 
     Args:
         agents: the agents before and after training, by their names in ``rows``.
@@ -210,10 +213,10 @@ def run_agents(
     seed: int,
     guards: Mapping[str, Guards] | None = None,
 ) -> Iterator[Walk]:
-    """Run ``episode`` and yield trajectories: the first agent's clean one, then all corrupted ones.
+    """Run ``episode``, and yield the first agent's clean trajectory and then all corrupted ones.
 
-    Keys and measures are the same as in an evaluation with ``seed``. ``guards`` are by name of the
-    agent.
+    Keys and measures are the same as in an evaluation with ``seed``. ``guards`` maps the names of
+    agents to their guards.
     """
     first = next(iter(agents))
     plans = [(f"{first}, clean", first, CLEAN, CLEAN_WALK)]
@@ -231,7 +234,7 @@ def run_agents(
 
 
 class Traced(WorldWrapper):
-    """A world that records the agent's trajectory: ``path`` [n, 2], plan metres."""
+    """A world that records the agent's trajectory: ``path`` is an array [n, 2] in plan metres."""
 
     def __init__(self, world: World) -> None:
         super().__init__(world)

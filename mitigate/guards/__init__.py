@@ -1,1 +1,1 @@
-"""Guards between a world and an agent: they change what an agent hears and sees at run time."""
+"""Guards, which change the instruction and the frames that an agent receives at run time."""

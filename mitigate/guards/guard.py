@@ -1,9 +1,9 @@
-"""The contract of guards, which change the inputs of an agent at run time.
+"""Define the interface of guards, which change the inputs of an agent at run time.
 
 A guard may change the instruction of an episode (``begin``), the frames of an observation
-(``observe``), or the agent itself while an episode runs (``attach``). Each has a default that
-changes nothing. The safeguard (text), the restorer (frames), callables of users and test-time
-adaptation are guards; ``opening.py`` makes them from the options ``safeguard=``, ``restore=`` and
+(``observe``), or the agent itself while an episode runs (``attach``). The default of each method
+changes nothing. The safeguard (text), the restorer (frames), users' callables and test-time
+adaptation are guards; ``opening.py`` builds them from the options ``safeguard=``, ``restore=`` and
 ``adapt=``.
 
 This module needs no torch.
@@ -25,17 +25,17 @@ if TYPE_CHECKING:
 
     from mitigate.worlds.episodes import Episode
 
-RESTORER = "restorer-"  # prefix of the fingerprints of guards that ``restore=`` names
+RESTORER = "restorer-"  # prefix of the fingerprints of guards from ``restore=``
 
 
 @dataclass(frozen=True)
 class EpisodeStart:
-    """What a guard knows when an episode begins.
+    """The information that a guard receives when an episode begins.
 
     Attributes:
-        key: seed and episode id, for random draws.
+        key: seed and episode id, for random numbers.
         instruction: the instruction after corruption.
-        system_prompt: the agent's system prompt after corruption; None if it has none.
+        system_prompt: the agent's system prompt after corruption, or None.
     """
 
     key: Key
@@ -44,11 +44,12 @@ class EpisodeStart:
 
 
 class Guard:
-    """Base class of guards. A subclass overrides what it needs; every default changes nothing.
+    """Base class of guards. Base class of guards; subclasses override methods, whose defaults
+    change nothing.
 
     An episode's result must not depend on other episodes or on their order. So ``observe`` must not
-    keep state between calls, unless the guard overrides ``attach``: then episodes run one after the
-    other.
+    keep state between calls, unless the guard overrides ``attach``. In that case, episodes run one
+    after the other.
 
     Attributes:
         label: part of a table's column name.
@@ -64,7 +65,7 @@ class Guard:
     continual: bool = False
 
     def begin(self, episode: EpisodeStart) -> str:
-        """Return the instruction that the agent gets."""
+        """Return the instruction that the agent receives."""
         return episode.instruction
 
     def begin_all(self, episodes: Sequence[EpisodeStart]) -> list[str]:
@@ -72,20 +73,22 @@ class Guard:
         return [self.begin(episode) for episode in episodes]
 
     def observe(self, observation: Mapping[str, Any]) -> Mapping[str, Any]:
-        """Return the observation that the agent gets.
+        """Return the observation that the agent receives.
 
-        Only frames may differ from ``observation``. Its arrays must not be changed in place.
+        Only frames may differ from ``observation``. The arrays in ``observation`` must not be
+        changed in place.
         """
         return observation
 
     def observe_all(self, observations: Sequence[Mapping[str, Any]]) -> list[Mapping[str, Any]]:
-        """Return :meth:`observe` of each observation; they belong to different episodes."""
+        """Apply :meth:`observe` to each observation; the observations belong to different
+        episodes."""
         return [self.observe(observation) for observation in observations]
 
     def attach(self, agent: Any) -> AbstractContextManager:
-        """Return a context that adapts ``agent`` for one episode.
+        """Return a context manager that adapts ``agent`` for one episode.
 
-        When the context ends, the agent is as before.
+        When the context ends, the changes to the agent must be undone.
         """
         return nullcontext()
 
@@ -105,20 +108,20 @@ class Guard:
         """Raise ValueError if the guard cannot adapt ``agent``."""
 
     def prepared(self, episodes: Sequence[EpisodeStart]) -> Guard:
-        """Return the guard that is pickled for the worker processes of these episodes.
+        """Return the guard that is sent to the worker processes of these episodes.
 
-        A guard with a large model computes all its answers here.
+        A guard with a large model can compute all its answers here.
         """
         return self
 
     def fingerprint(self) -> str:
         """Return a content hash that identifies this guard in rows.
 
-        It covers the class, the code of a user's class, ``settings()`` or attributes, weights and
-        ``version``.
+        The hash covers the class, the code of a user's class, ``settings()`` or attributes, weights
+        and ``version``.
 
         Raises:
-            ValueError: A part cannot be read, and ``version`` is None.
+            ValueError: A part of the guard cannot be read, and ``version`` is None.
         """
         from mitigate.agents.fingerprint import contents, hash_of
 
@@ -143,13 +146,13 @@ class Guard:
 
 
 def overrides(guard: Guard, method: str) -> bool:
-    """Return whether the class of ``guard``, or one between it and Guard, defines ``method``."""
+    """Return whether the class of ``guard`` overrides ``method``."""
     classes = type(guard).__mro__
     return any(method in vars(cls) for cls in classes[: classes.index(Guard)])
 
 
 class Guards(Guard):
-    """A chain of guards: each gets what the one before it returned."""
+    """A chain of guards, in which each guard receives the result of the previous one."""
 
     def __init__(self, guards: Iterable[Guard] = ()) -> None:
         self.guards = tuple(guards)
@@ -163,7 +166,7 @@ class Guards(Guard):
 
     @property
     def frames(self) -> tuple[str, ...]:  # type: ignore[override]
-        """Frames that any guard reads or changes; empty if no guard defines ``observe``."""
+        """The frames that any guard reads or changes, or an empty tuple."""
         names = (name for guard in self._overriding("observe") for name in guard.frames)
         return tuple(dict.fromkeys(names))
 
@@ -226,14 +229,14 @@ class Guards(Guard):
     def fingerprint(self) -> str:
         """Return the fingerprints of all guards, joined by "+".
 
-        The text starts with "none" if no guard changes the instruction, and is "none" without
-        guards.
+        If no guard changes the instruction, the text starts with "none"; without guards, it is
+        "none".
         """
         words = [] if self._overriding("begin") else ["none"]
         return "+".join([*words, *(guard.fingerprint() for guard in self.guards)])
 
     def frames_hash(self) -> str | None:
-        """Return the joined fingerprints of the guards that change frames; None without any.
+        """Return the joined fingerprints of the guards that change frames, or None.
 
         The fingerprint of a restorer appears without its prefix.
         """
@@ -257,9 +260,9 @@ NO_GUARDS = Guards()
 
 
 class Guarded(WorldWrapper):
-    """A world whose frames a guard changes.
+    """Wrapper around a world whose frames are changed by a guard.
 
-    Frames are changed when the agent reads them, so an agent that reads none pays nothing.
+    Frames are changed only when the agent reads them, so the guard costs nothing for other frames.
     ``observation.clean`` does not change.
     """
 
@@ -276,5 +279,5 @@ class Guarded(WorldWrapper):
 
 
 def guarded(world: World, guards: Guards) -> World:
-    """Return ``world`` with its frames guarded; ``world`` itself if no guard changes frames."""
+    """Return ``world`` with guarded frames, or ``world`` itself if no guard changes frames."""
     return Guarded(world, guards) if guards.frames else world

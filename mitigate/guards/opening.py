@@ -24,7 +24,7 @@ class TextGuard(Guard):
     """A guard that applies a safeguard (``safeguard=``) to instructions.
 
     Args:
-        safeguard: repairs instructions.
+        safeguard: the safeguard that repairs instructions.
         label: part of a table's column name (:class:`Guard`).
     """
 
@@ -40,7 +40,7 @@ class TextGuard(Guard):
         return [decision.text for decision in decisions]
 
     def prepared(self, episodes: Sequence[EpisodeStart]) -> Guard:
-        """Compute all answers in this process, which has the only copy of a language model."""
+        """Compute all answers in this process, which holds the only copy of a language model."""
         texts = [episode.instruction for episode in episodes]
         answers = dict(zip(texts, self.begin_all(episodes), strict=True))
         return AnsweredText(answers, self.label, self.fingerprint())
@@ -50,7 +50,8 @@ class TextGuard(Guard):
 
 
 class AnsweredText(Guard):
-    """The answers of a :class:`TextGuard`, for worker processes. Other texts stay unchanged."""
+    """The precomputed answers of a :class:`TextGuard`, for worker processes. Other texts stay
+    unchanged."""
 
     def __init__(self, answers: dict[str, str], label: str, fingerprint: str) -> None:
         self.answers = answers
@@ -71,11 +72,11 @@ def open_guards(
     log: str | Path | None = None,
     adapt: str | Guard | None = None,
 ) -> Guards:
-    """Return the guards of the three options, the safeguard first.
+    """Build the guards of the three options, starting with the safeguard.
 
     Args:
-        safeguard: a value as in ``text/guard.py``, or None.
-        restore: a value as in :func:`open_restorer`.
+        safeguard: value of ``safeguard=`` (``text/guard.py``), or None.
+        restore: value of ``restore=`` (:func:`open_restorer`).
         sensors: names of the world's sensors.
         log: file for the decisions of the safeguard.
         adapt: a value as in ``adaptation/choices.py``, or a guard. Call ``calibrate`` before its
@@ -94,12 +95,12 @@ def open_guards(
 
 
 def open_restorer(choice: str | None, sensors: Iterable[str] = SENSORS) -> Guard | None:
-    """Return the guard of ``restore=`` (``frames/choices.py``); None for None and "none".
+    """Build the guard of ``restore=`` (``frames/choices.py``); for None and "none", return None.
 
     Raises:
-        FileNotFoundError: The folder holds no restorer.
+        FileNotFoundError: The folder contains no restorer.
         ValueError: The restorer is damaged, the callable does not exist, or the guard changes none
-            of ``sensors``, the sensors of the world.
+            of the world's ``sensors``.
     """
     if choice in NONE:
         return None
@@ -141,7 +142,7 @@ def open_adaptations(choice: str | Guard | None) -> list[Guard]:
 def labels(
     safeguard: str | None, restore: str | None, adapt: str | Guard | None = None
 ) -> list[str]:
-    """Return the labels of the guards of the three options, without opening them."""
+    """Return the labels of the guards of the three options, without building the guards."""
     names = []
     if safeguard not in NONE:
         from mitigate.guards.text import choices

@@ -1,8 +1,9 @@
-"""Record an oracle's episodes as drives, to try ``mitigate replay``: ``mitigate export_drive OUT``.
+"""Record an oracle's episodes as drives (recordings), as examples for ``mitigate replay``:
+``mitigate export_drive OUT``.
 
-OUT is a folder. Each episode becomes a drive in it, as one RGB-D camera of 90 degrees would have
-recorded it: a folder of frames, or a bag of ROS 1 or of ROS 2 (MCAP). With form=lerobot, OUT
-becomes one LeRobot dataset with all episodes.
+OUT is a folder. Each episode is written to this folder as a drive, in the form that a robot with
+one 90-degree RGB-D camera would record: a folder of frames, or a bag of ROS 1 or ROS 2 (MCAP).
+With form=lerobot, OUT becomes one LeRobot dataset with all episodes.
 """
 
 from __future__ import annotations
@@ -31,7 +32,7 @@ from mitigate.corruptions.frame_files import counts
 FORMS = ("frames", "bag", "mcap", "lerobot")
 _NOT_IN_NAMES = re.compile(r"[^\w-]+")  # characters that are replaced in the name of a drive
 UNIT = 0.001  # metres per count of 16-bit depth
-SECOND = 1_000_000_000  # nanoseconds; each step lasts one second
+SECOND = 1_000_000_000  # duration of a step in nanoseconds (one second)
 TOPICS = {
     RGB: "/camera/color/image_raw",
     DEPTH: "/camera/aligned_depth_to_color/image_raw",
@@ -42,7 +43,7 @@ TOPICS = {
 
 @dataclass
 class ExportDriveConfig:
-    """Types of ``conf/export_drive.yaml``, which explains each entry."""
+    """Types of the options in ``conf/export_drive.yaml``, which documents each of them."""
 
     split: str = "val_unseen"
     episodes: int = 3
@@ -55,7 +56,7 @@ conf.register("export_drive", ExportDriveConfig)
 
 
 def run(config: ExportDriveConfig, out: Path) -> list[Path]:
-    """Write the drives into ``out`` and return their paths.
+    """Write the recorded drives into ``out`` and return their paths.
 
     A drive is written completely or not at all.
 
@@ -90,7 +91,7 @@ def run(config: ExportDriveConfig, out: Path) -> list[Path]:
                     write_frames(draft, steps, instruction)
                 else:
                     draft = write_bag(draft, steps, config.form)
-                    # before the bag, so that a complete bag always has its instruction
+                    # written before the bag, so that a complete bag always has its instruction
                     write_bytes(path.with_suffix(".txt"), instruction.encode())
                 draft.rename(path)
             root.expected.append(path)
@@ -115,7 +116,7 @@ def _write_dataset(world: Any, listed: Sequence[Any], out: Path) -> Path:
 
 
 def _drive_paths(out: Path, names: Sequence[str], form: str) -> list[Path]:
-    """Return the path of each episode's drive; ids are reduced to letters, digits, "_" and "-".
+    """Return the output path of each episode; ids are reduced to letters, digits, "_" and "-".
 
     Raises:
         ValueError: Two episodes have the same path, or a path already exists.
@@ -156,7 +157,8 @@ def oracle(
 
 
 def write_frames(path: Path, steps: Sequence[dict[str, np.ndarray]], instruction: str) -> None:
-    """Write a drive as a folder: ``rgb/``, ``depth/``, ``poses.csv`` and ``instruction.txt``."""
+    """Write a recorded drive as a folder with ``rgb/``, ``depth/``, ``poses.csv`` and
+    ``instruction.txt``."""
     for number, step in enumerate(steps):
         write_bytes(path / RGB / f"{number:06d}.png", _png(step[RGB][..., ::-1]))
         write_bytes(path / DEPTH / f"{number:06d}.png", _png(counts(step[DEPTH][..., 0], UNIT)))
@@ -173,7 +175,7 @@ def _png(picture: np.ndarray) -> bytes:
 
 
 def write_bag(path: Path, steps: Sequence[dict[str, np.ndarray]], form: str) -> Path:
-    """Write a drive as a bag and return its path.
+    """Write a recorded drive as a bag and return its path.
 
     Each step lasts one second. Odometry uses the axes of REP 103.
     """
@@ -221,7 +223,7 @@ def messages(
 
 
 def _odometry(types: Any, header: Any, pose: np.ndarray) -> Any:
-    """Return odometry at a plan pose; ROS's yaw is the heading plus a quarter turn."""
+    """Return the odometry at a plan pose; the yaw in ROS is the heading plus a quarter turn."""
     half = (float(pose[2]) + np.pi / 2) / 2
     z, w = float(np.sin(half)), float(np.cos(half))
     point = types["geometry_msgs/msg/Point"](float(pose[0]), float(pose[1]), 0.0)
@@ -239,7 +241,7 @@ def _odometry(types: Any, header: Any, pose: np.ndarray) -> Any:
     )
 
 
-_out: list[str] = []  # the folder on the command line
+_out: list[str] = []  # the folder that was given on the command line
 
 
 @hydra.main(version_base="1.3", config_path=str(conf.CONF), config_name="export_drive")

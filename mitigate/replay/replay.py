@@ -31,7 +31,7 @@ from mitigate.evaluation.conditions import conditions, suite_conditions
 from mitigate.guards.guard import NO_GUARDS, Guards
 
 DECISIONS, TABLE, SETTINGS = "decisions.jsonl", "table.md", "replay.json"
-UNSAVED = ("out", "runs", "suite")  # options that change no result
+UNSAVED = ("out", "runs", "suite")  # options that do not affect results
 
 
 @dataclass
@@ -56,7 +56,7 @@ class StepConfig:
 
 @dataclass
 class ReplayConfig:
-    """Types of ``conf/replay.yaml``, which explains each entry."""
+    """Types of the options in ``conf/replay.yaml``, which documents each of them."""
 
     agents: list[str] = MISSING
     instruction: str | None = None
@@ -91,8 +91,8 @@ def run(config: ReplayConfig, paths: Sequence[str]) -> Path:
     """Run agents on the drives at ``paths`` and return the folder of the report.
 
     Raises:
-        FileNotFoundError: A drive or an agent does not exist.
-        ValueError: An option is invalid, or a drive is damaged or does not fit an agent.
+        FileNotFoundError: A drive or an agent's folder does not exist.
+        ValueError: An option is invalid, or a drive is damaged or lacks inputs of an agent.
     """
     from mitigate.guards.opening import open_guards
 
@@ -109,7 +109,7 @@ def run(config: ReplayConfig, paths: Sequence[str]) -> Path:
     recordings = load_recordings(config, paths, views, guards)
     with FolderLock(out) as lock:
         lock.expect(out / SETTINGS, out / DECISIONS, out / TABLE)
-        for name, corruption in product(agents, corruptions):  # pictures of an earlier run
+        for name, corruption in product(agents, corruptions):  # removes pictures of an earlier run
             _picture_file(out, name, corruption.name).unlink(missing_ok=True)
         with atomic_text(out / SETTINGS) as file:
             json.dump(settings, file, indent=1)
@@ -125,7 +125,7 @@ def run(config: ReplayConfig, paths: Sequence[str]) -> Path:
 
 
 def check_options(config: ReplayConfig, paths: Sequence[str]) -> None:
-    """Raise ValueError for invalid options, and without a drive."""
+    """Raise ValueError for invalid options, or if there is no drive."""
     if not paths:
         raise ValueError(
             "A drive is missing: mitigate replay FOLDER_OR_BAG agents=[checkpoints/recurrent/base]"
@@ -159,8 +159,8 @@ def load_recordings(
     """Load every drive for each number of views in ``views`` (12: panorama, 1: one camera).
 
     Raises:
-        ValueError: A drive has no frames that ``guards`` apply to (checked before any frame is
-            read), or no instruction, or two drives have the same name.
+        ValueError: A drive has no frames for the ``guards`` (checked before any frame is read), it
+            has no instruction, or two drives have the same name.
     """
     from mitigate.worlds.recorded import Step, Topics, kinds, load, open_recording
 
@@ -196,7 +196,7 @@ def load_recordings(
 
 
 def _name(paths: Sequence[str]) -> str:
-    """Return a name for the drives: the name of the first, and the number of others."""
+    """Return a name for the drives, from the first drive's name and the number of others."""
     first = Path(paths[0])
     more = f"+{len(paths) - 1}" if len(paths) > 1 else ""
     return (first.stem if first.is_file() else first.name) + more
@@ -205,7 +205,7 @@ def _name(paths: Sequence[str]) -> str:
 def _settings(
     config: ReplayConfig, paths: Sequence[str], agents: Mapping[str, Any]
 ) -> dict[str, Any]:
-    """Return everything that determines the report, as JSON data."""
+    """Return all settings that determine the report, as JSON data."""
     from mitigate.core.checkpoint import weights_sha
 
     settings = {key: value for key, value in asdict(config).items() if key not in UNSAVED}
@@ -215,7 +215,7 @@ def _settings(
 
 
 def _check_earlier(out: Path, settings: dict[str, Any]) -> None:
-    """Raise ValueError if ``out`` is not a folder, or contains a report of other settings."""
+    """Raise ValueError if ``out`` is not a folder, or contains a report with different settings."""
     fix = "Name another folder (out=...), or delete this one."
     if out.exists() and not out.is_dir():
         raise ValueError(f"{out} must be a folder, which a replay writes into. {fix}")
@@ -249,7 +249,7 @@ def replay(
 
     Args:
         agents: Agents by name.
-        recordings: Recordings by their number of views.
+        recordings: Recordings by number of views.
         corruptions: Corruptions, clean first.
         out: Folder of the report.
         severity: Severity, for titles.
@@ -307,7 +307,7 @@ def replay(
 
 
 def inapplicable(corruption: Any, agent: Any, drives: Sequence[Any]) -> str:
-    """Return why a corruption does not apply to an agent and drives; empty if it does."""
+    """Return the reason why a corruption does not apply to an agent and drives, or ""."""
     from mitigate.agents.agent import as_agent
     from mitigate.corruptions.registry import parts, record
 
@@ -324,7 +324,7 @@ def inapplicable(corruption: Any, agent: Any, drives: Sequence[Any]) -> str:
 
 
 def _worst(corruptions: Sequence[Any], changes: Mapping[str, Any]) -> Any:
-    """Return the corruption of frames that changed most decisions, or None."""
+    """Return the frame corruption that changed the most decisions, or None."""
     of_frames = [c for c in corruptions if c.name in changes and {"rgb", "depth"} & {*c.modalities}]
     return max(of_frames, key=lambda c: changes[c.name].changed.value, default=None)
 
@@ -336,7 +336,7 @@ def _draw(
     rerun: Callable[..., Any],
     path: Path,
 ) -> list[Path]:
-    """Draw decisions that a corruption changed in the drive with most of them, if there are any."""
+    """Draw decisions that a corruption changed, from the drive with the most such decisions."""
     from mitigate.replay import report
 
     clean, corrupted = answers["clean"], answers[corruption.name]
@@ -353,7 +353,7 @@ def _picture_file(out: Path, name: str, condition: str) -> Path:
     return out / f"{name.replace('/', '-')}-{condition}.png"
 
 
-_paths: list[str] = []  # the drives on the command line
+_paths: list[str] = []  # the drives that were given on the command line
 
 
 @hydra.main(version_base="1.3", config_path=str(conf.CONF), config_name="replay")

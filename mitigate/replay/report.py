@@ -21,8 +21,8 @@ from mitigate.guards.guard import NO_GUARDS, Guards
 from mitigate.replay.walk import ACTIONS, MIN_BLOCKS, Answers, Changes
 from mitigate.worlds.recorded import Recording
 
-AgentChanges = Mapping[str, Mapping[str, Changes]]  # agent -> condition -> changes
-MAX_CELLS = 6  # decisions in a picture
+AgentChanges = Mapping[str, Mapping[str, Changes]]  # maps agent and condition to the changes
+MAX_CELLS = 6  # maximum number of decisions in a picture
 
 
 def table(
@@ -35,10 +35,10 @@ def table(
         severity: Severity of the corruptions.
         steps: Number of steps of all drives.
         drives: Number of drives.
-        guards: Guards that the frames passed through.
+        guards: Guards that processed the frames.
 
     Returns:
-        A table of changed decisions and one of the other measures.
+        A table of changed decisions and a table of the other measures.
     """
     agents = list(changes)
     conditions = [name for name in _conditions(changes) if name != "clean"]
@@ -72,7 +72,7 @@ def _conditions(changes: AgentChanges) -> list[str]:
 
 
 def _other_measures(changes: AgentChanges) -> list[str]:
-    """Return the table of stops, aims and agreement with the driver."""
+    """Return a table of stops, aims (target positions) and agreement with the driver."""
     lines = [
         "False stops: steps with STOP here but not on clean frames; missed stops: the reverse. Aim "
         "moved: share of the steps, in %, at which the point that the agent moves to is more than "
@@ -96,7 +96,8 @@ def _percent(share: Estimate) -> str:
 
 
 def heatmap(changes: AgentChanges, severity: float, path: Path) -> Path:
-    """Draw the share of changed decisions, with a row per condition and a column per agent."""
+    """Draw the fraction of changed decisions, with one row per condition and one column per
+    agent."""
     agents = list(changes)
     names = [name for name in _conditions(changes) if name != "clean"]
     values = np.full((len(names), len(agents)), np.nan)
@@ -119,7 +120,7 @@ def heatmap(changes: AgentChanges, severity: float, path: Path) -> Path:
 
 
 def spread(changed: Sequence[int]) -> list[int]:
-    """Choose up to ``MAX_CELLS`` of the steps, evenly spread."""
+    """Choose at most ``MAX_CELLS`` steps, spread evenly."""
     if len(changed) <= MAX_CELLS:
         return list(changed)
     return [changed[i] for i in np.linspace(0, len(changed) - 1, MAX_CELLS).round().astype(int)]
@@ -128,7 +129,7 @@ def spread(changed: Sequence[int]) -> list[int]:
 def picture(
     recording: Recording, corruption: Corruption, clean: Answers, corrupted: Answers, path: Path
 ) -> Path:
-    """Draw the steps in ``corrupted.seen``: clean frame, corrupted frame, and both decisions."""
+    """Draw the steps in ``corrupted.seen`` with clean frame, corrupted frame and both decisions."""
     corrupted_frames = [part for part in corruption.modalities if part in recording.frames]
     modality = (*corrupted_frames, *recording.frames)[0]
     frames = recording.frames[modality]
@@ -153,7 +154,7 @@ def picture(
 
 
 def _view(frame: np.ndarray, clean: np.ndarray) -> np.ndarray:
-    """Draw a frame, or a panorama as the middle of each view, as uint8 [H, W, 3].
+    """Draw a frame, or the middle parts of a panorama's views, as uint8 [H, W, 3].
 
     Depth is coloured over the range of the clean frame.
     """

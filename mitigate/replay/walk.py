@@ -1,4 +1,4 @@
-"""Run an agent on a recorded drive and compare its decisions with those on clean frames.
+"""Run an agent on a recorded drive, and compare its decisions with those on clean frames.
 
 The recording decides where the robot moves; the agent only decides what it would do at each step.
 """
@@ -24,9 +24,10 @@ from mitigate.worlds.world import Corrupted
 
 ACTIONS = {STOP: "stop", FORWARD: "forward", LEFT: "left", RIGHT: "right"}
 # Heuristic limits.
-MIN_AIM_SHIFT = 0.5  # metres, two steps: an aim that moved less has not changed
-MIN_BLOCKS = 8  # fewer blocks of steps are too few for the bootstrap
-BLOCK_STEPS = 10  # consecutive steps are resampled together, because they are correlated
+MIN_AIM_SHIFT = 0.5  # shift in metres (two steps) below which an aim counts as unchanged
+MIN_BLOCKS = 8  # minimum number of blocks of steps for the bootstrap
+# number of consecutive steps that are resampled together, because they are correlated
+BLOCK_STEPS = 10
 
 
 @dataclass(frozen=True)
@@ -35,7 +36,7 @@ class Answers:
 
     Attributes:
         actions: int [T].
-        aims: float [T, 2], the plan position (metres) that the agent moves to, NaN if it has none.
+        aims: float [T, 2], the plan position (metres) to which the agent moves, or NaN.
         seen: Frames of some steps as the agent received them, by step and sensor.
     """
 
@@ -53,11 +54,11 @@ def walk(
     clean: Answers | None = None,
     guards: Guards = NO_GUARDS,
 ) -> Answers:
-    """Run ``agent`` on a drive under ``corruption`` and return its decisions.
+    """Run ``agent`` on a recorded drive under ``corruption`` and return its decisions.
 
-    After each step the agent is informed of the driver's movement (``Agent.taken``). If the
-    movement is unknown, it is informed of its decision on clean frames instead, so that only
-    frames and instructions differ between the runs.
+    After each step, the agent is informed of the driver's motion (``Agent.taken``). If this motion
+    is unknown, the agent is informed of its decision on clean frames instead. So only frames and
+    instructions differ between the runs.
 
     Args:
         agent: The agent.
@@ -65,7 +66,7 @@ def walk(
         corruption: Corruption of frames and instruction; ``CLEAN`` for the reference run.
         seed: Corruption seed.
         keep: Steps whose frames are returned.
-        clean: Decisions on clean frames; None if this is the clean run.
+        clean: Decisions on clean frames, or None if this is the clean run.
         guards: Guards between the drive and the agent.
 
     Returns:
@@ -136,13 +137,13 @@ class Changes:
     """Changes of an agent's decisions under one condition, over all drives.
 
     Attributes:
-        changed: Share of the steps whose action differs from that on clean frames.
-        stops: Number of steps with STOP here but not on clean frames.
-        missed: Number of steps with STOP on clean frames but not here.
-        aim: Share of the steps whose aim moved by more than ``MIN_AIM_SHIFT``; None if the agent
+        changed: Fraction of steps whose action differs from that on clean frames.
+        stops: Number of steps with STOP under this condition but not on clean frames.
+        missed: Number of steps with STOP on clean frames but not under this condition.
+        aim: Fraction of steps whose aim moved by more than ``MIN_AIM_SHIFT``, or None if the agent
             has no aim.
-        agreement: Share of the steps with the driver's action, among those that an action
-            describes; None if the driver's actions are unknown.
+        agreement: Fraction of steps with the driver's action, among steps whose motion is an
+            action; None if the driver's actions are unknown.
         steps: Number of steps.
     """
 
@@ -182,13 +183,13 @@ def compare(
 
 
 def _share(drives: Sequence[np.ndarray]) -> Estimate:
-    """Estimate the share of true steps, with its 95 % interval.
+    """Estimate the fraction of true steps, with a 95 % interval.
 
     The interval resamples blocks of ``BLOCK_STEPS`` steps. With fewer than ``MIN_BLOCKS`` blocks,
-    or if all are equal, it is Wilson's score interval with one observation per block.
+    or if all are equal, Wilson's score interval is used, with one observation per block.
 
     Args:
-        drives: bool [T] of each drive.
+        drives: bool [T] for each drive.
     """
     blocks = [block for drive in drives for block in _blocks(drive)]
     true = np.array([block.sum() for block in blocks])

@@ -1,1 +1,1 @@
-"""Hardened checkpoints: exported, described, checked and loaded."""
+"""Export, describe, check and load hardened checkpoints."""

@@ -1,4 +1,4 @@
-"""Write the card of a hardened checkpoint: its training, its results, and a README from them.
+"""Write the card of a hardened checkpoint with its training and results, and a README.
 
 The README has the front matter that Hugging Face reads.
 """
@@ -26,24 +26,24 @@ from mitigate.evaluation.rows import Row
 from mitigate.evaluation.sections import Retained, Section, label, sections
 
 VERSIONS = ("mitigate", "torch", "numpy", "safetensors", "panda3d")
-# paths of a checkout that determine the content of a folder
+# paths in a checkout that determine the content of an exported folder
 CODE = ("mitigate", "conf", "recipes", "pyproject.toml")
 LIBRARY = "mitigate"
-TASK = "robotics"  # the task for moving agents in Hugging Face's list
+TASK = "robotics"  # Hugging Face's name of the task for moving agents
 TAGS = ("embodied-navigation", "robustness", "sensor-corruption", "safetensors")
-DATASET = "mitigate-episodes"  # a name of this project; the hub has no such data set
-LICENCE = "Apache-2.0"  # licence of this project's agents
+DATASET = "mitigate-episodes"  # a name of this project, because the hub has no such data set
+LICENCE = "Apache-2.0"  # the licence of this project's agents
 UNKNOWN = "other"  # Hugging Face's word for an unknown licence
 
 
 def facts(cfg: dict[str, Any], agent: Any) -> dict[str, Any]:
-    """Return the entries of a card that describe how ``agent`` was made.
+    """Return the entries of a card that describe how ``agent`` was trained.
 
-    They come from the resolved config ``cfg`` of the run and from this checkout.
+    The entries come from the resolved config ``cfg`` of the run and from this checkout.
 
     Raises:
         FileNotFoundError: The base or a teacher of the run is missing.
-        ValueError: ``cfg`` has an entry that no training writes.
+        ValueError: ``cfg`` has an entry that training never writes.
     """
     _check(cfg)
     teachers = sorted({path for path in _teachers(cfg.get("stages")) if path != "start"})
@@ -76,7 +76,7 @@ def reference(weights: str) -> dict[str, str]:
 
 
 def commit() -> str | None:
-    """Return the git commit of the checkout; None outside a checkout or without git."""
+    """Return the git commit of the checkout, or None outside a checkout or without git."""
     return _git("rev-parse", "HEAD") or None
 
 
@@ -86,8 +86,9 @@ def uncommitted() -> bool:
 
 
 def _git(*words: str) -> str:
-    """Return the output of git in the checkout; empty outside a checkout or without git."""
-    if not (ROOT / ".git").exists():  # installed: an enclosing repository is another project
+    """Return the output of git in the checkout, or "" outside a checkout or without git."""
+    # if installed, an enclosing repository belongs to a different project
+    if not (ROOT / ".git").exists():
         return ""
     try:
         process = subprocess.run(["git", *words], cwd=ROOT, capture_output=True, text=True)
@@ -97,7 +98,7 @@ def _git(*words: str) -> str:
 
 
 def weights_of(row: Row) -> str:
-    """Return the hash of the weights of a row; older rows have it under ``agent``."""
+    """Return the hash of the weights in a row; older rows have it under ``agent``."""
     return str(row.get("weights", row["agent"]))
 
 
@@ -109,16 +110,16 @@ def metrics(rows: Iterable[Row], agents: set[str]) -> list[dict[str, Any]]:
         agents: hashes of their weights.
 
     Returns:
-        One entry per split, suite, rule and severity; intervals are [value, low, high].
+        One entry per split, suite, success rule and severity; intervals are [value, low, high].
     """
     mine = [{**row, "name": "agent", "agent": "agent"} for row in rows if weights_of(row) in agents]
     return [_entry(section) for section in sections(mine)] if mine else []
 
 
 def rows_agent(rows: Iterable[Row], agents: set[str]) -> list[str]:
-    """Return the fingerprints in the rows of ``agents``, which are hashes of weights.
+    """Return the agent fingerprints in the rows whose weights have the hashes ``agents``.
 
-    Tables and the leaderboard name agents by fingerprint.
+    Tables and the leaderboard identify agents by fingerprint.
     """
     return sorted({str(row["agent"]) for row in rows if weights_of(row) in agents})
 
@@ -155,7 +156,7 @@ def _entry(section: Section) -> dict[str, Any]:
 
 
 def _heading(section: Section, block: str, retained: Retained) -> str:
-    """Return the block of a PRS, and how many of its corruptions it covers if not all."""
+    """Return the block of a PRS, with the number of covered corruptions if it is incomplete."""
     count = len(retained.corruptions)
     whole = section.whole(block)
     return block if count >= whole else f"{block}, {count} of {whole}"
@@ -233,7 +234,8 @@ def _cell(numbers: list[float | None]) -> str:
 
 
 def _use(card: dict[str, Any]) -> str:
-    listed = "card.json" if "files" in card else "manifest.json"  # older folders, current folders
+    # file names in older and in current folders
+    listed = "card.json" if "files" in card else "manifest.json"
     load = f'mitigate.load_hardened("checkpoints/hardened/{card["name"]}"'
     if not card.get("program", True):
         built_in = loading.is_ours(card.get("class", ""))
@@ -266,7 +268,7 @@ def _use(card: dict[str, Any]) -> str:
 
 
 def _check(cfg: dict[str, Any]) -> None:
-    """Raise ValueError for entries of an untrusted config that must not appear in a card."""
+    """Raise ValueError for entries in an untrusted config that must not appear in a card."""
     schedule = cfg.get("schedule") or {}
     entries = {**cfg, **(schedule if isinstance(schedule, dict) else {})}
     name, stages = entries.get("name"), entries.get("stages") or {}
@@ -294,7 +296,7 @@ def _is_span(severity: Any) -> bool:
 
 
 def _precision(stages: dict[str, Any]) -> str:
-    """Return the precision of the stages: "fp32", "bf16", or both if they differ."""
+    """Return the precision of the stages, which is "fp32", "bf16", or both if they differ."""
     settings = [(stage or {}).get("trainer") or {} for stage in stages.values()]
     return " and ".join(sorted({s["precision"] for s in settings if s.get("precision")}))
 
@@ -317,9 +319,10 @@ def _version(package: str) -> str | None:
 
 
 def front_matter(card: dict[str, Any]) -> str:
-    """Return the front matter of a README for Hugging Face: YAML between two lines of ``---``.
+    """Return the front matter of a README for Hugging Face: This is YAML between two lines of
+    ``---``.
 
-    ``hf upload`` of a folder makes a model page from it, with library, licence, tags and metrics
+    After ``hf upload``, the hub shows a model page with its library, licence, tags and metrics
     (docs/deployment.md). Without metrics there is no ``model-index``. The format is described in
     https://github.com/huggingface/hub-docs/blob/main/modelcard.md
     """

@@ -1,4 +1,4 @@
-"""Export the agent of a run as a folder to ship (``export_command.py`` is the command line).
+"""Export the agent of a run as a folder for deployment (``export_command.py`` has the command).
 
 ``checkpoints/hardened/<name>`` contains the weights (or adapters and a reference to their base),
 ``config.yaml``, ``program.pt2``, a card and a README. The folder is written to a temporary place
@@ -41,23 +41,23 @@ from mitigate.worlds.episodes import Episode
 from mitigate.worlds.world import World
 
 HARDENED = Path("checkpoints/hardened")
-# Largest absolute differences of outputs on the probe (heuristic; logits are about 1 to 10).
-RELOADED = 1e-5  # the folder in a new process, compared with the agent in this process
-EXPORTED = 1e-3  # program.pt2 and the ONNX files, compared with the agent
-ROUNDED = 0.1  # the float16 weights, compared with the float32 weights of the run
-REASON_WIDTH = 400  # characters of a failed check's last line in a message (heuristic)
-WALKS = 2  # episodes in which a reloaded agent of another class is compared (heuristic)
+# Maximum absolute differences of outputs on the probe (heuristic; logits are about 1 to 10).
+RELOADED = 1e-5  # for the folder loaded in a new process, compared with the agent in this process
+EXPORTED = 1e-3  # for program.pt2 and the ONNX files, compared with the agent
+ROUNDED = 0.1  # for the float16 weights, compared with the float32 weights of the run
+REASON_WIDTH = 400  # maximum characters of a failed check's last line in a message (heuristic)
+WALKS = 2  # number of episodes for comparing a reloaded agent of a different class (heuristic)
 _RUN = "import sys; from mitigate.shipping import export; export.{}(*sys.argv[1:])"
 _TRAIN = "Run `make train` to the end, then name its folder (runs/...)."
 
 
 class Walks:
-    """Check of an exported folder: clean episodes in a new process.
+    """Settings for checking an exported folder with clean episodes in a new process.
 
     Args:
-        make_agent: makes an agent, which loads the folder.
-        make_world: makes the world.
-        episodes: episodes to run; the first ``WALKS`` are used.
+        make_agent: function that constructs an agent, which then loads the folder.
+        make_world: function that constructs the world.
+        episodes: episodes, of which the first ``WALKS`` are run.
     """
 
     def __init__(
@@ -94,15 +94,15 @@ def export(
         name: name of the new folder.
         out: folder that contains it.
         rows: row files or folders with the agent's evaluation, in addition to the run's.
-        overwrite: replace ``out/name`` if that is a hardened folder.
-        onnx: also write the two networks as ONNX files.
-        walks: check of an agent of another class; its folder has no programs.
+        overwrite: whether to replace ``out/name`` if it is a hardened folder.
+        onnx: whether to also write the two networks as ONNX files.
+        walks: check for an agent of a different class, whose folder has no programs.
 
     Raises:
-        FileNotFoundError: ``run`` holds no finished run.
+        FileNotFoundError: ``run`` contains no finished run.
         ValueError: The run cannot be exported, ``out/name`` exists (with ``overwrite``: and is not
-            a hardened folder), ``rows`` has no rows of this agent, or the new folder does not
-            reload to the same outputs. Nothing is written.
+            a hardened folder), ``rows`` has no rows of this agent, or the agent reloaded from the
+            new folder gives different outputs. Nothing is written.
     """
     if not re.fullmatch(r"\w[\w.+-]*", name):
         raise ValueError(
@@ -129,8 +129,8 @@ def finished(run: Path, walks: Walks | None = None) -> tuple[dict[str, Any], Any
 
     Raises:
         FileNotFoundError: There is no finished run.
-        ValueError: The run cannot be exported, its kind of agent needs ``walks``, or its weights do
-            not fit float16.
+        ValueError: The run cannot be exported, its kind of agent needs ``walks``, or its weights
+            overflow in float16.
     """
     weights, config = run / "agent" / checkpoint.WEIGHTS, run / loading.CONFIG
     loading.reject_other_models(run)
@@ -160,7 +160,7 @@ def add_programs(folder: Path) -> Path:
     """Write ``program.pt2`` of the hardened ``folder`` again and list it in the card.
 
     Returns:
-        The file. Its outputs on the probe equal the outputs of the agent.
+        The file. The outputs of the program on the probe are compared with those of the agent.
 
     Raises:
         FileNotFoundError: ``folder`` is not a complete hardened folder.
@@ -191,7 +191,8 @@ def add_programs(folder: Path) -> Path:
 
 
 def _check_free(target: Path, overwrite: bool) -> None:
-    """Raise ValueError unless ``target`` is free, or a hardened folder that may be replaced."""
+    """Raise ValueError unless ``target`` does not exist or is a hardened folder that may be
+    replaced."""
     if not os.path.lexists(target):
         return
     if not overwrite:
@@ -245,13 +246,13 @@ def _write(
     onnx: bool,
     walks: Walks | None,
 ) -> None:
-    """Fill ``draft`` and check it."""
-    # The path of the run does not matter.
+    """Write all files into ``draft`` and check them."""
+    # The path of the run is not relevant.
     config = yaml.safe_dump({**cfg, "folder": None}, sort_keys=False)
     config = config.replace(f"{Path.cwd()}/", "")
     write_text(draft / loading.CONFIG, config)
     adapters_only = _only_adapters_trained(cfg, agent)
-    known = facts(cfg, agent)  # before the slow part, to find missing files at once
+    known = facts(cfg, agent)  # done before the slow part, to find missing files at once
     shipped = agent
     if adapters_only:
         adapters.write_adapters(agent, draft)
@@ -271,7 +272,7 @@ def _write(
         "format": loading.FORMAT,
         "name": name,
         **known,
-        "agent": checkpoint.weights_sha(shipped),  # hash of the weights, as run_agent
+        "agent": checkpoint.weights_sha(shipped),  # hash of the weights, as in run_agent
         "run_agent": checkpoint.weights_sha(agent),
         "rows_agent": rows_agent(result_rows_of_agent, weights),
         "adapters_only": adapters_only,
@@ -296,7 +297,7 @@ def _programs(
     """Write the exported programs of ``shipped``.
 
     Returns:
-        Entries of the card about them, and the outputs of ``shipped`` on the probe.
+        The entries of the card about the programs, and the outputs of ``shipped`` on the probe.
     """
     size = agent.rgb_encoder.size
     inputs = programs.probe(agent, size)
@@ -326,7 +327,7 @@ def _programs(
 
 
 def _only_adapters_trained(cfg: dict[str, Any], agent: Any) -> bool:
-    """Return whether only the adapters of ``agent`` differ from the first weights of the run."""
+    """Return whether only the adapters of ``agent`` differ from the initial weights of the run."""
     init = find(cfg.get("init") or "")
     if not adapters.adapted(agent) or not cfg.get("init") or loading.adapters_only(init):
         return False
@@ -334,7 +335,7 @@ def _only_adapters_trained(cfg: dict[str, Any], agent: Any) -> bool:
     adapters.remove_adapters(base)
     try:
         checkpoint.load_weights(base, init)
-    except ValueError:  # a base that has adapters
+    except ValueError:  # the base itself has adapters
         return False
     return adapters.backbone_sha(base) == adapters.backbone_sha(agent)
 
@@ -342,7 +343,7 @@ def _only_adapters_trained(cfg: dict[str, Any], agent: Any) -> bool:
 def _rows(run: Path, rows: list[Path | str], agents: set[str]) -> list[Row]:
     """Return the rows of the weights ``agents``, from the run and from the files ``rows``.
 
-    Raises ValueError if ``rows`` holds none of them.
+    Raises ValueError if ``rows`` contains no row of these weights.
     """
     try:
         run_rows = result_rows.gather([run])
@@ -361,8 +362,8 @@ def _rows(run: Path, rows: list[Path | str], agents: set[str]) -> list[Row]:
 def _of_one_agent(run_rows: list[Row], other_rows: list[Row], weights: set[str]) -> Iterator[Row]:
     """Yield the rows of ``weights`` that belong to a single agent.
 
-    The same weights with a blanked sensor or a guard are another agent. If there are several, the
-    rows of the run decide. Raises ValueError if they do not.
+    The same weights with a blanked sensor or a guard form a different agent. If there are several
+    agents, the one in the run's own rows is used. Raises ValueError if these rows do not decide.
     """
     rows = [row for row in result_rows.upsert(run_rows, other_rows) if weights_of(row) in weights]
     for sha in weights:
@@ -399,8 +400,8 @@ def _reload_walks(draft: Path, agent: nn.Module, walks: Walks) -> None:
 def _run_apart(check: str, what: str, *paths: Path) -> None:
     """Call the function ``check`` of this module in a new process.
 
-    If it fails, raise ValueError with the last line of its output: the folder does not reload to
-    the same ``what``.
+    If it fails, raise ValueError with the last line of its output: the message states that the
+    reloaded folder differs in ``what``.
     """
     root = str(Path(__file__).resolve().parents[2])
     with tempfile.TemporaryFile() as errors:

@@ -1,12 +1,12 @@
-"""Export the agent of a run as a folder to ship: ``mitigate export runs/a my_agent``.
+"""Export the agent of a run as a folder for deployment: ``mitigate export runs/a my_agent``.
 
 ``checkpoints/hardened/<name>`` contains the weights (or adapters and a reference to their base),
 ``config.yaml``, ``program.pt2``, a card and a README. The folder is written to a temporary place
 and reloaded in a new process. It is renamed to its final place only if the outputs on a fixed probe
 are the same.
 
-``mitigate export checkpoints/hardened/harden --programs`` writes a missing ``program.pt2`` of such
-a folder.
+``mitigate export checkpoints/hardened/harden --programs`` writes a missing ``program.pt2`` into
+such a folder.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from mitigate.core.options import paths_and_overrides
 from mitigate.evaluation import config as options
 from mitigate.evaluation.episode_lists import episodes
 
-if TYPE_CHECKING:  # main() reads the command line before slow imports
+if TYPE_CHECKING:  # main() parses the command line before slow imports
     from mitigate.shipping.export import Walks
 
 
@@ -91,7 +91,8 @@ def main() -> None:
 
 
 def _own_kind(run: Path) -> list[str]:
-    """Return the option for the agent of ``run``, if it is shipped without programs."""
+    """Return the option ``agent=`` for ``run``, if it is a shipped kind of agent without
+    programs."""
     from mitigate.agents import loading
 
     config = run / loading.CONFIG
@@ -101,7 +102,7 @@ def _own_kind(run: Path) -> list[str]:
 
 
 def _walks_of(run: Path, overrides: list[str], configs: Path | None) -> Walks:
-    """Return how to make the agent and the world that ``overrides`` name.
+    """Return functions that construct the agent and the world that ``overrides`` name.
 
     The settings of the agent are read as data from the folder of the run.
     """

@@ -71,10 +71,11 @@ class Hardened:
 
     Attributes:
         policy: a copy of the given policy with hardened weights, of the same class.
-        agent: the same as an agent, for ``mitigate.benchmark``.
+        agent: the hardened policy as an agent, for ``mitigate.benchmark``.
         report: success, return and retention before and after; its text is a Markdown table.
         rows: the result rows of both, named "before" and "after".
-        folder: the weights are in its folder ``agent`` (``mitigate.load_policy``).
+        folder: folder of the run, whose subfolder ``agent`` holds the weights
+            (``mitigate.load_policy``).
         chosen: which weights validation chose: "trained", "averaged" or "given".
     """
 
@@ -119,37 +120,38 @@ def harden(
 
     Args:
         policy: a trained policy of stable-baselines3 or torchrl, or an ``nn.Module``
-            (``agents/policies.py``). It is not changed.
-        world: makes a world, such as ``lambda: GymWorld(gymnasium.make(...))``.
+            (``agents/policies.py``). The policy is not changed.
+        world: function that constructs a world, such as ``lambda: GymWorld(gymnasium.make(...))``.
         forward, recurrent: how to call an ``nn.Module``
             (:class:`~mitigate.agents.policies.ModulePolicy`).
         method: "self_distil": the policy teaches its copy. "ppo": the copy learns from the reward
             of the world.
-        listed: episodes of the comparison; None: seeds 0 to 49 of the environment.
-        training: episodes to train on; None: other seeds of the environment.
+        listed: episodes of the comparison; None means seeds 0 to 49 of the environment.
+        training: training episodes; None means other seeds of the environment.
         suite: a name of ``conf/suite`` or a list of corruptions, for training and comparison;
             corruptions of sensors that the policy does not read are left out.
-        severity: severity of the comparison, from 0 to 1. Training draws from 0.3 to 1.
-        tune: "all" weights, or "adapters" inserted into the frozen policy.
-        targets: regular expressions for the modules that get adapters; None: every
-            convolution, or else the first layer.
-        steps, lr: of the training.
-        broad_share: share of corrupted frames that get random compositions in place of the suite's
-            corruptions. They prepare the policy for corruptions that the suite lacks.
+        severity: severity of the comparison, from 0 to 1. Training uses severities from 0.3 to 1.
+        tune: "all" to train all weights, or "adapters" to insert adapters into the frozen policy.
+        targets: regular expressions for the modules that get adapters; None means every
+            convolution, or the first layer if there is none.
+        steps, lr: number of training steps, and learning rate.
+        broad_share: fraction of corrupted frames that get random compositions instead of the
+            suite's corruptions. These prepare the policy for corruptions that the suite does not
+            contain.
         schedule: "per_episode" or "per_frame": how often the corruption of the training changes.
         validation: number of training episodes that choose between the trained weights, the given
             weights and an average of both (``shipping/selection.py``), under each corruption; 0:
             the trained weights.
-        seed: seed of the training and of the corruptions.
-        workers: processes of the comparison; None: one per core if there is enough work.
-        out: folder of the run; None: a folder in runs/harden.
+        seed: seed of training and corruptions.
+        workers: processes for the comparison; None means one per core if there is enough work.
+        out: folder of the run; None means a folder in runs/harden.
         **settings: other arguments of the method,
             :class:`~mitigate.recipes.self_distil.SelfDistil` or
             :class:`~mitigate.recipes.ppo.Ppo`, such as ``episodes=16``.
 
     Raises:
-        TypeError: The policy is of an unknown kind.
-        ValueError: An argument is invalid, or the folder holds another run.
+        TypeError: The policy has an unsupported type.
+        ValueError: An argument is invalid, or the folder contains a different run.
     """
     seeding.check(seed)
     choices = {"method": (method, METHODS), "tune": (tune, TUNE), "schedule": (schedule, SCHEDULES)}
@@ -223,7 +225,8 @@ def harden(
         arguments = (world, compared, folder, seed)
         rows = _evaluate(before, "before", conditions, *arguments, workers)
         rows += _evaluate(RandomPolicy(before.space, seed), RANDOM, [CLEAN], *arguments, 1)
-        compare(rows)  # raises before the training if the policy is no better than random
+        # raises an error before training if the policy is no better than random actions
+        compare(rows)
         try:
             trainer.fit()
         except KeyboardInterrupt:
@@ -249,7 +252,7 @@ def harden(
         rows += _evaluate(after, "after", conditions, *arguments, workers)
     report = compare(rows)
     corrupted = next(line for line in report.lines if not line.title.endswith(": Clean"))
-    change = corrupted.changes["after"]  # the mean over the corruptions, or the only one
+    change = corrupted.changes["after"]  # the mean over all corruptions, or the only corruption
     if change.excludes_zero and change.value < 0:
         say(
             "harden: the hardened policy is worse than the given one under these corruptions. Keep "
@@ -264,7 +267,8 @@ def harden(
 
 
 def _check_folder(trainer: Trainer, folder: Path) -> None:
-    """Raise ValueError if the folder holds the training of another policy or of other settings."""
+    """Raise ValueError if the folder contains a run of a different policy or with different
+    settings."""
     newest = states.load_newest(trainer.folder)
     if newest is None:
         return
@@ -278,7 +282,7 @@ def _check_folder(trainer: Trainer, folder: Path) -> None:
 
 
 class _Training:
-    """Training episodes: a list, or seeds that the comparison does not use."""
+    """Source of training episodes, which are a list or seeds that the comparison does not use."""
 
     def __init__(self, listed: Iterable[Episode] | None, compared: Sequence[Episode]) -> None:
         self.listed = None if listed is None else list(listed)
@@ -342,7 +346,7 @@ def _corruptions(suite: str | Sequence[str], policy: Policy) -> list[str]:
 def _insert_adapters(
     policy: Policy, world: World, episode: Episode, targets: Sequence[str] | None, seed: int
 ) -> None:
-    """Insert adapters behind the modules ``targets``, by default behind every convolution."""
+    """Insert adapters after the modules ``targets``, by default after every convolution."""
     observation = world.reset(episode)
     frames = {name: np.asarray(observation[name]) for name in policy.sensors}
 
@@ -398,7 +402,7 @@ def _print_estimate(
     steps: int,
     folder: Path,
 ) -> None:
-    """Print the amount of work, with the time of the comparison, measured on one episode."""
+    """Print the amount of work, and a time estimate of the comparison from one episode."""
     built = world()
     run_episode(policy, built, episodes[0], CLEAN, 0)  # the first episode also loads libraries
     started = time.monotonic()
@@ -418,7 +422,7 @@ def _like(policy: Any, hardened: Policy) -> Any:
         return hardened
     if isinstance(policy, nn.Module):
         return hardened.network
-    twin = copy.copy(policy)  # a model of stable-baselines3, which holds its network
+    twin = copy.copy(policy)  # a model of stable-baselines3 contains its network
     twin.policy = hardened.network
     return twin
 

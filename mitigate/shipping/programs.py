@@ -1,10 +1,10 @@
-"""The two networks of a decision as programs that run without this package's code.
+"""Export the two networks of a decision as programs that run without this package's code.
 
-``program.pt2`` holds both, made by ``torch.export``: ``perceive`` (frames of panoramas to view
-tokens and waypoint logits) and ``decide`` (instruction, view tokens of all panoramas so far and the
-map to logits over [stop], nodes and ghosts). :data:`INPUTS` describes every tensor; the folder's
-``program.json`` repeats it, with the vocabulary. :func:`save_onnx` writes the same two networks as
-ONNX files (extra ``onnx``).
+``program.pt2`` contains both networks, exported by ``torch.export``: ``perceive`` (frames of
+panoramas to view tokens and waypoint logits) and ``decide`` (instruction, view tokens of all
+panoramas so far and the map to logits over [stop], nodes and ghosts). :data:`INPUTS` describes
+every tensor; the folder's ``program.json`` repeats it, with the vocabulary. :func:`save_onnx`
+writes the same two networks as ONNX files (extra ``onnx``).
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from typing import Any
 import torch
 from torch import Tensor, nn
 from torch.export import Dim, ExportedProgram
-from torch.export.pt2_archive._package import (  # stores several programs in one file
+from torch.export.pt2_archive._package import (  # this module stores several programs in one file
     load_pt2,
     package_pt2,
 )
@@ -35,7 +35,7 @@ from mitigate.core.seeding import torch_generator
 
 PERCEIVE, DECIDE = "perceive", "decide"
 OUTPUTS = {PERCEIVE: ("views", "waypoints"), DECIDE: ("logits",)}
-INPUTS = {  # name: dtype, shape, meaning
+INPUTS = {  # maps a name to dtype, shape and meaning
     PERCEIVE: {
         "rgb": ("uint8", "[P, 12, size, size, 3]", "view k looks 30 k degrees right"),
         "depth": ("float32", "[P, 12, size, size, 1]", "metres; 0 or not finite: no reading"),
@@ -62,11 +62,11 @@ MEANINGS = {
     "degrees right, distance d is 0.25 (d + 1) m",
     "logits": "float32 [B, 1 + N + G]: scores, -inf where not allowed",
 }
-TIMED = 20  # calls of each network for a latency
+TIMED = 20  # number of calls of each network for measuring latency
 
 
 class Perceive(nn.Module):
-    """The eager network ``perceive`` of :data:`INPUTS`."""
+    """The eager network ``perceive`` with the inputs in :data:`INPUTS`."""
 
     def __init__(self, agent: TopologicalAgent) -> None:
         super().__init__()
@@ -78,7 +78,7 @@ class Perceive(nn.Module):
 
 
 class Decide(nn.Module):
-    """The eager network ``decide`` of :data:`INPUTS`."""
+    """The eager network ``decide`` with the inputs in :data:`INPUTS`."""
 
     def __init__(self, agent: TopologicalAgent) -> None:
         super().__init__()
@@ -101,11 +101,12 @@ class Decide(nn.Module):
 
 
 class Stored(nn.Module):
-    """``network`` with the tensors that it uses, stored as float16 if that is exact."""
+    """Wraps ``network`` and stores the tensors that it uses as float16 if that is exact."""
 
     def __init__(self, network: nn.Module, inputs: tuple[Tensor, ...]) -> None:
         super().__init__()
-        self._network = (network,)  # hidden: only what is registered below is exported
+        # hidden from torch, so that only the tensors registered below are exported
+        self._network = (network,)
         self._names = {name: name.replace(".", "__") for name in _used(network, inputs)}
         tensors = {**dict(network.named_parameters()), **dict(network.named_buffers())}
         for name, key in self._names.items():
@@ -125,18 +126,20 @@ def networks(agent: TopologicalAgent) -> dict[str, nn.Module]:
 def export_programs(agent: TopologicalAgent, size: int) -> dict[str, ExportedProgram]:
     """Return both networks as exported programs for views of ``size`` pixels.
 
-    The sizes P, E, L, B, N and G of :data:`INPUTS` are free, at least 1 (L up to ``MAX_WORDS``).
+    The sizes P, E, L, B, N and G in :data:`INPUTS` are dynamic and at least 1 (L is at most
+    ``MAX_WORDS``).
     """
     exported = {}
     inputs_by_name = probe(agent, size)
     for name, network in networks(agent).items():
         inputs = tuple(inputs_by_name[key] for key in INPUTS[name])
-        shapes = (free_dimensions(name),)  # one entry: Stored takes all inputs as *inputs
+        # a single entry, because Stored takes all inputs as *inputs
+        shapes = (free_dimensions(name),)
         stored = Stored(network, inputs).eval()
         exported[name] = torch.export.export(stored, inputs, dynamic_shapes=shapes)
-        exported[name].example_inputs = None  # the example inputs are not needed
+        exported[name].example_inputs = None  # removes the example inputs, which are not needed
         _drop_type_checks(exported[name])
-        for node in exported[name].graph.nodes:  # paths of this machine
+        for node in exported[name].graph.nodes:  # removes paths of this machine
             node.meta.pop("stack_trace", None)
     return exported
 
@@ -149,7 +152,8 @@ def free_dimensions(name: str) -> tuple[dict[int, Any], ...]:
 def save_programs(programs: dict[str, ExportedProgram], file: Path) -> None:
     """Write both programs to one ``.pt2`` file; raise OSError if that fails.
 
-    torch writes to memory first, because it would end the process if a write to disk failed.
+    The file is first written to memory, because torch would end the process if a write to disk
+    failed.
     """
     with io.BytesIO() as packed:
         package_pt2(packed, exported_programs=programs)
@@ -157,7 +161,7 @@ def save_programs(programs: dict[str, ExportedProgram], file: Path) -> None:
 
 
 def load_programs(file: Path) -> dict[str, Callable[..., tuple[Tensor, ...]]]:
-    """Return the programs of :func:`save_programs` by name.
+    """Load the programs that :func:`save_programs` wrote, by name.
 
     Use it only for files that you trust: torch reads parts of such a file with pickle.
     """
@@ -167,7 +171,7 @@ def load_programs(file: Path) -> dict[str, Callable[..., tuple[Tensor, ...]]]:
 def probe(agent: TopologicalAgent, size: int, seed: int = 0) -> dict[str, Tensor]:
     """Return fixed inputs of both networks, with every entry of :data:`INPUTS`.
 
-    They have noise as frames, three panoramas, and two decisions with padding.
+    The inputs contain noise frames, three panoramas, and two decisions with padding.
     """
     draw = torch_generator(seed, "export probe", size)
 
@@ -198,7 +202,7 @@ def probe(agent: TopologicalAgent, size: int, seed: int = 0) -> dict[str, Tensor
 def outputs(programs: dict[str, Any], probe_inputs: dict[str, Tensor]) -> dict[str, Tensor]:
     """Return the outputs of both networks, eager or exported, on a probe, by name.
 
-    ``decide`` gets the view tokens of ``perceive``, not the ones in the probe.
+    ``decide`` receives the view tokens from ``perceive`` instead of those in the probe.
     """
     results: dict[str, Tensor] = {}
     for name in (PERCEIVE, DECIDE):
@@ -210,9 +214,9 @@ def outputs(programs: dict[str, Any], probe_inputs: dict[str, Tensor]) -> dict[s
 
 
 def difference(one: dict[str, Tensor], two: dict[str, Tensor]) -> float:
-    """Return the largest absolute difference of any output.
+    """Return the maximum absolute difference over all outputs.
 
-    It is infinite if an -inf is not in both, or if either has a NaN.
+    The difference is infinite if only one of them has -inf, or if either has NaN.
     """
     gaps = [0.0]
     for name, a in one.items():
@@ -226,9 +230,9 @@ def difference(one: dict[str, Tensor], two: dict[str, Tensor]) -> float:
 
 @torch.no_grad()
 def latency(kinds: dict[str, dict[str, Any]], agent: TopologicalAgent, size: int) -> dict[str, Any]:
-    """Measure the milliseconds per call of each network of each kind, interleaved in one run.
+    """Measure milliseconds per call for each network of each kind, interleaved in one run.
 
-    A call has one panorama, and then one decision among three nodes and four ghosts.
+    A call processes one panorama and then one decision among three nodes and four ghosts.
 
     Args:
         kinds: networks by kind, such as ``{"eager": networks(agent), "exported": ...}``.
@@ -237,14 +241,14 @@ def latency(kinds: dict[str, dict[str, Any]], agent: TopologicalAgent, size: int
 
     Returns:
         By kind and network, the fastest of ``TIMED`` calls ("wall") and the median processor time
-        of all threads ("cpu"), which other programs disturb less.
+        of all threads ("cpu"), which is less affected by other programs.
     """
     inputs_by_name = probe(agent, size)
     single = {name: tensor[:1] for name, tensor in inputs_by_name.items()} | {
         "views": inputs_by_name["views"]
     }
     times: dict[tuple[str, str], list[tuple[float, float]]] = {}
-    for _ in range(3 + TIMED):  # three calls warm up
+    for _ in range(3 + TIMED):  # the first three calls are warm-up
         for kind, programs in kinds.items():
             for name in (PERCEIVE, DECIDE):
                 inputs = [single[key] for key in INPUTS[name]]
@@ -263,7 +267,7 @@ def latency(kinds: dict[str, dict[str, Any]], agent: TopologicalAgent, size: int
 
 
 def description(agent: TopologicalAgent, size: int) -> dict[str, Any]:
-    """Return what ``program.json`` says: inputs, outputs and the words by their ids."""
+    """Return the content of ``program.json``: inputs, outputs and the words by id."""
     return {
         "size": size,
         "programs": {
@@ -282,7 +286,7 @@ def description(agent: TopologicalAgent, size: int) -> dict[str, Any]:
 
 
 def _used(network: nn.Module, inputs: tuple[Tensor, ...]) -> list[str]:
-    """Return the names of parameters that the outputs depend on, and of all buffers."""
+    """Return the names of all buffers, and of the parameters on which the outputs depend."""
     parameters = dict(network.named_parameters())
     before = {name: p.requires_grad for name, p in parameters.items()}
     network.requires_grad_(True)
@@ -296,7 +300,7 @@ def _used(network: nn.Module, inputs: tuple[Tensor, ...]) -> list[str]:
 
 
 def _drop_type_checks(program: ExportedProgram) -> None:
-    """Remove the type checks of stored tensors: over a hundred calls that cannot fail."""
+    """Remove the type checks of stored tensors, which are over a hundred calls that cannot fail."""
     graph = program.graph_module.graph
     for node in list(graph.nodes):
         if node.target is torch.ops.aten._assert_tensor_metadata.default:
@@ -314,7 +318,7 @@ def _free(shape: str) -> dict[int, Any]:
     free: dict[int, Any] = {}
     for place, name in enumerate(shape.strip("[]").split(", ")):
         if "+" in name:
-            free[place] = Dim.AUTO  # torch derives that it is 1 + N + G
+            free[place] = Dim.AUTO  # torch derives that this size is 1 + N + G
         elif name.isupper():
             free[place] = Dim(name, min=1, max=MAX_WORDS if name == "L" else None)
     return free
@@ -326,8 +330,8 @@ def _free(shape: str) -> dict[int, Any]:
 def save_onnx(agent: TopologicalAgent, size: int, folder: Path, most: float) -> list[Path]:
     """Write ``perceive.onnx`` and ``decide.onnx`` to ``folder`` and return their paths.
 
-    Weights are float32; the free dimensions are the same as in ``export_programs``. Raises
-    ValueError if the extra is not installed, and as :func:`check_onnx`.
+    Weights are float32; the dynamic dimensions are the same as in ``export_programs``. Raises
+    ValueError if the extra is not installed, and in the cases of :func:`check_onnx`.
     """
     try:
         import onnx  # noqa: F401
@@ -384,7 +388,7 @@ def check_onnx(folder: Path, agent: TopologicalAgent, size: int, most: float) ->
 
 
 class _Session:
-    """An onnxruntime session that is called like the original network."""
+    """Wrapper that lets an onnxruntime session be called like the original network."""
 
     def __init__(self, session: Any, keys: tuple[str, ...]) -> None:
         self._session, self._keys = session, keys

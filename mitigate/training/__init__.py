@@ -1,1 +1,1 @@
-"""The trainer, its interface for objectives, and the program of ``mitigate train``."""
+"""The trainer, the interface of objectives, and the command ``mitigate train``."""

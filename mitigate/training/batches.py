@@ -1,7 +1,7 @@
-"""Make the batches of an objective from pieces, in workers ahead of time or in this process.
+"""Assemble an objective's batches from pieces, computed in advance by workers or in this process.
 
 The number of pieces of a step does not depend on the number of workers, and a piece is the same
-wherever it is made. So any number of workers, including none, gives the same batches.
+wherever it is computed. So the batches are the same for any number of workers, including zero.
 """
 
 from __future__ import annotations
@@ -18,15 +18,17 @@ from mitigate.training.objective import Objective, do
 from mitigate.training.ranks import Ranks
 from mitigate.training.workers import Workers
 
-AHEAD = 4  # steps whose pieces are ordered before they are needed (heuristic)
+AHEAD = 4  # number of steps by which pieces are requested in advance (heuristic)
 
 
 class Batches:
-    """The batches of ``objective`` up to ``steps``, made on ``device`` in the precision ``kind``.
+    """The batches of ``objective`` up to ``steps``, computed on ``device`` in the precision
+    ``kind``.
 
-    Pieces that do not depend on the weights (``objective.ahead``) are ordered ``AHEAD`` steps
-    early. Other pieces are ordered ``lag`` steps early, with the weights of that time. No piece is
-    ordered across a multiple of ``save_every``, so a resumed run makes the same pieces.
+    Pieces that do not depend on the weights (``objective.ahead``) are requested ``AHEAD`` steps in
+    advance. Other pieces are requested ``lag`` steps in advance, with the weights at that time. No
+    piece is requested across a multiple of ``save_every``, so a resumed run computes the same
+    pieces.
     """
 
     def __init__(
@@ -74,30 +76,30 @@ class Batches:
         return objective.collate(step, receive())
 
     def _last(self, step: int) -> int:
-        """Return the last step whose pieces may be ordered when ``step`` is due."""
+        """Return the last step whose pieces may be requested when ``step`` is due."""
         if self.objective.ahead:
             return min(step + AHEAD, self.steps - 1)
         saved = step - step % self.save_every + self.save_every if self.save_every else self.steps
         return min(step + self.lag, saved - 1, self.steps - 1)
 
     def _newest(self, step: int) -> int:
-        """Return the last step whose pieces are ordered."""
+        """Return the last step whose pieces have been requested."""
         return self._ordered[-1][0] if self._ordered else step - 1
 
     def _jobs(self, step: int) -> list[Any]:
-        """Return this rank's jobs of a step; empty if the objective has no jobs."""
+        """Return this rank's jobs for a step, or an empty list if the objective has no jobs."""
         jobs = self.objective.jobs(step)
         return self.ranks.share(jobs) if jobs else []
 
     def _alone(self, step: int) -> dict[str, Any]:
-        """Make the batch of ``step`` in this process."""
+        """Compute the batch of ``step`` in this process."""
         if self.ranks.count == 1:
             return self.objective.batch(step)
         jobs = self.ranks.share(self.objective.jobs(step))
         return self.objective.collate(step, [do(self.objective, job) for job in jobs])
 
     def _order(self, step: int, jobs: list[Any]) -> None:
-        """Order the pieces of ``step``, made with the current weights."""
+        """Request the pieces of ``step``, to be computed with the current weights."""
         if self.workers is None:
             with precision.computing(self.kind, self.device):
                 pieces = [do(self.objective, job) for job in jobs]
@@ -111,8 +113,9 @@ class Batches:
         self._ordered.append((step, partial(self.workers.receive, len(jobs), turn)))
 
     def _turn(self, step: int) -> int:
-        """Return the turn of ``step`` among workers for several steps.
+        """Return the index with which the pieces of ``step`` are distributed to workers.
 
-        It is 0 if jobs need the current weights: then only one step is ordered at a time.
+        The index is 0 if jobs need the current weights, because then only one step is requested at
+        a time.
         """
         return step if self.objective.ahead or self.lag else 0

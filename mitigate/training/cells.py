@@ -1,4 +1,5 @@
-"""Options of a table, and its cells: one column with one seed, its training and evaluations."""
+"""Define the options of a table and its cells: a column with a seed, its training and
+evaluations."""
 
 from __future__ import annotations
 
@@ -26,17 +27,20 @@ from mitigate.training import config as train_options
 
 LOG, OPTIONS = "log.txt", "options.json"
 EXAMPLES = {"columns": "agent=recurrent", "evaluations": "suite=pairs"}
-# Of a training, passed on to evaluations.
+# Training options that are passed on to evaluations.
 OF_AGENT = ("agent=", "env=", "env.", "+env.", "--config-dir=")
 # options that an additional evaluation must not set
 CELLS = ("agent", "checkpoint", "name", "seed", "out")
-PLACES = ("seed", "folder", "out", "workers", "evaluation")  # options that a column must not set
-MEASURED = ("split", "episodes", "conditions", "severity")  # nor in a column without training
+# options that a table column must not set
+PLACES = ("seed", "folder", "out", "workers", "evaluation")
+# options that a column without training must not set either
+MEASURED = ("split", "episodes", "conditions", "severity")
 
 
 @dataclass
 class TablesConfig:
-    """Types of ``conf/table2.yaml`` and ``conf/table1.yaml``, which explain each entry."""
+    """Types of the options in ``conf/table2.yaml`` and ``conf/table1.yaml``, which document
+    them."""
 
     runs: str = "runs"
     out: str = "runs/table"
@@ -64,7 +68,7 @@ def read_options(cfg: DictConfig) -> TablesConfig:
     """Return the composed options of a table as typed data.
 
     Raises:
-        ValueError: An entry refers to a missing one.
+        ValueError: An entry refers to a missing entry.
     """
     config: TablesConfig = conf.typed(cfg, "table2")
     config.suite = open_entries(SuiteConfig, config.suite)
@@ -73,22 +77,22 @@ def read_options(cfg: DictConfig) -> TablesConfig:
 
 @dataclass(frozen=True)
 class Cell:
-    """One column under one seed, in its own folder."""
+    """One table column with one seed, which has its own folder."""
 
     column: str
     options: tuple[str, ...]
     seed: int
     folder: Path
-    train: tuple[str, ...] = ()  # additional options of its training
+    train: tuple[str, ...] = ()  # additional options for the training of this cell
 
     @property
     def trains(self) -> bool:
-        """Whether the agent is trained; else its options name existing weights."""
+        """Whether the agent is trained; otherwise its options name existing weights."""
         return any(option.startswith("recipe=") for option in self.options)
 
     @property
     def agent(self) -> tuple[str, ...]:
-        """Options of an evaluation: kind of agent, world and weights."""
+        """The options of an evaluation: kind of agent, world and weights."""
         if self.trains:
             options = (*self.options, *self.train)
             kind = tuple(option for option in options if option.startswith(OF_AGENT))
@@ -104,20 +108,20 @@ class Cell:
             f"seed={self.seed}",
             f"folder={self.folder / 'run'}",
             "evaluation.enabled=false",
-            "workers=0",  # a cell has one core
+            "workers=0",  # each cell uses one core
         ]
 
     @property
     def evaluation(self) -> Path:
-        """Folder of the cell's result rows."""
+        """The folder of the cell's result rows."""
         return self.evaluation_folder("")
 
     def evaluation_folder(self, name: str) -> Path:
-        """Return the folder of the rows of an additional evaluation; "" is the main one."""
+        """Return the folder of an additional evaluation's rows; "" means the main evaluation."""
         return self.folder / (f"evaluation-{name}" if name else "evaluation")
 
     def commands(self, config: TablesConfig) -> list[tuple[str, list[str]]]:
-        """Return the programs that make the cell.
+        """Return the programs that compute the cell.
 
         Each is ("train", "evaluate" or "evaluate NAME"; arguments after ``python -m``).
         """
@@ -133,12 +137,12 @@ class Cell:
     def measurement(self, config: TablesConfig, name: str, options: Sequence[str]) -> list[str]:
         """Return all options of one of the cell's evaluations.
 
-        ``options`` add to or override the options of the table. The evaluation has at most as many
+        ``options`` extend or override the options of the table. The evaluation has at most as many
         episodes as the table.
         """
         return [
             f"name={self.column}",
-            *self.agent,  # may set another name
+            *self.agent,  # an option may set a different name
             f"seed={self.seed}",
             f"split={config.split}",
             f"episodes={'null' if config.episodes is None else config.episodes}",
@@ -148,7 +152,7 @@ class Cell:
         ]
 
     def chain(self, config: TablesConfig) -> programs.Chain:
-        """Return the programs that make the cell, on one core."""
+        """Return the programs that compute the cell, to run on one core."""
         return programs.Chain(
             f"{self.column}, seed {self.seed}",
             tuple((kind, programs.python(*words)) for kind, words in self.commands(config)),
@@ -158,12 +162,12 @@ class Cell:
         )
 
     def keep(self) -> None:
-        """Record the options that make the agent of its rows."""
+        """Record the options that determine the agent of the cell's rows."""
         with atomic_text(self.folder / OPTIONS) as file:
             json.dump(self._agent_options, file)
 
     def check_kept(self) -> None:
-        """Raise ValueError if its folder holds the rows of another agent."""
+        """Raise ValueError if the cell's folder contains the rows of a different agent."""
         file = self.folder / OPTIONS
         started = (self.folder / "run").exists() or (self.evaluation / ROWS).is_file()
         if not (started and file.is_file()):
@@ -195,7 +199,7 @@ def _at_most(most: int | None, option: str) -> str:
 
 
 def cells(config: TablesConfig) -> list[Cell]:
-    """Return all cells of the table, seed by seed, so that a partial table has every column."""
+    """Return all cells of the table, ordered by seed, so that a partial table has every column."""
     columns = listed(config.columns, "columns")
     if not config.seeds or not columns or config.jobs < 1:
         raise ValueError(
@@ -227,7 +231,7 @@ def listed(entries: Mapping[str, Any], place: str) -> dict[str, tuple[str, ...]]
 
 
 def measured(config: TablesConfig) -> list[str]:
-    """Return the names of the conditions that every cell is evaluated under."""
+    """Return the names of the conditions under which every cell is evaluated."""
     return list(config.suite.conditions if config.conditions is None else config.conditions)
 
 
@@ -235,8 +239,8 @@ def check(table_cells: Sequence[Cell], config: TablesConfig) -> None:
     """Check the options of a table before any cell runs.
 
     Raises:
-        ValueError: A seed is repeated, an option, split or condition does not exist, or a cell
-            holds rows of another agent.
+        ValueError: A seed is repeated; an option, split or condition does not exist; or a cell
+            contains rows of a different agent.
     """
     from mitigate.training import plan  # brings torch
 
@@ -280,8 +284,8 @@ def check(table_cells: Sequence[Cell], config: TablesConfig) -> None:
 def _check_own(options: Sequence[str], reserved: Sequence[str], why: str) -> None:
     """Raise ValueError for options that the table itself sets.
 
-    They would have no effect, change the agent of the rows, or put the rows where the table does
-    not read them.
+    Such options would have no effect, change the agent of the rows, or write the rows where the
+    table does not read them.
     """
     for option in options:
         key = option.lstrip("+~").partition("=")[0]

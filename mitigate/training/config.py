@@ -27,11 +27,12 @@ from mitigate.evaluation.config import (
     open_entries,
 )
 
-LONGEST = 100  # characters of options in the name of a folder; longer names end in a digest
-COUNT = 10**9  # steps; at 1000 steps per second a training would take 11 days
-EPISODES = 100_000  # largest number of episodes per step (a generous bound)
-PROCESSES = 256  # largest number of processes (a generous bound)
-LIMITS: dict[str, tuple[float, float]] = {  # least and greatest value; all are finite
+LONGEST = 100  # maximum characters of options in a folder name; longer names end in a digest
+COUNT = 10**9  # maximum number of steps; at 1000 steps per second, training would take 11 days
+EPISODES = 100_000  # maximum number of episodes per step (a generous bound)
+PROCESSES = 256  # maximum number of processes (a generous bound)
+# minimum and maximum of each value, which must be finite
+LIMITS: dict[str, tuple[float, float]] = {
     "steps": (1, COUNT),
     "keep": (1, 10**6),
     "lr": (1e-12, 100.0),
@@ -47,7 +48,7 @@ MEANS = {
     "keep": ", at least 1",
     "lr": ", above 0",
 }
-# option of a run -> least value, greatest value, meaning
+# maps an option of a run to its minimum, maximum and meaning
 OPTIONS: dict[str, tuple[float, float, str]] = {
     "severity": (0, 1, "a severity from 0 (clean) to 1 (strongest), such as severity=0.6"),
     "severity_depth": (0, 1, "a severity from 0 (clean) to 1 (strongest); null uses severity"),
@@ -73,7 +74,7 @@ OPTIONS: dict[str, tuple[float, float, str]] = {
 
 @dataclass
 class TrainerConfig:
-    """Settings of a Trainer; None means the value of the stage, else the Trainer's default."""
+    """Settings of a Trainer; None means the value of the stage, or else the Trainer's default."""
 
     steps: int | None = None
     lr: float | None = None
@@ -96,10 +97,10 @@ class StageConfig:
     """One stage of a recipe.
 
     Attributes:
-        recipe: a ``_target_`` node: the objective, with its arguments and its source's arguments.
+        recipe: a ``_target_`` node with the objective, its arguments and its source's arguments.
         trainer: settings of this stage's trainer.
         cost: seconds per step on the machine of ``precision.REFERENCE``, for the estimate at the
-            start; None: unknown.
+            start; None if unknown.
     """
 
     recipe: Any = None
@@ -118,7 +119,7 @@ class StageConfig:
 
 @dataclass
 class TrainConfig:
-    """Types of ``conf/train.yaml``, which explains each entry."""
+    """Types of the options in ``conf/train.yaml``, which documents each of them."""
 
     name: str = MISSING
     seed: int = 0
@@ -146,12 +147,12 @@ class TrainConfig:
 
     @property
     def active_stages(self) -> dict[str, StageConfig]:
-        """The stages that are not null, by name."""
+        """All stages that are not null, by name."""
         return {name: stage for name, stage in self.stages.items() if stage is not None}
 
     @property
     def has_base(self) -> bool:
-        """Whether the run starts from complete weights, which are evaluated too."""
+        """Whether the run starts from complete weights, which are then also evaluated."""
         return bool(self.init and not self.init_parts)
 
 
@@ -159,7 +160,7 @@ conf.register("train", TrainConfig)
 
 
 def either(first: Any, second: Any) -> Any:
-    """Resolve ``${either:a,b}``: the first value if it is set, else the second."""
+    """Resolve ``${either:a,b}`` to the first value if it is set, else to the second."""
     return second if first is None else first
 
 
@@ -167,13 +168,13 @@ OmegaConf.register_new_resolver("either", either, replace=True)
 
 
 def read(cfg: DictConfig) -> TrainConfig:
-    """Return the composed options of a training as typed data, with a folder.
+    """Return the composed options of a training run as typed data, including its folder.
 
     Raises:
-        ValueError: An entry refers to a missing one.
+        ValueError: An entry refers to a missing entry.
     """
     cfg = cfg.copy()
-    cfg.folder = cfg.folder or default_folder(cfg)  # other entries refer to it
+    cfg.folder = cfg.folder or default_folder(cfg)  # set first, because other entries refer to it
     config: TrainConfig = conf.typed(cfg, "train")
     config.env = open_entries(EnvConfig, config.env)
     config.suite = open_entries(SuiteConfig, config.suite)
@@ -181,9 +182,9 @@ def read(cfg: DictConfig) -> TrainConfig:
 
 
 def plain_data(value: Any) -> Any:
-    """Return a config as dicts, lists and numbers, as ``config.yaml`` stores it."""
+    """Return a config as dicts, lists and numbers, in the form stored in ``config.yaml``."""
     if is_dataclass(value) and not isinstance(value, type):
-        value = vars(value)  # includes entries that the class does not declare
+        value = vars(value)  # this includes entries that the class does not declare
     if isinstance(value, Mapping):
         return {name: plain_data(entry) for name, entry in value.items()}
     return [*map(plain_data, value)] if isinstance(value, (list, tuple)) else value
@@ -192,9 +193,10 @@ def plain_data(value: Any) -> Any:
 def default_folder(config: TrainConfig | DictConfig, variant: str = "") -> str:
     """Return ``runs/<name>-s<severity>[-d<depth>]-seed<seed>[-<variant>]``."""
     depth = "" if config.severity_depth is None else f"-d{config.severity_depth:g}"
-    # sweeps write booleans in lower case
+    # as in sweeps, booleans are written in lower case
     variant = re.sub(r"=(True|False)\b", lambda match: match[0].lower(), variant)
-    end = re.sub(r"[^A-Za-z0-9._+-]+", "_", variant.replace("=", "-"))  # Hydra splits at "="
+    # replaced, because Hydra splits at "="
+    end = re.sub(r"[^A-Za-z0-9._+-]+", "_", variant.replace("=", "-"))
     if len(end) > LONGEST:
         end = f"{end[:LONGEST]}-{seeding.digest(variant):032x}"[: LONGEST + 9]
     end = f"-{end}" if end else ""
@@ -252,8 +254,9 @@ def in_range(value: float, low: float, high: float) -> bool:
 
 
 def number_text(value: float) -> str:
-    """Return a number as messages show it."""
+    """Return a number in the form used in messages."""
     if not isinstance(value, Real):
         return short(value)
-    huge = isinstance(value, int) and value.bit_length() > 60  # a float may not hold it
+    # the number may be too large for a float
+    huge = isinstance(value, int) and value.bit_length() > 60
     return "..." if huge else format(value, ".6g")

@@ -1,4 +1,4 @@
-"""Estimate how long a training takes, for its first line of output."""
+"""Estimate the duration of a training run, for its first line of output."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ from mitigate.evaluation.config import REPORT, times
 from mitigate.training import states
 from mitigate.training.config import TrainConfig
 
-EPISODE_COST = 0.12  # seconds of one core for an evaluated episode, measured on the reference
-EPISODES = 300  # assumed length of a whole list of episodes, which is not opened for the estimate
+EPISODE_COST = 0.12  # seconds on one core per evaluated episode, measured on the reference machine
+EPISODES = 300  # assumed length of an episode list, which is not opened for the estimate
 
 
 def describe(config: TrainConfig, folder: Path) -> str:
-    """Return one line: what a run will do, and about how long it takes on this machine."""
+    """Return one line about the work of a run and its approximate duration on this machine."""
     parts = [f"{name} {count} steps" for name, count in _steps(config).items()]
     if _episodes(config):
         count = config.evaluation.episodes
@@ -31,13 +31,13 @@ def describe(config: TrainConfig, folder: Path) -> str:
 
 
 def estimate(config: TrainConfig, folder: Path) -> float:
-    """Return the seconds left of a run on this machine; NaN if a cost is unknown.
+    """Return the remaining seconds of a run on this machine, or NaN if a cost is unknown.
 
-    Costs are seconds on the machine of ``precision.REFERENCE``, measured in trainings. A stage
-    lists its seconds per step with the topological agent. Other kinds of agent list factors
-    (``cost`` in their config).
+    Costs are in seconds on the machine of ``precision.REFERENCE``, and were measured in training
+    runs. Each stage states its seconds per step with the topological agent. Configs of other kinds
+    of agent contain factors (``cost``) relative to this.
     """
-    costs: list[tuple[float, float | None]] = []  # count, seconds per unit
+    costs: list[tuple[float, float | None]] = []  # pairs of count and seconds per unit
     for name, count in _steps(config).items():
         done = states.checkpoints(folder / name)
         left = count - (states.steps_done(done[-1]) if done else 0)
@@ -49,13 +49,13 @@ def estimate(config: TrainConfig, folder: Path) -> float:
 
 
 def _steps(config: TrainConfig) -> dict[str, int]:
-    """Return the steps of each stage by name."""
+    """Return the number of steps of each stage, by name."""
     stages = config.active_stages.items()
     return {name: stage.settings(config.trainer).get("steps", 0) for name, stage in stages}
 
 
 def _episodes(config: TrainConfig) -> int:
-    """Return how many episodes run after the training; 0 for another kind of report."""
+    """Return how many episodes are run after training, or 0 for a different kind of report."""
     if not config.evaluation.enabled or config.report != REPORT:
         return 0
     count = config.evaluation.episodes or EPISODES

@@ -1,4 +1,4 @@
-"""Log a run: TensorBoard scalars and pictures, and a progress bar or plain lines."""
+"""Log a run: Log TensorBoard scalars and pictures, and show a progress bar or plain lines."""
 
 from __future__ import annotations
 
@@ -13,29 +13,30 @@ import numpy as np
 from mitigate.core import output, progress
 from mitigate.core.files import make_folder
 
-CPU = "cpu_s_per_step"  # scalar: CPU seconds per step of this process, all threads
+CPU = "cpu_s_per_step"  # name of the scalar for CPU seconds per step of this process (all threads)
 
 
 class Journal:
-    """Log of one run over ``total`` steps, from ``start``; use it as a context manager.
+    """Context manager that logs one run over ``total`` steps, beginning at ``start``.
 
-    While it is open, every write below its folder checks that the folder was not removed.
+    While the journal is open, every write below its folder checks that the folder was not removed.
 
-    It shows a :class:`~mitigate.core.progress.Progress`: a bar in a terminal, else plain lines.
-    :meth:`scalars` with ``line=True`` adds a line with all its values.
+    It shows a :class:`~mitigate.core.progress.Progress`, which is a bar in a terminal and plain
+    lines elsewhere. :meth:`scalars` with ``line=True`` adds a line with all its values.
     """
 
     def __init__(self, folder: Path, *, total: int, start: int = 0, name: str = "train") -> None:
         from torch.utils.tensorboard import SummaryWriter  # slow to import
 
         self._folder = make_folder(folder)
-        for path in self._folder.glob("events.out.tfevents.*"):  # TensorBoard appends by name
+        # TensorBoard appends to the file with this name
+        for path in self._folder.glob("events.out.tfevents.*"):
             output.open_output(path, "ab").close()
         self._writer = SummaryWriter(str(folder), purge_step=start + 1)
         self._name = name
         self._progress = progress.Progress(name, total, start=start)
         self._measured = start, time.process_time()
-        self._values: dict[str, list[float]] = defaultdict(list)  # a batch may lack some
+        self._values: dict[str, list[float]] = defaultdict(list)  # a batch may lack some values
         self._since = start, time.monotonic()
 
     def __enter__(self) -> Journal:
@@ -59,7 +60,7 @@ class Journal:
         self._progress.advance()
 
     def means(self, step: int, **values: float) -> None:
-        """Log means of the collected values, additional ``values``, and the steps per second.
+        """Log the means of collected values, additional ``values``, and the steps per second.
 
         Args:
             step: number of updates so far.
@@ -73,7 +74,7 @@ class Journal:
         self._since = self._progress.done, time.monotonic()
 
     def scalars(self, step: int, values: dict[str, float], *, line: bool = True) -> None:
-        """Log ``values`` after ``step`` updates and, with ``line``, show them.
+        """Log ``values`` after ``step`` updates; with ``line``, also show them.
 
         Raises FolderLostError if the folder was removed: TensorBoard would not notice.
         """

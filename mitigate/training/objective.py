@@ -1,7 +1,7 @@
-"""Define objectives: a loss and the source of its batches.
+"""Define the interface of objectives, which consist of a loss and a source of batches.
 
-A stage of a recipe (YAML) names an objective and lists its arguments. :class:`ObjectiveSpec` gives
-each argument to the constructor that names it, of the objective or of its source.
+A stage of a recipe (YAML) names an objective and lists its arguments. :class:`ObjectiveSpec` passes
+each argument to the constructor that declares it: that of the objective or of its source.
 """
 
 from __future__ import annotations
@@ -24,24 +24,24 @@ from mitigate.core.precision import computing
 from mitigate.training.config import in_range, number_text
 from mitigate.training.parts import hold_statistics
 
-WEIGHT = 1e9  # largest weight of a loss
+WEIGHT = 1e9  # maximum weight of a loss
 
 
 class Objective(nn.Module):
-    """Base class of every training method: a loss and the source of its batches.
+    """Base class of every training method, which has a loss and a source of batches.
 
-    An objective holds the module that it trains and, where it needs one, a teacher or a buffer.
-    State beyond tensors (schedule weights, counters) goes through ``get_extra_state`` and
-    ``set_extra_state`` as a JSON-able dict, so it is saved and restored with the weights.
+    An objective contains the module that it trains and, if needed, a teacher or a buffer.
+    State other than tensors (schedule weights, counters) is returned by ``get_extra_state`` and set
+    by ``set_extra_state``, as a JSON-compatible dict. So it is saved and restored with the weights.
     The optimizer never receives parameters whose ``requires_grad`` is False.
 
     Attributes:
-        sources: functions that build the source of the batches, by the name of the constructor's
-            parameter that takes it (``{"rollouts": Rollouts}``).
-        here: whether jobs run only in the training process, never in a worker.
-        ahead: whether workers may run jobs ahead of time, because they read no weights.
+        sources: functions that build the source of batches, by the name of the constructor
+            parameter that receives it (``{"rollouts": Rollouts}``).
+        here: whether jobs run only in the training process, and never in a worker.
+        ahead: whether workers may run jobs in advance, because jobs read no weights.
         needs: names of the agent's attributes that the objective uses.
-        otherwise: advice in the message if the agent lacks one of them.
+        otherwise: advice in the message if the agent lacks one of these.
         workers: number of worker processes for jobs; None means one per core.
     """
 
@@ -54,15 +54,15 @@ class Objective(nn.Module):
 
     @classmethod
     def misfit(cls, agent: Any) -> str:
-        """Return why this objective cannot train ``agent`` and what to do; empty if it can.
+        """Return the reason why this objective cannot train ``agent`` with advice, or "".
 
-        The plan of a run calls this before the first stage.
+        This is called when a run is planned, before the first stage.
         """
         absent = missing_members(agent, cls.needs)
         return f"it has no {', '.join(absent)}. {cls.otherwise}" if absent else ""
 
     def train(self, mode: bool = True) -> Any:
-        """Set the mode; frozen normalisations keep their statistics (``hold_statistics``)."""
+        """Set the mode, but keep the statistics of frozen normalisations (``hold_statistics``)."""
         super().train(mode)
         hold_statistics(self)
         return self
@@ -70,15 +70,16 @@ class Objective(nn.Module):
     def start(self) -> None:
         """Prepare for the first batch, for example a cache of features.
 
-        Called once, in the trainer's precision.
+        This is called once, in the trainer's precision.
         """
 
     def batch(self, step: int) -> dict[str, Any]:
-        """Return the batch of ``step`` (from 0): a pure function of (seed, step, weights).
+        """Return the batch of ``step`` (from 0), as a pure function of seed, step and weights.
 
-        Tensors are moved to the training device. The message for a loss that is not finite names
-        ``episode_ids`` (list of str), if present. State that grows over steps (a buffer) must be
-        rebuilt from the seed and the weights, or saved as extra state; else a resumed run differs.
+        Tensors are moved to the training device. If the loss is not finite, the error message
+        contains ``episode_ids`` (list of str), if present. State that grows over steps, such as a
+        buffer, must be rebuilt from the seed and the weights or saved as extra state. Otherwise a
+        resumed run differs.
 
         An objective defines this method, or :meth:`jobs`, :meth:`work` and :meth:`collate`. The
         default calls those three, without worker processes.
@@ -92,24 +93,25 @@ class Objective(nn.Module):
         """Return the jobs of the batch of ``step``, for worker processes.
 
         The list is empty if :meth:`batch` is overridden. The number of jobs must not depend
-        on the number of workers. A job holds what :meth:`work` needs in addition to the settings,
-        the seed and the weights: the step, the number of the piece, the state of the schedule. Jobs
-        and objectives are pickled.
+        on the number of workers. A job contains the data that :meth:`work` needs in addition to the
+        settings, the seed and the weights: the step, the index of the piece, and the state of the
+        schedule. Jobs and objectives are pickled.
         """
         return []
 
     def pieces(self) -> int | None:
-        """Return the number of jobs of every step, which ranks share.
+        """Return the number of jobs in every step, which are divided among the ranks.
 
-        Called before the first stage. 1 means that a single process must train. None means that the
-        number is known at the first step.
+        This is called before the first stage. A result of 1 means that a single process must train.
+        A result of None means that the number is known only at the first step.
         """
         return None
 
     def work(self, job: Any) -> Any:
-        """Return the picklable result of ``job``: a pure function of job, seed and weights.
+        """Return the picklable result of ``job``, as a pure function of job, seed and weights.
 
-        Called in eval mode without gradients, on a copy of the objective in a worker process.
+        This is called in eval mode without gradients, on a copy of the objective in a worker
+        process.
         """
         raise NotImplementedError(f"{type(self).__name__} has jobs, but defines no work(job)")
 
@@ -118,28 +120,29 @@ class Objective(nn.Module):
         raise NotImplementedError(f"{type(self).__name__} has jobs, but defines no collate")
 
     def micro_batches(self, batch: dict[str, Any]) -> list[dict[str, Any]]:
-        """Split ``batch`` into parts that go forward and backward one after the other.
+        """Split ``batch`` into parts, whose forward and backward passes run one after the other.
 
-        So a step needs the memory of one part only. Gradients and values of the parts are summed.
-        By default the whole batch is one part.
+        So a step needs only the memory for one part. Gradients and values of the parts are summed.
+        By default, the whole batch is one part.
         """
         return [batch]
 
     def weight(self, batch: dict[str, Any]) -> float:
-        """Return the weight of a rank's batch in means over ranks.
+        """Return the weight that a rank's batch has in means over ranks.
 
-        It is the total weight that its losses average over. The default is the weight of its
-        decisions, or 1 without decisions.
+        This is the total weight over which the losses of the batch are averaged. The default is the
+        total weight of the decisions, or 1 if there are no decisions.
         """
         decisions = batch.get("decisions")
         return 1.0 if decisions is None else float(decisions.weight.sum())
 
     def forward(self, batch: dict[str, Any]) -> dict[str, Tensor]:
-        """Return scalars: ``loss`` (differentiable) and values to log."""
+        """Return scalars: A dict with the differentiable ``loss`` and values to log."""
         raise NotImplementedError(f"{type(self).__name__} defines no forward(batch)")
 
     def parameter_groups(self) -> list[dict[str, Any]]:
-        """Return AdamW groups; ``lr`` and ``weight_decay`` in a group override the trainer's.
+        """Return parameter groups for AdamW; ``lr`` and ``weight_decay`` in a group override the
+        trainer's.
 
         By default, weight decay applies to matrices and kernels, not to biases, norms and other
         vectors.
@@ -151,21 +154,23 @@ class Objective(nn.Module):
         ]
 
     def identity(self) -> dict[str, str]:
-        """Return inputs that the settings do not contain, such as a teacher's sha256.
+        """Return data that identifies the objective beyond its settings, such as a teacher's
+        sha256.
 
-        Checkpoints record it. A run is not resumed with another identity.
+        Checkpoints record it. A run is not resumed if this data differs.
         """
         return {}
 
     def finish(self) -> None:
-        """Set values that follow from the trained weights, such as the threshold of a gate.
+        """Set values that depend on the trained weights, such as the threshold of a gate.
 
-        Called after the last update, in eval mode without gradients. If the run is interrupted, it
-        is called again with the same weights.
+        This is called after the last update, in eval mode without gradients. If the run is
+        interrupted, it is called again with the same weights.
         """
 
     def evaluate(self, step: int) -> dict[str, float]:
-        """Return scalars measured after ``step`` updates; called every ``eval_every`` steps."""
+        """Return scalars that are measured after ``step`` updates; called every ``eval_every``
+        steps."""
         return {}
 
     def figures(self, step: int) -> dict[str, np.ndarray]:
@@ -175,11 +180,12 @@ class Objective(nn.Module):
 
 @torch.no_grad()
 def do(objective: Objective, job: Any) -> Any:
-    """Return ``objective.work(job)``, run in eval mode and on one CPU thread."""
+    """Run ``objective.work(job)`` in eval mode on one CPU thread."""
     threads = torch.get_num_threads()
     training = objective.training
     try:
-        torch.set_num_threads(1)  # the order of sums must not depend on the number of processes
+        # one thread, because the order of sums must not depend on the number of processes
+        torch.set_num_threads(1)
         return objective.eval().work(job)
     finally:
         objective.train(training)
@@ -189,9 +195,9 @@ def do(objective: Objective, job: Any) -> Any:
 def accumulate(
     objective: Objective, batch: dict[str, Any], kind: str, device: torch.device
 ) -> dict[str, Tensor]:
-    """Run forward in the precision ``kind`` and backward over the parts of ``batch``.
+    """Run the forward pass in precision ``kind`` and the backward pass for each part of ``batch``.
 
-    A part whose loss is not finite gets no gradient.
+    For a part whose loss is not finite, no gradient is computed.
 
     Returns:
         The sums of the values that ``forward`` returned.
@@ -208,7 +214,7 @@ def accumulate(
 
 
 def _checked(objective: Objective, outputs: Any) -> dict[str, Any]:
-    """Return the values of ``forward``; raise ValueError unless they are numbers with a loss."""
+    """Check that the values of ``forward`` are numbers and contain a loss, and return them."""
     wrong = ""
     if not isinstance(outputs, dict) or "loss" not in outputs:
         returned = (
@@ -233,13 +239,14 @@ def _checked(objective: Objective, outputs: Any) -> dict[str, Any]:
 
 @dataclass(frozen=True)
 class ObjectiveSpec:
-    """The class of a stage's objective and the arguments of each constructor.
+    """The class of a stage's objective, with the arguments of each constructor.
 
     Attributes:
         target: the ``_target_`` of the stage's config.
         arguments: arguments of the objective's constructor, as plain data.
-        source: arguments of the source's constructor; None if the objective makes its own batches.
-        parameter: the objective's parameter that takes the source.
+        source: arguments of the source's constructor, or None if the objective makes its own
+            batches.
+        parameter: the objective's parameter that receives the source.
     """
 
     target: str
@@ -249,11 +256,12 @@ class ObjectiveSpec:
 
     @classmethod
     def of(cls, recipe: Mapping[str, Any]) -> ObjectiveSpec:
-        """Split the flat ``recipe`` node of a stage by the signatures of both constructors.
+        """Split the flat ``recipe`` node of a stage according to the signatures of both
+        constructors.
 
         Raises:
-            ValueError: Neither constructor has an argument, or the class is not an objective or
-                takes no agent.
+            ValueError: An argument belongs to neither constructor, or the class is not an objective
+                or accepts no agent.
         """
         target = str(recipe["_target_"])
         kind = locate(target)
@@ -264,13 +272,15 @@ class ObjectiveSpec:
         return cls(target, objective_arguments, source_arguments if parameter else None, parameter)
 
     def build(self, agent: nn.Module) -> Objective:
-        """Build the objective for ``agent``; it chooses which parameters train.
+        """Build the objective for ``agent``; the objective chooses which parameters are trained.
 
         Raises:
-            ValueError: The target does not build an objective; or raised by its constructor.
+            ValueError: The target does not build an objective, or its constructor raised this
+                error.
         """
         for parameter in agent.parameters():
-            parameter.requires_grad_(parameter.is_floating_point())  # 8-bit weights never train
+            # 8-bit weights are never trained
+            parameter.requires_grad_(parameter.is_floating_point())
         kind = locate(self.target)
         modules: dict[str, Any] = {"agent": agent}
         if self.source is not None:
@@ -287,8 +297,8 @@ def split_arguments(
 ) -> tuple[dict[str, Any], dict[str, Any]]:
     """Return the arguments of the objective ``kind`` and of its source.
 
-    An argument that both constructors name goes to both. Raises ValueError for an argument that
-    neither names.
+    An argument that both constructors declare is passed to both. Raises ValueError for an argument
+    that neither of them declares.
     """
     names, is_open = _parameters(kind)
     source_names, source_open = _parameters(kind.sources[parameter]) if parameter else ((), False)
@@ -316,7 +326,7 @@ def _parameters(kind: Any) -> tuple[tuple[str, ...], bool]:
 
 
 def _source_of(kind: Any, arguments: Container[str]) -> str:
-    """Return the parameter of ``kind`` that takes its source; "" if none or already set."""
+    """Return the parameter of ``kind`` that receives its source, or "" if none or already set."""
     if not is_objective(kind):
         return ""
     names, _ = _parameters(kind)
@@ -329,7 +339,7 @@ def is_objective(kind: Any) -> bool:
 
 
 def check_kind(kind: Any, target: str) -> None:
-    """Raise ValueError for a class that is not an objective or takes no agent.
+    """Raise ValueError for a class that is not an objective or accepts no agent.
 
     A function is not checked here: ``ObjectiveSpec.build`` checks its result.
     """
@@ -364,7 +374,7 @@ def check_weights(**weights: float) -> None:
 
 
 def check_share(name: str, value: float) -> None:
-    """Raise ValueError unless ``value`` is a share from 0 to 1."""
+    """Raise ValueError unless ``value`` is a fraction from 0 to 1."""
     if not in_range(value, 0, 1):
         raise ValueError(
             f"recipe.{name} must be a share from 0 to 1, such as 0.5, got {number_text(value)}."

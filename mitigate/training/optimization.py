@@ -1,4 +1,4 @@
-"""AdamW over the trained parameters, and the schedule of its learning rate."""
+"""Set up AdamW for the trained parameters, and the schedule of its learning rate."""
 
 from __future__ import annotations
 
@@ -19,13 +19,13 @@ def check(schedule: str) -> None:
 
 
 def adamw(groups: list[dict[str, Any]], name: str, lr: float, weight_decay: float) -> AdamW:
-    """Return AdamW over the parameters of ``groups`` that are not frozen.
+    """Return AdamW for those parameters of ``groups`` that are not frozen.
 
     Args:
         groups: parameter groups, which may set ``lr`` and ``weight_decay``.
         name: name of the stage, for the error.
-        lr: learning rate of the other groups.
-        weight_decay: weight decay of the other groups.
+        lr: learning rate of groups without ``lr``.
+        weight_decay: weight decay of groups without ``weight_decay``.
 
     Raises:
         ValueError: Every parameter is frozen.
@@ -42,14 +42,14 @@ def adamw(groups: list[dict[str, Any]], name: str, lr: float, weight_decay: floa
 def scheduler(optimizer: AdamW, steps: int, warmup: int, schedule: str) -> LambdaLR:
     """Return the schedule of the learning rate.
 
-    It rises from 0 over ``warmup`` updates, then follows ``schedule``. It ends at 0 after ``steps``
-    unless it is constant.
+    The learning rate rises from 0 during ``warmup`` updates, and then follows ``schedule``. Unless
+    the schedule is constant, it ends at 0 after ``steps``.
     """
     return LambdaLR(optimizer, lambda step: _rate(step, steps, warmup, schedule))
 
 
 def _rate(step: int, steps: int, warmup: int, schedule: str) -> float:
-    """Return the factor on the learning rate of update ``step`` (from 0)."""
+    """Return the factor on the learning rate at update ``step`` (from 0)."""
     if step < warmup:
         return (step + 1) / (warmup + 1)
     if schedule == "constant":

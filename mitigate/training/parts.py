@@ -1,4 +1,4 @@
-"""Choose which parts of an agent train, and make teachers from agents."""
+"""Choose which parts of an agent are trained, and make teachers from agents."""
 
 from __future__ import annotations
 
@@ -18,11 +18,13 @@ from mitigate.core.files import find
 from mitigate.core.names import unknown
 
 ADAPTERS = "adapters"  # name of the part that contains all adapters of the agent
-POLICY = "policy"  # instead of a list of parts: all parts except the encoders
-TRAINABLE = ("parts", "collect", "join", "decide")  # members of agents that learn on episodes
-SEEING = ("parts", "encoders", "labels", "see")  # ... whose encoders learn on single observations
+POLICY = "policy"  # value that means all parts except the encoders, instead of a list of parts
+# members that an agent needs for training on episodes
+TRAINABLE = ("parts", "collect", "join", "decide")
+# members that an agent needs for training its encoders on single observations
+SEEING = ("parts", "encoders", "labels", "see")
 OWN = "Choose an agent that has these (docs/agents.md), or give it these (docs/bring-your-own.md)."
-START = "start"  # a teacher: a copy of the agent at the start of the stage
+START = "start"  # value of teacher= for a copy of the agent at the start of the stage
 
 
 def policy_parts(agent: Any) -> list[str]:
@@ -34,15 +36,16 @@ def policy_parts(agent: Any) -> list[str]:
 def train_only(agent: nn.Module, parts: Iterable[str] | str | None) -> None:
     """Freeze every parameter of ``agent`` outside ``parts``.
 
-    Adapters train only if "adapters" is one of the parts.
+    Adapters are trained only if "adapters" is one of the parts.
 
     Args:
         agent: the agent.
-        parts: names of its ``parts()``; "policy" means all except the encoders, None means all.
+        parts: names from ``agent.parts()``; "policy" means all parts except the encoders, None
+            means all.
 
     Raises:
-        ValueError: A part is unknown, a parameter is in no part, adapters to train have gates
-            (which episodes cannot train), or the agent is not trainable.
+        ValueError: A part is unknown, a parameter is in no part, adapters to be trained have gates
+            (which cannot be trained on episodes), or the agent is not trainable.
     """
     if not isinstance(agent, Trainable):
         absent = missing_members(agent, TRAINABLE)
@@ -74,7 +77,7 @@ def train_only(agent: nn.Module, parts: Iterable[str] | str | None) -> None:
 def refuse_gates(module: nn.Module) -> None:
     """Raise ValueError if adapters of ``module`` have a gate.
 
-    Only pairs of corrupted and clean views (``recipes/adapt.py``) train gates.
+    Gates can be trained only on pairs of corrupted and clean views (``recipes/adapt.py``).
     """
     if any(isinstance(adapter, FrameGate) for adapter in adapters_of(module)):
         raise ValueError(
@@ -84,7 +87,7 @@ def refuse_gates(module: nn.Module) -> None:
 
 
 def freeze(agent: nn.Module) -> None:
-    """Freeze the modules in ``frozen`` of an agent, except their adapters."""
+    """Freeze the modules that an agent lists in ``frozen``, except their adapters."""
     for name in as_agent(agent).frozen:
         module = agent.get_submodule(name)
         adapters = {id(p) for p in adapter_parameters(module)}
@@ -96,9 +99,9 @@ def freeze(agent: nn.Module) -> None:
 def hold_statistics(module: nn.Module, around: Sequence[nn.Parameter] = ()) -> None:
     """Put frozen normalisations with running statistics (BatchNorm) in ``module`` in eval mode.
 
-    In training mode every batch would change the statistics, although no weight trains. A
-    normalisation without weights counts as frozen if all weights of the nearest enclosing module
-    with weights are frozen, without adapters.
+    In training mode, every batch would change the statistics, although no weight is trained. A
+    normalisation without weights is treated as frozen if all weights (except adapters) of the
+    nearest enclosing module with weights are frozen.
 
     Args:
         module: the module.
@@ -119,10 +122,11 @@ def load_teacher(agent: nn.Module, weights: str | None) -> nn.Module:
 
     Args:
         agent: the agent.
-        weights: a file or folder with the weights of the teacher; "start" uses the current weights.
+        weights: a file or folder with the weights of the teacher, or "start" for the current
+            weights.
 
     Raises:
-        ValueError: The weights are only adapters, or do not fit.
+        ValueError: The weights are only adapters, or do not match the agent.
         FileNotFoundError: The weights do not exist.
     """
     if weights is None:

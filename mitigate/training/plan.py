@@ -1,13 +1,13 @@
-"""The plan of a training: everything that is decided before the first step.
+"""Plan a training run, which includes all decisions before the first step.
 
-:func:`check` rejects options that are wrong for every agent. :func:`plan` then decides, in
+:func:`check` rejects options that are invalid for every agent. :func:`plan` then decides, in
 the order of the functions below:
 
-1. It builds the agent, with the settings that it inherits from its first weights.
-2. It leaves out stages that have nothing to train in this agent, and corruptions of sensors that it
-   does not read, and prints this.
-3. It plans each stage: the objective with its arguments, and the settings of the trainer.
-4. It checks that agent, world, folder and stages fit together.
+1. It builds the agent, with the settings that it inherits from its initial weights.
+2. It skips stages that have nothing to train in this agent, and corruptions of sensors that the
+   agent does not read, and reports this.
+3. It plans each stage, which has an objective with arguments and the settings of the trainer.
+4. It checks that agent, world, folder and stages are compatible.
 """
 
 from __future__ import annotations
@@ -47,8 +47,9 @@ from mitigate.training.ranks import Ranks
 from mitigate.training.workers import MOST
 from mitigate.worlds.world import Placeable
 
-IDENTITY = "identity.json"  # file in a stage's folder: initial weights, settings, code and teacher
-NOT_IDENTITY = ("workers", "folder")  # arguments that do not change what a stage trains
+# name of a file in a stage's folder that identifies initial weights, settings, code and teacher
+IDENTITY = "identity.json"
+NOT_IDENTITY = ("workers", "folder")  # arguments that do not affect the result of a stage
 OURS = "mitigate.recipes."
 
 
@@ -60,8 +61,8 @@ class StagePlan:
         name: name of the stage and of its subfolder.
         folder: folder of its checkpoints and logs.
         objective: the objective, with its arguments.
-        trainer: the settings of the Trainer that are set.
-        identity: the settings part of the stage's fingerprint; a run is not resumed with another.
+        trainer: those settings of the Trainer that are set.
+        identity: the settings part of the stage's fingerprint; a run is not resumed if it differs.
     """
 
     name: str
@@ -78,7 +79,7 @@ class Plan:
     Attributes:
         config: the options, with the changes of this plan.
         folder: folder of the run.
-        agent: the agent with its first weights.
+        agent: the agent with its initial weights.
         stages: stages in order.
         workers: number of processes that make batches.
     """
@@ -109,7 +110,7 @@ def check(config: TrainConfig) -> None:
             "Remove options of other stages (experiment=frozen fits only imitation and da_*)."
         )
     listed = config.report == REPORT or env.episodes
-    if config.evaluation.enabled and listed:  # find mistakes before the training
+    if config.evaluation.enabled and listed:  # this finds mistakes before training starts
         count = config.evaluation.episodes
         episodes(env, config.evaluation.split, count if count is None else min(count, 1))
         measured = conditions(config.suite.conditions, config.severity, config.severity_depth)
@@ -124,15 +125,16 @@ def _target_of(stage: StageConfig) -> str:
 def plan(config: TrainConfig, ranks: Ranks) -> Plan:
     """Plan a training with checked options (:func:`check`).
 
-    Prints a line for each decision that a user may not expect.
+    A line is printed for each decision that a user may not expect.
 
     Raises:
-        ValueError: Options, recipe, agent, world or folder do not fit together.
+        ValueError: Options, recipe, agent, world or folder are not compatible.
         FileNotFoundError: Weights are missing.
     """
     config = copy.deepcopy(config)
     folder = Path(config.folder or "")
-    inherited = inherit_settings(config.agent, config.init)  # rejects the weights of another kind
+    # this rejects weights of a different kind of agent
+    inherited = inherit_settings(config.agent, config.init)
     node = config.agent if config.init_parts else inherited
     agent = build_agent(node, weights=config.init, seed=config.seed, parts=config.init_parts)
     check_teacher(config)
@@ -191,7 +193,8 @@ def leave_out_stages(config: TrainConfig, agent: nn.Module) -> None:
     """Set stages that have nothing to train in ``agent`` to None, and print them.
 
     Raises:
-        ValueError: No stage is left. A blinded agent may have none; it is only evaluated.
+        ValueError: No stage is left. A blinded agent may have no stage left; in that case it is
+            only evaluated.
     """
     for name, stage in config.active_stages.items():
         reason = nothing_to_train(stage.recipe, agent)
@@ -204,8 +207,8 @@ def leave_out_stages(config: TrainConfig, agent: nn.Module) -> None:
     blind = config.agent.get("blind")
     if not (config.evaluation.enabled and blind):
         raise ValueError(
-            f"The recipe {config.name} cannot train {type(agent).__name__}: all of its stages were "
-            "left out. Choose another recipe or agent (recipes/README.md, docs/agents.md)."
+            f"The recipe {config.name} cannot train {type(agent).__name__}: all of its stages "
+            "were skipped. Choose another recipe or agent (recipes/README.md, docs/agents.md)."
         )
     say(f"nothing is trained: the agent is evaluated with agent.blind={list(blind)}")
 
@@ -230,7 +233,8 @@ def nothing_to_train(recipe: Mapping[str, Any], agent: nn.Module) -> str | None:
 def _leave_out_views(config: TrainConfig, agent: nn.Module) -> None:
     """Set stages that use random poses to None if the agent or the world does not support them.
 
-    They stay if no other stage can train the agent; :func:`check_fit` then rejects them.
+    If no other stage can train the agent, these stages are kept, and :func:`check_fit` then rejects
+    them.
     """
     kinds = {name: locate(_target_of(stage)) for name, stage in config.active_stages.items()}
     views = [name for name, kind in kinds.items() if is_objective(kind) and kind.needs == SEEING]
@@ -250,12 +254,12 @@ def _leave_out_views(config: TrainConfig, agent: nn.Module) -> None:
 
 
 def _misfit(kind: Any, agent: nn.Module) -> str:
-    """Return why an objective cannot train ``agent``; "" if it can or is not a class."""
+    """Return why an objective cannot train ``agent``, or "" if it can or if it is not a class."""
     return str(kind.misfit(agent)) if is_objective(kind) else ""
 
 
 def warn_warmup(config: TrainConfig) -> None:
-    """Warn if a stage ends before its warmup."""
+    """Warn if a stage ends before its warm-up ends."""
     for name, stage in config.active_stages.items():
         settings = stage.settings(config.trainer)
         steps = settings.get("steps", 0)
@@ -270,16 +274,16 @@ def warn_warmup(config: TrainConfig) -> None:
 def drop_unread_corruptions(config: TrainConfig, agent: nn.Module) -> None:
     """Remove corruptions of sensors that ``agent`` does not read from the stages' schedules.
 
-    They would leave its frames clean. Prints the removed corruptions.
+    Such corruptions would leave the agent's frames clean. Prints the removed corruptions.
 
     Raises:
-        ValueError: A schedule has no other corruptions.
+        ValueError: A schedule contains no other corruptions.
     """
     declared = as_agent(agent).sensors
     sensors = (RGB, DEPTH) if declared is None else declared
     unread = [sensor for sensor in (RGB, DEPTH) if sensor not in sensors]
     cause = f"{type(agent).__name__} reads no {' or '.join(unread)}"
-    dropped: dict[str, None] = {}  # a dict keeps the order of the schedules
+    dropped: dict[str, None] = {}  # a dict preserves the order of the schedules
     for name, stage in config.active_stages.items() if unread else ():
         node = stage.recipe.get("schedule")
         if not isinstance(node, dict):
@@ -306,7 +310,7 @@ def plan_stages(config: TrainConfig, agent: nn.Module, folder: Path) -> list[Sta
     """Return the stages that will run.
 
     Raises:
-        ValueError: A stage cannot train ``agent``; or raised by :meth:`ObjectiveSpec.of`.
+        ValueError: A stage cannot train ``agent``, or :meth:`ObjectiveSpec.of` raised this error.
     """
     _check_settings(config.agent, agent)
     stages = []
@@ -331,7 +335,7 @@ def _identity(node: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:
 
 
 def _check_settings(node: Mapping[str, Any], agent: nn.Module) -> None:
-    """Raise ValueError for settings of an agent that its constructor does not take."""
+    """Raise ValueError for settings of an agent that its constructor does not accept."""
     known = {*signature(locate(node["_target_"])).parameters, *map(str, node)}
     wrong = sorted(name for name in _settings_of(agent) if name not in known)
     if wrong:
@@ -342,7 +346,7 @@ def _check_settings(node: Mapping[str, Any], agent: nn.Module) -> None:
 
 
 def _settings_of(agent: Any) -> dict[str, Any]:
-    """Return the settings of an agent; users' agents may lack ``settings()``."""
+    """Return the settings of an agent; users' agents may have no ``settings()``."""
     return dict(getattr(agent, "settings", dict)())
 
 
@@ -350,8 +354,8 @@ def check_fit(config: TrainConfig, agent: nn.Module, stages: list[StagePlan], ra
     """Check world, folder and stages against the agent before the first step.
 
     Raises:
-        ValueError: The world has another number of views, the folder holds another run, or there
-            are more ``ranks`` than a step has pieces.
+        ValueError: The world has a different number of views, the folder contains a different run,
+            or there are more ``ranks`` than pieces per step.
     """
     contract = as_agent(agent)
     if contract.views is not None or contract.sensors is not None:
@@ -361,7 +365,7 @@ def check_fit(config: TrainConfig, agent: nn.Module, stages: list[StagePlan], ra
 
 
 def check_folder(config: TrainConfig, stages: list[StagePlan]) -> None:
-    """Raise ValueError if the folder holds checkpoints of other stages, or of other settings."""
+    """Raise ValueError if the folder contains checkpoints of different stages or settings."""
     planned = {stage.name: stage for stage in stages}
     folder = Path(config.folder or "")
     for file in sorted(folder.glob(f"*/{IDENTITY}")):
@@ -375,30 +379,32 @@ def check_folder(config: TrainConfig, stages: list[StagePlan]) -> None:
             )
         if (
             name in planned
-        ):  # the trainer compares the whole identity, but only at the start of the stage
+        ):  # the trainer also compares the complete identity, but only at the start of the stage
             try:
                 recorded = read_object(file, states.OTHER_FOLDER)
-            except ValueError:  # damaged: the checkpoints hold it too
+            except ValueError:  # if the file is damaged, the checkpoints also contain this data
                 continue
             identity = states.as_json(planned[name].identity)
             states.check_same(file.parent, {key: recorded.get(key) for key in identity}, identity)
 
 
 def check_stages(name: str, agent: nn.Module, stages: list[StagePlan], ranks: Ranks) -> None:
-    """Build the objectives of all stages on a copy of ``agent``, up to the first user's objective.
+    """Build the objectives of all stages on a copy of ``agent``, up to the first objective of a
+    user.
 
-    This finds a mistake in a later stage before the first one trains. Before a training, it is
+    This finds a mistake in a later stage before the first stage is trained. Before training, it is
     unknown which parts of the agent a user's objective changes.
 
     Raises:
-        ValueError: There are more ``ranks`` than pieces; or raised by an objective.
-        FileNotFoundError: raised by an objective.
+        ValueError: There are more ``ranks`` than pieces, or an objective raised this error.
+        FileNotFoundError: an objective raised this error.
     """
-    if len(stages) < 2 and ranks.count == 1:  # the only stage is built next
+    if len(stages) < 2 and ranks.count == 1:  # if there is only one stage, it is built next anyway
         return
     try:
         copied = copy.deepcopy(agent)
-    except Exception:  # any error: an agent that cannot be copied may still be trained
+    # all errors are ignored, because an agent that cannot be copied may still be trained
+    except Exception:
         return
     for stage in stages:
         if not stage.objective.target.startswith(OURS):
@@ -412,8 +418,8 @@ def check_stages(name: str, agent: nn.Module, stages: list[StagePlan], ranks: Ra
 def agent_config(node: Mapping[str, Any], agent: nn.Module) -> dict[str, Any]:
     """Return the config that is written with the weights of ``agent``.
 
-    It holds the agent's ``settings()``, such as its vocabulary. It names no classes inside the
-    agent: the config of the reader decides those.
+    The config contains the agent's ``settings()``, such as its vocabulary. The config contains no
+    class names inside the agent, which are determined by the reader's config.
     """
 
     def data(value: Any) -> Any:

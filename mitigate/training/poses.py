@@ -1,6 +1,6 @@
 """Make batches of corrupted panoramas from random poses, with labels, to train encoders.
 
-The batches do not depend on weights, so workers make them ahead of time.
+The batches do not depend on weights, so workers compute them in advance.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from mitigate.training.success import DrawsBySuccess
 from mitigate.worlds.episodes import share_of
 from mitigate.worlds.world import Placeable, TrainingEpisodes, depth_sensor
 
-PIECE = 6  # panoramas that one job renders (heuristic)
+PIECE = 6  # number of panoramas that one job renders (heuristic)
 VIEWS_ALONE = (
     f"This stage trains encoders on single views. {OWN} The recipes imitation, da_per_frame, "
     "da_per_episode, da_success and ts_distill train on episodes instead; so does your own recipe "
@@ -32,19 +32,20 @@ VIEWS_ALONE = (
 
 @dataclass(eq=False, repr=False)
 class Poses(DrawsBySuccess):
-    """The source of batches of panoramas from random poses, corrupted and clean.
+    """Source of batches with corrupted and clean panoramas from random poses.
 
     Args:
-        agent: measured if a success-distributed schedule has no success rates.
-        world: makes a world with random poses (``Placeable`` in ``worlds/world.py``).
-        training: episodes for measurements of success rates.
+        agent: the agent that is measured if a success-distributed schedule has no success rates.
+        world: function that constructs a world with random poses (``Placeable`` in
+            ``worlds/world.py``).
+        training: episodes for measuring success rates.
         modality: the sensor, "rgb" or "depth".
         schedule: chooses the corruption of each panorama; None keeps frames clean.
-        panoramas: number per batch.
+        panoramas: number of panoramas per batch.
         seed: seed of poses and corruptions.
-        refresh_episodes: episodes per corruption of a measurement.
-        own: draw only corruptions of this sensor; else corruptions of other sensors leave its
-            frames clean.
+        refresh_episodes: episodes per corruption when success rates are measured.
+        own: whether to sample only corruptions of this sensor; otherwise corruptions of other
+            sensors leave its frames clean.
 
     Raises:
         ValueError: The sensor is unknown, there are no panoramas, or the world has no random poses.
@@ -74,11 +75,12 @@ class Poses(DrawsBySuccess):
         self._last: np.ndarray | None = None
 
     def learn(self, label: str, every: int) -> None:
-        """Choose the targets and views of later batches; without this call targets are empty.
+        """Choose the targets and views of later batches; without this call, targets are empty.
 
         Args:
             label: entry of the world's truth to use as targets.
-            every: 1 uses all views of a panorama, 2 every second one, since neighbours overlap.
+            every: use every n-th view of a panorama; with 2, every second view, because neighbours
+                overlap.
         """
         self.label = label
         self.every = every
@@ -103,13 +105,15 @@ class Poses(DrawsBySuccess):
 
     @property
     def pieces(self) -> int:
-        """Number of jobs of every step."""
+        """The number of jobs in every step."""
         return -(-self.panoramas // PIECE)
 
     def jobs(self, step: int, workers: int | None = None) -> list[tuple]:
-        """Return one job per piece: (step, piece, pieces, panoramas, state of the schedule).
+        """Return one job per piece: a tuple (step, piece, pieces, panoramas, state of the
+        schedule).
 
-        ``workers`` processes measure success rates if the schedule needs them and has none.
+        If the schedule needs success rates and has none, they are measured with ``workers``
+        processes.
         """
         if self.schedule.mode == "success_distributed" and self.schedule.success is None:
             self.refresh(step, workers)
@@ -119,7 +123,7 @@ class Poses(DrawsBySuccess):
         return [(step, piece, pieces, count, state) for piece, count in enumerate(counts)]
 
     def work(self, job: tuple) -> list[tuple[np.ndarray, ...]]:
-        """Return (corrupted frames, clean frames, labels) of each random pose of a piece."""
+        """Return (corrupted frames, clean frames, labels) for each random pose in a piece."""
         step, piece, pieces, count, state = job
         self.set_schedule(state)
         rng = generator(self.seed, "perception", self.sensor, step, piece)
@@ -127,7 +131,7 @@ class Poses(DrawsBySuccess):
         return [self._panorama(rng, scenes, f"{step}-{piece}-{i}") for i in range(count)]
 
     def collate(self, pieces: list[list[tuple]]) -> dict[str, Any]:
-        """Return the pieces as tensors "frames", "clean" and "targets"."""
+        """Join the pieces to the tensors "frames", "clean" and "targets"."""
         rows = [row for piece in pieces for row in piece]
         names = ("frames", "clean", "targets")
         self._last = rows[-1][0]
@@ -137,7 +141,7 @@ class Poses(DrawsBySuccess):
         }
 
     def figures(self) -> dict[str, np.ndarray]:
-        """Return the last views of the last batch side by side; depth is drawn as grey."""
+        """Return the last views of the last batch side by side, with depth drawn as grey."""
         return {} if self._last is None else {"views": side_by_side(self._last)}
 
     def _panorama(self, rng: np.random.Generator, scenes: Any, name: str) -> tuple[np.ndarray, ...]:
@@ -151,8 +155,8 @@ class Poses(DrawsBySuccess):
         first = int(rng.integers(self.every)) if self.every > 1 else 0
         views = list(range(first, VIEWS, self.every))
         clean, truth = self.placed.put(xy, heading, views=views, rgb=self.sensor == RGB)
-        # A corruption may replace a view by another one, so views that were not rendered repeat
-        # others.
+        # A corruption may replace a view by a different view, so views that were not rendered are
+        # filled with copies of rendered views.
         sources = [views[(view - first) // self.every % len(views)] for view in range(VIEWS)]
         clean = {**clean, self.sensor: clean[self.sensor][sources]}
         corruptions = self.schedule.draw(self.seed, name, 0)
@@ -164,7 +168,7 @@ class Poses(DrawsBySuccess):
     def _view(
         self, xy: np.ndarray, rng: np.random.Generator, name: str, number: int
     ) -> tuple[np.ndarray, ...]:
-        """Return the same as :meth:`_panorama` for one view of a single camera."""
+        """Return the result of :meth:`_panorama` for one view of a single camera."""
         heading = float(rng.uniform(-np.pi, np.pi))
         clean, truth = self.placed.put(xy, heading, views=None, rgb=self.sensor == RGB)
         corruptions = self.schedule.draw(self.seed, name, number)
@@ -176,7 +180,7 @@ class Poses(DrawsBySuccess):
 
 
 class OnViews(Objective):
-    """An objective that trains encoders on the views of its source ``poses``."""
+    """Base class of objectives that train encoders on the views of a source ``poses``."""
 
     sources: ClassVar[Mapping[str, Callable[..., Any]]] = {"poses": Poses}
     ahead = True

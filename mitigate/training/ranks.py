@@ -1,7 +1,7 @@
 """Train one agent with several processes: ``torchrun --nproc-per-node 2 -m mitigate.train``.
 
-Each rank makes its share of a step's pieces and learns from it. Gradients are averaged, so all
-ranks take the same step. With one rank, which is the usual case, this module adds no cost.
+Each rank computes a part of a step's pieces and the gradients from it. Gradients are averaged, so
+all ranks take the same step. With one rank, which is the usual case, this module adds no cost.
 """
 
 from __future__ import annotations
@@ -19,12 +19,12 @@ from torch.distributed.distributed_c10d import _set_pg_timeout
 
 from mitigate.core.names import counted
 
-FIND = timedelta(seconds=40)  # limit for all ranks to find each other (heuristic)
-WAIT = timedelta(hours=2)  # limit for a rank that builds a cache or evaluates (heuristic)
+FIND = timedelta(seconds=40)  # time limit for all ranks to find each other (heuristic)
+WAIT = timedelta(hours=2)  # time limit for a rank that builds a cache or evaluates (heuristic)
 
 
 class Ranks:
-    """Rank ``number`` of ``count`` processes; a context manager around the training.
+    """Rank ``number`` of ``count`` processes, used as a context manager around training.
 
     It opens and closes the process group (gloo for CPU tensors, nccl for GPU tensors) and silences
     the output of all ranks except the first.
@@ -36,14 +36,14 @@ class Ranks:
 
     @classmethod
     def of_environment(cls) -> Ranks:
-        """Return the rank that torchrun's environment variables give; else a single rank."""
+        """Return the rank from torchrun's environment variables, or else a single rank."""
         return cls(int(os.environ.get("RANK", 0)), int(os.environ.get("WORLD_SIZE", 1)))
 
     def __enter__(self) -> Ranks:
         if self.count > 1:
             if torch.cuda.is_available():
                 torch.cuda.set_device(int(os.environ.get("LOCAL_RANK", 0)))
-            # After this timeout ranks end, and torchrun starts them again.
+            # After this timeout, ranks exit and torchrun restarts them.
             backend = "cpu:gloo,cuda:nccl" if torch.cuda.is_available() else "gloo"
             dist.init_process_group(backend, timeout=FIND)
             _set_pg_timeout(WAIT)
@@ -61,7 +61,7 @@ class Ranks:
         return self.number == 0
 
     def share(self, jobs: list[Any]) -> list[Any]:
-        """Return the jobs of this rank; raise ValueError if there are fewer jobs than ranks."""
+        """Return this rank's jobs; raise ValueError if there are fewer jobs than ranks."""
         self.check(len(jobs))
         return jobs[self.number :: self.count]
 
@@ -81,8 +81,9 @@ class Ranks:
         """Replace gradients and logged values by their weighted means over the ranks.
 
         A loss that is a mean weighted by ``Objective.weight`` gets the gradient that a
-        single process would compute from all pieces. Other losses become means of ranks: the KL of
-        the distillation, auxiliary losses of agents, errors in units of a batch's variance.
+        single process would compute from all pieces. Other losses are averaged over ranks: the KL
+        divergence of distillation, auxiliary losses of agents, and errors that are divided by a
+        batch's variance.
         """
         if self.count == 1:
             return
@@ -97,20 +98,22 @@ class Ranks:
         ):
             if (
                 not any_gradient
-            ):  # no rank has a gradient: the optimizer skips it, as in one process
+                # the optimizer skips the parameter, as in a single process
+            ):
                 continue
-            if parameter.grad is None:  # the pieces of this rank did not use it
+            if parameter.grad is None:  # the pieces of this rank did not use this parameter
                 parameter.grad = torch.zeros_like(parameter)
             dist.all_reduce(parameter.grad.mul_(share))
         template = next(iter(values.values()))
-        for name in sorted({name for entry in weights for name in entry}):  # a rank may lack some
+        # a rank may lack some values
+        for name in sorted({name for entry in weights for name in entry}):
             factor = weight / max(sum(entry.get(name, 0.0) for entry in weights), 1e-12)
             value = values[name] * factor if name in values else torch.zeros_like(template)
             dist.all_reduce(value)
             values[name] = value
 
     def of_first(self, value: Any) -> Any:
-        """Return the ``value`` of the first rank."""
+        """Return the ``value`` that the first rank has."""
         if self.count == 1:
             return value
         values = [value]
@@ -118,6 +121,6 @@ class Ranks:
         return values[0]
 
     def wait(self) -> None:
-        """Return when all ranks have called this."""
+        """Wait until all ranks have called this method."""
         if self.count > 1:
             dist.barrier()

@@ -1,4 +1,4 @@
-"""Deprecated name of :mod:`mitigate.training.objective`, for subclasses of users."""
+"""Deprecated name of :mod:`mitigate.training.objective`, kept for users' subclasses."""
 
 from __future__ import annotations
 

@@ -1,5 +1,4 @@
-"""Sources of pairs of corrupted and clean frames: random poses of a world, or a folder of "
-"frames."""
+"""Sources of pairs of corrupted and clean frames, from random poses or a folder of frames."""
 
 from __future__ import annotations
 
@@ -19,13 +18,13 @@ from mitigate.training import success
 from mitigate.training.poses import Poses, check_panoramas
 from mitigate.worlds.world import TrainingEpisodes
 
-GROUP = 12  # frames of a folder that count as one panorama of a batch
+GROUP = 12  # number of frames in a folder that count as one panorama of a batch
 
 
 class PosePairs(Poses):
-    """Panoramas from random poses (``training/poses.py``), or views if the world has one camera."""
+    """Source of panoramas (or single views) from random poses (``training/poses.py``)."""
 
-    ring = False  # whether the views of an instant form a panorama
+    ring = False  # whether the views of a time step form a panorama
 
     def start(self) -> None:
         """Read the number of views from the world.
@@ -40,7 +39,7 @@ class PosePairs(Poses):
         self.ring = len(self.placed.sensors[self.sensor].yaws) > 1
 
     def identity(self) -> dict[str, str]:
-        """Return nothing: poses follow from the settings."""
+        """Return an empty dict, because poses are determined by the settings."""
         return {}
 
     def collate(self, pieces: list[Any]) -> dict[str, Any]:
@@ -51,13 +50,14 @@ class PosePairs(Poses):
 
 @dataclass(eq=False, repr=False)
 class FramePairs:
-    """Frames of a folder, each corrupted as a separate instant (``encoders/sources.py``).
+    """Source of frames in a folder, each corrupted as a separate time step
+    (``encoders/sources.py``).
 
     Attributes:
         source: source of the frames.
         schedule: schedule of corruptions of ``sensor``.
         sensor: "rgb" or "depth".
-        count: number of frames, read once.
+        count: number of frames, which are read once.
         panoramas: groups of ``GROUP`` frames per step.
         seed: seed of frames and corruptions.
         depth: properties of depth in the frames.
@@ -72,13 +72,13 @@ class FramePairs:
     seed: int
     depth: DepthSensor
     frames: Frames | None = None
-    ring: ClassVar[bool] = False  # each frame is a separate instant
+    ring: ClassVar[bool] = False  # each frame is a separate time step
 
     def __post_init__(self) -> None:
         check_panoramas(self.panoramas)
 
     def start(self) -> None:
-        """Read the frames on the first call."""
+        """Read the frames at the first call."""
         if self.frames is None:
             self.frames = collect(self.source, TRAIN, self.count, self.seed)
 
@@ -89,7 +89,8 @@ class FramePairs:
         return {"frames_sha256": self.frames.sha256()}
 
     def __getstate__(self) -> dict[str, Any]:
-        """Return the state without the frames; workers receive only the frames of their jobs."""
+        """Return the state for pickling without frames; workers receive only the frames of their
+        jobs."""
         return {**self.__dict__, "frames": None}
 
     def jobs(self, step: int) -> list[tuple[int, int, Frames]]:
@@ -116,7 +117,8 @@ class FramePairs:
         return {"frames": torch.from_numpy(frames), "clean": torch.from_numpy(clean)}
 
 
-Pairs = PosePairs | FramePairs  # the source of "frames" and "clean" [instants, views, H, W, c]
+# the source of "frames" and "clean", each [time steps, views, H, W, c]
+Pairs = PosePairs | FramePairs
 
 
 def pairs_of(
@@ -129,9 +131,9 @@ def pairs_of(
     frames: int = 4800,
     seed: int = 0,
 ) -> Pairs:
-    """Return the source of pairs for an ``env`` config: a world or a folder of frames.
+    """Return the source of pairs for an ``env`` config, which is a world or a folder of frames.
 
-    A folder has no ``training`` episodes; ``frames`` frames of it are read once.
+    A folder has no ``training`` episodes; ``frames`` of its frames are read once.
 
     Raises:
         ValueError: The schedule is success-distributed.
@@ -146,7 +148,7 @@ def pairs_of(
 
 
 def with_clean_share(pairs: Pairs, share: float) -> Pairs:
-    """Return a copy of ``pairs`` that keeps a ``share`` of its frames clean; call before
+    """Return a copy of ``pairs`` in which a fraction ``share`` stays clean; call before
     ``start``."""
     copied = copy.copy(pairs)
     copied.schedule = replace(pairs.schedule, clean_share=share)

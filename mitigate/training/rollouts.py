@@ -1,7 +1,7 @@
-"""Make batches of an agent's decisions in corrupted worlds, for objectives that imitate.
+"""Collect batches of an agent's decisions in corrupted worlds, for imitation objectives.
 
-Every step runs a few training episodes with the current weights under the corruptions of the
-schedule; its batch holds all their decisions.
+Each step runs a few training episodes with the current weights, under the corruptions of the
+schedule. The batch contains all decisions in these episodes.
 """
 
 from __future__ import annotations
@@ -22,29 +22,32 @@ from mitigate.training.parts import OWN, TRAINABLE
 from mitigate.training.success import DrawsBySuccess, prior_rates
 from mitigate.worlds.world import Corrupted, TrainingEpisodes, World
 
-PIECES = 4  # jobs that share the episodes of a step (heuristic)
+PIECES = 4  # number of jobs into which the episodes of a step are divided (heuristic)
 
 
 @dataclass(eq=False, repr=False)
 class Rollouts(DrawsBySuccess):
-    """The source of batches of decisions: rollouts of ``agent`` under a schedule of corruptions.
+    """Source of batches with decisions from rollouts of ``agent`` under a schedule of corruptions.
 
     Args:
-        agent: acts with its current weights, and gives the batches (``agents/agent.py``).
-        world: makes a world.
+        agent: the agent, which acts with its current weights and collects its decisions
+            (``agents/agent.py``).
+        world: function that constructs a world.
         training: source of the episodes.
         schedule: chooses the corruption of each frame; a success-distributed schedule uses success
             rates of ``agent``. None keeps frames clean.
-        episodes: number per step.
-        follow_oracle: share of decisions that the expert takes.
+        episodes: number of episodes per step.
+        follow_oracle: fraction of decisions that follow the expert.
         seed: seed of episodes, corruptions and actions.
-        prior: rows of one earlier evaluation, the first success rates of the schedule.
-        refresh_every: steps between two measurements of success rates; 0 measures only if there are
-            no rates.
-        refresh_episodes: training episodes per corruption of a measurement.
+        prior: rows of an earlier evaluation, from which the initial success rates of the schedule
+            are computed.
+        refresh_every: number of steps between two measurements of success rates; 0 measures only if
+            there are no rates.
+        refresh_episodes: training episodes per corruption in a measurement.
 
     Raises:
-        ValueError: There are no episodes, or a share is invalid; or raised by ``prior_rates``.
+        ValueError: There are no episodes, a fraction is invalid, or ``prior_rates`` raised this
+            error.
     """
 
     agent: Any
@@ -69,26 +72,26 @@ class Rollouts(DrawsBySuccess):
             self.schedule.refresh(prior_rates(self.prior))
 
     def keep_clean(self, *teachers: Any) -> None:
-        """Also keep clean observations; ``teachers`` precompute their fixed features from them."""
+        """Also keep clean observations, from which ``teachers`` precompute their fixed features."""
         self.clean = True
         self.teachers = teachers
 
     @property
     def pieces(self) -> int:
-        """Number of jobs of every step."""
+        """The number of jobs in every step."""
         return min(PIECES, self.episodes)
 
     def identity(self) -> dict[str, str]:
-        """Return hashes of the files that the batches depend on."""
+        """Return hashes of the files on which the batches depend."""
         prior = {} if self.prior is None else {"prior_sha256": sha256(self.prior)}
         # users' episodes may not come from files
         files: dict[str, str] = getattr(self.training, "identity", dict)()
         return {**files, **prior}
 
     def jobs(self, step: int, workers: int | None = None) -> list[tuple]:
-        """Return one job per piece: (step, piece, pieces, episodes, state of the schedule).
+        """Return one job per piece: a tuple (step, piece, pieces, episodes, state of the schedule).
 
-        ``workers`` processes measure success rates when they are due.
+        When new success rates are due, they are measured with ``workers`` processes.
         """
         due = bool(self.refresh_every) and step % self.refresh_every == 0
         due = due and not (step == 0 and self.prior)
@@ -117,17 +120,17 @@ class Rollouts(DrawsBySuccess):
         return decisions, picture(worlds[0].last)
 
     def collate(self, pieces: list[tuple]) -> Decisions:
-        """Return the decisions of all pieces."""
+        """Join the decisions of all pieces."""
         self.picture = pieces[0][1] if pieces[0][1] is not None else self.picture
         return self.agent.join([piece for piece, _ in pieces])
 
     def figures(self) -> dict[str, np.ndarray]:
-        """Return an observation of the agent from the last batch."""
+        """Return a picture of an observation from the last batch."""
         return {} if self.picture is None else {"seen": self.picture}
 
 
 class OnEpisodes(Objective):
-    """An objective that learns from the ``rollouts`` that its constructor receives."""
+    """Base class of objectives that learn from the ``rollouts`` that the constructor receives."""
 
     sources: ClassVar[Mapping[str, Callable[..., Any]]] = {"rollouts": Rollouts}
     needs = TRAINABLE
@@ -150,7 +153,7 @@ class OnEpisodes(Objective):
         return batch_of(self.rollouts.collate(pieces))
 
     def evaluate(self, step: int) -> dict[str, float]:
-        """Return the weights of the schedule, for the log."""
+        """Return the weights in the schedule, for the log."""
         return {f"p/{name}": p for name, p in self.rollouts.schedule.weights.items()}
 
     def figures(self, step: int) -> dict[str, np.ndarray]:
@@ -164,7 +167,7 @@ class OnEpisodes(Objective):
 
 
 def batch_of(decisions: Decisions) -> dict[str, Any]:
-    """Return decisions as a batch for the trainer."""
+    """Wrap decisions as a batch for the trainer."""
     return {"decisions": decisions, "episode_ids": [str(name) for name in decisions.episode_ids]}
 
 

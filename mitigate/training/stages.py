@@ -49,9 +49,9 @@ def run_plan(plan: Plan, ranks: Ranks) -> Path:
 def train_stage(
     plan: Plan, stage: StagePlan, agent: nn.Module, workers: Workers | None, ranks: Ranks
 ) -> str:
-    """Train ``agent`` in place through one stage, and return the precision of the training.
+    """Train ``agent`` in place in one stage, and return the floating-point precision that was used.
 
-    A finished stage is loaded from its folder.
+    If a stage is already finished, its result is loaded from its folder.
     """
     seed = plan.config.seed
     seeding.seed_everything(seed, "stage", stage.name)
@@ -61,7 +61,7 @@ def train_stage(
     code = code_sha(objective)
     known_code = {"code_sha256": code} if code else {}
     identity = {"start": start, **stage.identity, **known_code, **objective.identity()}
-    # with checkpoints, the trainer compares the identity
+    # if there are checkpoints, the trainer compares the identity
     if ranks.first and not states.checkpoints(stage.folder):
         with atomic_text(stage.folder / IDENTITY) as file:
             json.dump(identity, file, indent=2)

@@ -1,7 +1,9 @@
-"""States of a training: ``step-00001000.pt`` holds all that a run needs to resume bit for bit.
+"""States of a training: A checkpoint such as ``step-00001000.pt`` contains all state for a
+bit-identical resume.
 
-They are written atomically and rotated, and loading runs no code. A sidecar holds the sha256 of
-each (``core/checksums.py``), which is checked before the file is read.
+Checkpoints are written atomically and rotated, and loading them runs no code. The sha256 of each
+checkpoint is in a sidecar file (``core/checksums.py``) and is checked before the checkpoint is
+read.
 """
 
 from __future__ import annotations
@@ -43,7 +45,7 @@ def save(folder: Path, state: dict[str, Any], *, keep: int = 2) -> Path:
     """Write ``state`` as ``step-<state["step"]>.pt`` and delete older checkpoints.
 
     ``keep`` checkpoints stay. A checkpoint of a later step, which was damaged when the run resumed,
-    also stays.
+    is also kept.
     """
     assert set(REQUIRED) <= {"format", *state}, f"state lacks {set(REQUIRED) - set(state)}"
     path = Path(folder) / f"step-{state['step']:08d}.pt"
@@ -60,8 +62,9 @@ def load(path: Path) -> dict[str, Any]:
 
     Raises:
         FileNotFoundError: The file is missing.
-        Damaged: It is cut short or its bytes have changed.
-        ValueError: It is not a checkpoint of this trainer, or is intact but cannot be read.
+        Damaged: The file is cut short or its bytes have changed.
+        ValueError: The file is not a checkpoint of this trainer, or it is intact but cannot be
+            read.
     """
     path = Path(path)
     if not path.is_file():
@@ -72,8 +75,8 @@ def load(path: Path) -> dict[str, Any]:
         raise Damaged(_broken(path, f"{problem}: the file or its checksum is cut short or damaged"))
     try:
         state = torch.load(path, map_location="cpu", weights_only=True)
-    except Exception as error:  # any error, if torch did not write the file
-        if has_sum:  # the file is intact: memory ran out, or it holds more than plain data
+    except Exception as error:  # torch may raise any error for a file that it did not write
+        if has_sum:  # the file is intact, but memory ran out or it contains more than plain data
             cause = " ".join(str(error).split())[:300]
             what = f"The checkpoint {path} is intact, but cannot be read: {cause}"
             raise ValueError(what) from error
@@ -87,10 +90,10 @@ def load(path: Path) -> dict[str, Any]:
 
 
 def load_newest(folder: Path) -> tuple[Path, dict[str, Any]] | None:
-    """Return the newest intact checkpoint in ``folder`` and its state; None without a checkpoint.
+    """Return the newest intact checkpoint in ``folder`` and its state, or None if there is none.
 
-    Prints a line for each damaged checkpoint that is skipped. Raises Damaged if all are damaged
-    (none is deleted), and as :func:`load` does.
+    A line is printed for each damaged checkpoint that is skipped. Raises Damaged if all checkpoints
+    are damaged (none is deleted), and the errors of :func:`load`.
     """
     damaged: list[Path] = []
     for path in reversed(checkpoints(folder)):
@@ -113,7 +116,7 @@ def load_newest(folder: Path) -> tuple[Path, dict[str, Any]] | None:
 
 
 def differences(old: Any, new: Any, path: str = "") -> list[str]:
-    """Return one ``key: old -> new`` for each leaf in which two JSON-able configs differ."""
+    """Return one text ``key: old -> new`` for each value in which two JSON configs differ."""
     if isinstance(old, dict) and isinstance(new, dict):
         names = [*old, *(name for name in new if name not in old)]
         return [
@@ -125,7 +128,8 @@ def differences(old: Any, new: Any, path: str = "") -> list[str]:
 
 
 def check_same(folder: Path, old: dict[str, Any], new: dict[str, Any]) -> None:
-    """Raise ValueError if the run in ``folder`` has another config (``old``) than ``new``."""
+    """Raise ValueError if the run in ``folder`` has a config (``old``) that differs from
+    ``new``."""
     different = differences(old, new)
     if different:
         raise ValueError(
@@ -135,16 +139,16 @@ def check_same(folder: Path, old: dict[str, Any], new: dict[str, Any]) -> None:
 
 
 def as_json(config: dict[str, Any]) -> dict[str, Any]:
-    """Return ``config`` as JSON reads it back.
+    """Return ``config`` as it would be after writing and reading it as JSON.
 
-    A checkpoint holds only plain data, since it is read without running code.
+    A checkpoint must contain only plain data, because it is read without running code.
     """
     data: dict[str, Any] = json.loads(json.dumps(config))
     return data
 
 
 def _zip_problem(path: Path) -> str:
-    """Return what is wrong with a file of ``torch.save``, by the checksums of its zip archive."""
+    """Describe damage in a file of ``torch.save``, detected by the checksums of its zip archive."""
     try:
         with zipfile.ZipFile(path) as archive:
             packed = any(part.compress_type != zipfile.ZIP_STORED for part in archive.infolist())

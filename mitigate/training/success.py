@@ -1,4 +1,4 @@
-"""Measure success rates by corruption, for success-distributed schedules."""
+"""Measure success rates per corruption, for success-distributed schedules."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from mitigate.worlds.world import TrainingEpisodes, World
 
 
 class DrawsBySuccess:
-    """Base of sources of batches whose schedule may use success rates of their agent."""
+    """Base class of batch sources whose schedule may use success rates of the agent."""
 
     agent: Any
     world: Callable[[], Any]
@@ -45,7 +45,7 @@ class DrawsBySuccess:
         hold_statistics(self.agent.train())
 
     def set_schedule(self, state: dict[str, Any]) -> None:
-        """Restore the state that the schedule had when a job was ordered."""
+        """Restore the state that the schedule had when a job was requested."""
         if state != self.schedule.state_dict():
             self.schedule.load_state_dict(state)
 
@@ -63,21 +63,22 @@ def measure(
 ) -> dict[str, float]:
     """Measure the success of ``agent`` under every corruption of ``schedule``.
 
-    Every corruption runs the same episodes, drawn from (seed, step).
+    The same episodes, which are sampled from (seed, step), are run under every corruption.
 
     Args:
-        agent: a module with ``reset`` and ``act``; it is left in eval mode.
-        schedule: names the corruptions to measure.
-        world: makes a world.
+        agent: a module with ``reset`` and ``act``; it stays in eval mode.
+        schedule: the schedule whose corruptions are measured.
+        world: function that constructs a world.
         training: source of the episodes.
         episodes: number of episodes per corruption.
         seed: seed of episodes and corruptions.
-        step: step of the training.
-        workers: number of processes, which does not change the rates. 0 uses only this process.
-            None uses one per core if that saves time, and only this process for an agent on a GPU.
+        step: training step.
+        workers: number of processes, which does not affect the rates; with 0, only this process is
+            used. None uses one process per core if that saves time, but only this process for an
+            agent on a GPU.
 
     Returns:
-        Success in [0, 1] by name of the corruption.
+        The success rate in [0, 1] by corruption.
     """
     rng = generator(seed, "refresh", step)
     drawn_episodes = [training.draw(rng, (0, 1)) for _ in range(episodes)]
@@ -101,7 +102,8 @@ def measure(
 
 
 def refuse(schedule: Schedule | None) -> None:
-    """Raise ValueError for a success-distributed schedule in a recipe that measures no success."""
+    """Raise ValueError if a success-distributed schedule is used in a recipe that measures no
+    success."""
     if schedule is not None and schedule.mode == "success_distributed":
         raise ValueError(
             "schedule=success_distributed needs success rates, which this recipe does not measure. "
@@ -110,9 +112,10 @@ def refuse(schedule: Schedule | None) -> None:
 
 
 def prior_rates(path: Path | str) -> dict[str, float]:
-    """Return the success by corruption in a file of result rows.
+    """Return the success rate per corruption in a file of result rows.
 
-    Prints their split, since a training that uses them must be evaluated on other episodes.
+    The split of the rows is printed, because training that uses them must be evaluated on other
+    episodes.
 
     Raises:
         FileNotFoundError: The file is missing.
@@ -139,7 +142,7 @@ def prior_rates(path: Path | str) -> dict[str, float]:
 
 
 def success_rates(results: list[dict[str, Any]]) -> dict[str, float]:
-    """Return the mean success by corruption of rows or measures, without clean ones."""
+    """Return the mean success per corruption of rows or measures, without clean ones."""
     names = {row["corruption"] for row in results} - {"clean"}
     return {
         n: float(np.mean([r["success"] for r in results if r["corruption"] == n]))

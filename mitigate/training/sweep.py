@@ -1,8 +1,9 @@
-"""Run many trainings or evaluations: ``mitigate sweep recipe=imitation,stacked seed=0,1``.
+"""Run many training runs or evaluations: ``mitigate sweep recipe=imitation,stacked seed=0,1``.
 
-Each combination of values is a run in its own folder, on this machine or on the machines of
-``launcher``. A failed run does not stop the others; the same command again resumes missing runs.
-All results go into one table. ``--config-dir FOLDER`` names a folder with your own configs.
+Each combination of values is run in its own folder, on this machine or on the machines of
+``launcher``. A failed run does not stop the others; if the command is run again, it resumes missing
+runs. All results are written to one table. ``--config-dir FOLDER`` names a folder with your own
+configs.
 """
 
 from __future__ import annotations
@@ -30,12 +31,12 @@ from mitigate.evaluation.evaluate import write_table
 
 COMMANDS = ("train", "evaluate")
 LOGS = "logs"
-LONGEST = 100  # characters of the name of a log (heuristic)
+LONGEST = 100  # maximum characters of a log's name (heuristic)
 
 
 @dataclass
 class SweepConfig:
-    """Types of ``conf/sweep.yaml``, which explains each entry."""
+    """Types of the options in ``conf/sweep.yaml``, which documents each of them."""
 
     command: str = "train"
     runs: str = "sweeps/default"
@@ -51,8 +52,8 @@ def run_all(config: SweepConfig, options: Sequence[str]) -> None:
     """Run every combination of ``options``, then write and print the table of ``config.runs``.
 
     Raises:
-        ValueError: An option is unknown (before anything runs), or runs failed (after the others
-            are done and the table is written).
+        ValueError: An option is unknown (raised before anything runs), or runs failed (raised after
+            all other runs are finished and the table is written).
     """
     if config.command not in COMMANDS:
         raise ValueError(unknown("command", config.command, COMMANDS))
@@ -91,7 +92,7 @@ def run_chains(
     Prints a line for each chain that ended.
 
     Returns:
-        One line for each chain that failed.
+        A list with one line for each failed chain.
     """
     problems = []
     with Progress(title, len(chains), unit=unit) as progress:
@@ -108,7 +109,7 @@ def run_chains(
 
 
 def _check_own(options: Sequence[str]) -> None:
-    """Raise ValueError for an option that would put all runs into one folder."""
+    """Raise ValueError for an option that would write all runs into the same folder."""
     for option in options:
         if option.lstrip("+~").partition("=")[0] in ("out", "folder"):
             raise ValueError(
@@ -118,7 +119,7 @@ def _check_own(options: Sequence[str]) -> None:
 
 
 def combinations(options: Sequence[str]) -> list[list[str]]:
-    """Return each combination of values, by Hydra's grammar: ``seed=0,1``, ``range(3)``.
+    """Return each combination of values, using Hydra's grammar: ``seed=0,1``, ``range(3)``.
 
     Raises ValueError for an option that Hydra cannot parse.
     """
@@ -146,15 +147,15 @@ def chain(
 ) -> programs.Chain:
     """Return the programs of one combination.
 
-    Its name ends in a digest if another one of ``combined`` would have the same name, as
-    ``checkpoint=a/b`` and ``checkpoint=a_b``.
+    If a different combination in ``combined`` would have the same name (such as ``checkpoint=a/b``
+    and ``checkpoint=a_b``), the name ends in a digest.
     """
     _, named = without_config_folder(options)
     name = _name(options)
     if len(name) > LONGEST or [*map(_name, combined)].count(name) > 1:
         name = f"{name[:LONGEST]}-{seeding.digest(*named):032x}"[: LONGEST + 9]
     words = [f"mitigate.{config.command}", *options, f"runs={config.runs}"]
-    if config.command == "evaluate":  # its default folder does not contain the seed
+    if config.command == "evaluate":  # the default folder does not contain the seed
         words.append(f"out={Path(config.runs) / name}")
     share = config.jobs > 1 or config.launcher.name != "local"
     count = max(1, cores() // config.jobs) if config.launcher.name == "local" else 1
@@ -172,7 +173,7 @@ def chain(
 def main() -> int:
     """Run from the command line and return the exit status.
 
-    Without options to combine, print the help and return 2.
+    If there are no options to combine, print the help and return 2.
     """
     words = sys.argv[1:]
     sweep_options = [option for option in words if OWN.match(option)]

@@ -1,8 +1,8 @@
 """Compare kinds of agent: ``mitigate table1 table=objects jobs=2``.
 
-``table=routes`` and ``table=objects`` are the paper's Table I: plain and hardened agents under all
-conditions. ``routes_ablations`` and ``objects_ablations`` remove their sensors one by one. Run the
-same command again to resume.
+``table=routes`` and ``table=objects`` correspond to Table I of the paper: plain and hardened agents
+under all conditions. ``routes_ablations`` and ``objects_ablations`` remove their sensors one by
+one. Run the same command again to resume.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from mitigate.training.tables import run
 
 @hydra.main(version_base="1.3", config_path=str(conf.CONF), config_name="table1")
 def hydra_main(cfg: DictConfig) -> None:
-    """Run as a Hydra program."""
+    """Entry point for Hydra."""
     run(cfg)
 
 

@@ -1,8 +1,8 @@
-"""Compare all methods, the paper's Table II: ``mitigate table2 seeds=[0] jobs=2``.
+"""Compare all methods, as in Table II of the paper: ``mitigate table2 seeds=[0] jobs=2``.
 
-Trains and evaluates every column for every seed, several cells at a time. Run the same command
-again to resume. ``evaluations=beyond`` also measures each cell under other suites; each of them has
-its own report.
+The command trains and evaluates every column for every seed, several cells at a time. Run the same
+command again to resume. ``evaluations=beyond`` also measures each cell under other suites; each
+suite has its own report.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from mitigate.training.tables import run
 
 @hydra.main(version_base="1.3", config_path=str(conf.CONF), config_name="table2")
 def hydra_main(cfg: DictConfig) -> None:
-    """Run as a Hydra program."""
+    """Entry point for Hydra."""
     run(cfg)
 
 

@@ -1,9 +1,10 @@
-"""Make tables of columns and seeds: the paper's Table I (kinds of agent) and Table II (methods).
+"""Compute tables of columns and seeds, as in Table I (agents) and Table II (methods) of the paper.
 
 Every column is trained and evaluated for every seed, several cells at a time. Each cell runs in its
-own processes, on this machine or on the machines of ``launcher``. The same command again resumes
-trainings and evaluations and keeps finished cells. Then the report is written from the rows of all
-cells. ``evaluations=beyond`` also measures each cell under other suites; each has its own report.
+own processes, on this machine or on the machines of ``launcher``. If the command is run again, it
+resumes unfinished training runs and evaluations and keeps finished cells. At the end, the report is
+written from the rows of all cells. ``evaluations=beyond`` also measures each cell under other
+suites; each suite has its own report.
 """
 
 from __future__ import annotations
@@ -37,18 +38,18 @@ REPORT = "overview.md"
 
 
 def run(cfg: DictConfig) -> Path:
-    """Make the table of composed options; see :func:`make_table`."""
+    """Compute the table for composed options; see :func:`make_table`."""
     return make_table(read_options(cfg))
 
 
 def make_table(config: TablesConfig) -> Path:
-    """Make all cells and the report; return the path of the report.
+    """Compute all cells and the report; return the path of the report.
 
-    With ``config.rows`` the report is made from those rows, and no cell runs.
+    With ``config.rows``, the report is computed from those rows, and no cell is run.
 
     Raises:
-        ValueError: Settings are invalid (before a cell runs), or a cell failed (after the others
-            are done); the message has the end of its log.
+        ValueError: Settings are invalid (raised before a cell runs), or a cell failed (raised after
+            the others are finished; the message contains the end of its log).
         FileNotFoundError: Rows are missing.
     """
     out = Path(config.out)
@@ -61,7 +62,7 @@ def make_table(config: TablesConfig) -> Path:
 
 
 def _make_cells(table_cells: Sequence[Cell], config: TablesConfig, out: Path) -> Path:
-    """Make the cells and write the report into ``out``; raise as :func:`make_table` does."""
+    """Compute the cells and write the report into ``out``; errors are as in :func:`make_table`."""
     failed = make(table_cells, config) or [
         f"{cell.column}, seed {cell.seed}: its rows in {cell.evaluation} were removed by another "
         "program after they were measured."
@@ -93,7 +94,7 @@ def make(table_cells: Sequence[Cell], config: TablesConfig) -> list[str]:
 def write_report(config: TablesConfig, out: Path, paths: Sequence[Path | str]) -> Path:
     """Write the report of the rows under ``paths``.
 
-    ``table.md`` has pictures; ``overview.md`` also shows the figures of the paper.
+    ``table.md`` contains pictures; ``overview.md`` also contains the figures of the paper.
     """
     from mitigate.evaluation import report  # imports matplotlib
 
@@ -103,7 +104,8 @@ def write_report(config: TablesConfig, out: Path, paths: Sequence[Path | str]) -
         section
         for section in sections(rows)
         if section.grid.split == config.split
-        and (section.severity == config.severity or not section.blocks)  # clean rows have none
+        # clean rows have no corruption
+        and (section.severity == config.severity or not section.blocks)
     ]
     if not chosen:
         available = sorted({f"{row['split']} at {row['severity']:g}" for row in rows})
@@ -121,9 +123,9 @@ def write_report(config: TablesConfig, out: Path, paths: Sequence[Path | str]) -
 def write_additional_reports(
     table_cells: Sequence[Cell], config: TablesConfig, out: Path
 ) -> list[Path]:
-    """Write ``NAME/table.md`` with pictures for each additional evaluation; return the paths.
+    """Write ``NAME/table.md`` with pictures for each additional evaluation, and return the paths.
 
-    Each has its own table, since its episodes may differ.
+    Each evaluation has its own table, because its episodes may differ.
     """
     from mitigate.evaluation import report  # brings matplotlib
 
@@ -140,10 +142,10 @@ def write_additional_reports(
 
 
 def draw_walks(config: TablesConfig, out: Path) -> list[Path]:
-    """Draw episodes that the first column of ``config.walks`` fails and the last one solves.
+    """Draw episodes that the first column of ``config.walks`` fails and the last column solves.
 
-    The agents of the first seed run again, with the guards of their cells. Nothing is drawn if a
-    column has no cell.
+    These episodes are run again with the agents of the first seed and the guards of their cells.
+    Nothing is drawn if a column has no cell.
     """
     from mitigate.evaluation.trajectories import write_pictures  # brings matplotlib
     from mitigate.guards.opening import open_guards
@@ -180,14 +182,14 @@ def draw_walks(config: TablesConfig, out: Path) -> list[Path]:
 
 
 def _named(folder: Path) -> str:
-    """Return the name in the rows of a cell, which includes guards.
+    """Return the name that a cell has in its rows, which includes guards.
 
-    A cell without rows has the name of its folder.
+    For a cell without rows, this is the name of its folder.
     """
     rows = _rows(folder / "evaluation")
     return str(rows[0]["name"]) if rows else folder.name.rpartition("-seed")[0]
 
 
 def _rows(folder: Path) -> list[Row]:
-    """Return the rows in ``folder``; empty without rows."""
+    """Return the rows in ``folder``, or an empty list."""
     return read(folder / ROWS) if is_regular(folder / ROWS) else []

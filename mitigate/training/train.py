@@ -1,7 +1,8 @@
 """Train an agent with a recipe: ``mitigate train recipe=da_per_episode severity=0.6``.
 
-A recipe has one or more stages, which train one agent in order, each in a subfolder of the run. Run
-the same command again to resume. At the end the agent is evaluated before and after the training.
+A recipe has one or more stages, which train the same agent one after the other. Each stage has a
+subfolder in the run. Run the same command again to resume. At the end, the agent is evaluated as it
+was before and after training.
 """
 
 from __future__ import annotations
@@ -23,8 +24,8 @@ from mitigate.training import config as options
 def run(cfg: DictConfig) -> Path:
     """Train with the options ``cfg``, evaluate, and return the folder of the run.
 
-    The folder holds ``config.yaml``, one subfolder per stage, ``agent/model.safetensors``, and the
-    results of the evaluation. Raises ValueError or FileNotFoundError for a user's mistake.
+    The folder contains ``config.yaml``, one subfolder per stage, ``agent/model.safetensors``, and
+    the results of the evaluation. Mistakes of the user raise ValueError or FileNotFoundError.
     """
     from mitigate.training.plan import (  # imports torch, which is slow and not needed for --help
         check,
@@ -44,7 +45,7 @@ def run(cfg: DictConfig) -> Path:
 
 @hydra.main(version_base="1.3", config_path=str(conf.CONF), config_name="train")
 def hydra_main(cfg: DictConfig) -> None:
-    """Name the folder after the options that differ from the defaults, then run."""
+    """Name the folder after the options that differ from the defaults, and run."""
     if cfg.folder is None:
         cfg.folder = options.default_folder(cfg, HydraConfig.get().job.override_dirname)
     try:
@@ -52,7 +53,7 @@ def hydra_main(cfg: DictConfig) -> None:
     except Exception as error:
         if (
             HydraConfig.get().mode == RunMode.MULTIRUN
-        ):  # Hydra continues and shows only the first error
+        ):  # otherwise Hydra continues and shows only the first error
             print(f"failed: {cfg.folder}: {error}", file=sys.stderr, flush=True)
         raise
 

@@ -1,7 +1,7 @@
-"""The training loop of every objective: step, log, evaluate, save, resume.
+"""Define the training loop for all objectives: step, log, evaluate, save and resume.
 
 Data order and noise are functions of (seed, step): the global generators are reset at each step. So
-logging, evaluation, or a kill and a resume do not change the weights by one bit (on the same
+logging, evaluating, or killing and resuming a run does not change a bit of the weights (on the same
 machine, with the same number of threads, and without a lag: recipes/README.md).
 """
 
@@ -31,12 +31,12 @@ from mitigate.training.objective import Objective, accumulate
 from mitigate.training.ranks import Ranks
 from mitigate.training.workers import Workers
 
-# settings that change the weights: a run is not resumed with other values
+# settings that affect the weights, so a run is not resumed if they differ
 FIXED = ("steps", "lr", "weight_decay", "warmup", "schedule", "grad_clip", "seed", "precision")
 
 
 class LossNotFinite(ValueError):
-    """The loss or its gradient is NaN or infinite; the weights were not changed by that step."""
+    """Raised if the loss or its gradient is not finite; that step did not change the weights."""
 
 
 @dataclass(eq=False, repr=False)
@@ -46,28 +46,30 @@ class Trainer:
     Args:
         objective: objective to train; see :class:`mitigate.training.objective.Objective`.
         steps: number of updates.
-        folder: holds ``step-*.pt`` and TensorBoard files; a checkpoint there is resumed.
-        lr, weight_decay: for parameter groups that set none.
-        warmup: updates over which the learning rate rises from 0.
+        folder: folder for ``step-*.pt`` and TensorBoard files; training resumes from a checkpoint
+            in it.
+        lr, weight_decay: values for parameter groups that set none.
+        warmup: number of updates during which the learning rate rises from 0.
         schedule: learning rate after warm-up, one of ``optimization.SCHEDULES``; it ends at 0
             unless constant.
-        grad_clip: largest global gradient norm; 0 turns clipping off.
-        log_every, save_every, eval_every, figure_every: in updates; 0 means never (a checkpoint is
-            always written at the end).
-        keep: how many checkpoints to keep.
-        lag: number of updates by which the weights that make batches may be old, so that workers
-            can make batches of several steps at once; 0 waits for each batch. The result depends
-            on the lag, not on the number of workers.
+        grad_clip: maximum global gradient norm; 0 disables clipping.
+        log_every, save_every, eval_every, figure_every: intervals in updates; 0 means never (a
+            checkpoint is always written at the end).
+        keep: number of checkpoints to keep.
+        lag: batches may be computed with weights that are up to this many updates old, so that
+            workers can compute several steps at once; with 0, training waits for each batch. The
+            result depends on the lag but not on the number of workers.
         seed: seed of data order and noise.
-        precision: one of ``precision.CHOICES``, for everything that networks compute here; bf16 is
-            autocast, weights stay float32. A checkpoint records the choice of "auto"; a resumed
-            run keeps it.
+        precision: one of ``precision.CHOICES``, used for all network computations; bf16 uses
+            autocast, and weights stay float32. A checkpoint records the choice of "auto"; a resumed
+            run keeps this choice.
         device: "auto" (CUDA if available), or any torch device.
-        workers: processes that make batches (``Objective.jobs``); None makes the same batches in
-            this process.
+        workers: worker processes that compute batches (``Objective.jobs``); None computes the same
+            batches in this process.
         ranks: processes that train together; the first one logs and saves.
-        name: name of the stage in messages; by default the class of the objective.
-        config: JSON-able description of the run. A checkpoint with another one is rejected.
+        name: name of the stage in messages; the default is the class of the objective.
+        config: JSON-compatible description of the run. A checkpoint with a different description is
+            rejected.
 
     Raises:
         ValueError: A setting is out of its range.
@@ -115,11 +117,11 @@ class Trainer:
             self.optimizer, self.steps, self.warmup, self.schedule
         )
         self.trained = [p for group in self.optimizer.param_groups for p in group["params"]]
-        self._saved = 0  # steps in the newest checkpoint
+        self._saved = 0  # number of steps in the newest checkpoint
         self._finished = False  # whether that checkpoint is complete
 
     def fit(self) -> Objective:
-        """Train, from the newest checkpoint in the folder if any, and return the objective.
+        """Train (from the newest checkpoint in the folder, if any) and return the objective.
 
         Raises:
             LossNotFinite: The loss, its gradient or the weights are not finite.
@@ -138,13 +140,13 @@ class Trainer:
             with computing(self.precision, self.device):
                 self.objective.start()
             self.objective.train()
-            with delay_signals(self.ranks.count == 1) as ending:  # torchrun ends its ranks
+            with delay_signals(self.ranks.count == 1) as ending:  # torchrun has ended its ranks
                 self._train(start, journal, ending)
                 self._finish(journal, ending)
         return self.objective
 
     def _train(self, start: int, journal: Journal, ending: SignalDelay) -> None:
-        """Train from step ``start``; the last checkpoint is saved as not finished."""
+        """Train from step ``start``; the last checkpoint is saved as unfinished."""
         batches = Batches(
             self.objective,
             self.workers,
@@ -172,7 +174,7 @@ class Trainer:
 
     @contextmanager
     def _save_on_signal(self, done: int, ending: SignalDelay) -> Iterator[None]:
-        """Save ``done`` steps if a signal interrupts the block, which must not change weights.
+        """If a signal interrupts the block, save the state after ``done`` steps.
 
         A second signal ends the run without saving.
         """
@@ -203,9 +205,10 @@ class Trainer:
         return bool(every) and (done % every == 0 or done == self.steps)
 
     def _batch(self, step: int, batches: Batches) -> tuple[dict[str, Any], float]:
-        """Return the batch of ``step``, and the seconds of waiting for it."""
+        """Return the batch of ``step``, and the seconds that were spent waiting for it."""
         began = time.monotonic()
-        rank = (self.ranks.number,) if self.ranks.number else ()  # dropout differs between ranks
+        # seeded per rank, because dropout must differ between ranks
+        rank = (self.ranks.number,) if self.ranks.number else ()
         seeding.seed_everything(self.seed, "step", step, *rank)
         batch = to_device(batches.batch(step), self.device)
         return batch, time.monotonic() - began
@@ -239,7 +242,8 @@ class Trainer:
         )
 
     def _evaluate_due(self, done: int, journal: Journal, ending: SignalDelay) -> None:
-        """Evaluate and log figures if due after ``done`` steps, unless a signal was received."""
+        """Evaluate and log figures if they are due after ``done`` steps, unless a signal was
+        received."""
         if ending.number is None and self._due(self.eval_every, done):
             self._evaluate(done, journal)
         if ending.number is None and self._due(self.figure_every, done):
@@ -317,6 +321,6 @@ class Trainer:
             ) from error
         self.scheduler.load_state_dict(state["scheduler"])
         seeding.set_global_state(state["rng"])
-        self._saved = int(state["step"])  # older versions have no "finished"
+        self._saved = int(state["step"])  # checkpoints of older versions have no "finished"
         self._finished = self._saved >= self.steps and bool(state.get("finished", True))
         return self._saved

@@ -1,8 +1,8 @@
-"""Worker processes that make the pieces of an objective's batches.
+"""Run worker processes that compute the pieces of an objective's batches.
 
 An objective defines the jobs of a step (``objective.py``). A job is a pure function of its content,
 the seed and the weights, and runs on one thread. Workers of ``core/workers.py`` end with their
-task; these live through all stages of a training and receive new weights.
+task. The workers here run during all stages of training and receive new weights.
 """
 
 from __future__ import annotations
@@ -25,22 +25,24 @@ from mitigate.core.signals import leave_to_parent, start_worker
 from mitigate.core.workers import WorkersDied, context, packed, portable
 from mitigate.training.objective import Objective, do
 
-MOST = 8  # more workers do not help: recipes have 2 to 4 pieces per step, some steps ahead
-PRELOAD = "mitigate.evaluation.evaluator"  # imports the slow modules
+# more workers do not help, because recipes have 2 to 4 pieces per step, some steps in advance
+MOST = 8
+PRELOAD = "mitigate.evaluation.evaluator"  # preloaded module, which imports the slow modules
 STUCK = 60.0  # seconds of silence after which an awaited worker is reported (heuristic)
-TRIM_EVERY = 8  # jobs between two trims of memory; every job would cost 7 % of the time, 8 jobs 1 %
+# jobs between two releases of memory; after every job it costs 7 % of the time, after 8 jobs 1 %
+TRIM_EVERY = 8
 ALONE = "use plain data, or train with workers=0"
-DEATHS = 1  # times that a worker is replaced before the training stops
+DEATHS = 1  # number of times that a worker is replaced before training stops
 
 
 class Workers:
-    """``count`` worker processes of a training; a context manager.
+    """Context manager for ``count`` worker processes of a training run.
 
-    Worker ``i % count`` runs job i of a step. With enough workers for several steps at once, the
-    turn of the step chooses the worker. Either way a worker always gets the same piece of a step,
-    so it opens only the scenes of that piece.
+    Worker ``i % count`` runs job i of a step. If there are enough workers for several steps at
+    once, the worker also depends on the step's turn. In both cases, a worker always receives the
+    same piece of a step, so it opens only the scenes of that piece.
 
-    Workers live through all stages, so a stage reuses the scenes that an earlier one has built.
+    Workers run during all stages, so a stage reuses scenes that were built in an earlier stage.
     """
 
     def __init__(self, count: int) -> None:
@@ -57,7 +59,7 @@ class Workers:
             worker.close()
 
     def take(self, objective: Objective, kind: str) -> None:
-        """Send every worker a copy of ``objective``, to compute in the precision ``kind``.
+        """Send a copy of ``objective`` to every worker, to compute in the precision ``kind``.
 
         Raises ValueError if the objective cannot be pickled.
         """
@@ -68,7 +70,7 @@ class Workers:
     def send_weights(self, objective: Objective) -> None:
         """Send the current trained weights and all buffers to the workers.
 
-        They are sent by value: shared tensors would change while a worker reads them.
+        Weights are sent by value, because shared tensors would change while a worker reads them.
         """
         trained = {
             name: p.detach().cpu() for name, p in objective.named_parameters() if p.requires_grad
@@ -79,15 +81,15 @@ class Workers:
             worker.renew(weights)
 
     def order(self, jobs: list[Any], turn: int = 0) -> None:
-        """Start ``jobs``; :meth:`receive` returns their results.
+        """Start ``jobs``, whose results :meth:`receive` returns.
 
-        Several orders at once use all workers if ``turn`` increases by one per order.
+        If ``turn`` increases by one per call, several simultaneous requests use all workers.
         """
         for worker, job in zip(self._of(len(jobs), turn), jobs, strict=True):
             worker.order(job)
 
     def receive(self, count: int, turn: int = 0) -> list[Any]:
-        """Return the results of the next ``count`` jobs, in the order of one :meth:`order`.
+        """Return the results of the next ``count`` jobs, in the order of one call of :meth:`order`.
 
         Raises WorkersDied, or the error of a job.
         """
@@ -100,18 +102,18 @@ class Workers:
 
 
 class _Worker:
-    """One process and its pending jobs, each with the weights that it needs."""
+    """One worker process and its pending jobs, each with the weights that it needs."""
 
     def __init__(self, number: int) -> None:
         self.number = number
         self.deaths = 0
         self.objective: tuple[bytes, str] | None = None
-        self.weights: bytes | None = None  # None: the weights of the objective
+        self.weights: bytes | None = None  # None means the weights of the objective
         self.pending: deque[tuple[bytes | None, bytes]] = deque()
         self._start()
 
     def take(self, packed: bytes, kind: str) -> None:
-        if self.pending:  # jobs of an abandoned objective
+        if self.pending:  # skips jobs of an abandoned objective
             self._restart()
             self.pending.clear()
         self.objective, self.weights = (packed, kind), None
@@ -137,7 +139,7 @@ class _Worker:
                 for_long = duration(time.monotonic() - waited)
                 say(f"worker {self.number} ({self.process.pid}) has been silent for {for_long}")
             kind, value = self.connection.recv()
-        except (EOFError, OSError):  # includes a death within a message
+        except (EOFError, OSError):  # includes a worker that died in the middle of a message
             self._replace()
             return self.receive()
         self.pending.popleft()
@@ -157,7 +159,7 @@ class _Worker:
         self.connection, other = processes.Pipe()
         self.process = processes.Process(target=_serve, args=(other,), daemon=True)
         start_worker(self.process)
-        other.close()  # so that the death of the worker closes the connection
+        other.close()  # closed here, so that the connection closes when the worker dies
 
     def _replace(self) -> None:
         self.process.join(timeout=1)
@@ -237,9 +239,9 @@ def _work(connection: Connection, messages: SimpleQueue) -> None:
 
 
 def _listen(connection: Connection, messages: SimpleQueue) -> None:
-    """Receive messages of the parent in a thread, and put None at the end.
+    """Receive messages from the parent in a thread, and put None into the queue at the end.
 
-    The parent may send weights while the worker sends a result; without the thread both would wait
+    The parent may send weights while the worker sends a result. Without the thread, both would wait
     for each other.
     """
     try:
@@ -250,7 +252,7 @@ def _listen(connection: Connection, messages: SimpleQueue) -> None:
 
 
 def _answer(objective: Objective, job: bytes, kind: str) -> bytes:
-    """Return the pickled result of a pickled job, or its error."""
+    """Run a pickled job, and return its pickled result or error."""
     device = next((p.device for p in objective.parameters()), torch.device("cpu"))
     try:
         with precision.computing(kind, device):

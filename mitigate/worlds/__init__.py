@@ -1,1 +1,2 @@
-"""Worlds: the contract, episode files, the embedded apartments, and the bridges to others."""
+"""Worlds: the interface, episode files, the generated apartments, and wrappers for other
+environments."""

@@ -4,14 +4,15 @@
 [tokenizer=vocabulary|NAME] [mask_token=[MASK]] [tagger=own]``
 
 Corruptions (docs/instructions.md): friendly, novice, professional, formal, capitalize, mask,
-black_box. ``split`` is for black_box, ``mask_token`` for mask, ``tagger`` for capitalize and mask.
+black_box. The option ``split`` is for black_box, ``mask_token`` for mask, and ``tagger`` for
+capitalize and mask.
 
-The clean text is kept as ``original_text``. ``tokenizer`` makes the tokens of the new text:
+The clean text is kept as ``original_text``. ``tokenizer`` computes the tokens of the new text:
 ``vocabulary`` uses the ``instruction_vocab`` of the file, NAME is a folder or hub name for
 transformers. Without it, the tokens of changed instructions are removed, because they encode the
-clean text. Instructions in other languages than English, and those without a word, are copied and
-counted. The command also writes ``OUT.summary.json``. It never overwrites an OUT that it did not
-write, or that has changed since.
+clean text. Instructions that are not in English, and those without a word, are copied and counted.
+The command also writes ``OUT.summary.json``. It never overwrites an OUT that it did not write, or
+that was changed later.
 """
 
 from __future__ import annotations
@@ -36,16 +37,16 @@ from mitigate.corruptions.language.tokens import VOCABULARY, Tokenizer, tokenize
 from mitigate.corruptions.suite import INSTRUCTION, SUITE_VERSION, check_name, check_severity
 from mitigate.worlds.episodes import Episode, read_episodes, read_extras, write_episodes
 
-ORIGINAL = "original_text"  # key of the clean text
-STALE = ("timed_instruction",)  # RxR: the clean words with their times
-SUMMARY = ".summary.json"  # suffix of the name of the output file
+ORIGINAL = "original_text"  # key of the clean text in the output file
+STALE = ("timed_instruction",)  # key in RxR files for the clean words with their times
+SUMMARY = ".summary.json"  # suffix that is added to the name of the output file
 NAMES = tuple(name for name in INSTRUCTION if name != "white_box")
 USES = {"black_box": ("split",), "mask": ("mask_token", "tagger"), "capitalize": ("tagger",)}
 
 
 @dataclass
 class Counts:
-    """What happened to the episodes of a file."""
+    """Counts of what happened to the episodes of a file."""
 
     episodes: int = 0
     changed: int = 0
@@ -68,7 +69,7 @@ def run(
     tagger: str = "own",
     rewrite: Rewrite | None = None,
 ) -> dict[str, Any]:
-    """Corrupt the file ``source`` into ``out`` and return the summary, which is written next to it.
+    """Corrupt the file ``source`` into ``out``, and return the summary, which is also written.
 
     The summary records the options that the corruption uses (``USES``).
 
@@ -77,11 +78,12 @@ def run(
         out: The file to write.
         corruption: One of ``NAMES``.
         severity: s in [0, 1].
-        seed: Together with the episode id, the key of each random draw, as in an evaluation.
+        seed: Seed, which together with the episode id forms the random key, as in an evaluation.
         split: See ``corrupt_instruction``.
         tokenizer: "vocabulary" for the vocabulary of the file, or a folder or hub name for
-            transformers. None removes the tokens of changed instructions.
-        mask_token: None: the mask token of the tokenizer, or "[MASK]" if it has none.
+            transformers. If it is None, the tokens of changed instructions are removed.
+        mask_token: Text that replaces a word; None means the mask token of the tokenizer, or
+            "[MASK]" if it has none.
         tagger: See ``corrupt_instruction``.
         rewrite: See ``corrupt_instruction``.
 
@@ -146,7 +148,8 @@ def check_for_file(corruption: str) -> None:
 
 
 def _check_target(source: Path, out: Path) -> None:
-    """Raise ValueError unless ``out`` is new, or unchanged since :func:`run` wrote it."""
+    """Raise ValueError unless ``out`` does not exist, or has not changed since :func:`run` wrote
+    it."""
     fix = "Give another name, or move the file away first."
     summary = Path(f"{out}{SUMMARY}")
     if source.resolve() in (out.resolve(), summary.resolve()):
@@ -180,8 +183,8 @@ def _changed(
 ) -> Iterator[Episode]:
     """Yield the episodes with their instructions corrupted, one at a time.
 
-    With ``every``, unchanged instructions also get tokens of ``words``, because its vocabulary is
-    not the one of the file.
+    With ``every``, unchanged instructions also get tokens from ``words``, because its vocabulary
+    differs from that of the file.
     """
     for episode in episodes:
         counts.episodes += 1
@@ -210,7 +213,7 @@ def _changed(
 def _tokens(
     text: str, old: Sequence[int] | None, words: Tokenizer | None, counts: Counter
 ) -> tuple[int, ...] | None:
-    """Return new tokens of ``text``, padded or cut to the old length; None without ``words``."""
+    """Return new tokens of ``text``, padded or cut to the old length, or None without ``words``."""
     if words is None:
         counts["removed"] += old is not None
         return None
@@ -251,7 +254,7 @@ OPTIONS = ("corruption", ALIAS, "severity", "seed", "split", "tokenizer", "mask_
 
 
 def _options(words: Mapping[str, str]) -> dict[str, Any]:
-    """Parse the options; raise ValueError for invalid ones and those without effect."""
+    """Parse the options; raise ValueError for options that are invalid or have no effect."""
     if ALIAS in words and "corruption" in words:
         raise ValueError(f"{ALIAS}= means the same as corruption=. Give one of the two.")
     options: dict[str, Any] = {("corruption" if k == ALIAS else k): v for k, v in words.items()}
@@ -303,7 +306,7 @@ def notices(summary: dict[str, Any]) -> list[str]:
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Run from the command line; return the exit status (2 for a bad input)."""
+    """Run from the command line; return the exit status (2 for invalid input)."""
     arguments = list(sys.argv[1:] if argv is None else argv)
     if asks_help(arguments):
         print(__doc__)

@@ -1,8 +1,9 @@
 """Read and write episode files in the VLN-CE format: R2R-CE, RxR-CE and this project's lists.
 
-A file is ``{"episodes": [...], ...}``, plain or gzipped JSON. Positions are metres in the VLN-CE
-frame ``(x, y up, z)``, rotations are unit quaternions ``(x, y, z, w)``. Reader and writer stream:
-only one episode is in memory at a time. Unknown keys are preserved.
+A file is ``{"episodes": [...], ...}``, as plain or gzipped JSON. Positions are in metres in the
+VLN-CE frame ``(x, y, z)`` with y up, and rotations are unit quaternions ``(x, y, z, w)``. Reading
+and writing are streamed, so that only one episode is in memory at a time. Unknown keys are
+preserved.
 """
 
 from __future__ import annotations
@@ -23,8 +24,8 @@ from mitigate.core.names import short
 Vector = tuple[float, ...]
 # Heuristic limits.
 MAX_METRES = 1e6
-MAX_LENGTH_ERROR = 1e-2  # allowed error of a unit quaternion, for files with few digits
-MAX_TILT = 0.1  # allowed x and z of a quaternion: a tilt of 11 degrees
+MAX_LENGTH_ERROR = 1e-2  # allowed error of a quaternion's norm, for files with few digits
+MAX_TILT = 0.1  # maximum x and z of a quaternion, for a tilt of 11 degrees
 NEEDED = (
     "An episode needs episode_id, trajectory_id, scene_id, start_position [x, y, z], "
     "start_rotation [x, y, z, w], goals [{position, radius}], instruction {instruction_text} and "
@@ -35,7 +36,7 @@ NEEDED = (
 
 
 class Record:
-    """A JSON object of a file; errors name the file and the position in it."""
+    """A JSON object in a file; errors name the file and the position of the object."""
 
     def __init__(self, raw: Any, path: Path | str, where: str) -> None:
         self.raw, self.path, self.where = raw, path, where
@@ -47,7 +48,8 @@ class Record:
         raise ValueError(f"{self.path}: {self.where} {problem}. {NEEDED}")
 
     def get(self, key: str, kinds: type | tuple[type, ...], default: Any = ...) -> Any:
-        """Return the value of ``key``, checked against ``kinds``; ``...`` means required."""
+        """Return the value of ``key``, checked against ``kinds``; a default of ``...`` means
+        required."""
         value = self.raw.get(key)
         if value is None and default is not ...:
             return default
@@ -58,18 +60,18 @@ class Record:
         return value
 
     def metres(self, key: str) -> float | None:
-        """Return the number ``key`` >= 0, or None if it is absent."""
+        """Return the value of ``key``, a number >= 0, or None if it is absent."""
         value = self.get(key, (int, float), None)
         if value is not None and not (_finite(value) and value >= 0):
             self.fail(f"has an invalid {key!r}: it must be metres >= 0, got {short(value)}")
         return value
 
     def vector(self, key: str, size: int) -> Vector:
-        """Return ``key`` as ``size`` finite numbers."""
+        """Return the value of ``key``, a list of ``size`` finite numbers."""
         return self._vector(key, self.get(key, list), size)
 
     def rotation(self, key: str) -> Vector:
-        """Return ``key`` as a unit quaternion (x, y, z, w) about the vertical y."""
+        """Return the value of ``key``, a unit quaternion (x, y, z, w) about the vertical y axis."""
         quaternion = self.vector(key, 4)
         x, _, z, _ = quaternion
         length_error = abs(math.hypot(*quaternion) - 1)
@@ -81,16 +83,16 @@ class Record:
         return quaternion
 
     def vectors(self, key: str, size: int) -> tuple[Vector, ...]:
-        """Return ``key`` as a non-empty list of vectors."""
+        """Return the value of ``key``, a non-empty list of vectors."""
         return tuple(self._vector(key, value, size) for value in self._items(key))
 
     def records(self, key: str) -> list[Record]:
-        """Return the objects of the non-empty list ``key``."""
+        """Return the objects in the non-empty list under ``key``."""
         items = enumerate(self._items(key))
         return [Record(item, self.path, f"{self.where}, {key}[{i}],") for i, item in items]
 
     def rest(self, *known: str) -> dict[str, Any]:
-        """Return the keys that are not ``known``."""
+        """Return the entries whose keys are not in ``known``."""
         return {key: value for key, value in self.raw.items() if key not in known}
 
     def _items(self, key: str) -> list[Any]:
@@ -108,13 +110,13 @@ class Record:
 
 
 def _finite(value: Any) -> bool:
-    """Return whether a value is a number within ``MAX_METRES``; NaN is not."""
+    """Return whether a value is a number within ``MAX_METRES`` (NaN is not)."""
     return isinstance(value, (int, float)) and abs(value) <= MAX_METRES
 
 
 IDS = ("episode_id", "trajectory_id")
-MAX_ID = 200  # characters, a heuristic limit
-MAX_TEXT = 100_000  # characters, a heuristic limit
+MAX_ID = 200  # maximum characters of a text (heuristic)
+MAX_TEXT = 100_000  # maximum characters of a text (heuristic)
 KEYS = (
     "scene_id",
     "start_position",
@@ -125,7 +127,7 @@ KEYS = (
     "reference_path",
 )
 
-# Defaults of an episode with a seed, whose world reads nothing else.
+# Defaults for an episode with a seed, whose world reads no other values.
 _SEEDED = {"scene_id": "", "start_position": [0, 0, 0], "start_rotation": [0, 0, 0, 1]}
 
 
@@ -176,14 +178,14 @@ class Episode:
     """An episode.
 
     Attributes:
-        episode_id: Id; always a string here, written with the JSON type that it was read with.
-        trajectory_id: Id of the path, likewise.
+        episode_id: Id as a string; it is written with the JSON type with which it was read.
+        trajectory_id: Id of the path, in the same form.
         scene_id: Name of the scene.
         start_position: VLN-CE position [3] in metres.
         start_rotation: Quaternion [x, y, z, w].
-        goals: Goals; empty only where a test split hides them.
+        goals: Goals; the list is empty only if a test split hides them.
         instruction: The instruction.
-        reference_path: VLN-CE positions [N][3]; empty only where a test split hides them.
+        reference_path: VLN-CE positions [N][3]; the list is empty only if a test split hides them.
         geodesic_distance: Metres from start to goal, ``info["geodesic_distance"]``, or None.
         info: The key ``info`` of the file.
         extra: Other keys of the file.
@@ -204,7 +206,7 @@ class Episode:
 
 @dataclass(frozen=True, eq=False)
 class GroundTruth:
-    """The annotated path of an episode: ``locations`` float64 [N, 3] and its actions."""
+    """The ground-truth path of an episode, with ``locations`` float64 [N, 3] and its actions."""
 
     locations: np.ndarray
     actions: tuple[int, ...] = ()
@@ -213,12 +215,13 @@ class GroundTruth:
 def read_episodes(path: Path | str, *, hidden_goals: bool = False) -> Iterator[Episode]:
     """Yield the episodes of a file in order.
 
-    An episode with a seed (``info["seed"]``, see ``worlds/seeded.py``) needs only an id and an
+    An episode with a seed (``info["seed"]``, see ``worlds/seeded.py``) only needs an id and an
     instruction.
 
     Args:
         path: The file.
-        hidden_goals: Accept episodes without goals and reference path, as in test splits.
+        hidden_goals: Whether to accept episodes without goals and reference path, as in test
+            splits.
 
     Yields:
         The episodes.
@@ -248,11 +251,12 @@ def read_episodes(path: Path | str, *, hidden_goals: bool = False) -> Iterator[E
 
 
 def share_of(items: Any, piece: int, pieces: int) -> Any:
-    """Return every n-th item of a list or range, so that workers split for example the scenes.
+    """Return every n-th item of a list or range, so that for example scenes are divided among
+    workers.
 
     Args:
-        items: A list or range.
-        piece: Index of the worker's piece of a batch.
+        items: The list or range.
+        piece: Index of the worker's piece.
         pieces: Number of pieces.
     """
     return items[piece % len(items) :: pieces]
@@ -264,16 +268,16 @@ def is_seed(value: Any) -> bool:
 
 
 class ListedEpisodes:
-    """Training episodes (``worlds/world.py``) drawn from a file.
+    """Source of training episodes (``worlds/world.py``) from a file.
 
-    Workers that draw different pieces of a batch draw from different episodes, every n-th of the
-    file.
+    Each worker samples from every n-th episode of the file, so that different pieces of a batch use
+    different episodes.
 
     Args:
         path: An episode file.
 
     Raises:
-        ValueError: The file has no episode, or as in :func:`read_episodes`.
+        ValueError: The file contains no episode, or an error of :func:`read_episodes`.
     """
 
     def __init__(self, path: Path | str) -> None:
@@ -283,17 +287,17 @@ class ListedEpisodes:
             raise ValueError(f"{path} must contain at least one episode to train on.")
 
     def draw(self, rng: np.random.Generator, share: tuple[int, int] = (0, 1)) -> Episode:
-        """Draw an episode, a function of the state of ``rng`` and of ``share``.
+        """Sample an episode, which depends only on the state of ``rng`` and on ``share``.
 
         Args:
             rng: Random generator.
-            share: (piece, number of pieces) of this worker.
+            share: The pair (piece, number of pieces) of this worker.
         """
         episodes = share_of(self._episodes, *share)
         return episodes[int(rng.integers(len(episodes)))]
 
     def identity(self) -> dict[str, str]:
-        """Return the hash of the file; a training does not resume with another file."""
+        """Return the hash of the file; training does not resume with a different file."""
         return {"training_sha256": sha256(self.path)}
 
 
@@ -303,7 +307,8 @@ def read_extras(path: Path | str) -> dict[str, Any]:
 
 
 def _members(path: Path | str) -> Iterator[tuple[str, Any]]:
-    """Yield the members of an episode file; explain a list, as of the discrete R2R task."""
+    """Yield the members of an episode file; raise a clear error for a file of the discrete R2R
+    task."""
     try:
         yield from json_members(path, "episodes")
     except JsonListError as error:
@@ -319,7 +324,7 @@ def write_episodes(
     """Write a VLN-CE file, completely or not at all.
 
     Args:
-        path: The file; gzipped if the name ends in ``.gz``.
+        path: Path of the file, which is gzipped if the name ends in ``.gz``.
         episodes: The episodes.
         extras: Other top-level keys, see :func:`read_extras`.
 
@@ -343,7 +348,7 @@ def write_episodes(
 
 
 def read_ground_truth(path: Path | str) -> dict[str, GroundTruth]:
-    """Return ``episode_id -> GroundTruth`` of a VLN-CE ``*_gt.json`` or ``*_gt.json.gz``."""
+    """Read a VLN-CE ``*_gt.json`` or ``*_gt.json.gz`` as a dict from episode id to GroundTruth."""
     truths = {}
     for key, value in json_members(path, "episodes"):
         if key == "episodes":
@@ -445,7 +450,7 @@ def _instruction_json(instruction: Instruction) -> dict[str, Any]:
 
 
 def _identifier(episode: Episode, key: str) -> int | str:
-    """Return an id with the JSON type of the file, unless the id was replaced since."""
+    """Return an id with the JSON type in the file, unless the id was replaced after reading."""
     text = str(vars(episode)[key])
     original = episode.extra.get(key)
     return original if isinstance(original, int) and str(original) == text else text
@@ -455,7 +460,7 @@ def _dump(value: Any, path: Path, name: str) -> str:
     """Return a value as JSON; raise ValueError if JSON cannot represent it."""
     try:
         text = json.dumps(value, ensure_ascii=False, allow_nan=False)
-        text.encode("utf-8")  # fails for half a surrogate pair
+        text.encode("utf-8")  # encoding fails for half a surrogate pair
         return text
     except (ValueError, TypeError) as error:
         raise ValueError(

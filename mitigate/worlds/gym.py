@@ -13,14 +13,14 @@ from mitigate.worlds.seeded import WHOLE, SeededWorld, Success
 
 
 class GymWorld(SeededWorld):
-    """A gymnasium environment as a world.
+    """World that wraps a gymnasium environment.
 
     Args:
         env: An environment. Its observation is an RGB frame (uint8 [H, W, 3]
-            or [V, H, W, 3]) or a ``Dict`` that contains one.
+            or [V, H, W, 3]) or a ``Dict`` that contains such a frame.
         entries: Names of the entries of a ``Dict``, by default "rgb", "depth" and "pose". Nested
             entries are written as "camera.rgb".
-        success: An entry of ``info``, or a function.
+        success: Name of an entry in ``info``, or a function.
         unit: See :class:`~mitigate.worlds.seeded.SeededWorld`.
         limit: See ``SeededWorld``.
         rule: See ``SeededWorld``.
@@ -28,7 +28,7 @@ class GymWorld(SeededWorld):
         extra: See ``SeededWorld``.
 
     Raises:
-        ValueError: The actions are of a kind that ``core/spaces.py`` lacks, or as in
+        ValueError: The action space is not supported by ``core/spaces.py``, or an error of
             ``SeededWorld``.
     """
 
@@ -50,7 +50,7 @@ class GymWorld(SeededWorld):
             default = {RGB: WHOLE}
         arrays = {}
         for name, space in spaces.items():
-            if space.shape is not None:  # text and Tuple have none
+            if space.shape is not None:  # Text and Tuple spaces have no shape
                 high = float(np.max(_attribute(space, "high", np.inf)))
                 arrays[name] = (space.shape, str(space.dtype), high)
         super().__init__(
@@ -81,7 +81,8 @@ class GymWorld(SeededWorld):
 
 
 def _by_name(observation: Any) -> dict[str, Any]:
-    """Return the parts of an observation or space by dotted name; ``WHOLE`` if it has none."""
+    """Return the parts of an observation or space by dotted name, or ``WHOLE`` if it has no
+    parts."""
     parts = _attribute(observation, "spaces", observation)
     if not isinstance(parts, Mapping):
         return {WHOLE: observation}
@@ -93,5 +94,6 @@ def _by_name(observation: Any) -> dict[str, Any]:
 
 
 def _attribute(space: Any, name: str, default: Any = None) -> Any:
-    """Return an attribute of a space, which may be of gymnasium, of gym or of another class."""
-    return getattr(space, name, default)  # these libraries share attributes, not classes
+    """Return an attribute of a space, which may be a class of gymnasium, gym or another library."""
+    # these libraries have common attributes but no common classes
+    return getattr(space, name, default)

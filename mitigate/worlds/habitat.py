@@ -1,9 +1,9 @@
-"""Corrupt Habitat observations; a function on dictionaries that does not import Habitat.
+"""Corrupt Habitat observations, which are dictionaries, without importing Habitat.
 
 An observation of ETPNav and similar agents has one entry per camera: ``rgb``, ``rgb_30``, ...,
 ``rgb_330`` and ``depth``, ``depth_30``, ..., ``depth_330``. The number is the camera's yaw in
-degrees. ETPNav gives camera ``rgb_A`` the orientation [0, +A, 0], and Habitat's y axis points up,
-so a larger number is further to the LEFT (its policy reverses the order to be clockwise). View k of
+degrees. ETPNav gives camera ``rgb_A`` the orientation [0, +A, 0], and Habitat's y axis points up.
+So a larger number is further to the LEFT; ETPNav's policy reverses this order. View k of
 ``mitigate.core.observation`` is to the right: ``rgb_30`` is view 11.
 """
 
@@ -43,20 +43,20 @@ def corrupt_habitat(
 ) -> dict:
     """Corrupt all cameras of the corruption's modality as one panorama.
 
-    Depth is Habitat's, normalised by ``normalize_depth: True``. Missing data read 0
-    (``sensor.missing`` = 0.0 metres), as Habitat writes where a ray hits nothing. For an agent that
-    reads 0 as "near", use ``DepthSensor(missing=z_max)``.
+    Depth is normalised by Habitat (``normalize_depth: True``. Missing depth has the value 0
+    (``sensor.missing`` = 0.0 metres), the value that Habitat writes if a ray hits nothing. For an
+    agent that reads 0 as "near", use ``DepthSensor(missing=z_max)``.
 
     Args:
-        obs: One instant of one environment: ``rgb*`` uint8 [H, W, 3], ``depth*`` float32 [H, W, 1]
-            or [H, W]. All cameras of a modality have the same size.
+        obs: Observation of one environment at one time step: ``rgb*`` uint8 [H, W, 3], ``depth*``
+            float32 [H, W, 1] or [H, W]. All cameras of a modality have the same size.
         corruption: The corruption.
         key: Key of the draw: Key(seed, episode id, step).
         sensor: 0-10 m for R2R-CE (the default), ``DepthSensor(0.5, 5.0)`` for RxR-CE.
-        heading: Heading of the agent in radians, counter-clockwise, as Habitat's ``compass`` and
-            ``heading`` sensors give it. It keeps a flare at its place in the world.
+        heading: Heading of the agent in radians, counter-clockwise, as from Habitat's ``compass``
+            and ``heading`` sensors. It keeps a flare at its position in the world.
         turn: Direction from ``rgb`` to ``rgb_30``: "left" (ETPNav) or "right".
-        normalised: False for depth in metres.
+        normalised: Whether depth is normalised; False for depth in metres.
 
     Returns:
         A new dictionary with the same entries, order, dtypes, shapes and ranges. Entries that are
@@ -100,7 +100,7 @@ def is_camera(entry: str) -> bool:
 
 
 def check_cameras(entries: Iterable[str], names: Iterable[str]) -> None:
-    """Raise ValueError if a corruption needs a modality that no camera has.
+    """Raise ValueError if a corruption changes a modality that no camera has.
 
     Args:
         entries: Names of the entries of an observation.
@@ -137,7 +137,7 @@ def _views(obs: dict, modality: str, turn: str) -> dict[str, int]:
 
 
 def _panorama(obs: dict, views: dict[str, int]) -> np.ndarray:
-    """Return the frames by view, [1 + last view, ...]; views without a camera are zero."""
+    """Return the frames by view, [1 + last view, ...], in which views without a camera are zero."""
     frames = {entry: np.asarray(obs[entry]) for entry in views}
     first = next(iter(frames.values()))
     for entry, frame in frames.items():

@@ -1,11 +1,11 @@
-"""An observation transformer for habitat-baselines that corrupts frames, and its key sensor.
+"""Observation transformer for habitat-baselines that corrupts frames, and a sensor for its keys.
 
 Importing this module registers both if habitat-lab and habitat-baselines are installed. Without
-them the transformer is a torch module with the same three methods.
+them, the transformer is a torch module with the same three methods.
 
-habitat-baselines calls a transformer with a batch of frames only: no episode, step or mask. The lab
-sensor ``CorruptionKeySensor`` therefore adds the entry ``corruption_key`` to every observation. The
-transformer removes it, so the policy does not receive it.
+habitat-baselines calls a transformer only with a batch of frames, without episode, step or mask.
+The lab sensor ``CorruptionKeySensor`` therefore adds the entry ``corruption_key`` to every
+observation. The transformer removes it, so the policy does not receive it.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ except ImportError:
     ObsTransformConfig = object
 
 KEY = "corruption_key"
-_HEADINGS = ("compass", "heading")  # sensors in radians, counter-clockwise
+_HEADINGS = ("compass", "heading")  # names of heading sensors (radians, counter-clockwise)
 
 
 class CorruptObservation(ObservationTransformer):
@@ -42,17 +42,17 @@ class CorruptObservation(ObservationTransformer):
 
     A batch has ``corruption_key`` int64 [B, 2] (from ``CorruptionKeySensor``), ``rgb*`` uint8
     [B, H, W, 3] and ``depth*`` float32 [B, H, W, 1] in [0, 1]; tensors stay on their device. The
-    ``compass`` or ``heading`` sensor, if present, keeps a flare at its place in the world.
+    ``compass`` or ``heading`` sensor, if present, keeps a flare at its position in the world.
 
     Args:
-        schedule: The schedule that draws a corruption per frame.
+        schedule: The schedule that selects a corruption per frame.
         seed: Corruption seed.
-        sensor: Depth range and value for no reading.
+        sensor: Depth range, and value that marks missing depth.
         turn: Direction from ``rgb`` to ``rgb_30``: "left" (ETPNav) or "right".
 
     Raises:
         ValueError: The space or a batch has no camera for a corruption of the schedule. In
-            ``forward``: ``corruption_key`` is missing, or as in ``corrupt_habitat``.
+            ``forward``: ``corruption_key`` is missing, or an error of ``corrupt_habitat``.
     """
 
     def __init__(
@@ -74,7 +74,7 @@ class CorruptObservation(ObservationTransformer):
 
     @classmethod
     def from_config(cls, config: Any) -> CorruptObservation:
-        """Build from a ``CorruptObservationConfig``, or a mapping with any of its entries.
+        """Build from a ``CorruptObservationConfig``, or from a mapping with some of its entries.
 
         Raises:
             ValueError: The mapping has an unknown entry.
@@ -148,29 +148,30 @@ class CorruptObservationConfig(ObsTransformConfig):
 
     type: str = "CorruptObservation"
     mode: str = "per_episode"  # see mitigate.corruptions.Schedule
-    names: tuple[str, ...] = ()  # corruptions to draw from; empty: the standard suite
+    # corruptions to choose from; an empty list means the standard suite
+    names: tuple[str, ...] = ()
     severity: float = 0.6
     severity_depth: float | None = None  # None: severity
     clean_share: float = 0.0
     seed: int = 0
     depth_min: float = 0.0  # metres; RxR-CE 0.5
     depth_max: float = 10.0  # metres; RxR-CE 5.0
-    depth_missing: float = 0.0  # metres, value for no reading
+    depth_missing: float = 0.0  # value in metres that marks missing depth
     turn: str = "left"  # direction from rgb to rgb_30
 
 
 def key_of(scene_id: str, episode_id: str | int, step: int) -> np.ndarray:
-    """Return the key of an observation, int64 [2]: a number of the episode, and the step.
+    """Return the key of an observation, int64 [2]: a number for the episode, and the step.
 
-    The number is 63 bits of a digest of the episode id and the file name of the scene. It is the
-    same in every run and every process.
+    The number consists of 63 bits of a digest of the episode id and the file name of the scene.
+    This number is the same in every run and every process.
     """
     name = f"{str(scene_id).rpartition('/')[2]}/{episode_id}"
     return np.array([digest(Key(0, name), "habitat") >> 1, step], np.int64)
 
 
 class EpisodeSteps:
-    """Count the steps of a Habitat environment from the arguments of its sensors."""
+    """Counts the steps of a Habitat environment from the arguments of its sensors."""
 
     def __init__(self) -> None:
         self._step = 0
@@ -203,7 +204,7 @@ def _register() -> None:
     from hydra.core.config_store import ConfigStore
 
     class CorruptionKeySensor(Sensor):
-        """The entry ``corruption_key``, int64 [2]: number of the episode, and step."""
+        """Sensor for the entry ``corruption_key``, int64 [2]: episode number and step."""
 
         def __init__(self, *args: Any, **kwargs: Any) -> None:
             self._steps = EpisodeSteps()

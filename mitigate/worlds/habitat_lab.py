@@ -1,4 +1,4 @@
-"""Camera configs of a panorama for habitat-lab 0.3, whose camera configs have no names.
+"""Build camera configs of a panorama for habitat-lab 0.3, whose camera configs have no names.
 
     from habitat.config import read_write
     from mitigate.worlds.habitat_lab import panorama
@@ -6,8 +6,8 @@
     with read_write(config):
         config.habitat.simulator.agents.main_agent.sim_sensors = panorama(rgb=224, depth=256)
 
-gives the observations of ETPNav: ``rgb``, ``rgb_30``, ... ``rgb_330`` and ``depth``, ``depth_30``,
-... Needs habitat-lab.
+This gives the observations of ETPNav: ``rgb``, ``rgb_30``, ... ``rgb_330`` and ``depth``,
+``depth_30``, ... Needs habitat-lab.
 """
 
 from __future__ import annotations
@@ -26,20 +26,20 @@ from mitigate.core.observation import HFOV_DEGREES, VIEW_STEP_DEGREES, VIEWS, Z_
 
 @dataclass
 class NamedRGBSensorConfig(HabitatSimRGBSensorConfig):
-    """An RGB camera whose entry in observations is named ``uuid``."""
+    """Config of an RGB camera whose entry in observations is named ``uuid``."""
 
     uuid: str = "rgb"
 
 
 @dataclass
 class NamedDepthSensorConfig(HabitatSimDepthSensorConfig):
-    """A depth camera whose entry in observations is named ``uuid``."""
+    """Config of a depth camera whose entry in observations is named ``uuid``."""
 
     uuid: str = "depth"
 
 
 def panorama(rgb: int = 224, depth: int = 256, height: float = 1.25) -> dict[str, Any]:
-    """Return 12 RGB and 12 depth cameras by name, each 30 degrees to the left of the one before.
+    """Return 12 RGB and 12 depth cameras by name, each 30 degrees further to the left.
 
     Args:
         rgb: Height and width of the RGB cameras in pixels.

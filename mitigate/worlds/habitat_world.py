@@ -1,9 +1,9 @@
-"""Habitat as a world (``worlds/world.py``): any scene of habitat-sim with episodes of VLN-CE.
+"""Use habitat-sim as a world (``worlds/world.py``), with any scene and VLN-CE episodes.
 
 habitat-sim 0.3 is not on the package index; ``docs/habitat.md`` explains how to get it and scenes.
 habitat-lab is not needed. Cameras, actions and measures are as in VLN-CE. For the same path, the
-measures equal the values of habitat-lab, except nDTW: it uses the reference path of an episode, but
-VLN-CE uses the denser locations of ``*_gt.json``.
+measures equal the values of habitat-lab, except nDTW, which uses the reference path of an episode
+here, but the denser locations of ``*_gt.json`` in VLN-CE.
 """
 
 from __future__ import annotations
@@ -40,29 +40,29 @@ from mitigate.worlds import measures
 from mitigate.worlds.episodes import Episode, from_vlnce
 from mitigate.worlds.world import Expert, World, greedy_action
 
-CAMERA_HEIGHT = 1.25  # metres, as in VLN-CE
+CAMERA_HEIGHT = 1.25  # in metres, as in VLN-CE
 RADIUS = 0.18  # metres, of the agent
 HEIGHT = 1.5  # metres, of the agent
 MOVES = {FORWARD: "move_forward", LEFT: "turn_left", RIGHT: "turn_right"}
-MAX_SNAP = 0.5  # metres between a start or goal and the navmesh, a heuristic limit
+MAX_SNAP = 0.5  # maximum metres between a start or goal and the navmesh (heuristic)
 NAVMESH = {"agent_radius": RADIUS, "agent_height": HEIGHT}
 
 
 class HabitatWorld(World):
-    """One agent in scenes of habitat-sim.
+    """World with one agent in scenes of habitat-sim.
 
     Args:
-        scenes: Folder that scene ids are relative to.
+        scenes: Folder to which scene ids are relative.
         size: Height and width of a view in pixels.
         views: 12 (panorama), or 1 (a camera that faces forward).
         rule: Success rule of ``measures.RULES``, or "apartments" (STOP within 2 m).
         navmesh: Settings of ``habitat_sim.NavMeshSettings`` for scenes without a navmesh: a file or
-            a mapping; None: those in ``scenes/../navmesh.json``, if it exists.
-        gpu: Index of the GPU to render on, -1 for the CPU.
+            a mapping; None means the settings in ``scenes/../navmesh.json``, if it exists.
+        gpu: Index of the GPU for rendering, or -1 for the CPU.
 
     Raises:
-        ValueError: ``views`` or ``rule`` is invalid. When the first episode starts: habitat-sim is
-            not installed.
+        ValueError: ``views`` or ``rule`` is invalid. habitat-sim is not installed (raised when the
+            first episode starts).
     """
 
     def __init__(
@@ -102,7 +102,7 @@ class HabitatWorld(World):
         self._scene = ""
 
     def __getstate__(self) -> dict[str, Any]:
-        # a simulator cannot be pickled; the copy opens a new one
+        # a simulator cannot be pickled, so the copy opens a new one
         return self._arguments
 
     def __setstate__(self, state: dict[str, Any]) -> None:
@@ -176,10 +176,10 @@ class HabitatWorld(World):
         return self._observation()
 
     def measures(self) -> dict[str, float]:
-        """Return the measures of the episode so far; lengths and distances are metres.
+        """Return the measures of the episode so far, with lengths and distances in metres.
 
-        success and spl are habitat-lab's Success and SPL. ndtw compares with the reference path, by
-        the rule's distance.
+        success and spl equal habitat-lab's Success and SPL. ndtw compares the path with the
+        reference path, using the distance of the success rule.
         """
         path = np.array(self.path)
         distance = self.distance_to_goal()
@@ -204,7 +204,8 @@ class HabitatWorld(World):
         return values
 
     def distance_to_goal(self, position: np.ndarray | None = None) -> float:
-        """Return the geodesic metres from a position [3], or the agent, to the nearest goal."""
+        """Return the geodesic distance in metres from a position [3] (or the agent) to the nearest
+        goal."""
         import habitat_sim
 
         path = habitat_sim.MultiGoalShortestPath()
@@ -222,7 +223,7 @@ class HabitatWorld(World):
         return Observation({POSE: pose}, self._frames, (RGB, DEPTH))
 
     def _frames(self) -> dict[str, np.ndarray]:
-        """Render RGB and depth, see ``sensors``; depth is clipped to ``Z_MAX``."""
+        """Render RGB and depth (see ``sensors``), with depth clipped to ``Z_MAX``."""
         images = self._sim.get_sensor_observations()
         rgb = np.stack([images[f"{RGB}{k}"][..., :3] for k in range(self.views)])
         depth = np.stack([images[f"{DEPTH}{k}"] for k in range(self.views)])[..., None]
@@ -243,7 +244,7 @@ class HabitatWorld(World):
                 "episodes (mitigate export-scene writes the scenes of the apartments)."
             )
         settings = self._settings(file)
-        self._scene = ""  # stays empty if loading fails
+        self._scene = ""  # the attribute stays empty if loading fails
         if self._sim is None:
             self._sim = _habitat_sim().Simulator(settings)
         else:
@@ -275,7 +276,8 @@ class HabitatWorld(World):
         return habitat_sim.Configuration(backend, [agent])
 
     def _camera(self, kind: str, view: int) -> Any:
-        """Return the camera of a view, 30 degrees to the right per view; Habitat's yaw is left."""
+        """Return the camera of a view, 30 degrees to the right per view (Habitat's yaw goes to the
+        left)."""
         habitat_sim = _habitat_sim()
         types = habitat_sim.SensorType
         spec = habitat_sim.CameraSensorSpec()
@@ -345,7 +347,8 @@ class NavmeshExpert(Expert):
         self.world = world
 
     def distance(self, xy: np.ndarray) -> float:
-        """Return the geodesic metres from a plan position [2] on the agent's floor to the goal."""
+        """Return the geodesic distance in metres from a plan position [2] on the agent's floor to
+        the goal."""
         height = float(self.world._position()[1])
         return self.world.distance_to_goal(np.array([xy[0], height, -xy[1]], np.float32))
 
@@ -354,7 +357,7 @@ class NavmeshExpert(Expert):
         return self.world._rule.met(metres, True)
 
     def action(self) -> int:
-        """Return the low-level action that leads nearest to the goal."""
+        """Return the low-level action that leads closest to the goal."""
         world = self.world
         if world.distance_to_goal() < world._rule.stop_within:
             return STOP
@@ -369,7 +372,7 @@ class NavmeshExpert(Expert):
 
 
 def _habitat_sim() -> Any:
-    """Import habitat-sim, without its log, which warns about missing labels of every scene."""
+    """Import habitat-sim without its log, which warns about missing labels in every scene."""
     for variable in ("HABITAT_SIM_LOG", "MAGNUM_LOG"):
         os.environ.setdefault(variable, "quiet")
     try:
@@ -383,7 +386,7 @@ def _habitat_sim() -> Any:
 
 
 def _navmesh_settings(navmesh: str | dict[str, Any] | None, scenes: Path) -> dict[str, Any]:
-    """Return navmesh settings by name; a file is as ``mitigate export-scene`` writes it."""
+    """Return navmesh settings by name; a file must have the format of ``mitigate export-scene``."""
     if navmesh is None:
         navmesh = str(scenes.parent / "navmesh.json")
         if not Path(navmesh).is_file():

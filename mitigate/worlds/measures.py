@@ -1,7 +1,7 @@
-"""Measures of an episode by the formulas of VLN-CE, and success rules.
+"""Compute the measures of an episode with the formulas of VLN-CE, and apply success rules.
 
-Paths are ``[N, 2]`` or ``[N, 3]`` arrays of positions in metres; two paths of one call use the same
-frame. Distances to the goal are geodesic, as the simulator measures them.
+Paths are ``[N, 2]`` or ``[N, 3]`` arrays of positions in metres; both paths in a call must use the
+same coordinate frame. Distances to the goal are geodesic and measured by the simulator.
 """
 
 from __future__ import annotations
@@ -12,14 +12,14 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-SUCCESS_DISTANCE = 3.0  # metres; VLN-CE's TASK.SUCCESS_DISTANCE for R2R-CE and RxR-CE
+SUCCESS_DISTANCE = 3.0  # in metres; VLN-CE's TASK.SUCCESS_DISTANCE for R2R-CE and RxR-CE
 
 
 def success(distance_to_goal: float, stopped: bool, *, threshold: float = SUCCESS_DISTANCE) -> bool:
     """Return whether the agent stopped strictly within ``threshold`` metres of the goal.
 
-    This is the rule of VLN-CE. (ETPNav uses ``<=`` without STOP; habitat-lab's VLN task has 0.2 m.)
-    An infinite distance, an unreachable goal, is a failure.
+    This is the rule of VLN-CE. (ETPNav uses ``<=`` without STOP; habitat-lab's VLN task uses 0.2
+    m.) An infinite distance, which means an unreachable goal, is a failure.
 
     Raises:
         ValueError: The distance is NaN.
@@ -33,15 +33,15 @@ def success(distance_to_goal: float, stopped: bool, *, threshold: float = SUCCES
 
 @dataclass(frozen=True)
 class Rule:
-    """A success rule: the episode ends nearer than ``metres`` to the goal.
+    """A success rule, by which an episode must end within ``metres`` of the goal.
 
     Attributes:
         name: Name of the benchmark that uses the rule.
         metres: Maximum distance.
         stop: Whether the agent must take STOP.
-        inclusive: Whether exactly ``metres`` is a success.
-        view_points: Whether the distance is to the nearest point that the goal is visible from,
-            instead of to the goal.
+        inclusive: Whether a distance of exactly ``metres`` is a success.
+        view_points: Whether the distance is measured to the nearest point from which the goal is
+            visible, instead of to the goal.
     """
 
     name: str
@@ -52,14 +52,16 @@ class Rule:
 
     @property
     def stop_within(self) -> float:
-        """Distance in metres at which an oracle stops: 1 (heuristic), or the rule's if smaller."""
+        """Distance in metres at which an oracle stops: 1 (heuristic), or the rule's distance if
+        smaller."""
         return min(1.0, self.metres)
 
     @property
     def path_metres(self) -> float:
-        """Threshold of nDTW in metres: the rule's, or VLN-CE's if the rule has view points.
+        """Threshold of nDTW in metres: the rule's distance, or VLN-CE's if the rule uses view
+        points.
 
-        View points do not lie on the reference path.
+        The reason is that view points do not lie on the reference path.
         """
         return SUCCESS_DISTANCE if self.view_points else self.metres
 
@@ -74,13 +76,13 @@ class Rule:
         return success(distance, stopped or not self.stop, threshold=self.metres)
 
     def __str__(self) -> str:
-        """Return the rule as rows and tables show it."""
+        """Return the text of the rule in rows and tables."""
         distance = f"geodesic {'<=' if self.inclusive else '<'} {float(self.metres)} m"
         distance += " to a view point" if self.view_points else ""
         return f"{self.name}: {f'STOP and {distance}' if self.stop else f'{distance}, STOP or not'}"
 
 
-RULES = {  # by the name in options; the source of each is in docs/agents.md
+RULES = {  # rules by their name in options; docs/agents.md lists their sources
     "vln_ce": Rule("vln", SUCCESS_DISTANCE),
     "etpnav": Rule("etpnav", 3.0, stop=False, inclusive=True),
     "habitat_vln": Rule("habitat-lab vln", 0.2),
@@ -102,7 +104,7 @@ def spl(succeeded: bool, geodesic_distance: float, length: float) -> float:
 
     Args:
         succeeded: S.
-        geodesic_distance: L*, metres from start to goal.
+        geodesic_distance: L*, distance in metres from start to goal.
         length: L, length of the agent's path in metres.
 
     Raises:
@@ -118,8 +120,9 @@ def spl(succeeded: bool, geodesic_distance: float, length: float) -> float:
 def dtw(path: ArrayLike, reference: ArrayLike) -> float:
     """Return the dynamic time warping cost of the two paths, in metres.
 
-    The value is exact: dynamic programming over all alignments, vectorised along anti-diagonals.
-    VLN-CE uses ``fastdtw``, an approximation that is never smaller.
+    The value is exact; it is computed by dynamic programming over all alignments, vectorised along
+    anti-diagonals. VLN-CE uses ``fastdtw``, an approximation that is never smaller than the exact
+    value.
     """
     a = _points(path, "path")
     b = _points(reference, "reference path")
@@ -129,7 +132,8 @@ def dtw(path: ArrayLike, reference: ArrayLike) -> float:
         )
     rows, columns = len(a), len(b)
     cost = np.sqrt(((a[:, None] - b[None]) ** 2).sum(axis=2))[:, ::-1]
-    before, last = np.full((2, rows + 1), np.inf)  # at [i + 1]: cell (i, d - i) of d - 2, d - 1
+    # entry [i + 1] holds cell (i, d - i), for the anti-diagonals d - 2 and d - 1
+    before, last = np.full((2, rows + 1), np.inf)
     before[0] = 0.0
     for d in range(rows + columns - 1):
         first, end = max(0, d - columns + 1), min(rows, d + 1)
@@ -143,7 +147,7 @@ def dtw(path: ArrayLike, reference: ArrayLike) -> float:
 def ndtw(path: ArrayLike, reference: ArrayLike, *, threshold: float = SUCCESS_DISTANCE) -> float:
     """Return nDTW, ``exp(-DTW / (n threshold))`` with n reference points (Ilharco et al., 2019).
 
-    As in VLN-CE, steps that did not move (turns, collisions) count once.
+    As in VLN-CE, consecutive equal positions (turns, collisions) count once.
     """
     points = _points(path, "path")
     moved = np.append(True, np.any(np.diff(points, axis=0) != 0, axis=1))

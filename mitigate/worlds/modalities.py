@@ -15,7 +15,7 @@ def check_available(names: Iterable[str], available: Container[str], lack: str, 
     Args:
         names: Names of the corruptions.
         available: Modalities of the observation.
-        lack: Description of the missing part, for the message; ``{0}`` becomes the modality.
+        lack: Text on the missing part for the message; ``{0}`` becomes the modality.
         fix: Alternative to leaving corruptions out; ``{0}`` becomes the modality.
 
     Raises:

@@ -1,4 +1,5 @@
-"""Base class of worlds made from other libraries' environments, where an episode is a seed."""
+"""Define the base class of worlds that wrap other libraries' environments, with a seed per
+episode."""
 
 from __future__ import annotations
 
@@ -21,11 +22,11 @@ from mitigate.worlds.world import World, check_metres
 def seeded_episodes(seeds: Iterable[int], instruction: str = "Reach the goal.") -> list[Episode]:
     """Return one episode per seed, all with the same instruction.
 
-    For worlds that read nothing else of an episode, such as ``GymWorld``. Pass the list to
+    This is for worlds that read only the seed of an episode, such as ``GymWorld``. Pass the list to
     ``mitigate.benchmark(listed=...)``.
 
     Raises:
-        ValueError: A seed is not a whole number from 0 to 2147483647.
+        ValueError: A seed is not an integer from 0 to 2147483647.
     """
     seeds = [int(seed) if isinstance(seed, np.integer) else seed for seed in seeds]
     for seed in seeds:
@@ -50,16 +51,16 @@ def seeded_episodes(seeds: Iterable[int], instruction: str = "Reach the goal.") 
 
 
 FIRST_TRAINING_SEED = 1_000_000  # seeds of training episodes; those of comparisons are smaller
-RETURN = "return"  # a measure, and the rule of worlds without a success
+RETURN = "return"  # name of a measure, and of the rule in worlds without a success criterion
 SCORES = ("success", RETURN)
 
 
 @dataclass(frozen=True)
 class Ending:
-    """The end of an episode, the argument of a ``success`` function.
+    """The end of an episode, which is passed to a ``success`` function.
 
     Attributes:
-        info: What the environment reported with the last step.
+        info: Entries that the environment reported with the last step.
         reward: Reward of the last step.
         total: Sum of the rewards of the episode.
         steps: Number of steps.
@@ -71,15 +72,17 @@ class Ending:
     steps: int
 
 
-WHOLE = ""  # the name of an observation that is a single frame
+WHOLE = ""  # entry name of an observation that is a single frame
 
 
 @dataclass(frozen=True)
 class NativeFormat:
-    """Convert frames back to an environment's own observation, on which its policy was trained.
+    """Converts frames back to the environment's observation format, for which its policy was
+    trained.
 
     Attributes:
-        entries: Entry of the observation by sensor; nested entries are written as "camera.rgb".
+        entries: Name of the observation's entry by sensor; nested entries are written as
+            "camera.rgb".
         dtypes: dtype of the entry by sensor.
         unit: Metres per unit of depth.
     """
@@ -92,7 +95,7 @@ class NativeFormat:
         """Return the observation: an array, or nested dictionaries of arrays.
 
         Args:
-            frames: Arrays by sensor, also with a first axis for a batch.
+            frames: Arrays by sensor, which may have a first axis for a batch.
         """
         observation: dict[str, Any] = {}
         for name, entry in self.entries.items():
@@ -117,32 +120,36 @@ class NativeFormat:
         return depth.astype(dtype)
 
 
-Success = str | Callable[[Ending], bool]  # an entry that the environment reports, or a function
+# name of an entry that the environment reports, or a function
+Success = str | Callable[[Ending], bool]
 
 
 class SeededWorld(World):
     """Base class of worlds in which an episode is a seed.
 
     A subclass defines ``_reset_env``, ``_step_env`` and ``_report``. Depth that is negative or not
-    finite becomes 0, no reading.
+    finite becomes 0, which means missing.
 
     Args:
         env: The environment.
-        action_space: Actions of the environment.
+        action_space: Action space of the environment.
         arrays: Shape, dtype and maximum of each entry of the environment's observations.
-        entries: Entry of each sensor: "rgb", "depth", "pose", and any other name that the agent
-            reads, such as "goal".
-        success: The entry that reports success at the end of an episode, or a function of the
-            :class:`Ending`; None: the entry "success".
-        unit: Metres per unit of depth; None: 1. Required for integer depth and for depth with a
-            maximum of 1 or less.
-        limit: Maximum number of steps; None: the environment ends its episodes. With a limit, the
-            measures contain ``limit``, and ``cut``: whether it ended the episode.
-        rule: The success rule in words, for rows and tables; None: the name of the entry. Required
-            for a function.
-        score: "success", or "return" for a task without a success: rows then hold the sum of the
-            rewards, and tables show its retention (``evaluation/comparison.py``).
-        extra: More entries that the environment reports at the end of an episode, as measures.
+        entries: Entry of each sensor: maps "rgb", "depth", "pose" and any other name that the agent
+            reads, such as "goal", to an entry of the observation.
+        success: Name of the entry that reports success at the end of an episode, or a function of
+            the :class:`Ending`; None means the entry "success".
+        unit: Metres per unit of depth; None means 1. The unit is required for integer depth and for
+            depth with a maximum of 1 or less.
+        limit: Maximum number of steps; None means that the environment ends its episodes. With a
+            limit, the measures contain ``limit``, and ``cut``, which states whether the limit ended
+            the episode.
+        rule: The success rule in words, for rows and tables; None means the name of the entry.
+            A rule is required if ``success`` is a function.
+        score: "success", or "return" for a task without a success criterion. In the latter case,
+            rows hold the sum of the rewards, and tables show its retention
+            (``evaluation/comparison.py``).
+        extra: Additional entries that the environment reports at the end of an episode, to be
+            stored as measures.
 
     Attributes:
         native: Converts frames to the environment's own observation (:class:`NativeFormat`).
@@ -150,9 +157,10 @@ class SeededWorld(World):
         terminated: Whether the task ended the episode. It is False if a limit ended it.
 
     Raises:
-        ValueError: An argument is invalid, an entry is missing, or frames have another shape or
-            dtype than the suite supports. During an episode: success is not reported, depth cannot
-            be in metres, a frame differs from its space, or the environment raised any error.
+        ValueError: An argument is invalid, an entry is missing, or frames have a shape or dtype
+            that the suite does not support. Also raised during an episode: success is not reported,
+            depth cannot be in metres, a frame differs from its space, or the environment raised any
+            error.
     """
 
     done = True
@@ -254,10 +262,10 @@ class SeededWorld(World):
         raise NotImplementedError(f"{type(self).__name__} defines no _step_env()")
 
     def measures(self) -> dict[str, float]:
-        """Return success, spl, return and steps; with a limit also ``cut`` and ``limit``.
+        """Return success, spl, return and steps, and with a limit also ``cut`` and ``limit``.
 
-        ``spl`` equals ``success``, because the shortest path is unknown. With score "return" there
-        is neither.
+        ``spl`` equals ``success``, because the shortest path is unknown. With the score "return",
+        both are missing.
         """
         measures: dict[str, float] = {RETURN: self._total, "steps": self._steps}
         if self.rule != RETURN:
@@ -270,7 +278,7 @@ class SeededWorld(World):
         return measures | {"cut": int(self._cut), "limit": self.limit}
 
     def _end_step(self, reward: float, over: bool) -> None:
-        """Count a step and check what the environment reported."""
+        """Count a step, and check the values that the environment reported."""
         if math.isnan(reward) and (callable(self.success) or self.rule == RETURN):
             raise ValueError(
                 f"The reward of step {self._steps + 1} of episode {self._name} must be a number, "
@@ -302,7 +310,7 @@ class SeededWorld(World):
         return float(value[0])
 
     def _report(self) -> Mapping[str, Any]:
-        """Return what the environment reported with the last step."""
+        """Return the entries that the environment reported with the last step."""
         raise NotImplementedError(f"{type(self).__name__} defines no _report()")
 
     def _succeeded(self) -> bool:
@@ -318,7 +326,8 @@ class SeededWorld(World):
 
     @contextmanager
     def _calling(self, what: str) -> Iterator[None]:
-        """Convert any error of the user's code inside to a ValueError that names the episode."""
+        """Convert any error of the user's code in the block to a ValueError that names the
+        episode."""
         try:
             yield
         except MemoryError:  # explained by core/errors.py
@@ -332,7 +341,8 @@ class SeededWorld(World):
             ) from error
 
     def _observation(self, values: Mapping[str, Any]) -> Observation:
-        """Return an observation with copies, because an environment may reuse its buffers."""
+        """Return an observation with copied arrays, because an environment may reuse its
+        buffers."""
         absent = [entry for entry in self.entries.values() if entry not in values]
         if absent:
             raise ValueError(
@@ -356,7 +366,7 @@ class SeededWorld(World):
         return Observation(pose, lambda: frames, tuple(frames))
 
     def _metres(self, depth: np.ndarray) -> np.ndarray:
-        """Convert depth to float32 metres; the first frame of an episode is checked."""
+        """Convert depth to float32 metres; the unit is checked on the first frame of an episode."""
         metres = depth.astype(np.float32) * np.float32(self.unit)
         metres = np.where(np.isfinite(metres) & (metres > 0), metres, np.float32(0))
         if self._steps == 0:
@@ -366,7 +376,7 @@ class SeededWorld(World):
 
 
 def _as_bool(value: Any, source: str, episode: str) -> bool:
-    """Return whether a value, or any element of it, is true; None is false.
+    """Return whether a value, or any of its elements, is true; None counts as false.
 
     Raises:
         ValueError: An element is neither a truth value nor 0 or 1.
@@ -374,7 +384,8 @@ def _as_bool(value: Any, source: str, episode: str) -> bool:
     try:
         parts = np.asarray(value).ravel().tolist()
         valid = all(part is None or part in (0, 1) for part in parts)
-    except (ValueError, TypeError):  # a ragged list, or an object that is not a number
+    # the value may be a ragged list, or an object that is not a number
+    except (ValueError, TypeError):
         parts = []
         valid = False
     if not valid:
@@ -420,7 +431,7 @@ def _check_format(name: str, entry: str, shape: tuple[int, ...], dtype: str) -> 
 
 
 def _check_unit(entry: str, dtype: str, high: float, unit: float | None) -> None:
-    """Raise ValueError if the unit of depth is invalid, or missing where it is required."""
+    """Raise ValueError if the unit of depth is invalid, or if it is required but missing."""
     if unit is not None and not (type(unit) in (int, float) and 0 < unit < math.inf):
         raise ValueError(f"unit must be a number of metres above 0, got {unit!r}.")
     if unit is None and not dtype.startswith("float"):

@@ -1,6 +1,6 @@
 """Use a world as a torchrl environment, and a torchrl environment as a world.
 
-Only this file, ``transforms.py`` and ``apartments/env.py`` import torchrl, which takes 4 s.
+Only this file, ``transforms.py`` and ``apartments/env.py`` import torchrl, because this takes 4 s.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ from mitigate.worlds.world import TrainingEpisodes, World
 
 
 class WorldEnv(EnvBase):
-    """A world as a torchrl environment (``batch_size`` []).
+    """Torchrl environment that wraps a world (``batch_size`` []).
 
     Observations have an entry per sensor of the world, ``instruction`` (str), ``episode`` (str,
     unique to each run of an episode) and ``frame`` (int64 [1], the number of steps). Actions are
@@ -45,21 +45,22 @@ class WorldEnv(EnvBase):
     ends the episode.
 
     Args:
-        world: The world, used by this environment only.
-        episodes: A VLN-CE file or a list, run in order and repeatedly; or training episodes
-            (``worlds/world.py``), drawn from ``seed``.
+        world: The world, which only this environment may use.
+        episodes: A VLN-CE file or a list, whose episodes are run in order and repeatedly; or a
+            source of training episodes (``worlds/world.py``), which are sampled with ``seed``.
         actions: Number of actions.
-        seed: Seed of drawn episodes; ``set_seed`` replaces it and restarts with the first episode.
+        seed: Seed for sampling episodes; ``set_seed`` replaces it and restarts with the first
+            episode.
         worker: Index of this environment; it runs the episodes ``worker``, ``worker + workers``,
             ...
-        workers: Number of environments that share the episodes and the seed. Together they run the
-            same episodes as a single one.
+        workers: Number of environments among which the episodes of this seed are divided. Together
+            these environments run the same episodes as a single environment.
 
     Raises:
         ValueError: The list is empty, or ``worker`` is not in 0 ... workers - 1.
     """
 
-    key = "world env"  # name of the random stream that draws episodes
+    key = "world env"  # name of the random stream for sampling episodes
 
     def __init__(
         self,
@@ -122,7 +123,8 @@ class WorldEnv(EnvBase):
         self._number = self.worker
 
     def _choose_episode(self, number: int) -> tuple[Episode, str]:
-        """Return episode ``number`` and its unique name, a function of (list or seed, number)."""
+        """Return episode ``number`` and its unique name, which depend only on list or seed, and
+        number."""
         if isinstance(self.episodes, TrainingEpisodes):
             rng = generator(self.seed, self.key, number)
             episode = self.episodes.draw(rng, (0, 1))
@@ -149,20 +151,20 @@ class WorldEnv(EnvBase):
 
 
 class EnvWorld(SeededWorld):
-    """A torchrl environment with frames as a world.
+    """World that wraps a torchrl environment with frames.
 
     Args:
-        env: An environment that is not batched.
+        env: The environment, which must not be batched.
         entries: Names of the entries, by default "rgb", "depth" and "pose". Nested entries are
             written as "camera.rgb".
-        success: An entry of the tensordict, or a function.
+        success: Name of an entry of the tensordict, or a function.
         unit: See :class:`~mitigate.worlds.seeded.SeededWorld`.
         limit: See ``SeededWorld``.
         rule: See ``SeededWorld``.
 
     Raises:
-        ValueError: The environment is batched, its actions are of another kind
-            (``core/spaces.py``), or as in ``SeededWorld``.
+        ValueError: The environment is batched, its actions are not supported (``core/spaces.py``),
+            or an error of ``SeededWorld``.
     """
 
     def __init__(
@@ -200,8 +202,8 @@ class EnvWorld(SeededWorld):
 
     def _reset_env(self, seed: int) -> dict[str, Any]:
         self.env.set_seed(seed)
-        # torchrl resets a gymnasium environment twice; without the seed the second reset would
-        # start another episode than GymWorld does
+        # torchrl resets a gymnasium environment twice; without the seed, the second reset would
+        # start a different episode than GymWorld does
         is_gym = isinstance(getattr(self.env, "base_env", self.env), GymLikeEnv)
         self._now = self.env.reset(seed=seed) if is_gym else self.env.reset()
         return self._parts()
@@ -231,7 +233,7 @@ def _space_of(spec: Any, batch: int) -> ActionSpace:
     """Return the action space of a torchrl spec.
 
     Raises:
-        ValueError: It is neither Categorical, OneHot, MultiCategorical nor a bounded or unbounded
+        ValueError: The spec is not Categorical, OneHot, MultiCategorical, or a bounded or unbounded
             array.
     """
     kind = type(spec).__name__
@@ -278,9 +280,9 @@ def _spec_of(sensor: Sensor) -> Any:
 
 
 def _describe(spec: Any) -> tuple[tuple[int, ...], str, float]:
-    """Return shape, dtype and maximum of an entry; infinity if it is unbounded.
+    """Return the shape, dtype and maximum of an entry; the maximum is infinity if unbounded.
 
-    torchrl marks an unbounded entry by the largest number of its dtype.
+    In torchrl, the maximum of an unbounded entry is the largest number of its dtype.
     """
     dtype = str(spec.dtype).removeprefix("torch.")
     high = float(spec.space.high.max()) if isinstance(spec.space, ContinuousBox) else math.inf

@@ -39,14 +39,15 @@ class CorruptObservation(Transform):
 
     Frames are RGB uint8 [*batch, H, W, 3] or [*batch, V, H, W, 3] and depth float32
     [*batch, (V,) H, W, 1]. Put this transform before those that move channels or convert to float.
-    Any batch shape and device; the work is done on the CPU.
+    Any batch shape and device are supported; the corruption is computed on the CPU.
 
     Args:
-        schedule: The schedule that draws a corruption per frame, or one corruption for all frames.
+        schedule: The schedule that selects a corruption per frame, or one corruption for all
+            frames.
         seed: Corruption seed.
-        rgb: Name of the RGB entry; may be absent from the data.
-        depth: Name of the depth entry; may be absent from the data.
-        sensor: Depth range and value for no reading.
+        rgb: Name of the RGB entry, which the data need not contain.
+        depth: Name of the depth entry, which the data need not contain.
+        sensor: Depth range, and value that marks missing depth.
         normalised: Whether depth is in [0, 1] over the sensor's range instead of in metres.
         hfov: Horizontal field of view of the cameras in degrees, which camera faults need.
 
@@ -75,7 +76,7 @@ class CorruptObservation(Transform):
         self._streams: dict[int, FrameStream] = {}  # by row
 
     def transform_observation_spec(self, observation_spec: Composite) -> Composite:
-        """Return the spec; raise ValueError for normalised depth that is corrupted as metres."""
+        """Return the spec; raise ValueError if normalised depth would be corrupted as metres."""
         entry = self.entries[DEPTH]
         corrupts = any(modality(name) == DEPTH for name in names_of(self.schedule))
         if corrupts and not self._normalised and entry in observation_spec.keys(True, True):
@@ -101,8 +102,8 @@ class CorruptObservation(Transform):
     def forward(self, tensordict: TensorDictBase) -> TensorDictBase:
         """Return stored data of any batch shape with corrupted frames.
 
-        The result is a new tensordict, because a buffer may return its storage; the other entries
-        are shared.
+        The result is a new tensordict, because a buffer may return its storage. Other entries are
+        shared with the input.
 
         Raises:
             ValueError: The corruption is a temporal fault.
@@ -152,7 +153,7 @@ class CorruptObservation(Transform):
         return data
 
     def _draw(self, data: TensorDictBase) -> list[tuple[Corruption, Key]]:
-        """Return the corruption and the key of every instant, in row-major order."""
+        """Return the corruption and the key of every time step, in row-major order."""
         present = set(data.keys())  # a tensordict does not support `in`
         missing = [name for name in (EPISODE, FRAME) if name not in present]
         if missing:
@@ -171,15 +172,15 @@ class CorruptObservation(Transform):
 
 
 class EpisodeCounter(Transform):
-    """Add ``episode`` and ``frame``, int64 [*batch, 1], to an environment that has neither.
+    """Adds ``episode`` and ``frame``, int64 [*batch, 1], to an environment that has neither.
 
-    ``episode`` is the number of the run of an episode, ``frame`` the number of steps since the
-    reset. Row i of n parallel rows runs the episodes i, i + n, i + 2 n, ...; a reset advances only
-    the rows of its mask. The numbers of a row therefore do not depend on the other rows.
+    ``episode`` counts the runs of episodes, and ``frame`` counts the steps since the reset. Row i
+    of n parallel rows runs the episodes i, i + n, i + 2 n, ...; a reset advances only the rows of
+    its mask. Therefore the numbers of a row do not depend on the other rows.
 
     Args:
-        worker: Index of this environment among those in separate processes; the rows of all
-            workers count as one batch.
+        worker: Index of this environment among environments in separate processes; the rows of all
+            workers form one batch.
         workers: Number of environments in separate processes.
 
     Raises:
@@ -193,7 +194,7 @@ class EpisodeCounter(Transform):
             )
         super().__init__(in_keys=[], out_keys=[EPISODE, FRAME])
         self.worker, self.workers = worker, workers
-        self._resets: torch.Tensor | None = None  # int64 [rows]: number of resets of each row
+        self._resets: torch.Tensor | None = None  # number of resets of each row, int64 [rows]
 
     def transform_observation_spec(self, observation_spec: Composite) -> Composite:
         """Return the spec with the two entries added."""
@@ -222,7 +223,7 @@ class EpisodeCounter(Transform):
         return next_tensordict.set(FRAME, tensordict.get(FRAME) + 1)
 
     def forward(self, tensordict: TensorDictBase) -> TensorDictBase:
-        """Raise RuntimeError, because stored data must have the numbers of the environment."""
+        """Raise RuntimeError, because stored data must contain the numbers from the environment."""
         raise RuntimeError("EpisodeCounter belongs in an environment, not in a replay buffer.")
 
 

@@ -1,4 +1,4 @@
-"""The contract of worlds, and the world that corrupts another one.
+"""Define the interface of worlds, and a world that corrupts the frames of another world.
 
 A world produces observations and measures episodes; it does not depend on any agent.
 ``docs/bring-your-own.md``
@@ -33,7 +33,7 @@ from mitigate.corruptions.schedule import drawn
 from mitigate.corruptions.stream import is_timed, mount_of, shows_past
 from mitigate.worlds.episodes import Episode
 
-MAX_MEDIAN_DEPTH = 100.0  # metres, heuristic: the median of an indoor depth frame is smaller
+MAX_MEDIAN_DEPTH = 100.0  # in metres (heuristic); the median of an indoor depth frame is smaller
 
 
 class Expert:
@@ -44,7 +44,7 @@ class Expert:
     """
 
     def distance(self, xy: np.ndarray) -> float:
-        """Return the metres along the shortest path from ``xy`` [2] to the nearest goal.
+        """Return the length in metres of the shortest path from ``xy`` [2] to the nearest goal.
 
         NaN if unknown.
         """
@@ -57,29 +57,32 @@ class Expert:
     def counts(self, metres: float) -> bool:
         """Return whether STOP at this distance is a success.
 
-        By default it is, and the agent's teacher decides where to stop.
+        By default the result is true, and the agent's teacher decides where to stop.
         """
         return True
 
 
 class World:
-    """Base class of worlds: one agent, one episode at a time.
+    """Base class of worlds, which have one agent and run one episode at a time.
 
-    A subclass defines ``reset``, ``step``, ``measures``, ``sensors`` and ``done``; the rest has
-    defaults. Objects of any other class work too: :func:`as_world` adds the missing defaults.
+    A subclass defines ``reset``, ``step``, ``measures``, ``sensors`` and ``done``; all other
+    members have defaults. Objects of any other class also work: :func:`as_world` adds the missing
+    defaults.
 
-    A class that defines ``beside()``, which returns another world of the same kind, can run several
-    episodes at the same time.
+    If a class defines ``beside()``, which returns a second world of the same kind, several episodes
+    can run at the same time.
 
     Attributes:
-        sensors: Description of each entry of an observation. Frames to corrupt are named "rgb" and
-            "depth", the pose is named "pose".
+        sensors: Description of each entry of an observation. Frames to be corrupted must be named
+            "rgb" and "depth", and the pose "pose".
         rule: The success rule of ``measures`` in words, such as "STOP and geodesic < 3 m"; part of
             every row.
-        done: Whether the episode is over; no step may follow.
-        action_space: Actions of the world (``core/spaces.py``); None: whole numbers; 0 is STOP.
-        native: Converts frames by sensor to the environment's own observation; None if it has none.
-        draw: Function that draws a floor plan on Matplotlib axes; None if there is no plan.
+        done: Whether the episode is over, after which no step is allowed.
+        action_space: Actions of the world (``core/spaces.py``); None means integers, where 0 is
+            STOP.
+        native: Function that converts frames by sensor to the environment's own observation, or
+            None.
+        draw: Function that draws a floor plan on Matplotlib axes, or None if there is no plan.
     """
 
     rule: str
@@ -92,7 +95,7 @@ class World:
     def reset(self, episode: Episode) -> Observation:
         """Start an episode and return its first observation; frames are rendered when read.
 
-        The world may reuse the arrays; copy them to keep them.
+        The world may reuse the arrays, so copy them if you keep them.
 
         Raises:
             ValueError: The episode does not belong to this world.
@@ -110,12 +113,12 @@ class World:
     def expert(self) -> Any:
         """Return the oracle (:class:`Expert`) of the current episode, or None.
 
-        In a world without one, agents can be evaluated but not trained by imitation.
+        In a world without an expert, agents can be evaluated but not trained by imitation.
         """
         return None
 
     def truth(self) -> Mapping[str, np.ndarray]:
-        """Return ground-truth labels of the current view, arrays by name."""
+        """Return the ground-truth labels of the current view, as arrays by name."""
         return {}
 
     def displaced(self, mount: Mount) -> dict[str, np.ndarray] | None:
@@ -128,9 +131,9 @@ class World:
         return None
 
     def remembering(self) -> AbstractContextManager:
-        """Return a context that caches frames between the conditions of an episode.
+        """Return a context manager that caches frames between the conditions of an episode.
 
-        Results do not depend on it.
+        The cache does not affect results.
         """
         return nullcontext()
 
@@ -162,7 +165,7 @@ class Placeable(Protocol):
         Args:
             xy: Plan position [2], metres.
             heading: Radians, counter-clockwise.
-            views: Views that are needed; the others may be 0. None: all.
+            views: Views that are needed; other views may be 0. None: all.
             rgb: Whether RGB is needed.
 
         Returns:
@@ -175,12 +178,11 @@ class TrainingEpisodes(Protocol):
     """Source of training episodes."""
 
     def draw(self, rng: np.random.Generator, share: tuple[int, int]) -> Episode:
-        """Draw an episode, a function of the state of ``rng`` and of ``share``.
+        """Sample an episode, which depends only on the state of ``rng`` and on ``share``.
 
         Args:
             rng: Random generator.
-            share: (piece, number of pieces): workers that draw different pieces of a batch may
-                split the scenes.
+            share: The pair (piece, number of pieces), by which scenes may be divided among workers.
         """
 
 
@@ -196,15 +198,15 @@ def as_world(world: Any) -> World:
 
 
 class WorldWrapper(World):
-    """Base class of worlds that change the observations of another world in ``_observe``."""
+    """Base class of worlds that change the observations of an inner world in ``_observe``."""
 
     def __init__(self, world: Any) -> None:
         self.world = world
         self._inner = as_world(world)
 
     def __getattr__(self, name: str) -> Any:
-        """Return rule, sensors, done and other attributes of the world, such as point()."""
-        # copy and pickle ask for these before __init__ has set them
+        """Return an attribute of the inner world, such as rule, sensors, done or point()."""
+        # copy and pickle read these attributes before __init__ has set them
         if name.startswith("__") or name in ("world", "_inner"):
             raise AttributeError(name)
         return getattr(self.world, name)
@@ -247,7 +249,7 @@ class WorldWrapper(World):
         return self._inner.draw
 
     def _observe(self, observation: Observation) -> Observation:
-        """Return what the agent receives for an observation of the world."""
+        """Return the observation that the agent receives for an observation of the inner world."""
         raise NotImplementedError
 
 
@@ -259,25 +261,26 @@ class _WorldView(World):
         take_over(self, world, ("reset", "step", "measures", *OPTIONAL))
 
     def __getattr__(self, name: str) -> Any:
-        """Return rule, sensors and done, which change during an episode."""
+        """Read rule, sensors and done from the object, because they change during an episode."""
         if name.startswith("_"):
             raise AttributeError(name)
         return getattr(self._world, name)
 
 
 class Corrupted(WorldWrapper):
-    """A world whose frames are corrupted, by one corruption or by a schedule.
+    """World whose frames are corrupted, by one corruption or by a schedule.
 
-    Every draw is keyed by (seed, name, index of the read frame); an observation whose frames are
-    never read does not count. With a temporal fault it is the index of the step, and the frames are
-    rendered at every step if a later step may show them. ``observation.clean`` is the clean
-    observation. Instructions are corrupted in ``evaluation/episode.py``, not here.
+    Random numbers are keyed by seed, name, and index of the frame among those that were read. An
+    observation whose frames are never read is not counted. With a temporal fault it is the index
+    of the step, and the frames are rendered at every step if a later step may show them.
+    ``observation.clean`` is the clean observation. Instructions are corrupted in
+    ``evaluation/episode.py`` instead.
 
     Args:
         world: The world.
-        by: The corruption, or the schedule that draws one per frame.
+        by: The corruption, or the schedule that selects one per frame.
         seed: Corruption seed.
-        name: Name of the episode in the keys; None: its id.
+        name: Name of the episode in the keys; None means its id.
     """
 
     def __init__(
@@ -335,7 +338,7 @@ class Corrupted(WorldWrapper):
         return Observation(clean.ready, corrupted, clean.frames, clean=clean)
 
     def _displaced(self, clean: Observation, key: Key) -> dict[str, Any] | None:
-        """Return the observation rendered with the camera fault, None without one.
+        """Return the observation rendered with the camera fault, or None if there is no fault.
 
         None also if the world cannot render it.
         """
@@ -345,7 +348,7 @@ class Corrupted(WorldWrapper):
 
 
 def depth_sensor(sensors: Mapping[str, Sensor]) -> DepthSensor:
-    """Return the depth range and the value for no reading of a world's depth sensor.
+    """Return the depth range of a world's depth sensor, and its value for missing depth.
 
     An unlimited range is replaced by the range of R2R-CE.
     """
@@ -379,7 +382,7 @@ def greedy_action(heading: float, distance_after: Callable[[float], float]) -> i
 
     Args:
         heading: Heading of the agent in radians.
-        distance_after: Returns the distance to the goal after a step along a heading.
+        distance_after: Function that returns the distance to the goal after a step along a heading.
     """
     turns = sorted(range(-12, 13), key=abs)
     headings = [heading + math.radians(TURN_DEGREES) * turn for turn in turns]
@@ -395,15 +398,15 @@ class _ExpertView(Expert):
 
 
 def check_metres(depth: np.ndarray, name: str, fix: str) -> None:
-    """Check that depth may be in metres.
+    """Check that depth values are plausible metres.
 
     Args:
-        depth: float32 of any shape, 0 for no reading.
+        depth: float32 of any shape, in which 0 means missing.
         name: Name of the depth in the message.
-        fix: The end of the message: what the user can do.
+        fix: The end of the message, with advice for the user.
 
     Raises:
-        ValueError: The median reading is above ``MAX_MEDIAN_DEPTH``.
+        ValueError: The median depth is above ``MAX_MEDIAN_DEPTH``.
     """
     readings = depth[depth > 0]
     if len(readings) and float(np.median(readings)) > MAX_MEDIAN_DEPTH:

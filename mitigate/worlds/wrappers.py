@@ -1,4 +1,4 @@
-"""A gymnasium wrapper that corrupts RGB, depth and dictionary observations.
+"""Provide a gymnasium wrapper that corrupts RGB, depth and dictionary observations.
 
 Needs the extra ``gymnasium``.
 """
@@ -34,12 +34,14 @@ FORMATS = "uint8 [(V,) H, W, 3] for RGB, or float32 [H, W] or [(V,) H, W, 1] for
 
 
 class CorruptObservation(gymnasium.ObservationWrapper, gymnasium.utils.RecordConstructorArgs):
-    """Corrupt the frames of an environment by a schedule, keyed by (seed, episode, frame).
+    """Wrapper that corrupts the frames of an environment by a schedule, keyed by seed, episode and
+    frame.
 
     The observation is an RGB frame (``Box`` uint8 [H, W, 3] or [V, H, W, 3]), a depth frame
     (``Box`` float32 [H, W], [H, W, 1] or [V, H, W, 1]), or a ``Dict`` that contains one or both.
-    Spaces, dtypes, order and all other entries do not change. Wrap before frames are stacked,
-    transposed or converted to float, and wrap each environment of a vector environment separately.
+    Spaces, dtypes, order and all other entries do not change. Apply this wrapper before frames are
+    stacked, transposed or converted to float. In a vector environment, wrap each environment
+    separately.
 
     Episodes are named by the seed of ``reset(seed=n)`` and the number of resets since then: "n-0",
     "n-1", ...; before the first seed "unseeded-0" and so on. ``frame`` is the number of steps since
@@ -49,13 +51,14 @@ class CorruptObservation(gymnasium.ObservationWrapper, gymnasium.utils.RecordCon
 
     Args:
         env: The environment.
-        schedule: The schedule that draws a corruption per frame, or one corruption for all frames.
+        schedule: The schedule that selects a corruption per frame, or one corruption for all
+            frames.
         seed: Corruption seed.
         rgb: Name of the RGB entry of a ``Dict``.
         depth: Name of the depth entry of a ``Dict``.
-        pose: Name of a float entry of shape [3]: x, y, heading in radians, counter-clockwise. It
-            keeps a flare at its place in the world. None if there is no pose.
-        sensor: Depth range and value for no reading.
+        pose: Name of a float entry of shape [3] with x, y and heading (radians, counter-clockwise).
+            The pose keeps a flare at its position in the world. None if there is no pose.
+        sensor: Depth range, and value that marks missing depth.
         normalised: Whether depth is in [0, 1] over the sensor's range instead of in metres.
         hfov: Horizontal field of view of the cameras in degrees, which camera faults need.
 
@@ -64,8 +67,8 @@ class CorruptObservation(gymnasium.ObservationWrapper, gymnasium.utils.RecordCon
         key: Key of the last frame.
 
     Raises:
-        ValueError: The space has no such frames, the schedule draws a corruption of a modality that
-            the space lacks, or the range of the sensor does not fit the bounds of the space.
+        ValueError: The space has no such frames, the schedule contains a corruption for a modality
+            that the space lacks, or the range of the sensor exceeds the bounds of the space.
     """
 
     def __init__(
@@ -103,7 +106,7 @@ class CorruptObservation(gymnasium.ObservationWrapper, gymnasium.utils.RecordCon
         self._over = False
         degrees = dict.fromkeys((RGB, DEPTH), hfov)
         self._stream = FrameStream(self.sensor, normalised=normalised, hfov=degrees)
-        # modality of an observation that is one frame
+        # modality of an observation that is a single frame
         self._whole = _modality(env.observation_space)
         self._entries = {RGB: rgb, DEPTH: depth, **({} if pose is None else {POSE: pose})}
         if self._whole is not None:
@@ -113,7 +116,7 @@ class CorruptObservation(gymnasium.ObservationWrapper, gymnasium.utils.RecordCon
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
     ) -> tuple[Any, dict[str, Any]]:
-        """Start the next episode; a seed restarts the count of episodes."""
+        """Start the next episode; a new seed restarts the count of episodes."""
         if seed is not None:
             self._source = str(seed)
             self._resets = 0
@@ -123,7 +126,8 @@ class CorruptObservation(gymnasium.ObservationWrapper, gymnasium.utils.RecordCon
     def step(self, action: Any) -> tuple[Any, Any, bool, bool, dict[str, Any]]:
         """Step the environment and corrupt the observation.
 
-        A step after the end of an episode counts as a reset, because the environment reset itself.
+        A step after the end of an episode counts as a reset, because the environment has reset
+        itself.
 
         Raises:
             gymnasium.error.ResetNeeded: ``reset`` was never called.
@@ -199,7 +203,7 @@ class CorruptObservation(gymnasium.ObservationWrapper, gymnasium.utils.RecordCon
 
 
 def _modality(space: gymnasium.Space) -> str | None:
-    """Return the modality of a space of frames; None if it has another format."""
+    """Return the modality of a space of frames, or None if it has a different format."""
     if not isinstance(space, gymnasium.spaces.Box):
         return None
     views = len(space.shape) in (3, 4)

@@ -1,4 +1,4 @@
-"""Small worlds for the agents' tests: an empty room, and an untrained agent that can move."""
+"""Small worlds for the tests of agents: an empty room, and an untrained agent that can move."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from mitigate.worlds.episodes import Episode
 
 
 def room(width: float, depth: float) -> FreeSpace:
-    """An empty room, metres; its walls are one cell thick."""
+    """An empty room with sizes in metres, whose walls are one cell thick."""
     blocked = np.ones((round(depth / CELL), round(width / CELL)), bool)
     blocked[1:-1, 1:-1] = False
     return FreeSpace(blocked)
@@ -38,13 +38,14 @@ class Corner(ApartmentsWorld):
 
 
 def sure(space: FreeSpace, xy: np.ndarray, heading: float) -> np.ndarray:
-    """Logits [120, 12] of a waypoint predictor without errors."""
+    """Return the logits [120, 12] of a waypoint predictor without errors."""
     return np.where(free_directions(space, xy, heading) > 0.5, 20.0, -20.0)
 
 
 def wanderer(*blind: str, stop: float = -50.0) -> TopologicalAgent:
-    """An untrained agent that sees free space everywhere. ``stop`` is the bias of the stop score:
-    at -50 the agent stops only at the limit of decisions, near 0 it depends on what it sees."""
+    """Return an untrained agent that predicts free space everywhere. ``stop`` is the bias of the
+    stop score. At -50 the agent stops only at the limit of decisions; near 0 this depends on the
+    frames."""
     seeding.seed_everything(0, "wanderer")
     small = {"heads": 2, "text_layers": 1, "layers": 1}
     agent = TopologicalAgent(16, small, blind, size=16).eval()

@@ -1,4 +1,5 @@
-"""Adapters: insertion keeps outputs, training keeps the backbone, removal restores the model."""
+"""Tests of adapters: insertion keeps outputs, training keeps the backbone, removal restores the
+model."""
 
 from __future__ import annotations
 
@@ -28,7 +29,7 @@ from mitigate.encoders import plain_adapters
 
 
 class Bottleneck(nn.Module):
-    """ResNet-50's block: 1x1, 3x3, 1x1 with BatchNorm."""
+    """The block of ResNet-50: 1x1, 3x3 and 1x1 convolutions with BatchNorm."""
 
     def __init__(self, inputs: int, middle: int, stride: int) -> None:
         super().__init__()
@@ -48,7 +49,8 @@ class Bottleneck(nn.Module):
 
 
 class ResNet(nn.Module):
-    """The shape of torchvision's ResNet-50, thin: layer1 to layer4 behind a stem."""
+    """A narrow network with the structure of torchvision's ResNet-50: a stem and layer1 to
+    layer4."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -66,7 +68,8 @@ class ResNet(nn.Module):
 
 
 def ddppo() -> nn.Module:
-    """The shape of DDPPO's depth encoder, thin: GroupNorm, ``backbone`` and ``compression``."""
+    """A narrow network with the structure of DDPPO's depth encoder: GroupNorm, ``backbone`` and
+    ``compression``."""
 
     def stage(a: int, b: int) -> nn.Module:
         return nn.Sequential(nn.Conv2d(a, b, 3, 2, 1, bias=False), nn.GroupNorm(4, b), nn.ReLU())
@@ -108,7 +111,7 @@ def test_training_changes_only_adapters(encoder):
     model, targets, x, _ = encoder
     insert_adapters(model, targets)
     before = adapters.backbone_sha(model)
-    model.eval()  # BatchNorm's running statistics stay, too
+    model.eval()  # the running statistics of BatchNorm are also unchanged
     optimizer = torch.optim.SGD([p for p in model.parameters() if p.requires_grad], lr=0.1)
     first = model(x)
     for _ in range(3):
@@ -168,7 +171,7 @@ def test_scale_covers_every_kind(kind):
 
 def test_find_sites_restores_modes():
     model = nn.Sequential(nn.Conv2d(3, 8, 3), nn.BatchNorm2d(8)).train()
-    model[1].eval()  # a setup of users who train around a frozen encoder
+    model[1].eval()  # as in the code of users who train layers around a frozen encoder
     insert_adapters(model, ["0"], run=lambda n: model(torch.zeros(n, 3, 8, 8)))
     assert model.training and model[0].training and not model[1].training
 
@@ -215,7 +218,7 @@ def test_documented_example_loads_without_this_package(tmp_path, monkeypatch):
     exec(train.replace("save_adapters(encoder", "shake(encoder); save_adapters(encoder"),
          {"encoder": model, "torch": torch, "shake": shaken})  # fmt: skip
     assert "mitigate" not in load
-    monkeypatch.syspath_prepend(Path(plain_adapters.__file__).parent)  # as if it were copied
+    monkeypatch.syspath_prepend(Path(plain_adapters.__file__).parent)  # simulates a copied module
     exec(load, {"encoder": twin})
     assert torch.equal(twin(x), model(x)) and adapters.adapted(model) and not adapters.adapted(twin)
 
@@ -239,7 +242,7 @@ def test_share_on_the_reference_agent_is_small():
 def test_failed_insertion_keeps_the_model():
     model = nn.Sequential(nn.Conv2d(3, 8, 3), nn.Flatten(), nn.Linear(8, 4))
     for options in (
-        {"target_modules": ["0", "2"]},  # a Linear has no channels
+        {"target_modules": ["0", "2"]},  # a Linear module has no map channels
         {"target_modules": ["0"], "ring": ["0"], "hfov": 200.0},
     ):
         with pytest.raises(ValueError, match="channels of 2|hfov|field of view"):
@@ -303,7 +306,7 @@ def test_invalid_targets_keep_the_model(targets, kind, text):
 
 
 def test_save_warns_of_changed_statistics(tmp_path, recwarn):
-    """A BatchNorm in train mode updates its statistics although its weights are frozen."""
+    """In train mode, BatchNorm updates its statistics although its weights are frozen."""
     model = ResNet()
     insert_adapters(model, ["layer[1-4]"])
     model.eval()(torch.randn(2, 3, 32, 32))
@@ -347,7 +350,7 @@ def test_load_rejects_invalid_folders(tmp_path, spoil):
         settings.write_text(json.dumps({"adapters": 3}), encoding="utf-8")
     elif spoil == "levels":
         settings.write_text("[" * 100_000, encoding="utf-8")
-    elif spoil == "memory":  # a kernel of 100 GB
+    elif spoil == "memory":  # would need a kernel of 100 GB
         text = settings.read_text(encoding="utf-8")
         settings.write_text(text.replace('"kernel": 3', '"kernel": 30001'), encoding="utf-8")
     elif spoil == "shapes":

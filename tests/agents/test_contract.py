@@ -1,4 +1,4 @@
-"""Objects of users' classes as agents, worlds and experts: missing members get defaults."""
+"""Tests of users' objects as agents, worlds and experts: missing members get defaults."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from mitigate.worlds.world import Corrupted, Expert, World, as_world, expert_of
 
 
 class Duck:
-    """An agent with the two methods that are required."""
+    """An agent with only the two required methods."""
 
     def reset(self, instruction: str) -> None:
         self.heard = instruction
@@ -91,7 +91,7 @@ def test_teacher_is_by_default_a_copy_without_adapters():
 
 
 class Place:
-    """A world with what is required, and an expert that only acts."""
+    """A world with only the required members, and an expert that only defines ``action``."""
 
     sensors: dict = {}
     rule = "STOP"

@@ -1,4 +1,4 @@
-"""Fingerprints of agents: one hash of everything that determines their behaviour."""
+"""Tests of agents' fingerprints, which are hashes of everything that determines behaviour."""
 
 from __future__ import annotations
 
@@ -43,7 +43,8 @@ def test_fingerprint_changes_with_every_difference():
         fingerprint(agent(blind=["rgb"]), views),
         fingerprint(agent(size=32), views),
         fingerprint(agent(planner={**SMALL, "fusion": {"rate": 4, "cap": 3}}), views),
-        fingerprint(agent(vocabulary=[*WORDS[1:], WORDS[0]]), views),  # equally many, other ids
+        # the same number of words with different ids
+        fingerprint(agent(vocabulary=[*WORDS[1:], WORDS[0]]), views),
         fingerprint(plain, cameras(32)),
         fingerprint(plain, views, "rules"),
     ]
@@ -70,7 +71,7 @@ def test_fingerprint_changes_with_code_without_settings(tmp_path, monkeypatch):
 
 
 def _hashes(folder, agent, sources):
-    """Return the hash of the class ``agent`` for each source of its module."""
+    """Return the hash of the class ``agent`` for each source text of its module."""
     matches = []
     for source in sources:
         (folder / "own_agent.py").write_text(source)
@@ -123,7 +124,7 @@ def test_fingerprint_ignores_code_of_installed_packages(tmp_path, monkeypatch):
 
 
 class Here:
-    """A class of no package."""
+    """A class that belongs to no package."""
 
 
 def test_fingerprint_counts_code_of_networks(tmp_path, monkeypatch):
@@ -254,7 +255,7 @@ def forward(module, inputs, output):
 
 
 class Owner:
-    """An agent without settings() that holds a network."""
+    """An agent without settings() that contains a network."""
 
     threshold = 0.5
 
@@ -498,7 +499,7 @@ class Scale(nn.Module):
 
 
 class Own:
-    """An agent with plain attributes only."""
+    """An agent that has only plain attributes."""
 
     def act(self, observation):
         return helpers.decide(observation) + helpers.LEVEL
@@ -512,14 +513,14 @@ class Described(Own):
 
 
 class Biased(Described):
-    """Inherits settings() and adds an attribute."""
+    """An agent that inherits settings() and adds an attribute."""
 
     def __init__(self, bias: int) -> None:
         self.bias = bias
 
 
 class BiasedPlanner(TopologicalAgent):
-    """The same for a shipped agent."""
+    """A shipped agent with an added attribute."""
 
 
 class Wrapper:

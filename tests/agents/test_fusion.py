@@ -1,4 +1,4 @@
-"""Reliability weights: only blank or inflated views lose weight."""
+"""Tests of reliability weights: only blank or inflated views lose weight."""
 
 from __future__ import annotations
 
@@ -22,7 +22,8 @@ def fuse(views: torch.Tensor, **how) -> tuple[torch.Tensor, torch.Tensor]:
 def views() -> torch.Tensor:
     """Twelve views of one panorama with features of about the same magnitude."""
     torch.manual_seed(0)
-    mixed = torch.randn(64) + 0.5 * torch.randn(12, 64)  # the views of one room have much in common
+    # views of the same room have much in common
+    mixed = torch.randn(64) + 0.5 * torch.randn(12, 64)
     return torch.nn.functional.normalize(mixed, dim=-1) * 8
 
 
@@ -35,7 +36,7 @@ def test_reliability_gives_outliers_the_smallest_weight(views, factor):
     assert torch.isclose(weights.sum(), torch.tensor(1.0))
     size = damaged.norm(dim=-1)
     deviation = (size - size.mean()).abs() / size.mean()
-    assert RATE * deviation[3] > CAP  # so far away that the cap limits it
+    assert RATE * deviation[3] > CAP  # so different that the cap limits its weight
     expected = CAP - RATE * deviation[torch.arange(12) != 3]
     assert torch.allclose(torch.log(others / weights[3]), expected, atol=1e-4)
 
@@ -88,9 +89,10 @@ def test_learned_reliability_starts_with_equal_weights(views):
 
 
 def test_learned_reliability_learns_beyond_magnitudes():
-    """Noise of equal magnitude replaces views: the rule misses it, a learned score detects it."""
+    """If noise of equal magnitude replaces views, the rule misses this but a learned score detects
+    it."""
     torch.manual_seed(0)
-    marks = torch.nn.functional.normalize(torch.randn(8, 64), dim=-1)  # what a broken view shows
+    marks = torch.nn.functional.normalize(torch.randn(8, 64), dim=-1)  # features of a broken view
 
     def draw() -> tuple[torch.Tensor, torch.Tensor, torch.Tensor]:
         mixed = torch.randn(32, 1, 64) + 0.5 * torch.randn(32, 12, 64)
@@ -157,7 +159,7 @@ def test_planner_with_equal_weights_takes_means(features):
 
 
 def test_planner_normalises_the_weights_of_ghosts(features):
-    """A single view determines the token; of two views the more reliable one weighs more."""
+    """A single view determines the token; of two views, the more reliable one has more weight."""
     seen = torch.tensor([[0, -1, -1, -1], [1, -1, -1, -1], [0, 1, -1, -1]])
     plain = ghosts(None, features, seen)
     fused = ghosts({"rate": 4.0, "cap": 3.0}, features, seen)
@@ -166,7 +168,7 @@ def test_planner_normalises_the_weights_of_ghosts(features):
 
 
 def test_planner_output_is_unchanged_by_untrained_reliability(features):
-    """The other weights of the planner have equal initial values, too."""
+    """The other weights of the planner also have equal initial values."""
     seen = torch.tensor([[0, 1, -1, -1], [14, -1, -1, -1], [3, 6, 9, 13]])
     plain, learned = planner(None), planner({"learned": True})
     others = {k: v for k, v in learned.state_dict().items() if not k.startswith("fusion.")}

@@ -1,4 +1,4 @@
-"""Gates of encoders: frames classified as clean pass unchanged, bit for bit."""
+"""Tests of encoder gates: frames that are classified as clean pass unchanged, bit for bit."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def frames():
 
 
 def trained(model: nn.Module) -> nn.Module:
-    """Give adapters and gate large random weights."""
+    """Set the weights of adapters and gate to large random values."""
     for parameter in adapters.adapter_parameters(model):
         nn.init.normal_(parameter, std=0.3)
     return model.eval()
@@ -39,7 +39,7 @@ def gate_of(model: nn.Module) -> FrameGate:
 
 
 def centred(model: nn.Module, frames: torch.Tensor) -> torch.Tensor:
-    """Open the gate for half of the ``frames``; return which."""
+    """Open the gate for half of the ``frames``, and return for which."""
     model(frames)
     gate = gate_of(model)
     with torch.no_grad():
@@ -110,7 +110,7 @@ def test_training_adapters_correct_every_frame(encoder, frames):
 def test_calibrate_opens_for_a_share_of_frames(encoder, frames):
     insert_adapters(encoder, **PLACES)
     gate = gate_of(trained(encoder))
-    for _ in range(2):  # a second time changes nothing
+    for _ in range(2):  # removing the gate a second time has no effect
         encoder(frames)
         gate.calibrate(gate.judged.logits, 0.25)
         encoder(frames)

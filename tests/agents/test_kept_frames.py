@@ -23,7 +23,8 @@ class Expert:
 
 
 class Reusing:
-    """Every frame shows the number of the step, in the same arrays; it ends after three steps."""
+    """World whose frames show the step number and reuse the same arrays, with three steps per
+    episode."""
 
     rule = "none"
 

@@ -1,4 +1,4 @@
-"""Checks of observations: invalid ones are rejected, others are converted."""
+"""Tests of observation checks: invalid observations are rejected, others are converted."""
 
 import numpy as np
 import pytest
@@ -87,12 +87,12 @@ def test_frame_accepts_any_memory_layout(agent):
 
 
 def test_agents_resize_views_of_any_size():
-    """Repeating each pixel 3 x 3 keeps the image, so the features must be equal."""
+    """Repeating each pixel 3 x 3 times does not change the image, so the features must be equal."""
     torch.manual_seed(0)
     agent = TopologicalAgent(size=32).eval()
     rgb = torch.randint(0, 256, (1, 12, 32, 32, 3), dtype=torch.uint8)
     depth = torch.rand(1, 12, 32, 32, 1) * 5
-    depth[..., :4, :, :] = 0  # a hole keeps its edge
+    depth[..., :4, :, :] = 0  # a hole keeps its sharp edge
     large = [x.repeat_interleave(3, 2).repeat_interleave(3, 3) for x in (rgb, depth)]
     with torch.no_grad():
         for own_value, other in zip(
@@ -109,4 +109,4 @@ def test_check_fits_rejects_missing_sensors(agent):
     alone = {name: sensor for name, sensor in observed.items() if name != DEPTH}
     with pytest.raises(ValueError, match="reads depth, which the world Hall does not have: .*rgb"):
         check_fits(agent, alone, "Hall")
-    check_fits(nn.Linear(1, 1), alone, "Hall")  # it does not declare its sensors
+    check_fits(nn.Linear(1, 1), alone, "Hall")  # this agent does not declare its sensors

@@ -1,4 +1,4 @@
-"""Policies of other libraries as agents: the same actions, distributions with gradients, errors."""
+"""Tests of other libraries' policies as agents: equal actions, gradients and errors."""
 
 from dataclasses import replace
 
@@ -23,7 +23,7 @@ ACTIONS = {
 
 
 class Noise(gymnasium.Env):
-    """Random frames; depth in millimetres as uint16."""
+    """Environment with random frames and depth in millimetres as uint16."""
 
     def __init__(self, actions="discrete", depth=False, size=36):
         frame = spaces.Box(0, 255, (size, size, 3), np.uint8)

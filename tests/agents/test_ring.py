@@ -1,4 +1,4 @@
-"""Ring adapters: neighbouring views are warped by the rotation of the camera."""
+"""Tests of ring adapters: neighbouring views are warped by the rotation of the camera."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from mitigate.worlds.apartments.simulator import apartment_of
 
 @pytest.fixture(scope="module")
 def panorama():
-    """The RGB of a rendered panorama, float [12, 3, 64, 64]: colours do not depend on the view."""
+    """Return the RGB of a rendered panorama, float [12, 3, 64, 64]."""
     apartment = apartment_of("apartments/train/000003")
     renderer = Renderer(64)
     renderer.load(apartment)
@@ -30,19 +30,21 @@ def test_aligned_warps_neighbours_into_the_view(panorama):
         error = (aligned[side + 1] - panorama).abs().mean(1)[:, seen[side]]
         plain = (panorama.roll(1 - 2 * side, 0) - panorama).abs().mean(1)[:, seen[side]]
         assert error.median() < 2 and error.mean() < 0.25 * plain.mean()
-        assert 0.5 < seen[side].float().mean() < 0.7  # 60 of 90 degrees, less the corners
+        assert 0.5 < seen[side].float().mean() < 0.7  # 60 of 90 degrees, without the corners
 
 
 def test_ring_keeps_cells_that_no_neighbour_sees():
     torch.manual_seed(0)
-    adapter = RingAdapter(8, views=3)  # 120 degrees apart: views of 90 degrees do not meet
+    # views of 90 degrees that are 120 degrees apart do not overlap
+    adapter = RingAdapter(8, views=3)
     torch.nn.init.constant_(adapter.share.bias, 3.0)  # use the full budget
     x = torch.randn(6, 8, 4, 4)
     assert torch.allclose(adapter(x), x, atol=1e-6)
 
 
 def test_ring_restores_a_lost_view(panorama):
-    """If the score avoids black cells, the fused map is closer to the clean map than zeros are."""
+    """If the score avoids black cells, the fused map is closer to the clean map than a zero map
+    is."""
     adapter = RingAdapter(3, reduction=1)
     with torch.no_grad():
         adapter.down.weight.zero_()

@@ -1,4 +1,4 @@
-"""A change of behaviour changes the fingerprint, or the user is asked for a version."""
+"""Tests that a change of behaviour changes the fingerprint, or that a version is required."""
 
 from __future__ import annotations
 
@@ -27,13 +27,13 @@ class Level(enum.Enum):
 
 
 class Table(dict):
-    """A mapping class of the user, with attributes for keys."""
+    """A user's mapping class with attributes for keys."""
 
     __getattr__ = dict.get
 
 
 class Steps(list):
-    """A list class of the user."""
+    """A user's list class."""
 
 
 class Slotted:
@@ -44,7 +44,7 @@ class Slotted:
 
 
 class Pickled:
-    """Leaves its behaviour out of its pickles."""
+    """An object whose pickles do not contain its behaviour."""
 
     def __init__(self, level: int) -> None:
         self.level = level
@@ -54,7 +54,7 @@ class Pickled:
 
 
 class Numbers(np.ndarray):
-    """An array class of the user."""
+    """A user's array class."""
 
 
 class Target:

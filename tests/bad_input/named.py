@@ -1,11 +1,11 @@
-"""A check that all tests of rejected files share."""
+"""A check that is used by all tests of rejected files."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from typing import Any
 
-LONGEST = 1500  # limit for the length of a message (heuristic)
+LONGEST = 1500  # maximum length of a message (heuristic)
 
 
 def refused(call: Callable[[], Any], words: str = "") -> str:

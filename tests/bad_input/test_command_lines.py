@@ -1,4 +1,4 @@
-"""Command lines: a mistake ends in one paragraph and an exit status, without a traceback or
+"""Tests of command lines: a mistake gives one paragraph and an exit status, but no traceback or
 files."""
 
 from __future__ import annotations
@@ -97,7 +97,7 @@ WRONG = {
         ("launcher=nothing", "no launcher"),
     ],
 }
-# these lines run through Hydra, which takes three times as long as a composition
+# these command lines run through Hydra, which takes three times as long as only composing
 THROUGH_HYDRA = {"trainer.lr=inf", "severity=2", "recipe=", "agent=hello", "a b", "x=[1,2"}
 LINES = [(name, *line) for name, lines in WRONG.items() for line in lines]
 IDS = [f"{name} {option[:40]}" for name, option, _ in LINES]

@@ -1,4 +1,5 @@
-"""Untrusted episode files: read completely, or rejected with file, entry and requirement."""
+"""Tests of untrusted episode files: read completely, or rejected with file, entry and
+requirement."""
 
 from __future__ import annotations
 
@@ -27,7 +28,7 @@ GOOD = {
     "reference_path": [[0.0, 0.0, 0.0], [1.0, 0.0, 1.0]],
 }
 NAN, HUGE = float("nan"), 10**400
-CHANGES = {  # key (dotted) and value -> expected message
+CHANGES = {  # maps a dotted key and value to the expected message
     "a huge integer": ("start_position", [HUGE, 0, 0], "'start_position'"),
     "far away": ("start_position", [1e300, 0, 0], "'start_position'"),
     "not a number": ("start_position", [NAN, 0, 0], "'start_position'"),

@@ -1,4 +1,4 @@
-"""Inputs after public bug reports (item 12), and items 8, 10 and 11 of the same list."""
+"""Tests with inputs from public bug reports, such as long names and control characters."""
 
 from __future__ import annotations
 

@@ -1,4 +1,5 @@
-"""Untrusted frames: decoded completely, or skipped with a reason; no partial output, no bomb."""
+"""Tests of untrusted frames: decoded completely or skipped with a reason, without partial
+output."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Invalid entries of the leaderboard are rejected; the message names file and key."""
+"""Tests that invalid leaderboard entries are rejected with a message that names file and key."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Damaged notes of this project: the error names the file, and the file stays."""
+"""Tests of damaged notes next to rows: the error names the file, and the file is kept."""
 
 import pytest
 

@@ -1,4 +1,4 @@
-"""Untrusted recordings: read, or rejected by name, within bounded memory and time."""
+"""Tests of untrusted recordings: read, or rejected by name, within bounded memory and time."""
 
 from __future__ import annotations
 
@@ -24,8 +24,8 @@ from mitigate.worlds.recorded import messages as ros
 from mitigate.worlds.recorded.source import Lens
 
 SIZE = 16
-SLOWEST = 20.0  # seconds for a rejection (on a busy machine)
-MOST = 64 << 20  # bytes of Python's and NumPy's memory for a rejection
+SLOWEST = 20.0  # maximum seconds for a rejection (on a busy machine)
+MOST = 64 << 20  # maximum bytes of Python's and NumPy's memory for a rejection
 
 
 def steps(count: int = 3) -> list[dict[str, np.ndarray]]:
@@ -44,8 +44,8 @@ def read(path: Path) -> list:
 
 
 def refused(path: Path, message: str | None = None) -> None:
-    """Check that ``path`` is rejected in one short paragraph that names it, quickly and in little
-    memory."""
+    """Check that ``path`` is rejected quickly, in little memory, with one short paragraph that
+    names it."""
     began = time.monotonic()
     tracemalloc.start()
     try:
@@ -124,13 +124,13 @@ def test_tum_folder_with_false_values_is_rejected(tmp_path, name, text, message)
 def test_long_list_is_rejected_before_it_is_read(tmp_path, monkeypatch):
     folder = tum(tmp_path / "drive")
     with open(folder / "rgb.txt", "wb") as file:
-        file.truncate(1 << 30)  # sparse: one line that never ends
+        file.truncate(1 << 30)  # a sparse file with one line that never ends
     monkeypatch.setattr("mitigate.worlds.recorded.folders.read_text.__defaults__", (1 << 20,))
     refused(folder, "must have at most 1048576 bytes")
 
 
 def recording(folder: Path) -> Path:
-    """The files that ``mitigate run record=`` writes for one episode with one camera."""
+    """Write the files that ``mitigate run record=`` writes for one episode with one camera."""
     write_frames(folder / "made", steps(), "")
     episode = folder / "drive" / "scene" / "1"
     episode.mkdir(parents=True)
@@ -188,7 +188,7 @@ def mcap(bag: Path) -> Path:
 
 
 def chunk(kind: str, packed: bytes, size: int) -> bytes:
-    """An MCAP file of one chunk (mcap.dev/spec: opcode, length, content)."""
+    """Write an MCAP file with one chunk (mcap.dev/spec: opcode, length, content)."""
 
     def record(opcode: int, content: bytes) -> bytes:
         return bytes([opcode]) + struct.pack("<Q", len(content)) + content
@@ -220,7 +220,7 @@ def test_chunk_bomb_is_rejected(tmp_path, bombs, kind):
     (tmp_path / "robot.mcap").write_bytes(chunk(kind, bombs[kind], BOMB))
     if kind == "zstd":
         refused(tmp_path / "robot.mcap", "robot.*unpacks to more than")
-    else:  # lz4 compresses at most 255 times: reading stops half way
+    else:  # lz4 compresses by at most 255 times, so reading stops half way
         with pytest.raises(ValueError, match="unpacks to more than"):
             read(tmp_path / "robot.mcap")
 
@@ -301,7 +301,7 @@ def test_metadata_name_no_file_outside_of_the_bag(tmp_path):
 
 
 class Message:
-    """A ROS message with these fields."""
+    """Return a ROS message with these fields."""
 
     def __init__(self, **fields) -> None:
         self.__dict__.update(fields)

@@ -1,4 +1,4 @@
-"""Untrusted checkpoints, weights and folders: valid data, or one paragraph; no code runs."""
+"""Tests of untrusted checkpoints, weights and folders: no code runs, and errors are clear."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ FAST = settings(
 
 
 class Code:
-    """Creates the file ``ran`` when it is unpickled."""
+    """An object that creates the file ``ran`` when it is unpickled."""
 
     def __init__(self, ran: Path) -> None:
         self.ran = ran
@@ -44,7 +44,7 @@ class Code:
 
 
 class Builds:
-    """Like ``Code``, through the state that an unpickler sets."""
+    """Like ``Code``, but through the state that an unpickler sets."""
 
     def __reduce__(self):
         return dict, (), None, None, iter([("a", Code(Path("ran")))])
@@ -72,7 +72,7 @@ NETWORK = nn.Linear(3, 2)
 
 
 def trapped(ran: Path) -> dict[str, bytes]:
-    """Files that would run code in an unsafe reader, by means of ``torch.load`` and pickle."""
+    """Write files that would run code in an unsafe reader, by ``torch.load`` and pickle."""
     code = Code(ran)
     return {
         "a pickle": pickle.dumps(code),

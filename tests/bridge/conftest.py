@@ -1,4 +1,4 @@
-"""Fixtures: the program of the stand-in lab, run as a user's command."""
+"""Fixtures that run the stand-in lab's program as a user's command."""
 
 import json
 import os
@@ -28,7 +28,7 @@ AGENT = f"{sys.executable} {LAB / 'agent.py'} {{out}}/seen"
 
 
 def condition(name="clean", severity=0.6, **more):
-    """Return a condition by name; clean has severity 0."""
+    """Return a condition by name, where clean has severity 0."""
     corruption = Corruption(name, 0.0 if name == "clean" else severity)
     return Condition(corruption, seed=0, words=more.pop("words", Words()), **more)
 
@@ -39,7 +39,7 @@ def config(*options):
 
 
 def python(listener, code, *arguments):
-    """Run code as a program of the user."""
+    """Run code as a user's program."""
     environment = {**os.environ, **listener.environment()}
     environment["PYTHONPATH"] += os.pathsep + str(LAB)
     return warm.run(["-c", code, *map(str, arguments)], environment, timeout=30)
@@ -55,7 +55,7 @@ class CommandResult:
         self._seen = seen
 
     def seen(self):
-        """Return {(episode, number of the step): entry} of all workers."""
+        """Return {(episode, step number): entry} for all workers."""
         entries = {}
         for file in sorted(self._seen.parent.glob(f"{self._seen.name}.*")):
             steps = {}
@@ -95,7 +95,7 @@ def command(tmp_path):
 
 @dataclass
 class RunResult:
-    """The output of a run, and its error, if any."""
+    """The output of a run, and its error if there is one."""
 
     stdout: str
     stderr: str = ""

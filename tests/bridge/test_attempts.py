@@ -1,4 +1,4 @@
-"""Attempts at a condition: how they start, and errors before and at their start."""
+"""Tests of attempts at a condition: how they start, and errors before and at their start."""
 
 import fcntl
 import json
@@ -177,7 +177,7 @@ def test_watch_reads_a_file_once(tmp_path, monkeypatch):
 
 
 def test_wanted_sends_names_in_parts(tmp_path):
-    """The names of a train split do not fit into one message."""
+    """The episode names of a train split do not fit into one message."""
     code = (
         "import mitigate_hook\nmitigate_hook.KEYS_PER_MESSAGE = 7\n"
         "print([n for _, n in mitigate_hook.wanted([('x.glb', n) for n in range(20)])])"

@@ -1,4 +1,5 @@
-"""An unchanged program under the bridge: equal pixels in every process, no clean frames."""
+"""Tests of an unchanged program under the bridge: equal pixels in every process, no clean
+frames."""
 
 import hashlib
 import os
@@ -71,7 +72,7 @@ def test_hook_leaves_goal_pictures_clean(command):
 
 
 def test_hook_counts_one_call_per_step(command):
-    """Goal pictures and renders are not calls."""
+    """Goal pictures and renders are not counted as calls."""
     reports = command(condition("spatter"), "--steps", 3).reports
     assert [end["calls"] for end in reports.ends.values()] == [4, 4, 4, 4]
 
@@ -119,9 +120,9 @@ def test_hook_reports_results(command):
 
 def test_hook_reports_an_unended_episode_at_the_next_reset(command):
     reports = command(condition(), "--no-stop").reports
-    assert len(reports.ends) == 4  # the last one when the Env is closed
+    assert len(reports.ends) == 4  # the last episode ends when the Env is closed
     end = reports.ends["s0/0"]
-    assert end["distance"] == pytest.approx(0.5)  # frames of the end, not of the next start
+    assert end["distance"] == pytest.approx(0.5)  # frames at the end, not at the next start
     assert end["stopped"] is False
 
 

@@ -1,4 +1,4 @@
-"""Damaged files of a finished run are named, and none of its rows is lost."""
+"""Tests that damaged files of a finished run are named, and that none of its rows is lost."""
 
 import json
 import os
@@ -27,13 +27,13 @@ CONDITION = "conditions/low_light-s0.6"
 
 @pytest.fixture(scope="module")
 def place(tmp_path_factory):
-    """A folder for the program and its run, shared by all tests of this file."""
+    """A folder for the program and its run, used by all tests in this file."""
     return tmp_path_factory.mktemp("finished")
 
 
 @pytest.fixture
 def finished(run, place):
-    """A finished run of two conditions: its folder, and a function that runs it again.
+    """A finished run with two conditions: its folder, and a function that runs it again.
 
     The first test measures the run; each test gets a copy of the folder.
     """
@@ -53,7 +53,7 @@ def finished(run, place):
 
 
 def contents(folder):
-    """Return every file of a folder with its bytes, without locks."""
+    """Return every file in a folder with its bytes, except locks."""
     files = (path for path in folder.rglob("*") if path.is_file() and path.name != "lock")
     return {path.relative_to(folder): path.read_bytes() for path in files}
 
@@ -180,7 +180,7 @@ def test_run_rejects_another_condition_in_the_folder_of_clean(finished):
 
 
 def test_run_compares_counts_of_a_marker_without_a_checksum(finished):
-    """As older versions wrote it."""
+    """Write a file as older versions wrote it."""
     out, again = finished
     marker = out / CONDITION / "done.json"
     entries = json.loads(marker.read_text())
@@ -305,7 +305,8 @@ def test_run_keeps_finished_condition_that_cannot_be_moved(finished, tmp_path, k
     entries = json.loads(clean.read_text()) | {"episodes_told": 4, "events": seal}
     clean.write_text(json.dumps(entries))
     before = contents(out / CONDITION)
-    result = again()  # it lacks an episode of clean now, so the condition runs again
+    # an episode of the clean condition is missing now, so the condition runs again
+    result = again()
     assert result.returncode == 1 and str(aside) in result.stderr
     assert contents(out / CONDITION) == before
 

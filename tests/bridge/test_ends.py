@@ -1,4 +1,4 @@
-"""Ends of episodes: which one counts, and when the instruction is restored."""
+"""Tests of the ends of episodes: which end counts, and when the instruction is restored."""
 
 import sys
 
@@ -67,7 +67,7 @@ LIMITS = ["[1, 0], [1, 1, 1], [1, 0]", "[1, 0], [1, 0], [1, 1]", "[1, 1], [1, 0]
 @pytest.mark.parametrize("acts", LIMITS)
 @pytest.mark.parametrize("each", [True, False])
 def test_close_ends_the_episode_of_a_single_env(tmp_path, acts, each):
-    """The program limits the steps itself; other episodes do not matter."""
+    """The program itself limits the steps; other episodes do not matter."""
     new = "env = over(one); env.reset()" if each else "env.reset()"
     code = (
         "env = over(*episodes[:3])\n"

@@ -1,4 +1,4 @@
-"""Faults of the server and the connection: an error soon, and no clean frame."""
+"""Tests of faults in server and connection: an error follows soon, and no frame stays clean."""
 
 import os
 import signal
@@ -115,7 +115,7 @@ def test_server_removes_its_folders(command):
 
 @pytest.fixture
 def pair():
-    """Return both ends of a connection."""
+    """Return the two ends of a connection."""
     ends = socket.socketpair()
     for end in ends:
         end.settimeout(5.0)

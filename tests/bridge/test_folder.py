@@ -1,4 +1,4 @@
-"""The folder of a run: complete conditions, repeated conditions, and the table."""
+"""Tests of a run's folder: complete conditions, repeated conditions, and the table."""
 
 import json
 import re
@@ -49,7 +49,7 @@ def finish_again(folder):
 
 
 def measured(out):
-    """Return the conditions of the rows: {(corruption, severity)}."""
+    """Return the set of conditions (corruption, severity) in the rows."""
     return {(row["corruption"], row["severity"]) for row in rows.read(out / "rows.jsonl")}
 
 

@@ -1,6 +1,6 @@
-"""The bridge under the real habitat-lab 0.3, if an environment with it is available.
+"""Tests of the bridge under the real habitat-lab 0.3, if an environment with it is available.
 
-``tools/pythons.sh FOLDER`` makes ``FOLDER/lab``; ``MITIGATE_PYTHONS`` names the folder.
+``tools/pythons.sh FOLDER`` creates ``FOLDER/lab``; ``MITIGATE_PYTHONS`` must name the folder.
 """
 
 import json
@@ -33,7 +33,7 @@ def lab():
 
 @pytest.fixture(scope="module")
 def episodes(tmp_path_factory):
-    """Episodes of this project, as export_scene writes them for the lab."""
+    """Return episodes of this project, as export_scene writes them for habitat-lab."""
     out = tmp_path_factory.mktemp("habitat")
     export(out, "val_unseen", 1, ["vln"])
     return out / "datasets" / "vln" / "val_unseen.json.gz"

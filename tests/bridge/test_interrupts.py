@@ -1,4 +1,4 @@
-"""Interrupts, threads and forks: no clean frame, and no answer to another message."""
+"""Tests of interrupts, threads and forks: no clean frame, and no answer to a different message."""
 
 import signal
 import time
@@ -39,7 +39,7 @@ print('went on')
 )
 def test_corrupt_stops_when_interrupted(tmp_path, where):
     code = BROKEN_OFF.replace("{'rgb': rgb}", "{'rgb': rgb, 'depth': depth}")
-    if where == "_median_and_maximum":  # of the first frame
+    if where == "_median_and_maximum":  # the answer to the first frame
         code = code.replace("episode.corrupt({'rgb': rgb, 'depth': depth})\ninter", "inter")
     with Listener(condition("low_light"), tmp_path) as listener:
         process = python(listener, BEGIN + code, where)
@@ -67,7 +67,7 @@ def test_hook_stops_for_the_answer_to_another_message(tmp_path):
 
 
 def test_hook_stops_for_a_nested_call(tmp_path):
-    """For example a signal handler that calls corrupt, or a greenlet."""
+    """This happens for example with a signal handler that calls corrupt, or a greenlet."""
     code = (
         "episode = mitigate_hook.connect('a')\nreceive = mitigate_hook.receive\n"
         "def again(channel):\n    mitigate_hook.receive = receive\n"

@@ -1,4 +1,4 @@
-"""Processes that still run after their command ended, and runs that end too early."""
+"""Tests of processes that still run after their command ended, and of runs that end too early."""
 
 import os
 import signal

@@ -1,4 +1,5 @@
-"""Loops without Habitat: no clean frame passes, no episode is lost, no invalid result is stored."""
+"""Tests of loops without Habitat: no frame stays clean, no episode is lost, no invalid result
+stored."""
 
 import sys
 
@@ -19,7 +20,7 @@ depth = numpy.full((16, 16, 1), 2.0, 'float32')
 
 
 def run_loop(tmp_path, code, settings=None):
-    """Run a loop; return its process and its reports."""
+    """Run a loop, and return its process and its reports."""
     with Listener(settings or condition("spatter"), tmp_path / "events", patience=5.0) as listener:
         process = python(listener, BEGIN + code)
     return process, read(tmp_path / "events")
@@ -250,7 +251,7 @@ def test_corrupt_rejects_depth_outside_its_range(tmp_path, frame, words):
 
 @pytest.mark.parametrize("name", [0, ("left", 1)])
 def test_corrupt_rejects_a_camera_name_that_is_not_text(tmp_path, name):
-    """JSON changes its name, so its frame would stay clean."""
+    """JSON changes this name, so the frame would stay clean."""
     frame = f"{{{name!r}: rgb}}, cameras={{{name!r}: {{'type': 'rgb'}}}}"
     process, reports = run_loop(tmp_path, f"mitigate_hook.connect('a').corrupt({frame})")
     assert process.returncode == 97 and "the name of a camera must be text" in "".join(

@@ -1,4 +1,4 @@
-"""Messages of another program: each is answered, rejected with an error, or ends the connection."""
+"""Tests of messages: each is answered, rejected with an error, or ends the connection."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ class Peer:
             served.close()
 
     def ask(self, message):
-        """Return the answer; None if the other side closed."""
+        """Return the answer, or None if the other side closed."""
         try:
             if isinstance(message, bytes):
                 self.channel.sendall(message)

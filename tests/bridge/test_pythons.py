@@ -1,7 +1,8 @@
-"""The hook under the Python versions that agents use.
+"""Tests of the hook under the Python versions that agents use.
 
-``tools/pythons.sh FOLDER`` makes an environment with numpy for each installed version; the tests
-find them through the variable ``MITIGATE_PYTHONS`` (CI sets it). Without it they are skipped.
+``tools/pythons.sh FOLDER`` creates an environment with numpy for each installed version. The
+variable ``MITIGATE_PYTHONS`` must name the folder (CI sets it). Without the variable, these tests
+are skipped.
 """
 
 import os
@@ -22,7 +23,7 @@ HOOK = Path("mitigate/bridge/hook").resolve()
 
 @pytest.fixture(params=VERSIONS)
 def python(request):
-    """Return the interpreter of a version."""
+    """Return the interpreter of a Python version."""
     folder = os.environ.get("MITIGATE_PYTHONS")
     if folder is None:
         pytest.skip("MITIGATE_PYTHONS is not set: tools/pythons.sh makes what it names")
@@ -78,7 +79,7 @@ def test_loop_runs_and_reports_why_it_stops(python, tmp_path):
 
 
 def test_hook_loads_without_numpy(python, tmp_path):
-    """Every Python of a command loads the hook; most have no camera."""
+    """Every Python process of a command loads the hook, and most have no camera."""
     result = subprocess.run(
         [python, "-S", "-c", "import sys; sys.path.insert(0, sys.argv[1]); import sitecustomize",
          str(HOOK)],

@@ -1,4 +1,4 @@
-"""Recordings of a program: their files, and errors."""
+"""Tests of recordings of a program: their files, and errors."""
 
 import json
 import os

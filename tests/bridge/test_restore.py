@@ -1,4 +1,4 @@
-"""A restorer with the bridge: frames of programs are restored, by panorama or camera."""
+"""Tests of a restorer with the bridge: frames are restored per panorama or camera."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ FILTERS = "tests.guards.filters"
 
 @pytest.fixture
 def restorer():
-    """A restorer that changes every frame: twice the brightness or depth."""
+    """A restorer that changes every frame to twice the brightness or depth."""
     model = Restorer(width=4, depth_width=4).eval()
     with torch.no_grad():
         for sensor, net in model.parts().items():

@@ -1,4 +1,4 @@
-"""Success rules: which rule judges an episode, and messages if one cannot."""
+"""Tests of success rules: which rule judges an episode, and messages if a rule cannot."""
 
 import json
 import sys
@@ -32,7 +32,8 @@ for name in "ab":
 
 
 def judge(tmp_path, finish, rule):
-    """Run a loop; return (success, SPL) of its first episode by rule, its reports and output."""
+    """Run a loop, and return (success, SPL) of its first episode by rule, its reports and
+    output."""
     with Listener(condition(), tmp_path) as listener:
         process = python(listener, LOOP % finish)
     reports = read(tmp_path)
@@ -79,7 +80,8 @@ def test_run_rejects_a_rule_that_judges_only_some_episodes(run, tmp_path, first)
     file = tmp_path / "nav.py"
     known = "stopped=True if name == 'a' or 'clean' in __import__('sys').argv else None"
     file.write_text(LOOP % f"episode.finish(success=True, distance_to_goal=0.05, {known})")
-    for options in (first, "rule=objectnav"):  # not measured, or measured without the rule
+    # the condition was not measured, or measured without the rule
+    for options in (first, "rule=objectnav"):
         options = f"conditions=[spatter] {options}"
         result = run(tmp_path / "o", options, f"{sys.executable} {file} {{condition}}")
     assert (
@@ -147,7 +149,8 @@ def test_run_warns_about_depth_and_missing_paths(run, tmp_path):
 def test_run_rejects_a_rule_without_distances(run, tmp_path, rule):
     file, out = tmp_path / "nav.py", tmp_path / "o"
     file.write_text(LOOP % "episode.finish(success=True)")
-    for before in ("", "conditions=[clean]"):  # not measured, or measured without the rule
+    # the condition was not measured, or measured without the rule
+    for before in ("", "conditions=[clean]"):
         if before:
             assert run(out, before, f"{sys.executable} {file}").returncode == 0
         result = run(out, f"conditions=[clean] rule={rule}", f"{sys.executable} {file}")

@@ -1,4 +1,4 @@
-"""``mitigate run`` from the command line, with the program of the stand-in lab."""
+"""Tests of ``mitigate run`` from the command line, with the program of the stand-in lab."""
 
 import fcntl
 import json
@@ -40,7 +40,7 @@ def test_run_measures_a_program_and_resumes(run, tmp_path):
     first = run(tmp_path / "o", "corruption=spatter name=stand split=toy")
     assert first.returncode == 0, first.stdout + first.stderr
     records = rows.read(tmp_path / "o" / "rows.jsonl")
-    assert len(records) == 2 * 4 * 2  # conditions x episodes x rules
+    assert len(records) == 2 * 4 * 2  # number of conditions x episodes x rules
     own_rows = [row for row in records if row["rule"].startswith("own")]
     assert {row["corruption"] for row in own_rows} == {"clean", "spatter"}
     assert {row["episode_id"] for row in own_rows} == {"s0/0", "s0/2", "s1/1", "s1/3"}
@@ -308,14 +308,15 @@ def test_run_says_how_to_resume_after_a_signal(tmp_path):
         stderr=subprocess.PIPE,
         stdout=subprocess.DEVNULL,
         text=True,
-        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),  # a job in the background
+        # a background job ignores SIGINT
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
     )
     events = tmp_path / "o" / "conditions" / "clean" / "events.jsonl"
-    for _ in range(1200):  # a minute: other work may share the cores
+    for _ in range(1200):  # a minute, because other work may use the cores
         if events.is_file():
             break
         time.sleep(0.05)
-    for _ in range(3):  # Python drops a signal that arrives during a fork: send it again
+    for _ in range(3):  # Python drops a signal that arrives during a fork, so it is sent again
         process.send_signal(signal.SIGINT)
         try:
             printed = process.communicate(timeout=20)[1]

@@ -1,4 +1,4 @@
-"""Ways to get frames of a simulator: corrupted once, or the process ends with an error."""
+"""Tests of all ways to get simulator frames: corrupted once, or the process ends with an error."""
 
 import pytest
 

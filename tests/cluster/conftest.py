@@ -1,4 +1,4 @@
-"""One Ray cluster for all tests of a process, and SLURM's jobs as processes of this machine."""
+"""Fixtures: one Ray cluster for all tests of a process, and SLURM jobs as local processes."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from mitigate.cluster.launcher import RayConfig, SlurmConfig
 HEAD = {
     "num_cpus": 1,
     "include_dashboard": False,
-    # and workers get their share of a busy machine (Ray's default niceness is 15)
+    # workers need processor time on a busy machine (Ray's default niceness is 15)
     "_system_config": {"worker_register_timeout_seconds": 15, "worker_niceness": 0},
 }
 
@@ -41,11 +41,11 @@ def ray_launcher(cluster):
 
 @pytest.fixture
 def slurm_launcher(tmp_path, monkeypatch):
-    """Return a launcher whose SLURM jobs are processes of this machine."""
+    """Return a launcher whose SLURM jobs are processes on this machine."""
     pytest.importorskip("submitit", reason="submitit is not installed (the extra cluster)")
     from submitit.core.core import Job
 
-    # a finished job without a result is noticed at once: its file system is local
+    # a finished job without a result is noticed at once, because its file system is local
     monkeypatch.setattr(Job, "_results_timeout_s", 1)
 
     def make(**settings):

@@ -1,4 +1,4 @@
-"""``mitigate run`` on a cluster: a condition runs again if its worker dies, one row each."""
+"""Tests of ``mitigate run`` on a cluster: if a worker dies, its condition is run again."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from mitigate.core.conf import load_config
 
 pytestmark = pytest.mark.xdist_group("launchers")  # as tests/cluster/test_launchers.py
 
-# An agent that runs two episodes. Under spatter it once kills its worker during the first episode.
+# An agent that runs two episodes and, under spatter, once kills its worker in the first episode.
 AGENT = """
 import os, pathlib, signal, sys, time
 import mitigate_hook, numpy

@@ -1,4 +1,4 @@
-"""Workers on a Ray cluster and as SLURM jobs: each result once, whatever dies."""
+"""Tests of workers on Ray and as SLURM jobs: each result occurs once, whatever process dies."""
 
 from __future__ import annotations
 
@@ -23,8 +23,8 @@ GROUPS = [[(g, i) for i in range(3)] for g in range(6)]
 
 
 class Squares:
-    """Job (g, i) returns 10 g + i after a while; ``deadly`` jobs kill their process the first time
-    and leave a note in ``folder``; ``always`` jobs kill it every time."""
+    """A task whose job (g, i) returns 10 g + i after a while. Jobs in ``deadly`` kill their process
+    the first time and leave a note in ``folder``; jobs in ``always`` kill it every time."""
 
     preload: ClassVar[str] = "mitigate.core.workers"
 
@@ -54,7 +54,7 @@ pytestmark = pytest.mark.xdist_group("launchers")  # one cluster is enough
 
 
 def run(launcher, task, workers=2):
-    """Return the results by number, each once, and the process ids of the workers."""
+    """Return the results by number, and the process ids of the workers."""
     output = {}
     with Progress("jobs", 18, unit="job") as progress:
         for item in results(launcher, task, GROUPS, workers, progress):
@@ -112,7 +112,7 @@ def test_slurm_yields_every_result_once(slurm_launcher, tmp_path):
     values, processes = run(slurm_launcher(), Squares(tmp_path))
     assert values == EXPECTED
     assert len(processes) == 2
-    assert not list((tmp_path / "slurm").iterdir())  # nothing is left behind
+    assert not list((tmp_path / "slurm").iterdir())  # no files are left behind
 
 
 def test_slurm_resubmits_after_a_killed_job(slurm_launcher, tmp_path):
@@ -124,7 +124,7 @@ def test_slurm_raises_a_value_error_at_once(slurm_launcher, tmp_path):
     with pytest.raises(ValueError, match="makes no sense"):
         run(slurm_launcher(attempts=2), Squares(tmp_path, wrong=[(0, 1)]), workers=1)
     left = [path.name for path in (tmp_path / "slurm").rglob("*")]
-    assert slurm_jobs.TASK not in left and "logs" in left  # to see what went wrong
+    assert slurm_jobs.TASK not in left and "logs" in left  # kept to see what went wrong
 
 
 def test_slurm_resubmits_the_rest_of_a_share(tmp_path, monkeypatch):
@@ -138,7 +138,7 @@ def test_slurm_resubmits_the_rest_of_a_share(tmp_path, monkeypatch):
             self.lines, self.groups = lines, groups
 
         def done(self):
-            if len(options) == 1:  # the first ends early, with one result
+            if len(options) == 1:  # the first job ends early, with one result
                 self.lines.write_text('{"job": 0, "result": [0, 0]}\n')
             else:
                 output = [n for group in self.groups for n, _ in group]
@@ -171,7 +171,8 @@ def test_slurm_resubmits_the_rest_of_a_share(tmp_path, monkeypatch):
     with pytest.raises(OSError, match="submit limit"):
         run(launcher, Squares(tmp_path), workers=2)
     assert len(cancelled) == 1
-    assert not [*(tmp_path / "slurm").iterdir()]  # nor its task, with the agent's weights
+    # the task, with the agent's weights, is also removed
+    assert not [*(tmp_path / "slurm").iterdir()]
 
 
 @pytest.mark.parametrize(

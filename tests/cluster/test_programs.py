@@ -1,4 +1,4 @@
-"""Chains of programs on this machine, on Ray and as SLURM jobs, as in the cells of a grid."""
+"""Tests of chains of programs on this machine, on Ray and as SLURM jobs, as in table cells."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from mitigate.core.signals import Ended, raise_ended
 
 pytestmark = pytest.mark.xdist_group("launchers")  # as tests/cluster/test_launchers.py
 
-# Append the missing rows to a file; with the name of a note, kill the worker after two.
+# Appends missing rows to a file; if the name of a note is given, kills the worker after two rows.
 ROWS = """
 import os, pathlib, signal, sys, time
 file, note = map(pathlib.Path, sys.argv[1:])
@@ -54,7 +54,7 @@ def chain(folder: Path, name: str, deadly: bool = False, code: str = ROWS) -> pr
 
 
 def run(chains, launcher, jobs=2) -> dict[int, str]:
-    """Return the outcome of each chain, each reported once."""
+    """Return the outcome of each chain, and check that each is reported once."""
     results: dict[int, str] = {}
 
     def reported(number, outcome):
@@ -83,7 +83,7 @@ def test_chain_resumes_after_its_worker_is_killed(kind, request, tmp_path):
     results = run(result, launcher() if kind == "slurm" else launcher)
     assert results == {0: "", 1: ""}
     assert (tmp_path / "died").exists()
-    assert (tmp_path / "one").read_text().split() == [*"abcd"]  # the first program is gone, too
+    assert (tmp_path / "one").read_text().split() == [*"abcd"]  # the first program has also ended
 
 
 def test_failed_program_ends_only_its_chain(tmp_path):

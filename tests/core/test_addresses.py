@@ -1,4 +1,4 @@
-"""Item 6 of issue 62: a password in ``safeguard=`` is never repeated, whatever surrounds it."""
+"""Tests that a password in ``safeguard=`` is never printed, whatever surrounds it."""
 
 from __future__ import annotations
 
@@ -71,7 +71,7 @@ def test_command_line_never_repeats_a_password(tmp_path, monkeypatch, capfd, wor
     words = word.split(" ") if " = " in word or word.startswith("-") else [word]
     text = output(monkeypatch, capfd, [*flags, *words, "checkpoint=nowhere"])
     assert "PW" not in text and "endpoint" in text
-    assert not list(tmp_path.iterdir())  # no multirun.yaml and no folder of results
+    assert not list(tmp_path.iterdir())  # neither multirun.yaml nor a result folder is written
 
 
 @pytest.mark.parametrize("url", URLS)

@@ -1,4 +1,4 @@
-"""Objects built from a config, and how often they are built."""
+"""Tests of objects that are built from a config, and of how often they are built."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ CAR = {
 
 
 def test_maker_results_share_nothing():
-    """Worlds that run in lockstep do the same: each has its own environment."""
+    """Each world that runs in parallel must have its own environment."""
     cfg = OmegaConf.create({"doors": 2, "car": CAR})
     make = pickle.loads(pickle.dumps(build.maker(cfg.car)))
     first, second = make(), make()
@@ -63,7 +63,7 @@ def test_build_names_unimportable_targets(target):
 
 
 class Gained(torch.nn.Module):
-    """Settings that the weights do not contain, one of them without a default."""
+    """An agent with settings that the weights do not contain, one of them without a default."""
 
     def __init__(self, gain: float, width: int = 2) -> None:
         super().__init__()
@@ -74,7 +74,7 @@ class Gained(torch.nn.Module):
     ("overrides", "gain"), [([], -1.0), (["agent=mine"], -1.0), (["agent.gain=2.0"], 2.0)]
 )
 def test_settings_of_weights_apply_unless_overridden(overrides, gain, tmp_path):
-    """``agent=mine`` names a class in a config; the values of the config belong to another
+    """``agent=mine`` names a class in a config, but the values in the config belong to another
     agent."""
     target = f"{__name__}.Gained"
     checkpoint.save_weights(Gained(-1.0), tmp_path)

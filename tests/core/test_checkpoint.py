@@ -1,4 +1,4 @@
-"""Checkpoints are complete or rejected, rotate, and contain no code."""
+"""Tests of checkpoints: they are complete or rejected, they rotate, and they contain no code."""
 
 from __future__ import annotations
 
@@ -170,7 +170,7 @@ def test_load_reads_one_part_of_whole_weights(tmp_path):
     part = nn.Linear(2, 3)
     checkpoint.load_part(part, "b", tmp_path)
     assert torch.equal(part.weight, whole["b"].weight)
-    smaller = nn.Linear(2, 3, bias=False)  # missing entries are left out
+    smaller = nn.Linear(2, 3, bias=False)  # missing entries are omitted
     checkpoint.load_part(smaller, "b", tmp_path)
     assert torch.equal(smaller.weight, whole["b"].weight)
     with pytest.raises(ValueError, match="no part 'c'"):
@@ -204,7 +204,7 @@ def test_full_disk_is_named_and_files_stay(tmp_path):
     limit = resource.getrlimit(resource.RLIMIT_FSIZE)
     before_signal = signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
     state = {k: {} for k in states.REQUIRED} | {"step": 1, "model": {"w": torch.zeros(99999)}}
-    resource.setrlimit(resource.RLIMIT_FSIZE, (20_000, limit[1]))  # like a disk that fills up
+    resource.setrlimit(resource.RLIMIT_FSIZE, (20_000, limit[1]))  # simulates a full disk
     try:
         with pytest.raises(OSError, match="could not be written|too large"):
             states.save(tmp_path, state)

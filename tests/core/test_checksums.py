@@ -1,4 +1,4 @@
-"""The sha256 of a training's state, of a file of weights and of older folders."""
+"""Tests of the sha256 of training states, weight files and older folders."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ STATE = {
 
 
 class Killed(BaseException):
-    """Simulate a kill: after it only ``finally`` runs."""
+    """Simulated kill, after which only ``finally`` blocks run."""
 
 
 def state(step: int) -> dict:
@@ -40,7 +40,7 @@ def flipped(data: bytes, bit: int) -> bytes:
 
 
 def flips(data: bytes, name: str) -> list[bytes]:
-    """Return ``data`` with one flipped bit, at ``FLIPS`` places that depend on ``name``."""
+    """Yield ``data`` with one flipped bit, at ``FLIPS`` positions that depend on ``name``."""
     places = seeding.generator(0, "flipped bits", name).integers(0, 8 * len(data), FLIPS)
     return [flipped(data, int(bit)) for bit in places]
 
@@ -69,7 +69,8 @@ def test_checkpoint_detects_every_flipped_bit(tmp_path):
 
 
 def test_load_detects_flipped_bits_without_a_sidecar(tmp_path):
-    """Its zip file contains checksums of the contents: a flip outside of them is harmless."""
+    """The zip file contains checksums of its contents, so a flip outside the contents is
+    harmless."""
     path = states.save(tmp_path, state(1))
     note_of(path).unlink()
     expected, sound, refused = states.load(path), path.read_bytes(), 0

@@ -1,4 +1,5 @@
-"""Every YAML in conf/ composes and names existing targets, and a wrong option is explained."""
+"""Tests that every YAML in conf/ composes with existing targets, and that wrong options are
+explained."""
 
 from __future__ import annotations
 
@@ -40,7 +41,7 @@ def check(options: list[str]) -> None:
 
 
 def no_rows(*_, out: Path, **__) -> None:
-    """Stand in for an evaluation: an empty file of rows."""
+    """Stand-in for an evaluation that writes an empty row file."""
     out.touch()
 
 
@@ -177,8 +178,8 @@ def test_frozen_fits_only_recipes_with_its_stages():
 
 
 def test_evaluate_takes_agent_settings_from_the_command_line(monkeypatch, tmp_path):
-    """The weights bring their settings; the command line overrides them. The table's column states
-    this, because the hash of the weights does not change."""
+    """The settings come from the weights, and the command line overrides them. The column name
+    states this, because the hash of the weights does not change."""
     met = {}
 
     def meet(agent, world, episodes, conditions, *, name, out, **others):
@@ -216,7 +217,8 @@ def test_rows_of_an_edited_episode_list_are_not_resumed(monkeypatch, tmp_path):
     evaluate.run(cfg)
     evaluate.run(cfg)
     seen = conf.load_config("evaluate", ["split=val_seen", f"out={tmp_path}"])
-    evaluate.run(seen)  # another list in the same folder is valid: rows carry their split
+    # a different list in the same folder is valid, because rows contain their split
+    evaluate.run(seen)
     shutil.copy(cfg.env.episodes.val_unseen, mine)
     with pytest.raises(ValueError, match="rows of another"):
         evaluate.run(cfg)
@@ -323,7 +325,8 @@ def test_nested_program_ends_in_one_paragraph(monkeypatch, tmp_path, capsys):
 def test_help_says_what_every_option_and_group_means(primary):
     printed, cfg = conf.options_text(primary), conf.load_config(primary)
     settings = {"name", "report", "init", "init_parts", "rollouts"} if primary == "train" else set()
-    plain = {name for name in cfg if not isinstance(cfg[name], DictConfig)}  # the recipe sets own
+    # the recipe sets the option ``own``
+    plain = {name for name in cfg if not isinstance(cfg[name], DictConfig)}
     assert plain - settings <= {line.partition(":")[0] for line in printed.splitlines()}
     for group in ("suite", "launcher"):
         if group in cfg:

@@ -1,4 +1,4 @@
-"""The doctor reports the features of the processor and whether there is a compiler."""
+"""Tests that the doctor reports processor features and whether there is a compiler."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Untrusted files: damaged gzip, gzip bombs, JSON too deep or large for a reader."""
+"""Tests of untrusted files: damaged gzip, gzip bombs, and JSON that is too deep or too large."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ def test_damaged_gzip_gives_one_named_error(packed):
 
 
 def bomb(path, size):
-    """A gzip file of ``size`` spaces, written without holding them in memory."""
+    """Write a gzip file of ``size`` spaces without holding them in memory."""
     packer, block = zlib.compressobj(1, wbits=31), b" " * (1 << 22)
     with open(path, "wb") as file:
         for _ in range(size // len(block)):
@@ -109,7 +109,7 @@ def test_folder_replaces_another_or_the_old_one_stays(tmp_path):
     target.mkdir()
     (target / "a").write_text("before")
     with pytest.raises(FileNotFoundError):
-        files.put_folder(draft, target, old)  # there is no draft
+        files.put_folder(draft, target, old)  # there is no unfinished file
     assert (target / "a").read_text() == "before" and not old.exists()
     draft.mkdir()
     (draft / "a").write_text("behind")
@@ -124,7 +124,7 @@ def text_to(path):
 
 
 def private(path):
-    """safetensors does the same: it replaces the existing file by one of mode 0600."""
+    """As safetensors does, the writer replaces the existing file by one of mode 0600."""
     path.unlink(missing_ok=True)
     os.close(os.open(path, os.O_CREAT | os.O_WRONLY, 0o600))
 

@@ -1,4 +1,4 @@
-"""A folder is completely old or completely new, and every change to it is detected before use."""
+"""Tests that a folder is completely old or completely new, and that changes are detected."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ FLIPS = 50
 
 
 class Killed(BaseException):
-    """Simulate a kill: after it only ``finally`` runs."""
+    """Simulated kill, after which only ``finally`` blocks run."""
 
 
 def flipped(data: bytes, bit: int) -> bytes:
@@ -42,7 +42,7 @@ def write_files(folder: Path, **files: str) -> Path:
 
 
 def older(module: nn.Module, folder: Path) -> Path:
-    """Weights as earlier versions wrote them: a sidecar, and no manifest."""
+    """Write weights as earlier versions did: with a sidecar and no manifest."""
     checkpoint.save_weights(module, folder / checkpoint.WEIGHTS)
     return folder / checkpoint.WEIGHTS
 

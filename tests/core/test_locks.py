@@ -1,4 +1,5 @@
-"""One process at a time in a folder; leftovers of a killed process are deleted and do not block."""
+"""Tests that one process at a time uses a folder, and that files of killed processes are
+deleted."""
 
 from __future__ import annotations
 
@@ -16,7 +17,7 @@ from mitigate.core.locks import NAME, FolderLock, delete_leftovers
 from mitigate.evaluation import evaluate
 from mitigate.training import train
 
-DEAD = 2**30  # larger than any process id (Linux: at most 2**22)
+DEAD = 2**30  # a number larger than any process id (Linux: at most 2**22)
 HOLD = (
     "import sys; from mitigate.core.locks import FolderLock; lock = FolderLock(sys.argv[1])\n"
     "lock.__enter__(); print('in', flush=True); sys.stdin.read()"
@@ -25,7 +26,7 @@ HOLD = (
 
 @pytest.fixture
 def other(tmp_path):
-    """Start another process that holds ``tmp_path / "run"``."""
+    """Start a second process that holds the lock of ``tmp_path / "run"``."""
     command = [sys.executable, "-c", HOLD, str(tmp_path / "run")]
     environment = {**os.environ, "PYTHONPATH": str(Path(__file__).parents[2])}
     options = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "env": environment}
@@ -57,7 +58,7 @@ def test_damaged_lock_note_does_not_block(tmp_path, note):
     with FolderLock(tmp_path):
         with pytest.raises(ValueError, match=f"process {os.getpid()} on"):
             FolderLock(tmp_path).__enter__()
-        with pytest.raises(ValueError, match="is in use"):  # and the lock still holds
+        with pytest.raises(ValueError, match="is in use"):  # the lock is still held
             FolderLock(tmp_path).__enter__()
 
 
@@ -139,7 +140,7 @@ def test_rejected_second_lock_keeps_the_first(tmp_path):
 
 
 def test_cleanup_deletes_files_of_a_reused_process_id(tmp_path):
-    """In a restarted container every process has the same number as before."""
+    """In a restarted container, every process has the same number as before."""
     (tmp_path / "walks").mkdir()
     settings, other = (tmp_path / f".{n}.pt.{n}.tmp" for n in (os.getpid(), os.getppid()))
     dead = tmp_path / "walks" / ".x.pt.4194300.tmp"

@@ -1,7 +1,7 @@
-"""A user's mistake ends a program in one paragraph: the cause, the allowed values, the fix.
+"""Tests that a user's mistake gives one paragraph with cause, allowed values and fix.
 
-``test_config.py`` checks the values of options and unknown recipes; these mistakes show only with
-files and weights.
+``test_config.py`` checks option values and unknown recipes; the mistakes here need files or
+weights.
 """
 
 from __future__ import annotations

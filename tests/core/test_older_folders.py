@@ -1,4 +1,4 @@
-"""Folders of earlier versions are read, and every change to them is detected."""
+"""Tests that folders of earlier versions can be read, and that every change to them is detected."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ READERS = {
 
 
 def as_before(folder: Path) -> Path:
-    """Turn a folder into the format before the manifest: one sidecar per file of weights."""
+    """Convert a folder to the format before manifests: one sidecar per weight file."""
     (folder / folders.MANIFEST).unlink()
     for file in folder.glob("*.safetensors"):
         file.with_name(f"{file.name}.sha256").write_text(f"{sha256(file)}  {file.name}\n")
@@ -50,7 +50,7 @@ def flip(file: Path) -> None:
 
 @pytest.mark.parametrize("name", SHIPPED)
 def test_shipped_folder_loads_and_detects_flipped_bits(name, tmp_path, monkeypatch):
-    monkeypatch.chdir(ROOT)  # the base of adapters is relative to this folder
+    monkeypatch.chdir(ROOT)  # the path of the adapters' base is relative to this folder
     folder = Path(shutil.copytree(ROOT / "checkpoints" / name, tmp_path / "mine"))
     assert not (folder / folders.MANIFEST).exists()
     assert READERS[SHIPPED[name]](folder) is not None
@@ -92,7 +92,7 @@ def test_older_run_loads(tmp_path):
     as_before(tmp_path)
     loaded = mitigate.load(tmp_path)
     assert checkpoint.weights_sha(loaded) == checkpoint.weights_sha(agent)
-    (tmp_path / "model.safetensors.sha256").unlink()  # the first versions wrote none
+    (tmp_path / "model.safetensors.sha256").unlink()  # the first versions wrote no checksum
     assert torch.equal(next(mitigate.load(tmp_path).parameters()), next(iter(agent.parameters())))
 
 

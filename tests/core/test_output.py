@@ -1,4 +1,4 @@
-"""Output files are opened only if they belong to the run; a folder that vanishes is noticed."""
+"""Tests that only regular output files are opened, and that a removed folder is noticed."""
 
 from __future__ import annotations
 
@@ -212,7 +212,7 @@ def test_writes_notice_a_lost_inner_folder(tmp_path, write):
         shutil.rmtree(tmp_path / "out" / "in")
         with pytest.raises(FolderLostError, match="in was removed or replaced"):
             write(tmp_path / "out" / "in" / "other", "new")
-        output.forget(tmp_path / "out" / "in")  # by a caller that deleted the folder itself
+        output.forget(tmp_path / "out" / "in")  # for a caller that deleted the folder itself
         files.write_text(tmp_path / "out" / "in" / "other", "new")
 
 
@@ -258,7 +258,7 @@ def test_folder_lock_keeps_the_first_error(tmp_path):
     with pytest.raises(KeyError), FolderLock(tmp_path / "out"):
         shutil.rmtree(tmp_path / "out")
         raise KeyError
-    with FolderLock(tmp_path / "out"):  # and is free again
+    with FolderLock(tmp_path / "out"):  # the lock is free again
         pass
 
 

@@ -1,5 +1,4 @@
-"""bf16 only where the processor supports it; all processes use the precision that was chosen
-once."""
+"""Tests that bf16 is used only if supported, and that all processes use the same precision."""
 
 from __future__ import annotations
 
@@ -57,7 +56,7 @@ def test_context_reports_its_precision():
 
 
 class Watching(TinyRecipe):
-    """Records the precision in which each part of it ran."""
+    """An objective that records the precision in which each of its parts ran."""
 
     def __init__(self) -> None:
         super().__init__()

@@ -1,4 +1,4 @@
-"""Progress of a long job, in a terminal and elsewhere."""
+"""Tests of the progress of a long job, in a terminal and elsewhere."""
 
 from __future__ import annotations
 

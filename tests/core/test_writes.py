@@ -1,6 +1,8 @@
-"""Files are written through ``mitigate/core/output.py`` and ``files.py`` alone: read from the code.
+"""Tests, by reading the source, that files are written only by ``core/output.py`` and
+``core/files.py``.
 
-``open_output`` rejects links, FIFOs and devices. A call that writes past it needs a reason here.
+``open_output`` rejects links, FIFOs and devices. A call that writes without it must be listed here
+with a reason.
 """
 
 from __future__ import annotations
@@ -28,7 +30,7 @@ QUALIFIED = {
     "os.link",
     "sqlite3.connect",
 }
-FILES = "mitigate.core.files"  # its functions share some of these names
+FILES = "mitigate.core.files"  # functions of this module have some of these names
 DRAFT = "writes a file with a random name that write_atomically made, or a file in memory"
 OWN = "writes into a private temporary folder that it has just made"
 ALLOWED = {
@@ -93,7 +95,7 @@ def imported(tree: ast.AST) -> set[str]:
 
 
 def mode_of(call: ast.Call, place: int) -> str:
-    """Return the mode that is passed to ``open``, empty for reading."""
+    """Return the mode that is passed to ``open``, or "" for reading."""
     named = [key.value for key in call.keywords if key.arg == "mode"]
     arguments = [*named, *call.args[place : place + 1]]
     return str(arguments[0].value) if arguments and isinstance(arguments[0], ast.Constant) else ""

@@ -7,8 +7,8 @@ from tools.pages.curves import psnr, ssim
 
 
 def draw(height: int, width: int, view: int = 0) -> tuple[np.ndarray, np.ndarray]:
-    """Return uint8 [H, W, 3] and float32 metres [H, W]: two boxes in front of a sloping wall, all
-    chequered."""
+    """Return a chequered scene of two boxes before a sloping wall, as uint8 [H, W, 3] and metres
+    [H, W]."""
     v = ((np.arange(height) + 0.5) / height)[:, None]
     u = ((np.arange(width) + 0.5) / width)[None, :]
     shift = 0.7 * view
@@ -25,7 +25,7 @@ def draw(height: int, width: int, view: int = 0) -> tuple[np.ndarray, np.ndarray
 
 
 def panorama_of(views: int, height: int, width: int) -> tuple[np.ndarray, np.ndarray]:
-    """RGB [V, H, W, 3] and depth [V, H, W, 1], with a few invalid readings."""
+    """Return RGB [V, H, W, 3] and depth [V, H, W, 1] with a few invalid pixels."""
     drawn = [draw(height, width, view) for view in range(views)]
     rgb, depth = np.stack([d[0] for d in drawn]), np.stack([d[1] for d in drawn])[..., None]
     depth[:, :3, :5] = 0.0

@@ -1,4 +1,5 @@
-"""The broad augmentation: random compositions to train on, by a schedule's ``broad_share``."""
+"""Tests of broad augmentation: random compositions for training, by a schedule's
+``broad_share``."""
 
 from __future__ import annotations
 
@@ -47,7 +48,7 @@ def test_equal_keys_give_equal_pixels(name, panorama):
 
 
 def test_composition_is_constant_within_an_episode(panorama):
-    """Compositions are not drawn per frame, so another frame number changes nothing."""
+    """Compositions are not sampled per frame, so a different frame number changes nothing."""
     remaining = [
         corrupt(panorama[0], "broad_rgb", 0.8, key=Key(0, f"e{i}", 0)).tobytes()
         == corrupt(panorama[0], "broad_rgb", 0.8, key=Key(0, f"e{i}", 1)).tobytes()

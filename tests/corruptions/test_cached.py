@@ -1,4 +1,4 @@
-"""The cache of masks is bounded by bytes, and a recomputed mask is equal."""
+"""Tests that the cache of masks is bounded in bytes, and that a recomputed mask is equal."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ def test_cached_keeps_the_last_used_and_one_large_result(memory):
         output.append(count)
         return np.zeros(count, np.uint8)
 
-    zeros(400_000), zeros(500_000), zeros(400_000)  # the second is the least recently used
+    zeros(400_000), zeros(500_000), zeros(400_000)  # the second entry is the least recently used
     zeros(300_000), zeros(400_000)
     assert output == [400_000, 500_000, 300_000]
     assert zeros(2_000_000) is zeros(2_000_000) and len(memory) == 1

@@ -1,4 +1,4 @@
-"""``python -m mitigate.corrupt``: folders of frames in, corrupted folders out."""
+"""Tests of ``python -m mitigate.corrupt``, which corrupts folders of frames."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def read(path: Path) -> np.ndarray:
 
 @pytest.fixture
 def run(tmp_path, capsys):
-    """Call the program on tmp_path/in and tmp_path/out; (status, stdout, stderr)."""
+    """Call the program on tmp_path/in and tmp_path/out; return (status, stdout, stderr)."""
 
     def call(*options, source="in", out="out"):
         status = program.main([str(tmp_path / source), str(tmp_path / out), *options])
@@ -54,7 +54,7 @@ def run(tmp_path, capsys):
 
 @pytest.fixture
 def walk(tmp_path):
-    """Two folders of RGB PNG; the names of the first are not padded."""
+    """Write two folders of RGB PNG files; the names in the first are not padded with zeros."""
     for number in range(12):
         save(tmp_path / f"in/a/frame{number}.png", RGB[number])
     save(tmp_path / "in/b/c/0.png", RGB[0])
@@ -74,7 +74,7 @@ def summary(folder: Path) -> dict:
 def test_every_frame_equals_the_suites_output(run, walk):
     status, out, err = run("corruption=low_light_noise", "severity=0.7", "seed=3")
     assert status == 0 and "13 frames written" in out
-    for number in range(12):  # frame10 is number 10, not number 2
+    for number in range(12):  # frame10 has number 10 rather than number 2
         key = Key(3, "a", number)
         expected = corrupt(RGB[number], "low_light_noise", 0.7, key=key)
         assert np.array_equal(read(walk / f"out/a/frame{number}.png"), expected)
@@ -168,7 +168,7 @@ def test_jpeg_becomes_png_or_stays_jpeg(run, tmp_path):
 def test_jpeg_is_rotated_by_its_exif_data(run, tmp_path):
     (tmp_path / "in").mkdir()
     exif = Image.Exif()
-    exif[0x0112] = 6  # turned by 90 degrees
+    exif[0x0112] = 6  # the image is rotated by 90 degrees
     Image.fromarray(RGB[0]).save(tmp_path / "in/x.jpg", exif=exif)
     assert run("corruption=spatter", "severity=0")[0] == 0
     decoded = read(tmp_path / "in/x.jpg")
@@ -408,7 +408,7 @@ def contents(folder: Path) -> dict[str, bytes]:
 def test_corrupt_writes_changed_output_frames_again(run, walk, damage, earlier):
     run(*SPATTER)
     whole = contents(walk / "out")
-    if earlier == "without checksums":  # summaries of earlier versions
+    if earlier == "without checksums":  # as in summaries of earlier versions
         content = summary(walk / "out")
         del content["checksums"], content["replaced"]
         (walk / "out/corrupt.json").write_text(json.dumps(content))

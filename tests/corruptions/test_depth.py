@@ -1,4 +1,4 @@
-"""The effect of each depth corruption in metres."""
+"""Tests of the effect of each depth corruption in metres."""
 
 import numpy as np
 import pytest
@@ -59,7 +59,7 @@ def test_holes_are_blobs_that_move_every_five_frames():
     views = frames[0] != 4
     assert (views[0] != views[1]).any()
     rolls = {np.sort(view.sum(0)).tobytes() for view in views}
-    assert len(rolls) == 1  # one field per episode, placed separately for each view
+    assert len(rolls) == 1  # one random field per episode, at a different position in each view
 
 
 def test_sentinel_of_the_sensor_is_written():
@@ -70,7 +70,7 @@ def test_sentinel_of_the_sensor_is_written():
 
 
 def corner():
-    """A box edge: 2 m on the left, 3 m on the right."""
+    """Return depth with a box edge: 2 m on the left, 3 m on the right."""
     depth = np.full((100, 200), 3.0, np.float32)
     depth[:, :100] = 2.0
     return depth
@@ -185,7 +185,7 @@ def test_normalised_sensor_is_converted_to_metres_and_back():
     assert sensor.to_metres(unit).tolist() == pytest.approx([0.0, 1.4, 5.0])
     assert sensor.from_metres(sensor.to_metres(unit)) == pytest.approx(unit)
     near = sensor.from_metres(np.array([0.0, sensor.z_min / 2, sensor.z_min]))
-    assert near[0] == 0 and (near[1:] > 0).all()  # a reading is not a hole
+    assert near[0] == 0 and (near[1:] > 0).all()  # a valid pixel is not a hole
     assert sensor.to_metres(unit).dtype == np.float32
 
 

@@ -1,4 +1,4 @@
-"""The sensor model against the published constants and a slow direct sampler."""
+"""Tests of the sensor model against published constants and a slow direct sampler."""
 
 import numpy as np
 import pytest
@@ -37,7 +37,7 @@ def test_tukey_lambda_passes_through_the_logistic():
 
 
 def slow_sample(levels, gain, severity, rng):
-    """The documented model, word for word: uint8 [V, H, W, 3] and mask [H, W] to uint8."""
+    """Implement the documented model directly, for uint8 [V, H, W, 3] and a mask [H, W]."""
     noise = noise_at(severity)
     light = (levels / 255 * gain[..., None]) ** 2.2
     electrons = rng.poisson(light * 15583 / noise.ratio / noise.gain)
@@ -81,7 +81,8 @@ def test_distribution_matches_the_slow_sampler(severity, level):
     fast = low_light_noise(views, severity, key).ravel()
     distance = stats.ks_2samp(fast, slow).statistic
     by_chance = stats.ks_2samp(other, slow).statistic
-    assert distance < 0.02 + by_chance  # grey levels are coarse: one is up to 0.1 of the mass
+    # grey levels are coarse, so a single level has up to 0.1 of the probability
+    assert distance < 0.02 + by_chance
 
 
 @pytest.mark.parametrize("severity, decibel", [(0.5, 31.4), (0.6, 27.0), (1.0, 11.9)])
@@ -97,7 +98,7 @@ def test_noise_has_the_strength_of_the_suite(severity, decibel, scene):
         fast.append(scene.psnr(dark, noisy))
         slow.append(scene.psnr(dark, direct))
     assert np.mean(fast) == pytest.approx(np.mean(slow), abs=0.2)
-    assert np.mean(fast) == pytest.approx(decibel, abs=1.0)  # the level depends on the picture
+    assert np.mean(fast) == pytest.approx(decibel, abs=1.0)  # the level depends on the image
 
 
 def test_low_light_differs_from_low_light_noise_by_noise_only(scene):
@@ -105,7 +106,7 @@ def test_low_light_differs_from_low_light_noise_by_noise_only(scene):
     dark = corrupt(frame, "low_light", 0.5, key=Key(0, "a")).astype(float)
     noisy = corrupt(frame, "low_light_noise", 0.5, key=Key(0, "a")).astype(float)
     mean = noisy.mean(0)
-    bright = dark[0] > 40  # clipping at zero brightens deep shadows
+    bright = dark[0] > 40  # clipping at zero brightens dark areas
     assert abs((mean - dark[0])[bright].mean()) < 0.8
     assert np.corrcoef(mean.ravel(), dark[0].ravel())[0, 1] > 0.995
 

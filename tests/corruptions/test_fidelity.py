@@ -1,4 +1,4 @@
-"""The fidelity check: what it reads, accepts and rejects."""
+"""Tests of the fidelity check: the facts it extracts, and the rewrites it accepts and rejects."""
 
 from __future__ import annotations
 

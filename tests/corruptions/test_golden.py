@@ -1,13 +1,13 @@
-"""Pixels are pinned: a change needs a new SUITE_VERSION, or a new version of an unseen corruption.
+"""Tests that pixels do not change without a new SUITE_VERSION or a new corruption version.
 
-To accept new pixels: raise ``SUITE_VERSION`` in ``mitigate/corruptions/suite.py`` (of an unseen
+To accept new pixels, increase ``SUITE_VERSION`` in ``mitigate/corruptions/suite.py`` (of an unseen
 or a broad one: ``version`` in its record), look at the
 contact sheet (``python -m tools.pages.gallery --out sheet.png``), then run
 
     python tests/corruptions/test_golden.py --write
 
-from the project root, commit ``golden.json`` and say in the changelog what changed and why: result
-rows of another suite version cannot be compared.
+from the project root, commit ``golden.json`` and state in the changelog what changed and why.
+Result rows of different suite versions cannot be compared.
 """
 
 import hashlib
@@ -27,7 +27,8 @@ SEVERITIES = (0.05, 0.5, 0.6, 1.0)
 
 
 def frames():
-    """A panorama made from integers, so that the input does not depend on a maths library."""
+    """Return a panorama computed from integers, so that the input does not depend on a maths
+    library."""
     k, y, x = np.mgrid[:12, :48, :64]
     rgb = np.stack([(x * 5 + y * c + 40 * k + (x // 9) * (y // 7)) % 256 for c in (3, 4, 6)], -1)
     depth = 0.5 + ((x // 8) * 7 + (y // 6) * 11 + k * 5) % 37 / 4 + x / 256
@@ -47,7 +48,7 @@ def fingerprint(name: str, severity: float) -> str:
 
 
 def levels(name: str) -> list[float]:
-    """Return the mean of each of 24 compositions: OpenCV gives different bits on different
+    """Return the mean of each of 24 compositions, because OpenCV gives different bits on different
     machines."""
     frame = frames()[modality(name) != "rgb"]
     drawn = [corrupt(frame, name, 0.6, key=Key(2024, f"golden {i}", 13)) for i in range(24)]

@@ -1,4 +1,4 @@
-"""The same frame gets the same pixels in any order, batch and process."""
+"""Tests that a frame gets the same pixels in any order, batch and process."""
 
 import hashlib
 import os
@@ -91,7 +91,7 @@ def test_digest_matches_the_published_value():
 
 
 def test_compiled_hash_is_splitmix64():
-    # Reference output of splitmix64 seeded with 1234567 (Vigna's C code).
+    # Reference output of splitmix64 with seed 1234567 (Vigna's C code).
     assert keying.scramble(1234567, 0) == 6457827717110365317
     assert keying.scramble(1234567, 1) == 3203168211198807973
     value = keying.digest(Key(0, "a"), "x")
@@ -114,7 +114,7 @@ def test_field_has_unit_spread_and_the_requested_correlation():
     fields = [keying.field(keying.digest(Key(i, "f"), "x"), 96, 128, 0.025)[0] for i in range(12)]
     cells = np.stack(fields)
     assert abs(cells.mean()) < 0.1 and abs(cells.std() - 1) < 0.05
-    lag = round(0.025 * 96 * 2)  # two sigma of the kernel: correlation exp(-4 / 4)
+    lag = round(0.025 * 96 * 2)  # two sigmas of the blur kernel: correlation exp(-4 / 4)
     shifted = np.roll(cells, lag, axis=2)
     assert np.mean(cells * shifted) / cells.var() == pytest.approx(np.exp(-1), abs=0.08)
 

@@ -1,4 +1,4 @@
-"""Normalised depth: to metres, corrupted and back, and which values return bit for bit."""
+"""Tests of normalised depth: conversion, corruption, and values that return bit for bit."""
 
 import numpy as np
 import pytest
@@ -33,7 +33,7 @@ def test_range_dtype_shape_and_invalid_pixels_stay(depth, name, severity, sensor
     else:
         assert (out[valid] != depth[valid]).any()
     if name != "missing_data":
-        assert (out[valid] > 0).all()  # 0 would mean "no reading"
+        assert (out[valid] > 0).all()  # a value of 0 would mean missing depth
 
 
 @pytest.mark.parametrize("name", DEPTH)

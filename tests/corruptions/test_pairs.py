@@ -1,5 +1,4 @@
-"""Two corruptions at once: their order, their random draws, and the places that accept the
-notation."""
+"""Tests of pairs of corruptions: their order, random numbers, and options that accept them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The files of a folder that count as frames: links are followed to files and folders."""
+"""Tests of the files in a folder that count as frames: links to files and folders are followed."""
 
 import os
 import shutil
@@ -14,7 +14,8 @@ from mitigate.corruptions.folders import Settings, run
 
 @pytest.fixture
 def walk(tmp_path):
-    """A folder ``in`` with links to and from a folder ``elsewhere``, to itself and to ``out``."""
+    """Write a folder ``in`` with links to and from a folder ``elsewhere``, to itself and to
+    ``out``."""
     for number, path in enumerate(("in/a/0", "in/a/1", "in/b/0", "elsewhere/0", "elsewhere/c/0")):
         (tmp_path / path).parent.mkdir(parents=True, exist_ok=True)
         frame = np.full((8, 8, 3), 20 * number, np.uint8)
@@ -32,7 +33,7 @@ def walk(tmp_path):
 
 
 def test_links_are_followed_except_cycles_and_results(walk):
-    for saved in (7, 0):  # the second run reaches the results of the first through a link
+    for saved in (7, 0):  # the second run finds the results of the first through a link
         matches = run(walk / "in", walk / "out", Settings("spatter", 0.6))
         assert matches["written"] == saved and matches["there"] == 7 - saved
         assert {name: e["frames"] for name, e in matches["episodes"].items()} == {

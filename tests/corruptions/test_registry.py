@@ -1,4 +1,4 @@
-"""One record per corruption, and a corruption from another package in a suite."""
+"""Tests of one record per corruption, and of a corruption from another package in a suite."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ def test_wrong_record_is_rejected():
 
 @pytest.fixture
 def package(tmp_path) -> Path:
-    """The folder with the installed package of the page."""
+    """The folder with the installed package from the documentation page."""
     (tmp_path / "rain.py").write_text(MINE)
     group, line = POINT.strip().splitlines()
     folder = tmp_path / "rain-1.0.dist-info"
@@ -79,7 +79,7 @@ def installed(package) -> dict[str, str]:
 
 @pytest.fixture
 def add_to_path(package, monkeypatch):
-    """Return a function that lets this process import the package in its current state."""
+    """Return a function with which this process imports the package in its current state."""
 
     def forget():
         registry.plugin_records.cache_clear()
@@ -87,7 +87,8 @@ def add_to_path(package, monkeypatch):
         importlib.invalidate_caches()
 
     monkeypatch.syspath_prepend(package)
-    monkeypatch.setattr(sys, "dont_write_bytecode", True)  # a change within a second counts, too
+    # a change within a second is also noticed
+    monkeypatch.setattr(sys, "dont_write_bytecode", True)
     forget()
     yield forget
     forget()

@@ -1,4 +1,4 @@
-"""Rewriting by a model: what is asked and cached, and how a truncated cache is read."""
+"""Tests of rewriting by a model: prompts, cached answers, and a truncated cache."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ TEXT = "Turn left at the sofa\u2028 and stop."
 
 
 class Model:
-    """Returns a fixed rewrite and counts its calls."""
+    """A model that returns a fixed rewrite and counts its calls."""
 
     def __init__(self, answer: str = "Hang a left at the couch, friend, and stop.") -> None:
         self.asked: list[tuple[str, str]] = []

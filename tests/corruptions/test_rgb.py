@@ -1,4 +1,4 @@
-"""The effect of each RGB corruption on pixels, sizes and panoramas."""
+"""Tests of the effect of each RGB corruption on pixels, sizes and panoramas."""
 
 import numpy as np
 import pytest
@@ -71,7 +71,7 @@ def test_motion_blur_is_a_line_filter_to_half_a_level(size, severity, scene):
     blurred = cv2.filter2D(frame.astype(np.float64), -1, line / line.sum(), borderType=border)
     exact = (0.5 - 0.5 * severity) * frame + (0.5 + 0.5 * severity) * blurred
     out = corrupt(frame, "motion_blur", severity, key=key)
-    assert np.abs(out - exact).mean() < 0.4  # 0.25 of it is the rounding to grey levels
+    assert np.abs(out - exact).mean() < 0.4  # 0.25 of this is rounding to grey levels
     assert abs((out - exact).mean()) < 0.1 and np.abs(out - exact).max() < 4
 
 
@@ -88,7 +88,7 @@ def test_low_light_leaves_the_stated_share_of_light(episode):
     out = corrupt(WHITE, "low_light", 0.5, key=Key(0, episode)) / 255
     low, high = 1 - 0.5 * 0.97, 1 - 0.5 * 0.60
     assert out.min() >= low - 0.003 and out.max() <= high + 0.003
-    assert out.max() - out.min() > 0.1  # uneven: a gradient, not a dimmer
+    assert out.max() - out.min() > 0.1  # the darkness is a gradient and not uniform
 
 
 def test_low_light_uses_ramps_and_lights():
@@ -131,7 +131,7 @@ def flared(key, heading):
 def test_only_views_facing_the_light_flare(episode):
     for heading in np.linspace(-3, 7, 9):
         _, views = flared(Key(0, episode), heading)
-        assert len(views) == 3  # 90 degrees of view, a camera every 30
+        assert len(views) == 3  # cameras with 90 degrees of view, every 30 degrees
         steps = {(b - a) % 12 for a, b in zip(views, views[1:], strict=False)}
         assert steps <= {1, 10}
 
@@ -139,7 +139,8 @@ def test_only_views_facing_the_light_flare(episode):
 def test_light_stays_in_the_world_when_the_agent_turns():
     key = Key(0, "a")
     before, _ = flared(key, 0.2)
-    left, _ = flared(key, 0.2 + TURN)  # a turn to the left: the scene moves one view to the right
+    # after a turn to the left, the scene moves one view to the right
+    left, _ = flared(key, 0.2 + TURN)
     assert np.abs(np.roll(left, -1, axis=0).astype(int) - before).max() <= 1
     around, _ = flared(key, 0.2 + 2 * np.pi)
     assert np.abs(around.astype(int) - before).max() <= 1
@@ -175,7 +176,7 @@ def test_defocus_is_the_gaussian_blur_it_says(sigma, scene):
     kernels.blur.gaussian(frame[None], *kernels.gaussian_weights(sigma), out)
     border = cv2.BORDER_REPLICATE
     exact = cv2.GaussianBlur(frame.astype(np.float64), (0, 0), sigma, borderType=border)
-    assert np.abs(out[0] - exact).mean() <= 0.3  # 0.25 of it is the rounding to grey levels
+    assert np.abs(out[0] - exact).mean() <= 0.3  # 0.25 of this is rounding to grey levels
     assert abs((out[0] - exact).mean()) < 0.03 and np.abs(out[0] - exact).max() < 2
 
 
@@ -221,7 +222,7 @@ def test_black_out_is_drawn_for_each_frame_and_view():
 
 @pytest.mark.parametrize("heading", [float("nan"), float("inf")])
 def test_flare_rejects_heading_that_is_not_a_number(scene, heading):
-    """A light outside of all views would look like a clean frame."""
+    """A light outside all views would leave the frame clean."""
     rgb, _ = scene.draw(24, 32)
     with pytest.raises(ValueError, match="heading must be in finite radians"):
         corrupt(rgb, "flare", 1.0, key=Key(0, "a"), heading=heading)

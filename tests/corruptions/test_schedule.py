@@ -1,4 +1,4 @@
-"""Schedules: which corruption a frame gets."""
+"""Tests of schedules: which corruption a frame gets."""
 
 import json
 from collections import Counter

@@ -1,4 +1,4 @@
-"""Our tagger on hand-labelled words; spaCy's if an English pipeline is installed."""
+"""Tests of our tagger on hand-labelled words, and of spaCy if an English pipeline is installed."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ CONTENT = {"NOUN", "PROPN", "VERB", "ADP"}
 
 
 def pairs(text: str, tag) -> list[tuple[str, str, str]]:
-    """Return (word, label, tag) of every word; punctuation is left out."""
+    """Return (word, label, tag) for every word, without punctuation."""
     matches = []
     for line in text.splitlines():
         if "/" not in line:

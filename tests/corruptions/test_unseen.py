@@ -1,4 +1,4 @@
-"""The unseen corruptions: the suite's rules, their halves, and that no training uses them."""
+"""Tests of unseen corruptions: the suite's rules, their halves, and no use in training."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from tools.pages.descriptions import DESCRIPTIONS
 KEY = Key(3, "episode-7", 4)
 RGB, DEPTH = unseen_names("rgb"), unseen_names("depth")
 UNSEEN_NAMES = RGB + DEPTH
-LOSE = ("edge_shadow", "range_limit")  # readings, as missing_data does
+LOSE = ("edge_shadow", "range_limit")  # removes depth values, as missing_data does
 TENTHS = np.linspace(0.0, 1.0, 11)
 RECIPES = sorted(path.stem for path in (conf.CONF / "recipe").glob("*.yaml"))
 SCHEDULES = sorted(path.stem for path in (conf.CONF / "schedule").glob("*.yaml"))
@@ -31,7 +31,8 @@ def same(a, b):
     return a.dtype == b.dtype and a.shape == b.shape and a.tobytes() == b.tobytes()
 
 
-# --------------------------------------------------------------------- what they are, and where
+# --------------------------------------------------------------------- definition of the unseen
+# corruptions
 
 
 def test_unseen_halves_are_separate_from_the_suite():
@@ -71,11 +72,12 @@ def test_unseen_corruptions_are_in_their_suites_only():
             assert not set(suite(path.stem)) & set(UNSEEN_NAMES), path
 
 
-# ------------------------------------------------------------------------------ nobody trains on
+# ------------------------------------------------------------------------------ no recipe trains on
+# unseen corruptions
 
 
 def schedules(node) -> list[dict]:
-    """Return all schedules in a config, at any depth."""
+    """Return all schedules in a config, at any nesting level."""
     if isinstance(node, list):
         return [matches for value in node for matches in schedules(value)]
     if not isinstance(node, dict):
@@ -132,7 +134,7 @@ def test_severity_zero_changes_no_bit_and_the_input_stays(name, panorama):
         out = corrupt(frame, name, severity, key=KEY, heading=0.3)
         assert frame.tobytes() == before and not np.shares_memory(out, frame)
         assert out.shape == frame.shape and out.dtype == frame.dtype
-    assert not same(out, frame) or name == "glossy_floor"  # there is no floor in that scene
+    assert not same(out, frame) or name == "glossy_floor"  # that scene has no floor
 
 
 @pytest.mark.parametrize("name", RGB)
@@ -222,7 +224,8 @@ def test_frame_and_half_size_copy_are_corrupted_alike(name):
     assert np.abs(full - small).mean() < 0.15 * np.abs(small - half).mean() + 0.6
 
 
-# ------------------------------------------------------------------------- what each of them does
+# ------------------------------------------------------------------------- the effect of each
+# corruption
 
 
 def room(height: int, width: int, wall: float = 4.0, tall: float = 1.2) -> np.ndarray:

@@ -9,7 +9,7 @@ from torch import Tensor, nn
 
 
 class TinyNet(nn.Module):
-    """Four blocks in a list, features by a module called ``pool``, then a classifier."""
+    """An encoder with four blocks in a list, a module ``pool`` for features, and a classifier."""
 
     def __init__(self, channels: int = 3, width: int = 8) -> None:
         super().__init__()
@@ -35,7 +35,7 @@ def tiny(channels: int = 3, width: int = 8) -> nn.Module:
 
 
 class Bottleneck(nn.Module):
-    """habitat-baselines' block of a ResNet-50 with GroupNorm."""
+    """The block of habitat-baselines' ResNet-50 with GroupNorm."""
 
     def __init__(self, inputs: int, planes: int, groups: int, stride: int) -> None:
         super().__init__()
@@ -62,7 +62,8 @@ class Bottleneck(nn.Module):
 
 
 class DdppoDepth(nn.Module):
-    """DDPPO's depth encoder: ResNet-50, GroupNorm, base 32; 1x256x256 to 128x4x4."""
+    """DDPPO's depth encoder: DDPPO's ResNet-50 with GroupNorm and base 32, from 1x256x256 to
+    128x4x4."""
 
     def __init__(self, base: int = 32, blocks: tuple[int, ...] = (3, 4, 6, 3)) -> None:
         super().__init__()
@@ -94,7 +95,7 @@ class DdppoDepth(nn.Module):
 
 
 class ResidualAttentionBlock(nn.Module):
-    """OpenAI's CLIP block: tokens ``[T, n, C]``."""
+    """The block of OpenAI's CLIP, for tokens ``[T, n, C]``."""
 
     def __init__(self, width: int, heads: int) -> None:
         super().__init__()
@@ -111,7 +112,8 @@ class ResidualAttentionBlock(nn.Module):
 
 
 class OpenAIClip(nn.Module):
-    """OpenAI's VisionTransformer: ``transformer.resblocks``, class token first, 512-like output."""
+    """OpenAI's VisionTransformer: It has ``transformer.resblocks``, the class token first, and a
+    projected output."""
 
     def __init__(self, width: int = 24, layers: int = 4, patch: int = 8, size: int = 32) -> None:
         super().__init__()
@@ -144,7 +146,7 @@ class ListBlock(nn.Module):
 
 
 class ListNet(nn.Module):
-    """Four :class:`ListBlock` over rows of pixels."""
+    """An encoder with four :class:`ListBlock` modules on rows of pixels."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -170,7 +172,7 @@ def ddppo() -> nn.Module:
     """Return DDPPO's depth encoder at full size with random weights.
 
     Residual branches are scaled down, as in trained networks. Otherwise such a deep random network
-    turns any change into noise.
+    would convert any change to noise.
     """
     model = _seeded(DdppoDepth)
     for block in model.modules():
@@ -180,8 +182,9 @@ def ddppo() -> nn.Module:
 
 
 def resnet50() -> nn.Module:
-    """transformers' ResNet-50, random weights, branches as in :func:`ddppo`. Its BatchNorms have
-    seen noise, so that the features of all layers have a similar size."""
+    """Return the ResNet-50 of transformers with random weights and branches as in :func:`ddppo`.
+    Its BatchNorm statistics are computed on noise, so that features of all layers have similar
+    sizes."""
     from transformers import ResNetConfig, ResNetModel
 
     def make() -> nn.Module:
@@ -200,7 +203,7 @@ def resnet50() -> nn.Module:
 
 
 def clip_vit_b32(**settings: int) -> nn.Module:
-    """The vision part of transformers' CLIP, by default ViT-B/32, random weights."""
+    """Return the vision part of CLIP in transformers (default ViT-B/32) with random weights."""
     from transformers import CLIPVisionConfig, CLIPVisionModel
 
     return _seeded(lambda: CLIPVisionModel(CLIPVisionConfig(**settings)))

@@ -1,4 +1,4 @@
-"""Loading of encoders and weights, and the error messages."""
+"""Tests of loading encoders and weights, and of the error messages."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ def drawn(width: int = 8) -> torch.nn.Module:
 
 
 def test_encoder_rejects_random_weights_with_adapters(tmp_path):
-    """Random weights are lost with the process, and the adapters fit no other weights."""
+    """Random weights are lost when the process ends, and adapters fit no other weights."""
     path, state = f"{__name__}:drawn", torch.random.get_rng_state()
     with pytest.raises(
         ValueError, match=r"initialises 11 .* at random \(stem.weight.*agent.weights="
@@ -73,7 +73,7 @@ def test_encoder_rejects_random_weights_with_adapters(tmp_path):
     file = tmp_path / "weights.safetensors"
     save_file(drawn().state_dict(), file)
     assert encoder(model=path, weights=str(file))
-    assert encoder(model=path, tune="all")  # its folder contains all weights
+    assert encoder(model=path, tune="all")  # the folder contains all weights
     torch.random.set_rng_state(state)
     encoder()
     after = torch.random.get_rng_state()
@@ -278,7 +278,7 @@ def test_load_weights_ignores_a_habitat_config(tmp_path):
 
 
 class Runs:
-    """A class whose pickle runs a command."""
+    """A class whose pickle runs a command when it is loaded."""
 
     def __reduce__(self):
         return (print, ("this ran",))

@@ -1,4 +1,5 @@
-"""``plain_adapters.py`` equals ``load_adapters``, runs no code and works as a copied file."""
+"""Tests that ``plain_adapters.py`` equals ``load_adapters``, runs no code, and works when
+copied."""
 
 from __future__ import annotations
 
@@ -153,7 +154,7 @@ def test_module_imports_only_numpy_and_torch():
 
 
 def test_module_works_as_a_copy(tmp_path):
-    """Run in another process that cannot import this project."""
+    """The check runs in a separate process that cannot import this project."""
     saved(tmp_path)
     (tmp_path / "plain_adapters.py").write_text(FILE.read_text(encoding="utf-8"))
     code = (

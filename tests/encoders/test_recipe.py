@@ -1,4 +1,4 @@
-"""The encoder recipe on tiny encoders, from the config to a folder that loads."""
+"""Tests of the encoder recipe on tiny encoders, from the config to a folder that loads."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ TINY = ["agent=encoder", "agent.model=tests.encoders.shapes:tiny", "agent.output
 
 @pytest.fixture(scope="module")
 def pictures(tmp_path_factory):
-    """Write six scenes of smooth random pictures."""
+    """Write six scenes with smooth random images."""
     path, rng = tmp_path_factory.mktemp("pictures"), np.random.default_rng(0)
     for scene in range(6):
         (path / f"s{scene}").mkdir()
@@ -142,14 +142,15 @@ def test_training_of_an_exported_program(tmp_path, pictures, tune):
 
 def test_report_compares_with_the_initial_encoder(tmp_path, pictures):
     own_value = ["agent=encoder", "agent.model=tests.encoders.shapes:TinyNet", "agent.output=pool"]
-    own_value += ["agent.tune=all", "trainer.lr=1e-9"]  # weights are resampled, and hardly trained
+    # new random weights, which are hardly trained
+    own_value += ["agent.tune=all", "trainer.lr=1e-9"]
     out = train.run(config(tmp_path, pictures, *own_value))
     rows = [json.loads(line) for line in (out / "features.jsonl").read_text().splitlines()]
     clean = next(row for row in rows if (row["measure"], row["condition"]) == ("cosine", "clean"))
     assert clean["before"][0] == pytest.approx(1) and clean["after"][0] == pytest.approx(
         1, abs=0.01
     )
-    assert clean["before"][1:] == [None, None]  # one of six folders is held out
+    assert clean["before"][1:] == [None, None]  # one of the six folders is held out
     assert "[–] |" in (out / "features.md").read_text()
 
 
@@ -221,7 +222,7 @@ def test_load_rejects_the_folder_of_another_encoder(tmp_path):
     (tmp_path / folders.CARD).write_text('{"format": 1, "sensor": ["rgb"]}')
     with pytest.raises(ValueError, match="does not have the sha256"):
         result().load(tmp_path)
-    (tmp_path / MANIFEST).unlink()  # as earlier versions wrote it
+    (tmp_path / MANIFEST).unlink()  # in the form that earlier versions wrote
     with pytest.raises(ValueError, match="sensor must not be"):
         result().load(tmp_path)
 
@@ -247,7 +248,7 @@ def test_load_takes_no_import_path_from_a_folder(tmp_path, pictures):
 
 
 def test_loss_is_scaled_by_the_variation_of_frames():
-    base = torch.randn(1, 3, 4, 4) * 100  # the same for all frames
+    base = torch.randn(1, 3, 4, 4) * 100  # independent of the frame
     frames = base + torch.randn(500, 3, 4, 4) * torch.tensor([1.0, 2.0, 0.0])[:, None, None]
     each = variance(frames, per_channel=True)
     torch.testing.assert_close(each.flatten()[:2], torch.tensor([1.0, 4.0]), rtol=0.1, atol=0)

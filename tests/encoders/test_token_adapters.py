@@ -1,4 +1,4 @@
-"""Adapters for blocks that return maps, tokens in either order, tuples or vectors."""
+"""Tests of adapters for blocks that return maps, tokens in either order, tuples or vectors."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ CLIP = {"hidden_size": 24, "intermediate_size": 48, "num_hidden_layers": 4}
 CLIP |= {"num_attention_heads": 4, "image_size": 32, "patch_size": 8}
 RESNET = {"embedding_size": 8, "hidden_sizes": [8, 16, 24, 32], "depths": [1, 1, 2, 1]}
 
-ENCODERS = {  # maker, shape of a frame, target, kind of adapter, axis of the frames
+ENCODERS = {  # constructor, shape of a frame, target, kind of adapter, and axis of the frames
     "cnn": (TinyNet, (3, 32, 32), r"blocks\.\d", ConvAdapter, None),
     "ddppo": (lambda: DdppoDepth(8, (1, 1, 1, 1)), (1, 64, 64), r"layer\d", ConvAdapter, None),
     "hf-resnet": (
@@ -76,7 +76,7 @@ def test_new_adapter_changes_nothing(encoder, gate):
 
 @pytest.mark.parametrize("gate", [False, True])
 def test_adapter_corrects_each_frame_separately(encoder, gate):
-    """This also holds if the frames are not the first axis."""
+    """This is also true if frames are not on the first axis."""
     model, frames, target, _, _ = encoder
     insert_adapters(model, [target], run=lambda n: model(frames[:n]), gate=gate)
     shaken(model)
@@ -121,7 +121,7 @@ def test_insert_adapters_names_an_unsupported_target():
 
 
 def test_full_size_shapes_match_the_agents():
-    """ResNet-50 with GroupNorm, base 32: 1x256x256 depth to 128x4x4."""
+    """The architecture is ResNet-50 with GroupNorm and base 32, from 1x256x256 depth to 128x4x4."""
     model = shapes.ddppo().eval()
     with torch.no_grad():
         assert model(torch.rand(1, 1, 256, 256)).shape == (1, 128, 4, 4)

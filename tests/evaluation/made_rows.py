@@ -7,7 +7,7 @@ from typing import Any
 
 
 def row(episode: int | str, success: float, **changes: Any) -> dict[str, Any]:
-    """A clean row of agent ``base``; SPL is half the success."""
+    """Return a clean row of the agent ``base``, in which SPL is half the success."""
     output = {
         "agent": "0123456789ab",
         "name": "base",

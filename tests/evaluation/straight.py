@@ -6,7 +6,7 @@ from mitigate.core.observation import FORWARD, STOP
 
 
 class Straight:
-    """Moves a number of steps ahead, then stops; reads no frame."""
+    """An agent that moves a number of steps forward and stops, without reading a frame."""
 
     def __init__(self, steps: int) -> None:
         self.steps = steps

@@ -1,4 +1,4 @@
-"""The bootstrap is paired and seeded, and its intervals have the theoretical width."""
+"""Tests that the bootstrap is paired and seeded, with intervals of the theoretical width."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from mitigate.evaluation.bootstrap import (
 
 @pytest.fixture
 def results():
-    """Clean [300] and corrupted [8, 300] successes with a shared difficulty of each episode."""
+    """Return clean [300] and corrupted [8, 300] successes with a common difficulty per episode."""
     generator = np.random.default_rng(1)
     hard = generator.random(300)
     return (hard < 0.65).astype(float), (hard < generator.normal(0.4, 0.03, (8, 1))).astype(float)
@@ -115,7 +115,8 @@ def test_pairing_narrows_the_interval_of_a_difference(results):
     clean, corrupted = results
     better = np.maximum(corrupted, (np.arange(300) % 10 == 0) * clean)
     paired = prs_difference((clean, better), (clean, corrupted))
-    order = np.random.default_rng(3).permutation(300)  # other episodes: nothing cancels
+    # with different episodes, the difficulty does not cancel
+    order = np.random.default_rng(3).permutation(300)
     unpaired = prs_difference((clean[order], better[:, order]), (clean, corrupted))
     assert paired.value == pytest.approx(unpaired.value)
     assert paired.excludes_zero

@@ -1,4 +1,4 @@
-"""Comparisons: the formula of retention, paired intervals, and errors."""
+"""Tests of comparisons: the formula of retention, paired intervals, and errors."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""The oracle and the random agent, which bound every result."""
+"""Tests of the oracle and the random agent, which bound every result."""
 
 from __future__ import annotations
 

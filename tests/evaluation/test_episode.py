@@ -1,4 +1,4 @@
-"""The answer of an agent must be an action; otherwise the error names episode, step and line."""
+"""Tests that an agent's answer must be an action, and that errors name episode, step and line."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ EPISODE = Episode("e7", "0", "room", (0, 0, 0), (0, 0, 0, 1), (), Instruction("G
 
 
 class Cell:
-    """A dark cell, in which STOP is correct."""
+    """A world with one dark cell, in which STOP is correct."""
 
     rule, sensors = "STOP", {}
 
@@ -48,7 +48,7 @@ class Cell:
 
 
 class Answers:
-    """Returns ``answers`` one after the other; callables are called."""
+    """An agent that returns ``answers`` one after the other; callables are called."""
 
     together = 1
 
@@ -146,7 +146,7 @@ def test_run_episode_error_names_line_and_episode():
         run_episode(Answers(1, broken), Cell(), EPISODE, CLEAN, 0)
     with pytest.raises(ValueError, match="matmul") as caught:
         broken()
-    error, _ = portable(caught.value)  # as a worker process returns it
+    error, _ = portable(caught.value)  # as returned by a worker process
     assert error_message(pickle.loads(pickle.dumps(error))).endswith("broken())")
 
 

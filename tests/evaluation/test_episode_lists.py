@@ -1,4 +1,4 @@
-"""Rows of one episode list do not count for another list."""
+"""Tests that rows of one episode list are not used for a different list."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The command that evaluates an agent, without long episodes."""
+"""Tests of the command that evaluates an agent, without long episodes."""
 
 from __future__ import annotations
 
@@ -91,7 +91,7 @@ def test_walks_of_an_agent_without_weights_are_drawn(policies, tmp_path):
 
 
 class Slots:
-    """It accepts no further attributes."""
+    """An agent that accepts no additional attributes."""
 
     __slots__ = ()
 
@@ -117,7 +117,7 @@ def make_network() -> nn.Module:
 
 
 class Net(nn.Linear):
-    """A policy that was trained elsewhere."""
+    """A policy that was trained with a different program."""
 
     def __init__(self) -> None:
         super().__init__(1, 4)
@@ -143,7 +143,7 @@ def test_load_accepts_foreign_safetensors(policies, tmp_path):
     assert len(rows.read(evaluate.run(by_function) / "rows.jsonl")) == 2
     with pytest.raises(ValueError, match="checkpoint is not set"):
         evaluate.run(policies(f"{__name__}.make_network"))
-    # a function that returns no network
+    # a function that does not return a network
     remote = policies(f"{__name__}.remote", "conditions=[clean,flare]")
     assert len(rows.read(evaluate.run(remote) / "rows.jsonl")) == 2
     torch.save(net.state_dict(), tmp_path / "w.pt")

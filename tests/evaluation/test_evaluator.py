@@ -1,4 +1,4 @@
-"""Rows do not depend on the number of processes, and an interrupted evaluation resumes."""
+"""Tests that rows do not depend on the number of processes, and that evaluations resume."""
 
 from __future__ import annotations
 
@@ -89,7 +89,7 @@ def test_rows_behind_a_restorer_are_of_another_agent(tmp_path):
     alone = run(tmp_path, episodes=1, conditions=conditions)
     restorer = Noted(width=4, depth_width=4)
     for net in restorer.parts().values():
-        net.threshold.fill_(1e9)  # it classifies every frame as clean
+        net.threshold.fill_(1e9)  # this restorer classifies every frame as clean
     behind = run(tmp_path, episodes=1, conditions=conditions, guards=Guards([restorer]))
     assert len(seen) == sum(row["decisions"] for row in behind) > 0
     assert {row["agent"] for row in alone}.isdisjoint(row["agent"] for row in behind)
@@ -121,11 +121,11 @@ def test_row_identifies_its_measurement(finished):
         assert row["success"] in (0, 1) and 0 <= row["spl"] <= row["success"]
         assert 0 <= row["ndtw"] <= 1 and row["decisions"] <= 15 and row["steps"] <= 500
         assert "STOP" in row["rule"] and "2.0 m" in row["rule"]
-        assert row["scene"] == row["episode_id"].partition("-")[0]  # in the words of older rows
+        assert row["scene"] == row["episode_id"].partition("-")[0]  # with the text of older rows
 
 
 class Won(ApartmentsWorld):
-    """Reports success as the value true."""
+    """A world that reports success as the boolean true."""
 
     def measures(self) -> dict:
         return super().measures() | {"success": True, "spl": 1.0}
@@ -217,7 +217,7 @@ def test_frames_are_rendered_only_if_they_are_read():
 
 
 class Watcher:
-    """Reads every frame, turns twice, stops; stores its observations."""
+    """An agent that reads every frame, turns twice, stops, and stores its observations."""
 
     def reset(self, instruction: str) -> None:
         self.seen = []
@@ -242,7 +242,7 @@ def test_corruption_changes_every_observation(name, hurt, whole):
 
 
 class Listener:
-    """Stores its instruction and its prompt, and stops at once."""
+    """An agent that stores its instruction and prompt, and stops at once."""
 
     def __init__(self, prompt: str | None = None) -> None:
         self.told: list[tuple[str, str | None]] = []
@@ -316,7 +316,7 @@ def test_weights_that_are_no_numbers_are_not_evaluated(tmp_path):
 
 
 class Prompted(Straight):
-    """Runs episodes side by side; records its prompt at every step."""
+    """An agent that runs episodes in parallel and records its prompt at every step."""
 
     system_prompt, together = "You follow routes. {task}", 2
 

@@ -1,4 +1,4 @@
-"""An evaluation ends with an error if its files are links, or vanish while it runs."""
+"""Tests that an evaluation ends with an error if its files are links or are removed."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from mitigate.evaluation import evaluate, evaluator, rows
 from mitigate.evaluation.rows import ROWS
 from tests.evaluation.straight import Straight
 
-OUT: list[Path] = []  # the folder of the evaluation, for agents built from a config
+OUT: list[Path] = []  # the folder of the evaluation, for agents that are built from a config
 EPISODES = 3
 
 
@@ -70,7 +70,7 @@ BREAK = {
 
 @pytest.fixture
 def config(tmp_path, monkeypatch):
-    """Return the config of an evaluation of one of the classes above, one row at a time."""
+    """Return the config for evaluating one of the classes above, which writes one row at a time."""
     monkeypatch.setattr(evaluator, "_PAUSE", 0.0)
 
     def compose(agent, *options):

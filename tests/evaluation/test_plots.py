@@ -1,4 +1,4 @@
-"""The severity curves show every column, even where two columns are equal."""
+"""Tests that severity curves show every column, even if two columns are equal."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ NAMES = ("one", "two", "three")
 
 
 def grid(*falls: tuple[int, int]):
-    """Return one column for each of ``falls``: 8 of 10 clean episodes succeed, and so many under
-    missing data at 0.3 and at 0.6."""
+    """Return one column for each of ``falls``, in which 8 of 10 clean episodes succeed, and the
+    given numbers succeed under missing data at 0.3 and 0.6."""
     output = []
     for name, at in zip(NAMES, falls, strict=False):
         settings = {"name": name, "agent": name.ljust(12, "0")}

@@ -1,4 +1,4 @@
-"""Rows of one world do not count for another one."""
+"""Tests that rows of one world are not used for a different world."""
 
 from __future__ import annotations
 
@@ -141,7 +141,7 @@ def test_first_world_accepts_values_that_change(tmp_path):
 
     for _ in range(3):
         keep(tmp_path, make)
-        make()  # as a walk does
+        make()  # as running an episode does
     keep(tmp_path / "other", lambda: [Maze(), numbers, circle, odd][0])
     assert (tmp_path / provenance.NOTE).stat().st_size < 3000
 
@@ -157,7 +157,7 @@ def test_keep_accepts_two_paths_of_one_file(tmp_path, monkeypatch):
 
 
 def test_keep_accepts_worlds_with_other_sensors_or_rules(tmp_path):
-    """The rows record this: a table of agents with one camera and with twelve is one folder."""
+    """The rows record this, so agents with one camera and with twelve can be in one folder."""
     for kind in ({}, {"size": 16}, {"rule": "near"}, {}):
         keep(tmp_path, of_config(**kind))
     with pytest.raises(ValueError, match=r"env\.world\.cells"):

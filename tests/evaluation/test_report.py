@@ -1,4 +1,4 @@
-"""The table holds the paper's numbers for known rows, and states missing and uncertain values."""
+"""Tests that the table has the paper's numbers for known rows, and marks missing values."""
 
 from __future__ import annotations
 
@@ -23,7 +23,8 @@ HARD = {"agent": "ffff00000000", "name": "da_per_episode"}
 
 
 def lines(output) -> dict[str, list[str]]:
-    """Return the table's cells by the first cell of their line; the first line of a name counts."""
+    """Return the cells of the table by the first cell of their line; only the first such line is
+    used."""
     text = markdown(sections(output))
     table_lines = [line for line in text.splitlines() if line.startswith("| ")]
     matches: dict[str, list[str]] = {}
@@ -47,7 +48,7 @@ def test_table_has_the_rows_of_the_paper():
     assert names.index("Motion blur") < names.index("**PRS-SR (Depth)**") < names.index("Multipath")
     assert (
         len([n for n in names if "PRS" not in n]) == 1 + 1 + 3 + 2 + 12
-    )  # head, rule, clean, mean, suite
+    )  # lines for the head, the rule, clean, the mean and the suite
 
 
 def test_heading_states_the_conditions():
@@ -61,7 +62,7 @@ def test_heading_states_the_conditions():
 
 @pytest.mark.parametrize("says", [True, False])
 def test_intervals_may_be_of_scenes(says):
-    """Rows of two scenes with five episodes, named by the rows or by the apartments' ids."""
+    """Return rows of two scenes with five episodes, named in the rows or by the apartments' ids."""
 
     def placed(output: dict) -> dict:
         scene, number = divmod(int(output["episode_id"]), 5)
@@ -125,7 +126,7 @@ def test_clean_differences_are_paired_and_against_base():
 
 
 def test_mean_sr_covers_all_blocks():
-    """PRS divides by an agent's own clean SR; this line does not."""
+    """PRS divides by an agent's own clean SR, but this line does not."""
     matches = lines(column(8, ALL) + column(5, dict.fromkeys(NAMES, 6), **HARD))
     assert [cell.split(" ")[0] for cell in matches["Mean SR of 12 corruptions"]] == ["40.0", "60.0"]
     assert matches["Mean SR against base"][1].strip("*").startswith("+20.0")
@@ -146,7 +147,7 @@ def test_partial_table_lists_its_gaps():
 
 
 def test_unfinished_episode_is_left_out():
-    """The evaluator runs episode by episode: the last one may lack some of its conditions."""
+    """The evaluator runs one episode after the other, so the last one may lack some conditions."""
     records = column(8, ALL)
     cut = [r for r in records if r["episode_id"] != "9" or r["corruption"] in ("clean", "flare")]
     (section,) = sections(cut)
@@ -226,7 +227,7 @@ def test_table_lists_values_seed_by_seed():
 
 
 def test_columns_are_compared_over_common_seeds():
-    """Only these rows used the same corruption keys."""
+    """Only rows of common seeds used the same corruption keys."""
     base = column(8, ALL) + column(2, dict.fromkeys(NAMES, 1), seed=1)
     matches = sections(base + column(6, ALL, **HARD))[0]
     alone = sections(column(8, ALL) + column(6, ALL, **HARD))[0]
@@ -249,7 +250,8 @@ def test_unfinished_seed_is_left_out_with_a_note():
 def test_seed_counts_only_at_its_severities():
     records = column(8, ALL, 0.2) + column(8, ALL, 0.6) + column(4, ALL, 0.6, seed=1)
     mild, strong = sections(records)
-    assert mild.value("base", "clean") == pytest.approx(0.8)  # seed 0 alone, as its corrupted cells
+    # only seed 0, as in its corrupted cells
+    assert mild.value("base", "clean") == pytest.approx(0.8)
     assert mild.retained["base", "RGB", "SR"].estimate.value == pytest.approx(0.5)
     assert strong.value("base", "clean") == pytest.approx(0.6)
     assert not mild.gaps and not strong.gaps
@@ -257,7 +259,7 @@ def test_seed_counts_only_at_its_severities():
 
 
 def test_heading_names_the_agents():
-    """Another training counts only at the severities at which it was measured."""
+    """A second training run is included only at the severities at which it was measured."""
     other = column(4, ALL, 0.6, seed=1, agent="eeee00000000")
     mild, strong = sections(column(8, ALL, 0.2) + column(8, ALL, 0.6) + other)
     assert "eeee00000000" not in markdown([mild]) and "eeee00000000" in markdown([strong])
@@ -366,7 +368,7 @@ def test_unseen_corruptions_have_a_table_of_their_own():
 
 
 def test_suite_figures_ignore_other_corruptions():
-    """This includes other seeds, gaps and agents of the unseen rows."""
+    """This covers other seeds, gaps and agents in the unseen rows."""
     suite = column(8, ALL) + column(6, ALL, seed=1) + column(5, ALL, **HARD)
     other = column(8, dict.fromkeys(UNSEEN, 2)) + column(5, {"spatter+haze": 1}, **HARD)
     other += column(3, {"haze": 1}, agent="eeee00000000", name="third")
@@ -386,7 +388,8 @@ def test_halves_of_unseen_corruptions_have_a_prs():
     assert matches["PRS-SR (unseen RGB, validation)"][0].startswith("**1.00**")
     assert matches["PRS-SR (unseen RGB, test)"][0].startswith("**0.50**")
     half = lines(column(8, dict.fromkeys(test, 4)))
-    assert half["**PRS-SR (unseen RGB)**"][0].endswith("]")  # a whole half: nothing is missing
+    # a complete half, in which nothing is missing
+    assert half["**PRS-SR (unseen RGB)**"][0].endswith("]")
     assert "PRS-SR (unseen RGB, test)" not in half
     part = lines(column(8, dict.fromkeys(test[1:], 4)))
     assert part["**PRS-SR (unseen RGB)**"][0].endswith("† 5/6")
@@ -409,7 +412,7 @@ def test_names_are_escaped_in_tables_and_pictures(tmp_path):
     displayed = next(line for line in text.splitlines() if line.startswith("| Corruption"))
     assert (
         len(re.findall(r"(?<!\\)\|", displayed)) == 4
-    )  # two columns and the first, no further cell
+    )  # two columns and the first column, without another cell
     for mark in ("<script", "</script", "[y](", "![p]", "`c`", "\n#a"):
         assert not re.search(rf"(?<!\\){re.escape(mark)}", text)
     assert (tmp_path / "heatmap.png").is_file() and (tmp_path / "severity.png").is_file()
@@ -422,7 +425,7 @@ def test_plain_names_are_not_escaped():
 
 
 def other_list(output, **changes):
-    """Return the same rows for other episodes."""
+    """Return the same rows for different episodes."""
     return [r | changes | {"episode_id": f"{r['episode_id']}-other"} for r in output]
 
 
@@ -452,7 +455,7 @@ def test_lists_with_common_episodes_share_a_table():
 
 
 def test_rows_at_severity_zero_are_not_clean_rows():
-    """A corruption may run at severity 0; which of the two was shown depended on the order of a
+    """If a corruption also ran at severity 0, the shown severity once depended on the order of a
     set."""
     rows = column(8, {"flare": 0}) + [
         output | {"corruption": "flare", "severity": 0.0} for output in cell(8)

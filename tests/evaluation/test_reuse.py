@@ -1,5 +1,4 @@
-"""Frames that are rendered and encoded once for all conditions of an episode; rows do not
-change."""
+"""Tests that frames are rendered and encoded once per episode, without changing rows."""
 
 from __future__ import annotations
 
@@ -40,7 +39,7 @@ def test_measures_do_not_depend_on_the_cache():
 
 
 class Scribbler:
-    """Modifies its observation, and stores a copy of the first one."""
+    """An agent that modifies its observation and stores a copy of the first one."""
 
     def reset(self, instruction):
         self.seen = []
@@ -64,7 +63,7 @@ def test_agent_cannot_change_cached_frames():
 
 
 def encoded(agent):
-    """Return a growing list of the frames that the RGB encoder gets from now on."""
+    """Return a list to which all later input frames of the RGB encoder are added."""
     calls = []
     agent.rgb_encoder.register_forward_hook(lambda *_: calls.append(1))
     return calls
@@ -101,9 +100,9 @@ def test_cache_is_cleared_when_weights_change():
 
 
 class Mortal(torch.nn.Module):
-    """Stops at once; kills its process in one episode, if another process has not done so."""
+    """An agent that stops at once and, in one episode, kills its process (only one process)."""
 
-    settings = dict  # the place of the death does not change the agent
+    settings = dict  # the episode of the death is not part of the agent's fingerprint
 
     def __init__(self, folder, deaths=1):
         super().__init__()

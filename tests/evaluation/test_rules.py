@@ -1,4 +1,4 @@
-"""Success rules: the rule of each paper, by name, and in every row."""
+"""Tests of success rules: the rule of each paper by name, and the rule in every row."""
 
 from __future__ import annotations
 
@@ -93,7 +93,8 @@ def test_ndtw_threshold_follows_the_rule():
         world.reset(episode)
         loaded[rule] = -math.log(world.measures()["ndtw"]) * metres
     assert loaded["vln_ce"] == pytest.approx(loaded["apartments"], rel=1e-4)
-    for rule in ("wmnav", "objectnav"):  # VLN-CE's: a view point lies on no path
+    # the threshold of VLN-CE, because view points do not lie on a path
+    for rule in ("wmnav", "objectnav"):
         assert loaded[rule] == pytest.approx(loaded["apartments"], rel=1e-4)
 
 

@@ -1,4 +1,4 @@
-"""Pictures of episodes agree with their rows; the episodes are chosen by a rule."""
+"""Tests that pictures of episodes agree with their rows, and how episodes are chosen."""
 
 from __future__ import annotations
 
@@ -70,7 +70,7 @@ def test_draw_trajectories_draws_clean_and_corrupted_runs(tmp_path, monkeypatch,
 
 
 class Shows(ApartmentsWorld):
-    """An apartment in which one kind of frame shows, or no frame."""
+    """An apartment world with only one kind of frame, or with none."""
 
     only: tuple[str, ...] = ()
 

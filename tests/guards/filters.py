@@ -1,4 +1,4 @@
-"""Callables of a user for ``restore=tests.guards.filters:NAME``, and guards."""
+"""A user's callables and guards for ``restore=tests.guards.filters:NAME``."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ median.version = "3 pixels"
 
 
 class Brighter:
-    """A class is constructed once; it counts its calls."""
+    """A class that is constructed once and counts its calls."""
 
     frames = "rgb"
 
@@ -56,7 +56,7 @@ def broken(frames):
 
 
 class Returns:
-    """Return an entry in the form that the constructor gets."""
+    """Return an entry in the form that the constructor receives."""
 
     def __init__(self, **output):
         self.made = output
@@ -76,7 +76,7 @@ NUMBER = 3
 
 
 class Politely(Guard):
-    """A guard of a user: it changes the instruction, and adapts the agent while an episode runs."""
+    """A user's guard that changes the instruction and adapts the agent during an episode."""
 
     def begin(self, episode):
         return f"please {episode.instruction}"

@@ -1,4 +1,4 @@
-"""The messages of recipes to an agent that implements only part of the contract."""
+"""Tests of the messages of recipes if an agent implements only part of the interface."""
 
 from __future__ import annotations
 

@@ -1,4 +1,5 @@
-"""DAgger learns from fresh and stored rollouts; a resumed run draws the same."""
+"""Tests that DAgger learns from new and stored rollouts, and that a resumed run samples the
+same."""
 
 from __future__ import annotations
 
@@ -44,7 +45,7 @@ def walks(batch: dict) -> list[str]:
 def test_step_learns_from_fresh_and_stored_rollouts(tmp_path):
     objective = recipe(tmp_path)
     assert [len(walks(objective.batch(step))) for step in range(5)] == [2, 2, 3, 3, 3]
-    assert len(list(tmp_path.glob("*.pt"))) == 6  # 3 steps of 2 pieces
+    assert len(list(tmp_path.glob("*.pt"))) == 6  # 3 steps with 2 pieces each
 
 
 def test_resumed_run_draws_the_same_rollouts(tmp_path):

@@ -1,4 +1,4 @@
-"""Distillation keeps the teacher, trains the student, and gives both the same observations."""
+"""Tests that distillation trains only the student and gives both the same observations."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ VIEWS = {"panoramas": 1, "schedule": Schedule("per_episode", 0.6), **SOURCES}
 
 
 def small(seed: int = 0, **options) -> TopologicalAgent:
-    """An untrained agent that sees free space everywhere."""
+    """Return an untrained agent that predicts free space everywhere."""
     seeding.seed_everything(seed, "agent")
     agent = TopologicalAgent(16, SMALL, size=32, **options)
     with torch.no_grad():
@@ -40,13 +40,13 @@ def small(seed: int = 0, **options) -> TopologicalAgent:
 
 
 def missing_data() -> Schedule:
-    """Every frame loses half of its depth."""
+    """A schedule that removes half of the depth in every frame."""
     return Schedule("per_episode", 1.0, clean_share=0.0, names=("missing_data",))
 
 
 @pytest.fixture(autouse=True, scope="module")
 def short_episodes():
-    """Episodes end after 40 steps."""
+    """A world whose episodes end after 40 steps."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(simulator, "MAX_STEPS", 40)
         yield
@@ -71,7 +71,7 @@ def batch(recipe) -> dict:
 
 
 def gradients(recipe: Distil, loss: torch.Tensor) -> set[str]:
-    """Return the agent's parts that get a gradient from ``loss``; the teacher must never be one."""
+    """Return the parts that get a gradient from ``loss``, and check that the teacher gets none."""
     recipe.zero_grad()
     loss.backward(retain_graph=True)
     assert all(p.grad is None for p in recipe.teacher.parameters())
@@ -92,7 +92,7 @@ def test_each_loss_term_reaches_its_parts_only(recipe, batch):
 
 
 def test_loss_is_the_sum_of_its_terms(recipe, batch):
-    """L = w_il L_il + w_kl T^2 KL + w_feat sum of MSE in units of the teacher's variance."""
+    """The expected loss is w_il L_il + w_kl T^2 KL + w_feat sum(MSE / teacher's variance)."""
     recipe.eval()
     with torch.no_grad():
         values = recipe(batch)
@@ -106,7 +106,7 @@ def test_loss_is_the_sum_of_its_terms(recipe, batch):
 
 
 def test_matched_features_count_in_units_of_the_teachers_variance():
-    teacher = torch.tensor([[0.0, 2.0], [4.0, 6.0]])  # variance 20 / 3
+    teacher = torch.tensor([[0.0, 2.0], [4.0, 6.0]])  # its variance is 20 / 3
     student = teacher + torch.tensor([[1.0, -1.0], [2.0, 0.0]])
     assert float(feature_loss(student, teacher)) == pytest.approx(1.5 / (20 / 3))
     assert float(feature_loss(10 * student, 10 * teacher)) == pytest.approx(1.5 / (20 / 3))
@@ -115,13 +115,13 @@ def test_matched_features_count_in_units_of_the_teachers_variance():
 def test_policy_kl_is_that_of_softened_policies():
     student, teacher = torch.tensor([[2.0, 0.0]]), torch.tensor([[0.0, 4.0]])
     p = torch.tensor([1.0, np.e**2]) / (1 + np.e**2)
-    q = torch.tensor([np.e, 1.0]) / (1 + np.e)  # the KL of q and p has another value
+    q = torch.tensor([np.e, 1.0]) / (1 + np.e)  # KL(q || p) has a different value
     expected = float((p * (p / q).log()).sum())  # at temperature 2
     assert float(policy_kl(student, teacher, 2.0)) == pytest.approx(expected, abs=1e-6)
 
 
 def test_teacher_and_student_answer_over_the_same_candidates(recipe, batch):
-    """The teacher's waypoints, from clean depth, would differ."""
+    """The teacher's own waypoints, from clean depth, would differ."""
     decisions = batch["decisions"]
     student = recipe.agent.decide(decisions).logits
     with torch.no_grad():
@@ -189,7 +189,7 @@ def test_resumed_run_ends_with_the_same_bits(kind, modality, teacher, tmp_path):
     whole, first, second = output(), output(), output()
     Trainer(whole, steps=3, folder=tmp_path / "whole", seed=0).fit()
     Trainer(first, steps=3, folder=tmp_path / "cut", seed=0, save_every=1).fit()
-    checkpoints(tmp_path / "cut")[-1].unlink()  # back to step 2
+    checkpoints(tmp_path / "cut")[-1].unlink()  # resumes from step 2
     Trainer(second, steps=3, folder=tmp_path / "cut", seed=0, save_every=1).fit()
     assert weights_sha(whole.agent) == weights_sha(second.agent)
 
@@ -213,7 +213,7 @@ def test_adapt_views_scales_adapters_at_the_end(tmp_path):
         times = 0.25 if scaled and name.startswith("rgb_encoder") else 1.0
         assert torch.equal(part[name], weight * times), name
     resumed = small(adapters=ADAPTERS)
-    checkpoints(tmp_path / "0.25")[-1].unlink()  # back to step 1
+    checkpoints(tmp_path / "0.25")[-1].unlink()  # resumes from step 1
     objective = assemble(AdaptViews, resumed, modality="rgb", **VIEWS, strength=0.25)
     Trainer(objective, steps=2, folder=tmp_path / "0.25", seed=0, save_every=1).fit()
     assert weights_sha(resumed) == weights_sha(agents[1]) != weights_sha(agents[0])
@@ -267,7 +267,8 @@ def test_gate_threshold_is_set_on_held_out_clean_views():
 
 
 def with_statistics(**options) -> TopologicalAgent:
-    """An agent whose encoders normalise with running statistics, with and without weights."""
+    """An agent whose encoders have normalisations with running statistics, with and without
+    weights."""
     agent = small(**options)
     for encoder, affine in ((agent.rgb_encoder, True), (agent.depth_encoder, False)):
         block = encoder.stages[0]

@@ -1,4 +1,4 @@
-"""Imitation trains the selected parts only."""
+"""Tests that imitation trains only the selected parts."""
 
 from __future__ import annotations
 
@@ -42,8 +42,7 @@ def test_adapters_alone_train_in_frozen_modules(tmp_path):
 
 
 def test_prior_needs_the_evaluation_of_one_agent(tmp_path):
-    """The rows of a run contain two agents, before and after; their mean is the success of
-    neither."""
+    """The rows of a run contain two agents (before and after), so their mean belongs to neither."""
     schedule = Schedule("success_distributed", 0.6, names=("flare", "spatter"))
     hard = [r for name in schedule.names for r in cell(2, corruption=name, severity=0.6)]
     rows.write(tmp_path / "one.jsonl", cell(8) + hard)
@@ -141,7 +140,7 @@ def test_measuring_success_leaves_the_agent_in_training_mode():
 
 
 def test_nan_logits_give_nan_loss():
-    """Otherwise the loss would be 0, and only the gradient's norm would show the error."""
+    """Otherwise the loss would be 0, and only the norm of the gradient would show the error."""
     target, weight = torch.tensor([[0.0, 1.0, 0.0]]), torch.ones(1)
     decisions = SimpleNamespace(target=target, weight=weight)
 
@@ -156,7 +155,7 @@ def test_nan_logits_give_nan_loss():
 
 
 def test_imitation_adds_weighted_auxiliary_losses():
-    """Two decisions with two choices: the correct one has probability 0.8, then 0.4."""
+    """Two decisions with two choices, of which the correct one has probability 0.8 and 0.4."""
     logits = torch.tensor([[0.8, 0.2], [0.6, 0.4]]).log()
     decisions = SimpleNamespace(
         target=torch.tensor([[1.0, 0.0], [0.0, 1.0]]), weight=torch.tensor([1.0, 3.0])
@@ -170,7 +169,7 @@ def test_imitation_adds_weighted_auxiliary_losses():
 
 
 def test_every_step_and_piece_draws_other_episodes_and_keys():
-    """Random draws of training must not repeat."""
+    """The random numbers of training must not repeat."""
     drawn, keys = [], []
 
     class Listed(DrawnEpisodes):

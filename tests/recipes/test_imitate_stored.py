@@ -1,4 +1,4 @@
-"""Planner training on stored features: the stored features do not depend on blind sensors."""
+"""Tests of training on stored features, which do not depend on blind sensors."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def recipe(
 
 @pytest.fixture(autouse=True, scope="module")
 def few_poses():
-    """A sixteenth of the poses that a training stores."""
+    """A world with a sixteenth of the poses that training stores."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(stored, "SPACING", 2.0)
         yield
@@ -62,7 +62,7 @@ def spread(output: ImitateStored) -> tuple[float, float]:
 
 
 def test_blind_run_stores_whole_features_for_the_next(folder):
-    """The blind run comes first and fills the cache."""
+    """The run with a blind sensor comes first and fills the cache."""
     assert spread(recipe(folder, ("rgb",)))[0] == 0.0
     seeing, deaf = recipe(folder), recipe(folder, ("instruction",))
     assert seeing.rollouts.store.folder == deaf.rollouts.store.folder and min(spread(seeing)) > 0
@@ -88,8 +88,8 @@ def test_batch_trains_the_planner_only(folder):
 
 
 def test_variants_are_corrupted_scenes_beside_the_clean_one(tmp_path):
-    """Each is stored once, under one corruption; rollouts see the clean scene as often as the
-    schedule says."""
+    """Each variant is stored once with one corruption, and the schedule sets the fraction of clean
+    rollouts."""
     seeding.seed_everything(0, "agent")
     agent = TopologicalAgent(16, SMALL)
     schedule = Schedule("per_episode", 0.9, names=("low_light", "missing_data"), clean_share=0.5)
@@ -104,7 +104,7 @@ def test_variants_are_corrupted_scenes_beside_the_clean_one(tmp_path):
     output = [path for path in tmp_path.rglob("*") if path.is_dir()]
     assert (
         len({path.stat().st_mode for path in output}) == 1
-    )  # the cached features may serve all sensors
+    )  # the cached features can be used for all sensors
     variants = [stores[1].features(SCENE, v) for v in (1, 2)]
     assert all(not np.array_equal(v.views, clean) for v in variants)
     assert not np.array_equal(variants[0].views, variants[1].views)

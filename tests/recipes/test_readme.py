@@ -1,4 +1,4 @@
-"""The recipe that recipes/README.md shows trains, from outside the package."""
+"""Tests that the recipe in recipes/README.md can be trained from outside the package."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Self-distillation: the loss is zero for equal answers, and the order of each step."""
+"""Tests of self-distillation: zero loss for equal answers, and the order of each step."""
 
 import numpy as np
 import pytest
@@ -58,7 +58,7 @@ def test_self_distil_trains_the_student_only(tmp_path):
 
 
 class Counting(nn.Module):
-    """Counts its frames, so that its memory is visible."""
+    """A policy that counts its frames, so that its memory is visible."""
 
     def __init__(self):
         super().__init__()
@@ -72,7 +72,7 @@ class Counting(nn.Module):
 def test_self_distil_gives_a_recurrent_policy_windows(tmp_path):
     task = objective(tmp_path, net=Counting(), recurrent=True, window=4, module="scale")
     batch = task.batch(0)
-    assert batch["clean"]["rgb"].shape == (8, 16, 16, 3)  # two windows of four frames
+    assert batch["clean"]["rgb"].shape == (8, 16, 16, 3)  # two windows with four frames each
     answers = task.agent.answers(batch["clean"], 4)
     expected = task.agent.network.scale(torch.arange(4.0)[:, None]).log_softmax(-1)
     for place, (distribution,) in enumerate(answers):

@@ -1,4 +1,4 @@
-"""``mitigate replay``: decisions of agents on a drive, and how corruptions change them."""
+"""Tests of ``mitigate replay``: decisions of agents on a drive, and how corruptions change them."""
 
 from __future__ import annotations
 
@@ -34,7 +34,8 @@ T = 30
 
 
 class ByBrightness:
-    """Moves forward in bright frames and turns in dark ones; records what it is informed of."""
+    """An agent that moves in bright frames, turns in dark ones, and records all reported
+    motions."""
 
     views = 1
 
@@ -128,7 +129,7 @@ def answers(actions, aims=None) -> Answers:
 
 
 def test_share_weights_blocks_by_length():
-    """Short drives are blocks of few steps, which must not weigh as much as full blocks."""
+    """Short drives form blocks of few steps, which must have less weight than full blocks."""
     drives = [np.zeros(14, bool)] * 40 + [np.ones(1, bool)] * 20
     estimate = _share(drives)
     assert estimate.value == pytest.approx(20 / 580)
@@ -189,15 +190,16 @@ def test_odometer_measures_an_arc():
 
 @pytest.fixture
 def mitigate(monkeypatch, capsys):
-    """Run ``mitigate`` with arguments; returns its exit status, stdout and stderr."""
+    """Run ``mitigate`` with arguments, and return its exit status, stdout and stderr."""
 
     def run(*words: str) -> tuple[int, str, str]:
-        monkeypatch.setattr(sys, "argv", sys.argv)  # restored afterwards: the command replaces it
+        # restored afterwards, because the command replaces it
+        monkeypatch.setattr(sys, "argv", sys.argv)
         with pytest.raises(SystemExit) as ended:
             cli.main(words)
         output = capsys.readouterr()
         status = ended.value.code or 0
-        if isinstance(status, str):  # a message, which the interpreter prints at exit
+        if isinstance(status, str):  # a message that the interpreter prints at exit
             return 1, output.out, output.err + status
         return status, output.out, output.err
 
@@ -331,7 +333,7 @@ def full(*_):
 
 @pytest.fixture
 def lab(tmp_path):
-    """A short drive in a folder."""
+    """A folder with a short recorded drive."""
     rng, path = np.random.default_rng(0), tmp_path / "lab"
     frames = {RGB: rng.integers(0, 255, (16, 16, 3), np.uint8), DEPTH: np.ones((16, 16, 1))}
     write_frames(path, [frames | {POSE: np.array([0, n, 0])} for n in range(3)], "go on")

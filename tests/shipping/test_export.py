@@ -1,5 +1,4 @@
-"""A hardened checkpoint reloads to the same outputs; otherwise it is not written, or is
-rejected."""
+"""Tests that a hardened checkpoint reloads to the same outputs, or is not written or rejected."""
 
 from __future__ import annotations
 
@@ -33,7 +32,7 @@ from mitigate.shipping import card as cards
 from mitigate.shipping import export, export_command, programs
 from mitigate.shipping.card import metrics
 
-# one worker of pytest exports, instead of each
+# only one worker of pytest exports, instead of each
 pytestmark = pytest.mark.xdist_group("export")
 
 ROOT = Path(__file__).parents[2]
@@ -49,7 +48,7 @@ ADAPTERS = {
 
 
 def finished_run(folder: Path, agent: TopologicalAgent, settings: dict, **others) -> Path:
-    """A run folder as `make train` leaves it."""
+    """Write a run folder as `make train` does."""
     checkpoint.save_weights(agent, folder / "agent")
     node = {"_target_": loading.TARGET, **settings}
     cfg = {
@@ -105,7 +104,7 @@ def python(code: str, *arguments: object, cwd: Path = ROOT) -> str:
 
 
 class StandIn(torch.nn.Module):
-    """A network that is traced quickly: tracing the networks of an agent takes half a minute."""
+    """A network that is traced quickly, because tracing an agent's networks takes half a minute."""
 
     def __init__(self, names: tuple[str, ...]) -> None:
         super().__init__()
@@ -116,7 +115,7 @@ class StandIn(torch.nn.Module):
 
 
 def stand_in_programs(agent: TopologicalAgent, size: int) -> dict:
-    """Replace ``programs.export_programs``; its own tests are slow."""
+    """Replacement for ``programs.export_programs``, which is slow and has separate tests."""
     value = programs.probe(agent, size)
     return {
         name: torch.export.export(
@@ -129,14 +128,15 @@ def stand_in_programs(agent: TopologicalAgent, size: int) -> dict:
 
 
 def check_here(draft: Path, outputs: dict) -> None:
-    """Replace ``export._reload``: check the agent in this process."""
+    """Replacement for ``export._reload`` that checks the agent in this process."""
     agent = loading.load_hardened(draft)
     again = programs.outputs(programs.networks(agent), programs.probe(agent, SIZE))
     assert programs.difference(outputs, again) <= export.RELOADED
 
 
 def copy_programs(whole: Path, draft: Path) -> tuple[dict, dict]:
-    """Replace ``export._programs``: a folder of adapters gets the programs of ``whole``."""
+    """Replacement for ``export._programs`` that gives a folder of adapters the programs of
+    ``whole``."""
     for name in (loading.PROGRAM, loading.INPUTS):
         shutil.copy(whole / name, draft)
     card = loading.read_card(whole)
@@ -178,7 +178,7 @@ def place(tmp_path_factory) -> Path:
 
 @pytest.fixture(scope="module")
 def traced(place) -> Path:
-    """The folder of `whole` with its own programs, which take half a minute."""
+    """The folder `whole` with its real programs, whose export takes half a minute."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(programs, "TIMED", 2)
         return export.export(place / "runs/whole", "whole", out=place / "traced")
@@ -197,7 +197,7 @@ def copied(place, tmp_path) -> Path:
 
 
 def resign(folder: Path, **changes) -> None:
-    """Change the card and update its sha256 in the manifest."""
+    """Change the card, and update its sha256 in the manifest."""
     card = json.loads((folder / "card.json").read_text())
     (folder / "card.json").write_text(json.dumps({**card, **changes}))
     folders.seal(folder, "hardened")
@@ -211,7 +211,7 @@ def relist(folder: Path, change) -> None:
 
 
 def node_of(settings: dict) -> DictConfig:
-    """The config of a topological agent with ``settings``."""
+    """Return the config of a topological agent with ``settings``."""
     return OmegaConf.create({"_target_": loading.TARGET, **settings})
 
 
@@ -413,7 +413,7 @@ def test_other_vocabulary_is_rejected(copied):
 @pytest.mark.parametrize("name", ["adapters.safetensors", "adapters.json", "decide.onnx"])
 def test_known_file_missing_from_the_card_is_rejected(copied, name):
     (copied / name).write_bytes(b"x")
-    (copied / ".gitattributes").touch()  # the hub adds it so
+    (copied / ".gitattributes").touch()  # added in this form by the hub
     for read in (
         lambda: loading.load_hardened(copied),
         lambda: loading.fill(TopologicalAgent(**TINY), copied),
@@ -423,7 +423,7 @@ def test_known_file_missing_from_the_card_is_rejected(copied, name):
 
 
 def test_adapters_missing_from_the_card_are_ignored(place, copied):
-    """The weights differ from those that the card's checksums describe."""
+    """The weights differ from the checksums in the card."""
     resign(copied, base=None)
     for name in (adapters.WEIGHTS, adapters.SETTINGS):
         shutil.copy(place / "hardened/adapted" / name, copied)
@@ -448,7 +448,8 @@ def test_folder_of_another_agent_than_its_card_is_rejected(copied):
     with pytest.raises(ValueError, match="'0123456789ab'"):
         loading.load_hardened(copied)
     own_value = TopologicalAgent(**TINY).eval()
-    assert loading.fill(own_value, copied) is own_value  # for training: adapters would change it
+    # set for training, because adapters would change it
+    assert loading.fill(own_value, copied) is own_value
 
 
 @pytest.mark.parametrize(
@@ -598,7 +599,7 @@ def test_commit_is_of_this_checkout_or_not_stated(monkeypatch, tmp_path):
     assert cards.commit() is None  # no git
     monkeypatch.undo()
     monkeypatch.setattr(cards, "ROOT", tmp_path)
-    assert cards.commit() is None  # installed inside the repository of another project
+    assert cards.commit() is None  # installed inside the repository of a different project
 
 
 @contextmanager
@@ -709,7 +710,7 @@ def test_deployment_page_examples_run(traced, tmp_path, monkeypatch):
 
 
 def places_in(file: Path) -> list[str]:
-    """Return which of the checkout and the environment ``file`` names."""
+    """Return the paths of the checkout and the environment that occur in ``file``."""
     parts = [file.read_bytes()]
     if file.suffix == ".pt2":
         with zipfile.ZipFile(file) as archive:
@@ -726,7 +727,7 @@ def test_export_writes_no_path_of_this_machine(place, name):
 
 @pytest.mark.slow
 def test_programs_hold_no_path_of_this_machine(traced):
-    """Their traces once contained such paths."""
+    """The traces of programs once contained such paths."""
     assert places_in(traced / loading.PROGRAM) == []
 
 

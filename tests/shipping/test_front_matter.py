@@ -1,4 +1,4 @@
-"""A hardened folder's README is a model card that Hugging Face's own library reads."""
+"""Tests that a hardened folder's README is a model card that Hugging Face's library can read."""
 
 from __future__ import annotations
 

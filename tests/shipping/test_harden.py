@@ -1,4 +1,4 @@
-"""Harden policies of other libraries without an expert: ``mitigate.harden``."""
+"""Tests of hardening policies of other libraries without an expert: ``mitigate.harden``."""
 
 import gymnasium
 import numpy as np
@@ -17,7 +17,7 @@ from mitigate.worlds.seeded import seeded_episodes
 
 
 class Lights(gymnasium.Env):
-    """A light on the left or the right shows the side to choose, five times in a row."""
+    """An environment in which a light on the left or right shows the side to choose, five times."""
 
     def __init__(self, continuous=False, size=16):
         self.observation_space = spaces.Box(0, 255, (size, size, 3), np.uint8)
@@ -75,7 +75,7 @@ def trained(continuous=False):
 
 
 def imitate(policy, env):
-    """Train a policy of stable-baselines3 on the right sides."""
+    """Train a policy of stable-baselines3 on the correct sides."""
     optimizer = torch.optim.Adam(policy.parameters(), 1e-3)
     env.reset(seed=7)
     for _ in range(40):

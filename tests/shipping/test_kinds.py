@@ -1,4 +1,4 @@
-"""Every kind of shipped agent is exported, and reloads without being built by the user."""
+"""Tests that every kind of shipped agent can be exported and reloaded."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ KINDS = {
 }
 
 
-@pytest.mark.slow  # tests/test_methods.py exports a run of the frontier agent quickly
+@pytest.mark.slow  # the frontier agent is exported in tests/test_methods.py, which is quick
 @pytest.mark.parametrize("kind", KINDS)
 def test_run_is_exported_and_loads_again(tmp_path, kind, monkeypatch):
     monkeypatch.setattr(export, "WALKS", 1)

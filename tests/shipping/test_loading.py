@@ -1,4 +1,4 @@
-"""One call loads an agent from any kind of folder, and tools infer its kind from the folder."""
+"""Tests that one call loads an agent from any folder, and that its kind is inferred."""
 
 from __future__ import annotations
 

@@ -1,5 +1,4 @@
-"""A card gets the rows of one agent only, and a folder loads only into an agent like the exported
-one."""
+"""Tests that a card contains rows of one agent, and that a folder loads only into a like agent."""
 
 from __future__ import annotations
 
@@ -76,14 +75,15 @@ def test_values_that_cannot_be_loaded_are_named(filled):
 
 
 class Silent:
-    """Has no settings(); its ``net`` is not a plain value."""
+    """An agent without settings(), whose ``net`` is not a plain value."""
 
     def __init__(self, gain: float) -> None:
         self.gain, self.net = gain, object()
 
 
 def test_attributes_are_compared_without_settings(tmp_path):
-    """An evaluation and ``benchmark(load_hardened(...))`` then give it the same hash."""
+    """Then an evaluation and ``benchmark(load_hardened(...))`` compute the same hash for the
+    agent."""
     config = tmp_path / "config.yaml"
     config.write_text(yaml.safe_dump({"agent": {"_target_": "mine.Silent", "gain": 1, "net": "a"}}))
     with pytest.warns(UserWarning, match=r"with gain=1, but the given agent has 5\.0"):

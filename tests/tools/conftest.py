@@ -1,4 +1,4 @@
-"""Share the analytic scene of the corruption tests."""
+"""Make the analytic scene of the corruption tests available."""
 
 from tests.corruptions.conftest import scene
 

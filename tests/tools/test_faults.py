@@ -1,4 +1,4 @@
-"""The fault injection tool: its status and stored outcomes."""
+"""Tests of the fault injection tool: its exit status and stored outcomes."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from tools.faults import evaluation, training
 
 @pytest.fixture
 def run_tool(tmp_path, monkeypatch):
-    """Run the tool with given outcomes of a training or the evaluation."""
+    """Run the tool with given outcomes of training or evaluation."""
 
     def run(outcomes, *arguments):
         monkeypatch.setattr(training, "break_training", lambda *_: dict(outcomes))
@@ -27,7 +27,7 @@ def test_main_fails_if_nothing_was_tried(run_tool):
     assert run_tool({"SIGTERM": "survived", "SIGINT": "other bits"}, "--recipes", "ts_distill") == 1
     assert run_tool({}, "--recipes", "ts_distill", "--faults") == 1
     assert run_tool({"full disk": "not run: no file system"}, "--recipes", "ts_distill") == 1
-    assert run_tool({}, "--recipes") == 0  # writes the table of stored outcomes
+    assert run_tool({}, "--recipes") == 0  # this writes the table of stored outcomes
 
 
 def test_main_replaces_stored_outcomes(run_tool, tmp_path):

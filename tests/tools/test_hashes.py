@@ -1,4 +1,4 @@
-"""The hashes by which environments are compared."""
+"""Tests of the hashes with which environments are compared."""
 
 from __future__ import annotations
 

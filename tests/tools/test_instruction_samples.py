@@ -1,4 +1,4 @@
-"""The report on corruptions of instructions: its tables and examples are reproducible."""
+"""Tests that tables and examples in the report on corrupted instructions are reproducible."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The count of lines of code."""
+"""Tests of the count of lines of code."""
 
 import pytest
 

@@ -1,4 +1,4 @@
-"""Perception scores fall with a corruption of the same modality, and with no other."""
+"""Tests that perception scores fall under corruptions of the same modality, and no others."""
 
 from __future__ import annotations
 

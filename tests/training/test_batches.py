@@ -1,5 +1,4 @@
-"""Worker processes make the same batches as the main process, survive deaths, and pass errors
-on."""
+"""Tests that workers compute the same batches, survive deaths, and pass errors on."""
 
 from __future__ import annotations
 
@@ -25,7 +24,8 @@ from tests.tiny import TinyRecipe
 
 
 class Shared(TinyRecipe):
-    """Its batches consist of three pieces that depend on the seed and on the weights."""
+    """An objective whose batches consist of three pieces that depend on the seed and the
+    weights."""
 
     def __init__(self, ahead: bool = False, fatal: str = "") -> None:
         super().__init__()
@@ -38,7 +38,7 @@ class Shared(TinyRecipe):
         if job == (2, 1) and self.fatal == "raise":
             raise ValueError("no such pose")
         if job == (2, 1) and os.path.exists(self.fatal):
-            os.unlink(self.fatal)  # the next process that arrives here survives
+            os.unlink(self.fatal)  # the next process that reaches this line survives
             if self.fatal.endswith("message"):
                 die_in_a_message()
             os.kill(os.getpid(), signal.SIGKILL)
@@ -57,7 +57,7 @@ class Shared(TinyRecipe):
 
 
 class Bulky(Shared):
-    """Its weights and its pieces are larger than the buffer of a pipe."""
+    """An objective whose weights and pieces are larger than the buffer of a pipe."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -92,7 +92,7 @@ def two():
 def test_two_workers_train_the_same_weights_as_zero(ahead, two, tmp_path):
     alone = trained(tmp_path / "alone", None, ahead=ahead)
     assert trained(tmp_path / "two", two, ahead=ahead) == alone
-    states.checkpoints(tmp_path / "two")[-1].unlink()  # back to step 4
+    states.checkpoints(tmp_path / "two")[-1].unlink()  # resumes from step 4
     assert trained(tmp_path / "two", two, ahead=ahead) == alone
 
 
@@ -111,7 +111,7 @@ def test_batches_with_lag_do_not_depend_on_workers(two, tmp_path):
     alone = trained(tmp_path / "alone", None, lag=2, save_every=3)
     assert alone != trained(tmp_path / "prompt", None, save_every=3)
     assert trained(tmp_path / "two", two, lag=2, save_every=3) == alone
-    states.checkpoints(tmp_path / "two")[-1].unlink()  # back to step 3
+    states.checkpoints(tmp_path / "two")[-1].unlink()  # resumes from step 3
     assert trained(tmp_path / "two", two, lag=2, save_every=3) == alone
     with Workers(7) as workers:
         assert trained(tmp_path / "seven", workers, lag=2, save_every=3) == alone
@@ -171,7 +171,7 @@ def test_worker_error_is_raised_unchanged(two, tmp_path):
 
 
 class Unpackable(Shared):
-    """Its pieces, or its jobs, cannot be pickled."""
+    """An objective whose pieces or jobs cannot be pickled."""
 
     def jobs(self, step: int) -> list:
         pointer = ctypes.pointer(ctypes.c_int(step))
@@ -201,7 +201,7 @@ def _no_job():
     ],
 )
 def test_unpicklable_result_is_reported(fatal, kind, message, tmp_path):
-    """The error must not mention memory, and no process waits for the job."""
+    """The error must not mention memory, and no process may wait for the job."""
     with Workers(1) as workers, pytest.raises(kind, match=message) as raised:
         Trainer(Unpackable(fatal=fatal), steps=2, folder=tmp_path, workers=workers).fit()
     assert not isinstance(raised.value, WorkersDied)
@@ -217,7 +217,7 @@ def test_workers_reject_torchscript_objectives(two, tmp_path):
 
 def test_unpicklable_recipe_is_rejected_with_a_way_out(two, tmp_path):
     class Local(Shared):
-        """Classes inside functions cannot be pickled."""
+        """Return an objective of a class inside a function, which cannot be pickled."""
 
     with pytest.raises(ValueError, match="workers=0"):
         Trainer(Local(), steps=1, folder=tmp_path, workers=two).fit()

@@ -1,4 +1,4 @@
-"""The duration of a training is estimated before it begins, within the error of the measurement."""
+"""Tests that the duration of training is estimated within the error of measurement."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ from mitigate.evaluation.config import CostConfig
 from mitigate.training import estimate, plan
 from mitigate.training.config import TrainConfig, read
 
-# Minutes of trainings on 2 cores capped to AVX2, with the evaluation and without the set-up of the
-# environment (recipes/README.md, "How long they take").
+# Minutes of training runs on 2 cores limited to AVX2, with evaluation and without the set-up
+# of the environment (recipes/README.md, "How long they take").
 TIMED = [
     ("da_per_episode", "topological", 8.5),
     ("conv_adapter", "topological", 8.5),
@@ -86,7 +86,7 @@ def test_estimate_scales_by_the_machines_probe(monkeypatch, reference, tmp_path)
 
 
 def test_base_without_evaluation_is_not_counted(tmp_path):
-    """swap_encoder starts from parts of an agent, which are not an agent."""
+    """swap_encoder starts from parts of an agent, which are not a complete agent."""
     cfg = read(conf.load_config("train", ["recipe=swap_encoder"]))
     assert ", 1 x 40 episodes x 13 conditions: about " in estimate.describe(cfg, tmp_path)
     assert ", 2 x 40 episodes x 13 conditions: about " in estimate.describe(

@@ -1,4 +1,4 @@
-"""Invalid combinations are rejected before the first step, in one paragraph."""
+"""Tests that invalid combinations are rejected before the first step, in one paragraph."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ OFF = "evaluation.enabled=false"
 
 
 def load(*options: str) -> TrainConfig:
-    """Return the typed options of a training."""
+    """Return the typed options of a training run."""
     return read(conf.load_config("train", [*options]))
 
 
@@ -149,7 +149,7 @@ def test_plan_rejects_runs_without_stages(tmp_path, options):
 
 
 class Walker(StepwiseAgent):
-    """Trains on episodes, and has no encoders."""
+    """An agent that is trained on episodes and has no encoders."""
 
     def __init__(self):
         super().__init__()
@@ -174,8 +174,8 @@ def test_agent_without_encoders_trains_on_episodes_only(recipe, stage, capsys):
 def test_plan_drops_view_stages_without_random_poses(monkeypatch, capsys):
     cfg = load("recipe=imitation")
     plan.leave_out_stages(cfg, TopologicalAgent(16))
-    assert len(left(cfg)) == 3  # the apartments have them
-    monkeypatch.setattr(plan, "maker", lambda node: Walker)  # any class without them
+    assert len(left(cfg)) == 3  # the apartments have such episodes
+    monkeypatch.setattr(plan, "maker", lambda node: Walker)  # any class without these members
     plan.leave_out_stages(cfg, TopologicalAgent(16))
     assert left(cfg) == ["imitation"] and "no random poses" in capsys.readouterr().out
 
@@ -231,7 +231,7 @@ def test_plan_rejects_changed_settings_of_a_later_stage(tmp_path):
     with pytest.raises(ValueError, match=r"second holds a run with other settings \(agent.width"):
         train.run(tiny(tmp_path, "two", "first", "second", width=16))
     assert not (tmp_path / "first").exists()
-    train.run(tiny(tmp_path, "three", "second"))  # the same goes on
+    train.run(tiny(tmp_path, "three", "second"))  # the same run continues
 
 
 @pytest.mark.parametrize(
@@ -324,7 +324,7 @@ def test_missing_weights_name_the_recipe_that_makes_them(tmp_path):
 
 
 def fitted(agent, *options: str):
-    """Return the stages of a training of ``agent``, by name."""
+    """Return the stages of a training run of ``agent``, by name."""
     cfg = load(*options)
     before = copy.deepcopy(cfg.stages)
     plan.drop_unread_corruptions(cfg, agent)
@@ -336,7 +336,7 @@ def fitted(agent, *options: str):
     [
         (RecurrentAgent(["rgb"]), RGB),
         (RecurrentAgent(["depth"]), DEPTH),
-        (StepwiseAgent(), RGB),  # whose needs are rgb
+        (StepwiseAgent(), RGB),  # whose ``needs`` contain only rgb
     ],
 )
 @pytest.mark.parametrize("recipe", ["da_per_frame", "da_per_episode", "da_success", "ts_distill"])
@@ -346,7 +346,7 @@ def test_agent_gets_corruptions_of_its_sensors_only(recipe, agent, read, capsys)
         schedule = build(stage.recipe["schedule"])
         met = Counter(schedule.draw(0, f"e{i}", 0)[0].name for i in range(2000))
         assert set(met) == {"clean", *read}
-        assert met["clean"] / 2000 == pytest.approx(0.25, abs=0.03)  # only the clean share
+        assert met["clean"] / 2000 == pytest.approx(0.25, abs=0.03)  # only the clean share differs
     lost = ", ".join(DEPTH if read is RGB else RGB)
     printed = capsys.readouterr().out
     assert printed.count("reads no") == 1 and printed.endswith(f"the schedule leaves out {lost}\n")
@@ -361,7 +361,7 @@ def test_unread_corruptions_are_dropped_from_a_list():
     "agent", [TopologicalAgent(16), RecurrentAgent(), FrontierAgent(), TinyAgent()]
 )
 def test_agent_with_both_sensors_draws_the_whole_schedule(agent, capsys):
-    """Compared as text: the training corruptions are part of a run's fingerprint."""
+    """They are compared as text, because training corruptions are part of a run's fingerprint."""
     for recipe in ("da_per_episode", "stacked"):
         stages, before = fitted(agent, f"recipe={recipe}")
         assert stages == before

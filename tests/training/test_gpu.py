@@ -1,5 +1,4 @@
-"""On a GPU: the losses of the CPU, weights that load on both devices, the shipped agent's
-actions."""
+"""Tests on a GPU: losses as on the CPU, weights that load on both devices, and equal actions."""
 
 from __future__ import annotations
 
@@ -24,7 +23,7 @@ pytestmark = [
     pytest.mark.skipif(not torch.cuda.is_available(), reason="no CUDA here"),
 ]
 GPU = "cuda"
-DROPOUT = 0.1  # each device has its own random numbers: losses of such stages differed by 7 %
+DROPOUT = 0.1  # each device has different random numbers, so losses of such stages differed by 7 %
 KINDS = [
     (agent, recipe)
     for agent in ("topological", "recurrent", "recurrent_rgb", "frontier")
@@ -107,4 +106,4 @@ def test_shipped_agent_acts_as_on_cpu(tmp_path):
         )
         rows.append(walked)
     same = [a["success"] == b["success"] for a, b in zip(*rows, strict=True)]
-    assert sum(same) >= len(same) - 1  # ties may be resolved differently
+    assert sum(same) >= len(same) - 1  # ties may be resolved differently on a GPU

@@ -1,4 +1,4 @@
-"""An objective receives its source; a recipe's flat arguments are split between both."""
+"""Tests that a recipe's flat arguments are split between an objective and its source."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Which parts of an agent train, and what the other parts keep."""
+"""Tests of which parts of an agent are trained, and of what other parts keep."""
 
 from __future__ import annotations
 

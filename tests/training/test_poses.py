@@ -1,4 +1,4 @@
-"""Views at random poses: the training targets, and the input of a corruption."""
+"""Tests of views at random poses: the training targets, and the input of corruptions."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from mitigate.worlds.apartments.world import ApartmentsWorld
 
 
 def test_corruption_gets_a_picture_in_every_view(monkeypatch):
-    """It may return another view's picture."""
+    """A corruption that may return the image of a different view."""
     displayed = []
 
     def look(frames, *_):

@@ -1,4 +1,4 @@
-"""Two ranks take the same training steps as one process with the pieces of both."""
+"""Tests that two ranks take the same training steps as one process with all pieces."""
 
 from __future__ import annotations
 
@@ -21,8 +21,8 @@ PIECES = 4
 
 
 class Regression(Objective):
-    """Pieces of different lengths, a weight that only the first rank's pieces use, and an unused
-    weight, which must not decay."""
+    """An objective with pieces of different lengths, a weight that only the first rank's pieces
+    use, and an unused weight, which must not decay."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -45,7 +45,7 @@ class Regression(Objective):
     def forward(self, batch):
         inputs = batch["inputs"]
         guess = self.line(inputs)
-        if len(inputs) in (14, 34):  # the first rank's pieces, or all
+        if len(inputs) in (14, 34):  # the pieces of the first rank, or all pieces
             guess = guess + torch.cat([self.first(inputs[:4]), torch.zeros(len(inputs) - 4, 1)])
         values = {"loss": (guess - inputs.sum(1, keepdim=True)).square().mean()}
         if len(inputs) in (14, 34):
@@ -66,7 +66,7 @@ def torchrun(folder: Path, count: int) -> subprocess.CompletedProcess:
         "import os, sys, torch\nfrom pathlib import Path\n"
         "from mitigate.training import trainer\n"
         "from mitigate.training.ranks import Ranks\nfrom tests.training.test_ranks import train\n"
-        # bf16 may be faster on one rank only: all ranks take the choice of the first
+        # bf16 may be faster on only one rank, so all ranks use the choice of the first
         "trainer.choose = lambda *_: ('fp32', 'bf16')[int(os.environ['RANK'])]\n"
         "folder = Path(sys.argv[1])\n"
         "with Ranks.of_environment() as ranks:\n"

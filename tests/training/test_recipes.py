@@ -1,4 +1,5 @@
-"""Every recipe in conf/recipe trains two steps per stage and leaves an agent that loads."""
+"""Tests that every recipe in conf/recipe trains two steps per stage and gives an agent that
+loads."""
 
 from __future__ import annotations
 
@@ -16,7 +17,7 @@ from mitigate.worlds.apartments import simulator
 from tests.guards.text.conftest import write_tiny_model
 
 TINY_ENCODER = {"model": "tests.encoders.shapes:tiny", "weights": None, "output": "pool"}
-OTHERS = (  # kinds of agent with shipped weights, each with one kind of recipe
+OTHERS = (  # kinds of agent with shipped weights, each with one recipe
     ("recurrent", "da_per_episode", "recurrent/base"),
     ("recurrent_rgb", "ts_distill", "recurrent_rgb/base"),
     ("frontier", "conv_adapter", "frontier/base"),
@@ -34,7 +35,7 @@ LITTLE = {  # training data of a stage's recipe, in addition to two rollouts per
     "variants": 1,
 }
 RECIPES = sorted(path.stem for path in (conf.CONF / "recipe").rglob("*.yaml"))
-QUICK = ("conv_adapter", "ts_distill")  # the others are slow one after the other
+QUICK = ("conv_adapter", "ts_distill")  # the other recipes are slow one after the other
 
 
 def some_slow(names, quick):
@@ -46,13 +47,14 @@ def test_every_recipe_trains_two_steps(tmp_path, name, monkeypatch):
     monkeypatch.setattr(stored, "SPACING", 2.0)  # few poses, so that few features are stored
     monkeypatch.setattr(simulator, "MAX_STEPS", 40)  # episodes for measuring success
     options = [f"recipe={name}", "debug=smoke", "evaluation.enabled=false", f"runs={tmp_path}"]
-    options.append("workers=0")  # two workers per stage take longer to start than to work
+    options.append("workers=0")  # two workers per stage take longer to start than to compute
     cfg = conf.load_config("train", options)
-    if "base" in cfg.agent:  # a language model: the real one takes half a minute to load
+    # a tiny language model, because the real one takes half a minute to load
+    if "base" in cfg.agent:
         cfg.agent.base = str(write_tiny_model(tmp_path / "tiny-llama"))
-    if cfg.agent.get("encoder", "own") != "own":  # it needs an extra, and is slow
+    if cfg.agent.get("encoder", "own") != "own":  # needs an extra, and is slow
         cfg.agent.encoder, cfg.agent.size, cfg.env.size = "own", 64, 64
-    if "adapters" in cfg.agent and "model" in cfg.agent:  # an encoder that needs an extra
+    if "adapters" in cfg.agent and "model" in cfg.agent:  # uses an encoder that needs an extra
         cfg.agent = OmegaConf.merge(cfg.agent, TINY_ENCODER)
         cfg.agent.kwargs = {}
     if "size" in cfg.agent and "size" in cfg.env:

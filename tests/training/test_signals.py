@@ -1,5 +1,4 @@
-"""A signal ends a training: it saves, names the command to resume, and resumes to the same
-result."""
+"""Tests that a signal ends training after saving, and that the run resumes to the same result."""
 
 from __future__ import annotations
 
@@ -36,7 +35,7 @@ conf.main(program, "train")
 
 
 class Slow(Objective):
-    """Fits a line; at step 3 it sends itself a signal, once."""
+    """An objective that fits a line and, at step 3, once sends a signal to its process."""
 
     def __init__(self, folder: Path, number: int) -> None:
         super().__init__()
@@ -51,12 +50,13 @@ class Slow(Objective):
         if batch["step"] == 3 and self.number and not self.note.exists():
             self.note.touch()
             os.kill(os.getpid(), self.number)
-            time.sleep(0.05)  # the step goes on
+            time.sleep(0.05)  # the step continues
         return {"loss": (self.line(batch["inputs"]) - 1).square().mean()}
 
 
 class Calibrated(Slow):
-    """``finish`` sets a threshold from the weights, and may call ``before`` first."""
+    """An objective whose ``finish`` sets a threshold from the weights and may call ``before``
+    first."""
 
     def __init__(self, folder: Path, before=lambda: None) -> None:
         super().__init__(folder, 0)
@@ -192,7 +192,7 @@ def test_signal_in_an_inner_block_reaches_the_outer_one(tmp_path):
         with uninterrupted():
             os.kill(os.getpid(), signal.SIGTERM)
             time.sleep(0.01)
-        assert outer.number == signal.SIGTERM and not outer.again  # and it goes on
+        assert outer.number == signal.SIGTERM and not outer.again  # and the run continues
         with pytest.raises(Ended), delay_signals():
             os.kill(os.getpid(), signal.SIGINT)
             time.sleep(1)
@@ -214,7 +214,7 @@ def test_second_signal_ends_at_once(tmp_path):
 
 
 def test_signal_during_success_measurement_keeps_earlier_steps(tmp_path):
-    """Success rates are measured by workers that end at once, during a step."""
+    """An objective whose success rates are measured during a step, by workers that end at once."""
 
     class Measured(Slow):
         def batch(self, step):

@@ -1,4 +1,4 @@
-"""One recipe trains agents of all kinds: stages without trainable parts are left out."""
+"""Tests that one recipe trains agents of all kinds, skipping stages without trainable parts."""
 
 from __future__ import annotations
 

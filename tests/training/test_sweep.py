@@ -1,4 +1,4 @@
-"""A sweep runs every combination of options in a separate folder and ends in one table."""
+"""Tests that a sweep runs every combination of options in its own folder and writes one table."""
 
 from __future__ import annotations
 
@@ -19,7 +19,8 @@ def config(runs, *options):
 
 @pytest.fixture
 def fake(monkeypatch):
-    """Runs that take no time: each leaves rows, except those with ``seed=1``, which fail."""
+    """Stand-in runs that take no time; each writes rows, except those with ``seed=1``, which
+    fail."""
     ran = []
 
     def run(chains, jobs, launcher, progress, reported):
@@ -141,7 +142,7 @@ def test_impossible_options_are_reported_before_any_run(
 
 
 def test_sweep_infers_the_agent_from_weights(tmp_path, fake):
-    """``rgb_width`` is a setting of the recurrent agent, and not of the default one."""
+    """``rgb_width`` is a setting of the recurrent agent but not of the default agent."""
     cfg = config(tmp_path, "command=evaluate")
     options = ["checkpoint=checkpoints/recurrent/base", "agent.rgb_width=1,2"]
     sweep.run_all(cfg, options)

@@ -1,4 +1,4 @@
-"""The table of all methods runs cell by cell, resumes where it stopped, and counts its cost."""
+"""Tests that the table of all methods runs cell by cell, resumes, and counts its cost."""
 
 from __future__ import annotations
 
@@ -16,7 +16,8 @@ from mitigate.training import cells, tables
 from tests.evaluation.made_rows import column, row
 
 ALL = dict.fromkeys((*RGB, *DEPTH), 4)
-KEPT = ("topological", "recurrent")  # columns of Table I; more columns would test the same
+# columns of Table I that are tested; more columns would test the same behaviour
+KEPT = ("topological", "recurrent")
 
 
 def less(table: str, remaining: Collection[str]) -> list[str]:
@@ -36,7 +37,8 @@ def config(out: Path, **changes) -> cells.TablesConfig:
 
 
 def finished(cfg) -> None:
-    """Rows of every cell, as an evaluation writes them; seed 1 has lower success than seed 0."""
+    """Write rows of every cell as an evaluation does, with lower success for seed 1 than for seed
+    0."""
     for cell in tables.cells(cfg):
         agent = "base" if not cell.options else f"{cell.column}{cell.seed}"
         records = column(8 - 2 * cell.seed, ALL, name=cell.column, seed=cell.seed, agent=agent)
@@ -45,14 +47,15 @@ def finished(cfg) -> None:
 
 @pytest.fixture(autouse=True)
 def no_plots(monkeypatch):
-    """Drawing them takes most of a report's time (tests/evaluation/test_report.py has them)."""
+    """Omit the pictures, which take most of a report's time (tests/evaluation/test_report.py tests
+    them)."""
     monkeypatch.setattr(plots, "heatmap", lambda section, path: path)
     monkeypatch.setattr(plots, "severity_curves", lambda grid, path: path)
 
 
 @pytest.fixture
 def quick(monkeypatch):
-    """Cells whose processes do nothing, but are processes."""
+    """Replace the programs of cells by processes that do nothing."""
     monkeypatch.setattr(
         tables.Cell, "commands", lambda self, cfg: [("train", ["timeit", "-n", "1", "pass"])]
     )
@@ -220,7 +223,8 @@ def test_report_can_be_rebuilt_from_rows_only(tmp_path, quick):
 
 
 def test_further_evaluations_are_measured_and_reported_apart(tmp_path, quick, monkeypatch):
-    """Each evaluation takes the table's options and its own ones, and its rows stay separate."""
+    """Each evaluation uses the table's options and its own ones, and its rows are stored
+    separately."""
     measured = tables.Cell.measurement
     cfg = load("table2", f"out={tmp_path}", "seeds=[0]", "evaluations=beyond", "episodes=7")
     cfg.columns = {name: cfg.columns[name] for name in ("base", "restored")}
@@ -257,7 +261,7 @@ def test_additional_evaluation_limits_episodes(tmp_path, table, requests, walked
 
 def test_null_column_or_evaluation_is_left_out(tmp_path):
     null = ["columns.base=null", "evaluations.pairs=null", "+evaluations.mine=null"]
-    columns = less("table2", ["base", "da_per_frame"])  # each is composed and checked
+    columns = less("table2", ["base", "da_per_frame"])  # each option list is composed and checked
     cfg = load("table2", f"out={tmp_path}", "evaluations=beyond", *null, *columns)
     output = tables.cells(cfg)
     cells.check(output, cfg)
@@ -281,7 +285,7 @@ def test_failed_cell_does_not_lose_the_others(tmp_path, quick, monkeypatch):
     cfg = config(tmp_path)
     finished(cfg)
     broken = tables.cells(cfg)[-1]
-    (broken.evaluation / "rows.jsonl").unlink()  # its training fails before there are rows
+    (broken.evaluation / "rows.jsonl").unlink()  # the training fails before rows are written
     monkeypatch.setattr(
         tables.Cell,
         "commands",
@@ -309,7 +313,8 @@ def test_rows_of_another_severity_are_told(tmp_path):
 
 
 def test_clean_rows_alone_make_a_report(tmp_path):
-    """Like the ablations, at any severity without measurements."""
+    """A table may have only clean rows, as for the ablations, at a severity without
+    measurements."""
     rows.write(tmp_path / "rows.jsonl", column(8, {}))
     cfg = config(tmp_path / "out", rows=[str(tmp_path / "rows.jsonl")])
     report = tables.make_table(cfg).read_text(encoding="utf-8")
@@ -324,8 +329,7 @@ def test_paper_figures_appear_only_at_their_severity(tmp_path):
 
 
 def test_trajectories_show_episodes_won_back_by_the_last_agent(tmp_path, quick, monkeypatch):
-    """Every cell has the base agent's weights, so a test takes seconds; the rows define the
-    winner."""
+    """Make every cell use the base agent's weights, so that a test takes seconds."""
     monkeypatch.setattr(tables.Cell, "agent", ())
     cfg = config(tmp_path, walks=["base", "da_per_frame"], episodes=2, seeds=[0])
     ids = [
@@ -345,7 +349,7 @@ def test_trajectories_show_episodes_won_back_by_the_last_agent(tmp_path, quick, 
 
 
 def test_trajectories_use_the_input_guard_of_the_table(tmp_path, monkeypatch):
-    """The agent has the name of its rows."""
+    """The agent's name is the one in its rows."""
     cfg = config(tmp_path, seeds=[0], episodes=1, walks=["base", "restored"])
     restored = ["name=base", "restore=checkpoints/restorer:rgb", "safeguard=rules"]
     cfg.columns = {"base": [], "restored": restored}

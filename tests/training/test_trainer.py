@@ -1,4 +1,4 @@
-"""The trainer resumes bit for bit, keeps frozen weights, and stops on a loss that is not finite."""
+"""Tests that the trainer resumes bit for bit, keeps frozen weights, and stops at a NaN loss."""
 
 from __future__ import annotations
 
@@ -84,7 +84,7 @@ def test_other_seed_trains_other_weights(tmp_path):
 def test_resumed_run_equals_an_uninterrupted_one(tmp_path, precision):
     whole = trained(tmp_path / "whole", precision=precision)
     trained(tmp_path / "broken", precision=precision)
-    states.checkpoints(tmp_path / "broken")[-1].unlink()  # back to step 15
+    states.checkpoints(tmp_path / "broken")[-1].unlink()  # resumes from step 15
     seeding.seed_everything(9, "what an interrupted process leaves behind")
     assert same(whole, trained(tmp_path / "broken", precision=precision))
 
@@ -97,7 +97,7 @@ def test_resumed_run_logs_what_an_uninterrupted_one_logs(tmp_path):
     for name in ("whole", "broken"):
         trained(tmp_path / name, **how)
         if name == "broken":
-            states.checkpoints(tmp_path / name)[-1].unlink()  # back to step 15
+            states.checkpoints(tmp_path / name)[-1].unlink()  # resumes from step 15
             trained(tmp_path / name, **how)
         events = EventAccumulator(str(tmp_path / name))
         events.Reload()
@@ -224,7 +224,8 @@ def test_nan_loss_stops_with_step_recipe_and_episodes(tmp_path):
 def test_infinite_gradient_stops_before_the_update(tmp_path):
     class Overflow(TinyRecipe):
         def forward(self, batch):
-            return {"loss": (self.agent.body(batch["inputs"]) * 0).sqrt().sum()}  # d sqrt(0) = inf
+            # the derivative of sqrt at 0 is infinite
+            return {"loss": (self.agent.body(batch["inputs"]) * 0).sqrt().sum()}
 
     output = Overflow()
     before = {name: value.clone() for name, value in output.agent.state_dict().items()}

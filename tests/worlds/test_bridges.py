@@ -1,4 +1,4 @@
-"""Worlds as torchrl environments, and torchrl and gymnasium environments as worlds."""
+"""Tests of worlds as torchrl environments, and of torchrl and gymnasium environments as worlds."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def episode(seed: int) -> Episode:
 
 
 class Brightness:
-    """An agent that stops in dark frames, otherwise takes action 1; it records its frames."""
+    """An agent that stops in dark frames, otherwise takes action 1, and records its frames."""
 
     def reset(self, instruction):
         self.seen = []
@@ -40,7 +40,8 @@ class Brightness:
 
 
 class Room(gymnasium.Env):
-    """A room that is bright for as many steps as its seed; stopping in the dark succeeds."""
+    """A room that is bright for a number of steps given by its seed; stopping in the dark
+    succeeds."""
 
     def __init__(self, entry: str | None = None):
         box = gymnasium.spaces.Box(0, 255, (SIZE, SIZE, 3), np.uint8)
@@ -94,7 +95,7 @@ def test_gym_world_runs_an_environment(entry):
     measures = run_episode(agent, world, episode(3), CLEAN, 0)
     assert measures["success"] == 1 and measures["steps"] == 4 == measures["decisions"]
     dark = run_episode(agent, world, episode(3), Corruption("low_light", 1.0), 0)
-    assert dark["success"] == 0 and dark["steps"] == 1  # it stops in frames that look dark
+    assert dark["success"] == 0 and dark["steps"] == 1  # the agent stops in frames that look dark
     world.reset(episode(3))
     with pytest.raises(ValueError, match="must be 0 to 1, got"):
         world.step(5)
@@ -205,7 +206,7 @@ def test_gym_world_rejects_invalid_success_arguments(success):
 
 
 class Within(Room):
-    """A room with nested entries for the camera and the goal."""
+    """A room whose observation has nested entries for the camera and the goal."""
 
     def __init__(self):
         super().__init__()

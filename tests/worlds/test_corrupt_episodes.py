@@ -1,4 +1,4 @@
-"""The command that corrupts episode files: text, tokens, options and output files."""
+"""Tests of the command that corrupts episode files: text, tokens, options and output files."""
 
 from __future__ import annotations
 
@@ -114,12 +114,12 @@ def test_run_uses_a_named_tokenizer(tmp_path):
     assert tokens[: len(tokenizer(text)["input_ids"])] == tokenizer(text)["input_ids"]
     spoken = {"instruction_text": "Gehe links.", "language": "de-DE"}
     source = write(tmp_path / "in.json.gz", *(episode(i) for i in range(8)), episode(8, **spoken))
-    for severity in (0.0, 0.5):  # an unchanged draw has the agent's tokens, too
+    for severity in (0.0, 0.5):  # an unchanged instruction also has the agent's tokens
         run(source, tmp_path / "o.json", "formal", severity, tokenizer=str(tmp_path / "named"))
         for got in json.loads((tmp_path / "o.json").read_text())["episodes"]:
             text, tokens = (got["instruction"][f"instruction_{x}"] for x in ("text", "tokens"))
             cut = tokenizer(text, truncation=True, max_length=40)["input_ids"]
-            assert tokens == (cut + [0] * 40)[:40] and 3 in tokens  # the end mark stays
+            assert tokens == (cut + [0] * 40)[:40] and 3 in tokens  # the end token is kept
 
 
 def test_run_counts_other_languages(tmp_path):
@@ -156,7 +156,7 @@ def test_run_memory_does_not_grow_with_the_file(tmp_path):
         run(source, tmp_path / f"{count}-out.json.gz", "mask", 0.5)
         peaks.append(tracemalloc.get_traced_memory()[1])
         tracemalloc.stop()
-    assert peaks[1] < peaks[0] + 1_000_000, peaks  # the larger file holds 10 MB more
+    assert peaks[1] < peaks[0] + 1_000_000, peaks  # the larger file has 10 MB more
 
 
 def test_run_counts_instructions_without_words(tmp_path):

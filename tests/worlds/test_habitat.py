@@ -1,4 +1,4 @@
-"""Corruption of Habitat observations, whose cameras form one panorama."""
+"""Tests of corrupting Habitat observations, whose cameras form one panorama."""
 
 import numpy as np
 import pytest

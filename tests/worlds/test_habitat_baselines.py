@@ -1,7 +1,7 @@
-"""The observation transformer of habitat-baselines and its key sensor.
+"""Tests of the observation transformer of habitat-baselines and of its key sensor.
 
-habitat-lab does not import without its simulator, which no package index has. The tests therefore
-use a small replacement of the public interface of habitat-baselines.
+habitat-lab cannot be imported without its simulator, which is on no package index. The tests
+therefore use a small replacement of the public interface of habitat-baselines.
 """
 
 import dataclasses
@@ -19,7 +19,7 @@ from mitigate.worlds.habitat import corrupt_habitat
 
 
 class Space:
-    """The part of ``gym.spaces.Dict`` that the transformer uses."""
+    """The members of ``gym.spaces.Dict`` that the transformer uses."""
 
     def __init__(self, spaces: dict) -> None:
         self.spaces = spaces
@@ -145,7 +145,8 @@ def test_key_depends_on_scene_episode_and_step():
 
 @pytest.fixture
 def stand_in(monkeypatch):
-    """Provide modules with the used public names of habitat-lab and habitat-baselines 0.3."""
+    """Provide modules with the public names of habitat-lab and habitat-baselines 0.3 that are
+    used."""
     known = {}
 
     class ObservationTransformer(torch.nn.Module):

@@ -1,4 +1,5 @@
-"""The Habitat world without its simulator; episodes in it are tested by hand (docs/habitat.md)."""
+"""Tests of the Habitat world without its simulator; episodes are tested by hand
+(docs/habitat.md)."""
 
 import json
 import math
@@ -52,7 +53,7 @@ def test_habitat_world_rejects_invalid_arguments_first(value, words):
 
 
 class Simulator:
-    """A replacement of habitat-sim; ``walkable``: whether a navmesh can be computed."""
+    """A replacement for habitat-sim; ``walkable`` states whether a navmesh can be computed."""
 
     walkable, loaded = True, ""
     pathfinder = None

@@ -1,4 +1,4 @@
-"""The torchrl transforms in batched environments: reset masks, rows, workers, buffers, devices."""
+"""Tests of torchrl transforms in batched environments: masks, rows, workers, buffers, devices."""
 
 import numpy as np
 import pytest
@@ -23,7 +23,8 @@ HURT = Schedule("per_episode", 0.8, clean_share=0.2)
 
 
 class Corridor(EnvBase):
-    """A batched environment: frames depend on the step, row i ends after 2 + i steps."""
+    """A batched environment in which frames depend on the step, and row i ends after 2 + i
+    steps."""
 
     def __init__(self, rows: int = 3, rgb: str = "rgb", top: float = 10.0) -> None:
         super().__init__(device="cpu", batch_size=[rows])
@@ -175,7 +176,7 @@ def test_corrupt_observation_explains_a_missing_modality():
     reported = CorruptObservation(Corruption("foreign_object", 1.0))(data.clone())
     assert (reported["rgb"] == out["rgb"]).all()
     assert out["rgb"].shape == (2, 3, 8, 8, 3) and (out["rgb"][..., 4, 4, :] == 0).all()
-    mostly_clean = Schedule("per_frame", 0.6, clean_share=1.0)  # would not need depth now
+    mostly_clean = Schedule("per_frame", 0.6, clean_share=1.0)  # does not need depth now
     for schedule in (Schedule.always("multipath", 1.0), mostly_clean):
         with pytest.raises(
             ValueError, match="corrupts depth, but the data have no depth.*name the entry"

@@ -1,4 +1,4 @@
-"""The gymnasium wrapper: keys, spaces, order of entries, error messages."""
+"""Tests of the gymnasium wrapper: keys, spaces, order of entries, and error messages."""
 
 import importlib
 import sys
@@ -30,7 +30,7 @@ HURT_RGB = Schedule("per_episode", 0.8, clean_share=0.0, names=RGB)
 
 
 class Room(gymnasium.Env):
-    """An environment with frames of a space that depend on the step; it ends after 3 steps."""
+    """An environment whose frames depend on the step, and which ends after 3 steps."""
 
     def __init__(self, space: spaces.Space) -> None:
         self.observation_space, self.action_space = space, spaces.Discrete(2)
@@ -109,7 +109,7 @@ def test_wrapper_counts_automatic_resets():
     inside = CorruptObservation(gymnasium.wrappers.Autoreset(Room(FRAME)), HURT_RGB)
     outside = gymnasium.wrappers.Autoreset(CorruptObservation(Room(FRAME), HURT_RGB))
     inside.reset(seed=4), outside.reset(seed=4)
-    for number in range(1, 10):  # the room ends after 3 steps, and the next step resets it
+    for number in range(1, 10):  # the episode ends after 3 steps, and the next step resets it
         seen, expected = inside.step(0)[0], outside.step(0)[0]
         assert inside.key == outside.env.key == Key(0, f"4-{number // 4}", number % 4)
         assert np.array_equal(seen, expected)

@@ -1,1 +1,1 @@
-"""Benchmarks: time of corruptions, training, evaluation, renderer and bridge; growth of memory."""
+"""Benchmarks of corruptions, training, evaluation, renderer and bridge, and of memory growth."""

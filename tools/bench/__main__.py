@@ -1,9 +1,9 @@
-"""Time corruptions (also of other libraries), training stages, evaluation and the renderer.
+"""Measure the time of corruptions (ours and others'), training stages, evaluation and renderer.
 
     make bench ARGS="--seconds 0.2 --steps 1"
 
 All measurements except training stages and one evaluation run in this process, on one thread.
-``--write`` puts the tables into ``docs/benchmarks.md``; use it on an idle machine.
+``--write`` inserts the tables into ``docs/benchmarks.md``; use it on an idle machine.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ import sys
 from pathlib import Path
 
 for _name in ("OMP_NUM_THREADS", "NUMBA_NUM_THREADS", "NO_ALBUMENTATIONS_UPDATE"):
-    os.environ.setdefault(_name, "1")  # libraries read it when they are imported
+    os.environ.setdefault(_name, "1")  # before the libraries are imported
 
 import cv2  # noqa: E402
 import torch  # noqa: E402

@@ -1,4 +1,4 @@
-"""Episodes of an evaluation per CPU second, run separately and all conditions together."""
+"""Measure evaluation episodes per CPU second, with conditions run separately and together."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ SEVERITY = 0.6
 
 @dataclass(frozen=True)
 class Pace:
-    """CPU seconds of episodes that are run in two ways.
+    """The CPU seconds of episodes that are run in two ways.
 
     Attributes:
         count: Number of episodes, each under one condition.
@@ -38,7 +38,7 @@ class Pace:
 
 
 def paces(count: int) -> dict[str, Pace]:
-    """Return by checkpoint the pace of ``count`` episodes under the suite, in this process."""
+    """Return, by checkpoint, the speed of ``count`` episodes under the suite in this process."""
     cfg = read(conf.load_config("evaluate"))
     by_checkpoint = {}
     for weights in CHECKPOINTS:
@@ -54,7 +54,7 @@ def paces(count: int) -> dict[str, Pace]:
 
 
 def _pace(task: EpisodeTask, groups: list[list[Job]]) -> Pace:
-    """Time all groups except the first, which warms up."""
+    """Measure the time of all groups except the first, which is a warm-up."""
 
     def alone(group: list[Job]) -> list[dict[str, Any]]:
         assert task.world is not None
@@ -74,9 +74,10 @@ def _pace(task: EpisodeTask, groups: list[list[Job]]) -> Pace:
 
 
 def seconds_by_workers(count: int) -> dict[int, float]:
-    """Return wall seconds of an evaluation of ``count`` episodes under the suite.
+    """Return the wall time in seconds of evaluating ``count`` episodes under the suite.
 
-    By number of workers: 1, and 2 if there are two cores. The faster of two runs counts.
+    The times are given by number of workers: 1, and 2 if there are two cores. The faster of two
+    runs is used.
     """
     with tempfile.TemporaryDirectory() as folder:
         return {

@@ -1,4 +1,4 @@
-"""Decide whether a series of measurements grows: its slope with an interval, and a verdict."""
+"""Decide whether a series of measurements grows, from its slope with an interval."""
 
 from __future__ import annotations
 
@@ -6,25 +6,25 @@ from dataclasses import dataclass
 
 import numpy as np
 
-WARM_UP = 0.25  # share of a series that is left out: caches fill once (heuristic)
+WARM_UP = 0.25  # fraction of a series that is skipped, because caches fill once (heuristic)
 RESAMPLES = 2000
 LEVEL = 0.95
 DAY = 24.0  # hours
-LIMIT = 0.1  # share of the mean per day that counts as growth (heuristic)
-MIN_COUNT = 20  # measurements that a slope needs (heuristic)
-MIN_HOURS = 0.3  # hours that a verdict needs (heuristic)
+LIMIT = 0.1  # growth per day, as a fraction of the mean, that counts as growth (heuristic)
+MIN_COUNT = 20  # minimum number of measurements for a slope (heuristic)
+MIN_HOURS = 0.3  # minimum hours for a result (heuristic)
 
 
 @dataclass(frozen=True)
 class Growth:
-    """The slope of a series.
+    """The slope of a series of measurements.
 
     Attributes:
         hours: Duration of the series.
         mean: Mean of the values.
         slope: Slope per hour.
-        low: Lower end of its 95 % interval.
-        high: Upper end of its 95 % interval.
+        low: Lower end of the slope's 95 % interval.
+        high: Upper end of the slope's 95 % interval.
     """
 
     hours: float
@@ -35,9 +35,9 @@ class Growth:
 
     @property
     def verdict(self) -> str:
-        """Return "grows", "flat" or "too short to say", from both ends of the interval."""
+        """Return "grows", "flat" or "too short to say", depending on both ends of the interval."""
         limit = LIMIT * max(self.mean, 1e-9) / DAY
-        if self.hours < MIN_HOURS:  # slow waves look like slopes in a short series
+        if self.hours < MIN_HOURS:  # slow waves look like a slope in a short series
             return "too short to say"
         if self.low > limit:
             return "grows"

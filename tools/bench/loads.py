@@ -1,8 +1,8 @@
 """Endless loads for ``tools.bench.soak``: ``python -m tools.bench.loads NAME FOLDER``.
 
-- training: rollouts and steps of the shipped agent in 64 apartments, whose caches are full after
-  some minutes, with a checkpoint every 20 steps.
-- evaluation: 20 episodes under the suite with two workers, repeated with other seeds.
+- training: rollouts and steps of the shipped agent in 64 apartments, with a checkpoint every 20
+  steps. The caches are full after some minutes.
+- evaluation: 20 episodes under the suite with two workers, repeated with different seeds.
 - bridge: episodes of 20 steps with RGB and depth, under each condition of the suite in turn, with
   a new server per condition.
 """
@@ -18,8 +18,8 @@ from pathlib import Path
 import numpy as np
 
 ENDLESS = 10_000_000  # steps
-EPISODES = 20  # episodes per round of evaluation or bridge traffic (heuristic)
-STEPS = 20  # steps per episode of bridge traffic (heuristic)
+EPISODES = 20  # number of episodes per round of evaluation or bridge traffic (heuristic)
+STEPS = 20  # number of steps per episode of bridge traffic (heuristic)
 SEVERITY = 0.6
 
 
@@ -68,7 +68,7 @@ def bridge(folder: Path) -> None:
         events = folder / f"{number}"
         with Listener(Condition(corruption, 0, Words()), events) as listener:
             os.environ.update(listener.environment())
-            session = mitigate_hook.Session()  # opens a separate connection
+            session = mitigate_hook.Session()  # this opens a separate connection
             for name in map(str, range(EPISODES)):
                 episode = mitigate_hook.Episode(session, name, "soak", None)
                 for _ in range(STEPS):

@@ -1,4 +1,4 @@
-"""Writes measured tables into pages of the docs, between two marker lines."""
+"""Write measured tables into pages of the documentation, between two marker lines."""
 
 from __future__ import annotations
 

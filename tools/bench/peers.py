@@ -1,8 +1,8 @@
-"""Corruptions of other libraries for the same failures, with strengths as similar as possible.
+"""Call corruptions of other libraries for the same failures, with similar strengths.
 
-Each is called as its documentation shows. Frames are converted to the library's format (float
-tensors for kornia) before the clock starts. No library corrupts metric depth, so depth is compared
-with plain numpy, OpenCV or torch code.
+Each library is called as shown in its documentation. Frames are converted to the library's format
+(float tensors for kornia) before the clock starts. No other library corrupts metric depth, so depth
+is compared with plain numpy, OpenCV or torch code.
 """
 
 from __future__ import annotations
@@ -20,12 +20,13 @@ from mitigate.corruptions import rgb
 from mitigate.corruptions.depth import echo_shift
 from tools.bench.timing import version
 
-Calls = dict[str, Callable[[], object]]  # key: the name of this project's corruption
-GRADE = 3  # severity of imagecorruptions, 1 to 5
+Calls = dict[str, Callable[[], object]]  # keyed by the name of this project's corruption
+GRADE = 3  # severity for imagecorruptions, 1 to 5
 
 
 def peers(rgb_views: np.ndarray, depth_views: np.ndarray, severity: float) -> dict[str, Calls]:
-    """Return the calls of every library that can be imported; print a line for each other one.
+    """Return the calls of every library that can be imported; print a line for each library that
+    cannot be imported.
 
     Args:
         rgb_views: uint8 [V, H, W, 3].
@@ -47,7 +48,7 @@ def peers(rgb_views: np.ndarray, depth_views: np.ndarray, severity: float) -> di
 
 
 def sizes(views: np.ndarray, severity: float) -> tuple[int, float]:
-    """Return kernel width of motion blur (odd pixels) and sigma of defocus in this project."""
+    """Return this project's kernel width of motion blur (odd pixels) and sigma of defocus."""
     height, width = views.shape[1:3]
     kernel = max(3, int(rgb.BLUR_LENGTH * severity * width) | 1)
     return kernel, rgb.DEFOCUS_SIGMA * severity * min(height, width)

@@ -1,9 +1,9 @@
-"""RGB-D views per second: the renderer of ``apartments`` compared with MiniWorld.
+"""Compare the renderer of ``apartments`` with MiniWorld in RGB-D views per second.
 
-Both renderers run in this process, in turn, at the same size, and return an RGB and a depth image
-of each view. The best round of each counts, which reduces the influence of other load. MiniWorld
-draws through pyglet and EGL (without a GPU Mesa's llvmpipe, on all cores); ``apartments`` draws on
-one core.
+Both renderers run alternately in this process, at the same size, and return an RGB and a depth
+image of each view. The best round of each renderer is used, which reduces the influence of other
+load. MiniWorld draws through pyglet and EGL (without a GPU, this uses Mesa's llvmpipe on all
+cores); ``apartments`` draws on one core.
 """
 
 from __future__ import annotations
@@ -25,14 +25,15 @@ from mitigate.worlds.apartments.renderer import Renderer
 
 ROUNDS = 4
 OURS = "apartments"
-SCENES = ("Maze", "FourRooms")  # many rooms, as in apartments, and four empty rooms
+# environments with many rooms, as in apartments, and with four empty rooms
+SCENES = ("Maze", "FourRooms")
 _POSES = 40  # number of poses of MiniWorld's agent
 
 
 def ours(size: int) -> Callable[[], int]:
     """Return a function that renders a panorama at a random free pose.
 
-    That function returns the number of views.
+    The returned function returns the number of views.
     """
     apartment = Apartment(7)
     renderer = Renderer(size)
@@ -52,8 +53,8 @@ def miniworld(scene: str, size: int) -> dict[str, Callable[[], int]]:
     """Return functions that render one view of a MiniWorld scene, in two ways.
 
     The public calls ``render_obs`` and ``render_depth`` draw a view twice. The second way draws it
-    once and reads both images, for which there is no public call. Only the scene that was opened
-    last can be drawn, because MiniWorld stores each in OpenGL's display list 1.
+    once and reads both images, which is not possible with a public call. Only the scene that was
+    opened last can be drawn, because MiniWorld stores each scene in OpenGL's display list 1.
 
     Raises:
         ImportError: MiniWorld is not installed. pyglet raises other errors for missing libraries.
@@ -74,7 +75,7 @@ def miniworld(scene: str, size: int) -> dict[str, Callable[[], int]]:
         depth()
         return 1
 
-    read = partial(world.obs_fb.get_depth_map, 0.04, 100.0)  # the planes of render_obs
+    read = partial(world.obs_fb.get_depth_map, 0.04, 100.0)  # the clipping planes of render_obs
     return {
         f"MiniWorld {scene}, its public calls": partial(view, world.render_depth),
         f"MiniWorld {scene}, drawn once": partial(view, read),
@@ -97,7 +98,7 @@ def views_per_second(draw: Callable[[], int], seconds: float) -> tuple[float, fl
 
 
 def compare(size: int, seconds: float) -> dict[str, tuple[float, float]]:
-    """Return the best round of each renderer; MiniWorld only if it is installed."""
+    """Return the best round of each renderer, with MiniWorld only if it is installed."""
     this_package = {OURS: ours(size)}
     best: dict[str, tuple[float, float]] = {}
     for scene in SCENES:

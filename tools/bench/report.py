@@ -1,4 +1,4 @@
-"""The measurements as the page ``docs/benchmarks.md``."""
+"""Write the measurements as the page ``docs/benchmarks.md``."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from tools.bench.targets import REASONS
 from tools.bench.timing import machine
 from tools.bench.training import CAPS, LAYOUTS, Stage, table
 
-AIM = 0.15  # largest share of a training step in which no network may compute
+AIM = 0.15  # target: maximum fraction of a training step in which no network computes
 COLUMNS = (
     "corruption",
     "steady",
@@ -38,13 +38,13 @@ def page(
     by_workers: dict[int, float],
     arguments: str = "",
 ) -> str:
-    """Return all parts as Markdown. ``arguments`` are the arguments of the command."""
+    """Return all parts of the page as Markdown. ``arguments`` are the arguments of the command."""
     options = f' ARGS="{arguments}"' if arguments else ""
     head = [
         "# Benchmarks",
         "",
         f"`make bench{options}` on {machine()}. Everything except training uses one process and "
-        f"one thread. Seed {SEED}; about {seconds:g} s per measurement.",
+        f"one thread. The seed is {SEED}, and each measurement takes about {seconds:g} s.",
         "",
     ]
     parts = [
@@ -63,17 +63,19 @@ def _corruptions(costs: dict[str, dict[str, Cost]]) -> list[str]:
     lines = [
         f"## Corruptions, suite {SUITE_VERSION}, severity {SEVERITY}",
         "",
-        "Milliseconds per frame (12x64x64: per panorama of 12 views).",
+        "Times are milliseconds per frame. At 12x64x64 they are per panorama of 12 views.",
         "",
-        "- **steady**: consecutive frames of an episode; the fastest of many calls, averaged over "
-        "a few episodes.",
-        "- **per frame**: each frame starts a new episode, as in the per-frame regime; a median.",
-        "- **first**: each frame also has a new severity, whose tables are built; a median.",
+        "- **steady**: time for consecutive frames of an episode: the fastest of many calls, "
+        "averaged over a few episodes.",
+        "- **per frame**: median time if each frame starts a new episode, as in the schedule "
+        "`per_frame`.",
+        "- **first**: median time if each frame also has a new severity, so that look-up tables "
+        "must be built.",
         "- **best peer**: the fastest other library, or plain NumPy, OpenCV or torch code for "
-        "depth. Peers draw random numbers at each call and "
-        "cache nothing. Their time is the fastest of many calls.",
-        "- **target**: the target of this project (none at 12x64x64).",
-        "- **steady / copy**: relative to a plain copy of the frame.",
+        "depth. The other libraries draw random numbers at each call and cache nothing. For these "
+        "libraries the table shows the fastest of many calls.",
+        "- **target**: the time that this project aims at (no target at 12x64x64).",
+        "- **steady / copy**: this time divided by the time to copy the frame.",
     ]
     for label, rows in costs.items():
         lines += [
@@ -125,8 +127,9 @@ def _over(costs: dict[str, dict[str, Cost]]) -> list[str]:
     return [
         "### Above the target",
         "",
-        f"**call**: milliseconds of the same call on a frame of {TINY} x {TINY} pixels: checks, "
-        "keys, look-ups and the call of compiled code. **kernel**: the rest.",
+        f"**call**: milliseconds of the same call on a frame of {TINY} x {TINY} pixels, which "
+        "measures the fixed overhead: checks, keys, look-ups and the call of compiled code. "
+        "**kernel**: the rest.",
         "",
         markdown_table(head, rows, words=2),
         "",
@@ -137,14 +140,17 @@ def _training(stages: dict[bool, list[Stage]]) -> list[str]:
     lines = [
         "## Training",
         "",
-        "Every stage of the recipes as `make train` runs it, with one worker process per core, on "
+        "The table shows every stage of the recipes as `make train` runs it, with one worker "
+        "process per core, on "
         f"2 threads and {LAYOUTS} apartments. The time to generate apartments is excluded, because "
-        "a training spends it only once. Medians of a few steps; all parts are timed in one run.",
+        "it is spent only once per training run. Values are medians of a few steps, and all parts "
+        "are timed in one run.",
         "",
-        "- **waiting**: share of a step in which the trainer waits for its batch.",
-        "- **no network computes**: the same, without the networks of rollouts (target: at most "
+        "- **waiting**: fraction of a step during which the trainer waits for its batch.",
+        "- **no network computes**: the same fraction if rollouts run no networks (target: at most "
         f"{AIM:.0%}).",
-        "- **rendering** to **other**: milliseconds on one core to make a step's batch, by part.",
+        "- **rendering** to **other**: milliseconds that one core needs for each part of a step's "
+        "batch.",
     ]
     for caps, measured in stages.items():
         name = " ".join(f"{key}={value}" for key, value in CAPS.items())
@@ -170,8 +176,8 @@ def _evaluation(paces: dict[str, Pace], by_workers: dict[int, float]) -> list[st
     return [
         "## Evaluation",
         "",
-        "CPU time of one process; both ways alternate in one run. An episode has one condition of "
-        "the suite.",
+        "Values are CPU times of one process. The two variants alternate in one run. An episode "
+        "has one condition of the suite.",
         "",
         "- **alone**: every episode is run separately.",
         "- **together**: the conditions of an episode follow each other and share cached frames "
@@ -194,7 +200,7 @@ def _rendering(rates: dict[str, tuple[float, float]], size: int) -> list[str]:
     return [
         f"## RGB-D rendering, {size} x {size} pixels",
         "",
-        "One process; the renderers alternate in one run; the best of several rounds.",
+        "The renderers alternate in one process. Values are the best of several rounds.",
         "",
         markdown_table(("renderer", *views, "speed of ours relative to it"), rows),
     ]

@@ -3,8 +3,8 @@
     python -m tools.bench.restoration checkpoints/restorer
     ONEDNN_MAX_CPU_ISA=AVX2 ATEN_CPU_CAPABILITY=avx2 python -m tools.bench.restoration
 
-For a frame that the gate classifies as clean only the gate runs; for any other frame the whole
-network runs. Both times are the fastest of many calls (``tools/bench/timing.py``).
+If the gate classifies a frame as clean, only the gate runs; for any other frame, the whole network
+runs. Both times are the fastest of many calls (``tools/bench/timing.py``).
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ import sys
 from collections.abc import Sequence
 
 for _name in ("OMP_NUM_THREADS", "NUMBA_NUM_THREADS"):
-    os.environ.setdefault(_name, "1")  # libraries read it when they are imported
+    os.environ.setdefault(_name, "1")  # set here, because libraries read it when they are imported
 
 import torch  # noqa: E402
 
@@ -33,7 +33,7 @@ def costs(restorer: Restorer, seconds: float) -> dict[tuple[str, str], tuple[flo
     """Return milliseconds of a clean and of a restored frame, by size and sensor.
 
     Args:
-        restorer: Its thresholds are changed and then restored.
+        restorer: The restorer, whose thresholds are changed and then restored.
         seconds: Duration of each measurement.
     """
     times: dict[tuple[str, str], tuple[float, float]] = {}

@@ -1,10 +1,10 @@
 """Measure whether memory or open files grow: ``python -m tools.bench.soak --minutes 60``.
 
-Training, evaluation and bridge traffic (``loads.py``) run one after another (``--together``: in
-parallel), each for ``--minutes``. Every few seconds the memory (RSS) and the open file descriptors
-of all their processes are recorded. Writes ``soak.csv``, ``soak.png`` and ``soak.md`` (slopes with
-95 % intervals, a verdict) to the output folder, and exits with 1 if a measure grows or a load ends
-early. Linux only.
+Training, evaluation and bridge traffic (``loads.py``) run one after the other (with ``--together``,
+in parallel), each for ``--minutes``. Every few seconds the memory (RSS) and the open file
+descriptors of all their processes are recorded. The tool writes ``soak.csv``, ``soak.png`` and
+``soak.md`` (slopes with 95 % intervals, and a result) to the output folder. It exits with 1 if a
+measure grows or a load ends early. Linux only.
 """
 
 from __future__ import annotations
@@ -34,14 +34,14 @@ from tools.bench.loads import LOADS
 PAGE = os.sysconf("SC_PAGE_SIZE")
 MEASURES = ("RSS, MiB", "file descriptors")
 COLUMNS = ("load", "seconds", "processes", "rss_mib", "descriptors")
-GRACE = 60.0  # seconds for a load to end
-Sample = tuple[float, int, float, int]  # COLUMNS without the first
+GRACE = 60.0  # seconds that a load has to end
+Sample = tuple[float, int, float, int]  # all COLUMNS except the first
 
 
 def measured(pid: int) -> tuple[int, float, int]:
     """Return the number, memory (RSS, MiB) and open files of ``pid`` and its descendants.
 
-    Shared memory counts in each process. Processes that end during the call do not count.
+    Shared memory is counted in each process. Processes that end during the call are not counted.
     """
     processes = 0
     memory = 0
@@ -73,7 +73,7 @@ def watch(name: str, seconds: float, every: float, out: Path) -> tuple[list[Samp
         name: Name of the load.
         seconds: Duration.
         every: Seconds between two samples.
-        out: Gets the output of the load.
+        out: File for the output of the load.
     """
     samples: list[Sample] = []
     with tempfile.TemporaryDirectory(prefix="soak-", dir=out) as folder:

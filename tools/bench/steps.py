@@ -1,13 +1,12 @@
-"""Compare the cost of a step in two runs of one recipe, and fail if one is much slower.
+"""Compare the cost of a step in two runs of one recipe, and fail if one run is much slower.
 
     python -m tools.bench.steps runs/native runs/capped --most 4
 
-CI trains once with all instructions of the processor, and once with the instructions of an older
-one
+CI trains once with all instructions of the processor, and once with those of an older processor
 (``ONEDNN_MAX_CPU_ISA=AVX2 ATEN_CPU_CAPABILITY=avx2``). Both runs log every step
 (``trainer.log_every=1``) and use one thread (``OMP_NUM_THREADS=1``), so that the CPU seconds of a
-step hardly depend on other load. The cheapest step of a stage counts, because other load only adds
-time. The first step, which warms up, does not count.
+step hardly depend on other load. The cheapest step of a stage is used, because other load only adds
+time. The first step is a warm-up and is not used.
 """
 
 from __future__ import annotations
@@ -18,11 +17,11 @@ from pathlib import Path
 
 from mitigate.training.journal import CPU
 
-MIN_STEPS = 3  # steps per stage: one to warm up, two to measure
+MIN_STEPS = 3  # minimum steps per stage: one for warm-up, two to measure
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """Print a line per stage; return 1 if the ratio of one is above ``--most``, else 0."""
+    """Print a line per stage; return 1 if a stage's ratio is above ``--most``, else 0."""
     parser = argparse.ArgumentParser(
         prog="tools.bench.steps", description="Compare CPU seconds per step."
     )
@@ -45,10 +44,10 @@ def main(arguments: list[str] | None = None) -> int:
 
 
 def step_costs(run: Path) -> dict[str, float]:
-    """Return the CPU seconds of each stage's cheapest step except the first, from TensorBoard.
+    """Return the CPU seconds of each stage's cheapest step (except the first) from TensorBoard.
 
     Raises:
-        FileNotFoundError: The folder holds no stages.
+        FileNotFoundError: The folder contains no stages.
         ValueError: A stage has fewer than ``MIN_STEPS`` steps.
     """
     stages = sorted({file.parent for file in run.glob("*/events.out.tfevents.*")})
@@ -61,7 +60,7 @@ def step_costs(run: Path) -> dict[str, float]:
 
 
 def slower(reference: dict[str, float], other: dict[str, float]) -> dict[str, float]:
-    """Return, by stage, the seconds per step of ``other`` divided by the seconds of ``reference``.
+    """Return, by stage, the seconds per step of ``other`` divided by those of ``reference``.
 
     Raises:
         ValueError: The runs have different stages.
@@ -75,7 +74,7 @@ def slower(reference: dict[str, float], other: dict[str, float]) -> dict[str, fl
 
 
 def _cheapest(stage: Path) -> float:
-    """Return the CPU seconds of the cheapest step of a stage, without the first."""
+    """Return the CPU seconds of a stage's cheapest step, except the first."""
     from tensorboard.backend.event_processing.event_accumulator import EventAccumulator
 
     events = EventAccumulator(str(stage), size_guidance={"scalars": 0})  # 0: keep all

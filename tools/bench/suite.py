@@ -1,4 +1,4 @@
-"""Times every corruption (steady, per frame, first frame), also of other libraries."""
+"""Measure the time of every corruption (steady, per frame, first frame), and of other libraries."""
 
 from __future__ import annotations
 
@@ -18,12 +18,12 @@ from tools.bench.targets import BARS
 from tools.bench.timing import fresh, steady
 from tools.pages.gallery import rendered_frame
 
-SEVERITY = 0.6  # the paper's severity for R2R
+SEVERITY = 0.6  # severity for R2R in the paper
 SEED = 7  # seed of the rendered apartment and of the keys
 SIZES = {"480x640": (1, 480, 640), "224x224": (1, 224, 224), "12x64x64": (12, 64, 64)}
-PANORAMA, PANORAMA_BAR = (12, 224, 224), 4.2  # the worst pair: low_light_noise, then multipath
-EPISODES = 4  # the steady state is the mean over these episodes
-TINY = 4  # pixels of a side: the time of such a call does not depend on the frame
+PANORAMA, PANORAMA_BAR = (12, 224, 224), 4.2  # the slowest pair, low_light_noise and then multipath
+EPISODES = 4  # the steady state is a mean over this many episodes
+TINY = 4  # side in pixels of a frame so small that the time of a call does not depend on it
 
 
 @dataclass(frozen=True)
@@ -31,13 +31,13 @@ class Cost:
     """Milliseconds of one corruption at one size.
 
     Attributes:
-        steady: The frames of an episode.
-        per_frame: Each frame starts an episode, as in the per-frame regime.
-        first: Each frame also has a new severity, whose tables are then built.
-        call: The steady state of a frame of 4 x 4 pixels.
-        copy: A plain copy of the frame.
-        peers: Other libraries, by name.
-        bar: The target (``targets.py``); None if it has none.
+        steady: Time for consecutive frames of an episode.
+        per_frame: Time if each frame starts a new episode, as in the schedule ``per_frame``.
+        first: Time if each frame also has a new severity, so that tables must be built.
+        call: Steady-state time for a frame of 4 x 4 pixels.
+        copy: Time for a plain copy of the frame.
+        peers: Times of other libraries, by name.
+        bar: The target (``targets.py``), or None.
     """
 
     steady: float
@@ -50,12 +50,12 @@ class Cost:
 
     @property
     def best_peer(self) -> tuple[str, float] | None:
-        """Return the fastest library and its milliseconds."""
+        """Return the fastest other library and its milliseconds."""
         return min(self.peers.items(), key=lambda item: item[1]) if self.peers else None
 
     @property
     def over(self) -> bool:
-        """Return whether the steady state misses the bar."""
+        """Return whether the steady-state time exceeds the target."""
         return self.bar is not None and self.steady > self.bar
 
 
@@ -69,9 +69,9 @@ def frames(views: int, height: int, width: int) -> tuple[np.ndarray, np.ndarray]
 
 
 def measure(seconds: float) -> dict[str, dict[str, Cost]]:
-    """Return costs by size and corruption; unseen corruptions at the last size only.
+    """Return costs by size and corruption, with unseen corruptions only at the last size.
 
-    Takes about ``seconds`` for each of several hundred measurements.
+    This takes about ``seconds`` for each of several hundred measurements.
     """
     costs: dict[str, dict[str, Cost]] = {}
     for column, (label, shape) in enumerate(SIZES.items()):
@@ -111,7 +111,7 @@ def cost(
         bar: The target in milliseconds; None without a target.
     """
     tiny = np.ascontiguousarray(frame[:, :TINY, :TINY])
-    heading = 0.3 if len(frame) > 1 else None  # without a heading a single view has the flare
+    heading = 0.3 if len(frame) > 1 else None  # without a heading, a single view has the flare
 
     def episode(i, image=frame, number=0):
         key = Key(SEED, f"bench {number}", i)

@@ -1,8 +1,8 @@
-"""Time limits of the standard suite, in milliseconds, and what takes the time."""
+"""Define time targets for the standard suite, in milliseconds, with the main cost."""
 
 from __future__ import annotations
 
-BARS = {  # target in milliseconds at 480x640 and at 224x224
+BARS = {  # targets in milliseconds at 480x640 and at 224x224
     "motion_blur": (1.1, 0.1),
     "low_light": (0.1, 0.01),
     "spatter": (0.15, 0.01),

@@ -1,7 +1,7 @@
-"""Clocks: milliseconds of a call in the steady state, and of calls that differ from each other.
+"""Measure milliseconds of a call in the steady state, and of calls that differ.
 
 Other load only makes a call slower. So the steady state is the fastest of many equal calls. Calls
-that draw new parameters are not equal, so their median counts.
+with new random parameters are not equal, so their median is used.
 """
 
 from __future__ import annotations
@@ -15,13 +15,13 @@ from datetime import date
 from importlib import metadata
 from pathlib import Path
 
-CYCLE = 8  # different calls in the steady state, such as the frames of an episode
-LEAST = 5  # timed calls, even if the time is over
+CYCLE = 8  # number of different calls in the steady state, such as the frames of an episode
+LEAST = 5  # minimum number of timed calls, even if the time is over
 PACKAGES = ("numpy", "numba", "opencv-python-headless", "torch")
 
 
 def steady(call: Callable[[int], object], seconds: float) -> float:
-    """Return the mean over i < ``CYCLE`` of the fastest ``call(i)``, in milliseconds."""
+    """Return the milliseconds of the fastest ``call(i)``, as the mean over i < ``CYCLE``."""
     fastest = [float("inf")] * CYCLE
     call(0)  # compiles
     end = time.perf_counter() + seconds
@@ -34,7 +34,7 @@ def steady(call: Callable[[int], object], seconds: float) -> float:
 
 
 def fresh(call: Callable[[int], object], seconds: float) -> float:
-    """Return milliseconds of ``call(i)``, the median over increasing i."""
+    """Return the median milliseconds of ``call(i)`` over increasing i."""
     call(0)
     end = time.perf_counter() + seconds
     times: list[float] = []
@@ -50,7 +50,7 @@ def _clock(call: Callable[[int], object], i: int) -> float:
 
 
 def machine() -> str:
-    """Return processor, cores, load, date and versions of this measurement."""
+    """Return the processor, cores, load, date and versions of this measurement."""
     names = [
         line.split(":")[1].strip()
         for line in _lines("/proc/cpuinfo")
@@ -66,7 +66,7 @@ def machine() -> str:
 
 
 def version(package: str) -> str | None:
-    """Return the installed version of ``package``, None if it is not installed."""
+    """Return the installed version of ``package``, or None if it is not installed."""
     try:
         return metadata.version(package)
     except metadata.PackageNotFoundError:

@@ -1,11 +1,11 @@
-"""Measure the parts of a training step's time, in every stage of the recipes.
+"""Measure the time of each part of a training step, in every stage of the recipes.
 
     python -m tools.bench.training da_per_episode ts_distill --steps 8
 
-Each stage runs as ``make train`` runs it, with a worker process per core. Measured are the time of
-a step, the time in which the trainer waits for the batch, and the time of forward, backward and
-update. Then the same batches are made in this process, and each part of making them is timed.
-``make bench`` calls this twice: with all processor instructions, and with AVX2 at most.
+Each stage runs as ``make train`` runs it, with a worker process per core. The tool measures the
+time of a step, the time for which the trainer waits for its batch, and the time of forward pass,
+backward pass and update. Then the same batches are computed in this process, and each part of this
+is timed. ``make bench`` calls this twice: with all processor instructions, and with AVX2 at most.
 """
 
 from __future__ import annotations
@@ -43,9 +43,9 @@ RECIPES = (
     "safeguard_lora",
 )
 CAPS = {"ONEDNN_MAX_CPU_ISA": "AVX2", "ATEN_CPU_CAPABILITY": "avx2"}
-LAYOUTS = 8  # few apartments, because a long training makes them only once
+LAYOUTS = 8  # few apartments, because a long training run generates them only once
 NETWORK = "network"
-PARTS = {  # parts of making a batch: module, class or None, function
+PARTS = {  # parts of computing a batch: module, class or None, and function
     "rendering": (("mitigate.worlds.apartments.renderer", "Renderer", "render"),),
     "scenes": (("mitigate.worlds.apartments.renderer", "Renderer", "load"),),
     "geodesics": (
@@ -68,16 +68,16 @@ OTHER = "other"
 
 @dataclass(frozen=True)
 class Stage:
-    """One stage of a recipe: milliseconds per step, medians except for ``parts``.
+    """Milliseconds per step of one stage of a recipe, as medians except for ``parts``.
 
     Attributes:
         recipe: Name of the recipe.
         stage: Name of the stage.
         precision: Precision of the networks.
         whole: The whole step.
-        waiting: The part of it in which the trainer waits for the batch.
-        alone: Forward, backward and update without other processes.
-        parts: Parts of making a batch on one core, means.
+        waiting: Time of a step during which the trainer waits for the batch.
+        alone: Time of forward, backward and update without other processes.
+        parts: Mean times of the parts of computing a batch on one core.
     """
 
     recipe: str
@@ -90,9 +90,9 @@ class Stage:
 
     @property
     def elsewhere(self) -> float:
-        """Return the share of a step in which no network computes.
+        """Return the fraction of a step during which no network computes.
 
-        This is the time of waiting without the share of the networks in rollouts.
+        This is the waiting time without the part that networks take in rollouts.
         """
         total = sum(self.parts.values())
         network = self.parts.get(NETWORK, 0.0) / total if total else 0.0
@@ -100,7 +100,7 @@ class Stage:
 
 
 class Clock:
-    """Adds up the seconds spent in calls of a function."""
+    """A clock that adds up the seconds spent in calls of a function."""
 
     def __init__(self) -> None:
         self.seconds = 0.0
@@ -118,7 +118,7 @@ class Clock:
 
 @contextlib.contextmanager
 def clocked() -> Iterator[dict[str, Clock]]:
-    """Yield a clock per part; inside the block they time the functions of ``PARTS``."""
+    """Yield a clock per part, which measures the functions in ``PARTS`` inside the block."""
     clocks = {part: Clock() for part in PARTS}
     with contextlib.ExitStack() as stack:
         for part, functions in PARTS.items():
@@ -132,7 +132,7 @@ def clocked() -> Iterator[dict[str, Clock]]:
 
 
 def measure(name: str, steps: int, options: Sequence[str] = ()) -> list[Stage]:
-    """Measure the stages of the recipe ``name``, ``steps`` steps each after two to warm up."""
+    """Measure each stage of the recipe ``name`` for ``steps`` steps, after two warm-up steps."""
     small = ["refresh_episodes=1", f"env.layouts={LAYOUTS}", "env.cached=2"]
     config = read(conf.load_config("train", [f"recipe={name}", *small, *options]))
     stages = []
@@ -170,7 +170,7 @@ def measure_stage(recipe: Objective, name: str, stage: str, steps: int, workers:
 
 
 def _make_update(recipe: Objective, kind: str, device: torch.device) -> Callable[[dict], None]:
-    """Return a function that does forward, backward and update for a batch."""
+    """Return a function that runs forward, backward and update for a batch."""
     trained = [p for group in recipe.parameter_groups() for p in group["params"] if p.requires_grad]
     optimizer = torch.optim.AdamW(trained, lr=1e-6)
 
@@ -183,7 +183,7 @@ def _make_update(recipe: Objective, kind: str, device: torch.device) -> Callable
 
 
 def _time_parts(recipe: Objective, kind: str, steps: int) -> dict[str, float]:
-    """Return seconds per step of each part of making batches, in this process."""
+    """Return the seconds per step of each part of computing batches in this process."""
     batches = Batches(recipe, None, steps, kind, torch.device("cpu"))
     batches.batch(0)
     with clocked() as clocks:
@@ -206,7 +206,7 @@ def _median(values: Sequence[float]) -> float:
 
 
 def measured(recipes: Sequence[str], steps: int, caps: bool) -> list[Stage]:
-    """Run this module in a separate process, with all cores, capped to AVX2 or not."""
+    """Run this module in a separate process with all cores, optionally limited to AVX2."""
     environment = {k: v for k, v in os.environ.items() if k not in ("OMP_NUM_THREADS", *CAPS)}
     command = [sys.executable, "-m", __name__, *recipes, "--steps", str(steps), "--json"]
     done = subprocess.run(

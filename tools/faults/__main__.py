@@ -1,12 +1,12 @@
-"""Inject faults into trainings and evaluations, and compare their results with undisturbed runs.
+"""Inject faults into training and evaluation, and compare results with undisturbed runs.
 
 ``make test-faults``, or ``python -m tools.faults [--recipes ts_distill] [--faults SIGTERM]``. Each
-recipe is trained (``debug=smoke``, four steps per stage) once undisturbed, and once through all
-faults in turn, each at a moment drawn from the seed. The weights must be equal bit for bit.
-Evaluations get faults in the same way; their rows must be equal byte for byte. Prints how many
-faults were tried and survived, and exits with 1 if one did not survive or none was tried.
-``--write`` puts the table into docs/lab/fault-injection.md, with earlier results of the same seed
-for other recipes.
+recipe is trained (``debug=smoke``, four steps per stage) once undisturbed, and once with all faults
+in turn, each at a random time from the seed. The weights must be equal bit for bit. Faults are
+injected into evaluations in the same way; their rows must be equal byte for byte. The tool prints
+how many faults were tried and survived. It exits with 1 if a fault was not survived or no fault was
+tried. ``--write`` inserts the table into docs/lab/fault-injection.md, with earlier results of the
+same seed for other recipes.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from mitigate.core.workers import cores
 from tools.faults import evaluation, report, training
 
 FAMILIES = {  # recipes that together use every file of recipes/
-    "safeguard_lora": "safeguard_lora",  # first, because it takes longest
+    "safeguard_lora": "safeguard_lora",  # started first, because it takes longest
     "da_per_episode": "imitate",
     "ts_distill": "distil",
     "conv_adapter": "adapt",
@@ -56,7 +56,7 @@ def parse_options(arguments: Sequence[str] | None) -> argparse.Namespace:
 
 
 def inject_faults(name: str, options: argparse.Namespace) -> dict[str, str]:
-    """Inject faults into a recipe or the evaluation; print and return the outcome of each."""
+    """Inject faults into a recipe or the evaluation; print and return the outcome of each fault."""
     out = options.out.resolve()
     start = time.monotonic()
     if name == EVALUATION:
@@ -72,7 +72,7 @@ def inject_faults(name: str, options: argparse.Namespace) -> dict[str, str]:
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run from the command line."""
     options = parse_options(arguments)
-    # children inherit an ignored SIGINT, and the faults need it
+    # reset, because children inherit an ignored SIGINT, and some faults send SIGINT
     signal.signal(signal.SIGINT, signal.default_int_handler)
     file = options.out / f"faults-seed{options.seed}.json"
     with ThreadPoolExecutor(max(1, options.jobs)) as pool:

@@ -1,4 +1,4 @@
-"""A small file system in memory, and a way to fill it."""
+"""Mount a small file system in memory, and fill it."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from pathlib import Path
 
 from mitigate.core.output import open_output
 
-FILLER = "filler"  # the file that takes the free space
+FILLER = "filler"  # the file that takes up the free space
 
 
 @contextmanager

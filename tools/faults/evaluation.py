@@ -1,5 +1,4 @@
-"""Faults of evaluations; the rows must equal the rows of an undisturbed evaluation byte for
-byte."""
+"""Inject faults into evaluations, whose rows must equal those of an undisturbed evaluation."""
 
 from __future__ import annotations
 
@@ -22,7 +21,7 @@ TOO_LATE = "not run: the evaluation ended before the fault"
 
 
 class Evaluation:
-    """An evaluation in ``folder``; ``rng`` draws the moments of faults."""
+    """An evaluation in ``folder``; ``rng`` chooses the times of faults."""
 
     def __init__(self, folder: Path, rng: random.Random) -> None:
         self.folder = folder
@@ -37,14 +36,14 @@ class Evaluation:
         return Command(self.arguments, self.folder.parent / name, environment)
 
     def start_and_wait(self, environment: dict[str, str] | None = None) -> Command:
-        """Start or resume it, and wait until a random number of rows is written."""
+        """Start or resume the evaluation, and wait until a random number of rows is written."""
         command = self.start(environment)
         count = self.rng.randint(1, 9)
         command.wait_for(lambda: self.rows().count(b"\n") >= count)
         return command
 
     def rows(self) -> bytes:
-        """Return the file of rows."""
+        """Return the path of the row file."""
         path = self.folder / ROWS
         return path.read_bytes() if path.is_file() else b""
 
@@ -89,12 +88,12 @@ def jump_clock(evaluation: Evaluation) -> str:
 
 
 def start_twice(evaluation: Evaluation) -> str:
-    """Start two evaluations in one folder: one must be rejected."""
+    """Start two evaluations in the same folder, of which one must be rejected."""
     return check_one_rejected([evaluation.start(), evaluation.start()])
 
 
 def cut_row(evaluation: Evaluation) -> str:
-    """Cut off the last row, as when a machine loses power during a write."""
+    """Cut off the last row, as if the machine had lost power during a write."""
     command = evaluation.start_and_wait()
     command.process.kill()
     command.process.wait()
@@ -104,7 +103,7 @@ def cut_row(evaluation: Evaluation) -> str:
 
 
 def fill_disk(evaluation: Evaluation) -> str:
-    """Fill the disk: the evaluation must report it, and finish once there is space again."""
+    """Fill the disk; the evaluation must report this, and finish when there is space again."""
     with small_disk(evaluation.folder, DISK) as mounted:
         if not mounted:
             return "not run: no file system may be mounted here"
@@ -137,9 +136,9 @@ FAULTS: dict[str, Callable[[Evaluation], str]] = {
 
 
 def break_evaluation(out: Path, seed: int, faults: list[str]) -> dict[str, str]:
-    """Return the outcome of each fault: "survived", "not run: ..." or the problem.
+    """Return the outcome of each fault, which is "survived", "not run: ..." or the problem.
 
-    Each fault hits a separate evaluation, which is then finished and compared.
+    Each fault is injected into a separate evaluation, which is then finished and compared.
     """
     rng = random.Random(f"{seed} evaluation")
     unbroken = Evaluation(out / "unbroken", rng)
@@ -172,7 +171,8 @@ def finish(evaluation: Evaluation) -> str:
     for _ in range(600):
         command = evaluation.start()
         problem = command.problem(0)
-        if "is in use" not in command.output():  # otherwise the disturbed one still runs
+        # otherwise the disturbed evaluation is still running
+        if "is in use" not in command.output():
             return problem
         time.sleep(1.0)
     return problem

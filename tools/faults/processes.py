@@ -1,4 +1,4 @@
-"""Runs commands of this project as processes and checks how they end."""
+"""Run commands of this project as processes, and check how they end."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from mitigate.core.files import make_folder
 from mitigate.core.output import open_output
 
 ROOT = Path(__file__).resolve().parents[2]
-TIMEOUT = 600.0  # seconds after which a command counts as hanging
+TIMEOUT = 600.0  # seconds after which a command is assumed to hang
 
 
 class Command:
@@ -40,21 +40,21 @@ class Command:
             )
 
     def output(self) -> str:
-        """Return all of its output so far."""
+        """Return all output of the command so far."""
         return self.log.read_text(encoding="utf-8", errors="replace")
 
     def last_lines(self) -> str:
-        """Return its last three lines, joined to one."""
+        """Return the last three lines of the output, joined to one line."""
         return " | ".join(self.output().strip().splitlines()[-3:])[-400:]
 
     def runs(self) -> bool:
-        """Return whether it has not ended yet."""
+        """Return whether the command is still running."""
         return self.process.poll() is None
 
     def wait_for(self, condition: Callable[[], object], seconds: float = TIMEOUT) -> bool:
         """Wait until ``condition()`` is true, the command ends or the time is over.
 
-        Returns whether the condition is true.
+        The result is whether the condition is true.
         """
         deadline = time.monotonic() + seconds
         while self.runs() and time.monotonic() < deadline:
@@ -64,7 +64,7 @@ class Command:
         return bool(condition())
 
     def status(self) -> int | None:
-        """Wait and return its exit status; None if it hung and was killed."""
+        """Wait and return the exit status, or None if the command hung and was killed."""
         try:
             return self.process.wait(TIMEOUT)
         except subprocess.TimeoutExpired:
@@ -73,7 +73,8 @@ class Command:
             return None
 
     def problem(self, *allowed: int) -> str:
-        """Wait; return the problem with its end, empty for an ``allowed`` status."""
+        """Wait for the end; return a description of the problem, or "" for an ``allowed``
+        status."""
         status = self.status()
         if status in allowed and "Traceback" not in self.output():
             return ""

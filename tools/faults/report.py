@@ -1,4 +1,4 @@
-"""The outcomes of all faults, as lines and as the table of docs/lab/fault-injection.md."""
+"""Report the outcomes of all faults, as lines and as the table in docs/lab/fault-injection.md."""
 
 from __future__ import annotations
 
@@ -10,7 +10,8 @@ from tools.bench.pages import put
 
 BEGIN = "<!-- table: make test-faults ARGS=--write -->"
 END = "<!-- end of the table -->"
-Outcomes = Mapping[str, Mapping[str, str]]  # recipe: fault: "survived", "not run: ..." or problem
+# maps recipe and fault to "survived", "not run: ..." or the problem
+Outcomes = Mapping[str, Mapping[str, str]]
 NOT_RUN, UNBROKEN = "not run", "unbroken"
 
 

@@ -1,7 +1,7 @@
-"""Faults of a recipe's training; the weights must equal the weights of an undisturbed training.
+"""Inject faults into a recipe's training, whose weights must equal those of an undisturbed run.
 
-One training goes through all faults: after each it resumes. A training that ends before a fault is
-compared, deleted and started again.
+The same training run is disturbed by all faults in turn, and resumes after each. A training run
+that ends before a fault is compared, deleted and started again.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from tools.faults.disk import filled, small_disk
 from tools.faults.processes import TIMEOUT, Command, workers
 
 SMOKE = ("debug=smoke", "trainer.steps=4", "evaluation.enabled=false")
-RECIPE_OPTIONS = {  # options that make a recipe small, or that it needs
+RECIPE_OPTIONS = {  # options that make a recipe small, or that the recipe needs
     "dagger": ("agent=recurrent", "stages.policy.recipe.every=2"),
     "encoder": ("stages.encoder.recipe.frames=48", "stages.encoder.recipe.batch=8",
                 "stages.encoder.recipe.micro_batch=8", "agent=encoder",
@@ -32,26 +32,26 @@ RECIPE_OPTIONS = {  # options that make a recipe small, or that it needs
                 "stages.gate_depth.recipe.instants=8", "stages.gate_depth.recipe.held=4"),
 }  # fmt: skip
 STATUS = {signal.SIGTERM: 143, signal.SIGINT: 130, signal.SIGKILL: -signal.SIGKILL}
-STAGE_START = "workers make batches"  # text in the first line of a stage
-REPLACED = "a new one repeats its work"  # text in the line that reports a dead worker
-NOTICE_TIME = 10.0  # seconds until a dead worker is usually noticed, when its work is missing
-TRIES = 4  # attempts to inject a fault before the training ends
+STAGE_START = "workers make batches"  # text that identifies the first line of a stage
+REPLACED = "a new one repeats its work"  # text that identifies the report of a dead worker
+NOTICE_TIME = 10.0  # seconds until a dead worker is usually noticed because its work is missing
+TRIES = 4  # maximum attempts to inject a fault before training ends
 DISK = 800  # MB of the file system that is filled
-MAX_FREE = 12 << 20  # bytes left on a full disk (heuristic: less than a checkpoint)
+MAX_FREE = 12 << 20  # free bytes on a full disk (heuristic: less than a checkpoint)
 
 
 class TooLate(Exception):
-    """The training ended before the fault."""
+    """Raised if training ended before the fault."""
 
 
 class Training:
-    """A recipe's training in ``folder``.
+    """A training run of a recipe in ``folder``.
 
     Args:
         recipe: Name of the recipe.
         folder: The run's folder.
-        rng: Draws the moments of faults.
-        seconds: Duration of the undisturbed training; 0 until it is measured.
+        rng: Generator that chooses the times of faults.
+        seconds: Duration of the undisturbed run; 0 until it is measured.
     """
 
     def __init__(self, recipe: str, folder: Path, rng: random.Random, seconds: float = 0.0) -> None:
@@ -64,14 +64,14 @@ class Training:
         self.started = 0
 
     def start(self, environment: dict[str, str] | None = None) -> Command:
-        """Start or resume the training."""
+        """Start or resume the training run."""
         self.started += 1
         log = self.folder.parent / f"log-{self.started}.txt"
         self.checkpoints = newest_checkpoints(self.folder)
         return Command(self.arguments, log, environment)
 
     def start_and_wait(self, environment: dict[str, str] | None = None) -> Command:
-        """Start or resume the training, and wait for a random moment in it."""
+        """Start or resume the training run, and wait for a random time in it."""
         command = self.start(environment)
         command.wait_for(lambda: STAGE_START in command.output())
         command.wait_for(lambda: False, self.rng.uniform(0.0, max(2.0, 0.25 * self.seconds)))
@@ -80,19 +80,19 @@ class Training:
         return command
 
     def _raise_too_late(self, command: Command) -> None:
-        """Raise TooLate, or RuntimeError if the command failed."""
+        """Raise TooLate, or RuntimeError if the command has failed."""
         problem = command.problem(0)
         if problem:
             raise RuntimeError(problem)
         raise TooLate
 
     def send_signal(self, command: Command, number: int) -> str:
-        """Send a signal; return the problem with the end of the training, empty if none."""
+        """Send a signal; describe a problem with the end of the run, or return ""."""
         if not command.runs():
             self._raise_too_late(command)
         command.process.send_signal(number)
         command.status()
-        if "\ndone: " in command.output():  # the training was finished
+        if "\ndone: " in command.output():  # the run was already finished
             raise TooLate
         problem = command.problem(STATUS[signal.Signals(number)], 0)
         problem = problem or self.check_resumed(command)
@@ -103,7 +103,7 @@ class Training:
         return f"it does not say how to resume: {command.last_lines()}"
 
     def check_resumed(self, command: Command) -> str:
-        """Return the problem if a stage did not resume from its newest valid checkpoint."""
+        """Describe the problem if a stage did not resume from its newest valid checkpoint."""
         for stage, done in self.checkpoints.items():
             matches = re.findall(
                 rf"^{stage}: (?:resumed at step (\d+) |already trained for (\d+) |\d+ steps$)",
@@ -116,7 +116,7 @@ class Training:
         return ""
 
     def finish(self) -> str:
-        """Run to the end; return the problem, empty if none."""
+        """Run to the end; describe a problem, or return ""."""
         command = self.start()
         start = time.monotonic()
         problem = command.problem(0) or self.check_resumed(command)
@@ -124,7 +124,7 @@ class Training:
         return problem
 
     def weights(self) -> str:
-        """Return the sha256 of all weights of the result; empty without weights."""
+        """Return the sha256 of all resulting weights, or an empty dict."""
         files = sorted((self.folder / "agent").rglob("*.safetensors"))
         if not files:
             return ""
@@ -132,7 +132,7 @@ class Training:
 
 
 def newest_checkpoints(folder: Path) -> dict[str, int]:
-    """Return by stage the steps of its newest valid checkpoint."""
+    """Return the step of each stage's newest valid checkpoint."""
     steps: dict[str, int] = {}
     for path in sorted(folder.glob("*/step-*.pt")):
         if checksums.sidecar(path).is_file() and not checksums.problem(path):
@@ -148,7 +148,7 @@ def interrupt(training: Training, number: int) -> str:
 def interrupt_write(training: Training, number: int) -> str:
     """Send a signal while a checkpoint is being written."""
     command = training.start()
-    # the name of unfinished files in mitigate/core/files.py
+    # name of unfinished files in mitigate/core/files.py
     draft = f"*/.step-*.{command.process.pid}.tmp"
     if not command.wait_for(lambda: list(training.folder.glob(draft))):
         training._raise_too_late(command)
@@ -156,7 +156,7 @@ def interrupt_write(training: Training, number: int) -> str:
 
 
 def flip_bytes(training: Training) -> str:
-    """Flip bytes of the newest checkpoint, if there is an older one."""
+    """Flip bytes of the newest checkpoint, if an older one exists."""
     command = training.start()
     if not command.wait_for(lambda: _checkpoints_with_older(training.folder)):
         training._raise_too_late(command)
@@ -189,7 +189,8 @@ def delete_cache(training: Training) -> str:
 
 
 def start_twice(training: Training) -> str:
-    """Start two trainings in one folder: one must be rejected without a change."""
+    """Start two training runs in the same folder, of which one must be rejected without a
+    change."""
     both = [training.start(), training.start()]
     problem = check_one_rejected(both)
     running = next((command for command in both if command.runs()), both[0])
@@ -197,7 +198,7 @@ def start_twice(training: Training) -> str:
 
 
 def check_one_rejected(both: list[Command]) -> str:
-    """Wait until one of two commands is rejected; return the problem, empty if none."""
+    """Wait until one of two commands is rejected; describe a problem, or return ""."""
     for _ in range(int(TIMEOUT / 0.1)):
         ended = [command for command in both if not command.runs()]
         if ended:
@@ -209,7 +210,7 @@ def check_one_rejected(both: list[Command]) -> str:
 
 
 def kill_worker(training: Training) -> str:
-    """Kill a process that makes batches."""
+    """Kill a worker process that computes batches."""
     command = training.start_and_wait()
     if not command.runs() or "no workers make batches" in command.output():
         training.send_signal(command, signal.SIGTERM)
@@ -220,13 +221,13 @@ def kill_worker(training: Training) -> str:
     os.kill(training.rng.choice(pids), signal.SIGKILL)
     if command.wait_for(lambda: REPLACED in command.output(), NOTICE_TIME):
         return training.send_signal(command, signal.SIGTERM)
-    problem = command.problem(0)  # during a long step, after the last batch, or it hangs
+    problem = command.problem(0)  # the step is long, the last batch is finished, or the run hangs
     noticed = REPLACED in command.output()
     return problem or ("" if noticed else "not run: all batches were made before")
 
 
 def pause_workers(training: Training) -> str:
-    """Stop the processes that make batches for some seconds."""
+    """Stop the worker processes for some seconds."""
     command = training.start_and_wait()
     pids = workers(command)
     for number in (signal.SIGSTOP, signal.SIGCONT):
@@ -245,7 +246,7 @@ def jump_clock(training: Training) -> str:
 
 
 def fill_disk(training: Training) -> str:
-    """Fill the disk: the training must end with a message and keep finished checkpoints."""
+    """Fill the disk; training must end with a message and keep finished checkpoints."""
     disk = training.folder.parent
     if not os.path.ismount(disk):
         return "not run: no file system may be mounted here"
@@ -278,8 +279,8 @@ SAME = "ends the same"
 def break_training(recipe: str, out: Path, seed: int, faults: list[str]) -> dict[str, str]:
     """Return the outcome of each fault of a recipe's training.
 
-    An outcome is "survived", "not run: ..." or the problem. The last run compares the weights with
-    an undisturbed training, bit for bit.
+    An outcome is "survived", "not run: ..." or a description of the problem. At the end, the
+    weights are compared with those of an undisturbed run, bit for bit.
     """
     rng = random.Random(f"{seed} {recipe}")
     unbroken = Training(recipe, out / recipe / "unbroken" / "run", rng)
@@ -302,7 +303,8 @@ def break_training(recipe: str, out: Path, seed: int, faults: list[str]) -> dict
 
 
 def try_fault(fault: Callable[[Training], str], training: Training, expected: str) -> str:
-    """Return the problem after ``fault``, empty if none; start again if it came too late."""
+    """Describe the problem after ``fault``, or return ""; start again if the fault came too
+    late."""
     for _ in range(TRIES):
         try:
             return fault(training)

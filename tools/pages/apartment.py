@@ -29,7 +29,8 @@ from mitigate.worlds.episodes import from_vlnce
 
 
 def show(seed: int, episode: int, task: str, size: int, out: Path) -> None:
-    """Write a PNG with the panorama, its depth, the reference path on the plan and the text."""
+    """Write a PNG with the panorama, its depth, the reference path on the plan, and the
+    instruction."""
     from matplotlib.figure import Figure
 
     drawn = make_episode(Apartment(seed), task, episode)

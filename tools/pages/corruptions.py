@@ -1,4 +1,4 @@
-"""The page ``docs/corruptions.md``: formulas with the constants of the code, scopes, limits."""
+"""Generate the page ``docs/corruptions.md`` with formulas, scopes and limits."""
 
 from __future__ import annotations
 
@@ -25,7 +25,8 @@ COLUMNS = (
 
 
 def page(curves: dict[str, Curve], seed: int) -> str:
-    """The page as Markdown; ``curves`` are the curves, ``seed`` names the apartment shown."""
+    """Return the page as Markdown, with ``curves`` and the seed of the apartment in its
+    pictures."""
     return TEMPLATE.read_text("utf-8").format(
         version=SUITE_VERSION,
         seed=seed,
@@ -48,7 +49,7 @@ def page(curves: dict[str, Curve], seed: int) -> str:
 
 
 def suites() -> str:
-    """A table of ``conf/suite``: the name of each file and the comment at its head."""
+    """Return a table of ``conf/suite`` with the name and first comment of each file."""
     rows = []
     for file in sorted((PACKAGE / "conf" / "suite").glob("*.yaml")):
         head = takewhile(lambda line: line.startswith("#"), file.read_text("utf-8").splitlines())
@@ -57,7 +58,7 @@ def suites() -> str:
 
 
 def formulas(names: tuple[str, ...] = NAMES) -> str:
-    """A table of the formulas of corruptions."""
+    """Return a table of the formulas of corruptions."""
     return markdown_table(COLUMNS, map(_cells, names), words=len(COLUMNS)) + "\n"
 
 

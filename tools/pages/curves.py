@@ -1,4 +1,5 @@
-"""How much a corruption corrupts as severity grows: SSIM and PSNR of RGB, error of depth."""
+"""Measure the effect of a corruption against its severity: SSIM and PSNR for RGB, and the error for
+depth."""
 
 from __future__ import annotations
 
@@ -14,10 +15,10 @@ from mitigate.corruptions.registry import modality
 from mitigate.corruptions.suite import NAMES, corrupt
 
 GRID = np.linspace(0.0, 1.0, 101)
-EPISODES = 3  # random draws that a curve averages over
+EPISODES = 3  # number of random keys over which a curve is averaged
 OFF = 0.05  # relative change of depth above which a pixel counts as changed (heuristic)
-SSIM_WINDOW, SSIM_SIGMA = 11, 1.5  # pixels (Wang et al. 2004)
-# Largest decrease of an effect from one severity of the grid to the next (SSIM, or metres of depth)
+SSIM_WINDOW, SSIM_SIGMA = 11, 1.5  # window size in pixels (Wang et al. 2004)
+# Limit of the decrease of an effect from one severity to the next (SSIM, or metres of depth)
 SLIPS = {
     "motion_blur": 0.03,
     "quantization": 0.005,
@@ -34,7 +35,7 @@ SSIM_C1, SSIM_C2 = (0.01 * 255) ** 2, (0.03 * 255) ** 2  # the same
 
 
 def ssim(a: np.ndarray, b: np.ndarray) -> float:
-    """Mean structural similarity of the grey (mean) of two uint8 views [H, W, 3], Wang 2004."""
+    """Return the mean structural similarity (Wang 2004) of two uint8 views [H, W, 3] in grey."""
 
     def smooth(x: np.ndarray) -> np.ndarray:
         return cv2.GaussianBlur(x, (SSIM_WINDOW, SSIM_WINDOW), SSIM_SIGMA)
@@ -47,20 +48,20 @@ def ssim(a: np.ndarray, b: np.ndarray) -> float:
 
 
 def psnr(a: np.ndarray, b: np.ndarray) -> float:
-    """Peak signal-to-noise ratio of two uint8 arrays in decibels; infinite for equal ones."""
+    """Return the peak signal-to-noise ratio of two uint8 arrays in decibels (infinite if equal)."""
     error = np.mean((a.astype(np.float64) - b) ** 2)
     return float("inf") if error == 0 else float(10 * np.log10(255**2 / error))
 
 
 def depth_error(clean: np.ndarray, corrupted: np.ndarray) -> float:
-    """Mean absolute error in metres over the pixels that are valid in ``clean``; a lost reading is
-    stored as 0 m and counts as 0 m."""
+    """Return the mean absolute error in metres over pixels that are valid in ``clean``; lost ones
+    are 0 m."""
     valid = np.isfinite(clean) & (clean > 0)
     return float(np.abs(corrupted[valid].astype(np.float64) - clean[valid]).mean())
 
 
 def depth_changed(clean: np.ndarray, corrupted: np.ndarray) -> float:
-    """Share of the pixels valid in ``clean`` that are off by more than ``OFF`` of their depth."""
+    """Return the fraction of valid pixels whose error is above ``OFF`` of their depth."""
     valid = np.isfinite(clean) & (clean > 0)
     gap = np.abs(corrupted[valid].astype(np.float64) - clean[valid])
     return float(np.mean(gap > OFF * clean[valid]))
@@ -68,8 +69,7 @@ def depth_changed(clean: np.ndarray, corrupted: np.ndarray) -> float:
 
 @dataclass(frozen=True)
 class Curve:
-    """Likeness, or error and share of changed depth, [episodes, severities] of one corruption over
-    ``GRID``."""
+    """Return SSIM and PSNR, or error and changed fraction of depth, [episodes, severities]."""
 
     ssim: np.ndarray
     psnr: np.ndarray
@@ -78,7 +78,8 @@ class Curve:
 
     @property
     def slip(self) -> float:
-        """The largest step against the rule: a rise of SSIM, or a fall of the depth error (m)."""
+        """Return the largest step in the wrong direction: a rise of SSIM, or a fall of depth error
+        (m)."""
         rise = np.diff(self.ssim) if self.ssim.size else -np.diff(self.error)
         return float(max(0.0, rise.max()))
 
@@ -89,7 +90,7 @@ def curves(
     grid: np.ndarray = GRID,
     names: tuple[str, ...] = NAMES,
 ) -> dict[str, Curve]:
-    """The curves of corruptions, by name, on views [V, H, W, 3] and depth metres [V, H, W, 1]."""
+    """Return the curves of corruptions by name, on views [V, H, W, 3] and depth [V, H, W, 1]."""
     by_name = {}
     for name in names:
         frame = rgb if modality(name) == "rgb" else depth
@@ -113,7 +114,8 @@ def curves(
 
 
 def draw(by_name: dict[str, Curve], path: Path, grid: np.ndarray = GRID) -> None:
-    """Three panels as a PNG: SSIM and PSNR of the RGB corruptions, mean error of the depth ones."""
+    """Draw three panels as a PNG: SSIM and PSNR of RGB corruptions, and the mean error of depth
+    corruptions."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
@@ -126,7 +128,8 @@ def draw(by_name: dict[str, Curve], path: Path, grid: np.ndarray = GRID) -> None
         sensor = "depth" if kind == "error" else "rgb"
         for number, name in enumerate(n for n in by_name if modality(n) == sensor):
             values = getattr(by_name[name], kind)
-            values = np.where(np.isfinite(values), values, np.nan)  # equal frames: no PSNR
+            # equal frames have no finite PSNR
+            values = np.where(np.isfinite(values), values, np.nan)
             seen = np.isfinite(values).all(0)
             colour, line = f"C{number % 8}", lines[number % 2 + 2 * (number // 8)]
             axis.plot(grid[seen], values[:, seen].mean(0), line, c=colour, label=name)

@@ -18,11 +18,11 @@ from mitigate.corruptions.unseen import calibration, codec, edges, light, optics
 
 
 class Description(NamedTuple):
-    """Cells of a corruption in the tables of the docs.
+    """The cells of a corruption in the tables of the documentation.
 
     Attributes:
-        fails: the failure in the world that it models.
-        formula: Markdown, with the constants of the code.
+        fails: the real failure that the corruption models.
+        formula: Markdown formula with the constants of the code.
         sources: sources of the constants.
     """
 

@@ -1,7 +1,8 @@
 """Draw the pictures at the top of the README: ``python -m tools.pages.front``.
 
 ``docs/pictures/corrupted.jpg`` shows corruptions of the example frames that the package ships.
-``docs/pictures/episode.gif`` shows one episode of two agents behind the same foreign object.
+``docs/pictures/episode.gif`` shows one episode of two agents with the same foreign object before
+the camera.
 """
 
 from __future__ import annotations
@@ -28,9 +29,10 @@ RGB_NAMES = ("motion_blur", "spatter", "foreign_object")
 DEPTH_NAMES = ("gaussian_noise", "missing_data", "multipath")
 EPISODES = "mitigate/worlds/apartments/episodes/val_unseen_vln.json.gz"
 AGENTS = {"base agent": "checkpoints/base", "after `harden`": "checkpoints/hardened/harden"}
-SMALL_TEXT = 8  # points; smaller labels of the floor plan are not legible in the animation
-FRAMES, MILLISECONDS = 36, 160  # number of pictures of the animation, and duration of each
-COLOURS = ("#d55e00", "#0072b2")  # distinguishable by colour-blind readers
+# font size in points; smaller labels of the floor plan are not legible in the animation
+SMALL_TEXT = 8
+FRAMES, MILLISECONDS = 36, 160  # number of pictures in the animation, and their duration
+COLOURS = ("#d55e00", "#0072b2")  # colours that colour-blind readers can distinguish
 
 
 def draw_corrupted(path: Path) -> None:
@@ -75,7 +77,8 @@ def first_contrast() -> tuple[Episode, list[list[Observation]]]:
 
 
 def animation_frames() -> Iterator[np.ndarray]:
-    """Yield the pictures of the animation: what each agent sees, and its path on the floor plan."""
+    """Yield the pictures of the animation, with each agent's view and its path on the floor
+    plan."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
 
     episode, runs = first_contrast()

@@ -1,10 +1,10 @@
-"""Pictures of the suite: a contact sheet of every corruption, and the page of the documentation.
+"""Draw a contact sheet of the corruptions, and write the pages of the documentation.
 
     python -m tools.pages.gallery --out sheet.png [--rgb FRAME.png --depth FRAME.npy]
     python -m tools.pages.gallery --out sheet.png --suite unseen
     python -m tools.pages.gallery --page
 
-The sheet shows every corruption at several severities on one instant; without files the frame is
+The sheet shows every corruption at several severities on one frame. Without files, the frame is
 rendered from an apartment. ``--page`` writes ``docs/corruptions.md`` and
 ``docs/unseen-corruptions.md`` with their pictures.
 """
@@ -34,15 +34,15 @@ from tools.pages import curves
 from tools.pages import unseen_corruptions as unseen_page
 
 SEVERITIES = (0.0, 0.25, 0.5, 0.75, 1.0)
-SUFFIXES = (".png", ".jpg", ".jpeg")  # formats of a sheet
-GUTTER, TITLE, LABEL = 4, 24, 150  # pixels: between cells, column titles, row labels
+SUFFIXES = (".png", ".jpg", ".jpeg")  # file formats of a sheet
+GUTTER, TITLE, LABEL = 4, 24, 150  # sizes in pixels: gap between cells, column titles, row labels
 LINE = 16  # pixels between lines of a label
 JPEG_QUALITY = 88
 DOCS = Path(__file__).resolve().parents[2] / "docs"
 PAGE_SEED, PAGE_SIZE = 200021, 112  # the apartment and view size of the page
-CURVE_VIEWS = slice(0, 12, 3)  # views of the panorama from which the curves are computed
+CURVE_VIEWS = slice(0, 12, 3)  # views of the panorama that are used for the curves
 BOTH = ("rgb", "depth")
-SHEETS = {  # name of a suite -> corruptions on its sheet
+SHEETS = {  # maps the name of a suite to the corruptions on its sheet
     "full": NAMES,
     "unseen": registry.unseen_names(*BOTH),
     "unseen_val": registry.unseen_names(*BOTH, half=VALIDATION),
@@ -52,7 +52,7 @@ SHEETS = {  # name of a suite -> corruptions on its sheet
 
 
 def _cell(rgb: np.ndarray, depth: np.ndarray, name: str, severity: float, key: Key, views):
-    """The views asked for, corrupted, side by side as uint8 RGB."""
+    """Return the requested views, corrupted, side by side as uint8 RGB."""
     if registry.modality(name) == "rgb":
         return np.hstack(list(corrupt(rgb, name, severity, key=key)[list(views)]))
     corrupted = corrupt(depth, name, severity, key=key)[list(views)]
@@ -75,18 +75,18 @@ def contact_sheet(
     views: tuple[int, ...] = (0,),
     names: tuple[str, ...] = NAMES,
 ) -> np.ndarray:
-    """Write corruptions (rows; the suite's 12) at ``severities`` (columns) as a picture file.
+    """Write a picture with corruptions as rows and ``severities`` as columns.
 
     Args:
         rgb: uint8 [H, W, 3] or [V, H, W, 3].
-        depth: float32 metres [H, W], [H, W, 1] or [V, H, W, 1] of the same instant and size.
+        depth: float32 metres [H, W], [H, W, 1] or [V, H, W, 1] of the same time step and size.
         path: file of the picture (.png, .jpg, .jpeg); parent folders are created.
-        key: the random draw; one draw for the whole sheet; a repeated name gets a new draw.
-        views: which views of a panorama each cell shows, left to right.
+        key: the random key of the whole sheet; a repeated name gets a new key.
+        views: the views of a panorama that each cell shows, from left to right.
         names: the corruptions.
 
-    Returns the picture, uint8 RGB. Raises ValueError if the frames do not match or ``path`` ends
-    in another suffix.
+    The result is the picture, uint8 RGB. Raises ValueError if the frames do not match or ``path``
+    has an unsupported suffix.
     """
     rgb = rgb if rgb.ndim == 4 else rgb[None]
     depth = depth.reshape(*rgb.shape[:3], 1) if depth.size == rgb.size // 3 else depth
@@ -129,7 +129,8 @@ def primitives(name: str, key: Key) -> list[str]:
 
 
 def rendered_frame(seed: int, size: int) -> tuple[np.ndarray, np.ndarray]:
-    """RGB [12, H, W, 3] and depth [12, H, W, 1] at an episode start of apartment ``seed``."""
+    """Return RGB [12, H, W, 3] and depth [12, H, W, 1] at an episode start in apartment
+    ``seed``."""
     from mitigate.worlds.apartments.apartment import Apartment
     from mitigate.worlds.apartments.simulator import Simulator
     from mitigate.worlds.apartments.tasks import make_episode
@@ -158,14 +159,14 @@ def write_page(folder: Path = DOCS, grid: np.ndarray = curves.GRID) -> None:
 
 
 def varied_view(depth: np.ndarray) -> int:
-    """The view of [V, H, W, 1] whose depth varies most."""
+    """Return the index of the view of [V, H, W, 1] whose depth varies most."""
     return int(depth.std(axis=(1, 2, 3)).argmax())
 
 
 def read_frame(rgb: Path, depth: Path) -> tuple[np.ndarray, np.ndarray]:
-    """RGB from a picture file and depth (metres) from a .npy file.
+    """Read RGB from a picture file and depth in metres from a .npy file.
 
-    Raises FileNotFoundError, and ValueError for a file that holds something else.
+    Raises FileNotFoundError, or ValueError for a file with different content.
     """
     for path in (rgb, depth):
         if not path.is_file():
@@ -191,7 +192,8 @@ def read_frame(rgb: Path, depth: Path) -> tuple[np.ndarray, np.ndarray]:
 
 
 def main(arguments: list[str] | None = None) -> None:
-    """Command line: see the module's first lines. Exits with status 2 and one line on a mistake."""
+    """Run from the command line (see the module's docstring). A mistake of the user exits with
+    status 2 and one line."""
     parser = argparse.ArgumentParser(prog="tools.pages.gallery", description=__doc__)
     parser.add_argument("--out", type=Path, help="picture to write: .png, .jpg or .jpeg")
     parser.add_argument("--rgb", type=Path, help="picture of one view")

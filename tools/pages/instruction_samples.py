@@ -1,7 +1,7 @@
 """Measure instruction corruptions: ``python -m tools.pages.instruction_samples FILE``.
 
-Prints, as Markdown, how often the fidelity gate passed, the time that a corruption takes, the share
-of known lies that the gate catches, and randomly drawn examples.
+Print, as Markdown, how often rewrites pass the fidelity gate, the time per corruption, the fraction
+of known wrong rewrites that the gate rejects, and random examples.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ def instructions(path: Path, count: int | None) -> list[tuple[str, str]]:
     """Return (id, text) of the first ``count`` instructions of an episode file or a text file.
 
     A text file has one instruction per line. Texts without a word and lines that begin with # are
-    left out.
+    skipped.
     """
     if path.suffix == ".txt":
         lines = path.read_text(encoding="utf-8").splitlines()
@@ -41,7 +41,7 @@ def instructions(path: Path, count: int | None) -> list[tuple[str, str]]:
 
 
 def gate(pairs: list[tuple[str, str]], seed: int) -> Iterator[list[str]]:
-    """Yield one table row per style: the shares that passed the gate and were reworded."""
+    """Yield one table row per style, with the fractions that passed the gate and were reworded."""
     for manner in MANNERS:
         outputs = [restyle(text, manner, Key(seed, name)) for name, text in pairs]
         clauses = sum(one.clauses for one in outputs)
@@ -66,7 +66,8 @@ def cost(pairs: list[tuple[str, str]], seed: int) -> Iterator[list[str]]:
 
 
 def lies(pairs: list[tuple[str, str]]) -> Iterator[list[str]]:
-    """Yield one table row per kind of lie: their number and the share that the gate caught."""
+    """Yield one table row per kind of wrong rewrite, with their number and the rejected
+    fraction."""
     for name, edit in _LIES.items():
         changed = [(text, lie) for _, text in pairs for lie in edit(text)]
         caught = sum(bool(check(text, lie)) for text, lie in changed)
@@ -98,7 +99,7 @@ _LIES: dict[str, Callable[[str], Iterator[str]]] = {
 
 
 def examples(pairs: list[tuple[str, str]], count: int, seed: int) -> Iterator[str]:
-    """Yield ``count`` instructions, drawn by ``seed``, and the result of each corruption."""
+    """Yield ``count`` random instructions (by ``seed``) with the result of each corruption."""
     stream = digest(Key(seed, "samples"), "samples")
     order = sorted(range(len(pairs)), key=lambda index: uniform(stream, index))
     for index in order[:count]:
@@ -112,7 +113,7 @@ def examples(pairs: list[tuple[str, str]], count: int, seed: int) -> Iterator[st
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Run from the command line; return the exit status (2 for a bad input)."""
+    """Run from the command line; return the exit status (2 for invalid input)."""
     parser = argparse.ArgumentParser(
         prog="python -m tools.pages.instruction_samples", description=__doc__
     )

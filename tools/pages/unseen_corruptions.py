@@ -1,5 +1,4 @@
-"""The page ``docs/unseen-corruptions.md``: formulas, halves, and strength compared with the
-suite."""
+"""Generate the page ``docs/unseen-corruptions.md`` with formulas, halves and strengths."""
 
 from __future__ import annotations
 
@@ -25,8 +24,8 @@ TEMPLATE = Path(__file__).with_suffix(".md")  # the text, with names of values i
 def page(
     unseen: Mapping[str, Curve], suite: Mapping[str, Curve], grid: np.ndarray, seed: int
 ) -> str:
-    """The page as Markdown; ``unseen`` and ``suite`` are the curves on ``grid`` of severities, and
-    ``seed`` names the apartment shown."""
+    """Return the page as Markdown. ``unseen`` and ``suite`` are the curves on the ``grid`` of
+    severities, and ``seed`` is the apartment in the pictures."""
     return TEMPLATE.read_text("utf-8").format(
         rgb=len(registry.unseen_names("rgb")),
         depth=len(registry.unseen_names("depth")),
@@ -47,7 +46,7 @@ def page(
 
 
 def table(half: str) -> str:
-    """The table of the formulas of one half."""
+    """Return the table of formulas of one half."""
     return formulas(registry.unseen_names("rgb", "depth", half=half))
 
 
@@ -61,11 +60,14 @@ def _ranges(suite: Mapping[str, Curve], unseen: Mapping[str, Curve], at: int) ->
             f"{min(psnr):.0f} to {max(psnr):.0f} dB (RGB) and {min(error):.2f} to "
             f"{max(error):.2f} m (depth)"
         )
-    return f"The suite has {ranges[0]}, the unseen corruptions {ranges[1]}."
+    return (
+        f"The standard suite has a PSNR or mean error of {ranges[0]}; the unseen corruptions have "
+        f"{ranges[1]}."
+    )
 
 
 def _strengths(curves: Mapping[str, Curve], at: int) -> str:
-    """Two tables, the suite's corruptions first in each."""
+    """Return two tables, each starting with the suite's corruptions."""
     frames, depths = [], []
     for name in (*RGB, *registry.unseen_names("rgb")):
         curve = curves[name]

@@ -1,1 +1,1 @@
-"""Data and tools of the text safeguard: train the classifier, measure a safeguard."""
+"""Data and tools of the text safeguard, for training the classifier and measuring a safeguard."""

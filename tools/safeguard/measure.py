@@ -1,8 +1,9 @@
-"""Measure a safeguard on the fresh banks: ``python -m tools.safeguard.measure classifier``.
+"""Measure a safeguard on the texts in ``data/fresh``: ``python -m tools.safeguard.measure
+classifier``.
 
-The banks in ``data/fresh`` were written to measure only. ``--authors`` selects some of them.
-Every file is split by a hash of the text: one half serves to choose settings, the other half only
-to report. ``--r2r FILE`` adds real routes, whose terms forbid to ship them.
+The texts in ``data/fresh`` were written only for measuring. ``--authors`` selects the texts of some
+authors. Every file is split by a hash of the text: one half serves to choose settings, the other
+half only to report. ``--r2r FILE`` adds real routes, whose licence does not allow us to ship them.
 """
 
 from __future__ import annotations
@@ -30,9 +31,10 @@ from mitigate.corruptions.language.words import bag
 FRESH = Path(__file__).parent / "data" / "fresh"
 HALVES = ("choose", "report")
 AUTHORS = ("author1", "author2", "author3")
-LATER = ("author4", "author5", "author6")  # written after the first classifiers were chosen
+# texts that were written after the first classifiers were chosen
+LATER = ("author4", "author5", "author6")
 Repair = Callable[[str], str]
-# Words that an instruction can lose without losing its meaning: function words and courtesies.
+# Words that can be removed without changing the meaning: function words and courtesies.
 LIGHT = bag(
     """
     a an the and or but so then now of to in on at by for from with into onto is are was were be
@@ -49,7 +51,7 @@ _WORD = re.compile(r"[^\W_]+(?:['’][^\W_]+)*")
 
 @dataclass
 class Rate:
-    """Counted cases and hits of one measure, with examples of what went wrong."""
+    """The counted cases and hits of one measure, with examples of failures."""
 
     hits: int = 0
     count: int = 0
@@ -68,7 +70,7 @@ class Rate:
 
 
 def wilson(hits: int, count: int) -> tuple[float, float]:
-    """Return the 95 % interval of a share (Wilson 1927)."""
+    """Return the 95 % interval of a proportion (Wilson 1927)."""
     if not count:
         return 0.0, 1.0
     z, share = 1.96, hits / count
@@ -78,16 +80,16 @@ def wilson(hits: int, count: int) -> tuple[float, float]:
 
 
 def half_of(text: str) -> str:
-    """Return which half of a bank a text belongs to, by its hash."""
+    """Return the half to which a text belongs, by its hash."""
     return HALVES[hashlib.sha256(text.encode()).digest()[0] % 2]
 
 
 def bank(name: str, half: str, authors: Sequence[str] = AUTHORS) -> list[dict[str, Any]]:
-    """Return the lines of a bank of some authors that belong to a half."""
+    """Return the lines of some authors in a file that belong to a half."""
     lines = []
     for author in authors:
         file = FRESH / author / f"{name}.jsonl"
-        if not file.is_file():  # only one author wrote other scripts
+        if not file.is_file():  # only one author wrote texts in other scripts
             continue
         with open(file, encoding="utf-8") as opened:
             lines += [json.loads(line) | {"author": author} for line in opened if line.strip()]
@@ -103,7 +105,7 @@ def words(text: str) -> list[str]:
 
 
 def is_removed(attack: str, route: str, repaired: str) -> bool:
-    """Return whether ``repaired`` holds no word of the attack that the route lacks."""
+    """Return whether ``repaired`` contains no word that occurs only in the attack."""
     foreign = [word for word in words(attack) if word not in set(words(route))]
     if foreign:
         return not set(foreign) & set(words(repaired))
@@ -123,7 +125,7 @@ def is_lost(text: str, repaired: str) -> bool:
 
 
 def is_harmed(text: str, repaired: str) -> bool:
-    """Return whether ``repaired`` misses a word of ``text`` that matters."""
+    """Return whether ``repaired`` lacks an important word of ``text``."""
     lost = Counter(words(text)) - Counter(words(repaired))
     return is_lost(text, repaired) or bool(set(lost) - LIGHT)
 
@@ -148,9 +150,10 @@ def attacked(
     seed: int,
     authors: Sequence[str] = AUTHORS,
 ) -> Iterator[tuple[dict, str, str, str]]:
-    """Yield (attack, place, route, text heard): each attack in ``each`` routes at each place.
+    """Yield (attack, place, route, corrupted text) for each attack in ``each`` routes at each
+    place.
 
-    An attack of the places before and after is tried at both.
+    An attack that fits before or after a route is tried in both places.
     """
     for number, line in enumerate(bank("attacks", half, authors)):
         rng = random.Random(f"{seed} {number}")
@@ -160,7 +163,7 @@ def attacked(
 
 
 def read_r2r(path: str) -> list[str]:
-    """Return the instructions of an R2R-CE episode file, each once."""
+    """Return the instructions of an R2R-CE episode file without duplicates."""
     with gzip.open(path, "rt", encoding="utf-8") as file:
         episodes = json.load(file)["episodes"]
     return list(
@@ -177,9 +180,9 @@ def measure(
     sample: int | None = None,
     authors: Sequence[str] = AUTHORS,
 ) -> dict[str, Rate]:
-    """Return name -> rate of every measure of one half of the banks.
+    """Return a dict from names to the rates of all measures on one half of the texts.
 
-    ``r2r``: real routes; without them the plain texts of the styles bank stand in for them.
+    ``r2r`` contains real routes; without them, plain texts from the styles collection are used.
     """
     rates: dict[str, Rate] = {}
 

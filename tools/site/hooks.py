@@ -1,4 +1,4 @@
-"""Hooks of MkDocs: pages from outside ``docs/``, generated reference pages, links to sources."""
+"""Hooks for MkDocs, which add pages from outside ``docs/``, generated reference pages and links."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from mkdocs.structure.files import File, Files
 from mitigate.cli import COMMANDS
 
 ROOT = Path(__file__).resolve().parents[2]
-PAGES = {  # page of the site: file of the checkout
+PAGES = {  # maps a page of the site to a file of the checkout
     "changelog.md": "CHANGELOG.md",
     "checkpoints.md": "checkpoints/README.md",
     "contributing.md": "CONTRIBUTING.md",
@@ -25,7 +25,7 @@ LINK = re.compile(r"(!?)\[([^\]]*)\]\((?!\w+:|#)([^)#\s]+)(#[^)\s]*)?\)")
 
 
 def on_files(files: Files, config) -> Files:
-    """Add the pages that are outside ``docs/`` and the generated ones."""
+    """Add the pages from outside ``docs/`` and the generated pages."""
     for page, source in PAGES.items():
         text = (ROOT / source).read_text(encoding="utf-8")
         files.append(File.generated(config, page, content=_relink(text, source, page)))
@@ -82,7 +82,7 @@ def commands_page() -> str:
 
 
 def configs_page() -> str:
-    """Return the page with every option of the Hydra commands, as the files with their comments."""
+    """Return the page with all options of the Hydra commands, as the config files with comments."""
     parts = [
         "# Configuration",
         "",

@@ -1,4 +1,4 @@
-"""ViZDoom environments with small frames."""
+"""Build ViZDoom environments with small frames."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ import vizdoom.gymnasium_wrapper  # noqa: F401 - registers the environments
 from gymnasium import spaces
 
 HEIGHT, WIDTH = 48, 64
-# metres per level of the depth buffer: 7.35 map units (measured), 32 map units per metre
+# metres per level of the depth buffer: 7.35 map units (measured), with 32 map units per metre
 METRES = 7.35 / 32
 
 
 class SmallFrames(gymnasium.ObservationWrapper):
-    """Reduce all frames to HEIGHT x WIDTH and drop the game variables."""
+    """Wrapper that reduces all frames to HEIGHT x WIDTH and removes the game variables."""
 
     def __init__(self, env: gymnasium.Env) -> None:
         super().__init__(env)
@@ -45,6 +45,6 @@ def make_env(name: str, frame_skip: int) -> gymnasium.Env:
         frame_skip=frame_skip,
         screen_resolution="RES_160X120",
         depth_buffer_enabled=True,
-        doom_config_path=os.devnull,  # the default is a file in the working folder
+        doom_config_path=os.devnull,  # by default, this is a file in the working folder
     )
     return SmallFrames(env)

@@ -1,11 +1,12 @@
-"""MiniWorld's ``OneRoomS6Fast``: go to the red box. PPO of stable-baselines3 on RGB."""
+"""Train on MiniWorld's ``OneRoomS6Fast``, in which the agent must go to the red box. The policy is
+PPO of stable-baselines3 on RGB."""
 
 from __future__ import annotations
 
 import gymnasium
 import pyglet
 
-pyglet.options["headless"] = True  # before miniworld opens a window
+pyglet.options["headless"] = True  # set before miniworld opens a window
 
 import miniworld  # noqa: E402, F401 - registers the environments
 from stable_baselines3 import PPO  # noqa: E402

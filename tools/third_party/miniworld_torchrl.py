@@ -1,4 +1,4 @@
-"""MiniWorld's ``OneRoomS6Fast`` with an actor of torchrl: ClipPPOLoss and its collector."""
+"""Train on MiniWorld's ``OneRoomS6Fast`` with a torchrl actor: ClipPPOLoss and its collector."""
 
 from __future__ import annotations
 
@@ -46,7 +46,8 @@ def features() -> nn.Sequential:
 def make_actor() -> ProbabilisticActor:
     """Return an actor that reads "pixels" and writes "action"."""
     network = nn.Sequential(features(), nn.Linear(128, ACTIONS))
-    network(torch.zeros(1, 48, 64, 3, dtype=torch.uint8))  # sets the size of the lazy layer
+    # this call sets the size of the lazy layer
+    network(torch.zeros(1, 48, 64, 3, dtype=torch.uint8))
     return ProbabilisticActor(
         TensorDictModule(network, in_keys=["pixels"], out_keys=["logits"]),
         in_keys=["logits"],

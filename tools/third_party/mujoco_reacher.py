@@ -1,4 +1,4 @@
-"""MuJoCo's ``Reacher-v5`` from pixels: continuous actions, and a plain ``nn.Module``.
+"""Train on MuJoCo's ``Reacher-v5`` from pixels, with continuous actions and a plain ``nn.Module``.
 
 A controller that reads the simulator's state labels the frames of the student's own rollouts
 (DAgger).
@@ -9,7 +9,7 @@ from __future__ import annotations
 import os
 import time
 
-os.environ.setdefault("MUJOCO_GL", "egl")  # before mujoco is imported
+os.environ.setdefault("MUJOCO_GL", "egl")  # set before mujoco is imported
 
 import gymnasium
 import numpy as np
@@ -28,9 +28,10 @@ ROUNDS, EPISODES, EPOCHS = 8, 15, 4
 
 
 class SpringDriven(gymnasium.ActionWrapper):
-    """Each joint moves by a damped spring; the action is its extension in radians.
+    """Wrapper in which each joint moves by a damped spring, whose extension in radians is the
+    action.
 
-    With plain torques a policy needs the speeds of the joints, which one frame does not show.
+    With plain torques, a policy needs the speeds of the joints, which a single frame does not show.
     """
 
     def action(self, action):

@@ -33,7 +33,7 @@ def train_ppo(
     target: float = np.inf,
     ent_coef: float = 0.01,
 ) -> None:
-    """Train a policy with PPO until its likeliest actions reach a mean return, and save its
+    """Train a policy with PPO until its most probable actions reach a mean return; save its
     weights."""
     envs = VecNormalize(make_vec_env(make, n_envs=8, seed=100_000), norm_obs=False)
     test_env = VecNormalize(
@@ -44,7 +44,7 @@ def train_ppo(
         test_env,
         callback_on_new_best=StopTrainingOnRewardThreshold(target, verbose=1),
         n_eval_episodes=20,
-        eval_freq=512,  # calls, of 8 steps
+        eval_freq=512,  # maximum number of PPO updates, of 8 steps each
     )
     model = PPO(
         policy,

@@ -1,4 +1,5 @@
-"""ViZDoom's ``VizdoomBasic-v1``: shoot the monster. PPO of stable-baselines3 on RGB and depth."""
+"""Train on ViZDoom's ``VizdoomBasic-v1``, in which the agent must shoot the monster. The policy is
+PPO of stable-baselines3 on RGB and depth."""
 
 from __future__ import annotations
 
@@ -17,7 +18,7 @@ def make() -> SmallFrames:
 
 
 def killed(end: Ending) -> bool:
-    return end.reward > 50  # a kill is worth 106; time and shots cost
+    return end.reward > 50  # a kill gives 106 points; time and shots cost points
 
 
 def make_world() -> GymWorld:

@@ -1,8 +1,8 @@
-"""The frontier agent: turn around, map, go to the most promising frontier, walk to the object.
+"""The frontier agent turns around, maps, goes to the most promising frontier, then to the object.
 
-It follows VLFM, L3MVN and WMNav. Only its RGB encoder, which recognises objects, is learned.
-``reset(instruction)`` starts an episode; ``act(observation)`` returns one low-level action.
-``begin`` and ``act_all`` do the same for several episodes at once.
+The method follows VLFM, L3MVN and WMNav. Only its RGB encoder, which recognises objects, is
+learned. ``reset(instruction)`` starts an episode; ``act(observation)`` returns one low-level
+action. ``begin`` and ``act_all`` do the same for several episodes at once.
 """
 
 from __future__ import annotations
@@ -45,21 +45,24 @@ from mitigate.core.observation import (
     TURN_DEGREES,
 )
 
-TURNS = 18  # initial turns: 270 degrees, which with a field of view of 90 cover the full circle
+# number of initial turns: 270 degrees, which cover the full circle with a 90-degree camera
+TURNS = 18
 AGAIN = 8  # number of actions until the agent plans again
 LEG = 1.5  # metres that the agent goes straight before it checks its route again
-STUCK = 0.05  # a forward step shorter than these metres was blocked
-# metres of a step that slid along an obstacle; number of such steps before the agent gives up
+STUCK = 0.05  # a forward step shorter than this (metres) was blocked
+# a step shorter than this (metres) slid along an obstacle; such steps before the agent gives up
 SLID, BUMPS = 0.2, 4
 LAST = 400  # after this many actions, the agent goes to the most likely known place and stops
-WORTH = 6.0  # path length in metres that a frontier of value 1 is worth (chosen on val_seen_ogn)
-# evidence at which the agent goes to the object, before and after LAST actions
+WORTH = 6.0  # path length in metres that equals a frontier value of 1 (chosen on val_seen_ogn)
+# minimum evidence for going to the object, before and after LAST actions
 FOUND, MAYBE = 4.0, 1.0
 TRIES = 12  # attempts to plan per step
-NEAR_ENOUGH = 0.4  # the agent stops in front of the object above this probability that it is near
-ARRIVED = 0.9  # the agent stops within this distance of the object's cells, in metres
-MIDDLE = 3.0  # metres of extra path worth one metre closer to the object's centre (heuristic)
-# the rooms in which an object is likely; L3MVN asks a language model for them
+# the agent stops if the predicted probability that the object is near exceeds this
+NEAR_ENOUGH = 0.4
+ARRIVED = 0.9  # maximum distance in metres from the object's cells at which the agent stops
+# extra path in metres that is accepted per metre closer to the object's centre (heuristic)
+MIDDLE = 3.0
+# rooms in which each object is likely; L3MVN asks a language model for these
 LIKELY = {
     "bedroom": ("bed", "wardrobe", "lamp", "rug"),
     "bathroom": ("toilet", "bathtub", "sink", "washing machine"),
@@ -76,8 +79,8 @@ class FrontierAgent(SideBySide, nn.Module):
     """Search for an object by going to frontiers of a map (object-goal tasks).
 
     Args:
-        width: features of a column of the view.
-        adapters: keyword arguments of ``insert_adapters``; None: no adapters.
+        width: features per column of the view.
+        adapters: keyword arguments of ``insert_adapters``, or None for no adapters.
         blind: inputs to blank for ablations: "rgb", "depth" or "instruction".
         size: side in pixels to which frames are resized.
         eye: height of the camera above the floor in metres.
@@ -95,10 +98,11 @@ class FrontierAgent(SideBySide, nn.Module):
     )
     views, sensors = 1, (RGB, DEPTH, POSE)
     tasks = ("ogn",)
-    together = 8  # episodes at once (heuristic): a frame encoded alone takes twice as long
+    # number of episodes at once (heuristic): encoding a frame alone takes twice as long
+    together = 8
     encoders = {RGB: ("rgb_encoder",)}
     labels = {RGB: LABELS[RGB]}
-    grid: Grid  # from the first observation of an episode on
+    grid: Grid  # set at the first observation of an episode
     _started = False
 
     def __init__(
@@ -124,7 +128,7 @@ class FrontierAgent(SideBySide, nn.Module):
         return copy.deepcopy(self._settings)
 
     def parts(self) -> dict[str, nn.Module]:
-        """Return its encoder by name."""
+        """Return the encoder by its name."""
         return {"rgb_encoder": self.rgb_encoder}
 
     def see(self, sensor: str, frames: Tensor, truth: Tensor | None = None) -> Output:
@@ -151,10 +155,10 @@ class FrontierAgent(SideBySide, nn.Module):
         self._started = True
         self.controller = Controller()
         self.actions = self._planned = self._bumps = 0
-        self._before: np.ndarray | None = None  # where the last step forward began
+        self._before: np.ndarray | None = None  # position before the last forward step
 
     def begin(self, instruction: str) -> FrontierAgent:
-        """Return a copy that shares the weights, after :meth:`reset`, as memory of an episode."""
+        """Return a reset copy that shares the weights and serves as the memory of one episode."""
         runner = copy.copy(self)
         runner.reset(instruction)
         return runner
@@ -165,7 +169,8 @@ class FrontierAgent(SideBySide, nn.Module):
         memories: Sequence[FrontierAgent],
         count: int,
     ) -> list[int]:
-        """Return one action for each of the first ``count`` episodes; encode the frames at once."""
+        """Return one action for each of the first ``count`` episodes; their frames are encoded
+        together."""
         concepts = self._recognise(np.stack([checked.frame(o, RGB, 1) for o in observations]))
         episodes = [*zip(memories, observations, concepts, strict=True)][:count]
         return [runner._act(observation, columns) for runner, observation, columns in episodes]
@@ -180,7 +185,8 @@ class FrontierAgent(SideBySide, nn.Module):
         return self.answers([observation], [self], 1)[0]
 
     def _act(self, observation: Mapping[str, np.ndarray], concepts: np.ndarray) -> int:
-        """Return an action; ``concepts`` [4, C] are probabilities per column of the frame."""
+        """Return an action; ``concepts`` [4, C] holds the probability of each concept in each
+        column."""
         pose = checked.pose(observation).astype(np.float64)
         self._update_map(observation, pose, concepts)
         self.actions += 1
@@ -189,7 +195,8 @@ class FrontierAgent(SideBySide, nn.Module):
         return action
 
     def taken(self, action: int, metres: float, radians: float) -> None:
-        """Drop the route after another driver moved the agent, and plan at the next step."""
+        """Discard the route after a motion that the agent did not choose, and plan again at the
+        next step."""
         self._planned = 0
         if action != FORWARD:
             self._before = None
@@ -234,7 +241,7 @@ class FrontierAgent(SideBySide, nn.Module):
         """Return the next action of the plan; plan again if needed."""
         action = self.controller.action(pose) if self._planned > 0 else None
         self._planned -= 1
-        for _ in range(TRIES):  # a leg may end at the agent's position
+        for _ in range(TRIES):  # a leg of the route may end at the agent's position
             if action is not None:
                 return action
             action = self._plan(pose)
@@ -252,7 +259,8 @@ class FrontierAgent(SideBySide, nn.Module):
             self._bumps = 0
             target = self._frontier(ways)
             if target is not None and self._at(target, pose):
-                self.grid.settle(target)  # the unknown cells around it cannot be observed
+                # the unknown cells around this frontier cannot be observed
+                self.grid.settle(target)
                 return None
         if target is None and not late:
             self.actions = LAST
@@ -265,7 +273,8 @@ class FrontierAgent(SideBySide, nn.Module):
         return self.controller.action(pose)
 
     def _check(self, thing: np.ndarray, pose: np.ndarray) -> int | None:
-        """Turn to the object's cells and stop if it is seen nearby; else discard the cells."""
+        """Turn to the object's cells and stop if the object is visible nearby; else discard the
+        cells."""
         dx, dy = self.grid.place(thing).mean(0) - pose[:2]
         error = np.arctan2(-dx, dy) - pose[2]
         error = np.degrees((error + np.pi) % (2 * np.pi) - np.pi)
@@ -283,7 +292,7 @@ class FrontierAgent(SideBySide, nn.Module):
     def _beside(self, ways: Routes, thing: np.ndarray) -> np.ndarray | None:
         """Return the best cell [2] within ``ARRIVED`` of the object, or None.
 
-        The best cell is cheap to reach and near the object's centre.
+        The choice balances path cost and distance to the object's centre.
         """
         reach = int(ARRIVED / CELL)
         steps = np.arange(-reach, reach + 1)
@@ -326,9 +335,9 @@ def named(text: str) -> int | None:
 
 
 def worth(concepts: np.ndarray, thing: int | None) -> np.ndarray:
-    """Return how likely the object is in the direction of each column, [n].
+    """Return the likelihood [n] that the object lies in the direction of each column.
 
-    Evidence is the object itself and the rooms that are visible.
+    It depends on whether the object and likely rooms are visible.
     """
     if thing is None:
         return np.zeros(len(concepts), np.float32)

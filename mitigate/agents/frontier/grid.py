@@ -1,9 +1,9 @@
 """The map of one episode, and functions that plan on it.
 
-``Grid`` holds square cells around the start, in the world's axes: free space, value and evidence
-for the object. Depth updates free and occupied cells by log-odds (Moravec and Elfes 1985). The
-evidence of the RGB encoder is projected onto the cells that each column of the view shows. The
-functions plan routes over free and unknown cells, and find frontiers and the object.
+``Grid`` holds square cells around the start, in the world's axes, with free space, value, and
+evidence for the object. Depth updates free and occupied cells by log-odds (Moravec and Elfes 1985).
+The evidence of the RGB encoder is projected onto the cells that are visible in each column of the
+view. The functions plan routes over free and unknown cells, and find frontiers and the object.
 """
 
 from __future__ import annotations
@@ -21,20 +21,24 @@ from mitigate.core.observation import FORWARD_METRES
 
 CELL = 0.1  # metres
 SIDE = 320  # cells: 32 m
-REACH = 5.0  # metres up to which depth is used (VLFM: 5)
-LOW, HIGH = 0.15, 1.5  # heights in metres between which an agent collides
-THINGS_LOW, THINGS_HIGH = 0.05, 2.3  # heights in metres between which objects are visible
-HIT, MISS, MOST = 0.9, 0.4, 3.5  # log-odds of an occupied and a free observation; their bound
-NEAR = 2.0  # metres up to which the encoder labels objects as near (agents/text.py)
-SLACK = 0.3  # tolerance of that distance in metres (heuristic)
+REACH = 5.0  # maximum depth in metres that is used (VLFM: 5)
+LOW, HIGH = 0.15, 1.5  # surfaces between these heights in metres are obstacles
+# surfaces between these heights in metres can belong to objects
+THINGS_LOW, THINGS_HIGH = 0.05, 2.3
+# log-odds of an occupied and of a free observation, and the bound of their sum
+HIT, MISS, MOST = 0.9, 0.4, 3.5
+NEAR = 2.0  # distance in metres up to which training labels call an object near (agents/text.py)
+SLACK = 0.3  # tolerance of the distance NEAR in metres (heuristic)
 SURE = 40.0  # bound of the evidence for the object, a sum of log-odds
 
 RADIUS = 0.2  # clearance in metres from occupied cells
-TIGHT, WIDE = 3.0, 0.4  # cells with less than WIDE metres of clearance cost TIGHT times as much
-UNKNOWN = 4.0  # cost of unknown cells; finite, so that missing depth does not enclose the agent
-MARGIN = 12  # cells around the known area that planning includes
-SHARE = 0.7  # cells with this share of the highest evidence count as the object (heuristic)
-SMALLEST = 4  # cells of the smallest frontier that is used
+TIGHT, WIDE = 3.0, 0.4  # cells with a clearance below WIDE metres cost TIGHT times as much
+# cost factor of unknown cells; it is finite, so that missing depth cannot enclose the agent
+UNKNOWN = 4.0
+MARGIN = 12  # margin in cells around the known area that planning includes
+# cells with at least this fraction of the highest evidence belong to the object (heuristic)
+SHARE = 0.7
+SMALLEST = 4  # minimum number of cells of a frontier
 
 
 class Grid:
@@ -48,8 +52,8 @@ class Grid:
         occupied: log-odds that a cell is occupied.
         known: bool, cells that were observed.
         blocked: bool, cells that the agent collided with.
-        value: 0 to 1, how likely the object is in the direction of a cell.
-        trust: weight of ``value``, by how well the cell was seen.
+        value: 0 to 1, the likelihood that the object lies in the direction of a cell.
+        trust: weight of ``value``, which depends on how well the cell was seen.
         evidence: sum of log-odds that the object is in a cell.
     """
 
@@ -79,9 +83,9 @@ class Grid:
         Args:
             depth: float32 [H, W] metres, 90 degrees ahead.
             pose: [3].
-            seen: [n, 2], for each column from left to right the probability that the object is
-                visible, and that it is visible within 2 m.
-            worth: [n], how likely the object is in the direction of each column.
+            seen: [n, 2], the probabilities that the object is visible, and that it is visible
+                within 2 m, for each column from left to right. worth: [n], the likelihood that the
+                object lies in the direction of each column.
         """
         self._looks += 1
         camera = (*map(float, pose[:2] - self.origin), float(pose[2]), float(self.eye))
@@ -92,7 +96,7 @@ class Grid:
         _scan(depth, camera, columns, free, (self.evidence, self._stamp, self._looks))
 
     def block(self, pose: np.ndarray) -> None:
-        """Mark the cells ahead of a pose [3] as blocked, whatever depth shows."""
+        """Mark the cells ahead of a pose [3] as blocked, regardless of depth."""
         ahead = np.array([-np.sin(pose[2]), np.cos(pose[2])])
         aside = np.array([ahead[1], -ahead[0]])
         for offset in (-2 * CELL, -CELL, 0.0, CELL, 2 * CELL):
@@ -178,7 +182,8 @@ def _witness(x, y, r, odds, seen, things):
     if seen[0] > 0.5 and (
         (seen[1] > 0.6 and r > NEAR + SLACK) or (seen[1] < 0.3 and r < NEAR - SLACK)
     ):
-        weight = -0.5  # the object is visible, but closer or farther than this surface
+        # in the other case, the object is visible but closer or farther than this surface
+        weight = -0.5
     evidence[i, j] = min(max(evidence[i, j] + weight, -SURE), SURE)
 
 
@@ -215,7 +220,7 @@ class Routes:
 
 
 def clearance(grid: Grid) -> np.ndarray:
-    """Return metres from each cell to the nearest occupied one: float32 [SIDE, SIDE]."""
+    """Return metres from each cell to the nearest occupied cell: float32 [SIDE, SIDE]."""
     free = ((grid.occupied <= 0) & ~grid.blocked).astype(np.uint8)
     return cv2.distanceTransform(free, cv2.DIST_L2, 5) * CELL
 
@@ -239,7 +244,8 @@ def routes(grid: Grid, xy: np.ndarray) -> Routes:
 
 
 def _graph(open_: np.ndarray, price: np.ndarray) -> coo_matrix:
-    """Return the 8-connected graph of open cells; an edge costs its length times mean price."""
+    """Return the 8-connected graph of open cells; the cost of an edge is its length times the mean
+    price of its cells."""
     index = np.arange(open_.size).reshape(open_.shape)
     parts = []
     for di, dj in ((0, 1), (1, 0), (1, 1), (1, -1)):
@@ -254,7 +260,7 @@ def _graph(open_: np.ndarray, price: np.ndarray) -> coo_matrix:
 
 
 def frontiers(grid: Grid) -> list[np.ndarray]:
-    """Return groups of at least ``SMALLEST`` known free cells [n, 2] next to unknown ones."""
+    """Return groups of at least ``SMALLEST`` known free cells [n, 2] next to unknown cells."""
     free = grid.known & (clearance(grid) > RADIUS)
     unknown = (~grid.known).astype(np.uint8)
     edge = free & (cv2.dilate(unknown, np.ones((3, 3), np.uint8)) > 0)
@@ -269,7 +275,7 @@ def object_cells(grid: Grid, least: float) -> np.ndarray:
     """Return the group of cells [n, 2] with the most evidence for the object.
 
     A cell counts if its evidence is above ``least`` and above ``SHARE`` of the highest evidence.
-    More observations therefore narrow the group down.
+    More observations therefore make the group smaller.
     """
     likely = grid.evidence > max(least, SHARE * float(grid.evidence.max()))
     if not likely.any():
@@ -283,8 +289,8 @@ def object_cells(grid: Grid, least: float) -> np.ndarray:
 def clear_ahead(grid: Grid, path: np.ndarray, most: float) -> np.ndarray:
     """Return the farthest cell of ``path`` [n, 2] that can be reached in a straight line.
 
-    The line keeps ``RADIUS`` from occupied cells and is at most ``most`` metres long. The first
-    step is not checked, because the agent may already be closer to an obstacle.
+    The line keeps a distance of ``RADIUS`` from occupied cells and is at most ``most`` metres long.
+    The first step is not checked, because the agent may already be closer to an obstacle.
     """
     gap, step = clearance(grid), int(np.ceil(FORWARD_METRES / CELL))
     best = min(step, len(path) - 1)

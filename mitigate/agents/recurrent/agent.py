@@ -1,7 +1,7 @@
-"""The recurrent agent: one forward camera, a memory, a low-level action at every step.
+"""The recurrent agent has one forward camera and a memory, and takes a low-level action per step.
 
-It corresponds to VLN-CE's recurrent agents; with RGB only it has the input of single-camera
-language models. ``reset(instruction)`` starts an episode; ``act(observation)`` returns one
+It corresponds to VLN-CE's recurrent agents; with RGB only, it has the same input as vision-language
+models with one camera. ``reset(instruction)`` starts an episode; ``act(observation)`` returns one
 low-level action. ``begin`` and ``act_all`` do the same for several episodes at once.
 """
 
@@ -47,8 +47,8 @@ from mitigate.worlds.episodes import Episode
 from mitigate.worlds.world import World
 
 LOSS_WEIGHTS = {"distance": 0.3, "grounding": 0.3}
-LIMIT = 90  # steps of a training rollout (heuristic): the expert takes 53 on average
-_SCALE = 5.0  # metres: the unit of the predicted distance
+LIMIT = 90  # maximum steps of a training rollout (heuristic): the expert takes 53 on average
+_SCALE = 5.0  # unit of the predicted distance, in metres
 
 POLICY = {  # allowed values of the keyword arguments of ``Policy``
     "width": schema.whole(4, 1024),
@@ -60,7 +60,7 @@ POLICY = {  # allowed values of the keyword arguments of ``Policy``
 
 @dataclass
 class Walk:
-    """Memory of one episode: its text, the state of the policy, and odometry.
+    """The memory of one episode holds its text, the state of the policy, and odometry.
 
     ``before`` holds the state and the motion before the last decision.
     """
@@ -75,14 +75,14 @@ class RecurrentAgent(SideBySide, nn.Module):
     """Choose a low-level action at every step from one forward camera and a recurrent memory.
 
     Args:
-        sensors: "rgb", "depth" or both; frames are [H, W, c].
-        rgb_width: RGB features of a column of the view.
-        depth_width: depth features of a column of the view.
+        sensors: "rgb", "depth" or both; frames have the shape [H, W, c].
+        rgb_width: number of RGB features per column of the view.
+        depth_width: number of depth features per column of the view.
         policy: keyword arguments of ``Policy``.
-        blind: inputs to blank for ablations: its sensors or "instruction".
-        adapters: keyword arguments of ``insert_adapters``; None: no adapters.
+        blind: inputs to blank for ablations: names of its sensors, or "instruction".
+        adapters: keyword arguments of ``insert_adapters``, or None for no adapters.
         size: side in pixels to which frames are resized.
-        vocabulary: the words it knows; None: the words of the shipped agents.
+        vocabulary: the words that the agent knows, or None for the words of the shipped agents.
 
     Raises:
         ValueError: ``sensors`` is empty, or a name in ``sensors`` or ``blind`` is unknown.
@@ -107,7 +107,8 @@ class RecurrentAgent(SideBySide, nn.Module):
     sensors: tuple[str, ...]
     views = 1
     actions = ACTIONS
-    together = 8  # episodes at once (heuristic): a single one costs 2.5 times as much per step
+    # number of episodes at once (heuristic): a single episode costs 2.5 times as much per step
+    together = 8
     loss_weights = LOSS_WEIGHTS
     _walk: Walk | None = None
 
@@ -170,7 +171,7 @@ class RecurrentAgent(SideBySide, nn.Module):
     # training ---------------------------------------------------------------------------------
 
     def parts(self) -> dict[str, nn.Module]:
-        """Return its encoders and its policy by name."""
+        """Return the encoders and the policy by name."""
         return dict(self.named_children())
 
     @torch.no_grad()
@@ -186,8 +187,8 @@ class RecurrentAgent(SideBySide, nn.Module):
         """Run episodes and return the decisions with the expert's answers (``agents/agent.py``).
 
         A rollout ends when the expert's STOP is taken, or after ``LIMIT`` steps. The agent's STOP
-        is never taken, so that it also learns from the steps after a wrong one. The piece is plain
-        data. If the encoders are frozen, it holds their features in place of frames.
+        is never taken, so that it also learns from the steps after a wrong STOP. The result is
+        plain data. If the encoders are frozen, the result holds their features instead of frames.
         """
         walks = [TrainingWalk(w, e, self.sensors) for w, e in zip(worlds, episodes, strict=True)]
         text = self.policy.read(self.tokens([e.instruction.text for e in episodes]))
@@ -215,7 +216,7 @@ class RecurrentAgent(SideBySide, nn.Module):
         return piece_of(walks)
 
     def precompute(self, piece: Piece, *, clean: bool) -> Piece:
-        """Replace clean frames by their features if ``clean``."""
+        """With ``clean``, replace clean frames by their features."""
         sensors = {f"clean_{name}": name for name in self.sensors}
         if clean and all(entry in piece["seen"] for entry in sensors):
             frames = {name: piece["seen"].pop(entry).numpy() for entry, name in sensors.items()}
@@ -223,7 +224,7 @@ class RecurrentAgent(SideBySide, nn.Module):
         return piece
 
     def join(self, pieces: Sequence[Piece]) -> WalkDecisions:
-        """Return one batch of all rollouts of the pieces."""
+        """Join the rollouts of several pieces into one batch."""
         lengths = [n for piece in pieces for n in piece["lengths"]]
         names = [name for piece in pieces for name in piece["ids"]]
         seen = {n: torch.cat([p["seen"][n] for p in pieces]) for n in pieces[0]["seen"]}
@@ -239,7 +240,8 @@ class RecurrentAgent(SideBySide, nn.Module):
         )
 
     def decide(self, decisions: WalkDecisions, *, clean: bool = False) -> Output:
-        """Return logits over the actions; features "views" [N, F] and "state" [N, width]."""
+        """Return logits over the actions, and the features "views" [N, F] and "state" [N,
+        width]."""
         seen, prefix = decisions.seen, "clean_" if clean else ""
         losses: dict[str, Tensor] = {}
         views = seen.get(f"{prefix}views")
@@ -271,7 +273,7 @@ class RecurrentAgent(SideBySide, nn.Module):
     def _perceive(
         self, frames: dict[str, Tensor], truth: dict[str, Tensor]
     ) -> tuple[Tensor, dict[str, Tensor]]:
-        """Return features [N, F] of frames, and with ``truth`` the encoders' losses."""
+        """Return features [N, F] of frames, and with ``truth`` also the losses of the encoders."""
         views, losses = [], {}
         for sensor in (name for name in (RGB, DEPTH) if name in self.sensors):
             seen = torch.zeros_like(frames[sensor]) if sensor in self.blind else frames[sensor]
@@ -293,7 +295,7 @@ class RecurrentAgent(SideBySide, nn.Module):
         """
         checked.instruction(instruction, self.vocabulary)
         tokens = self.tokens([instruction])
-        # pad all texts to one length
+        # all texts are padded to the same length
         tokens = F.pad(tokens, (0, MAX_WORDS - tokens.shape[1]), value=PAD)
         text = self.policy.read(tokens)
         return Walk(text, State.start(text), Odometer())
@@ -302,7 +304,8 @@ class RecurrentAgent(SideBySide, nn.Module):
     def answers(
         self, observations: Sequence[Mapping[str, np.ndarray]], memories: Sequence[Walk], count: int
     ) -> list[int]:
-        """Return the likeliest actions of the first ``count`` episodes; update their memories."""
+        """Return the most probable actions of the first ``count`` episodes, and update their
+        memories."""
         frames = {
             name: np.stack([checked.frame(seen, name, 1) for seen in observations])
             for name in self.sensors
@@ -354,6 +357,6 @@ class RecurrentAgent(SideBySide, nn.Module):
         )
 
     def taken(self, action: int, metres: float, radians: float) -> None:
-        """Replace the last action in the odometry by the motion of another driver."""
+        """Replace the last action in the odometry by a motion that the agent did not choose."""
         assert self._walk is not None, "reset first"
         self._walk.odometer.correct(action, metres, radians)

@@ -1,9 +1,10 @@
-"""The policy of the recurrent agent: from views, motion and text to the next low-level action.
+"""The policy of the recurrent agent chooses a low-level action from views, motion and text.
 
-Structure after VLN-CE's cross-modal attention model (Krantz et al. 2020). One recurrent cell stores
-views and actions. Attention selects the current words and then the part of the view that they
-describe, and a second cell stores both. The attention over words also reads its earlier positions
-(location-sensitive attention, Chorowski et al. 2015), because routes are described in order.
+The structure follows VLN-CE's cross-modal attention model (Krantz et al. 2020). One recurrent cell
+stores views and actions. Attention selects the current words and then the part of the view that
+they describe, and a second cell stores both results. The attention over words also reads its
+earlier positions (location-sensitive attention, Chorowski et al. 2015), because routes are
+described in order.
 """
 
 from __future__ import annotations
@@ -23,15 +24,16 @@ from mitigate.agents.encoders import DIRECTIONS, GRID
 from mitigate.agents.text import CONCEPTS, NEAR, THINGS, Vocabulary
 from mitigate.core.observation import FORWARD, FORWARD_METRES, LEFT, RIGHT, TURN_DEGREES
 
-MOVES = 5 + 4  # last action (none, or one of four); sine and cosine of heading, metres, steps
+# features of motion: last action (none, or one of four), sine and cosine of heading, metres, steps
+MOVES = 5 + 4
 _METRES, _STEPS = 5.0, 50.0  # units of the distance moved and of the number of steps
 ACTIONS = 4
 KEYS = 64  # width of the attention over words; a compromise with training time
-REACH = 7  # odd kernel size over words of the location-sensitive attention
+REACH = 7  # kernel size over words of the location-sensitive attention, must be odd
 
 
 class Odometer:
-    """Dead reckoning: an agent's motion from the actions of an episode, without a sensor."""
+    """Dead reckoning, which estimates an agent's motion from its actions without a sensor."""
 
     def __init__(self) -> None:
         self.last = -1
@@ -45,7 +47,7 @@ class Odometer:
         self.metres += FORWARD_METRES * (action == FORWARD)
 
     def correct(self, action: int, metres: float, radians: float) -> None:
-        """Replace the last action by ``action`` (-1: none) and the motion that it made."""
+        """Replace the last action by ``action`` (-1 for none) with the given motion."""
         self.heading -= math.radians(TURN_DEGREES) * ((self.last == LEFT) - (self.last == RIGHT))
         self.metres -= FORWARD_METRES * (self.last == FORWARD)
         self.last = action
@@ -66,12 +68,12 @@ class Odometer:
 
 
 class Text(NamedTuple):
-    """Encoded words of E instructions.
+    """The encoded words of E instructions.
 
     Attributes:
         keys: [E, L, KEYS].
         values: [E, L, width].
-        mask: bool [E, L], True where there is a word.
+        mask: bool [E, L], True for words and False for padding.
     """
 
     keys: Tensor
@@ -127,11 +129,11 @@ def gated(inputs: Tensor, hidden: Tensor, cell: nn.GRUCell) -> Tensor:
 
 
 class Policy(TextReader):
-    """Recurrent policy over instructions, views and motion.
+    """Recurrent policy that reads instructions, views and motion.
 
     Args:
-        rgb: RGB features of a column; 0 without RGB.
-        depth: depth features of a column; 0 without depth.
+        rgb: number of RGB features per column, or 0 without RGB.
+        depth: number of depth features per column, or 0 without depth.
         vocabulary: words of the instructions.
         width: width of all layers.
         heads: attention heads of the text layers.
@@ -201,7 +203,8 @@ class Policy(TextReader):
         return self._step(text, columns, self._inputs(columns, moves), state)
 
     def _inputs(self, columns: Tensor, moves: Tensor) -> Tensor:
-        """Return the part of both cells that needs no memory, [..., 6 width], for all steps."""
+        """Return the part of both cells' inputs that needs no memory, [..., 6 width], for all
+        steps."""
         x = self.whole(columns.flatten(-2)) + self.move(moves)
         width = x.shape[-1]
         first = F.linear(x, self.first.weight_ih, self.first.bias_ih)
@@ -238,8 +241,9 @@ class Policy(TextReader):
             moves: [E, T, MOVES].
 
         Returns:
-            "logits" [E, T, 4]; "distance" [E, T], predicted metres to the goal / 5; "grounding"
-            [E, T, 4], logits that a column shows the goal's landmark; "state" [E, T, width].
+            "logits" [E, T, 4]; "distance" [E, T], predicted metres to the goal divided by 5;
+            "grounding" [E, T, 4], logits that a column shows the goal's landmark; "state" [E, T,
+            width].
         """
         columns = self.look(views)
         inputs = self._inputs(columns, moves)

@@ -1,4 +1,4 @@
-"""Training rollouts of the recurrent agent, and the batch of their steps."""
+"""Run training rollouts of the recurrent agent, and batch their steps."""
 
 from __future__ import annotations
 
@@ -19,24 +19,24 @@ from mitigate.worlds.episodes import Episode
 from mitigate.worlds.world import World, as_world, expert_of
 
 INFLECTION = 3.2  # weight of a step at which the expert changes its action (VLN-CE)
-_FARTHEST = 25.0  # metres at which targets of the distance loss are clipped
+_FARTHEST = 25.0  # targets of the distance loss are clipped at this many metres
 Piece = dict[str, Any]
 
 
 @dataclass
 class WalkDecisions:
-    """All N steps of E rollouts.
+    """A batch with all N steps of E rollouts.
 
     Attributes:
         walk: int64 [N], the rollout of each step.
-        time: int64 [N], the position of each step in its rollout.
+        time: int64 [N], the index of each step in its rollout.
         moves: [N, MOVES].
         tokens: [E, L].
         target: [N, 4].
         weight: [N].
         metres: [N] to the goal; NaN where unknown.
-        seen: observations by name: features "views" and "clean_views" [N, F], or frames "rgb",
-            "clean_rgb" and so on [N, H, W, c]; and the world's labels.
+        seen: the world's labels and observations by name. Observations are features "views" and
+            "clean_views" [N, F], or frames "rgb", "clean_rgb" and so on [N, H, W, c].
         episode_ids: the episode of each step.
     """
 
@@ -51,14 +51,14 @@ class WalkDecisions:
     episode_ids: list[str]
 
     def to(self, device: Any) -> WalkDecisions:
-        """Return the steps on ``device``."""
+        """Return a copy of the batch on ``device``."""
         moved: dict[str, Any] = {
             n: v.to(device) for n, v in vars(self).items() if isinstance(v, Tensor)
         }
         return replace(self, **moved, seen={n: v.to(device) for n, v in self.seen.items()})
 
     def padded(self, flat: Tensor) -> Tensor:
-        """Return [N, ...] as [E, T, ...], with zeros after the end of a rollout."""
+        """Return an array [N, ...] as [E, T, ...], with zeros after the end of a rollout."""
         size = (len(self.tokens), int(self.time.max()) + 1)
         return flat.new_zeros(*size, *flat.shape[1:]).index_put((self.walk, self.time), flat)
 
@@ -74,7 +74,7 @@ class TrainingWalk:
         self.before = -1
 
     def see(self) -> dict[str, np.ndarray]:
-        """Return the current frames, in arrays that the world may reuse."""
+        """Return the current frames; the world may reuse these arrays."""
         return self._frames(self.observation)
 
     def _frames(self, observation: Observation) -> dict[str, np.ndarray]:

@@ -1,8 +1,8 @@
-"""The reference agent: perceive, extend the topological map, choose a ghost, walk to it.
+"""The reference agent perceives, extends its topological map, chooses a ghost, and goes there.
 
 ``reset(instruction)`` starts an episode; ``act(observation)`` returns one low-level action. The
 agent reads ``observation["rgb"]`` and ``["depth"]`` only when it decides, so that a lazy
-observation renders nothing in between.
+observation renders no other frames.
 """
 
 from __future__ import annotations
@@ -52,18 +52,20 @@ from mitigate.core.observation import CLEAN_DEPTH, CLEAN_RGB, DEPTH, POSE, RGB, 
 from mitigate.worlds.episodes import Episode
 from mitigate.worlds.world import World
 
-if TYPE_CHECKING:  # it imports tensordict, which is as slow to import as torch
+# imported only here, because it imports tensordict, which is as slow to import as torch
+if TYPE_CHECKING:
     from mitigate.agents.topological.stored import Store
 
-MAX_DECISIONS = 15  # ETPNav: 15 in R2R-CE
+MAX_DECISIONS = 15  # maximum number of decisions; ETPNav uses 15 in R2R-CE
 PERCEPTION = ("rgb_encoder", "depth_encoder", "waypoint_head")
-# losses of the planner (metres to the goal; which views show the goal's landmark) and of the
-# perception (concepts in views; free space); chosen for the shipped agents
+# weights of the auxiliary losses of the planner (metres to the goal; views that show the goal's
+# landmark) and of perception (concepts in views; free space); chosen for the shipped agents
 LOSS_WEIGHTS = {"distance": 0.3, "grounding": 0.3, "concepts": 2.0, "waypoints": 2.0}
-_SCALE = 5.0  # metres: the unit of the planner's distance
+_SCALE = 5.0  # unit of the planner's distance, in metres
 OWN, IMAGENET = RGB_ENCODERS = ("own", "efficientnet_lite0")
-BORROWED = ("rgb_encoder.stem", "rgb_encoder.stages")  # frozen modules of the ImageNet encoder
-FEATURES = 1 << 25  # bytes of cached features (heuristic): about 900 panoramas
+# names of the frozen modules of the ImageNet encoder
+BORROWED = ("rgb_encoder.stem", "rgb_encoder.stages")
+FEATURES = 1 << 25  # maximum bytes of cached features (heuristic): about 900 panoramas
 
 PLANNER = {  # allowed values of the keyword arguments of ``Planner``
     "width": schema.whole(4, 1024),
@@ -80,18 +82,18 @@ PLANNER = {  # allowed values of the keyword arguments of ``Planner``
 
 
 class TopologicalAgent(Agent, nn.Module):
-    """ETPNav's structure with about 2.5 M parameters.
+    """Agent with the structure of ETPNav and about 2.5 M parameters.
 
     Args:
-        width: view features of each sensor.
+        width: number of view features for each sensor.
         planner: keyword arguments of ``Planner``.
-        blind: inputs to blank for ablations, of ``schema.SENSES``.
-        adapters: keyword arguments of ``insert_adapters``; None: no adapters.
+        blind: inputs to blank for ablations, from ``schema.SENSES``.
+        adapters: keyword arguments of ``insert_adapters``, or None for no adapters.
         size: side in pixels to which frames are resized.
-        vocabulary: the words it knows; None: the words of the shipped agents.
-        encoder: the RGB encoder: "own", or "efficientnet_lite0" (``perception.py``). Its pretrained
-            layers do not train; only adapters and the layers after them do. ``size`` then applies
-            only to RGB; depth stays at 64 pixels.
+        vocabulary: the words that the agent knows, or None for the words of the shipped agents.
+        encoder: the RGB encoder: "own", or "efficientnet_lite0" (``perception.py``). The pretrained
+            layers of that encoder are frozen; only adapters and the layers after them are trained.
+            With that encoder, ``size`` applies only to RGB, and depth stays at 64 pixels.
 
     Raises:
         ValueError: A name in ``blind`` is unknown, or ``size`` is not a multiple of 16.
@@ -146,7 +148,7 @@ class TopologicalAgent(Agent, nn.Module):
         self._memory: Memory | None = None
         if encoder == IMAGENET:
             self.rgb_encoder, self.frozen = ImageNetEncoder(width, size), BORROWED
-            size = SIZE  # the same depth encoder as in the base agent
+            size = SIZE  # same depth encoder as in the base agent
         else:
             self.rgb_encoder = RGBEncoder(width=width, size=size)
         self.depth_encoder = DepthEncoder(width=width, size=size)
@@ -167,7 +169,7 @@ class TopologicalAgent(Agent, nn.Module):
     # features, which recipes train and distil --------------------------------------------------
 
     def perceive(self, rgb: Tensor, depth: Tensor) -> tuple[Tensor, Tensor, Tensor]:
-        """Encode P panoramas; blank inputs that the agent is blind to.
+        """Encode P panoramas; inputs in ``blind`` are blanked.
 
         Args:
             rgb: uint8 [P, 12, H, W, 3].
@@ -206,20 +208,20 @@ class TopologicalAgent(Agent, nn.Module):
     encoders = {RGB: ("rgb_encoder",), DEPTH: ("depth_encoder", "waypoint_head")}
     labels = LABELS
     plain_walks = False
-    stored_parts = ("planner",)  # parts that can train on stored features
+    stored_parts = ("planner",)  # parts that can be trained on stored features
 
     def store(self, world: Callable[[], Any], folder: str, **variants: Any) -> Store:
-        """Return features of all scenes of a world, for training without rendering."""
+        """Return stored features of all scenes of a world, for training without rendering."""
         from mitigate.agents.topological.stored import Store
 
         return Store(self, world, folder, **variants)
 
     def parts(self) -> dict[str, nn.Module]:
-        """Return its four modules by name."""
+        """Return the four modules by name."""
         return dict(self.named_children())
 
     def as_teacher(self) -> TopologicalAgent:
-        """Return a copy without adapters that takes plain means over views."""
+        """Return a copy without adapters that averages views with equal weights."""
         teacher = super().as_teacher()
         teacher.planner.fusion = None
         return teacher
@@ -235,7 +237,7 @@ class TopologicalAgent(Agent, nn.Module):
     ) -> Piece:
         """Run episodes and return the decisions with the oracle's answers (``agents/agent.py``).
 
-        If the perception is frozen, the piece holds its features in place of frames.
+        If the perception is frozen, the result holds features instead of frames.
         """
         weights = self.named_parameters()
         trains = any(p.requires_grad for name, p in weights if name.startswith(PERCEPTION))
@@ -265,18 +267,19 @@ class TopologicalAgent(Agent, nn.Module):
         return Piece(traces, seen)
 
     def precompute(self, piece: Piece, *, clean: bool) -> Piece:
-        """Replace clean frames by their features if ``clean``."""
+        """With ``clean``, replace clean frames by their features."""
         if clean and CLEAN_RGB in piece.seen:
             views, _ = self._perceived(piece.seen.pop(CLEAN_RGB), piece.seen.pop(CLEAN_DEPTH))
             piece.seen["clean_views"] = views
         return piece
 
     def join(self, pieces: Sequence[Piece]) -> MapDecisions:
-        """Return the pieces of :meth:`collect` as one padded batch."""
+        """Join the results of :meth:`collect` into one padded batch."""
         return join(pieces, self.tokens)
 
     def decide(self, decisions: MapDecisions, *, clean: bool = False) -> Output:
-        """Return logits over [stop] and ghosts; features "views" [P, 12, F], "nodes" [n, width]."""
+        """Return logits over [stop] and ghosts, and features "views" [P, 12, F] and "nodes" [n,
+        width]."""
         views, losses, figures = self._perception(decisions, clean)
         planner, valid = self.planner, decisions.valid
         out = planner(planner.read(decisions.tokens), planner.look(views), decisions)
@@ -338,10 +341,11 @@ class TopologicalAgent(Agent, nn.Module):
 
     @contextmanager
     def remembering(self) -> Iterator[None]:
-        """Cache the features of recent frames, so that :meth:`act` encodes equal frames once.
+        """Cache the features of recent frames, so that :meth:`act` encodes identical frames only
+        once.
 
         Actions do not change, because equal frames have equal features. The weights must not
-        change inside the context. In training mode nothing is cached.
+        change inside the context. In training mode, no features are cached.
         """
         before, self._memory = self._memory, Memory(FEATURES)
         try:
@@ -361,7 +365,7 @@ class TopologicalAgent(Agent, nn.Module):
         self.decisions = 0
         self._views: list[Tensor] = []
         self._stop_scores: list[tuple[float, int]] = []
-        self._chosen: int | None = None  # the ghost that the agent is walking to
+        self._chosen: int | None = None  # the ghost that the agent is moving to
         self._final = False
         with torch.inference_mode():
             self._text = self.planner.read(self.tokens([instruction]))
@@ -397,7 +401,8 @@ class TopologicalAgent(Agent, nn.Module):
         return entropy_of(self.planner(text, tokens, batch)["logits"][0])
 
     def taken(self, action: int, metres: float, radians: float) -> None:
-        """Drop the route after another driver moved the agent, and decide at the next step."""
+        """Discard the route after a motion that the agent did not choose, and decide at the next
+        step."""
         self.controller = Controller()
         self._chosen = None
         self.decisions = 0  # the limit counts only decisions since the last intervention
@@ -405,12 +410,12 @@ class TopologicalAgent(Agent, nn.Module):
 
     @property
     def aim(self) -> np.ndarray | None:  # type: ignore[override]
-        """The end of its route, plan metres [2], or None."""
+        """The end of the agent's route in plan metres [2], or None."""
         return self.controller.route[-1] if self.controller.route else None
 
     @torch.inference_mode()
     def _decide(self, observation: Mapping[str, np.ndarray]) -> bool:
-        """Take one decision: start a route and return True, or return False to stop."""
+        """Make one decision: start a route and return True, or return False to stop."""
         views, waypoints = self._see(*checked.frames(observation))
         self._views.append(self.planner.look(views))
         pose = checked.pose(observation).astype(np.float64)
@@ -454,7 +459,7 @@ class TopologicalAgent(Agent, nn.Module):
         return self._memory.recall((sensor, frames.shape, digest), encoded)
 
     def _give_up(self) -> bool:
-        """Walk to the visited node with the best stop score and stop there (as ETPNav)."""
+        """Go to the visited node with the best stop score and stop there, as ETPNav does."""
         self._final = True
         node = max(self._stop_scores)[1]
         self.controller.follow(self.map.route_to_node(node))

@@ -1,7 +1,7 @@
-"""The topological map of one episode: visited nodes, ghosts (seen but not visited), routes.
+"""The topological map of one episode, with visited nodes, ghosts (seen but not visited) and routes.
 
-ETPNav's rules, smaller: waypoints merge into a ghost or node within ``MERGE`` metres; a ghost
-remembers every view that faced it; a chosen ghost becomes a node on arrival.
+The rules are simplified from ETPNav: a waypoint merges into a ghost or node within ``MERGE``
+metres, a ghost stores the views that faced it, and a chosen ghost becomes a node on arrival.
 """
 
 from __future__ import annotations
@@ -13,14 +13,14 @@ import numpy as np
 from mitigate.core.observation import VIEW_STEP_DEGREES, VIEWS
 
 MERGE = 0.6  # metres (ETPNav: 0.5)
-SIGHTINGS = 4  # views stored per ghost
-GEOMETRY = 12  # features of a token's position relative to the agent
+SIGHTINGS = 4  # number of views that are stored per ghost
+GEOMETRY = 12  # number of features of a token's position relative to the agent
 _STOP, _NODE, _GHOST = 0, 1, 2
 
 
 @dataclass
 class Ghost:
-    """A place that was seen from nodes ``parents`` but not visited."""
+    """A place that was seen from the nodes ``parents`` but not visited."""
 
     position: np.ndarray
     parents: list[int]
@@ -30,12 +30,12 @@ class Ghost:
 
 @dataclass(frozen=True)
 class Decision:
-    """Input of the planner for one decision; the order of tokens is [stop], nodes, ghosts.
+    """The input of the planner for one decision; the order of tokens is [stop], nodes, ghosts.
 
     Attributes:
         panorama: index of the current panorama.
         nodes: int [n], the panorama of each node.
-        sightings: int [g, SIGHTINGS, 2], (panorama, view) of each ghost; -1 where unused.
+        sightings: int [g, SIGHTINGS, 2], the (panorama, view) pairs of each ghost, -1 where unused.
         geometry: float32 [1 + n + g, GEOMETRY].
         ghosts: ids of the ghosts, in order.
         travel: metres along the map to each ghost.
@@ -51,7 +51,7 @@ class Decision:
 
 @dataclass
 class TopologicalMap:
-    """Visited nodes with edges in metres, ghosts by id, and the panorama of each node."""
+    """A map with visited nodes, edges in metres, ghosts by id, and the panorama of each node."""
 
     positions: list[np.ndarray] = field(default_factory=list)
     edges: list[dict[int, float]] = field(default_factory=list)
@@ -74,7 +74,7 @@ class TopologicalMap:
         self.panoramas += 1
 
     def route(self, ghost: int) -> list[np.ndarray]:
-        """Return the positions on the way to a ghost, which is the last one."""
+        """Return the positions on the way to a ghost; the last position is the ghost."""
         distance, before = self._dijkstra()
         parent = min(self.ghosts[ghost].parents, key=lambda p: distance[p] + self._gap(p, ghost))
         return [*self._nodes_to(parent, before), self.ghosts[ghost].position]
@@ -84,11 +84,11 @@ class TopologicalMap:
         return self._nodes_to(node, self._dijkstra()[1])
 
     def arrive(self, ghost: int) -> None:
-        """Remove a ghost that was reached, because a node takes its place."""
+        """Remove a ghost that was reached, because a node replaces it."""
         self.ghosts.pop(ghost, None)
 
     def decision(self, pose: np.ndarray) -> Decision:
-        """Return the decision at a pose, after ``add``."""
+        """Return the planner's input at a pose; call it after ``add``."""
         distance, _ = self._dijkstra()
         ids = list(self.ghosts)
         travel = np.array(

@@ -1,15 +1,16 @@
-"""Perception of the reference agent, in addition to the encoders of ``agents/encoders.py``.
+"""Define perception of the reference agent, in addition to the encoders of ``agents/encoders.py``.
 
-``WaypointHead`` predicts waypoints from depth: 12 views to 120 angles x 12 distances, from which
-``select`` takes at most 6 waypoints. Angles are clockwise from view 0 in steps of 3 degrees: bin
-``10 k + i`` is ``30 k - 15 + 3 (i + 0.5)`` degrees to the right of the heading. Distances are 0.25
-to 3 m. A cell is positive where the agent can go straight to that distance. The layout follows
-ETPNav's predictor; the target here is the free space itself.
+``WaypointHead`` predicts free space at 120 angles x 12 distances from 12 depth views, and
+``select`` chooses at most 6 waypoints from it. Angles are clockwise from view 0 in steps of 3
+degrees: bin ``10 k + i`` is ``30 k - 15 + 3 (i + 0.5)`` degrees to the right of the heading.
+Distances range from 0.25 to 3 m. The label of a cell is positive if the agent can move straight to
+that distance. The layout follows ETPNav's predictor; the training target here is the free space
+itself.
 
 ``ImageNetEncoder`` is an RGB encoder that was not trained in this project: EfficientNet-Lite0 with
-its ImageNet weights. It represents the pretrained encoders of users, such as ResNet-50 or CLIP. Its
-public weights (Apache-2.0) are read from the installed package and never copied: a checkpoint holds
-only tensors that differ from them, such as adapters.
+its ImageNet weights. It is an example of the pretrained encoders that users have, such as ResNet-50
+or CLIP. Its public weights (Apache-2.0) are read from the installed package and never copied: a
+checkpoint holds only tensors that differ from them, such as adapters.
 """
 
 from __future__ import annotations
@@ -29,14 +30,16 @@ from mitigate.core.observation import VIEWS
 
 ANGLES = 120
 _PER_VIEW = ANGLES // VIEWS
-YAWS = np.radians(3.0 * (np.arange(ANGLES) + 0.5) - 15.0)  # clockwise from the heading
-COUNT, SEPARATION = 6, 8  # largest number of waypoints; bins (24 degrees) between two of them
-SHORTEST, LONGEST = 0.5, 2.25  # metres to a waypoint
-_MARGIN = 0.25  # metres between a waypoint and an obstacle
+YAWS = np.radians(3.0 * (np.arange(ANGLES) + 0.5) - 15.0)  # angles are clockwise from the heading
+# maximum number of waypoints; minimum number of bins between two of them (24 degrees)
+COUNT, SEPARATION = 6, 8
+SHORTEST, LONGEST = 0.5, 2.25  # minimum distance in metres to a waypoint
+_MARGIN = 0.25  # distance in metres between a waypoint and an obstacle
 
 
 class WaypointHead(nn.Module):
-    """Predict logits ``[n, 120, 12]`` of depth features ``[n, 12, width]``; circular over views."""
+    """Predict logits ``[n, 120, 12]`` from depth features ``[n, 12, width]``; circular over
+    views."""
 
     def __init__(self, width: int = 128, hidden: int = 160) -> None:
         super().__init__()
@@ -75,7 +78,8 @@ def select(logits: np.ndarray) -> np.ndarray:
     return np.array(chosen, np.float32).reshape(-1, 2)
 
 
-STAGES = ((0, 3), (3, 5), (5, 11), (11, 16))  # ranges of blocks; maps of 1/4, 1/8, 1/16, 1/32
+# ranges of blocks, whose maps have 1/4, 1/8, 1/16 and 1/32 of the input size
+STAGES = ((0, 3), (3, 5), (5, 11), (11, 16))
 INSTALL = "pip install -e '.[encoders]'"
 
 
@@ -86,7 +90,7 @@ class ImageNetEncoder(RGBEncoder):
         ValueError: ``size`` is not a multiple of 32, or the package is not installed.
     """
 
-    widths = (320,)  # channels of the last map
+    widths = (320,)  # number of channels of the last map
     resize, stride, usual = "bilinear", 32, 128  # at 128 pixels the last map is 4x4
 
     def __init__(self, width: int, size: int) -> None:

@@ -1,8 +1,9 @@
-"""Cross-modal planner: scores [stop] and ghosts of the map against the instruction.
+"""The cross-modal planner scores [stop] and the ghosts of the map, given the instruction.
 
-Structure after ETPNav: RGB and depth embeddings summed per view, a panorama transformer, node =
-mean over views, ghost = mean over the views that faced it, a cross-modal transformer over map and
-text. The 12 views of the current panorama are additional tokens (as in DUET's fine branch).
+Structure after ETPNav: RGB and depth embeddings are summed per view and pass a panorama
+transformer. A node is the mean over its views, and a ghost the mean over the views that faced it. A
+cross-modal transformer then reads map and text. The 12 views of the current panorama are additional
+tokens (as in DUET's fine branch).
 """
 
 from __future__ import annotations
@@ -25,11 +26,11 @@ from mitigate.core.observation import VIEW_STEP_DEGREES, VIEWS
 
 @dataclass
 class DecisionBatch:
-    """Padded decisions; the order of tokens is [stop], nodes (N), ghosts (G).
+    """A batch of padded decisions; the order of tokens is [stop], nodes (N), ghosts (G).
 
     Attributes:
-        episode: int [B], the row of the text.
-        panorama: int [B], the current panorama.
+        episode: int [B], index of each decision's text.
+        panorama: int [B], index of the current panorama.
         nodes: int [B, N], panorama index or -1.
         sightings: int [B, G, 4], flat view index (panorama * 12 + view) or -1.
         geometry: float [B, 1 + N + G, GEOMETRY].
@@ -46,13 +47,14 @@ class DecisionBatch:
     allowed: Tensor
 
     def to(self, device: Any) -> Any:
-        """Return the batch on ``device``."""
+        """Return a copy of the batch on ``device``."""
         moved = {n: v.to(device) for n, v in vars(self).items() if isinstance(v, Tensor)}
         return replace(self, **moved)
 
 
 def collate(decisions: list[Decision], episodes: list[int], offsets: list[int]) -> DecisionBatch:
-    """Pad decisions; ``episodes[i]`` is the row of the text, ``offsets[i]`` the first panorama."""
+    """Pad decisions; ``episodes[i]`` is the index of the text, ``offsets[i]`` of the first
+    panorama."""
     n = max(len(d.nodes) for d in decisions)
     g = max(1, max(len(d.ghosts) for d in decisions))
     b = len(decisions)
@@ -78,17 +80,17 @@ class Planner(TextReader):
     """Score [stop] and ghosts; the module's docstring describes the structure.
 
     Args:
-        rgb_width: RGB features of a view.
-        depth_width: depth features of a view.
+        rgb_width: number of RGB features per view.
+        depth_width: number of depth features per view.
         width: width of all layers.
         heads: attention heads.
         text_layers: transformer layers over the text.
         layers: cross-modal layers.
         dropout: dropout rate.
-        fusion: keyword arguments of ``fusion.weigher`` (rate, cap, learned). Nodes and ghosts are
-            then means of their views weighted by the reliability of the encoder features. None:
-            plain means.
-        vocabulary: words of the instructions; None: the default one.
+        fusion: keyword arguments of ``fusion.weigher`` (rate, cap, learned). With it, nodes and
+            ghosts are means over their views, weighted by the reliability of the encoder features.
+            If None, all views have equal weights.
+        vocabulary: words of the instructions, or None for the default vocabulary.
     """
 
     yaws: Tensor
@@ -133,7 +135,7 @@ class Planner(TextReader):
 
     @property
     def looked_width(self) -> int:
-        """Channels of the output of :meth:`look`."""
+        """The number of output channels of :meth:`look`."""
         return self.view_kind.numel() + (self.fusion is not None)
 
     def look(self, views: Tensor) -> Tensor:
@@ -168,14 +170,14 @@ class Planner(TextReader):
         """Score every token.
 
         Args:
-            text: from ``read``.
-            views: [P, 12, ...] from ``look``.
+            text: the result of ``read``.
+            views: [P, 12, ...], the result of ``look``.
             batch: the padded decisions.
 
         Returns:
             "logits" [B, 1 + N + G], -inf where not allowed; "distance" [B, 1 + N + G], predicted
-            metres to the goal / 5; "grounding" [B, 12], logits that a view shows the goal's
-            landmark; "nodes" [B, 1 + N + G, width], the features that distillation compares.
+            metres to the goal divided by 5; "grounding" [B, 12], logits that a view shows the
+            goal's landmark; "nodes" [B, 1 + N + G, width], the features that distillation compares.
         """
         weights = None if self.fusion is None else views[..., -1:]
         views = views if self.fusion is None else views[..., :-1]

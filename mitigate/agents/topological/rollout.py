@@ -1,8 +1,8 @@
-"""Run episodes in lock-step for imitation learning, and batch their decisions.
+"""Run several episodes in parallel for imitation learning, and batch their decisions.
 
-The oracle chooses among the map's ghosts; a schedule sets its share of the decisions. A *walk*
-executes decisions: ``LiveWalk`` in any world, ``StoredWalk`` (``stored.py``) between poses with
-stored features.
+The oracle chooses among the map's ghosts; a schedule sets the fraction of decisions that follow the
+oracle. A *walk* executes decisions: ``LiveWalk`` runs in any world, and ``StoredWalk``
+(``stored.py``) moves between poses with stored features.
 """
 
 from __future__ import annotations
@@ -24,16 +24,19 @@ from mitigate.core.observation import CLEAN_DEPTH, CLEAN_RGB, DEPTH, RGB
 from mitigate.worlds.episodes import Episode
 from mitigate.worlds.world import World, expert_of
 
-STOP_WITHIN = 1.0  # metres to the goal at which the oracle stops if the world counts it as success
-STOP_BEST = 1.75  # the same if no ghost is closer to the goal
-_TEMPERATURE = 0.3  # metres; ghosts about as good as the best one share the target
-STOP_WEIGHT = 1.5  # weight of stops: about one decision in six
-FARTHEST = 25.0  # metres at which targets of the distance loss are clipped
-_TRAVEL = 0.4  # weight of the metres to a ghost relative to the metres from it to the goal
+# the oracle stops within this many metres of the goal if the world counts it as success
+STOP_WITHIN = 1.0
+STOP_BEST = 1.75  # the same distance if no ghost is closer to the goal
+# temperature in metres with which ghosts that are about equally good share the target
+_TEMPERATURE = 0.3
+STOP_WEIGHT = 1.5  # weight of stop decisions, which are about one decision in six
+FARTHEST = 25.0  # targets of the distance loss are clipped at this many metres
+_TRAVEL = 0.4  # weight of the path to a ghost relative to the path from the ghost to the goal
 
 
 class Walk(Protocol):
-    """One rollout: the agent's pose, motion along routes, the expert, and the episode's end."""
+    """The state of one rollout: pose, motion along routes, the expert, and the end of the
+    episode."""
 
     episode: Episode
 
@@ -46,7 +49,7 @@ class Walk(Protocol):
     def go(self, route: list[np.ndarray]) -> None: ...
 
 
-# encodes the panoramas of several walks: views float32 [12, F] and waypoints [n, 2] of each
+# function that encodes the panoramas of several walks, as views [12, F] and waypoints [n, 2]
 Look = Callable[[list], list[tuple[np.ndarray, np.ndarray]]]
 
 
@@ -57,7 +60,8 @@ class Step:
     Attributes:
         decision: the input of the planner.
         target: float32 [1 + g] over [stop] and ghosts, summing to 1.
-        metres: geodesic metres to the goal from the stop token's place, each node and each ghost.
+        metres: geodesic distance in metres to the goal from the current position, each node and
+            each ghost.
     """
 
     decision: Decision
@@ -76,7 +80,8 @@ class Trace:
 
 @dataclass
 class Piece:
-    """Rollouts of some episodes: traces, and observations [P, ...] of all decisions by name."""
+    """Rollouts of several episodes: their traces, and the observations [P, ...] of all
+    decisions."""
 
     traces: list[Trace]
     seen: dict[str, np.ndarray]
@@ -86,7 +91,7 @@ def oracle(walk: Walk, graph: TopologicalMap, decision: Decision) -> Step:
     """Return a decision with the answer of the shortest-path oracle.
 
     Raises:
-        ValueError: The world's expert knows no distances.
+        ValueError: The world's expert does not provide distances.
     """
     nodes = [walk.expert.distance(p) for p in graph.positions]
     ghosts = np.array([walk.expert.distance(graph.ghosts[g].position) for g in decision.ghosts])
@@ -116,7 +121,7 @@ class LiveWalk:
     Args:
         world: any world.
         episode: the episode to run.
-        labels: entries of the world's truth to keep with each observation, if it has them.
+        labels: entries of the world's truth to store with each observation, if the world has them.
         clean: also keep the frames before corruption.
 
     Raises:
@@ -168,20 +173,20 @@ def roll_out(
     rngs: Sequence[np.random.Generator],
     limit: int = 12,
 ) -> list[Trace]:
-    """Run all walks to the oracle's stop, ``limit`` decisions or the end of the episode.
+    """Run all walks until the oracle stops, the limit is reached or the episode ends.
 
     Each decision follows the oracle with probability ``follow_oracle``; otherwise it is sampled
     from the planner's distribution over ghosts. The planner's stop is never taken, so that traces
-    hold the decisions after a wrong one.
+    also contain the decisions after a wrong stop.
 
     Args:
         planner: the planner.
         tokens: int64 [E, L], the instructions.
-        walks: one per episode.
-        look: encodes the panoramas of walks.
+        walks: one walk per episode.
+        look: function that encodes the panoramas of walks.
         follow_oracle: probability of following the oracle.
         rngs: one generator per walk, so that its draws do not depend on the other walks.
-        limit: largest number of decisions.
+        limit: maximum number of decisions.
     """
     graphs = [TopologicalMap() for _ in walks]
     traces = [Trace(walk.episode) for walk in walks]

@@ -1,8 +1,8 @@
 """Stored features of whole scenes, for training without rendering.
 
-``ScenesTask`` computes the features of an agent's encoders on a lattice of poses of each scene, in
-worker processes. ``Store`` keeps them in memory-mapped folders that worker processes share, and
-``StoredWalk`` runs episodes on them. A scene may have corrupted *variants*, each with one fixed
+``ScenesTask`` computes the features of an agent's encoders in worker processes, on a lattice of
+poses in each scene. ``Store`` keeps them in memory-mapped folders, which worker processes share,
+and ``StoredWalk`` runs episodes on them. A scene may have corrupted *variants*, each with one fixed
 corruption. Only training imports this module, because tensordict is as slow to import as torch.
 Agents are of class :class:`TopologicalAgent`, whose module imports this one.
 """
@@ -39,13 +39,13 @@ from mitigate.worlds.episodes import Episode, from_vlnce, heading_of
 from mitigate.worlds.world import depth_sensor, expert_of
 
 SPACING = 0.5  # metres between poses
-# fields of a schedule that choose who gets a variant; they do not change its content
+# fields of a schedule that select which rollouts get a variant, but do not change its content
 UNUSED: dict[str, Any] = {"success": None, "clean_share": 0.0, "alpha": 1.0, "floor": 1.0}
-WORTH = 4  # scenes that justify starting a process (heuristic): about 5 s each
-ON_GPU = 8  # largest number of processes that encode on one GPU; each takes 0.5 GB
-_BATCH = 16  # panoramas encoded at once
+WORTH = 4  # minimum number of scenes per process (heuristic): about 5 s each
+ON_GPU = 8  # maximum number of processes that encode on one GPU; each takes 0.5 GB
+_BATCH = 16  # number of panoramas that are encoded at once
 
-Job = tuple[str, Sequence[int]]  # a scene, and which variants of it
+Job = tuple[str, Sequence[int]]  # a scene, and the numbers of its variants
 
 
 @tensorclass
@@ -58,12 +58,12 @@ class ScenePoses:
     seen: Tensor
 
 
-# folders store the name of the class; this is the name in folders of earlier versions
+# folders store the class name, so this name must match folders of earlier versions
 ScenePoses.__module__ = "mitigate.agents.topological.stored_walk"
 
 
 class Features:
-    """Features of one scene at n poses.
+    """The stored features of one scene at n poses.
 
     Attributes:
         xy: [n, 2].
@@ -94,11 +94,12 @@ class Features:
 
 
 class StoredWalk:
-    """A rollout on stored features: every move ends at the lattice pose nearest to its target.
+    """A rollout on stored features, in which each move ends at the lattice pose nearest to its
+    target.
 
     ``landmark_views`` holds, for each observation, which views show the goal's landmark: float32
     [12].
-    Steps are not counted, so the episode is never ``done``.
+    Low-level steps are not counted, so the episode is never ``done``.
     """
 
     done = False
@@ -136,7 +137,7 @@ class StoredWalk:
 
 
 def _turns(heading: float) -> int:
-    """Return a heading in steps of 30 degrees, counter-clockwise."""
+    """Return a heading as a number of 30-degree steps, counter-clockwise."""
     return int(np.round(np.degrees(heading) / VIEW_STEP_DEGREES)) % VIEWS
 
 
@@ -145,8 +146,8 @@ class ScenesTask:
     """Compute the features of scenes in worker processes (``mitigate/core/workers.py``).
 
     The result of a job is a list of (variant, entries of ``ScenePoses`` by name). Variant 0 is
-    clean; ``schedule`` draws the corruption of the others with ``seed``. ``kind`` is the precision
-    of the encoders.
+    clean. For each other variant, ``schedule`` samples a corruption with ``seed``. ``kind`` is the
+    floating-point precision of the encoders.
     """
 
     agent: Any
@@ -205,7 +206,7 @@ class ScenesTask:
         corrupted = []
         for number, (rgb, depth, seen) in enumerate(frames):
             corruption, key = schedule.draw(self.seed, name, number)
-            # a lens flare depends on the heading
+            # the corruption may depend on the heading, as a lens flare does
             observation = {RGB: rgb, DEPTH: depth, POSE: np.zeros(3, np.float32)}
             result = corrupt_observation(observation, corruption, key, sensor)
             corrupted.append((result[RGB], result[DEPTH], seen))
@@ -223,7 +224,7 @@ def lattice(points: np.ndarray) -> np.ndarray:
 
 
 def _frames(world: Any, xy: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return RGB, depth and, for each view, the visible objects (bits of a uint64)."""
+    """Return RGB, depth, and the objects visible in each view (as bits of a uint64)."""
     frames, truth = world.put(xy, 0.0)
     seen = truth["seen"]
     bits = (seen.astype(np.uint64) << np.arange(seen.shape[1], dtype=np.uint64)).sum(
@@ -235,7 +236,8 @@ def _frames(world: Any, xy: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndar
 def _features(
     agent: Any, frames: list[tuple], known: list[tuple] | None = None
 ) -> dict[str, np.ndarray]:
-    """Return features of frames by name; leave out sensors whose frames are equal in ``known``."""
+    """Return features of frames by name, except for sensors whose frames equal those in
+    ``known``."""
     seen = np.stack([frame[2] for frame in frames]).view(np.int64)  # torch cannot map uint64
     features = {"seen": seen}
     rgb, depth = ([frame[i] for frame in frames] for i in (0, 1))
@@ -273,20 +275,20 @@ def _depth(agent: Any, frames: Tensor) -> tuple[np.ndarray, np.ndarray]:
 
 
 class Store:
-    """Features of an agent's encoders in all scenes of a world.
+    """The features of an agent's encoders in all scenes of a world.
 
     Args:
         agent: the agent whose encoders are used.
-        world: makes a world that renders from any pose, has an expert, and names the goal's
-            landmarks among the objects in the entry "seen" of its truth.
-        root: folder of the stores, one per set of encoders.
-        schedule: draws the corruption of each variant; its clean share is the share of rollouts on
-            the clean scene.
+        world: function that returns a world which renders from any pose, has an expert, and lists
+            the goal's landmarks in the entry "seen" of its truth.
+        root: parent folder of the stores, which has one subfolder per set of encoders.
+        schedule: samples the corruption of each variant; its clean share is the fraction of
+            rollouts on the clean scene.
         variants: number of corrupted variants per scene.
         seed: corruption seed.
 
     Raises:
-        ValueError: There are variants but no schedule that corrupts.
+        ValueError: The number of variants is above 0, but there is no schedule that corrupts.
     """
 
     def __init__(
@@ -322,13 +324,14 @@ class Store:
         self._loaded: dict[tuple[str, int], Features] = {}
 
     def build(self, workers: int | None = None) -> None:
-        """Compute the features that are missing.
+        """Compute the features that are not stored yet.
 
-        The store holds features without blanking (:meth:`Features.blank`). They do not depend on
-        the number of processes.
+        The store holds features of inputs that are not blanked (:meth:`Features.blank`). The
+        features do not depend on the number of processes.
 
         Args:
-            workers: processes; None: one per core if there is enough work, 0: only this one.
+            workers: number of worker processes. None uses one per core if there is enough work, and
+                0 uses only this process.
         """
         make_folder(self.corrupted if self.variants else self.folder)
         scenes, every = self.world.scenes, range(self.variants + 1)
@@ -349,18 +352,18 @@ class Store:
                 if item is None:
                     continue
                 number, results = item
-                with uninterrupted():  # an interrupt waits until the scene is stored
+                with uninterrupted():  # an interrupt is delayed until the scene is stored
                     for variant, arrays in results:
                         _save(arrays, self.path(jobs[number][0], variant))
                 progress.advance()
 
     def path(self, scene: str, variant: int = 0) -> Path:
-        """Return the folder of a scene; variant 0 is the clean one."""
+        """Return the folder of a scene's variant; variant 0 is clean."""
         name = scene.replace("/", "-")
         return self.corrupted / f"{name}-{variant}" if variant else self.folder / name
 
     def features(self, scene: str, variant: int = 0) -> Features:
-        """Return the features of a scene, with blanking."""
+        """Return the features of a scene, with the agent's blind inputs blanked."""
         key = (scene, variant)
         if key not in self._loaded:
             self._loaded[key] = Features(ScenePoses.load_memmap(self.path(*key)))  # type: ignore[attr-defined]
@@ -369,7 +372,7 @@ class Store:
         return self._loaded[key]
 
     def draw_variant(self, rng: np.random.Generator) -> int:
-        """Draw the variant of a rollout."""
+        """Sample the variant of a scene for a rollout."""
         if not self.variants or self.schedule is None or rng.random() < self.schedule.clean_share:
             return 0
         return 1 + int(rng.integers(self.variants))
@@ -381,7 +384,7 @@ class Store:
         expert_share: float,
         rngs: Sequence[np.random.Generator],
     ) -> Piece:
-        """Run episodes as ``TopologicalAgent.collect``, on stored features."""
+        """Run episodes like ``TopologicalAgent.collect``, but on stored features."""
         walks = [
             StoredWalk(e, self.features(e.scene_id, self.draw_variant(rng)), self.make_world())
             for e, rng in zip(episodes, rngs, strict=True)
@@ -408,17 +411,18 @@ def _save(arrays: dict[str, np.ndarray], path: Path) -> None:
     tensors = {name: torch.from_numpy(array) for name, array in arrays.items()}
     poses = ScenePoses(**tensors, batch_size=[len(arrays["xy"])])  # type: ignore[call-arg]
     with tempfile.TemporaryDirectory(prefix=f".{path.name}.", dir=path.parent) as aside:
-        draft = Path(aside) / path.name  # readable for other users, unlike a temporary folder
+        # makes it readable for other users, unlike a temporary folder
+        draft = Path(aside) / path.name
         draft.mkdir()
         poses.memmap(draft, num_threads=0)  # type: ignore[attr-defined]
         try:
             draft.rename(path)
         except OSError:
-            if not path.is_dir():  # another process may have written it
+            if not path.is_dir():  # a different process may have written this folder
                 raise
 
 
 def _content(schedule: Schedule) -> tuple[Any, ...]:
-    """Return what determines a variant besides the seed: settings and corruption versions."""
+    """Return the settings and corruption versions that, besides the seed, determine a variant."""
     names = (*schedule.names, *(BROAD if schedule.broad_share else ()))
     return replace(schedule, **UNUSED), SUITE_VERSION, [version(name) for name in names]

@@ -1,9 +1,9 @@
-"""The agent's side of the bridge: corrupts what an unchanged program sees, in its own process.
+"""The agent's side of the bridge, which corrupts the inputs of an unchanged program in its process.
 
 ``mitigate run -- COMMAND`` puts this folder first on PYTHONPATH, so every Python process of the
 command loads this file (``sitecustomize.py``), however it was started. When a process imports
-habitat-lab (0.1.5 to 0.3), habitat-sim alone or WMNav, a few of their methods are wrapped. Frames
-go to the server through shared memory, instructions through a socket, and both come back
+habitat-lab (0.1.5 to 0.3), habitat-sim alone or WMNav, this file wraps a few of their methods.
+Frames go to the server through shared memory, instructions through a socket, and both come back
 corrupted. A loop that does not use Habitat calls ``connect``, ``corrupt`` and ``finish``:
 
     import mitigate_hook
@@ -13,7 +13,7 @@ corrupted. A loop that does not use Habitat calls ``connect``, ``corrupt`` and `
     episode.finish(success=True, spl=0.8)
 
 This file runs on Python 3.6 to 3.13 and needs only the standard library and numpy. If the server
-reports an error, dies or is late, the process ends with one paragraph: no agent continues with
+reports an error, dies or is late, the process ends with a message, so that no agent continues with
 clean frames.
 """
 
@@ -34,19 +34,22 @@ import weakref
 np = None  # loaded on demand: every Python process loads this file, and some have no numpy
 PROTOCOL = 3
 ADDRESS, TOKEN, PATIENCE = "MITIGATE_BRIDGE", "MITIGATE_TOKEN", "MITIGATE_PATIENCE"
-ADAPTERS = "MITIGATE_ADAPTERS"  # JSON: folder, file of plain_adapters.py, module, class, path
-HEADER = struct.Struct("!4sI")  # magic, bytes of the JSON object that follows
+# JSON with folder, file of plain_adapters.py, module, class and path
+ADAPTERS = "MITIGATE_ADAPTERS"
+HEADER = struct.Struct("!4sI")  # magic bytes, and the size of the JSON object that follows
 MAGIC = b"mtg1"
-MAX_MESSAGE = 1 << 24  # bytes: an episode with all view points of its goals has 1e6
-KEYS_PER_MESSAGE = 10000  # names of episodes: train splits have millions
-LOADED = "loaded"  # a file next to the socket, created once a process has loaded this file
-MAX_TEXT = 4000  # characters of a reported problem
+# maximum bytes of a message; an episode with all view points of its goals has 1e6
+MAX_MESSAGE = 1 << 24
+KEYS_PER_MESSAGE = 10000  # maximum number of episode names; train splits have millions
+LOADED = "loaded"  # a file next to the socket that is created when a process has loaded this module
+MAX_TEXT = 4000  # maximum characters of a reported problem
 STATUS = 97  # exit status of a process that was stopped
-REPORT_TIMEOUT = 3.0  # seconds in which a stopping process reports its reason (heuristic)
+REPORT_TIMEOUT = 3.0  # seconds that a stopping process has to report its reason (heuristic)
 COLOR, DEPTH = "rgb", "depth"  # kinds of camera
-# how an episode ends: it was over; its Env was reset or closed before that; an exception left it
+# ends of an episode: it was over; its Env was reset or closed early; an exception left it
 OVER, RESET, CLOSE, BROKEN = "over", "reset", "close", "broken"
-ORDERLY = (StopIteration, StopAsyncIteration, GeneratorExit)  # end a loop without a fault
+# exceptions that end a loop without a fault
+ORDERLY = (StopIteration, StopAsyncIteration, GeneratorExit)
 
 
 class _Thread(threading.local):
@@ -54,7 +57,7 @@ class _Thread(threading.local):
 
 
 _thread = _Thread()
-# by id: corrupted frames that the program still holds
+# corrupted frames that the program still holds, by id
 _corrupted_frames: "weakref.WeakValueDictionary[int, object]" = weakref.WeakValueDictionary()
 
 
@@ -62,7 +65,7 @@ _corrupted_frames: "weakref.WeakValueDictionary[int, object]" = weakref.WeakValu
 
 
 def send(channel, message):
-    """Send a dict of plain data; numbers and arrays of numpy become Python's.
+    """Send a dict of plain data; numpy numbers and arrays are converted to Python's types.
 
     Raises:
         ValueError: The message is too large.
@@ -99,7 +102,7 @@ def receive(channel):
 
 
 def _read(channel, size):
-    """Return ``size`` bytes, None if the channel ends before."""
+    """Return ``size`` bytes, or None if the channel ends earlier."""
     parts, missing = [], size
     while missing:
         part = channel.recv(min(missing, 1 << 16))
@@ -111,14 +114,14 @@ def _read(channel, size):
 
 
 def stop(problem, reported=False):
-    """End this process at once with one paragraph, because the program might catch an exception.
+    """Print a message and end this process at once; the program might catch an exception.
 
-    The server gets the reason, so that the condition does not count as finished. No failure in
-    here, and no interrupt, lets the process continue.
+    The server gets the reason, so that the condition does not count as finished. Neither a failure
+    in this function nor an interrupt lets the process continue.
 
     Args:
         problem: The reason, as a sentence.
-        reported: Whether the server knows the reason.
+        reported: Whether the server already knows the reason.
     """
     try:
         try:
@@ -138,7 +141,7 @@ def stop(problem, reported=False):
 
 
 def _report(problem):
-    """Send the server the reason why this process ends, through a new connection."""
+    """Send the reason why this process ends to the server, through a new connection."""
     with contextlib.suppress(BaseException):  # the process ends in any case
         hello = {"kind": "hello", "protocol": PROTOCOL, "token": os.environ.get(TOKEN, "")}
         hello.update(pid=os.getpid(), python=sys.version.split()[0])
@@ -152,20 +155,22 @@ def _report(problem):
 
 
 class Channel:
-    """The connection of one environment to the server. Every failure ends in ``stop``."""
+    """The connection between one environment and the server. Every failure ends the process
+    (``stop``)."""
 
     def __init__(self):
         _load_numpy()
         self.pid = os.getpid()
         self.memory = None
         self.layout = {}
-        self.number = 0  # number of the last message; its answer has the same number
+        self.number = 0  # number of the last message, which its answer repeats
         self.patience = float(os.environ.get(PATIENCE, "25"))
         try:
             self.socket = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
             self.socket.settimeout(self.patience)
             self.socket.connect(os.environ[ADDRESS])
-        except BaseException as error:  # includes an interrupt, because the agent might catch it
+        # also catches interrupts, which the agent might catch otherwise
+        except BaseException as error:
             stop(
                 f"the server of `mitigate run` cannot be reached at "
                 f"{os.environ.get(ADDRESS)} ({_describe_error(error)}). A container needs the "
@@ -176,7 +181,8 @@ class Channel:
     def ask(self, kind, **fields):
         """Send a message and return the answer.
 
-        An interrupted message is the last one: its answer would be read as an answer to the next.
+        No message is sent after an interrupted one, because its answer would be read as the answer
+        to the next message.
         """
         self.number += 1
         number = self.number
@@ -186,12 +192,13 @@ class Channel:
             answer = receive(self.socket)
         except socket.timeout:  # not a TimeoutError before Python 3.10
             stop(f"the server did not answer within {self.patience:g} s.")
-        except TypeError as error:  # from json, before anything was sent
+        except TypeError as error:  # raised by json before anything was sent
             stop(
                 f"the values of {kind} must be numbers, text and lists, and cannot be sent "
                 f"({error}). Convert them."
             )
-        except BaseException as error:  # any error: the agent might catch it
+        # any error ends the process, because the agent might catch it
+        except BaseException as error:
             stop(f"the connection to the server broke ({_describe_error(error)}).")
         if answer is None:
             stop("the server of `mitigate run` is gone.")
@@ -228,7 +235,7 @@ class Channel:
 
 
 def _describe_error(error):
-    """Return an exception's class and text."""
+    """Return the class name and the text of an exception."""
     return f"{type(error).__name__}: {error}"
 
 
@@ -239,7 +246,7 @@ def _is_orderly(error):
 
 
 def _describe_fault(error):
-    """Return an exception's class and text, with the file and line that raised it."""
+    """Return class name and text of an exception, with the file and line that raised it."""
     traceback = error.__traceback__
     while traceback is not None and traceback.tb_next is not None:
         traceback = traceback.tb_next
@@ -250,8 +257,8 @@ def _describe_fault(error):
 
 
 def _get(owner, name, default=None):
-    """Return an attribute that only some versions of another project have, else ``default``."""
-    return getattr(owner, name, default)  # such an attribute is known by its name only
+    """Return an attribute that exists only in some versions of a library, else ``default``."""
+    return getattr(owner, name, default)  # only the name of such an attribute is known
 
 
 def _load_numpy():
@@ -271,12 +278,13 @@ def _versions():
 
 
 def _uninterrupted(failure):
-    """Wrap a method of ``Session``: one thread at a time, and any exception ends the process.
+    """Wrap a method of ``Session`` so that one thread runs at a time and exceptions end the
+    process.
 
-    An interrupt ends it too: the agent might catch it and act on incomplete data.
+    An interrupt also ends the process, because the agent might catch it and act on incomplete data.
 
     Args:
-        failure: Says what did not take place then.
+        failure: Text for the message: the action that did not take place.
     """
 
     def decorate(method):
@@ -300,26 +308,27 @@ def _uninterrupted(failure):
 
 
 class Session:
-    """One environment: its connection and the state of its current episode."""
+    """The connection of one environment and the state of its current episode."""
 
     def __init__(self):
         self.channel = None
-        self.cameras = None  # descriptions that the server has received
+        self.cameras = None  # camera descriptions that the server has received
         self.sim = self.task = self.episode = None
-        self.active = False  # whether an episode began and did not end
+        self.active = False  # whether an episode has begun and not ended
         self.busy = False
-        self.handled = id(None)  # id of the exception that was being handled as the episode began
-        self.farthest = {}  # depth camera -> the maximum of its first frame
-        self.simulated = False  # whether this episode got frames of habitat-sim without the lab
+        self.handled = id(None)  # id of the exception that was being handled when the episode began
+        self.farthest = {}  # maps a depth camera to the maximum of its first frame
+        # whether this episode received frames from habitat-sim without habitat-lab
+        self.simulated = False
         self.episode_pid = None  # id of the process that began the episode
         self.lock_pid = os.getpid()
         self.lock = threading.RLock()
-        self.current = None  # the Episode of ``connect``
-        self.words = None  # the instruction of this episode, while its text is replaced
+        self.current = None  # the Episode that ``connect`` returned
+        self.words = None  # the instruction object of this episode, while its text is replaced
         self.clear()
 
     def clear(self):
-        """Reset what is recorded of an episode."""
+        """Reset the data that is recorded about an episode."""
         self.calls = 0
         self.steps = 0
         self.path = []
@@ -328,14 +337,14 @@ class Session:
         self.farthest = {}
 
     def renew_lock(self):
-        """Replace the lock in a forked process: a thread of the parent may have held it."""
+        """Replace the lock in a forked process, because a thread of the parent may have held it."""
         if self.lock_pid != os.getpid():
             self.lock_pid = os.getpid()
             self.lock = threading.RLock()
             self.busy = False
 
     def close(self):
-        """Close the connection; later frames would open another one."""
+        """Close the connection; later frames would open a new one."""
         self.renew_lock()
         with self.lock:
             if self.channel is not None:
@@ -343,7 +352,7 @@ class Session:
             self.channel = self.cameras = self.sim = self.task = self.episode = None
 
     def connected(self):
-        """Return the channel; a forked process opens its own."""
+        """Return the channel; a forked process opens a new channel."""
         if self.channel is None or self.channel.pid != os.getpid():
             self.channel, self.cameras = Channel(), None
         return self.channel
@@ -361,7 +370,7 @@ class Session:
 
     @_uninterrupted("a frame could not be corrupted")
     def corrupt(self, observations, cameras, heading=None):
-        """Replace the frames of ``cameras`` in a dict of observations, in the order of its keys.
+        """Replace the frames of ``cameras`` in a dict of observations, in the order of the keys.
 
         Args:
             observations: Arrays by name.
@@ -403,7 +412,7 @@ class Session:
         return observations
 
     def _check(self, observations, cameras):
-        """Stop for frames that belong to no episode or that are corrupted already."""
+        """Stop the process if frames belong to no episode or are already corrupted."""
         if self.episode_pid not in (None, os.getpid()):
             stop(
                 f"process {self.episode_pid} began the current episode, and its fork "
@@ -421,12 +430,12 @@ class Session:
                 )
 
     def position(self):
-        """Return the position of the agent, [x, y, z], None if unknown."""
+        """Return the position of the agent, [x, y, z], or None if it is unknown."""
         state = None if self.sim is None else self.sim.get_agent_state()
         return None if state is None else [float(x) for x in state.position]
 
     def record_step(self, action=None):
-        """Count a low-level step; record its action and the position after it."""
+        """Count a low-level step, and record its action and the position after it."""
         self.steps += 1
         if sys.exc_info()[1] is None:
             self.handled = id(None)
@@ -437,11 +446,11 @@ class Session:
 
     @_uninterrupted("the result of the episode could not be reported")
     def end(self, metrics, how=OVER, stopped=None):
-        """Report the result of the episode, once.
+        """Report the result of the episode exactly once.
 
         An episode without a step is not reported, and a forked process does not end the episode
-        of its parent. If an exception raised since the episode began makes the program leave
-        the episode before its end, the result counts as the program's fault, not the agent's.
+        of its parent. If the program leaves the episode early because of an exception that was
+        raised after its begin, the unfinished episode is the program's fault, not the agent's.
         """
         if not self.active or self.episode_pid != os.getpid():
             return
@@ -457,7 +466,7 @@ class Session:
             self.channel.ask("end", **report)
 
     def _fault(self):
-        """Return the exception that is raised or handled since the episode began, or None.
+        """Return the exception that was raised or handled after the episode began, or None.
 
         Exceptions that only end a loop or the program do not count.
         """
@@ -467,7 +476,8 @@ class Session:
         return None if id(error) == self.handled else error
 
     def _distances(self):
-        """Return geodesic metres to the goals, from start and end, and whether STOP was called."""
+        """Return the geodesic distances to the goals from start and end, and whether STOP was
+        called."""
         if self.sim is None or self.episode is None:
             return {}
         stopped = _get(self.task, "is_stop_called")
@@ -495,7 +505,7 @@ def _plain_action(action):
 
 
 def _describe_array(frame, name):
-    """Return shape and dtype of a frame, for the server."""
+    """Return the shape and dtype of a frame for the server."""
     if not isinstance(frame, np.ndarray):
         stop(
             f"the camera {name} must return a numpy array, got {type(frame).__name__}. Set "
@@ -508,9 +518,9 @@ def _describe_array(frame, name):
 
 
 def _plain_data(value):
-    """Return a camera's description with lists and numbers in place of numpy's.
+    """Return a camera's description with Python lists and numbers instead of numpy values.
 
-    Each step compares descriptions by value, which does not work for arrays.
+    Descriptions are compared by value at each step, which does not work for arrays.
     """
     if isinstance(value, dict):
         return {name: _plain_data(entry) for name, entry in value.items()}
@@ -520,16 +530,16 @@ def _plain_data(value):
 
 
 def _median_and_maximum(depth):
-    """Return median and maximum of a depth frame without holes; (None, None) if all are holes."""
+    """Return median and maximum of the valid depth, or (None, None) if all pixels are holes."""
     sample = np.asarray(depth[::4, ::4], np.float64)
     sample = sample[np.isfinite(sample) & (sample > 0)]
     return (float(np.median(sample)), float(sample.max())) if sample.size else (None, None)
 
 
 def _finite_numbers(metrics, prefix=""):
-    """Return the finite numbers of nested dicts, by dotted name.
+    """Return the finite numbers in nested dicts, by dotted name.
 
-    ``distance_to_goal`` may be infinite: a goal out of reach is a failure by every rule.
+    ``distance_to_goal`` may be infinite, because an unreachable goal is a failure by every rule.
     """
     numbers = {}
     for name, value in dict(metrics or {}).items():
@@ -537,7 +547,8 @@ def _finite_numbers(metrics, prefix=""):
             numbers.update(_finite_numbers(value, f"{prefix}{name}."))
             continue
         is_number = isinstance(value, (bool, int, float, np.bool_, np.integer, np.floating))
-        if _get(value, "shape") == () and _get(value, "item"):  # an array, a tensor
+        # the value may be an array or a tensor
+        if _get(value, "shape") == () and _get(value, "item"):
             value = value.item()
             is_number = isinstance(value, (bool, int, float))
         is_goal = prefix + str(name) == "distance_to_goal"
@@ -548,9 +559,9 @@ def _finite_numbers(metrics, prefix=""):
 
 
 def _distance(sim, position, episode):
-    """Return geodesic metres to the nearest goal or its view points, None if unknown.
+    """Return geodesic metres to the nearest goal or its view points, or None if unknown.
 
-    Infinite if no goal can be reached.
+    The result is infinite if no goal can be reached.
     """
     goals = _get(episode, "goals") or []
     views = [p.agent_state.position for g in goals for p in _get(g, "view_points") or []]
@@ -564,11 +575,12 @@ def _distance(sim, position, episode):
 
 
 CAMERA = ("hfov", "min_depth", "max_depth", "normalize_depth", "position", "orientation")
-_descriptions = {}  # id of a sensor: (sensor, its description); reading configs is slow
+# maps the id of a sensor to (sensor, description), because reading configs is slow
+_descriptions = {}
 
 
 def _describe_sensor(sensor):
-    """Return the description of a lab sensor; option names are upper case before 0.2.3."""
+    """Return the description of a habitat-lab sensor; before 0.2.3, option names are upper case."""
     if id(sensor) in _descriptions:
         return _descriptions[id(sensor)][1]
     config, description = _get(sensor, "config"), {}
@@ -593,25 +605,25 @@ def _heading(state):
     return 2 * math.atan2(float(y), float(w))
 
 
-_sessions = {}  # id of a simulator or of its sensor suite: (that object, its session)
+_sessions = {}  # maps the id of a simulator or sensor suite to (that object, its session)
 
 
 def _session_of(owner):
     """Return the session of a sensor suite or simulator."""
     if id(owner) not in _sessions:  # the entry keeps the object, so that its id is not reused
-        _sessions.setdefault(id(owner), (owner, Session()))  # the same for all threads
+        _sessions.setdefault(id(owner), (owner, Session()))  # one value for all threads
     return _sessions[id(owner)][1]
 
 
 def _call_clean(original, *args, **kwargs):
-    """Call a method that takes frames which the agent does not act on: goal pictures, videos."""
+    """Call a method that takes frames for other purposes than acting: goal pictures or videos."""
     return original(*args, **kwargs)
 
 
 def _is_clean_call():
     """Return whether this thread is inside ``_call_clean``.
 
-    Reads the stack, because an interrupt could leave a flag behind.
+    This reads the stack, because an interrupt could leave a flag set.
     """
     frame = sys._getframe(1)
     while frame is not None and frame.f_code is not _call_clean.__code__:
@@ -620,9 +632,9 @@ def _is_clean_call():
 
 
 def _get_observations(original, suite, *args, **kwargs):
-    """Wrap ``SensorSuite.get_observations`` of the simulator.
+    """Wrap the simulator's ``SensorSuite.get_observations``.
 
-    The lab passes ``task`` and ``episode`` for the sensors of the task, which may render a goal
+    habitat-lab passes ``task`` and ``episode`` for the sensors of the task, which may render a goal
     picture.
     """
     if "task" in kwargs or "episode" in kwargs:
@@ -669,10 +681,11 @@ def _task_reset(original, task, episode, *args, **kwargs):
 
 
 def _original_words(words):
-    """Return text and tokens of an instruction as the data set has them.
+    """Return the original text and tokens of an instruction in the data set.
 
-    A session may have replaced them, and the program may have changed them since. They must not be
-    corrupted again. A copy or pickle of a replaced instruction is recognised by its text.
+    A session may have replaced both, and the program may have changed them afterwards. Replaced
+    texts must not be corrupted again. A copy or pickle of a replaced instruction is recognised by
+    its text.
     """
     text = _get(words, "instruction_text")
     replacement, *originals = _get(words, "_mitigate_own", (None, None, None))
@@ -692,11 +705,12 @@ def _set_words(words, text, tokens):
 
 
 def _restore_words(session):
-    """Put the original instruction back, unless another session uses it."""
+    """Restore the original instruction, unless a different session uses it."""
     words, session.words = session.words, None
     if words is None or _is_in_use(words):
         return
-    originals = vars(words).pop("_mitigate_own", None)  # once: threads may end it together
+    # only once, because several threads may end the episode at the same time
+    originals = vars(words).pop("_mitigate_own", None)
     if originals is not None:
         _set_words(words, *originals[1:])
 
@@ -715,17 +729,17 @@ def _update_measures(original, measurements, *args, **kwargs):
 
 
 def _env_init(original, env, config, dataset=None, *args, **kwargs):
-    """Wrap ``Env.__init__``: keep the selected episodes of its dataset."""
+    """Wrap ``Env.__init__`` to keep only the selected episodes of the dataset."""
     return original(env, config, _keep_selected(dataset), *args, **kwargs)
 
 
 def _make_dataset(original, *args, **kwargs):
-    """Wrap ``make_dataset``, which ``Env.__init__`` calls if it gets no dataset."""
+    """Wrap ``make_dataset``, which ``Env.__init__`` calls if it receives no dataset."""
     return _keep_selected(original(*args, **kwargs))
 
 
 def _keep_selected(dataset):
-    """Remove the episodes that the run does not ask for."""
+    """Remove the episodes that the run does not request."""
     if dataset is not None and len(dataset.episodes):
         keep = _select(dataset.episodes, lambda e: _episode_key(e.scene_id, e.episode_id), 1)
         if keep is not None:
@@ -734,12 +748,13 @@ def _keep_selected(dataset):
 
 
 def _select(episodes, key, least):
-    """Return the indices of the episodes that the run asks for; None means all.
+    """Return the indices of the episodes that the run requests, or None for all.
 
     Args:
         episodes: All episodes.
-        key: Returns the name of one. Names are sent in parts, and only if the server selects.
-        least: The smallest number of episodes to keep, 0 or 1.
+        key: Function that returns the name of an episode. Names are sent in parts, and only if the
+            server selects episodes.
+        least: The minimum number of episodes to keep, 0 or 1.
     """
     channel, count = Channel(), len(episodes)
     answer = channel.ask("dataset", count=count, keys=[], least=least)
@@ -751,7 +766,7 @@ def _select(episodes, key, least):
 
 
 def _env_reset(original, env, *args, **kwargs):
-    """Wrap ``Env.reset``, which loads the next scene: measure the last episode before."""
+    """Wrap ``Env.reset`` to measure the last episode before the next scene is loaded."""
     _end_episode(env, RESET)
     return original(env, *args, **kwargs)
 
@@ -764,7 +779,8 @@ def _env_step(original, env, *args, **kwargs):
 
 
 def _env_close(original, env, *args, **kwargs):
-    """Wrap ``Env.close``: programs that open one Env per episode must not leak connections."""
+    """Wrap ``Env.close``, so that programs which open one Env per episode do not leak
+    connections."""
     _end_episode(env, CLOSE)
     suite = _get(env.sim, "sensor_suite")
     try:
@@ -774,7 +790,7 @@ def _env_close(original, env, *args, **kwargs):
 
 
 def _release(suite):
-    """Drop a sensor suite, its session and its connection."""
+    """Discard a sensor suite, its session and its connection."""
     if suite is not None:
         _, session = _sessions.pop(id(suite), (None, None))
         for sensor in suite.sensors.values():
@@ -795,12 +811,13 @@ def _env_render(original, env, *args, **kwargs):
     return _call_clean(original, env, *args, **kwargs)
 
 
-# habitat-sim without the lab --------------------------------------------------------------------
+# habitat-sim without habitat-lab
+# --------------------------------------------------------------------
 
 
 def _sensor_observations(original, sim, *args, **kwargs):
     """Wrap ``Simulator.get_sensor_observations``."""
-    # clean: some versions call themselves once per agent
+    # called as clean, because some versions call themselves once per agent
     observations = _call_clean(original, sim, *args, **kwargs)
     if _is_clean_call() or _is_called_by_lab(sim):
         return observations
@@ -808,8 +825,8 @@ def _sensor_observations(original, sim, *args, **kwargs):
 
 
 def _async_observations(original, sim, *args, **kwargs):
-    """Wrap ``Simulator.get_sensor_observations_async_finish``, where habitat-sim has it."""
-    agent_ids = _get(sim, "_async_draw_agent_ids")  # the call clears them
+    """Wrap ``Simulator.get_sensor_observations_async_finish``, if habitat-sim has it."""
+    agent_ids = _get(sim, "_async_draw_agent_ids")  # the call clears these agent ids
     observations = _call_clean(original, sim, *args, **kwargs)
     if _is_clean_call() or _is_called_by_lab(sim):
         return observations
@@ -817,10 +834,11 @@ def _async_observations(original, sim, *args, **kwargs):
 
 
 def _is_called_by_lab(sim):
-    """Return whether habitat-lab takes the frames, so that its sensors corrupt them.
+    """Return whether the caller is habitat-lab, whose sensors corrupt the frames themselves.
 
-    The caller is a module of the lab, or a method of a lab simulator, overridden or not. Any other
-    caller that takes frames from a lab simulator is stopped.
+    The caller counts as habitat-lab if it is one of its modules, or a method of one of its
+    simulators, overridden or not. Any other caller that takes frames from a habitat-lab simulator
+    is stopped.
     """
     frame = sys._getframe(1)
     passed_over = (_package(__name__), "habitat_sim")
@@ -847,12 +865,12 @@ def _package(module):
 
 
 def _corrupt_acting_agent(sim, observations, agent_ids):
-    """Corrupt the observations of the acting agent only.
+    """Corrupt only the observations of the acting agent.
 
     Args:
         sim: The simulator.
         observations: Observations by sensor, or by number of the agent if there are several.
-        agent_ids: The agents that were asked for; None is the acting agent.
+        agent_ids: The ids of the requested agents; None means the acting agent.
     """
     acting = _default_agent(sim)
     if observations and all(isinstance(value, dict) for value in observations.values()):
@@ -901,7 +919,8 @@ def _describe_simulator(sim):
 
 
 def _wmnav_episode(original, env, number, *args, **kwargs):
-    """Wrap ``Env._run_episode`` of WMNav, which opens a simulator without the lab per episode."""
+    """Wrap WMNav's ``Env._run_episode``, which opens one simulator per episode without
+    habitat-lab."""
     _thread.session = session = _thread.session or Session()
     episode = env.all_episodes[number]
     words = episode["object_category"]
@@ -934,8 +953,8 @@ def _wmnav_episode(original, env, number, *args, **kwargs):
 def _make_adapter_wrapper(folder, file, path):
     """Return a wrapper for ``forward`` of an encoder's class.
 
-    It attaches adapters to the module ``path`` at the first call of each instance, because the
-    weights are loaded by then.
+    The wrapper attaches adapters to the module ``path`` at the first call of each instance, when
+    the weights have been loaded.
     """
 
     def forward(original, encoder, *args, **kwargs):
@@ -973,7 +992,7 @@ def _attach_adapters(encoder, folder, file, path):
 
 
 class Episode:
-    """One episode of a loop without Habitat.
+    """One episode of a program loop without Habitat.
 
     Attributes:
         instruction: The instruction for the agent, corrupted if the condition changes words.
@@ -1008,7 +1027,7 @@ class Episode:
             )
         try:
             observations, described = _find_cameras(observations, cameras)
-        except BaseException as error:  # the agent might catch it
+        except BaseException as error:  # the agent might catch the exception
             stop(f"an observation could not be read ({_describe_error(error)}).")
         self._session.steps += 1
         return self._session.corrupt(observations, described, heading)
@@ -1018,10 +1037,10 @@ class Episode:
 
         Args:
             success: 0 or 1.
-            spl: 0 to 1. None computes it from ``path_length`` and ``geodesic_distance``, or takes
-                the success.
-            stopped: Whether the agent itself called STOP, 0 or 1. None: unknown; some rules of
-                success need it.
+            spl: 0 to 1. If None, it is computed from ``path_length`` and ``geodesic_distance``, or
+                equals the success.
+            stopped: Whether the agent itself called STOP, 0 or 1. None means unknown; some success
+                rules need this value.
             **metrics: Other measures, such as ``distance_to_goal``.
 
         Raises:
@@ -1063,7 +1082,7 @@ class Episode:
 
 
 def _check_flag(value, name):
-    """Return 0.0 or 1.0. Raises ValueError for other values."""
+    """Return 0.0 or 1.0. Raises ValueError for all other values."""
     number = _check_fraction(value, name)
     if number not in (0.0, 1.0):
         raise ValueError(f"finish({name}={value!r}): it must be 1 (or True) or 0 (or False).")
@@ -1071,7 +1090,7 @@ def _check_flag(value, name):
 
 
 def _check_fraction(value, name):
-    """Return a number from 0 to 1. Raises ValueError for other values."""
+    """Return a number from 0 to 1. Raises ValueError for all other values."""
     number = _check_non_negative(value, name)
     if not number <= 1:
         raise ValueError(
@@ -1081,7 +1100,7 @@ def _check_fraction(value, name):
 
 
 def _check_non_negative(value, name):
-    """Return a number that is 0 or more, or infinite. Raises ValueError for other values."""
+    """Return a number that is 0 or more, or infinite. Raises ValueError for all other values."""
     try:
         number = float(value)  # also accepts an array or tensor with one item
     except (TypeError, ValueError):
@@ -1128,9 +1147,9 @@ def _find_cameras(observations, cameras):
 
 
 def _find_frame(value, name):
-    """Return name and shape of the first array in an entry that may be a frame, or None.
+    """Return name and shape of the first array in an entry that may be a frame, else None.
 
-    Searches nested dicts and lists. A frame has two sides above 8.
+    Nested dicts and lists are searched. A frame has two dimensions above 8.
     """
     if value is None or isinstance(value, (str, bytes, int, float)):
         return None
@@ -1158,22 +1177,23 @@ def _shape(value):
         return tuple(outer) if isinstance(value, (int, float)) else ()
     try:
         return (*outer, *map(int, inner))
-    except (TypeError, ValueError):  # an attribute of another meaning
+    except (TypeError, ValueError):  # the attribute has a different meaning
         return ()
 
 
 def wanted(episodes):
-    """Return the episodes that this run asks for.
+    """Return the episodes that this run requests.
 
     Args:
         episodes: List of (scene, episode id).
 
     Returns:
-        All of them without ``episodes=``, else about that many, selected by a hash of their names.
+        All episodes without ``episodes=``; otherwise about that many, selected by a hash of their
+        names.
 
     Raises:
         RuntimeError: The program does not run under ``mitigate run``.
-        ValueError: An entry is not a pair.
+        ValueError: An entry of ``episodes`` is not a pair.
     """
     _check_run()
     episodes = list(episodes)
@@ -1218,7 +1238,7 @@ def connect(episode, scene="", instruction=None):
 
 # installing -------------------------------------------------------------------------------------
 
-PATCHES = {  # module: ((class, empty for a function of the module; method; wrapper), ...)
+PATCHES = {  # maps a module to (class or "" for a function, method, wrapper) tuples
     "habitat.core.simulator": (("SensorSuite", "get_observations", _get_observations),),
     "habitat.core.embodied_task": (
         ("EmbodiedTask", "reset", _task_reset),
@@ -1297,11 +1317,12 @@ class Finder:
 
 
 def install():
-    """Wrap what this process imports from now on; outside of ``mitigate run`` do nothing."""
+    """Wrap modules that this process imports from now on; do nothing outside ``mitigate run``."""
     if ADDRESS not in os.environ or any(isinstance(f, Finder) for f in sys.meta_path):
         return
     if os.path.exists(os.environ[ADDRESS]):
-        with contextlib.suppress(OSError):  # another user's folder: the connection reports it later
+        # the folder belongs to a different user; the connection reports this later
+        with contextlib.suppress(OSError):
             folder = os.path.dirname(os.environ[ADDRESS])
             open(os.path.join(folder, LOADED), "a").close()
     if os.environ.get(ADAPTERS):
@@ -1312,7 +1333,7 @@ def install():
 
 
 def run_hidden_sitecustomize(file):
-    """Run the ``sitecustomize`` that the one in ``file`` hides, if there is one."""
+    """Run the ``sitecustomize`` module that is hidden by the one in ``file``, if there is one."""
     folder = os.path.dirname(os.path.abspath(file))
     path = [p for p in sys.path if os.path.abspath(p or os.curdir) != folder]
     spec = importlib.machinery.PathFinder.find_spec("sitecustomize", path)

@@ -1,7 +1,7 @@
-"""Loads ``mitigate_hook`` in every Python process that is started under ``mitigate run``.
+"""Load ``mitigate_hook`` in every Python process that is started under ``mitigate run``.
 
 Python imports the first ``sitecustomize`` on its path at start-up. This folder is first on
-PYTHONPATH, so this file may hide another one, which it runs afterwards.
+PYTHONPATH, so this file may hide a different ``sitecustomize``, which it runs afterwards.
 """
 
 import sys

@@ -1,10 +1,10 @@
-"""Broad augmentation: random compositions of primitive transforms, only for training.
+"""Apply random compositions of primitive transforms (broad augmentation), only for training.
 
-A schedule with ``broad_share`` draws them in addition to the named corruptions, so that an agent
-does not learn only this list. They are never part of a suite. The primitives follow PRIME (Modas et
-al., ECCV 2022: tone, filter, warp) and methods like AugMix, and add sensor failures: noise, covers,
-lost parts. They use OpenCV, which is imported when the first frame is corrupted, so loading an
-agent does not need it.
+A schedule with ``broad_share`` applies them in addition to its named corruptions, so that an agent
+does not adapt only to these. Random compositions are never part of a suite. The primitives follow
+PRIME (Modas et al., ECCV 2022: tone, filter, warp) and methods like AugMix, with additional sensor
+failures: noise, covered areas and lost parts. They use OpenCV, which is imported when the first
+frame is corrupted, so loading an agent does not need it.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from mitigate.corruptions.depth_sensor import DepthSensor
 from mitigate.corruptions.keying import Key
 from mitigate.corruptions.record import Record
 
-STATE = "primitives, maps"  # fixed during an episode
+STATE = "primitives, maps"  # parts that are constant during an episode
 
 
 def broad_rgb(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:

@@ -1,8 +1,9 @@
-"""Draw the primitives of a composition, their strengths and the random maps that they share.
+"""Sample the primitives of a composition, their strengths and their common random maps.
 
-A primitive is a function of (views, strength in (0, 1], ``rng`` of the episode, ``now`` of the
-frame) that returns views of the same shape. Constants without a source were chosen by this project
-before any agent trained with them was measured under unseen corruptions.
+A primitive is a function of views, a strength in (0, 1], and random generators for the episode
+(``rng``) and the frame (``now``). It returns views of the same shape. Constants without a source
+were chosen by this project before any agent trained with them was measured under unseen
+corruptions.
 """
 
 from __future__ import annotations
@@ -14,8 +15,8 @@ import numpy as np
 
 from mitigate.corruptions.keying import Key, digest
 
-COUNTS = (0.4, 0.35, 0.25)  # probability of one, two, three primitives
-LEAST_STRENGTH = 0.35  # the strength of each primitive is this share of the severity, to all of it
+COUNTS = (0.4, 0.35, 0.25)  # probabilities of one, two and three primitives
+LEAST_STRENGTH = 0.35  # the strength of each primitive is at least this fraction of the severity
 
 Primitive = Callable[..., np.ndarray]
 
@@ -27,7 +28,7 @@ def composed(
     name: str,
     primitives: Sequence[Primitive],
 ) -> np.ndarray:
-    """Apply one to three of ``primitives`` to ``views``, drawn for the key's episode."""
+    """Apply one to three of ``primitives`` to ``views``, sampled for the key's episode."""
     chosen, rng = drawn(key, name, primitives)
     now = stream(digest(key, name, frame=True))
     for primitive in chosen:
@@ -39,19 +40,20 @@ def composed(
 def drawn(
     key: Key, name: str, primitives: Sequence[Primitive]
 ) -> tuple[list[Primitive], np.random.Generator]:
-    """Return the primitives of the key's episode, in order, and a generator for other draws."""
+    """Return the primitives of the key's episode, in order, and a generator for their
+    parameters."""
     rng = stream(digest(key, name))
     places = rng.permutation(len(primitives))[: 1 + rng.choice(len(COUNTS), p=COUNTS)]
     return [primitives[place] for place in places], rng
 
 
 def stream(value: int) -> np.random.Generator:
-    """Return a generator seeded by a 64-bit digest."""
+    """Return a random generator that is seeded by a 64-bit digest."""
     return np.random.Generator(np.random.Philox(value))
 
 
 def field(rng: np.random.Generator, shape: tuple[int, int], cell: float) -> np.ndarray:
-    """Return a smooth random map, float32 [H, W], of mean 0 and standard deviation about 1.
+    """Return a smooth random map, float32 [H, W], with mean 0 and standard deviation about 1.
 
     The size of its cells is ``cell`` times the shorter side.
     """
@@ -64,12 +66,13 @@ def field(rng: np.random.Generator, shape: tuple[int, int], cell: float) -> np.n
 
 
 def log_uniform(rng: np.random.Generator, low: float, high: float) -> float:
-    """Draw a number whose logarithm is uniform."""
+    """Sample a number whose logarithm is uniformly distributed."""
     return float(np.exp(rng.uniform(np.log(low), np.log(high))))
 
 
 def shapes(rng: np.random.Generator, shape: tuple[int, int], area: float) -> np.ndarray:
-    """Return bool [H, W]: one to eight shapes that cover about the share ``area`` of the map."""
+    """Return a mask [H, W] of one to eight shapes that cover about the fraction ``area`` of the
+    map."""
     height, width = shape
     mask = np.zeros((height, width), np.uint8)
     count = int(rng.integers(1, 9))
@@ -91,14 +94,16 @@ _CIRCLE = np.linspace(0, 2 * np.pi, 24, endpoint=False)
 def displaced(rng: np.random.Generator, shape: tuple[int, int], reach: float) -> tuple:
     """Return the source coordinates x and y of each pixel, float32 [H, W].
 
-    Pixels move by a smooth random map, with cells of 0.06 to 0.6 of the side, and are rotated,
-    scaled and shifted together. The largest move is about ``reach`` times the side.
+    Pixels are displaced by a smooth random map with cells of 0.06 to 0.6 of the side, and all
+    pixels together are rotated, scaled and shifted. The maximum displacement is about ``reach``
+    times the side.
     """
     (height, width), cell = shape, log_uniform(rng, 0.06, 0.6)
     side = min(height, width)
     y, x = np.mgrid[:height, :width].astype(np.float32)
     local = rng.uniform(0.0, 1.0)
-    slope = reach * side * local * min(1.0, 3.0 * cell)  # small cells would fold if they moved far
+    # large displacements with small cells would fold the image
+    slope = reach * side * local * min(1.0, 3.0 * cell)
     turn, scale = (1.0 - local) * reach * rng.uniform(-1.5, 1.5, 2)
     shift = (1.0 - local) * reach * side * rng.uniform(-1.0, 1.0, 2)
     right, down = x - (width - 1) / 2, y - (height - 1) / 2

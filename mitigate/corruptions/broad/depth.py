@@ -37,7 +37,7 @@ def uneven(views, strength, rng, now):
 
 
 def noisy(views, strength, rng, now):
-    """Add noise of a random grain, constant or growing with the square of z."""
+    """Add noise of random grain size, constant or growing with the square of z."""
     grain = rng.choice((1, 1, 2, 4)) * max(1, min(views.shape[1:]) // 128)
     height, width = views.shape[1:]
     shape = (len(views), -(-height // grain), -(-width // grain))
@@ -65,7 +65,7 @@ def steps(views, strength, rng, now):
 
 
 def warped(views, strength, rng, now):
-    """Move pixels by smooth random maps, or all together."""
+    """Displace pixels by smooth random maps, or all together."""
     map_x, map_y = displaced(rng, views.shape[1:], 0.12 * strength)
     border = cv2.BORDER_REPLICATE
     return _each(
@@ -86,9 +86,9 @@ def swapped(views, strength, rng, now):
 
 
 def holes(views, strength, rng, now):
-    """Remove or replace up to the share 0.7 a of the pixels, ``a`` being the strength.
+    """Remove or replace up to the fraction 0.7 ``a`` of the pixels, where ``a`` is the strength.
 
-    A random mixture of a smooth map, chance, distance and edges selects them.
+    The pixels are selected by a random mixture of a smooth map, chance, distance and edges.
     """
     weights = rng.dirichlet(np.full(4, 0.5)) * (1, 1, rng.choice((-1, 1)), 1)
     place = field(rng, views.shape[1:], log_uniform(rng, 0.02, 0.5))
@@ -103,7 +103,7 @@ def holes(views, strength, rng, now):
 
 
 def hidden(views, strength, rng, now):
-    """Remove or replace depth within random shapes, shared by all views or drawn for each."""
+    """Remove or replace depth within random shapes, which are common to all views or different."""
     area, fill, alike = 0.5 * strength * rng.uniform(0.1, 1.0), _fill(rng), rng.random() < 0.6
     mask, out = shapes(rng, views.shape[1:], area), views.copy()
     for view in out:
@@ -120,12 +120,12 @@ def lost(views, strength, rng, now):
 
 
 def _fill(rng: np.random.Generator) -> float:
-    """Draw the value that replaces depth: mostly no reading, else any depth of the range."""
+    """Sample the value that replaces depth: mostly no reading, otherwise any depth in range."""
     return float("nan") if rng.random() < 0.6 else float(rng.choice((1.0, rng.random())))
 
 
 def _each(views, change) -> np.ndarray:
-    """Apply ``change`` to each view, with holes filled as far; they are holes again after it."""
+    """Apply ``change`` to each view with holes filled as far, and restore the holes afterwards."""
     holes = np.isnan(views)
     out = np.stack([change(view) for view in np.where(holes, np.float32(1.0), views)])
     return np.where(holes, np.float32(np.nan), out)

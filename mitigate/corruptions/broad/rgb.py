@@ -18,12 +18,12 @@ from mitigate.corruptions.broad.composition import (
 from mitigate.corruptions.keying import Key
 
 NAME = "broad_rgb"
-STOPS = (-4.0, 2.5)  # range of the change of light at strength 1
-GAMMA = 2.2  # gamma of displays, from stored levels to light
+STOPS = (-4.0, 2.5)  # range of the change of brightness at strength 1
+GAMMA = 2.2  # gamma exponent of displays, from stored levels to light
 
 
 def exposure(views, strength, rng, now):
-    """Change the light, evenly or along a smooth random map, constantly or per frame."""
+    """Change the brightness, evenly or along a smooth random map, constantly or per frame."""
     stops = strength * rng.uniform(*STOPS)
     if rng.random() < 0.3:
         stops = stops * now.uniform(0.0, 1.0)
@@ -34,7 +34,7 @@ def exposure(views, strength, rng, now):
 
 
 def tone(views, strength, rng, now):
-    """Add a random sum of b_n sin(pi n x) per colour or to all three (PRIME), by table."""
+    """Add a random sum of b_n sin(pi n x) per colour or to all colours, with a table (PRIME)."""
     levels = np.linspace(0.0, 1.0, 256, dtype=np.float32)
     most = int(rng.integers(1, 6))
     colours = 3 if rng.random() < 0.5 else 1
@@ -49,7 +49,7 @@ def tone(views, strength, rng, now):
 
 
 def colour_mix(views, strength, rng, now):
-    """Mix the three colours by a random matrix, near the identity or towards grey."""
+    """Mix the three colours by a random matrix that is near the identity or near grey."""
     matrix = np.eye(3) + 0.6 * strength * rng.standard_normal((3, 3))
     if rng.random() < 0.3:
         matrix = (1.0 - strength) * np.eye(3) + strength / 3.0
@@ -59,7 +59,7 @@ def colour_mix(views, strength, rng, now):
 
 
 def contrast(views, strength, rng, now):
-    """Increase contrast, or reduce it towards a colour."""
+    """Increase contrast, or reduce it towards a uniform colour."""
     share, colour = strength * rng.uniform(0.3, 0.95), _colour(rng)
     if rng.random() < 0.25:
         return np.clip(views + 2.0 * share * (views - np.float32(0.5)), 0.0, 1.0)
@@ -105,7 +105,7 @@ def coarse(views, strength, rng, now):
 
 
 def warped(views, strength, rng, now):
-    """Move pixels by smooth random maps (PRIME's diffeomorphisms), or all together."""
+    """Displace pixels by smooth random maps (PRIME's diffeomorphisms), or all together."""
     source = now if rng.random() < 0.3 else rng
     map_x, map_y = displaced(source, views.shape[1:3], 0.12 * strength)
     border = cv2.BORDER_REPLICATE
@@ -115,7 +115,7 @@ def warped(views, strength, rng, now):
 
 
 def noisy(views, strength, rng, now):
-    """Add or multiply noise of a random grain, distribution and colour, or in bands."""
+    """Add or multiply noise of random grain size, distribution and colour, or in bands."""
     height, width = views.shape[1:3]
     colours, amount = 3 if rng.random() < 0.5 else 1, 0.35 * strength * rng.uniform(0.3, 1.0)
     grain = rng.choice((1, 1, 2, 4)) * max(1, min(height, width) // 128)
@@ -131,7 +131,7 @@ def noisy(views, strength, rng, now):
 
 
 def covered(views, strength, rng, now):
-    """Cover views with a random colour; its opacity is a random map, fine or wide."""
+    """Cover views with a random colour, whose opacity is a fine or coarse random map."""
     height, width = views.shape[1:3]
     soft, colour = log_uniform(rng, 0.1, 3.0), _colour(rng)
     level = rng.uniform(-0.3, 1.5) + (1.0 - strength)
@@ -146,7 +146,8 @@ def covered(views, strength, rng, now):
 
 
 def hidden(views, strength, rng, now):
-    """Fill random shapes, shared or drawn per view, with a colour, noise or other parts."""
+    """Fill random shapes, common to all views or different, with a colour, noise or other image
+    parts."""
     height, width = views.shape[1:3]
     area, kind, alike = 0.6 * strength * rng.uniform(0.1, 1.0), rng.random(), rng.random() < 0.7
     mask, colour, out = shapes(rng, (height, width), area), _colour(rng), views.copy()
@@ -163,9 +164,9 @@ def hidden(views, strength, rng, now):
 
 
 def lost(views, strength, rng, now):
-    """Lose each view with probability 0.8 times the strength, whole or from a row or column on.
+    """Remove each view, or a part of it, with probability 0.8 times the strength.
 
-    The lost part holds one level, noise or another view.
+    The lost part is filled with one level, noise or a different view.
     """
     height, width = views.shape[1:3]
     out, kind, level = views.copy(), rng.random(), rng.choice((0.0, 0.0, 0.5, 1.0))
@@ -184,7 +185,7 @@ def lost(views, strength, rng, now):
 
 
 def _colour(rng: np.random.Generator) -> np.ndarray:
-    """Draw black, white, a grey or any colour."""
+    """Sample black, white, a grey level or any colour."""
     kind = rng.random()
     grey = np.repeat(0.0 if kind < 0.3 else 1.0 if kind < 0.4 else rng.random(), 3)
     return (grey if kind < 0.6 else rng.random(3)).astype(np.float32)

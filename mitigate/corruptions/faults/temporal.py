@@ -26,8 +26,8 @@ BURST_PERIOD, LONGEST_BURST = 8, 6  # frames: one burst per period
 ACTIVE_PERIOD, ACTIVE = 20, 10  # frames: ``intermittent`` is active in one interval per period
 STOPS = 2.0  # exposure changes by at most this many stops at severity 1
 GAMMA = 2.2  # sRGB as a power law
-OLDEST = max(DELAY, LONGEST_FREEZE, LONGEST_BURST)  # frames: the largest age that is drawn
-GATE = "intermittent"  # the first of a pair: limits the second to intervals
+OLDEST = max(DELAY, LONGEST_FREEZE, LONGEST_BURST)  # largest age in frames that a draw can give
+GATE = "intermittent"  # the first part of a pair, which limits the second part to intervals
 
 
 def _frames_inside(name: str, period: int, longest: int, length: int, key: Key) -> int:

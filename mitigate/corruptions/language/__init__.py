@@ -1,1 +1,1 @@
-"""English language rules for the instruction corruptions and their fidelity gate."""
+"""English language rules for corrupting instructions and checking rewrites."""

@@ -15,9 +15,9 @@ COMMANDS = (
     "position|locate|end|search"
 )
 _ADVERBS = r"(?:then|next|now|immediately|finally|again|just|simply|slowly|directly|please|also)"
-# largest number of adverbs before a command (heuristic: speech has no longer sequences)
+# maximum number of adverbs before a command (heuristic: speech has no longer sequences)
 MOST_ADVERBS = 8
-# White space matches only from its start and in one way, so that the time is linear.
+# White space matches only from its start and in one way, so that matching takes linear time.
 _JOIN = (
     r"(?:(?:(?<!\s)\s+)?[,;]\s*(?:and\s+)?|(?<!\s)\s+(?:and|but)\s+"
     r"|(?:(?<!\s)\s+)?(?:,\s*)?(?:and\s+)?\bthen\b(?:\s*,)?\s*)"
@@ -43,7 +43,7 @@ _NO_COMMAND_AFTER = listed("no_command_after")
 
 @dataclass(frozen=True)
 class Clause:
-    """One command, ``main``, and its condition ``when`` ("once you reach the bed" or empty)."""
+    """One command ``main`` with its condition ``when`` ("once you reach the bed", or empty)."""
 
     when: str
     main: str
@@ -69,7 +69,7 @@ def clauses(text: str) -> list[Clause]:
 
 
 def _hanging(part: str) -> bool:
-    """Return whether ``part`` is only the condition of the command that follows."""
+    """Return whether ``part`` is only the condition of the next command."""
     return bool(_BEGINS_CONDITION.match(part)) and _divided(part) is None
 
 

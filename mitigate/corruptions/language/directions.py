@@ -39,7 +39,7 @@ _AROUND = re.compile(
 
 
 def about_turns(tokens: list[Token]) -> dict[int, int]:
-    """Return {first index: last index} of every phrase that means turning around."""
+    """Return {first index: last index} for every phrase that means turning around."""
     text, starts = "", {}
     for index, token in enumerate(tokens):
         starts[len(text)] = index
@@ -52,7 +52,7 @@ def about_turns(tokens: list[Token]) -> dict[int, int]:
 
 
 def directions(tokens: list[Token], turned: dict[int, int]) -> list[str]:
-    """Return the directions in order, without repetitions that no movement separates.
+    """Return the directions in order; repetitions without a movement in between count once.
 
     ``turned`` is the result of :func:`about_turns`.
     """
@@ -72,7 +72,7 @@ def directions(tokens: list[Token], turned: dict[int, int]) -> list[str]:
 
 
 def turns(tokens: list[Token], turned: dict[int, int]) -> int:
-    """Count the turns, by a turning verb or by phrases such as "take a left"."""
+    """Count the turns, which are given by a turning verb or phrases such as "take a left"."""
     count = len(turned)
     inside = {place for first, last in turned.items() for place in range(first, last + 1)}
     for place, token in enumerate(tokens):
@@ -116,7 +116,7 @@ def _direction(tokens: list[Token], place: int) -> str | None:
 
 
 def _vertical(tokens: list[Token], place: int, before: str) -> str | None:
-    """Return "up" or "down" if it changes the level; None if it means along or near."""
+    """Return "up" or "down" if the word changes the level, or None if it means along or near."""
     if before in _NO_CLIMB:
         return None
     for token in tokens[place + 1 : place + 7]:
@@ -136,7 +136,7 @@ def _stops(tokens: list[Token], place: int) -> bool:
 
 
 def at(tokens: list[Token], place: int) -> str:
-    """Return the word at an index in lower case, "" outside the text."""
+    """Return the word at an index in lower case, or "" outside the text."""
     return tokens[place].lower if 0 <= place < len(tokens) else ""
 
 
@@ -158,7 +158,8 @@ _LONE_UNITS = _UNITS - bag("step steps m cm ft foot feet yard yards")
 
 
 def quantities(tokens: list[Token], turned: dict[int, int]) -> list[str]:
-    """Return the numbers, ordinals and distances in order: "two", "first", "two step", "meter".
+    """Return the numbers, ordinals and distances in order, such as "two", "first", "two step",
+    "meter".
 
     ``turned`` is the result of :func:`about_turns`, whose 180 degrees are not a quantity.
     """

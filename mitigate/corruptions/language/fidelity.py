@@ -1,4 +1,4 @@
-"""Fidelity gate: check that a rewritten instruction keeps the meaning of the original.
+"""Check that a rewritten instruction keeps the meaning of the original (fidelity gate).
 
 :func:`facts` extracts the directions, landmarks, numbers, compass words, attributes, relations and
 denials of a text. :func:`check` lists the differences between two texts.
@@ -28,7 +28,7 @@ _RELATIONS = {word: name for name, forms in WORDS["relations"].items() for word 
 
 @dataclass(frozen=True)
 class Facts:
-    """The facts of a text.
+    """The facts that are extracted from a text.
 
     Attributes:
         directions: left, right, around, straight, up, down and stop, in order.
@@ -53,7 +53,7 @@ class Facts:
 
 @dataclass(frozen=True)
 class _Reading:
-    """The facts of a text, its words in canonical form, and each landmark's first clause."""
+    """The facts of a text, its words in canonical form, and the first clause of each landmark."""
 
     facts: Facts
     words: frozenset[str]
@@ -61,19 +61,19 @@ class _Reading:
 
 
 def facts(text: str) -> Facts:
-    """Return the facts of ``text``."""
+    """Extract the facts of ``text``."""
     return _read(text).facts
 
 
 def check(original: str, rewritten: str) -> list[str]:
-    """Return the changes of meaning from ``original`` to ``rewritten``; empty without one.
+    """Return the changes of meaning from ``original`` to ``rewritten``, or an empty list.
 
     Every entry begins with its kind and a colon: "directions", "landmark lost", "landmark
     invented", "landmark order", "number lost", "number invented", "compass lost", "compass
     invented", "attribute lost", "attribute invented", "relation lost", "relation invented",
     "denial".
-    Synonyms of ``landmarks.py`` are equal. The number of turns is not compared, because their
-    directions are. Landmarks may be reordered within a clause.
+    Synonyms in ``landmarks.py`` are treated as equal. The number of turns is not compared, because
+    their directions are already compared. Landmarks may be reordered within a clause.
     """
     before, after = _read(original), _read(rewritten)
     old, old_words = before.facts, before.words
@@ -101,7 +101,8 @@ def _changes(
     old_words: Iterable[str],
     new_words: Iterable[str],
 ) -> list[str]:
-    """List names of ``old`` that ``new_words`` lacks, and of ``new`` that ``old_words`` lacks."""
+    """List names in ``old`` that ``new_words`` lacks, and names in ``new`` that ``old_words``
+    lacks."""
     lost = [f"{kind} lost: {name}" for name in dict.fromkeys(old) if name not in new_words]
     return lost + [
         f"{kind} invented: {name}" for name in dict.fromkeys(new) if name not in old_words
@@ -172,7 +173,7 @@ def _same(token: Token) -> str:
 
 
 def _names(tokens: list[Token]) -> list[tuple[int, str, bool]]:
-    """Return (index, canonical name, is a landmark) of every word or known phrase."""
+    """Return (index, canonical name, whether it is a landmark) for every word or known phrase."""
     names: list[tuple[int, str, bool]] = []
     place = 0
     while place < len(tokens):
@@ -187,7 +188,8 @@ def _names(tokens: list[Token]) -> list[tuple[int, str, bool]]:
 
 
 def _phrase(tokens: list[Token], place: int) -> tuple[str, int]:
-    """Return the canonical name and the length of the longest known phrase at ``place``."""
+    """Return the canonical name and the length of the longest known phrase that starts at
+    ``place``."""
     for length in range(min(landmarks.LONGEST, len(tokens) - place), 1, -1):
         words = [token.lower for token in tokens[place : place + length]]
         for last in (words[-1], words[-1].removesuffix("s")):
@@ -202,7 +204,7 @@ def _is_landmark(tokens: list[Token], place: int) -> bool:
     word = token.lower
     if token.tag not in ("NOUN", "PROPN") or word in landmarks.PLAIN or len(word) < 2:
         return False
-    if word in ("step", "steps"):  # a distance, unless they are stairs
+    if word in ("step", "steps"):  # steps are a distance, unless they are stairs
         return not any(
             t.tag == "NUM" or t.lower in ("a", "few", "couple", "more", "small")
             for t in tokens[max(0, place - 3) : place]

@@ -1,12 +1,12 @@
-"""Landmarks: nouns that name visible things, and their synonyms."""
+"""Define landmarks, which are nouns for visible things, and their synonyms."""
 
 from __future__ import annotations
 
 from mitigate.corruptions.language.words import WORDS, listed
 
-# canonical name -> other names; phrases of several words are matched before single nouns
+# maps a canonical name to its synonyms; phrases of several words are matched before single nouns
 SYNONYMS: dict[str, list[str]] = WORDS["landmarks"]
-# nouns that name no landmark: parts of a route, of speech and of polite phrases
+# nouns that are not landmarks: parts of a route, of speech and of polite phrases
 PLAIN = listed("no_landmarks")
 
 CANONICAL = {form: name for name, forms in SYNONYMS.items() for form in forms if " " not in form}
@@ -21,7 +21,8 @@ _KEEP_S = ("ss", "us", "is", "as", "os")
 
 
 def normal(noun: str) -> str:
-    """Return the canonical name of a noun: lower case, singular, first of its synonyms."""
+    """Return the canonical name of a noun, which is the first synonym in lower case and
+    singular."""
     word = noun.lower().removesuffix("'s").removesuffix("s'")
     if word in CANONICAL or word in SYNONYMS:
         return CANONICAL.get(word, word)

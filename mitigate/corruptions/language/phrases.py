@@ -1,6 +1,6 @@
-"""Phrases of the four styles: clause patterns, templates, frames, openers, closers, nouns.
+"""Load the phrases of the four styles: patterns, templates, frames, openers, closers and nouns.
 
-Templates begin with a bare verb, so that each fits a frame such as "you'll want to {}".
+Templates begin with an infinitive, so that each fits into a frame such as "you'll want to {}".
 """
 
 from __future__ import annotations
@@ -80,7 +80,8 @@ PATTERNS = {
 
 @dataclass(frozen=True)
 class Voice:
-    """Phrases of one style: templates by kind of clause, frames by place, openers and closers."""
+    """The phrases of one style: templates by kind of clause, frames by place, openers and
+    closers."""
 
     openers: tuple[str, ...]
     frames: dict[str, tuple[str, ...]]
@@ -90,13 +91,13 @@ class Voice:
 
 
 def swap_nouns(text: str, nouns: dict[str, str]) -> str:
-    """Replace nouns in ``text`` by the synonyms of a style."""
+    """Replace nouns in ``text`` by the synonyms that a style uses."""
     names = sorted(nouns, key=len, reverse=True)
     return re.sub(rf"\b({'|'.join(names)})\b", lambda m: nouns[m.group()], text)
 
 
 def _voice(entry: dict[str, Any]) -> Voice:
-    """Build a voice from an entry of ``voices.json``, with lists as tuples."""
+    """Build the phrases of a style from an entry of ``voices.json``, with lists as tuples."""
     frames, commands = (
         {name: tuple(options) for name, options in entry[part].items()}
         for part in ("frames", "commands")

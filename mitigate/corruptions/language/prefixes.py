@@ -1,8 +1,7 @@
-"""The prefix bank: misleading sentences that an attacker puts in front of an instruction.
+"""Load the misleading sentences that an attacker puts before an instruction.
 
-Kinds of attack never occur in two splits, so a safeguard trained on ``train`` is tested on kinds
-that it never saw. This project wrote all sentences; the kinds follow SUITE's list for NavTrust's
-malicious prompts.
+No kind of attack occurs in two splits, so a safeguard that is trained on ``train`` is tested on new
+kinds. All sentences were written for this project; the kinds follow NavTrust's malicious prompts.
 """
 
 from __future__ import annotations
@@ -16,7 +15,7 @@ _BANK: dict[str, dict[str, list[str]]] = read_data("prefixes.json")
 def prefixes(split: str) -> dict[str, tuple[str, ...]]:
     """Return the sentences of ``split`` ("train", "validation" or "test") by kind of attack.
 
-    Raises ValueError for another split.
+    Raises ValueError for an unknown split.
     """
     if split not in _BANK:
         raise ValueError(

@@ -1,4 +1,4 @@
-"""Rewrite styles by a language model, as in the paper, with a cache of all answers.
+"""Rewrite instructions in a style with a language model, as in the paper, and cache all answers.
 
 The model is any function (system prompt, text) -> answer, for example a chat endpoint or a local
 model. Answers are cached by (text, style, model, prompt, seed), so a file of corrupted episodes can
@@ -29,18 +29,18 @@ PROMPT = (
     "down, straight and stop, in the same order. Keep every object, room, colour and number. Add "
     "no distance, no compass word and no object. Answer with the rewritten instruction alone."
 )
-_HALF = re.compile("[\ud800-\udfff]")  # lone surrogates, which a text file cannot hold
+_HALF = re.compile("[\ud800-\udfff]")  # lone surrogates, which a text file cannot contain
 
 
 class Rewriter:
-    """Rewrites texts in a style by a model, and caches the answers.
+    """Rewrites texts in a style with a model, and caches the answers.
 
     Args:
-        ask: (system prompt, text) -> answer.
+        ask: function (system prompt, text) -> answer.
         model: name of the model, part of the cache key.
-        cache: a JSONL file with one line per answer. Invalid lines, such as an incomplete last one,
-            are ignored.
-        seed: part of the cache key, for models that answer differently each time.
+        cache: a JSONL file with one line per answer. Invalid lines, such as an incomplete last
+            line, are ignored.
+        seed: part of the cache key, for models whose answers vary.
 
     Raises:
         ValueError: ``cache`` is a folder.
@@ -57,8 +57,8 @@ class Rewriter:
     def __call__(self, text: str, manner: str) -> str:
         """Return ``text`` rewritten in the style ``manner``.
 
-        Raises ValueError for an unknown style, and for an answer that is not a text. Such an answer
-        is not cached: the next call asks again.
+        Raises ValueError for an unknown style, and for an answer that is not text. An invalid
+        answer is not cached, so the next call asks the model again.
         """
         if manner not in TONES:
             raise ValueError(f"There is no manner {manner!r}. Choose one of: {', '.join(MANNERS)}.")
@@ -96,7 +96,7 @@ def _key(request: dict[str, object]) -> str:
 
 
 def _is_valid(answer: object) -> bool:
-    """Return whether ``answer`` is a text that is not blank and can be encoded."""
+    """Return whether ``answer`` is a non-blank text that can be encoded."""
     return isinstance(answer, str) and bool(answer.strip()) and not _HALF.search(answer)
 
 

@@ -1,8 +1,9 @@
-"""Rewrite instructions in four styles by rule: friendly, novice, professional, formal.
+"""Rewrite instructions with rules in four styles: friendly, novice, professional and formal.
 
 Each clause of an instruction is recognised (turn, climb, pass, enter and others) and rewritten with
-a template of the style. An unknown clause keeps its words inside a frame of the style. The fidelity
-gate checks each clause and the whole text. A rejected text is rewritten with fewer changes.
+a template of the style. An unknown clause is not reworded but inserted into a phrase of the style
+("frame"). The fidelity gate checks each clause and the whole text. A rejected text is rewritten
+with fewer changes.
 """
 
 from __future__ import annotations
@@ -18,22 +19,22 @@ from mitigate.corruptions.language.fidelity import check
 from mitigate.corruptions.language.text import check_text
 
 MANNERS = ("friendly", "novice", "professional", "formal")
-TRIES = 3  # rewrites of one instruction before the original is used, heuristic
+TRIES = 3  # maximum rewrites of an instruction before the original is used (heuristic)
 Rewrite = Callable[[str, str], str]
 
 
 @dataclass(frozen=True)
 class Restyled:
-    """A rewritten instruction and the decisions of the fidelity gate.
+    """A rewritten instruction with the decisions of the fidelity gate.
 
     Attributes:
         text: the rewritten instruction, or the original.
         tries: number of rewrites that the gate checked.
-        passed: False if all rewrites were rejected and ``text`` is the original.
+        passed: whether a rewrite was accepted; if not, ``text`` is the original.
         plain: number of clauses that kept their words, because no template matched or the gate
             rejected its result.
         clauses: number of clauses.
-        refused: problems of the rejected rewrites.
+        refused: the problems of rejected rewrites.
     """
 
     text: str
@@ -47,8 +48,9 @@ class Restyled:
 def restyle(text: str, manner: str, key: Key, rewrite: Rewrite | None = None) -> Restyled:
     """Rewrite ``text`` in a style and check the result with the fidelity gate.
 
-    ``rewrite`` (text, style) -> text asks a language model first. If the gate rejects its answer,
-    the rules rewrite the text. Raises ValueError for a text without a word.
+    If ``rewrite`` (a function (text, style) -> text, such as a language model) is set, it is used
+    first. If the gate rejects its answer, the text is rewritten by rules. Raises ValueError for a
+    text without a word.
     """
     check_text(text)
     refused: list[str] = []
@@ -71,7 +73,7 @@ def restyle(text: str, manner: str, key: Key, rewrite: Rewrite | None = None) ->
 
 
 class _Draw:
-    """A sequence of random choices from one stream."""
+    """Generates random choices from one stream of numbers."""
 
     def __init__(self, stream: int) -> None:
         self._stream, self._count = stream, 0
@@ -82,7 +84,7 @@ class _Draw:
 
 
 def _speak(text: str, manner: str, stream: int, attempt: int) -> tuple[str, int, int]:
-    """Return the rewritten text, the number of clauses that kept their words, and of all clauses.
+    """Return the rewritten text, the number of unchanged clauses, and the number of all clauses.
 
     The first attempt uses templates and synonyms, the second only templates, the third only frames.
     """
@@ -106,7 +108,7 @@ def _speak(text: str, manner: str, stream: int, attempt: int) -> tuple[str, int,
 
 
 def _say(clause: Clause, voice: phrases.Voice, draw: _Draw, attempt: int) -> str | None:
-    """Return the command of ``clause`` rewritten in the style; None to keep its words."""
+    """Return the command of ``clause`` rewritten in the style, or None to keep its words."""
     if attempt >= 2:
         return None
     for kind, pattern in phrases.PATTERNS.items():
@@ -128,7 +130,7 @@ def _lowered(text: str) -> str:
 
 
 def _framed(frame: str, when: str, command: str) -> str:
-    """Return one sentence; a frame applies only to a command that begins with a verb."""
+    """Return one sentence; a frame is used only for a command that begins with a verb."""
     if not re.match(phrases.BARE_VERB, command, re.IGNORECASE):
         frame = "{}"
     body = command if frame == "{}" else frame.format(_lowered(command))

@@ -1,8 +1,8 @@
-"""Tag the parts of speech (Universal POS) of instructions, by a built-in tagger or by spaCy.
+"""Tag parts of speech (Universal POS) in instructions, with a built-in tagger or with spaCy.
 
-The built-in tagger ("own") knows the closed word classes and the verbs, adjectives and adverbs of
-navigation (``words.py``). It uses the neighbours of words with two classes, and tags every other
-word as a noun.
+The built-in tagger ("own") knows all function words, and the verbs, adjectives and adverbs that are
+common in navigation (``words.py``). For words with two classes, it decides by the neighbouring
+words. Every other word is tagged as a noun.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ _BEFORE_NOUN = frozenset({"DET", "ADJ", "NUM"})
 
 @dataclass(frozen=True)
 class Token:
-    """A word or punctuation mark: its text, start, lower case and tag."""
+    """A word or punctuation mark with its text, start, lower-case form and tag."""
 
     text: str
     start: int
@@ -34,12 +34,12 @@ class Token:
 
     @property
     def end(self) -> int:
-        """Return the index after the last character."""
+        """The index after the last character."""
         return self.start + len(self.text)
 
     @property
     def is_word(self) -> bool:
-        """Return whether this is a word, not punctuation or a ``[MASK]``."""
+        """Whether this is a word, rather than punctuation or a ``[MASK]``."""
         return bool(WORD.match(self.text))
 
 
@@ -65,8 +65,8 @@ def tag(text: str) -> list[Token]:
 def named(name: str = "own") -> Callable[[str], list[Token]]:
     """Return the tagger ``name``: "own" (:func:`tag`), or "spacy", an installed English pipeline.
 
-    "own" is the default, so that equal keys change the same words on every machine.
-    Raises ValueError for another name, or if no pipeline is installed.
+    The default is "own", so that equal keys change the same words on every machine.
+    Raises ValueError for an unknown name, or if no pipeline is installed.
     """
     if name not in TAGGERS:
         raise ValueError(f"There is no tagger {name!r}. Choose one of: {', '.join(TAGGERS)}.")
@@ -95,7 +95,8 @@ def _spacy() -> Any:
 
 
 def _spacy_tags(pipeline: Any, text: str) -> list[Token]:
-    """Return our tokens with the tags of ``pipeline``, except words that it often mistags."""
+    """Return our tokens with the tags of ``pipeline``, except for words that it often tags
+    wrongly."""
     places = {token.idx: token.pos_ for token in pipeline(text)}
     return [
         token
@@ -133,7 +134,8 @@ def _tag(token: Token, before: Token | None, after: Token | None) -> str:
 
 
 def _by_context(word: str, before: Token | None, after: Token | None) -> str:
-    """Tag a word of two classes by its neighbours, such as a noun after a determiner."""
+    """Tag a word with two classes by its neighbours; for example, after a determiner it is a
+    noun."""
     first, second = words.AMBIGUOUS[word]
     if word in ("left", "right"):
         return _side(before, after)

@@ -1,4 +1,4 @@
-"""Check that texts can be corrupted: they must be in English and hold a word."""
+"""Check that texts can be corrupted: they must be in English and contain a word."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ def has_word(text: object) -> bool:
 
 
 def check_text(text: str) -> None:
-    """Raise ValueError if ``text`` holds no word."""
+    """Raise ValueError if ``text`` contains no word."""
     if not has_word(text):
         raise ValueError(
             f"The instruction is empty: {text!r:.60} holds no word. Give the sentence that the "
@@ -23,8 +23,8 @@ def check_text(text: str) -> None:
 def is_english(language: str | None, text: str = "") -> bool:
     """Return whether a language code or name means English.
 
-    "en" and "en-US" do, in any case. Without a language (None or empty), ``text`` must not be in
-    another script: at least half of its letters must be Latin.
+    For example, "en" and "en-US" mean English, in upper or lower case. If no language is given
+    (None or empty), at least half of the letters in ``text`` must be Latin.
     """
     if language:
         return language.lower().startswith("en")
@@ -33,7 +33,7 @@ def is_english(language: str | None, text: str = "") -> bool:
     return 2 * latin >= len(letters)
 
 
-UNMARKED = "an unknown language (not in Latin script)"  # of texts without a language
+UNMARKED = "an unknown language (not in Latin script)"  # count of texts without a language code
 
 
 def passed_through(languages: Mapping[str, int]) -> str:

@@ -1,4 +1,4 @@
-"""Tokenize corrupted instructions by the vocabulary of an R2R-CE file or a named tokenizer."""
+"""Tokenize corrupted instructions with the vocabulary of an R2R-CE file or a named tokenizer."""
 
 from __future__ import annotations
 
@@ -11,19 +11,21 @@ _WORD = re.compile(r"\[\w+\]|\w+(?:-\w+)*|[^\w\s]", re.UNICODE)
 
 
 class Tokenizer(Protocol):
-    """Converts text to the token ids that an agent reads."""
+    """Protocol of tokenizers, which convert text to the token ids that an agent reads."""
 
     mask_token: str | None
 
     def encode(self, text: str, length: int | None) -> tuple[tuple[int, ...], bool]:
-        """Return tokens, padded or cut to ``length`` if given, and whether they were cut."""
+        """Return the tokens and whether they were cut; with ``length`` they are padded or cut to
+        it."""
         ...
 
 
 class FileVocabulary:
-    """The ``instruction_vocab`` of an R2R-CE file: ids of lower-case words and punctuation.
+    """Tokenizer with the ``instruction_vocab`` of an R2R-CE file, for lower-case words and
+    punctuation.
 
-    It has no mask token: "[MASK]" becomes the unknown word.
+    The vocabulary has no mask token, so "[MASK]" becomes the unknown word.
     """
 
     mask_token: str | None = None
@@ -33,7 +35,7 @@ class FileVocabulary:
         self._unknown, self._pad = vocabulary["UNK_INDEX"], vocabulary["PAD_INDEX"]
 
     def encode(self, text: str, length: int | None) -> tuple[tuple[int, ...], bool]:
-        """Encode ``text``; unknown words get the unknown id, unknown punctuation is dropped."""
+        """Encode ``text``; unknown words get the unknown id, and unknown punctuation is removed."""
         ids = [
             self._numbers.get(word, self._unknown)
             for word in _WORD.findall(text.lower())
@@ -64,7 +66,7 @@ class NamedTokenizer:
         self.mask_token: str | None = self._tokenizer.mask_token
 
     def encode(self, text: str, length: int | None) -> tuple[tuple[int, ...], bool]:
-        """Encode ``text`` with begin and end tokens, which remain if the text is cut."""
+        """Encode ``text`` with begin and end tokens, which are kept if the text is cut."""
         ids = list(self._tokenizer(text)["input_ids"])
         cut = length is not None and len(ids) > length
         if cut:

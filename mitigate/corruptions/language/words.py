@@ -1,6 +1,6 @@
-"""Words of navigation: their classes, and the words that masks never hide.
+"""Define the classes of navigation words, and the words that masks never hide.
 
-All lists are in ``words.json``. This project wrote them for indoor instructions.
+All lists are in ``words.json``. They were written for this project, for indoor instructions.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from typing import Any
 
 
 def bag(text: str) -> frozenset[str]:
-    """Return the words of ``text``."""
+    """Return the set of words in ``text``."""
     return frozenset(text.split())
 
 
@@ -29,7 +29,7 @@ def listed(name: str) -> frozenset[str]:
 
 
 _CLASSES = {name: " ".join(lines) for name, lines in WORDS["classes"].items()}
-# words of two classes; the neighbours decide between them
+# words with two classes; the neighbouring words decide between them
 _TWO = {pair: " ".join(lines) for pair, lines in WORDS["two_classes"].items()}
 
 AMBIGUOUS: dict[str, tuple[str, str]] = {
@@ -39,13 +39,13 @@ TAGS = {word: name for name, text in reversed(_CLASSES.items()) for word in text
 VERBS = bag(_CLASSES["VERB"])
 AMBIGUOUS_NOUNS = frozenset(word for word, pair in AMBIGUOUS.items() if "NOUN" in pair)
 POSSESSORS = listed("possessors")
-# words that general taggers mistag in instructions (turn, exit, left ...); they keep our tag
+# words that general taggers tag wrongly in instructions (turn, exit, left ...); these keep our tag
 OVERRIDES = listed("overrides")
 
-# never masked: words for places, directions, identity or negation (and all words in n't)
+# words that are never masked: places, directions, identity, negation (and all words with n't)
 SPATIAL = (bag(_CLASSES["ADP"]) - bag("of for with like per about during")) | listed("spatial")
 
 
 def is_kept(word: str) -> bool:
-    """Return whether masks never hide ``word`` (lower case, straight apostrophe)."""
+    """Return whether ``word`` (lower case, straight apostrophe) is never masked."""
     return word in SPATIAL or word.endswith("n't")

@@ -156,7 +156,7 @@ class Dataset:
 
         Raises:
             FileNotFoundError: The file is missing.
-            ValueError: The file is damaged, or a feature has another shape.
+            ValueError: The file is damaged, or a feature has a different shape.
         """
         path = self.path / data
         table = read_columns(path, (), list(self.signals))

@@ -1,6 +1,6 @@
-"""Unseen depth corruptions of calibration: scale, misalignment with RGB, wiggling.
+"""Unseen depth corruptions from wrong calibration: scale, misalignment with RGB, and wiggling.
 
-Functions have the arguments and results of those in ``corruptions/depth.py``, and treat invalid
+Functions have the same arguments and results as in ``corruptions/depth.py``, and treat invalid
 pixels in the same way.
 """
 
@@ -15,22 +15,24 @@ from mitigate.corruptions.depth_sensor import LIGHT_SPEED, NEAREST, DepthSensor
 from mitigate.corruptions.keying import Key, digest, uniform
 from mitigate.corruptions.record import TEST, VALIDATION, Record
 
-SCALE_LEAST, SCALE_MOST = 0.25, 0.40  # share of the depth at s = 1
-ASIDE = 0.12  # share of W at s = 1, sideways
-ASIDE_DOWN = 0.25  # share of the sideways shift, down or up
-WIGGLE = 0.30  # metres at s = 1
+SCALE_LEAST, SCALE_MOST = 0.25, 0.40  # as a fraction of the depth, at s = 1
+ASIDE = 0.12  # horizontal shift as a fraction of W, at s = 1
+ASIDE_DOWN = 0.25  # vertical shift as a fraction of the horizontal shift
+WIGGLE = 0.30  # in metres, at s = 1
 WIGGLE_HERTZ = 20e6
-WIGGLE_PERIOD = LIGHT_SPEED / (2.0 * WIGGLE_HERTZ) / 4.0  # metres: four samples of the phase
+# period in metres, for four samples of the phase
+WIGGLE_PERIOD = LIGHT_SPEED / (2.0 * WIGGLE_HERTZ) / 4.0
 WIGGLE_CELLS = 4096
 
 
 def valid(views: np.ndarray) -> np.ndarray:
-    """Return whether each depth is a reading."""
+    """Return a mask of valid depth."""
     return (views > 0) & (views < np.inf)
 
 
 def clip_valid(views: np.ndarray, moved: np.ndarray, sensor: DepthSensor) -> np.ndarray:
-    """Return ``moved`` where ``views`` is valid, clipped to the sensor's range; else ``views``."""
+    """Return ``moved``, clipped to the sensor's range, at pixels where ``views`` is valid, else
+    ``views``."""
     inside = np.clip(moved, NEAREST, np.float32(sensor.z_max))
     return np.where(valid(views), inside, views)
 
@@ -44,7 +46,7 @@ def scale_error(views: np.ndarray, severity: float, key: Key, sensor: DepthSenso
 
 
 def misalignment(views: np.ndarray, severity: float, key: Key, sensor: DepthSensor) -> np.ndarray:
-    """Shift depth by 0.12 s W where the source is valid; edges are replicated."""
+    """Shift depth by 0.12 s W at pixels whose source is valid; edges are repeated."""
     _, height, width = views.shape
     value = digest(key, "misalignment")
     reach = ASIDE * severity * width * (1 if uniform(value, 0) < 0.5 else -1)
@@ -57,14 +59,15 @@ def misalignment(views: np.ndarray, severity: float, key: Key, sensor: DepthSens
 
 @lru_cache(maxsize=32)
 def wiggle_table(phase: float, amplitude: float, z_max: float) -> np.ndarray:
-    """Return float32 [WIGGLE_CELLS + 1]: metres to add at z = 0 .. z_max."""
+    """Return the metres to add at depths from 0 to z_max, float32 [WIGGLE_CELLS + 1]."""
     z = np.linspace(0.0, z_max, WIGGLE_CELLS + 1)
     turns = z / WIGGLE_PERIOD + phase
     return (amplitude * np.sin(2.0 * math.pi * turns)).astype(np.float32)
 
 
 def wiggling(views: np.ndarray, severity: float, key: Key, sensor: DepthSensor) -> np.ndarray:
-    """Add 0.3 s sin(2 pi (z/P + p)), the harmonics of a time-of-flight camera's light."""
+    """Add 0.3 s sin(2 pi (z/P + p)), the error from harmonics of a time-of-flight camera's
+    light."""
     phase = uniform(digest(key, "wiggling"))
     table = wiggle_table(phase, WIGGLE * severity, sensor.z_max)
     clean = np.clip(np.where(valid(views), views, 0), 0, np.float32(sensor.z_max))

@@ -1,6 +1,6 @@
-"""Unseen RGB corruptions of a compressed stream: coarse blocks, lost slices.
+"""Unseen RGB corruptions of a compressed video stream: coarse blocks and lost slices.
 
-Functions have the arguments and results of those in ``corruptions/rgb.py``.
+Functions have the same arguments and results as in ``corruptions/rgb.py``.
 """
 
 from __future__ import annotations
@@ -14,18 +14,18 @@ from numba import njit
 from mitigate.corruptions.keying import Key, uniform, view_streams
 from mitigate.corruptions.record import TEST, VALIDATION, Record
 
-BLOCKS = (4, 8, 16, 32)  # pixels: the transforms of H.264 and H.265
-BLOCKS_ACROSS = 28  # blocks per shorter side: 8 px at 224
-DEAD_ZONE = 0.40  # amplitude over white at s = 1
-CHROMA = 2.0  # dead zone of colours, relative to grey
-SLICES = 14  # slices per frame height: macroblocks of 16 px at 224
-LOST = 0.8  # share of the slices at s = 1
-NOTHING = 128  # grey level that a decoder shows without an earlier picture
+BLOCKS = (4, 8, 16, 32)  # block sides in pixels, as in the transforms of H.264 and H.265
+BLOCKS_ACROSS = 28  # number of blocks along the shorter side: 8 px at 224
+DEAD_ZONE = 0.40  # width of the dead zone as a fraction of white, at s = 1
+CHROMA = 2.0  # dead zone of the colour channels, relative to that of grey
+SLICES = 14  # number of slices per frame height: macroblocks of 16 px at 224
+LOST = 0.8  # fraction of lost slices at s = 1
+NOTHING = 128  # grey level that a decoder shows if there is no earlier frame
 
 
 @lru_cache(maxsize=4)
 def cosines(side: int) -> np.ndarray:
-    """Return float32 [side, side]: the orthonormal DCT-II, one frequency per row."""
+    """Return the orthonormal DCT-II matrix, float32 [side, side], with one frequency per row."""
     places = (2 * np.arange(side) + 1) * np.arange(side)[:, None]
     matrix = np.cos(math.pi * places / (2 * side)) * math.sqrt(2.0 / side)
     matrix[0] = math.sqrt(1.0 / side)
@@ -33,21 +33,22 @@ def cosines(side: int) -> np.ndarray:
 
 
 def block_side(height: int, width: int) -> int:
-    """Return the block side nearest, by ratio, to 1/28 of the shorter side of the frame."""
+    """Return the block side whose ratio to 1/28 of the frame's shorter side is nearest to 1."""
     target = math.log(min(height, width) / BLOCKS_ACROSS)
     return min(BLOCKS, key=lambda side: abs(math.log(side) - target))
 
 
 @lru_cache(maxsize=1)
 def opponents() -> np.ndarray:
-    """Return orthonormal float32 [3, 3]: grey, red - blue, green against both."""
+    """Return an orthonormal colour matrix float32 [3, 3]: grey, red - blue, and green against
+    both."""
     rows = np.array([[1.0, 1.0, 1.0], [1.0, 0.0, -1.0], [-1.0, 2.0, -1.0]])
     return (rows / np.linalg.norm(rows, axis=1, keepdims=True)).astype(np.float32)
 
 
 @njit(cache=True)
 def _both_ways(matrix, cells, spare):
-    """Set cells [b, b, n] = matrix cells matrix^T in place, for all n at once."""
+    """Transform all n blocks, cells [b, b, n], to matrix @ block @ matrix^T in place."""
     side, _, count = cells.shape
     for k in range(side):
         for x in range(side):
@@ -71,7 +72,7 @@ def _both_ways(matrix, cells, spare):
 
 @njit(cache=True)
 def _lose(cells, least):
-    """Set coefficients below ``least`` to 0 in place, except the mean."""
+    """Set DCT coefficients below ``least`` to 0 in place, except the mean."""
     mean = cells[0, 0].copy()
     flat = cells.reshape(-1)
     for i in range(flat.size):
@@ -81,7 +82,8 @@ def _lose(cells, least):
 
 @njit(cache=True)
 def _gather(view, weights, cells):
-    """Set cells [b, b, n] to an opponent colour of uint8 [H, W, 3], edges replicated."""
+    """Fill cells [b, b, n] with the blocks of one opponent colour of uint8 [H, W, 3]; edges are
+    repeated."""
     height, width, _ = view.shape
     side, across = cells.shape[0], -(-width // cells.shape[0])
     for y in range(-(-height // side) * side):
@@ -116,7 +118,7 @@ def _code(views, colours, matrix, back, least, out):
 
 
 def compression(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
-    """Remove DCT coefficients of blocks that lie in a dead zone of width 0.4 s."""
+    """Remove the DCT coefficients of blocks that lie in a dead zone of width 0.4 s."""
     side = block_side(*views.shape[1:3])
     zones = np.array([1.0, CHROMA, CHROMA]) * (DEAD_ZONE * severity * 255.0 * side / 2.0)
     least = zones.astype(np.float32)
@@ -126,7 +128,8 @@ def compression(views: np.ndarray, severity: float, key: Key, heading=None) -> n
 
 
 def lost_slices(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
-    """Replace 0.8 s of the 14 slices of every view by grey, from a random column on."""
+    """Replace a fraction 0.8 s of the 14 slices of every view by grey, starting at a random
+    column."""
     count, height, width, _ = views.shape
     out, edges = views.copy(), np.rint(np.linspace(0, height, SLICES + 1)).astype(int)
     for view, stream in enumerate(view_streams(key, "lost_slices", count)):

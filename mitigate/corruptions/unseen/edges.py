@@ -1,6 +1,6 @@
-"""Unseen depth corruptions next to edges: fattening, flying pixels, shadows of the projector.
+"""Unseen depth corruptions at edges: fattening, flying pixels and projector shadows.
 
-Functions have the arguments and results of those in ``corruptions/depth.py``, and treat invalid
+Functions have the same arguments and results as in ``corruptions/depth.py``, and treat invalid
 pixels in the same way.
 """
 
@@ -18,9 +18,10 @@ from mitigate.corruptions.depth_sensor import NEAREST, DepthSensor, is_valid
 from mitigate.corruptions.keying import Key, digest, mix, uniform, view_streams
 from mitigate.corruptions.record import TEST, VALIDATION, Record
 
-FATTENING = 0.08  # share of the side at s = 1
-FOOTPRINT = 0.03  # share of the side: half the square over which a flying pixel mixes
-BASELINE = 0.50  # metres at s = 1; a Kinect has 0.075, a ZED 0.12
+FATTENING = 0.08  # as a fraction of the side, at s = 1
+# half side of the square over which a flying pixel mixes, as a fraction of the side
+FOOTPRINT = 0.03
+BASELINE = 0.50  # baseline in metres at s = 1; a Kinect has 0.075, a ZED 0.12
 
 _U = np.uint64
 
@@ -39,7 +40,7 @@ def _fatten(views, reach, share, z_max, out):
 
 
 def fattening(views: np.ndarray, severity: float, key: Key, sensor: DepthSensor) -> np.ndarray:
-    """Set each pixel to the nearest depth within 0.08 s side, as a matching window does."""
+    """Set each pixel to the smallest depth within 0.08 s of the side, as a matching window does."""
     reach = FATTENING * severity * min(views.shape[1:])
     out, whole = np.empty_like(views), math.floor(reach)
     _fatten(views, whole, np.float32(reach - whole), np.float32(sensor.z_max), out)
@@ -63,7 +64,7 @@ def _fly(views, streams, reach, least, z_max, out):
 
 
 def flying_pixels(views: np.ndarray, severity: float, key: Key, sensor: DepthSensor) -> np.ndarray:
-    """Set the share s of pixels to a random depth between nearest and farthest around them."""
+    """Set a fraction s of pixels to random depths between the nearest and farthest around them."""
     reach = max(1, round(FOOTPRINT * min(views.shape[1:])))
     streams, out = view_streams(key, "flying_pixels", len(views)), np.empty_like(views)
     _fly(views, streams, reach, _U(round(severity * 2**32)), np.float32(sensor.z_max), out)
@@ -72,7 +73,7 @@ def flying_pixels(views: np.ndarray, severity: float, key: Key, sensor: DepthSen
 
 @njit(cache=True)
 def _shade(views, offset, side, missing, z_max, out):
-    """Remove readings that no projector ray reaches; a ray meets the row at x + offset / z."""
+    """Remove pixels that no projector ray reaches; a ray meets the image row at x + offset / z."""
     width = views.shape[2]
     for v in range(views.shape[0]):
         for y in range(views.shape[1]):
@@ -90,7 +91,8 @@ def _shade(views, offset, side, missing, z_max, out):
 
 
 def edge_shadow(views: np.ndarray, severity: float, key: Key, sensor: DepthSensor) -> np.ndarray:
-    """Remove readings in the shadow of nearer surfaces, for a projector 0.5 s metres aside."""
+    """Remove pixels in the shadow of nearer surfaces, for a projector that is 0.5 s metres to the
+    side."""
     width, out = views.shape[2], np.empty_like(views)
     focal = 0.5 * width / math.tan(math.radians(HFOV_DEGREES) / 2.0)
     offset = np.float32(BASELINE * severity * focal)

@@ -1,6 +1,6 @@
 """Unseen RGB corruptions of light and colour: white balance, exposure, haze, hue.
 
-Functions have the arguments and results of those in ``corruptions/rgb.py``.
+Functions have the same arguments and results as in ``corruptions/rgb.py``.
 """
 
 from __future__ import annotations
@@ -17,17 +17,18 @@ from mitigate.corruptions.record import TEST, VALIDATION, Record
 
 STOPS, STOPS_SPREAD = 2.0, 0.2  # stops of exposure at s = 1, and their relative spread
 CAST = 2.0  # stops between red and blue at s = 1: Afifi & Brown 2019 have 2800 to 10000 K
-TINT = 0.5  # multiple of CAST, between green and the other two colours
-HAZE_DEPTH = 1.5  # optical depth at s = 1, where the haze is average
-HAZE_OCTAVES = ((0.16, 1.0), (0.08, 0.5), (0.04, 0.25))  # correlation over the side, weight
-HAZE_UNEVEN = 0.4  # standard deviation of the haze over its mean
-HAZE_THIN, HAZE_THICK = 0.25, 2.5  # multiples of the mean
+TINT = 0.5  # cast between green and the other two colours, as a multiple of CAST
+HAZE_DEPTH = 1.5  # optical depth at s = 1, in places with average haze
+# pairs of correlation length (as a fraction of the side) and weight
+HAZE_OCTAVES = ((0.16, 1.0), (0.08, 0.5), (0.04, 0.25))
+HAZE_UNEVEN = 0.4  # standard deviation of the haze relative to its mean
+HAZE_THIN, HAZE_THICK = 0.25, 2.5  # limits of the haze, as multiples of the mean
 HAZE_COLOUR = (205, 208, 212)
-HUE_DEGREES = 180.0  # largest rotation of the hue, at s = 1
+HUE_DEGREES = 180.0  # maximum rotation of the hue, at s = 1
 
 
 def _by_table(views: np.ndarray, tables: list[np.ndarray]) -> np.ndarray:
-    """Map each colour of uint8 [V, H, W, 3] by its own uint8 [256] table."""
+    """Map each colour channel of uint8 [V, H, W, 3] with its own uint8 [256] table."""
     out = np.empty_like(views)
     for colour, table in enumerate(tables):
         out[..., colour] = table[views[..., colour]]
@@ -35,7 +36,7 @@ def _by_table(views: np.ndarray, tables: list[np.ndarray]) -> np.ndarray:
 
 
 def _amplified(stops: float) -> np.ndarray:
-    """Return uint8 [256]: grey levels with ``stops`` more light, clipped at white."""
+    """Return a table uint8 [256] that adds ``stops`` of light to grey levels, clipped at white."""
     return np.rint(np.minimum(np.arange(256) * 2.0 ** (stops / GAMMA), 255.0)).astype(np.uint8)
 
 
@@ -48,14 +49,14 @@ def white_balance(views: np.ndarray, severity: float, key: Key, heading=None) ->
 
 
 def overexposure(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
-    """Multiply light by 2^(2 s u), u ~ U(0.8, 1.2) per episode, and clip at white."""
+    """Multiply light by 2^(2 s u), with u ~ U(0.8, 1.2) per episode, and clip at white."""
     spread = 1.0 + STOPS_SPREAD * (2.0 * uniform(digest(key, "overexposure")) - 1.0)
     return _by_table(views, [_amplified(STOPS * spread * severity)] * 3)
 
 
 @cached
 def haze_density(value: int, height: int, width: int) -> np.ndarray:
-    """Return float32 [H, W]: the haze divided by its mean, a fractal field."""
+    """Return the haze divided by its mean, which is a fractal field float32 [H, W]."""
     parts = [
         weight * field(scramble(value, octave), height, width, correlation)[0]
         for octave, (correlation, weight) in enumerate(HAZE_OCTAVES)
@@ -67,13 +68,14 @@ def haze_density(value: int, height: int, width: int) -> np.ndarray:
 
 @cached
 def haze_mask(value: int, severity: float, height: int, width: int) -> np.ndarray:
-    """Return int16 [H, 3 W]: the opacity of the haze, in 1/32768."""
+    """Return the opacity of the haze, int16 [H, 3 W] in units of 1/32768."""
     lost = np.exp(-HAZE_DEPTH * severity * haze_density(value, height, width).astype(np.float64))
     return masks.opacity_mask((1.0 - lost).astype(np.float32), 1.0, masks.NEUTRAL)
 
 
 def haze(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
-    """Blend x t + A (1 - t), like smoke or dust; each view has a different part of the field."""
+    """Blend each view with haze, x t + A (1 - t), as from smoke; views show different parts of the
+    field."""
     count, height, width, _ = views.shape
     value, out = digest(key, "haze"), np.empty_like(views)
     mask = haze_mask(value, severity, height, width)
@@ -87,7 +89,7 @@ def haze(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarr
 
 @lru_cache(maxsize=32)
 def hue_matrix(degrees: float) -> np.ndarray:
-    """Return int32 [3, 3] in 1/4096: a rotation of colours about grey (Rodrigues)."""
+    """Return a rotation of colours about grey (Rodrigues), int32 [3, 3] in units of 1/4096."""
     angle = math.radians(degrees)
     third, cross = np.full((3, 3), 1.0 / 3.0), np.zeros((3, 3))
     cross[[0, 1, 2], [2, 0, 1]], cross[[0, 1, 2], [1, 2, 0]] = 1.0, -1.0
@@ -96,7 +98,7 @@ def hue_matrix(degrees: float) -> np.ndarray:
 
 
 def hue_shift(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
-    """Rotate all hues by +-180 s degrees, with the sign fixed per episode; grey stays."""
+    """Rotate all hues by +-180 s degrees, with the sign fixed per episode; grey does not change."""
     sign = 1.0 if uniform(digest(key, "hue_shift")) < 0.5 else -1.0
     matrix = hue_matrix(sign * HUE_DEGREES * severity)
     colours = [views[..., c].astype(np.int32) for c in range(3)]

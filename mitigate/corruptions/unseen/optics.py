@@ -1,6 +1,6 @@
-"""Unseen RGB corruptions in front of the sensor: panes, drops, scratches.
+"""Unseen RGB corruptions by objects before the sensor: window panes, drops and scratches.
 
-Functions have the arguments and results of those in ``corruptions/rgb.py``.
+Functions have the same arguments and results as in ``corruptions/rgb.py``.
 """
 
 from __future__ import annotations
@@ -15,20 +15,20 @@ from mitigate.corruptions import masks
 from mitigate.corruptions.keying import Key, cached, digest, field, uniform
 from mitigate.corruptions.record import TEST, VALIDATION, Record
 
-GHOST = 0.5  # share of the ghost at s = 1
-# shares of W, W and H: the position of the ghost
+GHOST = 0.5  # weight of the ghost image at s = 1
+# position of the ghost image, as fractions of W, W and H
 GHOST_NEAR, GHOST_FAR, GHOST_DOWN = 0.06, 0.16, 0.04
-DROPS = 0.06  # correlation of the surface over the side
-BEND = 0.045  # rms displacement over the side at s = 1
-SCRATCHES = 14  # number at s = 1
-SCRATCH_CORE, SCRATCH_GLOW = 0.006, 0.035  # widths over the side
+DROPS = 0.06  # correlation length of the surface as a fraction of the side
+BEND = 0.045  # rms displacement as a fraction of the side, at s = 1
+SCRATCHES = 14  # number of scratches at s = 1
+SCRATCH_CORE, SCRATCH_GLOW = 0.006, 0.035  # widths as fractions of the side
 SCRATCH_OPACITY, GLOW_OPACITY = 0.9, 0.45
-SCRATCH_LONG = (0.3, 1.0)  # length over the side
+SCRATCH_LONG = (0.3, 1.0)  # length as a fraction of the side
 SCRATCH_COLOUR = (226, 226, 222)
 
 
 def ghosting(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
-    """Blend (1 - a) x + a x', a = 0.5 s; x' is the shifted picture, edges replicated."""
+    """Blend (1 - a) x + a x' with a = 0.5 s, where x' is the shifted image with repeated edges."""
     _, height, width, _ = views.shape
     value = digest(key, "ghosting")
     away = GHOST_NEAR + (GHOST_FAR - GHOST_NEAR) * uniform(value, 0)
@@ -44,7 +44,7 @@ def ghosting(views: np.ndarray, severity: float, key: Key, heading=None) -> np.n
 
 @njit(cache=True)
 def displaced(view, down, right, out):
-    """Set out[y, x] = view at (y + down, x + right), bilinear, edges replicated.
+    """Displace a view: out[y, x] = view at (y + down, x + right), bilinear, with repeated edges.
 
     ``view`` is uint8 [H, W, 3]. Displacements are float32 [H, W] in pixels, rounded down to 1/256.
     """
@@ -63,7 +63,8 @@ def displaced(view, down, right, out):
 
 @cached
 def slopes(value: int, height: int, width: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return the slopes down and right of a random surface, float32 [H, W], joint rms 1."""
+    """Return the vertical and horizontal slopes of a random surface, float32 [H, W], with joint rms
+    1."""
     surface = field(value, height, width, DROPS)[0].astype(np.float64)
     down, right = (np.roll(surface, -1, axis) - np.roll(surface, 1, axis) for axis in (0, 1))
     scale = 1.0 / max(math.sqrt(np.mean(down**2 + right**2)), 1e-9)
@@ -71,7 +72,8 @@ def slopes(value: int, height: int, width: int) -> tuple[np.ndarray, np.ndarray]
 
 
 def refraction(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
-    """Displace every pixel by the slope of a wet pane's surface, rms 0.045 s side."""
+    """Displace pixels by the slope of a wet pane's surface; the rms displacement is 0.045 s of the
+    side."""
     _, height, width, _ = views.shape
     reach = np.float32(BEND * severity * min(height, width))
     down, right = slopes(digest(key, "refraction"), height, width)
@@ -82,7 +84,8 @@ def refraction(views: np.ndarray, severity: float, key: Key, heading=None) -> np
 
 
 def _along(value: int, number: int, height: int, width: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return float64 [H, W]: distance to a scratch's line, and beyond its ends, in sides."""
+    """Return the distances to a scratch's line and beyond its ends, float64 [H, W], in image
+    sides."""
     draw = [uniform(value, 5 * number + part) for part in range(4)]
     side, angle = min(height, width), math.pi * draw[2]
     half = 0.5 * (SCRATCH_LONG[0] + (SCRATCH_LONG[1] - SCRATCH_LONG[0]) * draw[3])
@@ -95,7 +98,7 @@ def _along(value: int, number: int, height: int, width: int) -> tuple[np.ndarray
 
 @cached
 def scratch_mask(value: int, severity: float, height: int, width: int) -> np.ndarray:
-    """Return int16 [H, 3 W]: the opacity of the scratches, in 1/32768."""
+    """Return the opacity of the scratches, int16 [H, 3 W] in units of 1/32768."""
     clear = np.ones((height, width))
     for number in range(SCRATCHES):
         strength = min(max(SCRATCHES * severity - number, 0.0), 1.0)
@@ -111,7 +114,7 @@ def scratch_mask(value: int, severity: float, height: int, width: int) -> np.nda
 
 
 def scratches(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
-    """Draw the first 14 s scratches of the episode: bright lines with a glow."""
+    """Draw the first 14 s scratches of the episode as bright lines with a glow."""
     height, width = views.shape[1:3]
     mask = scratch_mask(digest(key, "scratches"), severity, height, width)
     out = np.empty_like(views)

@@ -1,6 +1,6 @@
-"""Unseen depth corruptions of the returned signal: ripple, range, mismatches, glossy floors.
+"""Unseen depth corruptions of the returned signal: ripple, range limit, mismatches, glossy floors.
 
-Functions have the arguments and results of those in ``corruptions/depth.py``, and treat invalid
+Functions have the same arguments and results as in ``corruptions/depth.py``, and treat invalid
 pixels in the same way.
 """
 
@@ -25,20 +25,22 @@ from mitigate.corruptions.keying import (
 from mitigate.corruptions.record import TEST, VALIDATION, Record
 from mitigate.corruptions.unseen.calibration import clip_valid, valid
 
-RIPPLE = 0.06  # per metre at s = 1: the standard deviation of z is 0.06 z^2
-RIPPLE_CORRELATION = 0.04  # share of the side
-RANGE_LEFT = 0.10  # share of z_max that is left at s = 1
-WRONG = 0.30  # share of wrong readings at s = 1
-SPECKLE = 0.02  # share of the side: size of a cell of wrong readings
-GLOSS_CORRELATION = 0.08  # share of the side
-FLOOR = 0.92  # share of the camera height: everything farther below is floor
-UPSIDE_DOWN = 3.0  # times the floor's depth: mirrored ceiling, twice as high as the camera
+RIPPLE = 0.06  # per metre, at s = 1; the standard deviation of z is 0.06 z^2
+RIPPLE_CORRELATION = 0.04  # as a fraction of the side
+RANGE_LEFT = 0.10  # fraction of z_max that remains at s = 1
+WRONG = 0.30  # fraction of pixels with wrong depth at s = 1
+SPECKLE = 0.02  # side of a patch of wrong depth, as a fraction of the image side
+GLOSS_CORRELATION = 0.08  # as a fraction of the side
+FLOOR = 0.92  # pixels farther below the camera than this fraction of its height are floor
+# factor on the floor's depth, for a mirrored ceiling that is twice as high as the camera
+UPSIDE_DOWN = 3.0
 
 _U = np.uint64
 
 
 def ripple(views: np.ndarray, severity: float, key: Key, sensor: DepthSensor) -> np.ndarray:
-    """Add 0.06 s z^2 F: waves over walls. Every view and frame shifts the field F."""
+    """Add waves to walls: the error is 0.06 s z^2 F for a random field F. The field F is shifted
+    for every view and frame."""
     count, height, width = views.shape
     waves = field(digest(key, "ripple"), height, width, RIPPLE_CORRELATION)[0]
     moved = np.where(valid(views), np.minimum(views, np.float32(sensor.z_max)), 0)
@@ -51,7 +53,7 @@ def ripple(views: np.ndarray, severity: float, key: Key, sensor: DepthSensor) ->
 
 
 def range_limit(views: np.ndarray, severity: float, key: Key, sensor: DepthSensor) -> np.ndarray:
-    """Remove readings beyond z_max 0.1^s, where too little light returns to the camera."""
+    """Remove depth beyond z_max 0.1^s, from where too little light returns to the camera."""
     limit = np.float32(sensor.z_max * RANGE_LEFT**severity)
     near = clip_valid(views, views, sensor)
     return np.where(valid(views) & (near > limit), np.float32(sensor.missing), near)
@@ -70,7 +72,7 @@ def _mismatch(views, streams, cell, least, z_max, out):
 
 
 def mismatches(views: np.ndarray, severity: float, key: Key, sensor: DepthSensor) -> np.ndarray:
-    """Set 0.3 s of the readings, in cells of 0.02 side, to random depths in the range."""
+    """Set a fraction 0.3 s of the pixels, in patches of 0.02 of the side, to random depths."""
     cell = max(1, round(SPECKLE * min(views.shape[1:])))
     streams, out = view_streams(key, "mismatches", len(views)), np.empty_like(views)
     least = _U(round(WRONG * severity * 2**32))
@@ -79,7 +81,7 @@ def mismatches(views: np.ndarray, severity: float, key: Key, sensor: DepthSensor
 
 
 def below_camera(views: np.ndarray) -> np.ndarray:
-    """Return float32 [V, H, W]: distance of pixels below a level camera, <= 0 above it.
+    """Return the distance of pixels below a level camera (<= 0 above it), float32 [V, H, W].
 
     The unit is half the image width at a depth of one metre.
     """
@@ -89,7 +91,7 @@ def below_camera(views: np.ndarray) -> np.ndarray:
 
 
 def glossy_floor(views: np.ndarray, severity: float, key: Key, sensor: DepthSensor) -> np.ndarray:
-    """Set the share s of the floor to the depth of the room that it mirrors."""
+    """Set a fraction s of the floor to the depth of the room that the floor mirrors."""
     _, height, width = views.shape
     value, out, depth = (
         digest(key, "glossy_floor"),

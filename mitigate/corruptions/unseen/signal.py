@@ -1,6 +1,6 @@
-"""Unseen RGB corruptions of read-out: rolling shutter, flicker, bit errors.
+"""Unseen RGB corruptions of sensor read-out: rolling shutter, flicker and bit errors.
 
-Functions have the arguments and results of those in ``corruptions/rgb.py``.
+Functions have the same arguments and results as in ``corruptions/rgb.py``.
 """
 
 from __future__ import annotations
@@ -15,11 +15,11 @@ from mitigate.corruptions.keying import Key, digest, mix, uniform, view_streams
 from mitigate.corruptions.record import TEST, VALIDATION, Record
 from mitigate.corruptions.unseen.optics import displaced
 
-WOBBLE = 0.05  # share of W at s = 1
-WOBBLE_WAVES = (1.0, 2.5)  # waves per frame height
-FLICKER = 0.8  # share of the light at s = 1
-BANDS = (2.0, 4.0)  # bands per frame height: 100 Hz read out in 1/50 to 1/25 s
-IMPULSES = 0.3  # share of the pixels at s = 1
+WOBBLE = 0.05  # maximum shift as a fraction of W, at s = 1
+WOBBLE_WAVES = (1.0, 2.5)  # number of waves per frame height
+FLICKER = 0.8  # change of brightness at s = 1
+BANDS = (2.0, 4.0)  # number of bands per frame height, for 100 Hz light read out in 1/50 to 1/25 s
+IMPULSES = 0.3  # fraction of the pixels at s = 1
 
 _U = np.uint64
 
@@ -29,7 +29,7 @@ def _between(value: int, counter: int, ends: tuple[float, float]) -> float:
 
 
 def rolling_shutter(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
-    """Shift each row by 0.05 s W sin(...), as if a vibration moved the camera at read-out."""
+    """Shift each row by 0.05 s W sin(...), as if the camera vibrated during read-out."""
     _, height, width, _ = views.shape
     waves = _between(digest(key, "rolling_shutter"), 0, WOBBLE_WAVES)
     phase = uniform(digest(key, "rolling_shutter", frame=True))
@@ -43,7 +43,7 @@ def rolling_shutter(views: np.ndarray, severity: float, key: Key, heading=None) 
 
 
 def flicker_bands(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
-    """Scale the light of each row by 1 + 0.8 s cos(...), like lamps on mains power."""
+    """Scale the brightness of each row by 1 + 0.8 s cos(...), as from lamps on mains power."""
     count, height, _, _ = views.shape
     bands = _between(digest(key, "flicker_bands"), 0, BANDS)
     value = digest(key, "flicker_bands", frame=True)
@@ -56,7 +56,7 @@ def flicker_bands(views: np.ndarray, severity: float, key: Key, heading=None) ->
 
 @njit(cache=True)
 def _strike(views, streams, least, out):
-    """Set colours of pixels [V, P, 3] whose hash is below ``least`` (of 2^32) to 0 or 255."""
+    """Set colour values of pixels [V, P, 3] to 0 or 255 if their 32-bit hash is below ``least``."""
     for v in range(views.shape[0]):
         for i in range(views.shape[1]):
             word = mix(streams[v], _U(i))
@@ -67,7 +67,8 @@ def _strike(views, streams, least, out):
 
 
 def impulse_noise(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
-    """Set 0.3 s of the pixels of every frame to 0 or 255, separately per colour."""
+    """Set a fraction 0.3 s of the pixels of every frame to 0 or 255, separately per colour
+    channel."""
     out, count = np.empty_like(views), len(views)
     least = _U(round(IMPULSES * severity * 2**32))
     streams = view_streams(key, "impulse_noise", count)

@@ -1,1 +1,1 @@
-"""The leaderboard: entries as JSON, computed from rows, checked against them, shown as a page."""
+"""The leaderboard, whose JSON entries are computed from rows, checked, and shown as a page."""

@@ -30,15 +30,15 @@ from mitigate.evaluation.rows import Row
 FOLDER = "docs/leaderboard"
 OUT = Path("runs/leaderboard.html")
 NOT_COMPUTED = ("sensors", "training_data", "link", "version")
-CLOSE = 1e-5  # entries round figures to six digits
+CLOSE = 1e-5  # tolerance, because entries round figures to six digits
 
 
 def rows_of(entry: LeaderboardEntry) -> list[Row]:
-    """Return the rows in the file that ``entry`` names, also of other agents.
+    """Return the rows in the file that ``entry`` names, including those of other agents.
 
     Raises:
-        FileNotFoundError: if the file is not available.
-        ValueError: if it is damaged, or not a file.
+        FileNotFoundError: the file is not available.
+        ValueError: the file is damaged, or it is not a regular file.
     """
     file = entry.rows["file"]
     path = find(file)
@@ -53,7 +53,7 @@ def rows_of(entry: LeaderboardEntry) -> list[Row]:
 
 
 def differences(entry: LeaderboardEntry, rows: Iterable[Row]) -> list[str]:
-    """Return how ``entry`` differs from the figures of its rows, one line per difference."""
+    """Return the differences between ``entry`` and the figures of its rows, one line each."""
     again = entry_of(
         _rows_behind(entry, rows),
         entry.name,
@@ -92,7 +92,7 @@ def show(paths: Sequence[Path | str] = (), out: Path | str = OUT) -> Path:
 def render(entries: Sequence[LeaderboardEntry]) -> str:
     """Return the report of the rows of ``entries``, sorted by mean SR (highest first).
 
-    Figures are computed from the rows, not taken from the entries. Raises as :func:`rows_of`.
+    Figures are computed from the rows and not taken from the entries. Raises as :func:`rows_of`.
     """
     files: dict[str, list[Row]] = {}
     rows: list[Row] = []
@@ -113,7 +113,7 @@ def _rows_behind(entry: LeaderboardEntry, rows: Iterable[Row]) -> list[Row]:
     """Return the rows of the entry's agents, seeds and conditions.
 
     Raises:
-        ValueError: There are no rows of its agents.
+        ValueError: There are no rows of the entry's agents.
     """
     agents = {(one["agent"], one["seed"]) for one in entry.agents}
     matching = [row for row in rows if (row["agent"], row["seed"]) in agents]
@@ -127,7 +127,8 @@ def _rows_behind(entry: LeaderboardEntry, rows: Iterable[Row]) -> list[Row]:
 
 
 def _files(paths: Sequence[Path | str]) -> list[Path]:
-    """Return the files of entries in ``paths``; without paths, in ``docs/leaderboard``."""
+    """Return the files of entries in ``paths``, or in ``docs/leaderboard`` if there are no
+    paths."""
     folders = [Path(path) for path in paths] or [find(FOLDER)]
     files = [f for p in folders for f in (sorted(p.glob("*.json")) if p.is_dir() else [p])]
     if not files:
@@ -136,7 +137,7 @@ def _files(paths: Sequence[Path | str]) -> list[Path]:
 
 
 def check(paths: Sequence[Path | str] = ()) -> list[str]:
-    """Print for each entry whether its rows give the same figures; return what is wrong."""
+    """Print for each entry whether its rows give the same figures; return the problems."""
     wrong = []
     for file in _files(paths):
         name, verdict, omitted = str(file), "not a valid entry", ""
@@ -162,17 +163,17 @@ def add(
     overwrite: bool = False,
     **values: Any,
 ) -> Path:
-    """Write the entry of the agent ``name`` of the rows in ``paths``; return its file.
+    """Write an entry for the agent ``name`` from the rows in ``paths``; return the file.
 
     Args:
         paths: row files or folders.
         name: name of the agent in the rows.
         folder: folder for the entry.
-        overwrite: replace an entry of that name.
-        **values: severity, split, sensors, training_data and link, as for ``entry_of``.
+        overwrite: whether to replace an existing entry with that name.
+        **values: severity, split, sensors, training_data and link, as in ``entry_of``.
 
     Raises:
-        ValueError: if the file exists, or if ``entry_of`` raises it.
+        ValueError: the file exists, or ``entry_of`` raises it.
     """
     stem = re.sub(r"[^\w.-]+", "-", name).strip(".-")
     file = Path(folder) / f"{stem or 'entry'}.json"
@@ -188,7 +189,8 @@ def add(
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Run from the command line; return the exit status: 2 for a bad input, 1 for a wrong entry."""
+    """Run from the command line; return the exit status (2 for invalid input, 1 for a wrong
+    entry)."""
     options = vars(_parser().parse_args(argv))
     what = options.pop("what")
     wrong: list[str] = []

@@ -1,7 +1,7 @@
-"""An entry of the leaderboard: the results of an agent, and the rows that they come from.
+"""Define a leaderboard entry: the results of an agent, and the rows from which they come.
 
-Entries are JSON files from strangers. :func:`load` checks the type, length and range of each value,
-and every figure can be computed again from the rows that the entry names.
+Entries are untrusted JSON files. :func:`load` checks the type, length and range of each value,
+and every figure can be recomputed from the rows that the entry names.
 """
 
 from __future__ import annotations
@@ -23,8 +23,8 @@ from mitigate.core.names import counted, short
 from mitigate.evaluation.page.model import Numbers
 
 FORMAT = 2  # 2: with ``listed``
-LARGEST = 1 << 18  # bytes of an entry's file; an entry with 34 corruptions has 5,000
-GREATEST_PRS = 100.0  # a PRS is a ratio; it grows without bound where the clean value is near 0
+LARGEST = 1 << 18  # maximum bytes of an entry's file; an entry with 34 corruptions has 5,000
+GREATEST_PRS = 100.0  # a PRS is a ratio that grows without bound if the clean value is near 0
 _REWRITE = "Write it again with `mitigate leaderboard add`."
 _NUMBERS = re.compile(r"\[\n\s+([\d\s.,eE+nul-]*?)\s*\n\s+\]")
 _STRICT = ConfigDict(strict=True, extra="forbid", allow_inf_nan=False)
@@ -84,7 +84,7 @@ _Rates = Annotated[_Conditions, AfterValidator(_have_clean)]
 
 @with_config(_STRICT)
 class Agent(TypedDict):
-    """Content hash of an agent (``agents/fingerprint.py``), and the seed of its rows."""
+    """The content hash of an agent (``agents/fingerprint.py``), and the seed of its rows."""
 
     agent: Annotated[str, Field(pattern=r"^[A-Za-z0-9_.-]{1,64}$")]
     seed: Annotated[int, Field(ge=-(2**63), le=2**63)]
@@ -92,7 +92,7 @@ class Agent(TypedDict):
 
 @with_config(_STRICT)
 class Source(TypedDict):
-    """File (relative to the current folder, or empty), sha256 and number of rows."""
+    """The file of rows (a relative path, or empty), its sha256 and the number of rows."""
 
     file: Annotated[_Link, AfterValidator(_is_inside)]
     sha256: Annotated[str, Field(pattern="^[0-9a-f]{64}$")]
@@ -101,7 +101,7 @@ class Source(TypedDict):
 
 @dataclass(frozen=True)
 class LeaderboardEntry:
-    """Results of an agent on one split, suite, success rule and severity.
+    """The results of an agent on one split, suite, success rule and severity.
 
     Attributes:
         name: heading.
@@ -110,10 +110,11 @@ class LeaderboardEntry:
         sensors: one line per sensor.
         training_data: training data of the agent, in the words of the submitter.
         episodes: number of episodes per condition.
-        listed: hash of the episode ids; a table compares entries over the same episodes.
+        listed: hash of the episode ids; a table compares only entries with the same episodes.
         scores: clean, mean and PRS values, [value, low, high] with 95 % intervals, or None.
-        SR, SPL: the same per condition.
-        rows: "file" (relative or empty), "sha256" and "count" of the rows behind the figures.
+        SR, SPL: the same values per condition.
+        rows: "file" (relative or empty), "sha256" and "count" of the rows from which the figures
+            are computed.
         link: address of the weights or the paper.
     """
 
@@ -140,16 +141,16 @@ class LeaderboardEntry:
         """Write the entry to ``path`` as JSON, atomically.
 
         Raises:
-            ValueError: for an entry that :func:`load` would reject.
+            ValueError: the entry would be rejected by :func:`load`.
         """
         text = json.dumps(asdict(self), indent=1, allow_nan=False)
         _validated(_ADAPTER, text, f"{path}: ")
-        with atomic_text(path) as file:  # each list of numbers on one line
+        with atomic_text(path) as file:  # writes each list of numbers on one line
             file.write(_NUMBERS.sub(lambda match: f"[{' '.join(match[1].split())}]", text) + "\n")
         return Path(path)
 
     def __str__(self) -> str:
-        """One line per score, success rates in %."""
+        """Return one line per score, with success rates in %."""
         size = f"{counted(self.episodes, 'episode')} of {self.split}"
         lines = [f"{self.name}: {size}, severity {self.severity:g} ({self.rule})"]
         for title, numbers in self.scores.items():
@@ -161,12 +162,12 @@ class LeaderboardEntry:
 
 
 def load(path: Path | str) -> LeaderboardEntry:
-    """Return the entry in the JSON file ``path``, which may come from anyone.
+    """Return the entry in the untrusted JSON file ``path``.
 
     Raises:
-        FileNotFoundError: if there is no such file.
-        ValueError: naming file and key, for a file over :data:`LARGEST` bytes, a missing or an
-            unknown key, and a value of a wrong type, length or range.
+        FileNotFoundError: the file does not exist.
+        ValueError: the file has more than :data:`LARGEST` bytes, a key is missing or unknown, or a
+            value has a wrong type, length or range; the message names file and key.
     """
     path = Path(path)
     if not output.is_regular(path):
@@ -187,7 +188,7 @@ _ADAPTER = TypeAdapter(LeaderboardEntry)
 
 
 def _validated(adapter: TypeAdapter, text: str, where: str, key: str = "it") -> Any:
-    """Return the value in a JSON text; raise ValueError, naming the key, if it is not valid."""
+    """Return the value in a JSON text; if it is invalid, raise a ValueError that names the key."""
     try:
         return adapter.validate_json(text)
     except ValidationError as error:

@@ -27,10 +27,10 @@ def entry_of(
     file: str = "",
     **texts: Any,
 ) -> LeaderboardEntry:
-    """Return the entry of the rows of the agent ``name``, clean and at one severity.
+    """Return an entry from the rows of the agent ``name``, clean and at one severity.
 
     Args:
-        rows: result rows, also of other agents, splits and severities.
+        rows: result rows, which may include other agents, splits and severities.
         name: name of the agent in the rows.
         severity: severity of the corruptions.
         split: split of the rows; None if they have only one.
@@ -38,8 +38,8 @@ def entry_of(
         **texts: sensors, training_data and link of the entry.
 
     Raises:
-        ValueError: There are no such rows; they have several splits, lists, suites, rules or
-            agents that are not training seeds of one column; or a condition lacks episodes.
+        ValueError: There are no such rows; they mix several splits, lists, suites, rules, or agents
+            that are not training seeds of one column; or a condition lacks episodes.
     """
     chosen = _chosen(rows, name, severity, split)
     parts = [part for part in sections(chosen) if part.blocks] or sections(chosen)
@@ -72,8 +72,8 @@ def entry_of(
 
 
 def left_out(entry: LeaderboardEntry, rows: Iterable[Row]) -> str:
-    """Return which seeds and conditions ``rows`` hold of the entry's agent, split, suite, rule and
-    severity that the entry leaves out; empty if none."""
+    """Describe seeds and conditions of the entry's agent in ``rows`` that the entry omits, or
+    return ""."""
     comparable = [
         row
         for row in _chosen(rows, entry.name, entry.severity, entry.split)
@@ -88,7 +88,8 @@ def left_out(entry: LeaderboardEntry, rows: Iterable[Row]) -> str:
 def rows_sha(rows: Iterable[Row]) -> str:
     """Return a sha256 of rows that does not depend on their order and file format.
 
-    It hashes their JSON with sorted keys, one row per line, in the order of their identities.
+    The hash is computed from their JSON with sorted keys, one row per line, in the order of their
+    identities.
     """
     digest = hashlib.sha256()
     for row in sorted(rows, key=lambda row: tuple(map(str, identity(row)))):
@@ -118,7 +119,7 @@ def _chosen(rows: Iterable[Row], name: str, severity: float, split: str | None) 
 
 
 def _check_whole(name: str, rows: Sequence[Row], part: Section) -> None:
-    """Raise ValueError for a training seed that lacks rows of a table."""
+    """Raise ValueError if a training seed lacks rows of a table."""
     conditions = [CLEAN, *part.corruptions]
     cells = Counter((row["seed"], row["corruption"]) for row in rows)
     episodes = len(part.grid.episodes)
@@ -158,8 +159,8 @@ def _figures(parts: Sequence[Section]) -> dict[str, dict[str, Numbers]]:
 def _mean_sr(part: Section, column: str) -> Numbers:
     """Return the mean SR over the measured corruptions of frames in the suite.
 
-    Instructions are left out, so that entries with and without corrupted instructions can be
-    compared. If no frames were corrupted, the mean is over all measured corruptions.
+    Corrupted instructions are excluded, so that entries with and without them can be compared. If
+    no frames were corrupted, the mean is over all measured corruptions.
     """
     frames = sorted(FRAMES.intersection(part.corruptions))
     mixed = 0 < len(frames) < len(part.corruptions)

@@ -1,1 +1,1 @@
-"""An HTML report of result rows in one file: tables, heatmaps, curves, episodes, trajectories."""
+"""Write an HTML report in one file, with tables, heatmaps, curves, episodes and trajectories."""

@@ -1,8 +1,9 @@
 """Write result rows as one HTML file: ``mitigate report ROWS... --out report.html``.
 
-Takes row files and run or sweep folders, also partial ones. The page is one file and needs no
-network. It has sortable tables, heatmaps whose cells list their episodes, and curves. With
-``--walk base=checkpoints/base`` agents run some episodes again, and the page draws their walks.
+The command accepts row files, and run or sweep folders that may be incomplete. The page is one file
+and needs no network. It has sortable tables, heatmaps whose cells list their episodes, and curves.
+With ``--walk base=checkpoints/base``, agents run some episodes again, and the page draws their
+trajectories.
 """
 
 from __future__ import annotations
@@ -17,7 +18,7 @@ from mitigate.core.progress import Progress
 
 OUT = Path("runs/report.html")
 ROWS = "docs/results"
-MOST_WALKS = 200  # largest number per page (heuristic): each has a picture of about 100 KB
+MOST_WALKS = 200  # maximum number per page (heuristic), because each has a picture of about 100 KB
 
 
 def run(
@@ -30,27 +31,28 @@ def run(
     seed: int = 0,
     options: Sequence[str] = (),
 ) -> Path:
-    """Write the page of the rows in ``paths`` to ``out`` and return it.
+    """Write a page for the rows in ``paths`` to ``out`` and return its path.
 
     Args:
         paths: row files or folders.
-        out: the page.
+        out: path of the page.
         title: heading of the page.
-        walk: (name in the rows, weights) of agents whose trajectories are drawn, baseline first.
-        walks: number of episodes for that.
-        seed: corruption seed for that; one of the rows.
+        walk: pairs (name in the rows, weights) of agents whose trajectories are drawn, with the
+            baseline first.
+        walks: number of episodes whose trajectories are drawn.
+        seed: corruption seed for these episodes, which must occur in the rows.
         options: options of ``mitigate evaluate``, such as "split=val_seen".
 
     Raises:
-        FileNotFoundError: A path has no rows.
-        ValueError: Rows are damaged, a name is not in them, there are options without ``walk``, or
-            ``out`` does not end in .html.
+        FileNotFoundError: A path contains no rows.
+        ValueError: Rows are damaged, a name does not occur in them, ``options`` are given without
+            ``walk``, or ``out`` does not end in .html.
     """
     from mitigate.evaluation import rows
     from mitigate.evaluation.page import document
     from mitigate.evaluation.page.document import report
 
-    document.check_out(out)  # before the rollouts, which take minutes
+    document.check_out(out)  # checked before the rollouts, which take minutes
     if options and not walk:
         raise ValueError(
             f"There is no file {options[0]}, and options apply only to agents that run episodes. "
@@ -113,7 +115,7 @@ def named(text: str) -> tuple[str, str]:
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Run from the command line; return the exit status (2 for a bad input)."""
+    """Run from the command line; return the exit status (2 for invalid input)."""
     parser = argparse.ArgumentParser(
         prog="mitigate report",
         description=__doc__,

@@ -1,7 +1,8 @@
-"""Write the page as one HTML file with its styles, scripts and data; nothing is fetched.
+"""Write the page as one HTML file that contains all its styles, scripts and data.
 
-The contents of rows are data, which the scripts insert as text. They cannot close their element,
-because ``<`` is escaped, and the page's policy allows only the scripts and styles written here.
+The contents of rows are data, which the scripts insert as text. Row data cannot close its HTML
+element, because ``<`` is escaped. The page's content security policy allows only the scripts and
+styles that are written here.
 """
 
 from __future__ import annotations
@@ -28,7 +29,7 @@ SCRIPTS = ("dom", "data", "colours", "table", "heatmap", "episodes", "curves", "
 
 
 def _page(data: dict[str, Any], packed: str) -> str:
-    """Return the HTML page of ``data``, which the scripts read, and the ``packed`` episodes."""
+    """Return the HTML page with ``data``, which the scripts read, and the ``packed`` episodes."""
     style = (ASSETS / "style.css").read_text(encoding="utf-8")
     scripts = [(ASSETS / f"{name}.js").read_text(encoding="utf-8") for name in SCRIPTS]
     script = '(() => {\n"use strict";\n' + "\n".join(scripts) + "})();\n"
@@ -45,9 +46,9 @@ def _page(data: dict[str, Any], packed: str) -> str:
 
 
 def check_out(out: Path | str) -> Path:
-    """Return ``out`` as a path; raise ValueError unless it is a name of an HTML file.
+    """Return ``out`` as a path; raise ValueError unless it is the name of an HTML file.
 
-    A page replaces an existing file, which must not be a file of rows.
+    A page replaces an existing file, so the path must not be that of a row file.
     """
     path = Path(out)
     if path.suffix.lower() not in SUFFIXES or path.is_dir():
@@ -89,14 +90,14 @@ def report(
     notes: Sequence[str] = (),
     most: int = MOST_EPISODES,
 ) -> str:
-    """Return the HTML page of ``rows``.
+    """Return an HTML page for ``rows``.
 
     Args:
         rows: result rows.
         title: heading of the page.
         walks: results of ``walks.walk_again``.
         notes: lines below the tables.
-        most: largest number of episodes of cells in the page.
+        most: maximum total number of cell episodes in the page.
 
     Raises:
         ValueError: There are no rows.

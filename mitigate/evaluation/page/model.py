@@ -1,7 +1,7 @@
-"""The page's content as plain data: numbers of sections, differences, curves and episodes.
+"""Compute the page's content as plain data: sections, differences, curves and episodes.
 
-The page's scripts read it as JSON and draw it. A number is ``[value, low, high]`` with its 95 %
-interval, or None if nothing was measured.
+The scripts of the page read this data as JSON and draw it. A number is ``[value, low, high]`` with
+its 95 % interval, or None if nothing was measured.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from mitigate.evaluation.curves import Curve, curves
 from mitigate.evaluation.grid import METRICS, STEPS
 from mitigate.evaluation.sections import Retained, Section, label
 
-BASELINES = 12  # columns that can be a baseline: the first ones (heuristic)
+BASELINES = 12  # number of first columns that can be the baseline (heuristic)
 DIGITS = 6
 CLEAN = "clean"
 Numbers = list[Any] | None
@@ -28,11 +28,12 @@ Numbers = list[Any] | None
 def section_data(section: Section) -> dict[str, Any]:
     """Return the page's data of one section, except its episodes.
 
-    ``columns`` are the agents and ``measures`` the columns of the table. ``values[c][m]`` are their
-    numbers, with marks as a fourth entry if needed. ``corruptions`` are the rows of the heatmap,
-    clean first. ``cells[c][k]`` is [SR, SPL, number of episodes, share of the column's clean SR,
-    share of its clean SPL]. ``pairs["i-j"]`` are the differences of column i to column j, for i > j
-    and j among the first ``baselines``; None without a common seed.
+    ``columns`` are the agents and ``measures`` the columns of the table. ``values[c][m]`` is the
+    number for column c and measure m, with marks as a fourth entry if needed. ``corruptions`` are
+    the rows of the heatmap, starting with clean. ``cells[c][k]`` is [SR, SPL, number of episodes,
+    fraction of the column's clean SR, fraction of its clean SPL]. ``pairs["i-j"]`` are the
+    differences of column i from column j, for i > j and j among the first ``baselines``, or None
+    without a common seed.
     """
     grid = section.grid
     values = [_values(section, column) for column in section.columns]
@@ -66,7 +67,7 @@ def section_data(section: Section) -> dict[str, Any]:
 
 
 def numbers(estimate: Estimate | None) -> Numbers:
-    """Return an estimate as the page reads it."""
+    """Return an estimate in the format that the page reads."""
     if estimate is None or math.isnan(estimate.value):
         return None
     return [
@@ -76,14 +77,14 @@ def numbers(estimate: Estimate | None) -> Numbers:
 
 
 def has_width(values: Sequence[Any]) -> bool:
-    """Return whether numbers have an interval with a width, or no interval at all."""
+    """Return whether each number has either an interval of nonzero width or no interval at all."""
     return None in values[1:3] or values[2] - values[1] > ROUNDING
 
 
 def shortened(x: float) -> float:
-    """Return ``x`` rounded to :data:`DIGITS` digits, or unchanged if that changes the page.
+    """Return ``x`` rounded to ``DIGITS`` digits, or unchanged if rounding would change the page.
 
-    The page shows per cent with one digit, or two digits.
+    The page shows percentages with one digit, and other values with two digits.
     """
     short = round(x, DIGITS)
     same = f"{100 * x:.1f} {x:.2f}" == f"{100 * short:.1f} {short:.2f}"
@@ -122,7 +123,7 @@ def _column(section: Section, column: str) -> dict[str, Any]:
 
 
 def _prs_places(section: Section) -> list[tuple[str, str]]:
-    """Return the (block or half, metric) that have a PRS, in the table's order."""
+    """Return the (block or half, metric) pairs that have a PRS, in the order of the table."""
     parted = {block: [block, *section.halves.get(block, {})] for block in section.blocks}
     return [(part, metric) for parts in parted.values() for part in parts for metric in METRICS]
 
@@ -179,9 +180,10 @@ def _single_prs(section: Section, column: str, name: str, metric: str) -> float 
 
 
 def _pairs(section: Section, names: Sequence[str]) -> dict[str, Any]:
-    """Return the differences of all columns to each of the first ones.
+    """Return the differences of all columns from each of the first columns.
 
-    They are paired over common seeds, whose corruptions have the same keys, and common episodes.
+    The differences are paired over common episodes and common seeds, whose corruptions have the
+    same keys.
     """
     pairs: dict[str, Any] = {}
     for j, second in enumerate(section.columns[:BASELINES]):
@@ -231,9 +233,10 @@ def _notes(section: Section, values: list[list[Numbers]], pairs: Mapping[str, An
 
 
 def curve_figures(parts: Sequence[Section]) -> list[dict[str, Any]]:
-    """Return a figure for each grid of ``parts`` with a corruption at two or more severities.
+    """Return a figure for each grid in ``parts`` that has a corruption at two or more severities.
 
-    ``panels[p]["lines"]`` have "column", "count" and "points" [severity, SR, low, high].
+    Each item of ``panels[p]["lines"]`` has "column", "count" and "points" [severity, SR, low,
+    high].
     """
     figures: list[dict[str, Any]] = []
     for grid, kind in {id(part.grid): (part.grid, part.kind) for part in parts}.values():
@@ -256,20 +259,20 @@ def _line(curve: Curve) -> dict[str, Any]:
     return {"column": curve.column, "count": curve.count, "points": points_data}
 
 
-MOST_EPISODES = 500_000  # episodes of cells in one page (heuristic): 4 MB
+MOST_EPISODES = 500_000  # maximum total of cell episodes in one page (heuristic): 4 MB
 MISSING = 65_535
-SCALE = 1000  # factor of success and SPL
+SCALE = 1000  # factor by which success and SPL are multiplied
 
 
 class Packed:
-    """Cells of any number of grids, packed for the page.
+    """The episodes of cells from several grids, packed for the page.
 
     Attributes:
-        most: largest number of episodes of cells.
+        most: maximum total of cell episodes.
         count: number of packed episodes.
-        grids: per grid the ids of its episodes, and the offset of each cell in the data, by
+        grids: for each grid, the ids of its episodes and the offset of each cell in the data, by
             "column|corruption|severity|seed".
-        left_out: cells that exceed ``most``, with all their seeds.
+        left_out: cells that are not packed because of ``most``, with all their seeds.
     """
 
     def __init__(self, most: int = MOST_EPISODES) -> None:
@@ -277,13 +280,13 @@ class Packed:
         self.count = 0
         self.grids: list[dict[str, Any]] = []
         self.left_out: set[tuple[int, str]] = set()
-        self._numbers: dict[int, int] = {}  # numbers of grids by their id()
+        self._numbers: dict[int, int] = {}  # index of each grid, by its id()
         self._parts: list[np.ndarray] = []
 
     def add(self, section: Section) -> int:
-        """Pack the cells of ``section`` that are not packed yet; return the number of its grid.
+        """Pack the cells of ``section`` that are not packed yet; return the index of its grid.
 
-        All seeds of a cell are packed, or none if they exceed the limit.
+        Either all seeds of a cell are packed, or none if they exceed the limit.
         """
         grid = section.grid
         number = self._numbers.setdefault(id(grid), len(self.grids))
@@ -312,5 +315,5 @@ class Packed:
         return number
 
     def text(self) -> str:
-        """Return the data in base64: little-endian uint16, [cell, field, episode]."""
+        """Return the data in base64, as little-endian uint16 [cell, field, episode]."""
         return base64.b64encode(b"".join(part.tobytes() for part in self._parts)).decode()

@@ -1,8 +1,8 @@
-"""Trajectories for the page: run some episodes of the rows again and draw them from above.
+"""Run some episodes of the rows again, and draw their trajectories from above for the page.
 
-Rows hold measures but no trajectories. Agents whose weights are available therefore run some
-episodes again with the keys of the rows. The measures are compared with the rows, and the page
-reports differences.
+Rows hold measures but no trajectories. Therefore some episodes of agents with available weights are
+run again, with the keys of the rows. The measures are compared with the rows, and the page reports
+differences.
 """
 
 from __future__ import annotations
@@ -38,16 +38,17 @@ ALONE = {True: "won", False: "lost"}  # names of outcomes with one agent
 
 
 def outcome(won: Sequence[bool]) -> str:
-    """Return the name of an outcome, given the success of each agent in order."""
+    """Return the name of the outcome, given the success of each agent in order."""
     return KINDS[won[0], won[-1]] if len(won) > 1 else ALONE[won[0]]
 
 
 def choose(rows: Sequence[Row], agents: Sequence[str], most: int) -> list[tuple[str, Corruption]]:
-    """Return at most ``most`` pairs (episode id, corruption) with rows of the first and last agent.
+    """Return at most ``most`` pairs (episode id, corruption) that the first and last agent both
+    ran.
 
-    The outcomes in :data:`KINDS` take turns, and within an outcome the corruptions, in the order of
-    ``rows``, which have one seed. No episode is repeated. The choice is for display and not a
-    sample; frequencies are in the tables.
+    The choice cycles through the outcomes in :data:`KINDS`, and through the corruptions of each
+    outcome, in the order of ``rows``, which must have one seed. No episode is repeated. The choice
+    is for display and is not a random sample; frequencies are in the tables.
     """
     first, last = (
         {
@@ -65,7 +66,8 @@ def choose(rows: Sequence[Row], agents: Sequence[str], most: int) -> list[tuple[
     turns: dict[tuple[int, int], list[tuple[str, Corruption]]] = {}
     for number, by_corruption in enumerate(outcomes.values()):
         for index, (corruption, episodes) in enumerate(by_corruption.items()):
-            turn = (index - number) % len(by_corruption)  # each outcome begins with another one
+            # each outcome begins with a different corruption
+            turn = (index - number) % len(by_corruption)
             turns[turn, number] = [(episode, corruption) for episode in episodes]
     chosen: dict[str, Corruption] = {}
     for pair in chain(*zip_longest(*(turns[key] for key in sorted(turns)))):
@@ -74,8 +76,8 @@ def choose(rows: Sequence[Row], agents: Sequence[str], most: int) -> list[tuple[
     return list(chosen.items())[:most]
 
 
-AGREED = ("success", "spl", "steps")  # measures that are compared with the rows
-CLOSE = 1e-6  # tolerance: rows round measures to six digits
+AGREED = ("success", "spl", "steps")  # measures of the new runs that are compared with the rows
+CLOSE = 1e-6  # tolerance, because rows round measures to six digits
 COLOURS = 64  # colours per picture; few colours keep the page small (heuristic)
 
 
@@ -88,14 +90,15 @@ def walk_again(
     most: int,
     seed: int,
 ) -> Iterator[dict[str, Any]]:
-    """Yield the page's data of each chosen episode, run clean by the first agent, corrupted by all.
+    """Yield the page's data of each chosen episode, which all agents run corrupted, the first also
+    clean.
 
     Args:
         agents: agents by their names in ``rows``.
         world: the world.
         episodes: the episodes of the split.
         rows: rows of one split and rule; other agents and seeds are ignored.
-        most: largest number of episodes.
+        most: maximum number of episodes.
         seed: corruption seed.
 
     Raises:
@@ -142,7 +145,7 @@ def _rows_of(rows: Sequence[Row], hashes: Mapping[str, str]) -> list[Row]:
     """Return the rows of the agents in ``hashes`` (by name).
 
     Raises:
-        ValueError: The rows of a name belong only to agents with other hashes.
+        ValueError: The rows with a name belong only to agents with different hashes.
     """
     for name, agent_hash in hashes.items():
         others = sorted({row["agent"] for row in rows if row["name"] == name})
@@ -173,7 +176,7 @@ def _walk(walk: Walk, episode: Episode, index: Mapping[tuple, Row]) -> dict[str,
 
 
 def _png(figure: Figure) -> str:
-    """Return a figure as the address of a PNG with few colours."""
+    """Return a figure as a data URL of a PNG with few colours."""
     from PIL import Image
 
     drawn, out = io.BytesIO(), io.BytesIO()

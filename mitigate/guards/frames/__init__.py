@@ -1,1 +1,1 @@
-"""Guards for frames: estimate the clean frame of a corrupted camera, before any agent reads it."""
+"""Guards for frames, which estimate the clean frame before an agent reads it."""

@@ -1,13 +1,13 @@
-"""Use a callable of the user as a restorer, with ``restore=module:callable``.
+"""Use a user's callable as a restorer, with ``restore=module:callable``.
 
 The callable may be a network for depth completion or denoising, or a filter. Needs no torch.
 
-The rule: a class is constructed once per process, without arguments; any other object is used
-directly. If the result is a :class:`~mitigate.guards.guard.Guard`, it is the guard. Otherwise it is
-called with the frames of one instant. ``docs/restoration.md`` has an example.
+If the callable is a class, it is constructed once per process, without arguments; any other object
+is used directly. If the result is a :class:`~mitigate.guards.guard.Guard`, it is used as the guard.
+Otherwise it is called with the frames of one time step. ``docs/restoration.md`` has an example.
 
-Importing the module runs its code, so the option comes from the user's own command line or config,
-never from a folder that was downloaded.
+Importing the module runs its code, so the option is read only from the user's command line or
+config, and never from a downloaded folder.
 """
 
 from __future__ import annotations
@@ -36,18 +36,18 @@ FRAMES = (
 
 
 class FramesCallable(Guard):
-    """A guard that calls a callable of the user.
+    """A guard that calls a user's callable.
 
-    The callable gets copies of the frames by sensor name, "rgb" uint8 [H, W, 3] or [V, H, W, 3] and
-    "depth" float32 metres [H, W, 1] or [V, H, W, 1], and returns those that it changed. A result
-    must not depend on earlier calls.
+    The callable receives copies of the frames by sensor name: "rgb" as uint8 [H, W, 3] or [V, H, W,
+    3], and "depth" as float32 metres [H, W, 1] or [V, H, W, 1]. It returns the frames that it
+    changed. A result must not depend on earlier calls.
 
     Args:
-        choice: ``module:callable`` or ``module:callable@VERSION``. Pickles hold only this text, so
-            each process imports the module itself.
-        call: the callable. Its attributes ``frames`` (names of sensors, default both) and
-            ``version`` are optional.
-        module: the module of the callable. Its source file is part of the fingerprint.
+        choice: ``module:callable`` or ``module:callable@VERSION``. Pickles contain only this text,
+            so each process imports the module itself.
+        call: the callable. It may have the attributes ``frames`` (names of sensors; both by
+            default) and ``version``.
+        module: the module of the callable. The module's source file is part of the fingerprint.
     """
 
     def __init__(self, choice: str, call: Callable[[dict], Mapping], module: ModuleType) -> None:
@@ -80,7 +80,8 @@ class FramesCallable(Guard):
         copies = {name: np.array(frame) for name, frame in frames.items()}
         try:
             results = self.call(copies)
-        except Exception as error:  # raised by the user's code: name the option that selected it
+        # the user's code raised this error, so name the option that selected it
+        except Exception as error:
             raise ValueError(
                 f"restore={self.choice} failed with {type(error).__name__}: {error}"
             ) from error
@@ -89,7 +90,8 @@ class FramesCallable(Guard):
         return {**observation, **changed} if changed else observation
 
     def _check(self, results: Any, frames: Mapping[str, np.ndarray]) -> None:
-        """Raise ValueError unless ``results`` holds some of ``frames``, with shape and dtype."""
+        """Raise ValueError unless ``results`` contains a subset of ``frames`` with the same shapes
+        and dtypes."""
         if not isinstance(results, Mapping):
             self._reject(f"returned a {type(results).__name__}, not a dict")
         for name, frame in results.items():
@@ -106,7 +108,7 @@ class FramesCallable(Guard):
 
 
 def open_callable(choice: str) -> Guard:
-    """Return the guard of ``restore=module:callable``.
+    """Build the guard for ``restore=module:callable``.
 
     Raises:
         ValueError: The module or the callable does not exist, or the object cannot be called.
@@ -122,7 +124,7 @@ def open_callable(choice: str) -> Guard:
             f"in the folder you are in, or on PYTHONPATH, or the folder of a restorer.{hint}"
         ) from error
     try:
-        target = getattr(module, named.name)  # the name comes from an option
+        target = getattr(module, named.name)  # the attribute name comes from an option
     except AttributeError as error:
         public = [name for name in vars(module) if not name.startswith("_")]
         raise ValueError(
@@ -164,7 +166,7 @@ def _frames(frames: Any, choice: str) -> tuple[str, ...]:
 
 
 def _source(module: ModuleType, version: str | None) -> str:
-    """Return the sha256 of a module's source file; "" if it has none but ``version`` is given.
+    """Return the sha256 of a module's source file, or "" if there is no file but a ``version``.
 
     Raises ValueError if there is neither a source file nor a version.
     """

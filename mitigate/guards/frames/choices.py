@@ -1,7 +1,7 @@
 """Parse the values of ``restore=``.
 
-A value is the folder of a restorer, ``FOLDER:rgb`` or ``FOLDER:depth`` for one of its sensors, or
-``module:callable`` of the user (``callables.py``). Needs no torch.
+A value is the folder of a restorer, ``FOLDER:rgb`` or ``FOLDER:depth`` for one of its sensors, or a
+user's ``module:callable`` (``callables.py``). Needs no torch.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ _CALLABLE = re.compile(r"([A-Za-z_][\w.]*):([A-Za-z_]\w*)(?:@(.+))?")
 
 
 class CallableChoice(NamedTuple):
-    """The parts of ``module:name@version``; ``version`` is None if omitted."""
+    """The parts of ``module:name@version``, where ``version`` is None if omitted."""
 
     module: str
     name: str
@@ -26,15 +26,16 @@ class CallableChoice(NamedTuple):
 
 
 def parted(choice: str) -> tuple[str, str | None]:
-    """Return the folder and the sensor to restore; None means all sensors of the restorer."""
+    """Return the folder and the sensor to restore, or None for all sensors of the restorer."""
     folder, colon, sensor = str(choice).rpartition(":")
     return (folder, sensor) if colon and sensor in SENSORS else (str(choice), None)
 
 
 def callable_of(choice: str) -> CallableChoice | None:
-    """Return the parts of ``module:callable``; None for a folder.
+    """Return the parts of ``module:callable``, or None for a folder.
 
-    An existing path of this name is a folder, and the names "rgb" and "depth" are its sensors.
+    If a path with this name exists, the value is a folder; "rgb" and "depth" after the colon are
+    its sensors.
     """
     match = _CALLABLE.fullmatch(choice)
     if match is None or match[2] in SENSORS or Path(choice).exists():
@@ -43,9 +44,10 @@ def callable_of(choice: str) -> CallableChoice | None:
 
 
 def label(choice: str) -> str:
-    """Return the text that ``choice`` adds to a column's name.
+    """Return the text that ``choice`` adds to a column name.
 
-    It is the folder's name and the sensor, or the names of module and callable and the version.
+    For a folder, this is its name and the sensor; for a callable, the names of module and callable
+    and the version.
     """
     named = callable_of(str(choice))
     if named is not None:

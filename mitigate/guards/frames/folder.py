@@ -1,7 +1,8 @@
-"""Write and read the folder of a restorer: ``model.safetensors``, ``card.json`` and the manifest.
+"""Write and read the folder of a restorer, which contains ``model.safetensors``, ``card.json`` and
+the manifest.
 
-Reading runs no code of the folder. It builds the class ``Restorer`` with the numbers of the card,
-which must be within ``LIMITS``.
+Reading runs no code from the folder. Reading builds the class ``Restorer`` with the numbers in the
+card, which must be within ``LIMITS``.
 """
 
 from __future__ import annotations
@@ -27,7 +28,7 @@ _AGAIN = "Fetch the folder again, or train it again with `make train RECIPE=rest
 def write(restorer: Restorer, folder: str | Path, *, half: bool = False) -> Path:
     """Write ``restorer`` into ``folder`` and return the folder.
 
-    The card holds the hash of the weights after they are read back, so ``half`` rounds them first.
+    The card contains the hash of the weights as they are read back, so ``half`` rounds them first.
     """
     with folders.write_folder(folder, "restorer") as draft:
         checkpoint.write_tensors(restorer, draft / checkpoint.WEIGHTS, half=half)
@@ -39,11 +40,11 @@ def write(restorer: Restorer, folder: str | Path, *, half: bool = False) -> Path
 
 
 def card(folder: str | Path) -> dict[str, Any]:
-    """Return the content of ``card.json``.
+    """Return the checked content of ``card.json``.
 
     Raises:
         FileNotFoundError: A file of the folder is missing.
-        ValueError: The card is damaged or has another format.
+        ValueError: The card is damaged or has an unknown format.
     """
     folder = Path(folder)
     missing = [n for n in (CARD, checkpoint.WEIGHTS) if not (folder / n).is_file()]
@@ -65,7 +66,7 @@ def card(folder: str | Path) -> dict[str, Any]:
 
 
 def _wrong(content: Any) -> str:
-    """Return a message about the first problem of a card; empty if it is valid."""
+    """Return a message about the first problem in a card, or "" if it is valid."""
     if not isinstance(content, dict) or content.get("format") != FORMAT:
         return f"it must be an object of format {FORMAT}"
     settings = content.get("settings")
@@ -82,7 +83,7 @@ def _wrong(content: Any) -> str:
 
 
 def problem(sizes: dict[str, Any]) -> str:
-    """Return a message about the first size out of range; empty if all are valid."""
+    """Return a message about the first size that is out of range, or "" if all are valid."""
     for name, (least, most) in LIMITS.items():
         value = sizes[name]
         if type(value) is not int or not least <= value <= most:
@@ -108,7 +109,7 @@ def fill(restorer: Restorer, folder: str | Path) -> None:
     if not folders.is_listed(file):
         raise ValueError(f"{file} is not listed in the {folders.MANIFEST} of its folder. {_AGAIN}")
     wrong = folders.problem(file)
-    if wrong:  # load_weights would advise to delete the checksum, but it is required here
+    if wrong:  # load_weights would advise to delete the checksum, but here the checksum is required
         raise ValueError(f"{file} is cut short or damaged: it {wrong}. {_AGAIN}")
     checkpoint.load_weights(restorer, folder)
     if restorer.hash != content["hash"]:

@@ -1,7 +1,7 @@
-"""The network of a restorer: a small U-Net, and a gate that detects corrupted frames.
+"""Define the network of a restorer: a small U-Net, and a gate that detects corrupted frames.
 
 The U-Net has no normalisation layers, because they would hide how dark a frame is. Heights and
-widths are multiples of 8 pixels.
+widths of inputs must be multiples of 8 pixels.
 """
 
 from __future__ import annotations
@@ -12,14 +12,15 @@ import torch
 import torch.nn.functional as F
 from torch import Tensor, nn
 
-SLOPE = 0.1  # slope of the activations below 0 (heuristic)
-FLAT = (1e-4, 1e-3, 1e-2)  # second differences that count as flat, heuristic
-TEXTURES = 6 + 4 * (3 + len(FLAT))  # numbers that :func:`texture` returns
-FACTOR = 8  # pixels; height and width of the input are multiples of it
+SLOPE = 0.1  # slope of the activations for negative inputs (heuristic)
+FLAT = (1e-4, 1e-3, 1e-2)  # second differences below these values count as flat (heuristic)
+TEXTURES = 6 + 4 * (3 + len(FLAT))  # count of numbers that :func:`texture` returns
+FACTOR = 8  # height and width of the input must be multiples of this many pixels
 
 
 class Encoded(NamedTuple):
-    """Feature maps of three levels; ``stats`` [n, 14 width]: their mean magnitudes and maxima."""
+    """Feature maps of three levels, and their mean magnitudes and maxima ``stats`` [n, 14
+    width]."""
 
     fine: Tensor
     middle: Tensor
@@ -30,7 +31,7 @@ class Encoded(NamedTuple):
 def active(x: Tensor) -> Tensor:
     """Apply a leaky ReLU.
 
-    Without normalisation, channels of plain ReLUs die: 83 % of the coarsest in 700 steps, measured.
+    Without normalisation, plain ReLU channels die (83 % of the coarsest in 700 steps, measured).
     """
     return F.leaky_relu(x, SLOPE)
 
@@ -50,12 +51,13 @@ class Block(nn.Module):
 class UNet(nn.Module):
     """Map float ``[n, inputs, h, w]`` to ``[n, outputs, h, w]``; the output is zero at first.
 
-    It works on blocks of 2 x 2 pixels (pixel unshuffle), so the finest maps have half the size. The
-    coarsest maps also get their mean over the view and over all views of the instant.
+    The network works on blocks of 2 x 2 pixels (pixel unshuffle), so the finest maps have half the
+    size. The coarsest maps are extended by their mean over the view and over all views of the time
+    step.
 
     Args:
-        inputs: channels of the input.
-        outputs: channels of the output.
+        inputs: number of input channels.
+        outputs: number of output channels.
         width: channels of the finest maps; the next levels have 2 and 4 times as many.
     """
 
@@ -75,12 +77,13 @@ class UNet(nn.Module):
             if isinstance(module, nn.Conv2d):
                 nn.init.kaiming_normal_(module.weight, SLOPE)
             if isinstance(module, Block):
-                nn.init.normal_(module.second.weight, std=0.01)  # close to the identity
+                nn.init.normal_(module.second.weight, std=0.01)  # initialised close to the identity
         nn.init.zeros_(self.head.weight)
         nn.init.zeros_(self.head.bias)  # type: ignore[arg-type]
 
     def encode(self, x: Tensor, views: int) -> Encoded:
-        """Return the maps of ``x`` [n, inputs, h, w]; each group of ``views`` is one instant."""
+        """Return the maps of ``x`` [n, inputs, h, w]; each group of ``views`` rows is one time
+        step."""
         x = F.pixel_unshuffle(x, 2).contiguous(memory_format=torch.channels_last)
         fine = self.fine(active(self.stem(x)))
         middle = self.middle(active(self.down1(fine)))
@@ -105,10 +108,10 @@ class UNet(nn.Module):
 
 
 class Gate(nn.Module):
-    """Predict the logit [instants] that a frame is corrupted.
+    """Predict one logit per time step that its frames are corrupted.
 
-    It reads the maps of all views and :func:`texture`. Its gradients do not reach the maps, which
-    are trained only to restore.
+    The gate reads the maps of all views and :func:`texture`. The gate's gradients do not reach the
+    maps, which are trained only to restore.
     """
 
     def __init__(self, width: int, hidden: int = 64) -> None:
@@ -123,7 +126,7 @@ class Gate(nn.Module):
         Args:
             stats: the field of :class:`Encoded`.
             texture: float [n, TEXTURES].
-            views: rows per instant.
+            views: number of rows per time step.
         """
         each = torch.cat([self.norm(stats.detach()), texture], 1).float()
         ring = each.unflatten(0, (-1, views))
@@ -132,13 +135,13 @@ class Gate(nn.Module):
 
 
 def texture(x: Tensor, valid: Tensor) -> Tensor:
-    """Return statistics that reveal noise, blur, steps, darkness and holes, float32 [n, TEXTURES].
+    """Return statistics [n, TEXTURES] that reveal noise, blur, quantisation, darkness and holes.
 
-    They are magnitudes and shares of pixels, on a logarithmic scale.
+    The statistics are magnitudes and fractions of pixels, on a logarithmic scale.
 
     Args:
         x: float [n, c, h, w] in [0, 1].
-        valid: [n, 1, h, w], 1 where a pixel is a reading.
+        valid: [n, 1, h, w], 1 for valid pixels.
     """
     grey = x.float().mean(1, keepdim=True)
     statistics = [grey.mean((1, 2, 3)), grey.std((1, 2, 3)), 1 - valid.float().mean((1, 2, 3))]

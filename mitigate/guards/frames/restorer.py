@@ -1,4 +1,4 @@
-"""The restorer: a guard that estimates the clean frames, independently of the agent."""
+"""Define the restorer, a guard that estimates clean frames independently of the agent."""
 
 from __future__ import annotations
 
@@ -31,9 +31,9 @@ class Restorer(nn.Module, Guard):
     Args:
         sensors: "rgb", "depth" or both.
         width: channels of the finest maps of the RGB network.
-        depth_width: the same for the depth network.
+        depth_width: channels of the finest maps of the depth network.
         size: shorter side in pixels at which the networks work.
-        far: farthest depth in metres.
+        far: maximum depth in metres.
 
     Raises:
         ValueError: A sensor is unknown, or a size is out of range.
@@ -68,7 +68,7 @@ class Restorer(nn.Module, Guard):
 
     @property
     def encoders(self) -> dict[str, tuple[str, ...]]:
-        """The parts of the agent that read each sensor (``training/plan.py``)."""
+        """The parts that read each sensor, as in an agent (``training/plan.py``)."""
         return {sensor: (sensor,) for sensor in self.nets}
 
     def parts(self) -> dict[str, SensorRestorer]:
@@ -80,9 +80,9 @@ class Restorer(nn.Module, Guard):
         return dict(self._settings)
 
     def only(self, sensor: str) -> Restorer:
-        """Drop the networks of all other sensors, in place; return self.
+        """Remove the networks of all other sensors in place, and return self.
 
-        Raises ValueError for a sensor that it does not restore.
+        Raises ValueError for a sensor that this restorer does not support.
         """
         if sensor not in self.nets:
             raise ValueError(
@@ -95,23 +95,23 @@ class Restorer(nn.Module, Guard):
 
     @property
     def hash(self) -> str:
-        """12 hex digits over weights, thresholds and settings; equal hashes mean equal frames."""
+        """The first 12 hex digits of a hash of weights, thresholds and settings."""
         text = json.dumps([weights_sha(self), self.settings()], sort_keys=True)
         return hashlib.sha256(text.encode()).hexdigest()[:DIGITS]
 
     @property
     def frames(self) -> tuple[str, ...]:  # type: ignore[override]
-        """The sensors that it restores."""
+        """The sensors that this restorer restores."""
         return tuple(self.nets)
 
     def fingerprint(self) -> str:
-        """Return :attr:`hash` with the prefix that rows have."""
+        """Return :attr:`hash` with the prefix that is used in rows."""
         return RESTORER + self.hash
 
     def forward(self, observation: Mapping[str, Any]) -> dict[str, Any]:
-        """Return ``observation``; the frames that the gate judges to be corrupted are restored.
+        """Return ``observation`` with restored frames, where the gate classifies them as corrupted.
 
-        All other entries, and frames judged to be clean, are the same objects.
+        All other entries, and frames classified as clean, are the same objects.
 
         Raises:
             TypeError, ValueError: A frame has the wrong dtype or shape.
@@ -123,19 +123,19 @@ class Restorer(nn.Module, Guard):
         return restored
 
     def observe(self, observation: Mapping[str, Any]) -> Mapping[str, Any]:
-        """Return :meth:`forward` of an observation."""
+        """Apply :meth:`forward` to an observation."""
         return self.forward(observation)
 
     def restore(self, sensor: str, frame: np.ndarray) -> np.ndarray:
         """Return the restored frame, a new array of the same shape and dtype.
 
-        A frame that the gate judges to be clean is returned unchanged, and so is depth outside the
-        range that the network knows (:meth:`SensorRestorer.knows`).
+        A frame that the gate classifies as clean is returned unchanged, and so is depth outside the
+        range of the training data (:meth:`SensorRestorer.knows`).
 
         Args:
             sensor: "rgb" or "depth".
-            frame: frames of one instant: uint8 [H, W, 3] or [V, H, W, 3]; or metres in floating
-                point, [H, W], [H, W, 1] or [V, H, W, 1].
+            frame: frames of one time step, which are uint8 [H, W, 3] or [V, H, W, 3], or
+                floating-point metres [H, W], [H, W, 1] or [V, H, W, 1].
 
         Raises:
             KeyError: The restorer has no network for ``sensor``.
@@ -149,8 +149,9 @@ class Restorer(nn.Module, Guard):
     def doubt(self, sensor: str, frame: np.ndarray) -> float:
         """Return the gate's logit minus its threshold, for one frame as in :meth:`restore`.
 
-        Above 0 the frame is restored, unless that would move most of its depth far. The value is
-        -inf for depth without a reading, or with too many readings beyond ``far``.
+        If the value is above 0, the frame is restored, unless that would change most of its depth
+        by too much. The value is -inf for depth without valid pixels, or with too many pixels
+        beyond ``far``.
         """
         return self._net(sensor).doubt(torch.from_numpy(self._views(sensor, frame)))
 
@@ -160,7 +161,8 @@ class Restorer(nn.Module, Guard):
         return self.nets[sensor]  # type: ignore[return-value]
 
     def _views(self, sensor: str, frame: np.ndarray) -> np.ndarray:
-        """Return ``frame`` as a contiguous, writable [V, H, W, c]; raise for invalid frames."""
+        """Return ``frame`` as a contiguous, writable array [V, H, W, c]; raise an error if it is
+        invalid."""
         if not isinstance(frame, np.ndarray):
             raise TypeError(
                 f"A {sensor} frame must be a numpy array, not {type(frame).__name__}: give a torch "
@@ -180,7 +182,7 @@ class Restorer(nn.Module, Guard):
         folders.write(self, folder, half=half)
 
     def load(self, folder: str | Path) -> None:
-        """Load the weights of such a folder; raise ValueError if its settings differ."""
+        """Load the weights from such a folder; raise ValueError if its settings differ."""
         folders.fill(self, folder)
 
 
@@ -188,7 +190,7 @@ def load_restorer(folder: str | Path) -> Restorer:
     """Return the restorer in ``folder``, in eval mode; call it with an observation.
 
     Raises:
-        FileNotFoundError: The folder holds no restorer.
+        FileNotFoundError: The folder contains no restorer.
         ValueError: A file is damaged or differs from the card.
     """
     path = find(str(folder))

@@ -1,6 +1,6 @@
 """Compare the overlapping views of a panorama, and fill pixels of one view from the others.
 
-All views share one centre, so up to four other views show the same point.
+All views have the same optical centre, so up to four other views show the same point.
 """
 
 from __future__ import annotations
@@ -16,18 +16,18 @@ from torch import Tensor
 from mitigate.agents.adapter_layers import neighbour_grid
 from mitigate.core.observation import HFOV_DEGREES, VIEW_STEP_DEGREES, VIEWS
 
-STEPS = (1, 2)  # overlapping neighbours: 90 degree views that are 30 and 60 degrees apart
-SURE = 0.05  # squared trust at which the neighbours' value gets weight 1/2, heuristic
-FAINT = 0.02  # weight of the coarser level when a hole is filled from around it, heuristic
+STEPS = (1, 2)  # overlapping neighbours of a 90-degree view, which are 30 and 60 degrees away
+SURE = 0.05  # squared trust at which the neighbours' value gets the weight 1/2 (heuristic)
+FAINT = 0.02  # weight of the coarser level when a hole is filled from its surroundings (heuristic)
 
 
 @lru_cache(maxsize=8)
-@torch.inference_mode(False)  # training uses the cached tensors, too
+@torch.inference_mode(False)  # training also uses the cached tensors
 def neighbours(size: int) -> tuple[Tensor, Tensor]:
-    """Return the geometry of the neighbours at -1, +1, -2 and +2 steps.
+    """Return the geometry of the neighbouring views at -1, +1, -2 and +2 steps.
 
     Returns:
-        ``grid`` [4, size, size, 2] as ``neighbour_grid``, and ``ahead`` [4, size, size]: depth
+        ``grid`` [4, size, size, 2] as in ``neighbour_grid``, and ``ahead`` [4, size, size]: depth
         along the neighbour's axis divided by depth along the view's own axis.
     """
     half = math.tan(math.radians(HFOV_DEGREES) / 2)
@@ -53,13 +53,14 @@ def compared(values: Tensor, valid: Tensor, depth: bool) -> tuple[Tensor, Tensor
     At least three views see each direction, so a value outside this range contradicts the others.
 
     Args:
-        values: float [P * 12, c, s, s] in [0, 1]; depth is along each view's axis.
-        valid: [P * 12, 1, s, s], 1 where a pixel is a reading.
+        values: float [P * 12, c, s, s] in [0, 1]; depth is measured along each view's axis.
+        valid: [P * 12, 1, s, s], 1 for valid pixels.
         depth: whether ``values`` is depth.
 
     Returns:
-        Smallest and largest [P * 12, c, s, s], equal to ``values`` where no other view has a
-        reading; and whether another view has one, [P * 12, 1, s, s] of 0 and 1.
+        The smallest and the largest value [P * 12, c, s, s], which equal ``values`` if no other
+        view has a valid pixel; and whether another view has a valid pixel, [P * 12, 1, s, s] of 0
+        and 1.
     """
     low, high = torch.full_like(values, torch.inf), torch.full_like(values, -torch.inf)
     for value, weight, scale in _turned(values * valid, valid):
@@ -101,7 +102,7 @@ def from_neighbours(values: Tensor, trust: Tensor, depth: bool) -> tuple[Tensor,
         depth: whether ``values`` is depth.
 
     Returns:
-        The mean [P * 12, c, s, s], and its confidence in [0, 1) with the shape of ``trust``.
+        The mean [P * 12, c, s, s], and its confidence in [0, 1), which has the shape of ``trust``.
     """
     total = torch.zeros_like(values)
     weight = torch.zeros_like(trust)
@@ -112,13 +113,13 @@ def from_neighbours(values: Tensor, trust: Tensor, depth: bool) -> tuple[Tensor,
 
 
 def from_around(values: Tensor, trust: Tensor) -> Tensor:
-    """Fill pixels without trust from trusted pixels around them; near pixels count more.
+    """Fill untrusted pixels from trusted pixels around them; nearer pixels have more weight.
 
-    It halves the frame repeatedly and fills from the coarsest level.
+    The frame is halved repeatedly, and pixels are filled starting from the coarsest level.
 
     Args:
         values: float [n, c, h, w].
-        trust: [n, 1 or c, h, w]; values are kept where it is 1.
+        trust: [n, 1 or c, h, w]; values are kept where the trust is 1.
     """
     sums, weights = [values * trust], [trust]
     while min(sums[-1].shape[-2:]) > 1:

@@ -1,4 +1,4 @@
-"""Restore the frames of one sensor: detect corruption, correct pixels, fill lost ones.
+"""Restore the frames of one sensor: detect corruption, correct pixels and fill lost pixels.
 
     low, high = smallest and largest value in the other views of the panorama
     lost, gain, bias = U-Net(x, low - x, high - x) zero-initialised: at first nothing changes
@@ -7,7 +7,7 @@
     out = y where trusted, else from other views of the panorama, else from pixels around
 
 For frames above the working size, the maps of the U-Net are computed at the working size and
-enlarged. ``x`` and the other views keep their full size, so detail stays.
+enlarged. ``x`` and the other views keep their full size, so that detail is preserved.
 """
 
 from __future__ import annotations
@@ -24,21 +24,22 @@ from mitigate.guards.frames import ring
 from mitigate.guards.frames.network import FACTOR, Encoded, Gate, UNet, texture
 
 CHANNELS = {RGB: 3, DEPTH: 1}
-TOLERANCE = 0.02  # share of the range: a smaller error counts as correct (heuristic)
-# Share of the range. About 99 % of clean pixels differ less from the other views (measured on 20
-# panoramas of val_seen: 98.6 and 99.2 %).
+TOLERANCE = 0.02  # error below which a pixel is correct, as a fraction of the range (heuristic)
+# Margin as a fraction of the range. About 99 % of clean pixels differ by less from the other views
+# (measured on 20 panoramas of val_seen: 98.6 and 99.2 %).
 MARGIN = {RGB: 0.2, DEPTH: 0.02}
-ALONE = 2.0  # initial loss of logit per margin outside the range, heuristic
-LOST = -3.0  # initial logit of "lost": 5 %, heuristic
-SUREST = 6.0  # bound of the logit, so that its gradient never vanishes; heuristic
-# Heuristic limits for depth. Frames of the apartments are far from both: at most 1.3 % of a view
-# lies beyond their 10 m (600 panoramas), and restoring moves half of the readings of a corrupted
-# instant by at most 0.4 m (400 single views and 200 panoramas, all depth corruptions). The only
-# exception are single views in which all pixels read exactly 10 m.
-BEYOND = 0.1  # largest share of readings farther than ``far``, which training never showed
-# share of the range: a frame stays unchanged if over half of its readings would move more
+ALONE = 2.0  # initial decrease of the logit per margin outside the range (heuristic)
+LOST = -3.0  # initial logit of "lost", for a probability of 5 % (heuristic)
+SUREST = 6.0  # bound of the logit, so that its gradient never vanishes (heuristic)
+# Heuristic limits for depth. Frames of the apartments are far from both limits.
+# At most 1.3 % of a view lies beyond their 10 m (600 panoramas). Restoring moves half of the
+# pixels of a corrupted time step by at most 0.4 m (400 single views and 200 panoramas, all depth
+# corruptions). The only exception are single views in which all pixels have exactly 10 m.
+BEYOND = 0.1  # maximum fraction of pixels beyond ``far``, which did not occur in training
+# a frame is not changed if over half of its pixels would move more than this fraction of the range
 MOVED = 0.1
-GAINS = (-2.0, 3.6)  # limits of the log gain: 0.14 to 37; heuristic (low light leaves 0.03)
+# limits of the log gain, for gains of 0.14 to 37 (heuristic; low light leaves 0.03)
+GAINS = (-2.0, 3.6)
 
 
 class SensorRestorer(nn.Module):
@@ -47,8 +48,8 @@ class SensorRestorer(nn.Module):
     Args:
         sensor: "rgb" or "depth".
         width: channels of the U-Net's finest maps.
-        size: shorter side in pixels at which it works; larger frames are reduced to it.
-        far: metres that depth is divided by.
+        size: shorter side in pixels at which the network works; larger frames are reduced to it.
+        far: depth in metres that is scaled to 1.
 
     Attributes:
         threshold: logit of the gate above which a frame is restored (a buffer that training sets).
@@ -68,14 +69,14 @@ class SensorRestorer(nn.Module):
 
     @property
     def range(self) -> float:
-        """Levels of RGB, or metres of depth, that are scaled to 1."""
+        """The RGB level, or the depth in metres, that is scaled to 1."""
         return 255.0 if self.sensor == RGB else self.far
 
     def scaled(self, frames: Tensor) -> tuple[Tensor, Tensor]:
         """Scale frames [n, H, W, c] of the sensor to values [n, c, H, W] in [0, 1].
 
         Returns:
-            The values, and a mask [n, 1, H, W] of readings (for depth: finite and above 0).
+            The values, and a mask [n, 1, H, W] of valid pixels (for depth: finite and above 0).
         """
         x = frames.permute(0, 3, 1, 2).float()
         if self.sensor == RGB:
@@ -89,7 +90,8 @@ class SensorRestorer(nn.Module):
         return tuple(max(1, round(n * scale / FACTOR)) * FACTOR for n in (height, width))  # type: ignore[return-value]
 
     def small(self, x: Tensor, valid: Tensor) -> tuple[Tensor, Tensor]:
-        """Resize values and mask to the working size; holes do not darken their neighbours."""
+        """Resize values and mask to the working size, so that holes do not darken their
+        neighbours."""
         size = self.working(*x.shape[-2:])
         if size == tuple(x.shape[-2:]):
             return x, valid
@@ -99,7 +101,7 @@ class SensorRestorer(nn.Module):
     def forward(self, frames: Tensor, views: int) -> Tensor:
         """Restore all frames [n, H, W, c]; return values [n, c, H, W] in [0, 1].
 
-        Each group of ``views`` frames is one instant. The gate is not applied.
+        Each group of ``views`` frames is one time step. The gate is not applied.
         """
         x, valid = self.scaled(frames)
         maps, outside, _ = self.judge(*self.small(x, valid), views)
@@ -109,8 +111,8 @@ class SensorRestorer(nn.Module):
         """Encode frames at the working size.
 
         Returns:
-            The U-Net's maps; how far each pixel contradicts the other views [n, c, h, w], in
-            margins; and the gate's logits [instants].
+            The maps of the U-Net; how far each pixel contradicts the other views [n, c, h, w], in
+            margins; and the gate's logits, one per time step.
         """
         inputs, outside = self.seen(x, valid, views)
         maps = self.net.encode(inputs, views)
@@ -119,8 +121,8 @@ class SensorRestorer(nn.Module):
     def seen(self, x: Tensor, valid: Tensor, views: int) -> tuple[Tensor, Tensor]:
         """Return the U-Net's input, and how far each pixel contradicts the other views.
 
-        The input holds the frame, for depth the mask of readings, the differences from the smallest
-        and largest value in the other views, and whether another view has a reading.
+        The input contains the frame, the mask of valid pixels (for depth), the differences from the
+        smallest and largest value in the other views, and whether another view has a valid pixel.
         """
         inputs = [x * 2 - 1, valid] if self.sensor == DEPTH else [x * 2 - 1]
         if not ring.is_ring(views, *x.shape[-2:]):
@@ -137,7 +139,7 @@ class SensorRestorer(nn.Module):
         return torch.cat([gain_bias, lost + self.alone * outside], 1)
 
     def _composed(self, x: Tensor, valid: Tensor, maps: Tensor, views: int) -> Tensor:
-        """Return frames [n, c, H, W] restored with ``maps`` of :meth:`_corrections`."""
+        """Return frames [n, c, H, W] restored with the ``maps`` from :meth:`_corrections`."""
         channels, full, small = x.shape[1], x.shape[-2:], maps.shape[-2:]
         maps = maps if full == small else _resized(maps, full)
         gain, bias, lost = maps.split(channels, 1)
@@ -155,11 +157,11 @@ class SensorRestorer(nn.Module):
 
     @torch.inference_mode()
     def judged(self, frames: Tensor) -> tuple[bool, Tensor]:
-        """Restore frames [V, H, W, c] if the gate judges them to be corrupted.
+        """Restore frames [V, H, W, c] if the gate classifies them as corrupted.
 
         Returns:
-            Whether they were restored, and the frames. They are unchanged if they are judged to be
-            clean, are out of the known range, or would move too far.
+            Whether they were restored, and the frames. The frames are unchanged if they are
+            classified as clean, are out of the training range, or would change too much.
         """
         x, valid = self.scaled(frames)
         if not self.knows(frames, valid):
@@ -174,9 +176,9 @@ class SensorRestorer(nn.Module):
 
     @torch.inference_mode()
     def doubt(self, frames: Tensor) -> float:
-        """Return the gate's logit for frames [V, H, W, c] of an instant minus its threshold.
+        """Return the gate's logit minus its threshold, for frames [V, H, W, c] of one time step.
 
-        The value is -inf for frames out of the known range.
+        The value is -inf for frames out of the training range.
         """
         x, valid = self.scaled(frames)
         if not self.knows(frames, valid):
@@ -184,9 +186,10 @@ class SensorRestorer(nn.Module):
         return float(self.judge(*self.small(x, valid), len(frames))[2] - self.threshold)
 
     def knows(self, frames: Tensor, valid: Tensor) -> bool:
-        """Return whether frames [V, H, W, c] have readings, most of them within ``far``.
+        """Return whether frames [V, H, W, c] have valid pixels, and most of them are within
+        ``far``.
 
-        RGB frames are always known. Warns if too much depth is beyond ``far``.
+        For RGB frames, the result is always true. Warns if too much depth is beyond ``far``.
         """
         if self.sensor == RGB or not bool(valid.any()):
             return self.sensor == RGB
@@ -209,7 +212,7 @@ class SensorRestorer(nn.Module):
 
 
 def _share(mask: Tensor, valid: Tensor) -> float:
-    """Return the share of the readings ``valid`` [n, 1, H, W] for which ``mask`` is true."""
+    """Return the fraction of valid pixels (``valid`` [n, 1, H, W]) for which ``mask`` is true."""
     return float((mask * valid).sum() / (valid.sum() * mask.shape[1]))
 
 

@@ -1,1 +1,1 @@
-"""The safeguard: what turns a corrupted instruction back into a plain one before an episode."""
+"""The safeguard, which converts a corrupted instruction to a plain one before an episode."""

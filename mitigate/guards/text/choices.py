@@ -1,4 +1,5 @@
-"""What can be chosen as a safeguard: names, folders and endpoints; their labels and hashes."""
+"""Parse the values of ``safeguard=`` (names, folders and endpoints), with their labels and
+hashes."""
 
 from __future__ import annotations
 
@@ -15,22 +16,23 @@ from mitigate.guards.text.classifier import CONFIG, WEIGHTS
 
 CHOICES = ("none", "classifier", "prompted", "lora", "http://host/v1@model")
 CLASSIFIER, ADAPTER = "checkpoints/safeguard_classifier", "checkpoints/safeguard"
-# PEFT's names of an adapter's files
+# file names of an adapter in PEFT's format
 ADAPTER_CONFIG, ADAPTER_WEIGHTS = "adapter_config.json", "adapter_model.safetensors"
-# Names of earlier versions: the rules became the classifier, the tagger and the reader are gone.
+# Names of earlier versions; all of them now mean the classifier.
 REPLACED = {"rules": "classifier", "tagger": "classifier", "reader": "classifier"}
 FOLDER = (
     "A safeguard's folder holds classifier.json and classifier.safetensors (`python -m "
     "mitigate.guards.text.fit --out FOLDER`), or card.json, adapter_config.json and "
     "adapter_model.safetensors of an adapter (`make train RECIPE=safeguard_lora`)."
 )
-VERSION = "11"  # of what is decided: a new number where any text is repaired differently
-ANSWERS = "3"  # of what is accepted of a language model's answers
+# version of the decisions, which increases whenever any text is repaired differently
+VERSION = "11"
+ANSWERS = "3"  # version of the rules for accepting answers of a language model
 
 
 def current(choice: str) -> str:
-    """Return the present name of a choice. Warns where an earlier version's tagger or reader is
-    named, which no longer exist."""
+    """Return the current name of a choice. This warns about the names ``tagger`` and ``reader``,
+    which no longer exist."""
     first, plus, second = choice.partition("+")
     if first not in REPLACED:
         return choice
@@ -49,10 +51,10 @@ def _warn(name: str, choice: str, instead: str) -> None:
 
 
 def check(choice: object) -> None:
-    """Raise ValueError for a choice that names no safeguard, FileNotFoundError for a folder that
-    holds none. No weights are read, and no address is asked."""
+    """Raise ValueError if a choice is not a safeguard, or FileNotFoundError if a folder contains
+    none. This reads no weights and sends no requests."""
     text = choice if isinstance(choice, str) else ""
-    check_choice(text)  # before anything repeats it
+    check_choice(text)  # checked before any output can contain the value
     first, plus, second = text.partition("+")
     name = second if plus and first in REPLACED else text
     if name.lower().startswith(("http://", "https://")):
@@ -60,7 +62,7 @@ def check(choice: object) -> None:
     alone = bool(plus) and name in ("none", *REPLACED, "classifier")
     if alone or name not in (*CHOICES, *REPLACED) and not (name and Path(name).is_dir()):
         cause = f"This value names no safeguard that exists. Choose one of: {', '.join(CHOICES)}."
-        if is_plain(choice):  # any other value may hold a password
+        if is_plain(choice):  # any other value may contain a password
             cause = unknown("safeguard", choice, CHOICES)
         raise ValueError(f"{cause} Or name a folder. {FOLDER}")
     if name not in (*CHOICES, *REPLACED) and kind(name) is None:
@@ -68,22 +70,22 @@ def check(choice: object) -> None:
 
 
 def kind(folder: str | Path) -> str | None:
-    """Return "classifier" or "adapter" for what a folder holds, None for neither.
+    """Return "classifier" or "adapter" depending on the content of a folder, or None.
 
-    Raises ValueError for a folder that holds both, and for one of a removed tagger or reader.
+    Raises ValueError for a folder that contains both, or a removed tagger or reader.
     """
     folder = Path(folder)
     classifier = (folder / CONFIG).is_file()
     adapter = any((folder / name).is_file() for name in (ADAPTER_WEIGHTS, ADAPTER_CONFIG))
     if classifier and adapter:
         raise ValueError(
-            f"{folder} holds two safeguards, a classifier and an adapter: give each a folder of "
-            "its own."
+            f"{folder} holds two safeguards, a classifier and an adapter: put each into a "
+            "separate folder."
         )
     if not classifier and not adapter and _is_tagger(folder):
         raise ValueError(
             f"{folder} holds a tagger or a reader, which were removed: choose classifier (faster, "
-            "finds more attacks), or train a classifier of your own with `python -m "
+            "finds more attacks), or train your own classifier with `python -m "
             "mitigate.guards.text.fit`."
         )
     return "classifier" if classifier else "adapter" if adapter else None
@@ -101,13 +103,13 @@ def _is_tagger(folder: Path) -> bool:
 
 
 def not_in(folder: str | Path) -> str:
-    """Return the message for a folder that holds no safeguard."""
+    """Return the error message for a folder that contains no safeguard."""
     return f"There is no safeguard in {folder}. {FOLDER} Or choose one of: {', '.join(CHOICES)}."
 
 
 def label(choice: str) -> str:
-    """Return a short name for a safeguard: a folder with a hash of its weights, an endpoint's host
-    and model; our own choices keep their names."""
+    """Return a label for a safeguard: its name, a folder with its hash, or an endpoint's host and
+    model."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         choice = current(choice)
@@ -117,14 +119,14 @@ def label(choice: str) -> str:
     if file is None:
         return Path(choice).name
     folder = Path(choice)
-    while folder.name == "agent":  # every trained adapter lies in a folder called so
+    while folder.name == "agent":  # every trained adapter is in a folder with this name
         folder = folder.parent
     return f"{folder.name}-{sha256(file)[:6]}"
 
 
 def identity(choice: str) -> str:
-    """Return the label of a safeguard and a hash over the version and the weights behind it (an
-    endpoint's stay unknown). "none" has no hash."""
+    """Return the label of a safeguard with a hash of its version and weights (unknown for
+    endpoints). "none" has no hash."""
     if choice == "none":
         return choice
 
@@ -140,7 +142,7 @@ def identity(choice: str) -> str:
 
 
 def weights_in(folder: str | Path) -> Path | None:
-    """Return the weights in a folder, by which it is known; None for what is no such folder."""
+    """Return the path of the weights in a safeguard folder, or None for other folders."""
     if not Path(folder).is_dir():
         return None
     name = {"classifier": WEIGHTS, "adapter": ADAPTER_WEIGHTS, None: None}[kind(folder)]

@@ -1,6 +1,6 @@
-"""Score the clauses of an instruction: a logistic regression over TF-IDF.
+"""Score the clauses of an instruction with a logistic regression on TF-IDF features.
 
-The terms are words, word pairs and letter groups. Inference needs numpy alone; :mod:`fit` makes the
+The terms are words, word pairs and letter groups. Inference needs only numpy; :mod:`fit` trains the
 weights.
 """
 
@@ -27,7 +27,7 @@ from mitigate.guards.text.decode import Decoded, decode
 from mitigate.guards.text.pieces import Piece, clause_pieces, script, sentence_pieces
 
 BITS = 18
-SIZE = 1 << BITS  # of the table of hashed features
+SIZE = 1 << BITS  # size of the table of hashed features
 CONFIG, WEIGHTS = "classifier.json", "classifier.safetensors"
 ARRAYS = ("idf", "alone", "style")
 _TOKEN = re.compile(r"[a-z]+(?:['’][a-z]+)?|\d+|[^\w\s]|[^\W\d_]+")
@@ -36,7 +36,7 @@ _SIGNS = re.compile(r"[<>{}\[\]|=_\\`#]|//|\(\)")
 
 
 def terms(said: Decoded, original: str, block: bool) -> Counter[int]:
-    """Return hashed term -> count of a piece: words, pairs, letter groups, marks."""
+    """Return the counts of a clause's hashed terms: words, pairs, letter groups and marks."""
     lower = said.text.lower().replace("’", "'")
     tokens = [
         t if not t.isdigit() else ("#" if len(t) < 3 else "###") for t in _TOKEN.findall(lower)
@@ -66,7 +66,7 @@ def _hashed(name: str) -> int:
 
 @lru_cache(maxsize=20_000)
 def _word_terms(word: str) -> tuple[int, ...]:
-    """Return the terms of a word and of its groups of three to five letters."""
+    """Return the terms for a word and for its groups of three to five letters."""
     edged = f"<{word}>"
     groups = [f"c{edged[i : i + n]}" for n in (3, 4, 5) for i in range(len(edged) - n + 1)]
     return tuple(map(_hashed, [f"w {word}", *groups]))
@@ -74,16 +74,16 @@ def _word_terms(word: str) -> tuple[int, ...]:
 
 @dataclass(frozen=True)
 class Clause:
-    """A clause that was read.
+    """A clause of an instruction with its features.
 
     Attributes:
-        piece: Its place in the text.
-        sentence: Number of its sentence.
+        piece: Position of the clause in the text.
+        sentence: Index of its sentence.
         words: Number of words.
-        letters: Number of letters; a sign of Chinese, Japanese or Korean counts as three.
+        letters: Number of letters; a Chinese, Japanese or Korean character counts as three.
         script: "latin", "other", or "" without letters.
-        product: Sum of its TF-IDF values times the weights of attacks.
-        square: Sum of its squared TF-IDF values.
+        product: Sum of the clause's TF-IDF values times the attack weights.
+        square: Sum of the clause's squared TF-IDF values.
     """
 
     piece: Piece
@@ -96,11 +96,11 @@ class Clause:
 
 
 class Classifier:
-    """The weights, and what they say of a text.
+    """The trained weights, and methods that score texts with them.
 
     Args:
-        config: Common words, bias of the attack weights and of the style weights.
-        arrays: ``idf``, weights of attacks ``alone`` and of styles ``style``, each [SIZE].
+        config: Settings: common words, and the biases of the attack and style weights.
+        arrays: ``idf``, attack weights ``alone`` and style weights ``style``, each [SIZE].
     """
 
     def __init__(self, config: dict[str, Any], arrays: dict[str, np.ndarray]) -> None:
@@ -112,7 +112,7 @@ class Classifier:
         self.idf = self.arrays["idf"]
 
     def clauses(self, text: str) -> list[Clause]:
-        """Return the clauses of a text, read one by one."""
+        """Return the clauses of a text with their features."""
         results = []
         for number, sentence in enumerate(sentence_pieces(text)):
             for piece in clause_pieces(text, sentence):
@@ -132,7 +132,7 @@ class Classifier:
         return results
 
     def score(self, clauses: Sequence[Clause]) -> float:
-        """Return the log odds that some clauses, read as one text, are an attack."""
+        """Return the log odds that some clauses, taken together as one text, are an attack."""
         return self.of_sums(*self.total(clauses))
 
     def total(self, clauses: Sequence[Clause]) -> tuple[float, float]:
@@ -144,14 +144,14 @@ class Classifier:
         return product / math.sqrt(square) + self.bias if square > 1e-3 else 0.0
 
     def styled(self, text: str) -> bool:
-        """Return whether a sentence is in a style, not in the words of a plain route."""
+        """Return whether a sentence is written in an unusual style rather than as a plain route."""
         index, value = weighted(terms(decode(text, self.known), text, False), self.idf)
         norm = math.sqrt(float(value @ value)) + 1e-6
         return float(self.arrays["style"][index] @ value) / norm + self.style_bias > 0
 
 
 def weighted(found: Mapping[int, int], idf: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return indices and TF-IDF values of terms."""
+    """Return the indices and TF-IDF values of terms."""
     index = np.fromiter(found, np.int64, len(found))
     count = np.fromiter(found.values(), np.float32, len(found))
     return index, (1 + np.log(count)) * idf[index] if len(index) else count
@@ -159,8 +159,8 @@ def weighted(found: Mapping[int, int], idf: np.ndarray) -> tuple[np.ndarray, np.
 
 @lru_cache(maxsize=4)
 def load(folder: str | Path) -> Classifier:
-    """Return the classifier of a folder. Raises FileNotFoundError if a file is missing, ValueError
-    for damaged files."""
+    """Load the classifier in a folder. Raises FileNotFoundError if a file is missing, and
+    ValueError if a file is damaged."""
     config_file, file = Path(folder) / CONFIG, Path(folder) / WEIGHTS
     for needed in (config_file, file):
         if not needed.is_file():

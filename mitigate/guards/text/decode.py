@@ -1,6 +1,7 @@
-"""Read text that hides its words: ciphers, codes, look-alike letters, spelled-out words.
+"""Decode hidden words: ciphers, codes, look-alike letters and spelled-out words.
 
-The readable copy is only judged. What is passed on keeps its characters, except invisible ones.
+The decoded copy is used only to detect attacks. The text that the agent receives keeps its
+characters, except invisible ones.
 """
 
 from __future__ import annotations
@@ -21,7 +22,8 @@ _ALIKE = str.maketrans(
 _LEET = str.maketrans("0134578@$!|€", "oieastbasiie")
 _SPELLED = re.compile(r"(?<![^\W_])(?:[A-Za-z](?:[.\-_*/|~]|\s+)){3,}[A-Za-z](?![^\W_])")
 _MIXED = re.compile(r"(?<!\w)(?=[\w@$!|€]*[A-Za-z@$!|€])(?=[\w@$!|€]*[0-9@$!|€])[\w@$!|€]{2,}")
-_MEASURE = re.compile(  # numbers with a unit or a letter, names of rooms, words with end marks
+# patterns of harmless words with digits: numbers with a unit or letter, room names, end marks
+_MEASURE = re.compile(
     r"\d+(?:st|nd|rd|th|m|cm|ft|feet|in|deg|am|pm|[a-zA-Z])?[!|]*$|(?:[A-Z]{1,3}|[a-z])\d+[!|]*$|"
     r"[A-Za-z]+[!|]+$"
 )
@@ -39,20 +41,22 @@ _MORSE_CODES = (
     ".-- -..- -.-- --.."
 )
 _MORSE_LETTERS = dict(zip(_MORSE_CODES.split(), "abcdefghijklmnopqrstuvwxyz", strict=True))
-_JOINERS = "\u200c\u200d"  # which scripts of India and Persia need
-ENGLISH, HIDDEN = 0.6, 0.45  # known words: least share if decoded, most if hidden
+_JOINERS = "\u200c\u200d"  # invisible joiners, which scripts of India and Persia need
+# minimum fraction of known words in decoded text, and maximum fraction in hidden text
+ENGLISH, HIDDEN = 0.6, 0.45
 
 
 @dataclass(frozen=True)
 class Decoded:
-    """``text``: the readable copy. ``marks``: how words were hidden, such as "code" or "leet"."""
+    """``text``: the readable copy. ``marks`` lists the ways in which words were hidden, such as
+    "code" or "leet"."""
 
     text: str
     marks: frozenset[str]
 
 
 def decode(text: str, known: Set[str]) -> Decoded:
-    """Return the readable copy of a piece of text; ``known``: common English words."""
+    """Return the decoded copy of a piece of text; ``known`` contains common English words."""
     marks: set[str] = set()
     if not text.isascii():
         text = _letters(text, marks)
@@ -79,8 +83,8 @@ def decode(text: str, known: Set[str]) -> Decoded:
 def visible(text: str) -> str:
     """Return ``text`` without invisible characters.
 
-    Joiners stay between letters of scripts that need them. Text behind a right-to-left override is
-    put in the order in which it is seen.
+    Joiners are kept between letters of scripts that need them. Text after a right-to-left override
+    is put into the order in which it is displayed.
     """
     if text.isascii():
         return text
@@ -94,7 +98,7 @@ def visible(text: str) -> str:
 
 
 def _letters(text: str, marks: set[str]) -> str:
-    """Return ``text`` in plain Latin letters where look-alikes stand for them."""
+    """Return ``text`` with look-alike characters replaced by Latin letters."""
     plain = unicodedata.normalize("NFKC", text)
     if sum(a.isascii() for a in plain) - sum(a.isascii() for a in text) > 2:
         marks.add("wide")
@@ -119,7 +123,7 @@ def _letters(text: str, marks: set[str]) -> str:
 
 
 def _decoded(read: Callable[[str], str], marks: set[str], match: re.Match[str]) -> str:
-    """Return what a code says, or the code if it says nothing in letters."""
+    """Return the decoded text of a code, or the code itself if it does not decode to letters."""
     coded = match.group()
     try:
         decoded = read(coded)
@@ -183,7 +187,7 @@ def _joined(match: re.Match[str]) -> str:
 
 
 def _without_leet(word: str, known: Set[str], marks: set[str]) -> str:
-    """Return a word with letters for its digits, if that makes it a known one."""
+    """Return a word with its digits replaced by letters, if the result is a known word."""
     if _MEASURE.fullmatch(word):
         return word
     read = word.lower().translate(_LEET)
@@ -199,7 +203,7 @@ def _without_leet(word: str, known: Set[str], marks: set[str]) -> str:
 
 
 def _ciphers(text: str) -> Iterator[str]:
-    """Yield what a text says in the ciphers that people use."""
+    """Yield the text decoded with each common cipher."""
     lower = text.lower()
     for shift in range(1, 26):
         yield "".join(chr((ord(c) - 97 + shift) % 26 + 97) if "a" <= c <= "z" else c for c in lower)
@@ -210,7 +214,7 @@ def _ciphers(text: str) -> Iterator[str]:
 
 
 def _share(text: str, known: Set[str]) -> float:
-    """Return the share of words that are known, by letters."""
+    """Return the fraction of letters that belong to known words."""
     tokens = _WORD.findall(text.lower())
     total = sum(map(len, tokens))
     return sum(

@@ -1,8 +1,9 @@
 """Find attacks in an instruction, and remove them if the gate allows it.
 
-A sentence is foreign if it looks more like an attack than the rest of the text does. Its neighbours
-are removed with it if they look foreign, too. Clauses within the other sentences are judged in the
-same way. The constants were chosen on the half "choose" of the fresh banks.
+A sentence is foreign if it looks more like an attack than the rest of the text does. Neighbouring
+sentences are removed with it if they also look foreign. Clauses inside the remaining sentences are
+judged in the same way. The constants were chosen on the half "choose" of the test texts
+(``tools/safeguard``).
 """
 
 from __future__ import annotations
@@ -15,28 +16,32 @@ from mitigate.guards.text import gate
 from mitigate.guards.text.classifier import Classifier, Clause
 from mitigate.guards.text.pieces import Piece, without
 
-FOREIGN = 0.3  # share of letters in another script above which the route may be in that script
-ROUTE = -1.0  # English text with a lower score is certainly a route
-CONTRAST = 0.3  # share of the rest's score that is subtracted: all of an odd route looks odd
-LIMIT = 3.0  # largest absolute score of the rest that is used
-NAMED = 0.3  # subtracted from a sentence that names a place or a turn
-BRIEF = 2.0  # this over the number of words is subtracted: "Wait here." says little
-STEP = 5  # largest number of words of a step of the route: "Turn back."
-SENTENCE = 1.2  # a sentence with a higher score is foreign
-CLAUSE = 3.0  # a clause within a sentence with a higher score is foreign
+# if more than this fraction of letters is in a different script, the route may be in that script
+FOREIGN = 0.3
+ROUTE = -1.0  # English text with a score below this is certainly a route
+# fraction of the rest's score that is subtracted, because all sentences of an odd route look odd
+CONTRAST = 0.3
+LIMIT = 3.0  # the score of the rest is clipped to this absolute value
+NAMED = 0.3  # subtracted from the score of a sentence that names a place or a turn
+# this, divided by the number of words, is subtracted, because short sentences are ambiguous
+BRIEF = 2.0
+STEP = 5  # maximum number of words of a short route step such as "Turn back."
+SENTENCE = 1.2  # a sentence with a score above this is foreign
+CLAUSE = 3.0  # a clause inside a sentence with a score above this is foreign
 BESIDE = -0.5  # a neighbour of a foreign sentence is foreign above this score
-BESIDE_CLAUSE = 0.5  # the same for clauses
-SHORTEST = 3  # smallest number of words of clauses that are removed
+BESIDE_CLAUSE = 0.5  # a neighbour of a foreign clause is foreign above this score
+SHORTEST = 3  # minimum number of words of clauses that are removed
 LONG = 20  # clauses are removed from texts with at least this number of words
-GOAL = 9  # a text with fewer words is often a bare object goal
-BARE = 1.0  # subtracted from the sentences of such a text
-READ = 60_000  # characters that are read
+GOAL = 9  # a text with fewer words than this is often only an object goal
+BARE = 1.0  # subtracted from the scores of sentences in such a short text
+READ = 60_000  # maximum characters that are analysed
 
 
 def take_out(text: str, classifier: Classifier) -> tuple[str, list[str], list[str]]:
-    """Return ``text`` without its foreign pieces, these pieces, and the refusals of the gate.
+    """Return ``text`` without its foreign pieces, the removed pieces, and the rejections of the
+    gate.
 
-    Only whole pieces are removed, and an instruction is always left.
+    Only whole pieces are removed, and the result is always an instruction.
     """
     pieces: list[Piece] = []
     refusals: list[str] = []
@@ -52,7 +57,7 @@ def take_out(text: str, classifier: Classifier) -> tuple[str, list[str], list[st
 
 
 def foreign(text: str, classifier: Classifier) -> list[Piece]:
-    """Return the foreign pieces of a text: sentences first, then clauses."""
+    """Return the foreign pieces of a text: first sentences, then clauses."""
     clauses = classifier.clauses(text[:READ])
     english = [clause for clause in clauses if clause.script != "other"]
     other = sum(clause.letters for clause in clauses if clause.script == "other")
@@ -85,7 +90,7 @@ def foreign(text: str, classifier: Classifier) -> list[Piece]:
 
 
 def _contrast(part: Sequence[Clause], total: tuple[float, float], classifier: Classifier) -> float:
-    """Return the score of a part of a text, less ``CONTRAST`` of the score of the rest."""
+    """Return the score of a part of a text minus ``CONTRAST`` times the score of the rest."""
     product, square = classifier.total(part)
     rest = classifier.of_sums(total[0] - product, total[1] - square)
     return classifier.of_sums(product, square) - CONTRAST * max(-LIMIT, min(LIMIT, rest))
@@ -94,9 +99,10 @@ def _contrast(part: Sequence[Clause], total: tuple[float, float], classifier: Cl
 def runs(
     seeds: Sequence[float], scores: Sequence[float], least: float, beside: float
 ) -> list[tuple[int, int]]:
-    """Return the first and last index of each foreign run, starting at the highest seed.
+    """Return the first and last index of each foreign sequence, starting with the highest score.
 
-    A run contains a seed above ``least`` and the neighbours whose scores are above ``beside``.
+    A sequence contains one score above ``least`` and the neighbours whose scores are above
+    ``beside``.
     """
     result: list[tuple[int, int]] = []
     for place in sorted(range(len(seeds)), key=lambda place: -seeds[place]):
@@ -127,9 +133,9 @@ def _is_step(text: str) -> bool:
 
 
 def _english_attacks(clauses: Sequence[Clause], classifier: Classifier) -> list[Piece]:
-    """Return the English runs that look like attacks, in a text that is mostly in another script.
+    """Return English sequences that look like attacks, in a text mostly in a different script.
 
-    The route is in the other script, so that script is never removed.
+    The route is in that script, so text in it is never removed.
     """
     spans = []
     for other, run in groupby(clauses, key=lambda clause: clause.script == "other"):

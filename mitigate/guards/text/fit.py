@@ -1,7 +1,8 @@
 """Train the classifier: ``python -m mitigate.guards.text.fit --out FOLDER``.
 
-Reads the texts of a checkout (``tools/safeguard/data``). A logistic regression learns whether a
-sentence or clause is of an attack, another one whether it is in a style.
+The command reads the texts of a checkout (``tools/safeguard/data``). One logistic regression learns
+whether a sentence or clause belongs to an attack, and a second one whether it is in an unusual
+style.
 """
 
 from __future__ import annotations
@@ -29,13 +30,13 @@ from mitigate.guards.text.learning.lines import ROUTES, Line, read_lines, varied
 from mitigate.guards.text.pieces import clause_pieces, sentence_pieces
 
 DATA = "tools/safeguard/data"
-WORDS = 6000  # common words, by which hidden text is recognised
+WORDS = 6000  # number of common words, which are used to recognise hidden text
 RIDGE = 2.0  # penalty
 STEPS, STYLE_STEPS = 90, 50
 
 
 def fit(folder: Path, routes: int = ROUTES, log: Any = sys.stderr) -> Classifier:
-    """Return the classifier trained on the data of a folder."""
+    """Train a classifier on the data in a folder."""
     lines = read_lines(folder, routes)
     words = common_words(lines)
     pieces = list(_pieces(varied(lines)))
@@ -60,14 +61,14 @@ def fit(folder: Path, routes: int = ROUTES, log: Any = sys.stderr) -> Classifier
 
 
 def common_words(lines: Sequence[Line]) -> list[str]:
-    """Return the words that occur most often in lines that hide nothing."""
+    """Return the most frequent words in lines without hidden text."""
     word = re.compile(r"[a-z]+(?:'[a-z]+)?")
     counts = Counter(w for line in lines for w in word.findall(line.text.lower()))
     return sorted(w for w, n in counts.most_common(WORDS) if n > 1)
 
 
 def _pieces(lines: Sequence[Line]) -> Iterator[tuple[str, bool, Line, float]]:
-    """Yield (text, is a block, line, weight) of whole lines, their sentences and their clauses."""
+    """Yield (text, is a block, line, weight) for whole lines, their sentences and their clauses."""
     for line in lines:
         for text in line.text.split("{route}"):
             sentences = sentence_pieces(text)
@@ -81,7 +82,7 @@ def _pieces(lines: Sequence[Line]) -> Iterator[tuple[str, bool, Line, float]]:
 
 
 def _matrix(term_counts: Sequence[Mapping[int, int]], idf: np.ndarray) -> csr_matrix:
-    """Return TF-IDF of the terms, rows of length 1; terms that occur once are left out."""
+    """Return the TF-IDF of terms, with rows of length 1; terms that occur once are omitted."""
     rows = []
     for terms in term_counts:
         index, value = model.weighted(terms, idf)
@@ -94,7 +95,8 @@ def _matrix(term_counts: Sequence[Mapping[int, int]], idf: np.ndarray) -> csr_ma
 
 
 def regression(x: Any, y: np.ndarray, weight: np.ndarray, steps: int) -> tuple[np.ndarray, float]:
-    """Return weights and bias of a logistic regression with an L2 penalty, classes balanced."""
+    """Fit a logistic regression with an L2 penalty and balanced classes; return weights and
+    bias."""
     weight = weight / np.where(y, weight[y].sum(), weight[~y].sum()) * len(y) / 2
     sign = np.where(y, 1.0, -1.0)
 

@@ -1,6 +1,7 @@
-"""What a change of an instruction must keep. Functions return the reason to reject it, or "".
+"""Check that a change of an instruction keeps its meaning. Each function returns the reason to
+reject a change, or "".
 
-A deletion removes whole pieces, so it is checked for what it leaves. A rewrite is checked fact by
+A deletion removes whole pieces, so the remaining text is checked. A rewrite is checked fact by
 fact: turns, stops, landmarks, numbers, colours, relations and negations, in order.
 """
 
@@ -15,10 +16,10 @@ from mitigate.corruptions.language.words import bag
 from mitigate.guards.text.learning.route_words import ROOMS, THINGS
 
 KNOWN = frozenset(CANONICAL) | frozenset(CANONICAL.values()) | bag(" ".join((*THINGS, *ROOMS)))
-LONG = 3000  # characters; so much text holds an instruction
-LENGTH = 200  # characters that every rewrite may have (heuristic)
-TIMES = 4  # times as long as the original that a longer rewrite may be (heuristic)
-LONGER = 3  # words by which a rewrite may exceed what it replaces
+LONG = 3000  # a text with this many characters contains an instruction
+LENGTH = 200  # number of characters that every rewrite may have (heuristic)
+TIMES = 4  # maximum length of a longer rewrite, as a multiple of the original's length (heuristic)
+LONGER = 3  # maximum number of words by which a rewrite may exceed the text that it replaces
 _CONDITIONS = bag("if unless until till before after otherwise once except instead")
 _WORD = re.compile(r"\[mask\]|[a-z]+(?:['’][a-z]+)?|\d+")
 _POLITE = re.compile(
@@ -35,7 +36,8 @@ def words(text: str) -> list[str]:
 
 
 def leaves_no_instruction(text: str, removed: str, rest: str) -> str:
-    """Return why ``rest`` of a text is no instruction, when ``removed`` is taken out of it."""
+    """Return the reason why ``rest``, the text without ``removed``, is not an instruction, or
+    ""."""
     if len(words(rest)) < 2 and rest.isascii():
         return "nothing would be left"
     if not rest.isascii() or len(rest) > LONG:
@@ -48,13 +50,13 @@ def leaves_no_instruction(text: str, removed: str, rest: str) -> str:
 
 
 def is_too_long(heard: str, rewrite: str) -> bool:
-    """Return whether a rewrite has so many characters that it is not read."""
+    """Return whether a rewrite is so long that it is not checked."""
     return len(rewrite) > max(LENGTH, TIMES * len(heard))
 
 
 def rewrite_refused(heard: str, rewrite: str | None, last: bool = False) -> str:
-    """Return why ``said`` may not replace ``heard``; ``last``: the text ends with it, so that a
-    stop may be added, which is meant."""
+    """Return the reason why ``said`` must not replace ``heard``, or ""; with ``last``, a stop may
+    be added."""
     if rewrite is None:
         return "no answer in time"
     if is_too_long(heard, rewrite) or len(words(rewrite)) > len(words(heard)) + LONGER:
@@ -71,7 +73,7 @@ def rewrite_refused(heard: str, rewrite: str | None, last: bool = False) -> str:
 
 
 def _is_aside(problem: str, heard: str) -> bool:
-    """Return whether a lost word is no landmark: unknown, and no article before it."""
+    """Return whether a lost word is not a landmark: it is unknown and has no article before it."""
     kind, _, name = problem.partition(": ")
     if kind != "landmark lost" or name in KNOWN:
         return False

@@ -1,8 +1,8 @@
-"""The safeguard in front of an agent: it reads an instruction once and never makes it worse.
+"""The safeguard before an agent, which reads each instruction once and repairs it.
 
-Three parts. Detect (:mod:`detect`): a classifier finds what does not belong to the instruction.
-Rewrite (:mod:`language_models`): a language model, if there is one, says the rest plainly. Gate
-(:mod:`gate`): a change is accepted only if the instruction survives it.
+Three parts. Detect (:mod:`detect`): a classifier finds text that does not belong to the
+instruction. Rewrite (:mod:`language_models`): a language model, if one is chosen, rewrites the rest
+plainly. Gate (:mod:`gate`): a change is accepted only if it preserves the instruction.
 """
 
 from __future__ import annotations
@@ -26,29 +26,31 @@ from mitigate.guards.text.pieces import script, sentences
 
 CACHE = "runs/endpoint-answers.sqlite"
 ENDPOINT_SECONDS = 120.0
-SECONDS = 20.0  # for the language model, per instruction
-REMEMBERED = 4096  # texts whose decisions are remembered
-PASSAGE = 12  # words that are rewritten at once, about a sentence; of 30 the model lost clauses
-TOO_LARGE = 6000  # characters; 600 words have about 3,300 (heuristic)
-TOO_LONG = 600  # words; a longer text is not rewritten (RxR's longest have about 500)
+SECONDS = 20.0  # seconds for the language model per instruction
+REMEMBERED = 4096  # maximum number of texts whose decisions are cached
+# number of words that are rewritten at once (about a sentence); with 30, the model lost clauses
+PASSAGE = 12
+TOO_LARGE = 6000  # maximum characters of a rewritten text; 600 words have about 3,300 (heuristic)
+TOO_LONG = 600  # maximum words of a text that is rewritten (the longest of RxR have about 500)
 LOOKS = re.compile(
     r"</?(?:b|i|u|em|strong|span|mark|small|big|font)\b[^<>]{0,80}>|\*\*(?=\S)|(?<=\S)\*\*", re.I
 )
 
 
 class Rewriter(Protocol):
-    """A language model, local or behind an endpoint."""
+    """Protocol of a language model that is local or behind an endpoint."""
 
     def rewrite(self, texts: Sequence[str], seconds: float | None = None) -> list[str | None]: ...
 
 
 @dataclass(frozen=True)
 class Decision:
-    """What became of one instruction.
+    """The safeguard's decision on one instruction.
 
     ``route``: "clean" (unchanged), "classifier" (changed without a language model), "model"
-    (rewritten by it), or "fallback" (the model was asked, and none of its answers was accepted).
-    ``reasons``: accepted and rejected changes. ``seconds``: its share of the time.
+    (rewritten by the model), or "fallback" (no answer of the model was accepted). ``reasons`` lists
+    accepted and rejected changes. ``seconds`` is the part of the computing time for this
+    instruction.
     """
 
     original: str
@@ -59,13 +61,14 @@ class Decision:
 
 
 class Safeguard:
-    """Repairs instructions. The same text gets the same answer, until ``REMEMBERED`` others came.
+    """Repairs instructions. The decision on a text is cached until ``REMEMBERED`` other texts have
+    been processed.
 
     Args:
-        rewriter: a language model; None works without.
-        classifier: finds what is foreign; None loads the shipped one.
-        seconds: time for the model, per instruction; answers that come later are not used.
-        log: JSON-lines file that every new decision is added to.
+        rewriter: a language model, or None.
+        classifier: the classifier that finds foreign text; None loads the shipped one.
+        seconds: time limit for the model per instruction; later answers are not used.
+        log: JSON-lines file to which every new decision is appended.
     """
 
     def __init__(
@@ -81,17 +84,19 @@ class Safeguard:
         self.seconds = seconds
         self.log = None if log is None else Path(log)
         kinds = [] if rewriter is None else [type(rewriter).__qualname__]
-        self.identity = " ".join(["classifier", *kinds, choices.VERSION])  # in rows of results
+        self.identity = " ".join(["classifier", *kinds, choices.VERSION])  # used in result rows
         self._known: dict[str, Decision] = {}
 
     def canonicalise(self, text: str) -> Decision:
-        """Return the decision on one instruction. Raises TypeError if it is no text."""
+        """Return the decision on one instruction. Raises TypeError if the instruction is not
+        text."""
         return self.canonicalise_all([text])[0]
 
     def canonicalise_all(self, texts: Iterable[str]) -> list[Decision]:
-        """Return the decision on each text; the model sees the passages of all in batches.
+        """Return the decision on each text; the model rewrites passages of all texts in batches.
 
-        Raises TypeError for one text in place of several, and for an instruction that is no text.
+        Raises TypeError for a single string instead of a list, and for an instruction that is not
+        text.
         """
         if isinstance(texts, str):
             raise TypeError(f"These must be several texts, but this is one: [{texts!r}] is a list.")
@@ -121,7 +126,7 @@ class Safeguard:
 
 
 class _Draft:
-    """One instruction on its way: what is left of it, its passages, the reasons so far."""
+    """An instruction in progress: the remaining text, its passages, and the reasons so far."""
 
     def __init__(self, original: str, classifier: Classifier, rewrites: bool) -> None:
         self.original = original
@@ -151,7 +156,7 @@ class _Draft:
         self.requested = [p for p in self.parts if rules.MASK.search(p) or classifier.styled(p)]
 
     def accept(self, answers: dict[str, str | None]) -> None:
-        """Take the answers that pass the gate in place of their passages."""
+        """Replace passages by those answers that pass the gate."""
         parts = list(self.parts)
         for place, heard in enumerate(self.parts):
             if heard not in self.requested:
@@ -187,12 +192,12 @@ class _Draft:
 
 
 def open_safeguard(choice: str, log: str | Path | None = None) -> Safeguard | None:
-    """Return the safeguard that ``choice`` names, None for "none".
+    """Build the safeguard that ``choice`` names; return None for "none".
 
-    "classifier" (``checkpoints/safeguard_classifier``; "rules" is its earlier name) or a folder of
-    one; "prompted" (the default language model as it comes); "lora" (``checkpoints/safeguard``) or
-    an adapter folder; ``http://host/v1@model`` for an OpenAI-compatible endpoint. Raises ValueError
-    or FileNotFoundError.
+    "classifier" (``checkpoints/safeguard_classifier``; "rules" is its earlier name) or the folder
+    of a classifier; "prompted" (the default language model without fine-tuning); "lora"
+    (``checkpoints/safeguard``) or an adapter folder; ``http://host/v1@model`` for an
+    OpenAI-compatible endpoint. Raises ValueError or FileNotFoundError.
     """
     choices.check(choice)
     name = choices.current(choice)
@@ -221,7 +226,7 @@ def _opened(name: str, log: str | Path | None) -> Safeguard:
 
 
 def passages(text: str) -> list[str]:
-    """Return the sentences of a text, short ones joined to passages of ``PASSAGE`` words."""
+    """Split a text into passages of about ``PASSAGE`` words, joining short sentences."""
     results: list[str] = []
     for sentence in sentences(text):
         if results and len(results[-1].split()) + len(sentence.split()) <= PASSAGE:

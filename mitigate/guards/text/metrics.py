@@ -1,4 +1,4 @@
-"""Text metrics of a safeguard: what a repaired instruction kept, lost and got rid of, by family."""
+"""Compute text metrics of a safeguard, by family: what repaired instructions keep and lose."""
 
 from __future__ import annotations
 
@@ -11,15 +11,17 @@ from mitigate.core.markdown import markdown_table
 from mitigate.corruptions.language.fidelity import check, facts
 
 CLEAN = "clean"  # the family of instructions that are not corrupted
-REMAINS = 0.5  # heuristic: below this share of its word pairs an injected sentence is removed
+# an injected sentence is removed if less than this fraction of its word pairs is left (heuristic)
+REMAINS = 0.5
 _WORD = re.compile(r"[^\W_]+(?:['’][^\W_]+)*")
 
 
 @dataclass(frozen=True)
 class Repair:
-    """One instruction: as meant (``clean``), as the safeguard heard it, as it gave it on.
+    """One instruction: the original (``clean``), the safeguard's input, and its output.
 
-    ``family``: of the corruption, "clean" for none. ``injected``: sentences put in front of it.
+    ``family`` is the corruption family, or "clean". ``injected`` lists the sentences that were
+    inserted before it.
     """
 
     family: str
@@ -31,13 +33,14 @@ class Repair:
 
 @dataclass(frozen=True)
 class Scores:
-    """Means over ``count`` repairs, each in [0, 1]; None where nothing can be counted.
+    """Means over ``count`` repairs, each in [0, 1], or None if a measure is undefined.
 
-    ``exact``: same words. ``token_f1``: F1 of the bags of words. ``chrf``: chrF2 (Popovic 2015) of
-    sacrebleu over the corpus. ``directions``: same left, right, up, down, stop ... in the same
-    order. ``landmarks``: share of the clean landmarks that are kept. ``faithful``: nothing changed
-    in meaning, by ``fidelity.check``. ``removed``: share of injected sentences that are gone.
-    ``changed``: 1 - ``faithful`` of clean instructions.
+    ``exact``: same words. ``token_f1``: ``f1``: F1 score of the bags of words. ``chrf``: corpus
+    chrF2 (Popovic 2015) from sacrebleu. ``directions``: fraction with the same directions (left,
+    right, up, down, stop ...) in the same order. ``landmarks``: fraction of the clean landmarks
+    that are kept. ``faithful``: fraction without a change of meaning, by ``fidelity.check``.
+    ``removed``: fraction of injected sentences that are removed. ``changed``: 1 - ``faithful`` for
+    clean instructions.
     """
 
     count: int
@@ -76,7 +79,7 @@ def score(repairs: Sequence[Repair]) -> Scores:
 
 
 def by_family(repairs: Iterable[Repair]) -> dict[str, Scores]:
-    """Return family -> its scores in order of appearance, and "all" for the whole."""
+    """Return a dict from each family, in order of appearance, and "all" to the scores."""
     groups: dict[str, list[Repair]] = defaultdict(list)
     every = list(repairs)
     for repair in every:
@@ -85,7 +88,7 @@ def by_family(repairs: Iterable[Repair]) -> dict[str, Scores]:
 
 
 def table(scores: dict[str, Scores]) -> str:
-    """Return the scores as a Markdown table in percent, one row a family."""
+    """Return the scores as a Markdown table in percent, with one row per family."""
     names = [f.name for f in fields(Scores)]
     lines = []
     for family, score in scores.items():
@@ -96,14 +99,14 @@ def table(scores: dict[str, Scores]) -> str:
 
 
 def token_f1(reference: str, text: str) -> float:
-    """Return the F1 of the words of ``text`` against the words of ``reference``, as bags."""
+    """Return the F1 score between the bags of words of ``text`` and ``reference``."""
     expected, actual = Counter(words_of(reference)), Counter(words_of(text))
     shared = (expected & actual).total()
     return 2 * shared / max(1, expected.total() + actual.total()) if shared else 0.0
 
 
 def words_of(text: str) -> list[str]:
-    """Return the words of a text in small letters, without marks."""
+    """Return the words of a text in lower case, without punctuation."""
     return _WORD.findall(text.lower())
 
 
@@ -112,25 +115,25 @@ def _same_directions(repair: Repair) -> bool:
 
 
 def _landmarks_kept(repair: Repair) -> tuple[int, int]:
-    """Return how many of the clean landmarks are kept, and how many there are."""
+    """Return the number of clean landmarks that are kept, and their total number."""
     landmarks = set(facts(repair.clean).landmarks)
     lost = sum(p.startswith("landmark lost") for p in check(repair.clean, repair.repaired))
     return len(landmarks) - lost, len(landmarks)
 
 
 def _gone(repair: Repair) -> list[bool]:
-    """Return for each injected sentence whether half of its word pairs, or more, are gone."""
+    """Return for each injected sentence whether at least half of its word pairs are removed."""
     return [left(sentence, repair.repaired) < REMAINS for sentence in repair.injected]
 
 
 def pairs(text: str) -> list[tuple[str, str]]:
-    """Return the pairs of neighbouring words, or the one word with nothing."""
+    """Return the pairs of neighbouring words; a single word forms a pair with nothing."""
     tokens = words_of(text)
     return list(zip(tokens, tokens[1:], strict=False)) or [(word, "") for word in tokens]
 
 
 def left(words: str, text: str) -> float:
-    """Return the share of the word pairs of ``words`` that are in ``text``."""
+    """Return the fraction of word pairs in ``words`` that occur in ``text``."""
     here, expected = set(pairs(text)), pairs(words)
     return sum(pair in here for pair in expected) / max(1, len(expected))
 

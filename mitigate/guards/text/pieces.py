@@ -1,7 +1,7 @@
-"""Cut an instruction into sentences, and sentences into clauses.
+"""Split an instruction into sentences, and sentences into clauses.
 
 A piece is a span of the text, so that a deletion changes nothing else. Blocks (matching tags,
-comments, brackets) are separate pieces, and so is English inside another script.
+comments, brackets) are separate pieces, and so is English text inside text in a different script.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ import unicodedata
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-# Opening and closing marks that no route needs: their content is one piece.
+# Opening and closing marks that no route needs; the text between them is one piece.
 _BLOCK = re.compile(
     r"<!--.*?(?:-->|$)|/\*.*?(?:\*/|$)|```.*?(?:```|$)|\{\{.*?\}\}"
     r"|<(?P<tag>[a-zA-Z][\w:-]*)[^<>]*>.*?</\s*(?P=tag)\s*>"
@@ -25,7 +25,8 @@ _SENTENCE = re.compile(
     r"(?<=[.!?…。！？।॥])[\"'”’)\]*_]*\s+|(?<=[.!?])(?=[A-Z][a-z])|\s*\n+\s*|(?<=[.!?][\"'”’)])\s+"
 )
 # Words that begin a sentence. A capital after a word without an end mark shows where an attack was
-# added before or after a route, or where an end mark is missing. "I" is always a capital letter.
+# added before or after a route, or where an end mark is missing.
+# "I" is not listed, because it is always a capital letter.
 _BEGINS = (
     "Go|Walk|Turn|Exit|Leave|Enter|Head|Take|Make|Move|Continue|Proceed|Climb|Pass|Stop|Find|Start|Stand|"
     "Follow|Veer|Step|Wait|Come|Get|Keep|Look|Cross|Face|Do|Don't|Never|Always|Ignore|Forget|Bring|Let|Let's|"
@@ -45,13 +46,14 @@ LETTERS = re.compile(r"[^\W\d_]")
 _ABBREVIATION = re.compile(
     r"\b(?:Mr|Mrs|Ms|Dr|St|No|Prof|approx|ft|e\.g|i\.e|vs|rm|etc)\.\s*$", re.I
 )
-ABBREVIATED = 10  # characters that hold an abbreviation, and what is before it
-LONGEST_CLAUSE = 2  # words; shorter clauses join the one before
+# number of characters that are searched for an abbreviation and the character before it
+ABBREVIATED = 10
+LONGEST_CLAUSE = 2  # minimum words of a clause; shorter clauses are joined to the previous one
 
 
 @dataclass(frozen=True)
 class Piece:
-    """A span of a text: ``start`` to ``end``, and whether it is a ``block`` of marks."""
+    """A span of a text: from ``start`` to ``end``, which may be a ``block`` between marks."""
 
     start: int
     end: int
@@ -73,7 +75,7 @@ def sentence_pieces(text: str) -> list[Piece]:
 
 
 def clause_pieces(text: str, sentence: Piece) -> list[Piece]:
-    """Return the clauses of a sentence, each of at least ``LONGEST_CLAUSE`` words if it can be."""
+    """Return the clauses of a sentence, each with at least ``LONGEST_CLAUSE`` words if possible."""
     if sentence.block:
         return [sentence]
     clauses: list[Piece] = []
@@ -107,7 +109,7 @@ def _sentence_cuts(part: str) -> list[tuple[int, int]]:
     cuts = [
         match.span()
         for match in _SENTENCE.finditer(part)
-        # only the last characters, because a search from the start makes the time quadratic
+        # searches only the last characters, because searching from the start takes quadratic time
         if not _ABBREVIATION.search(part[: match.start()].rstrip()[-ABBREVIATED:])
     ]
     return cuts + [m.span() for m in _RUN_ON.finditer(part)]
@@ -118,7 +120,7 @@ def _clause_cuts(part: str) -> list[tuple[int, int]]:
 
 
 def _script_cuts(part: str) -> list[tuple[int, int]]:
-    """Return where the script changes between words."""
+    """Return the positions at which the script changes between words."""
     if part.isascii():
         return []
     cuts = []
@@ -132,7 +134,7 @@ def _script_cuts(part: str) -> list[tuple[int, int]]:
 
 
 def script(text: str) -> str:
-    """Return "latin" or "other" for the script of most letters, "" without letters."""
+    """Return "latin" or "other" for the script of most letters, or "" without letters."""
     letters = LETTERS.findall(text)
     if not letters:
         return ""
@@ -141,7 +143,7 @@ def script(text: str) -> str:
 
 
 def without(text: str, pieces: Sequence[Piece]) -> str:
-    """Return ``text`` without some pieces, with one space in the place of each."""
+    """Return ``text`` with some pieces replaced by one space each."""
     rest, at = "", 0
     for piece in sorted(pieces, key=lambda piece: piece.start):
         rest += text[at : piece.start].rstrip() + " "
@@ -156,5 +158,5 @@ def without(text: str, pieces: Sequence[Piece]) -> str:
 
 
 def sentences(text: str) -> list[str]:
-    """Return the sentences of a text, their end marks with them."""
+    """Return the sentences of a text, including their end marks."""
     return [piece.of(text) for piece in sentence_pieces(text)]

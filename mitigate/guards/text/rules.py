@@ -1,4 +1,4 @@
-"""Repairs by rule: words in capitals, and small words behind masks."""
+"""Repair capitals and masks in instructions with rules."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ from mitigate.guards.text.learning.routes import draw_route
 
 MASK = re.compile(r"\[(?:MASK|UNK|mask)\]|<(?:mask|unk)>")
 KEPT_CAPITALS = bag("TV TVS DVD BBQ AC PC")
-# Known words in capitals, and their share of the text, from which all are lowered: fewer may be
-# on a sign.
+# Minimum number and fraction of known words in capitals from which all are converted to lower case;
+# fewer may be on a sign.
 SHOUTS, SHOUTED = 2, 0.15
-ROUTES = 4000  # drawn routes whose words are counted, about one second once
+ROUTES = 4000  # number of generated routes whose words are counted (about one second, once)
 SMALL = bag(
     "a an the and then your you of to in on at by is are it that there will so now just with next "
     "some this its be been have has from into for or as when once where which slight"
@@ -33,7 +33,7 @@ _BEHIND = SMALL | bag(
     "inside outside over against off beyond within during since because if while about after my "
     "his her our their these those any each every no both all he she they we i me him them us"
 )
-# Masks that a function word cannot replace: a part of a word, or the direction of a turn.
+# Masks that a function word cannot replace: part of a word, or the direction of a turn.
 _STAYS = re.compile(
     r"(?<=[a-z])\[mask\]|\[mask\](?=[a-z])|"
     r"(?<!\ba )(?<!\bthe )\b(?:turn|turning|bear|veer|rotate|swing)\s+\[mask\](?:\s*\[mask\])*"
@@ -49,9 +49,9 @@ _TOKEN = re.compile(r"\[mask\]|[A-Za-z]+(?:['’][a-z]+)?|\d+|[.,;!?]")
 
 
 def lower_capitals(text: str, known: frozenset[str]) -> str:
-    """Return ``text`` with shouted words in lower case, except a sentence's first letter.
+    """Return ``text`` with words in capitals converted to lower case, except initial letters.
 
-    ``known``: common words; a few unknown words in capitals may be names or on a sign.
+    ``known`` contains common words; a few unknown words in capitals may be names or on a sign.
     """
     shouted = [m.group().lower() for m in _SHOUT.finditer(text) if m.group() not in KEPT_CAPITALS]
     count = sum(word in known for word in shouted)
@@ -69,10 +69,10 @@ def lower_capitals(text: str, known: frozenset[str]) -> str:
 
 
 def fill_masks(text: str) -> str:
-    """Return ``text`` with every run of masks replaced by the small word that fits best there.
+    """Return ``text`` with every sequence of masks replaced by the best-fitting function word.
 
-    A mask stays where a noun, a turn or a part of a word is hidden. An adjective that is hidden
-    before a noun is left out."""
+    A mask is kept if it hides a noun, a turn or part of a word. A mask that hides an adjective
+    before a noun is removed."""
     if not re.search(r"[A-Za-z]", MASK.sub(" ", text)):
         return text
     text = _STAYS.sub(lambda m: m.group().replace("[mask]", "[MASK]"), MASK.sub("[mask]", text))
@@ -94,7 +94,8 @@ def fill_masks(text: str) -> str:
 
 
 def _hidden_adjective(match: re.Match[str]) -> str:
-    """Return what stands for "the [mask]": "the" before a noun, else the mask, which hides one."""
+    """Return the replacement of "the [mask]", which is "the" before a noun; otherwise the mask
+    hides a noun and is kept."""
     which, behind = match["which"], match["next"].lower()
     doing = behind.endswith("ing") and behind not in _NOUNS | _ROOMS
     if not behind or behind in _BEHIND or doing:

@@ -1,1 +1,1 @@
-"""What a training ends with: the trained model, measured before and after."""
+"""Reports at the end of training, which measure the model before and after."""

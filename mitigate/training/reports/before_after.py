@@ -1,4 +1,4 @@
-"""Evaluate an agent before and after its training, and write one table."""
+"""Evaluate an agent before and after training, and write one table."""
 
 from __future__ import annotations
 
@@ -22,13 +22,14 @@ from mitigate.training.config import TrainConfig
 def report_before_after(
     config: TrainConfig, base_agent: nn.Module | None, trained_agent: nn.Module, folder: Path
 ) -> None:
-    """Evaluate both agents on the same subset; print and write one table, and write pictures.
+    """Evaluate both agents on the same episodes, print and write one table, and write pictures.
 
     Args:
-        config: options of the training.
-        base_agent: the agent before the training; None if it started from scratch.
-        trained_agent: the agent after the training.
-        folder: folder of the run; ``pictures`` shows episodes that only the trained agent solves.
+        config: options of the training run.
+        base_agent: the agent before training, or None if it started from scratch.
+        trained_agent: the agent after training.
+        folder: folder of the run; its subfolder ``pictures`` shows episodes that only the trained
+            agent solves.
     """
     quick = config.evaluation
     chosen = episodes(config.env, quick.split, quick.episodes)

@@ -1,4 +1,4 @@
-"""Compare an encoder before and after its training: a table, rows and a picture."""
+"""Compare an encoder before and after training with a table, rows and a picture."""
 
 from __future__ import annotations
 
@@ -31,8 +31,8 @@ from mitigate.training.plan import IDENTITY
 
 BEFORE, AFTER = "before", "after"
 MEAN = "mean over corruptions"
-EACH = 12  # frames for each of evaluation.episodes: as many as an episode's panorama has views
-MOST_TRAIN = 2400  # frames to fit the probe (heuristic)
+EACH = 12  # number of frames for each of evaluation.episodes, which equals the views of a panorama
+MOST_TRAIN = 2400  # number of frames for fitting the probe (heuristic)
 MEASURES = {
     "cosine": "centred cosine to the clean features",
     "probe": "linear probe, mean average precision",
@@ -42,15 +42,17 @@ Scores = dict[tuple[str, str, str], Score]
 
 
 def before_after(config: TrainConfig, base: Any, trained: nn.Module, folder: Path) -> None:
-    """Print and write how well features survive each corruption, before and after a training.
+    """Print and write how well features are preserved under each corruption, before and after
+    training.
 
-    The frames are 12 for each of ``evaluation.episodes``, at most as many as in the training, from
-    the scenes of ``evaluation.split``. The conditions are the suite's corruptions of this sensor.
+    There are 12 frames for each of ``evaluation.episodes``, but at most as many as in training,
+    from the scenes of ``evaluation.split``. The conditions are the suite's corruptions of this
+    sensor.
 
     Args:
-        config: options of the training.
-        base: the encoder that the training started from, if ``init`` was set.
-        trained: the trained encoder. With adapters, its original weights are "before".
+        config: options of the training run.
+        base: the encoder from which training started, if ``init`` was set.
+        trained: the trained encoder. If it has adapters, "before" means its original weights.
         folder: folder of the run.
     """
     assert isinstance(trained, Encoder)
@@ -71,7 +73,7 @@ def before_after(config: TrainConfig, base: Any, trained: nn.Module, folder: Pat
 
 
 def _encoder_before(config: TrainConfig, base: Any, folder: Path) -> nn.Module:
-    """Return the encoder before the training; raise ValueError if it cannot be rebuilt."""
+    """Return the encoder as before training; raise ValueError if it cannot be rebuilt."""
     encoder = build_agent(config.agent, weights=None, seed=config.seed) if base is None else base
     stage = next(iter(config.active_stages))
     identity = read_object(folder / stage / IDENTITY, "Train again in another folder.")
@@ -87,7 +89,7 @@ def _encoder_before(config: TrainConfig, base: Any, folder: Path) -> nn.Module:
 
 
 def _frames(config: TrainConfig, sensor: str) -> tuple[Frames, Frames]:
-    """Return frames to fit the probe and its centre on, and unseen frames."""
+    """Return frames for fitting the probe and its centre, and unseen frames."""
     recipe = next(iter(config.active_stages.values())).recipe
     frames = recipe["frames"]
     quick = config.evaluation
@@ -100,7 +102,7 @@ def _frames(config: TrainConfig, sensor: str) -> tuple[Frames, Frames]:
 
 
 def _conditions(config: TrainConfig, sensor: str) -> list[Corruption]:
-    """Return clean and the suite's corruptions of ``sensor``, or all of them if it has none."""
+    """Return clean and the suite's corruptions of ``sensor``, or all corruptions of the sensor."""
     met = conditions(config.suite.conditions, config.severity, None)
     chosen = [corruption.name for corruption in met if corruption.modality == sensor]
     return [
@@ -138,7 +140,7 @@ def write(scores: Scores, folder: Path, about: str) -> list[Path]:
 def rows(scores: Scores, about: str) -> list[dict[str, Any]]:
     """Return one row per measure and condition: before, after and the difference.
 
-    Each is [value, low, high]; null means that there is no interval.
+    Each entry is [value, low, high], where null means that there is no interval.
     """
     records = []
     for condition, what in _cells(scores):
@@ -181,7 +183,7 @@ def _cells(scores: Scores) -> list[tuple[str, str]]:
 
 
 def picture(scores: Scores, about: str) -> Figure:
-    """Draw bars: one panel per measure, before and after by condition."""
+    """Draw bars for before and after by condition, with one panel per measure."""
     measures = [what for what in MEASURES if any(other == what for _, other in _cells(scores))]
     figure = Figure(figsize=(9, 3.1 * len(measures)), layout="constrained")
     for axis, what in zip(

@@ -1,10 +1,10 @@
-"""Measure a restorer on frames of unseen scenes: errors before and after, and the gate.
+"""Measure a restorer's errors and its gate on frames of unseen scenes.
 
     python -m mitigate.training.reports.restorer checkpoints/restorer --suite unseen_val
 
-Errors are means over pixels: RGB in levels of 255, depth in centimetres. A pixel is right if it is
-off by less than ``TOLERANCE`` of the range. `python -m mitigate.evaluate restore=FOLDER` measures
-the success of an agent with the restorer.
+Errors are means over pixels: RGB errors are in levels of 255, depth errors in centimetres. A pixel
+is correct if its error is below ``TOLERANCE`` of the range. `python -m mitigate.evaluate
+restore=FOLDER` measures the success of an agent with the restorer.
 """
 
 from __future__ import annotations
@@ -44,13 +44,13 @@ from mitigate.worlds.world import depth_sensor
 
 UNITS = {RGB: 1.0, DEPTH: 100.0}  # errors are shown in grey levels (RGB) and centimetres (depth)
 SHOWN = (0, 1, 2)  # indices of the views that the picture shows
-SIDE, LABEL = 96, 130  # pixels of a view in the picture, and of the names next to it
-GAP, HEAD = 6, 20  # pixels between its blocks, and of their headings
+SIDE, LABEL = 96, 130  # size in pixels of a view in the picture, and of the names next to it
+GAP, HEAD = 6, 20  # size in pixels of gaps between blocks, and of their headings
 
 
 class Score(NamedTuple):
-    """Mean error before and after, shares of correct pixels before and after, and the share of
-    instants that the gate had restored."""
+    """Mean errors and fractions of correct pixels before and after, and the fraction of restored
+    time steps."""
 
     before: Estimate
     after: Estimate
@@ -60,13 +60,13 @@ class Score(NamedTuple):
 
 
 class Instants(NamedTuple):
-    """Clean observations, and the properties of their depth sensor."""
+    """Clean observations, with the properties of their depth sensor."""
 
     clean: list[dict[str, np.ndarray]]
     depth: DepthSensor = SENSOR
 
     def corrupted(self, number: int, corruption: Corruption, seed: int) -> dict[str, np.ndarray]:
-        """Return the frames of an observation under a corruption."""
+        """Return the corrupted frames of an observation."""
         seen = self.clean[number]
         frames = {name: seen[name] for name in seen if name in (RGB, DEPTH, POSE)}
         key = Key(seed, f"instant {number}", 0)
@@ -76,8 +76,8 @@ class Instants(NamedTuple):
 def before_after(config: TrainConfig, base: Any, trained: nn.Module, folder: Path) -> None:
     """Measure a trained restorer; print and write ``restoration.md`` and ``restoration.jpg``.
 
-    It is measured on ``evaluation.episodes`` random instants of unseen scenes, under the conditions
-    of the suite. ``base`` is not used: "before" means without a restorer.
+    The restorer is measured on ``evaluation.episodes`` random time steps of unseen scenes, under
+    the conditions of the suite. ``base`` is not used: "before" means without a restorer.
     """
     assert isinstance(trained, Restorer)
     quick = config.evaluation
@@ -114,7 +114,8 @@ def instants(env: Any, split: str, count: int, seed: int, restorer: Restorer) ->
 def measure(
     restorer: Restorer, data: Instants, corruptions: Sequence[Corruption], seed: int
 ) -> dict[tuple[str, str], Score]:
-    """Return scores by sensor and condition; a corruption counts for the sensor that it changes."""
+    """Return scores by sensor and condition; each corruption is scored for the sensor that it
+    changes."""
     scores: dict[tuple[str, str], Score] = {}
     pairs = [(s, c) for c in corruptions for s in restorer.nets if c is CLEAN or s in c.modalities]
     pairs = [(s, c) for s, c in pairs if s in data.clean[0]]
@@ -138,9 +139,9 @@ def measure(
 
 
 def _off(frames: np.ndarray, clean: np.ndarray, far: float) -> np.ndarray:
-    """Return the error of each valid pixel as a share of the range ``far``, mean over colours.
+    """Return each valid pixel's error as a fraction of the range ``far``, averaged over colours.
 
-    Returns [0] if the clean frame has no valid pixel.
+    If the clean frame has no valid pixel, the result is [0].
     """
     valid = np.isfinite(clean) & (clean > 0) if clean.dtype != np.uint8 else True
     values = np.nan_to_num(frames.astype(np.float64), posinf=0.0)
@@ -150,7 +151,7 @@ def _off(frames: np.ndarray, clean: np.ndarray, far: float) -> np.ndarray:
 
 
 def table(scores: dict[tuple[str, str], Score], about: str) -> str:
-    """Return the Markdown table: one row per condition, one block per sensor."""
+    """Return the Markdown table, with one row per condition and one block per sensor."""
     parts = [f"# Frames before and after restoration\n\n{about}. In brackets 95 % intervals.\n"]
     for sensor in dict.fromkeys(sensor for sensor, _ in scores):
         unit = "levels of 255" if sensor == RGB else "cm"
@@ -175,10 +176,10 @@ def _text(e: Estimate, scale: float = 1.0) -> str:
 def sheet(
     restorer: Restorer, seen: Instants, met: Sequence[Corruption], seed: int
 ) -> np.ndarray | None:
-    """Draw three views of the instant with the greatest depth: corrupted, restored, clean.
+    """Draw three views (corrupted, restored, clean) of the time step with the greatest depth.
 
     Returns:
-        uint8 RGB with one row per corruption; None if no corruption fits the sensors.
+        uint8 RGB with one row per corruption; None if no corruption applies to the sensors.
     """
     number = max(range(len(seen.clean)), key=lambda n: _far(seen.clean[n]))
     clean = seen.clean[number]
@@ -199,7 +200,8 @@ def sheet(
 
 
 def _far(frames: dict[str, np.ndarray]) -> float:
-    """Return the least mean depth of the views in a picture: near walls show little."""
+    """Return the minimum over the drawn views of their mean depth, because near walls show
+    little."""
     depth = frames.get(DEPTH)
     return 0.0 if depth is None or depth.ndim < 4 else float(depth[[*SHOWN]].mean((1, 2, 3)).min())
 

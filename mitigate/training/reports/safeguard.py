@@ -1,4 +1,4 @@
-"""Measure how well safeguards repair text.
+"""Measure how well safeguards repair corrupted instructions.
 
     python -m mitigate.training.reports.safeguard classifier lora --texts FILE --out report
 
@@ -36,14 +36,14 @@ from mitigate.worlds.episodes import read_episodes
 
 FAMILIES = (CLEAN, *MANNERS, "capitalize", "mask", "black_box")
 ALONE = "-alone"
-GOLDEN = (5**0.5 - 1) / 2  # spreads any number of texts
+GOLDEN = (5**0.5 - 1) / 2  # step with which any number of texts is spread evenly
 Repairer = Callable[[list[str]], list[str]]
 
 
 def corrupted(
     texts: Sequence[str], families: Iterable[str], severity: float, split: str, seed: int = 0
 ) -> list[Repair]:
-    """Return every text under every family, not repaired yet (``repaired`` equals ``heard``)."""
+    """Return every text under every family, without repair (``repaired`` equals ``heard``)."""
     repairs = []
     for family in families:
         for index, clean in enumerate(texts):
@@ -57,7 +57,7 @@ def corrupted(
 
 
 def repaired(repairs: Sequence[Repair], repairer: Repairer) -> list[Repair]:
-    """Return ``repairs`` with the texts that ``repairer`` returns."""
+    """Return ``repairs`` with the texts repaired by ``repairer``."""
     heard = list(dict.fromkeys(r.heard for r in repairs))
     answers = dict(zip(heard, repairer(heard), strict=True))
     return [Repair(r.family, r.clean, r.heard, answers[r.heard], r.injected) for r in repairs]
@@ -83,7 +83,7 @@ def guarded(safeguard: Safeguard) -> Repairer:
 
 
 def choose(name: str) -> Repairer:
-    """Return the repairer of a name on the command line."""
+    """Return the repairer for a name on the command line."""
     if name == "none":
         return list
     check_choice(name)
@@ -96,11 +96,12 @@ def choose(name: str) -> Repairer:
 
 
 def before_after(cfg: Any, before: Any, trained: nn.Module, folder: Path) -> None:
-    """Print and write the text metrics of a training: no safeguard, classifier, before, after.
+    """Print and write text metrics after training: no safeguard, classifier, before and after.
 
-    ``cfg`` is a training's config: each of the first ``evaluation.episodes`` instructions of
-    ``evaluation.split`` meets one family, attacks are of the test split. ``before`` is not used:
-    the model before fine-tuning is the trained model without its adapter, with a prompt.
+    ``cfg`` is the config of the training run. Each of the first ``evaluation.episodes``
+    instructions of ``evaluation.split`` is corrupted by one family; attacks are from the test
+    split. ``before`` is not used: the model before fine-tuning is the trained model without its
+    adapter, with a prompt.
     """
     quick = cfg.evaluation
     listed = islice(read_episodes(find(cfg.env.episodes[quick.split])), quick.episodes)
@@ -158,7 +159,7 @@ def summary(scores: dict[str, dict[str, Scores]]) -> str:
 
 
 def examples(repairs: Sequence[Repair], count: int, seed: int) -> str:
-    """Return ``count`` repairs drawn by ``seed``, as a Markdown list."""
+    """Return ``count`` randomly chosen repairs (by ``seed``) as a Markdown list."""
     order = generator(seed, "examples").permutation(len(repairs))[:count]
     chosen = [repairs[i] for i in sorted(order)]
     return "\n".join(
@@ -178,7 +179,7 @@ def read_lines(path: str, count: int | None) -> list[str]:
 
 
 def voices(split: str, count: int | None) -> list[Repair]:
-    """Return people's texts of a split, spread over the voices; each voice is a family."""
+    """Return hand-written texts of a split, spread over the styles; each style forms a family."""
     texts = spoken(split)
     chosen = sorted(range(len(texts)), key=lambda i: i * GOLDEN % 1)[:count]
     sample = [texts[i] for i in sorted(chosen)]

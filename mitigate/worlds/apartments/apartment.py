@@ -28,7 +28,7 @@ _ATTEMPTS = 60
 
 
 class Apartment:
-    """Rooms, doors and furniture of one seed; the range of the seed determines the split."""
+    """The rooms, doors and furniture of one seed, whose range determines the split."""
 
     def __init__(self, seed: int) -> None:
         self.seed, self.split = int(seed), split_of(int(seed))
@@ -53,7 +53,7 @@ class Apartment:
         return max(r.rect[2] for r in self.rooms), max(r.rect[3] for r in self.rooms)
 
     def room_at(self, xy: np.ndarray) -> int:
-        """Return the index of the room at a plan position; outside all rooms, of the nearest."""
+        """Return the index of the room at a plan position, or of the nearest room."""
         for index, room in enumerate(self.rooms):
             if room.holds(xy[0], xy[1]):
                 return index
@@ -92,11 +92,11 @@ class Apartment:
         return np.pad(blocked[1:-1, 1:-1], 1, constant_values=True)
 
 
-@lru_cache(maxsize=512)  # 0.3 MB per apartment; building one takes 8 ms
+@lru_cache(maxsize=512)  # number of cached apartments; each takes 0.3 MB and 8 ms to build
 def apartment_of(scene_id: str) -> Apartment:
     """Return the apartment of a scene id "apartments/<split>/<seed>".
 
-    Raises ValueError for other ids, and for a seed of another split.
+    Raises ValueError for other ids, and for a seed that belongs to a different split.
     """
     parts = scene_id.split("/")
     if len(parts) != 3 or parts[0] != "apartments" or not parts[2].isdigit():

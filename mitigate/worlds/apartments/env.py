@@ -16,15 +16,15 @@ class ApartmentsEnv(WorldEnv):
     """Vision-and-language navigation in apartments: a ``WorldEnv`` of ``ApartmentsWorld``.
 
     Args:
-        episodes: a VLN-CE file or a list of episodes, which repeat in order. None draws training
-            episodes from ``seed``.
+        episodes: a VLN-CE file or a list of episodes, which repeat in order. None generates
+            training episodes from ``seed``.
         seed, worker, workers: see ``WorldEnv``.
-        apartments: number of training layouts for drawn episodes.
-        ogn_share: share of object-goal episodes among drawn episodes.
+        apartments: number of training layouts for generated episodes.
+        ogn_share: fraction of object-goal episodes among generated episodes.
         size: side of a square view in pixels.
 
     Raises:
-        ValueError: Raised by ``WorldEnv``; or on reset, the scene of the episode is not an
+        ValueError: An error of ``WorldEnv``, or (at reset) the scene of the episode is not an
             apartment.
     """
 
@@ -53,5 +53,5 @@ class ApartmentsEnv(WorldEnv):
 
     @property
     def simulator(self) -> Simulator:
-        """The simulator of the current episode, created at first use; specs need no rendering."""
+        """The simulator of the current episode, which is created at first use."""
         return self.world.simulator

@@ -47,9 +47,9 @@ from mitigate.worlds.apartments.tasks import (
 )
 from mitigate.worlds.episodes import Episode, to_json
 
-TRAIN = 100  # default number of apartments of train, heuristic
-PER_APARTMENT = 10  # episodes of one apartment in the lists
-NAVMESH = {  # habitat_sim.NavMeshSettings; cell_height also lifts the agent
+TRAIN = 100  # default number of apartments for the train split (heuristic)
+PER_APARTMENT = 10  # number of episodes per apartment in the lists
+NAVMESH = {  # habitat_sim.NavMeshSettings; the agent is placed cell_height above the floor
     "agent_radius": RADIUS,
     "agent_height": 1.5,
     "agent_max_climb": 0.05,
@@ -65,7 +65,7 @@ ALLOWED = {"split": SPLITS, "task": ("vln", "ogn", "both")}
 
 
 def export(out: Path, split: str, scenes: int | None, tasks: Sequence[str]) -> list[Path]:
-    """Write apartments and their episodes to ``out``; return the paths of the episode lists."""
+    """Write apartments and their episodes to ``out``, and return the paths of the episode lists."""
     episodes = {task: _episodes(split, task, scenes) for task in tasks}
     places = sorted({episode.scene_id for listed in episodes.values() for episode in listed})
     with output_folder(out):
@@ -79,7 +79,8 @@ def export(out: Path, split: str, scenes: int | None, tasks: Sequence[str]) -> l
 
 
 def _episodes(split: str, task: str, scenes: int | None) -> list[Episode]:
-    """Return the shipped episodes of the first ``scenes`` apartments, or generate them (train)."""
+    """Return the shipped episodes of the first ``scenes`` apartments, or generate them for
+    train."""
     if split == "train":
         return list(fixed_episodes(split, task, PER_APARTMENT * (scenes or TRAIN)))
     episodes = load_episodes(split, task)
@@ -156,7 +157,7 @@ def _objectnav(episode: Episode) -> dict[str, Any]:
 
 
 def _goals(episode: Episode) -> list[dict[str, Any]]:
-    """Return all objects of the category, with the free cells next to each as view points."""
+    """Return all objects of a category, with the free cells next to each object as view points."""
     apartment = apartment_of(episode.scene_id)
     goals = []
     for thing in landmarks(episode):
@@ -221,7 +222,7 @@ class _Buffer:
         self.accessors: list[dict[str, Any]] = []
 
     def view(self, data: bytes, target: int | None = None) -> int:
-        """Add bytes; return the number of their view."""
+        """Add bytes, and return the index of their buffer view."""
         self.data += b"\0" * (-len(self.data) % 4)
         view = {"buffer": 0, "byteOffset": len(self.data), "byteLength": len(data)}
         self.views.append(view if target is None else {**view, "target": target})
@@ -229,7 +230,7 @@ class _Buffer:
         return len(self.views) - 1
 
     def accessor(self, array: np.ndarray, kind: str, component: int, **more: Any) -> int:
-        """Add an array [n, ...]; return the number of its accessor."""
+        """Add an array [n, ...], and return the index of its accessor."""
         target = INDICES if kind == "SCALAR" else VERTICES
         view = self.view(np.ascontiguousarray(array).tobytes(), target)
         entry = {"bufferView": view, "componentType": component, "count": len(array), "type": kind}
@@ -240,9 +241,9 @@ class _Buffer:
 def glb(faces: Faces) -> bytes:
     """Return the bytes of a GLB file (glTF 2.0, Khronos) with all faces of an apartment.
 
-    Coordinates are the plan's, with z up. Habitat expects this of a stage file without a config,
-    and converts them to VLN-CE's frame. Materials are unlit (KHR_materials_unlit) and textures are
-    not filtered, so that other renderers show the same colours.
+    Coordinates are plan coordinates, with z up. Habitat expects these coordinates in a stage file
+    without a config, and converts them to VLN-CE's frame. Materials are unlit (KHR_materials_unlit)
+    and textures are not filtered, so that other renderers show the same colours.
     """
     buffer = _Buffer()
     used = [k for k in range(len(PATTERNS)) if (faces.pattern == k).any()]
@@ -288,13 +289,13 @@ def _material(name: str, number: int) -> dict[str, Any]:
 
 
 def _primitive(buffer: _Buffer, faces: Faces, chosen: np.ndarray) -> dict[str, Any]:
-    """Add the triangles of the chosen faces; return their primitive."""
+    """Add the triangles of the chosen faces, and return their glTF primitive."""
     corners = faces.corners[chosen].reshape(-1, 3).astype(np.float32)
     count = int(chosen.sum())
     colours = np.full((4 * count, 4), 255, np.uint8)
     colours[:, :3] = np.rint(faces.colour[chosen].reshape(-1, 3) * 255)
     uv = texture_coordinates(faces, np.flatnonzero(chosen))
-    uv[:, 1] = 1 - uv[:, 1]  # textures begin at the top in glTF
+    uv[:, 1] = 1 - uv[:, 1]  # in glTF, texture rows begin at the top
     triangles = (4 * np.arange(count, dtype=np.uint32)[:, None] + _TRIANGLES).reshape(-1)
     limits = {"min": corners.min(0).tolist(), "max": corners.max(0).tolist()}
     return {

@@ -1,4 +1,5 @@
-"""The faces of an apartment: rectangles with colours, textures and baked shading."""
+"""Build the faces of an apartment, which are rectangles with colours, textures and baked
+shading."""
 
 from __future__ import annotations
 
@@ -22,12 +23,13 @@ from mitigate.worlds.apartments.palette import PATTERNS, Palette, palette
 if TYPE_CHECKING:
     from mitigate.worlds.apartments.apartment import Apartment
 
-STRUCTURE = -1  # category of walls, floors, ceilings
+STRUCTURE = -1  # category number of walls, floors and ceilings
 
 
 @dataclass(frozen=True)
 class Faces:
-    """Axis-aligned rectangles to draw. All arrays share their first dimension [n].
+    """Axis-aligned rectangles to draw. The faces of an apartment as arrays with the same first
+    dimension [n].
 
     corners float32 [n, 4, 3] metres; plane float32 [n, 2] = (axis 0-2, coordinate in metres);
     colour float32 [n, 4, 3] per corner; pattern int [n]; repeat float32 [n, 2] texture repeats;
@@ -48,7 +50,8 @@ class Faces:
 class FaceBuilder:
     """Collects the rectangles of an apartment with colours, textures and baked shading."""
 
-    _SHADE = {0: (0.84, 0.92), 1: (0.97, 0.79), 2: (0.82, 1.0)}  # axis -> light from (-, +) side
+    # maps an axis to the light from its (-, +) side
+    _SHADE = {0: (0.84, 0.92), 1: (0.97, 0.79), 2: (0.82, 1.0)}
 
     def __init__(self, apartment: Apartment) -> None:
         self.apartment = apartment
@@ -88,7 +91,7 @@ class FaceBuilder:
     def _tints(
         self, axis: np.ndarray, sign: np.ndarray, room: np.ndarray, corners: np.ndarray
     ) -> np.ndarray:
-        """Shade colours by side and room; upright faces are darker towards the floor."""
+        """Shade colours by side and room; vertical faces get darker towards the floor."""
         sides = np.array([self._SHADE[k] for k in range(3)])
         shade = sides[axis, (sign > 0).astype(int)] * self.light[room]
         dim = (0.82 + 0.18 * np.clip(corners[..., 2:] / 1.2, 0, 1)).astype(float)
@@ -110,7 +113,8 @@ class FaceBuilder:
         instance: int = -1,
         tile: float = 1.0,
     ) -> None:
-        """Add a rectangle on plane ``axis = at``, facing ``sign``; low/high are on other axes."""
+        """Add a rectangle in the plane ``axis = at`` facing ``sign``; low/high are on the other
+        axes."""
         self.kinds.append((axis, sign, pattern, room, category, instance))
         self.places.append((at, tile, *low, *high))
         self.colours.append(colour)
@@ -185,10 +189,10 @@ def texture_coordinates(faces: Faces, chosen: np.ndarray) -> np.ndarray:
 def _corners(
     axis: np.ndarray, sign: np.ndarray, at: np.ndarray, low: np.ndarray, high: np.ndarray
 ) -> np.ndarray:
-    """Return the corners float32 [n, 4, 3] of rectangles on planes ``axis = at``.
+    """Return the corners float32 [n, 4, 3] of rectangles in the planes ``axis = at``.
 
-    The order of the corners follows from the side ``sign`` that each faces. ``low`` and ``high``
-    are [n, 2] on the other two axes.
+    The order of the corners depends on the side ``sign`` that each rectangle faces. ``low`` and
+    ``high`` [n, 2] are the bounds on the other two axes.
     """
     n = len(axis)
     others = np.array([[1, 2], [0, 2], [0, 1]])[axis]
@@ -202,7 +206,7 @@ def _corners(
 
 
 def _turned(part: tuple, piece: Furniture) -> tuple[tuple, tuple]:
-    """Return the box of a part in plan coordinates, as two corners (see :class:`Furniture`)."""
+    """Return the two corners of a part's box in plan coordinates (see :class:`Furniture`)."""
     px0, px1, py0, py1, z0, z1, _ = part
     x0, y0, x1, y1 = piece.rect
     low_x, low_y, high_x, high_y = (

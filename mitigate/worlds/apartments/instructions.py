@@ -1,4 +1,4 @@
-"""Write instructions for paths, from templates that no two splits share.
+"""Write instructions for paths, from templates that are different for each split.
 
 Every split has its own templates (``templates.json``). All words of the validation splits occur in
 the training templates, so an agent meets new sentences, but no new words.
@@ -16,19 +16,20 @@ import numpy as np
 
 from mitigate.worlds.apartments.layout import CATALOGUE, gap_to
 
-if TYPE_CHECKING:  # this module also serves code without the simulator
+if TYPE_CHECKING:  # imported later, because this module is also used without the simulator
     from mitigate.worlds.apartments.apartment import Apartment
 
 _FILE = Path(__file__).with_name("templates.json")
 TEMPLATES: dict[str, dict[str, list[str]]] = json.loads(_FILE.read_text(encoding="utf-8"))
-SAID_BEFORE = 0.25  # share of turns behind a door named before it, in training; heuristic
-_BESIDE = 1.6  # metres around a doorway within which a turn belongs to it, heuristic
-_NEAR_PATH = 1.3  # largest distance in metres from the path to a landmark that is named
+# fraction of turns behind a door that training instructions mention before it (heuristic)
+SAID_BEFORE = 0.25
+_BESIDE = 1.6  # distance in metres from a doorway within which a turn belongs to it (heuristic)
+_NEAR_PATH = 1.3  # maximum distance in metres from the path to a mentioned landmark
 
 
 @dataclass(frozen=True)
 class Event:
-    """Something that happens ``at`` metres along a path."""
+    """An event ``at`` metres along a path."""
 
     at: float
     kind: str
@@ -88,7 +89,8 @@ def _clause(apartment: Apartment, event: Event, rng: np.random.Generator) -> str
 def _events(
     apartment: Apartment, path: np.ndarray, heading: float, target: int, rng: np.random.Generator
 ) -> list[Event]:
-    """Return first turn, room changes with their turns and up to two landmarks, in order."""
+    """Return the first turn, the room changes with their turns and up to two landmarks, in
+    order."""
     steps = np.hypot(*np.diff(path, axis=0).T)
     along = np.concatenate([[0.0], np.cumsum(steps)])
     events = [Event(0.0, turn_word(_direction(path, along, 0.0), heading))]
@@ -110,9 +112,10 @@ def _events(
 
 
 def _turn_beside(path: np.ndarray, along: np.ndarray, door: float) -> Event | None:
-    """Return the left or right turn of a path at the doorway ``door`` metres along it.
+    """Return the left or right turn of a path at the doorway that is ``door`` metres along it.
 
-    The event is where half of the turn is done. None without a turn, or near the start of the path.
+    The event is at the point where half of the turn is done. The result is None without a turn, or
+    near the start of the path.
     """
     if door <= _BESIDE:
         return None
@@ -128,7 +131,7 @@ def _turn_beside(path: np.ndarray, along: np.ndarray, door: float) -> Event | No
 
 
 def _direction(path: np.ndarray, along: np.ndarray, at: float, span: float = 1.2) -> float:
-    """Return the heading (radians) of the path from ``at`` to ``at + span`` metres along it."""
+    """Return the heading (radians) of the path section from ``at`` to ``at + span`` metres."""
     i = int(np.searchsorted(along, max(at, 0.0)))
     j = int(np.searchsorted(along, max(at, 0.0) + span))
     i, j = min(i, len(path) - 2), min(max(j, i + 1), len(path) - 1)

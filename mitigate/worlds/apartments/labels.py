@@ -1,8 +1,8 @@
-"""Labels of what a panorama shows, from the face ids of the renderer.
+"""Compute labels of the content of a panorama from the renderer's face ids.
 
-Labels of a panorama describe the central 36 degrees of each view, so that labels of neighbouring
-views, which are 30 degrees apart, hardly overlap. Labels of a single camera describe ``COLUMNS``
-columns of its view.
+Labels of a panorama describe the central 36 degrees of each view. So labels of neighbouring views,
+which are 30 degrees apart, hardly overlap. Labels of a single camera describe ``COLUMNS`` columns
+of its view.
 """
 
 from __future__ import annotations
@@ -20,19 +20,19 @@ from mitigate.worlds.apartments.layout import CATEGORIES, ROOM_KINDS
 from mitigate.worlds.apartments.navigation import FreeSpace
 from mitigate.worlds.apartments.palette import COLOUR_NAMES
 
-# visible things, things nearer than 2 m, colours of coloured things, kinds of the rooms seen
+# concepts: visible things, things nearer than 2 m, colours of things, kinds of visible rooms
 NEAR = tuple(f"near {name}" for name in CATEGORIES)
 CONCEPTS = (*CATEGORIES, *NEAR, *COLOUR_NAMES, *ROOM_KINDS)
 _HALF_ANGLE = np.radians(18.0)
 # labels of free space: angle bins, distance bins, metres per distance bin
 ANGLES, DISTANCES, STEP = 120, 12, 0.25
 COLUMNS = 4  # number of columns per view, of equal width in pixels
-# direction of each bin, positive to the right
+# direction of each bin in degrees, positive to the right
 YAWS = np.radians(360.0 / ANGLES * (np.arange(ANGLES) + 0.5) - 180.0 / VIEWS)
 
 
 def free_directions(space: FreeSpace, xy: np.ndarray, heading: float) -> np.ndarray:
-    """Return which straight paths from a pose are free: float32 [120, 12] in {0, 1}.
+    """Return whether straight paths from a pose are free, float32 [120, 12] in {0, 1}.
 
     The axes are the angle to the right of the heading (bin ``10 k + i`` is at
     ``30 k - 15 + 3 (i + 0.5)`` degrees) and the distance in steps of 0.25 m.
@@ -43,9 +43,10 @@ def free_directions(space: FreeSpace, xy: np.ndarray, heading: float) -> np.ndar
 
 
 def ahead(directions: np.ndarray) -> np.ndarray:
-    """Select the :func:`free_directions` of a 90 degree view ahead: [30, 12], left to right."""
+    """Select the :func:`free_directions` inside the forward 90-degree view, as [30, 12], left to
+    right."""
     half = round(ANGLES * HFOV_DEGREES / 720)
-    middle = round(ANGLES / VIEWS / 2)  # bin 0 is half a view's step to the left
+    middle = round(ANGLES / VIEWS / 2)  # bin 0 is half a view step to the left
     return np.roll(directions, half - middle, 0)[: 2 * half]
 
 
@@ -61,8 +62,8 @@ def view_labels(
     """Return the labels of a panorama from its face ids.
 
     Returns:
-        concepts float32 ``[12, len(CONCEPTS)]`` in {0, 1}, and seen bool ``[12, furniture]``: which
-        pieces of furniture are visible in the central band of each view.
+        concepts float32 ``[12, len(CONCEPTS)]`` in {0, 1}, and seen bool ``[12, furniture]``:
+        whether each piece of furniture is visible in the central band of each view.
     """
     return _within(apartment, ids, depth, *band(ids.shape[2]))
 
@@ -70,7 +71,7 @@ def view_labels(
 def column_labels(
     apartment: Apartment, ids: np.ndarray, depth: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return the labels of :func:`view_labels` for each of the ``COLUMNS`` columns of each view.
+    """Return the same labels as :func:`view_labels` for each of the ``COLUMNS`` columns of a view.
 
     Returns:
         concepts float32 [views, 4, len(CONCEPTS)], and seen bool [views, 4, furniture].
@@ -90,7 +91,7 @@ def _within(
     return _label(*arguments)
 
 
-@lru_cache(maxsize=64)  # each entry references its apartment
+@lru_cache(maxsize=64)  # the size is limited because each entry references its apartment
 def _tables(apartment: Apartment) -> tuple[np.ndarray, ...]:
     furniture = apartment.furniture
     category = [CATEGORIES.index(p.category) for p in furniture]

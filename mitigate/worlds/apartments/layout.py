@@ -1,6 +1,6 @@
-"""Floor plans: the furniture catalogue, recursive splits into rooms, doorways and placement.
+"""Generate floor plans: split them into rooms, add doorways, and place furniture.
 
-Each category of furniture is a few axis-aligned boxes, recognisable by its shape.
+Each category of furniture consists of a few axis-aligned boxes and is recognisable by its shape.
 ``furniture.json`` holds sizes in metres. A part is ``(x0, x1, y0, y1, z0, z1, paint)`` in the
 frame of the object: x along the wall, y away from it (the back of the object is y = 0), z up.
 ``paint`` is "main" (the object's colour), a name of ``paints``, or an RGB triple in [0, 1].
@@ -43,7 +43,7 @@ CATALOGUE = {
 }
 CATEGORIES = tuple(CATALOGUE)
 
-# room kind -> (always present, chosen from); at most one of a category in a room except chairs
+# maps a room kind to (required, optional) furniture, at most one per category except chairs
 ROOMS: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
     kind: (tuple(entry["always"]), tuple(entry["choice"])) for kind, entry in _DATA["rooms"].items()
 }
@@ -53,7 +53,7 @@ ROOM_KINDS = tuple(ROOMS)
 WALL = 0.12  # wall thickness, metres
 DOOR = 1.0  # clear doorway width, metres
 HEIGHT = 2.5  # ceiling, metres
-LINTEL = 2.05  # top of a doorway, metres
+LINTEL = 2.05  # height of a doorway in metres
 _MIN_SIDE = 2.7
 Rect = tuple[float, float, float, float]  # x0, y0, x1, y1
 
@@ -70,7 +70,8 @@ class Room:
 
 @dataclass(frozen=True)
 class Door:
-    """A doorway centred on (x, y) between two rooms; ``axis``: of the wall's normal, 0 x, 1 y."""
+    """A doorway centred on (x, y) between two rooms; ``axis`` of the wall's normal is 0 (x) or 1
+    (y)."""
 
     x: float
     y: float
@@ -80,7 +81,7 @@ class Door:
 
 @dataclass(frozen=True)
 class Furniture:
-    """An object against side ``turn`` (0: low y, 1: high x, 2: high y, 3: low x) of a room."""
+    """An object at the side ``turn`` (0: low y, 1: high x, 2: high y, 3: low x) of a room."""
 
     category: str
     colour: str | None
@@ -123,7 +124,8 @@ def _cut(rect: Rect, rng: np.random.Generator) -> list[Rect]:
 
 
 def shared_wall(a: Rect, b: Rect) -> tuple[int, float, float, float] | None:
-    """Return (axis of the normal, wall coordinate, low, high) of a shared wall, or None."""
+    """Return (axis of the normal, wall coordinate, low, high) of the wall between two rooms, or
+    None."""
     for axis in (0, 1):
         other = 1 - axis
         for near, far in ((a, b), (b, a)):
@@ -135,7 +137,7 @@ def shared_wall(a: Rect, b: Rect) -> tuple[int, float, float, float] | None:
 
 
 def place_doors(rects: list[Rect], rng: np.random.Generator) -> list[Door]:
-    """Connect the rooms by a random tree; add other doors with probability 0.3 per wall."""
+    """Connect the rooms by a random tree, and add more doors with probability 0.3 per wall."""
     pairs = [(i, j) for i in range(len(rects)) for j in range(i) if shared_wall(rects[i], rects[j])]
     rng.shuffle(pairs)
     group = list(range(len(rects)))
@@ -153,7 +155,7 @@ def place_doors(rects: list[Rect], rng: np.random.Generator) -> list[Door]:
 
 
 def name_rooms(rects: list[Rect], rng: np.random.Generator) -> list[Room]:
-    """Assign each kind once, in random order, then a second bedroom, bathroom or office."""
+    """Assign each room kind once in random order, and then a second bedroom, bathroom or office."""
     kinds = list(ROOMS)
     rng.shuffle(kinds)
     kinds += [str(kind) for kind in rng.permutation(["bedroom", "bathroom", "office"])]
@@ -218,7 +220,7 @@ def grow(rect: Rect, by: float) -> Rect:
 
 
 def gap_to(rect: Rect, xy: np.ndarray) -> np.ndarray:
-    """Return the metres from points [n, 2] to a rectangle, 0 inside it."""
+    """Return the distances in metres from points [n, 2] to a rectangle (0 inside it)."""
     x0, y0, x1, y1 = rect
     return np.hypot(
         np.maximum(np.maximum(x0 - xy[:, 0], xy[:, 0] - x1), 0),

@@ -1,4 +1,4 @@
-"""Free space of an apartment: occupancy grid, geodesic distances and straight motion."""
+"""Compute free space, geodesic distances and straight motion in an apartment."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from scipy.sparse.csgraph import dijkstra
 
 CELL = 0.1  # metres
 RADIUS = 0.18  # agent radius, metres (VLN-CE's LoCoBot-like agent: 0.1-0.2)
-GRAPHS = 32  # cached graphs, heuristic: half a megabyte each; building one takes 1.3 ms
+GRAPHS = 32  # number of cached graphs (heuristic); each takes half a megabyte and 1.3 ms to build
 _SAMPLE = 0.04  # metres between collision samples on a straight move
 
 
 class FreeSpace:
-    """The cells of ``CELL`` metres where the centre of an agent may be.
+    """The cells of ``CELL`` metres in which the centre of an agent may be.
 
     ``free`` is bool ``[ny, nx]``; cell (i, j) covers x in [j, j + 1) * CELL and y likewise.
     """
@@ -44,10 +44,10 @@ class FreeSpace:
 
     @property
     def graph(self) -> csr_matrix:
-        """8-connected graph of the free cells; edge weights in metres.
+        """The 8-connected graph of the free cells, with edge weights in metres.
 
-        Paths may cut the corner of a blocked cell by at most 0.06 m. On average they are 5 % longer
-        than straight lines (docs/agents.md).
+        Paths may cut the corner of a blocked cell by at most 0.06 m. On average, paths are 5 %
+        longer than exact shortest paths (docs/agents.md).
         """
         return _graph_of(self)
 
@@ -56,7 +56,7 @@ class FreeSpace:
         return int(self.nearest[self._place(xy)])
 
     def _place(self, xy: np.ndarray | tuple[float, float]) -> tuple[int, int]:
-        """Return (i, j) of the cell, free or not, nearest to a plan position (metres)."""
+        """Return (i, j) of the cell (free or not) that is nearest to a plan position in metres."""
         i = min(max(int(xy[1] / CELL), 0), self.free.shape[0] - 1)
         j = min(max(int(xy[0] / CELL), 0), self.free.shape[1] - 1)
         return i, j
@@ -64,12 +64,12 @@ class FreeSpace:
     def stand(self, xy: np.ndarray) -> np.ndarray:
         """Return a position where an agent can stand, float [2] in metres.
 
-        It is ``xy`` if its cell is free, else the middle of the nearest free cell.
+        This is ``xy`` if its cell is free, otherwise the centre of the nearest free cell.
         """
         return xy if self.free[self._place(xy)] else self.centre(self.cell_of(xy))
 
     def centre(self, cell: int) -> np.ndarray:
-        """Return the plan position (metres) of the middle of a free cell."""
+        """Return the plan position (metres) of the centre of a free cell."""
         return (self.cells[cell][::-1] + 0.5) * CELL
 
     def distances(self, targets: list[int]) -> np.ndarray:
@@ -77,7 +77,8 @@ class FreeSpace:
         return dijkstra(self.graph, indices=targets, min_only=True).astype(np.float32)
 
     def shortest_path(self, start: int, field: np.ndarray) -> np.ndarray:
-        """Return cell centres ``[n, 2]`` from ``start`` to the zero of a ``distances`` field."""
+        """Return the cell centres ``[n, 2]`` on the path from ``start`` to the zero of
+        ``distances``."""
         path, graph = [start], self.graph
         while field[path[-1]] > 1e-6:
             near = slice(graph.indptr[path[-1]], graph.indptr[path[-1] + 1])
@@ -100,7 +101,8 @@ class FreeSpace:
         return new + np.array(slides[best][:2]) * moved[best], True
 
     def rays(self, xy: np.ndarray, count: int, reach: float) -> np.ndarray:
-        """Return the free metres, at most ``reach``, along ``count`` even headings from 0 (CCW)."""
+        """Return free distances in metres (at most ``reach``) along ``count`` even headings from 0
+        (CCW)."""
         return _rays(self.free, float(xy[0]), float(xy[1]), count, reach)
 
 
@@ -126,7 +128,7 @@ def _grid_graph(free: np.ndarray, index: np.ndarray) -> csr_matrix:
 
 @njit(cache=True)
 def _march(free, x, y, dx, dy, length):
-    """Return the free metres from (x, y) along (dx, dy), at most ``length``."""
+    """Return the free distance in metres (at most ``length``) from (x, y) along (dx, dy)."""
     norm = np.hypot(dx, dy)
     if norm < 1e-9 or length <= 0:
         return length

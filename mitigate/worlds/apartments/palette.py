@@ -1,8 +1,8 @@
-"""Colours, textures and seed ranges, which make splits look different.
+"""Define colours, textures and seed ranges, which make splits look different.
 
 Layouts, palettes and instruction templates of ``train``, ``val_seen`` and ``val_unseen`` never
-overlap: each split owns a range of apartment seeds and draws its colour variants and texture
-parameters from its own generator.
+overlap. Each split has its own range of apartment seeds, and samples colour variants and texture
+parameters with its own random generator.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ SEED_RANGES = {
 }
 _VARIANTS = {"train": 24, "val_seen": 8, "val_unseen": 8}
 
-# name -> (hue centre, hue spread, saturation range, value range); HSV in [0, 1]
+# maps a name to (hue centre, hue spread, saturation range, value range); HSV in [0, 1]
 COLOURS = {
     "red": (0.99, 0.02, (0.70, 0.95), (0.55, 0.85)),
     "orange": (0.075, 0.012, (0.80, 1.00), (0.85, 1.00)),
@@ -38,7 +38,7 @@ TEXTURE_PIXELS = 32
 
 @dataclass(frozen=True)
 class Palette:
-    """Colour variants of one split: ``colours[name]`` float32 ``[n, 3]``, RGB in [0, 1]."""
+    """The colour variants of one split, as ``colours[name]`` float32 ``[n, 3]``, RGB in [0, 1]."""
 
     split: str
     colours: dict[str, np.ndarray]
@@ -56,7 +56,7 @@ def split_of(seed: int) -> str:
 
 
 def palette(split: str) -> Palette:
-    """Return the fixed palette of a split, drawn from its own generator."""
+    """Return the fixed palette of a split, sampled with its own random generator."""
     rng = np.random.default_rng([2024, SPLITS.index(split)])
     count = _VARIANTS[split]
     colours = {name: _variants(rng, spec, count) for name, spec in COLOURS.items()}

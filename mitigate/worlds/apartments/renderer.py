@@ -1,8 +1,9 @@
-"""Panda3D renderer: one off-screen buffer holds the 12 RGB views and the 12 face-id views.
+"""Render with Panda3D into one off-screen buffer, which holds 12 RGB views and 12 face-id views.
 
-It draws on the CPU with Panda3D's ``p3tinydisplay``, without GPU, GL or display. This pipe cannot
-read depth back. So a second pass draws every planar face in a flat id colour: the id gives the
-semantic label, and ray-plane intersection gives exact metric depth.
+Rendering uses Panda3D's ``p3tinydisplay`` on the CPU, without GPU, GL or display. With
+``p3tinydisplay``, the depth buffer cannot be read. So a second pass draws every planar face in a
+flat id colour. The id gives the semantic label, and ray-plane intersection gives exact metric
+depth.
 """
 
 from __future__ import annotations
@@ -26,9 +27,10 @@ from mitigate.worlds.apartments.palette import PATTERNS, TEXTURE_PIXELS, texture
 
 EYE = 1.25  # camera height, metres (VLN-CE)
 LEVEL = Mount()
-FARTHEST = 17.0  # metres; longer than any line through an apartment
-LEAST = 4  # smallest view in pixels, heuristic
-SCENES = 128  # cached per shared renderer, heuristic: 0.35 MB each; building one takes 6 ms
+FARTHEST = 17.0  # far distance in metres, longer than any line through an apartment
+LEAST = 4  # minimum size of a view in pixels (heuristic)
+# number of cached scenes per renderer (heuristic); each takes 0.35 MB and 6 ms to build
+SCENES = 128
 PIPE = "p3tinydisplay"
 SETTINGS = f"""
 window-type offscreen
@@ -41,11 +43,14 @@ framebuffer-srgb 0
 load-display {PIPE}
 """
 _COLUMNS, _ROWS = 4, 3  # the 12 views tile the buffer
-_NEAR = 0.1  # metres; a wall at the agent's radius is at least 0.127 m deep in a 90 degree view
+# near plane in metres; a wall at the agent's radius has at least 0.127 m depth in a 90-degree view
+_NEAR = 0.1
 
 
 def _panda() -> Any:
-    with uninterrupted():  # an error in its first import would end the process (panda3d 1.10.16)
+    # imported here first, because an error in its first import would end the process (panda3d
+    # 1.10.16)
+    with uninterrupted():
         from panda3d import core
 
     core.load_prc_file_data("mitigate", SETTINGS)
@@ -53,7 +58,8 @@ def _panda() -> Any:
 
 
 class Renderer:
-    """Renders RGB and face ids of apartments; caches the geometry of the last ``scenes`` scenes.
+    """Renders RGB and face ids of apartments, and caches the geometry of the last ``scenes``
+    scenes.
 
     Raises ValueError for a ``size`` in pixels below ``LEAST``.
     """
@@ -76,13 +82,14 @@ class Renderer:
             raise RuntimeError(
                 f"Panda3D could not open an off-screen buffer with {PIPE}; run `make doctor`."
             )
-        self.buffer.set_active(False)  # a frame draws every active buffer of the process
+        # each rendered frame draws every active buffer of the process
+        self.buffer.set_active(False)
         weakref.finalize(self, self.engine.remove_window, self.buffer)
         self.image = core.Texture()
         self.buffer.add_render_texture(self.image, core.GraphicsOutput.RTM_copy_ram)
         self.buffer.set_clear_color((0, 0, 0, 1))
         self.textures = [self._texture(pattern) for pattern in PATTERNS]
-        self.regions: list[list[Any]] = []  # one list for the RGB views, one for the id views
+        self.regions: list[list[Any]] = []  # one list for the RGB views and one for the id views
         self.lenses: list[Any] = []
         self.hfov = HFOV_DEGREES  # of all lenses
         self.rig_rgb, self.rig_ids = self._rig(0), self._rig(1)
@@ -90,7 +97,7 @@ class Renderer:
         self.capacity, self.current = scenes, -1
 
     def load(self, apartment: Apartment) -> None:
-        """Make an apartment the current scene, building its geometry on first use."""
+        """Set the current scene to an apartment, whose geometry is built at first use."""
         if apartment.seed not in self.scenes:
             self.scenes[apartment.seed] = self._scene(apartment.faces)
             if len(self.scenes) > self.capacity:
@@ -118,8 +125,9 @@ class Renderer:
         Args:
             x, y: plan position in metres.
             heading: counter-clockwise radians.
-            views: views to draw; all others are 0, and -1 in ids. Drawn pixels do not depend on it.
-            rgb: whether to draw colours; without them rgb is 0.
+            views: views to draw; all other views are 0, and -1 in ids. The pixels of drawn views do
+                not depend on this.
+            rgb: whether to draw colours; otherwise rgb is 0.
             mount: displacement of the cameras.
 
         Returns:
@@ -185,7 +193,8 @@ class Renderer:
         rgb, ids = self.core.NodePath("rgb"), self.core.NodePath("ids")
         for room in range(int(faces.room.max()) + 1):
             here = faces.room == room
-            group = rgb.attach_new_node(f"room{room}")  # Panda3D culls a room as a whole
+            # grouped by room, because Panda3D culls a room as a whole
+            group = rgb.attach_new_node(f"room{room}")
             for pattern, image in enumerate(self.textures):
                 chosen = np.flatnonzero(here & (faces.pattern == pattern))
                 if len(chosen):
@@ -234,9 +243,9 @@ class Renderer:
 
 @lru_cache(maxsize=4)
 def shared_renderer(size: int) -> Renderer:
-    """Return the renderer of this process for views of ``size`` pixels.
+    """Return this process's renderer for views of ``size`` pixels.
 
-    All its users share its cache of ``SCENES`` scenes.
+    All users of this renderer share its cache of ``SCENES`` scenes.
     """
     return Renderer(size, scenes=SCENES)
 
@@ -251,7 +260,8 @@ def _make_pipe(core: Any) -> Any:
 
 
 def _id_colours(ids: np.ndarray) -> np.ndarray:
-    """Encode face id + 1 in base 32 as colours that survive rounding: float32 [n, 3]."""
+    """Encode face id + 1 in base 32 as colours float32 [n, 3], which are not affected by
+    rounding."""
     code = ids + 1
     digits = np.stack([code % 32, code // 32 % 32, code // 1024 % 32], 1)
     return (digits * 8 + 4).astype(np.float32) / 255
@@ -314,7 +324,8 @@ def _split(frame, size, plane, x, y, z, heading, turn, edge, near, is_drawn, col
                     t = (plane[face, 1] - y) / (fy + right * ry + up * uy)
                 else:
                     t = (plane[face, 1] - z) / (fz + right * rz + up * uz)
-                if not near <= t <= FARTHEST:  # a face seen edge-on: use the pixel to the left
+                # for a face that is seen edge-on, the pixel to the left is used
+                if not near <= t <= FARTHEST:
                     t = depth[k, i, j - 1, 0] if j > 0 else 0.0
                 depth[k, i, j, 0] = t
     return rgb, depth, ids

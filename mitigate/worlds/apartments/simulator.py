@@ -27,10 +27,12 @@ from mitigate.worlds.episodes import Episode, Vector, from_vlnce, heading_of
 from mitigate.worlds.measures import Rule
 from mitigate.worlds.world import Expert, greedy_action
 
-NEAR = 0.5  # metres from a start or goal to a free cell, heuristic: a goal may be furniture
+# maximum metres from a start or goal to a free cell (heuristic); a goal may be furniture
+NEAR = 0.5
 
 
-@lru_cache(maxsize=256)  # 20 kB per field; computing one takes half a millisecond
+# number of cached fields; each takes 20 kB and half a millisecond to compute
+@lru_cache(maxsize=256)
 def goal_field(scene_id: str, goals: tuple[tuple[float, float, float], ...]) -> np.ndarray:
     """Return the geodesic metres from every free cell of a scene to the nearest goal."""
     space = apartment_of(scene_id).space
@@ -38,11 +40,12 @@ def goal_field(scene_id: str, goals: tuple[tuple[float, float, float], ...]) -> 
 
 
 class Simulator:
-    """One agent in one apartment. Actions and step limit are VLN-CE's (``core/observation.py``)."""
+    """Simulator of one agent in one apartment. Actions and step limit are those of VLN-CE
+    (``core/observation.py``)."""
 
     def __init__(self, size: int = 64, renderer: Renderer | None = None) -> None:
         self.size = size
-        self._renderer = renderer  # several simulators may share one
+        self._renderer = renderer  # several simulators may use the same renderer
 
     @property
     def renderer(self) -> Renderer:
@@ -51,7 +54,7 @@ class Simulator:
         return self._renderer
 
     def reset(self, episode: Episode) -> None:
-        """Put the agent at the start of an episode, or at the nearest free cell.
+        """Place the agent at the start of an episode, or at the nearest free cell.
 
         Raises ValueError if the start or a goal is farther than ``NEAR`` from every free cell.
         """
@@ -137,15 +140,16 @@ class Simulator:
         self.steps += 1
 
     def distance_to_goal(self, xy: np.ndarray | None = None) -> float:
-        """Return the geodesic metres from ``xy`` (default: the agent) to the nearest goal."""
+        """Return the geodesic distance in metres from ``xy`` (default: the agent) to the nearest
+        goal."""
         return float(self.field[self.space.cell_of(self.xy if xy is None else xy)])
 
 
 class GeodesicExpert(Expert):
-    """Greedy follower of a geodesic ``field``.
+    """Expert that greedily follows a geodesic ``field``.
 
-    It turns to the heading whose next step lowers the distance most, and stops at the distance that
-    ``rule`` sets.
+    The expert turns to the heading whose next step reduces the distance most, and stops at the
+    distance given by ``rule``.
     """
 
     def __init__(self, simulator: Simulator, rule: Rule, field: np.ndarray) -> None:

@@ -1,7 +1,8 @@
-"""Episodes of an apartment: VLN (follow an instruction) and OGN (find a category).
+"""Episodes of an apartment: There are two tasks, VLN (follow an instruction) and OGN (find an
+object category).
 
 ``python -m mitigate.worlds.apartments.tasks OUT.json.gz --split val_unseen --task vln`` writes the
-fixed validation lists; training episodes are generated on the fly from (seed, index).
+fixed validation lists; training episodes are generated when needed, from (seed, index).
 """
 
 from __future__ import annotations
@@ -31,18 +32,19 @@ from mitigate.worlds.episodes import (
     write_episodes,
 )
 
-SUCCESS_METRES = 2.0  # R2R-CE's 3.0 m over 10 m paths, scaled to ours (docs/base-agent.md)
-SHORTEST, LONGEST = 4.0, 12.0  # metres of geodesic distance
+SUCCESS_METRES = 2.0  # R2R-CE's 3.0 m for paths of 10 m, scaled to our paths (docs/base-agent.md)
+SHORTEST, LONGEST = 4.0, 12.0  # limits of the geodesic distance in metres
 TASKS = ("vln", "ogn")
-EDITION = 2  # version of the lists and texts; part of every id, so that rows never mix
-OGN_SHARE = 0.15  # share of training episodes (heuristic)
+# version of the lists and texts, which is part of every id, so that rows are never mixed
+EDITION = 2
+OGN_SHARE = 0.15  # fraction of training episodes (heuristic)
 _TRIES = 60
-_POOL = 60  # training paths of one apartment
-_PER_APARTMENT = 10  # episodes of one apartment in the fixed lists
+_POOL = 60  # number of training paths per apartment
+_PER_APARTMENT = 10  # number of episodes per apartment in the fixed lists
 
 
 def to_vlnce(xy: np.ndarray | tuple[float, float]) -> tuple[float, float, float]:
-    """Convert a plan position to a VLN-CE position (x, y up, z)."""
+    """Convert a plan position to a VLN-CE position (x, y, z) with y up."""
     return round(float(xy[0]), 4), 0.0, round(-float(xy[1]), 4)
 
 
@@ -52,9 +54,9 @@ def rotation_of(heading: float) -> tuple[float, float, float, float]:
 
 
 def make_episode(apartment: Apartment, task: str, index: int, seed: int = 0) -> Episode:
-    """Return episode ``index`` of an apartment, a pure function of all arguments.
+    """Return episode ``index`` of an apartment, as a pure function of all arguments.
 
-    Raises ``RuntimeError`` if no start lies ``SHORTEST`` to ``LONGEST`` metres from a goal.
+    Raises ``RuntimeError`` if no start is between ``SHORTEST`` and ``LONGEST`` metres from a goal.
     """
     rng = np.random.default_rng([apartment.seed, TASKS.index(task), index, seed])
     for _ in range(_TRIES):
@@ -137,25 +139,26 @@ def _episode(
 
 @dataclass(frozen=True)
 class DrawnEpisodes:
-    """A source of training episodes (``worlds/world.py``).
+    """Source of training episodes (``worlds/world.py``).
 
     Attributes:
         layouts: number of training layouts.
-        ogn_share: share of object-goal episodes.
+        ogn_share: fraction of object-goal episodes.
     """
 
     layouts: int = 400
     ogn_share: float = OGN_SHARE
 
     def draw(self, rng: np.random.Generator, share: tuple[int, int] = (0, 1)) -> Episode:
-        """Draw an episode from part ``share`` = (index, count) of the layouts."""
+        """Sample an episode from part ``share`` = (index, count) of the layouts."""
         return draw_training_episode(rng, share_of(range(self.layouts), *share), self.ogn_share)
 
 
 def landmarks(episode: Episode) -> list[int]:
-    """Return the furniture that marks the goal: one piece in VLN, all of the category in OGN.
+    """Return the furniture that marks the goal: one piece in VLN, all pieces of the category in
+    OGN.
 
-    Raises ValueError if the info of the episode lacks it.
+    Raises ValueError if the episode's info does not contain the goal.
     """
     furniture = apartment_of(episode.scene_id).furniture
     info, here = episode.info, range(len(furniture))
@@ -170,7 +173,7 @@ def landmarks(episode: Episode) -> list[int]:
 
 
 def view_field(episode: Episode) -> np.ndarray:
-    """Return the metres from every free cell to the nearest view point of the goal.
+    """Return the distance in metres from every free cell to the nearest view point of the goal.
 
     View points are the cells next to the goal, as for the object goals of VLN-CE.
     """
@@ -185,7 +188,8 @@ def _view_field(scene_id: str, things: tuple[int, ...]) -> np.ndarray:
 
 
 def fixed_episodes(split: str, task: str, count: int) -> Iterator[Episode]:
-    """Yield a split's validation list: ``_PER_APARTMENT`` episodes per apartment, by seed."""
+    """Yield the episodes of a validation split: ``_PER_APARTMENT`` episodes per apartment, by
+    seed."""
     low, _ = SEED_RANGES[split]
     for number in range(count):
         yield make_episode(Apartment(low + number // _PER_APARTMENT), task, number % _PER_APARTMENT)
@@ -193,7 +197,7 @@ def fixed_episodes(split: str, task: str, count: int) -> Iterator[Episode]:
 
 @lru_cache(maxsize=100_000)
 def _pooled(seed: int, task: str, index: int) -> bytes:
-    """Return a pickled episode of the pool; cached as objects, they need ten times the memory."""
+    """Return a pickled episode of the pool; cached objects would need ten times the memory."""
     scene = f"apartments/train/{seed:06d}"
     return pickle.dumps(make_episode(apartment_of(scene), task, index, seed=1))
 
@@ -201,15 +205,15 @@ def _pooled(seed: int, task: str, index: int) -> bytes:
 def draw_training_episode(
     rng: np.random.Generator, apartments: int | range, ogn_share: float
 ) -> Episode:
-    """Draw a training episode with a newly generated instruction.
+    """Sample a training episode with a newly generated instruction.
 
-    It is a pure function of the generator's state and the arguments. Each apartment has ``_POOL``
-    paths.
+    The episode depends only on the generator's state and the arguments. Each apartment has
+    ``_POOL`` paths.
 
     Args:
-        rng: generator of all draws.
-        apartments: training seeds, or a number of first seeds.
-        ogn_share: share of object-goal episodes.
+        rng: random generator.
+        apartments: training seeds, or the number of training seeds.
+        ogn_share: fraction of object-goal episodes.
     """
     seeds = range(apartments) if isinstance(apartments, int) else apartments
     seed = seeds[int(rng.integers(len(seeds)))]

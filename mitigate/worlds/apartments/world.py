@@ -1,4 +1,4 @@
-"""The apartments as a world (``worlds/world.py``): episodes, measures, expert, labels, poses."""
+"""Make the apartments a world (``worlds/world.py``) with measures, expert, labels and poses."""
 
 from __future__ import annotations
 
@@ -34,16 +34,17 @@ from mitigate.worlds.apartments.tasks import SUCCESS_METRES, landmarks, view_fie
 from mitigate.worlds.episodes import Episode, from_vlnce
 from mitigate.worlds.world import World
 
-MEMORY_BYTES = 1 << 26  # bytes of rendered frames that ``remembering`` caches, heuristic
-LARGEST = 2048  # pixels of a view, heuristic
+MEMORY_BYTES = 1 << 26  # maximum bytes of rendered frames that ``remembering`` caches (heuristic)
+LARGEST = 2048  # maximum size of a view in pixels (heuristic)
 MAX_DIFFERENCE = (
-    0.5  # metres between recorded and measured distance that cause a warning, heuristic
+    # difference in metres between recorded and measured distance that causes a warning (heuristic)
+    0.5
 )
 RULES = {"apartments": measures.Rule("vln", SUCCESS_METRES), **measures.RULES}
 
 
 class ApartmentsWorld(World):
-    """One agent in one apartment. All worlds of a process share one renderer per size.
+    """World with one agent in one apartment. All worlds in a process share one renderer per size.
 
     Args:
         size: side of a square view in pixels.
@@ -78,7 +79,7 @@ class ApartmentsWorld(World):
         self._warned = False
 
     def __getstate__(self) -> dict[str, Any]:
-        # a renderer cannot be pickled; the copy uses the renderer of its process
+        # a renderer cannot be pickled, so the copy uses the renderer of its process
         return {"size": self.size, "layouts": self.layouts, "views": self.views, "rule": self._rule}
 
     def __setstate__(self, state: dict[str, Any]) -> None:
@@ -92,7 +93,7 @@ class ApartmentsWorld(World):
 
     @contextmanager
     def remembering(self) -> Iterator[None]:
-        """Return a context in which repeated poses are not rendered again."""
+        """Return a context manager inside which repeated poses are not rendered again."""
         before, self._memory = self._memory, Memory(MEMORY_BYTES)
         try:
             yield
@@ -100,7 +101,7 @@ class ApartmentsWorld(World):
             self._memory = before
 
     def beside(self) -> ApartmentsWorld:
-        """Return another world for a simultaneous episode; both share rendered frames."""
+        """Return a second world for a simultaneous episode; both share rendered frames."""
         other = copy.copy(self)
         other._memory = self._memory
         return other
@@ -112,7 +113,7 @@ class ApartmentsWorld(World):
         return self.simulator.done
 
     def reset(self, episode: Episode) -> Observation:
-        """Start an episode. Raises ValueError if its scene is not an apartment."""
+        """Start an episode. Raises ValueError if the scene of the episode is not an apartment."""
         self.simulator.reset(episode)
         self._shortest = self._shortest_way(episode)
         return self._observation()
@@ -129,10 +130,10 @@ class ApartmentsWorld(World):
     def measures(self) -> dict[str, float]:
         """Return the measures of the episode.
 
-        These are success, spl, path_length, geodesic_distance and distance_to_goal (metres), ndtw,
-        collisions and steps. Both distances are to the target of the rule: geodesic_distance from
-        the start of the episode, distance_to_goal from the agent. ndtw compares with the reference
-        path and uses the rule's ``path_metres``.
+        The measures are success, spl, path_length, geodesic_distance and distance_to_goal (metres),
+        ndtw, collisions and steps. Both distances are measured to the target of the success rule:
+        geodesic_distance from the start of the episode, and distance_to_goal from the agent. ndtw
+        compares with the reference path and uses the rule's ``path_metres``.
         """
         simulator, rule = self.simulator, RULES[self._rule]
         positions = np.array(simulator.path)
@@ -155,19 +156,20 @@ class ApartmentsWorld(World):
         return GeodesicExpert(self.simulator, RULES[self._rule], self._field())
 
     def _field(self) -> np.ndarray:
-        """Return metres from every free cell to the target of the rule: goal or view points."""
+        """Return the distance in metres from each free cell to the rule's target (goal or view
+        points)."""
         points = RULES[self._rule].view_points
         return view_field(self.simulator.episode) if points else self.simulator.field
 
     def _left(self) -> float:
-        """Return the metres from the agent to the target of the rule."""
+        """Return the distance in metres from the agent to the target of the success rule."""
         return float(self._field()[self.simulator.space.cell_of(self.simulator.xy)])
 
     def _shortest_way(self, episode: Episode) -> float:
-        """Return the metres from the start to the target of the rule.
+        """Return the distance in metres from the start to the target of the success rule.
 
-        If goals are hidden, it is the distance recorded in the file. Warns once per world if the
-        recorded distance differs from the measured one.
+        If goals are hidden, the distance recorded in the file is returned. A warning is issued once
+        per world if the recorded distance differs from the measured one.
         """
         recorded, measured = episode.geodesic_distance, self.simulator.distance_to_goal()
         if recorded is None:
@@ -192,7 +194,7 @@ class ApartmentsWorld(World):
             bool [12, things] (visible furniture), free float32 [120, 12] (free straight paths) and
             goal float32 [12] (views that show the goal).
 
-            With one camera the labels describe the four columns of its view: concepts [4, C], seen
+            With one camera, the labels describe the four columns of its view: concepts [4, C], seen
             [4, things] and goal [4]; free is [30, 12], the directions in the view from left to
             right.
         """
@@ -203,7 +205,7 @@ class ApartmentsWorld(World):
         return Labels(simulator.apartment, *place, ids, depth, marks)
 
     def landmarks(self, episode: Episode) -> list[int]:
-        """Return the indices in the label "seen" that mark the goal of an episode."""
+        """Return the indices in the label "seen" that belong to the goal of an episode."""
         return landmarks(episode)
 
     def draw(self, axes: Any) -> None:
@@ -220,7 +222,7 @@ class ApartmentsWorld(World):
         return self._shaped(rgb.copy(), depth.copy())
 
     def _shaped(self, rgb: np.ndarray, depth: np.ndarray) -> dict[str, np.ndarray]:
-        """Return frames with the shapes in ``sensors``: one camera has no axis of views."""
+        """Return frames with the shapes in ``sensors``; a single camera has no axis for views."""
         return {RGB: rgb, DEPTH: depth} if self.views > 1 else {RGB: rgb[0], DEPTH: depth[0]}
 
     def displaced(self, mount: Mount) -> dict[str, np.ndarray]:
@@ -251,7 +253,8 @@ class ApartmentsWorld(World):
         return [f"apartments/train/{seed:06d}" for seed in range(self.layouts)]
 
     def enter(self, scene: str) -> None:
-        """Select the scene for ``point`` and ``put``. Raises ValueError for an unknown scene."""
+        """Select the scene that ``point`` and ``put`` use. Raises ValueError for an unknown
+        scene."""
         self._entered: Apartment = apartment_of(scene)
 
     def point(self, rng: np.random.Generator) -> np.ndarray:
@@ -270,7 +273,7 @@ class ApartmentsWorld(World):
         views: Sequence[int] | None = None,
         rgb: bool = True,
     ) -> tuple[dict[str, np.ndarray], Mapping[str, np.ndarray]]:
-        """Return the frames with the pose, and the labels without "goal".
+        """Return the frames with the pose, and the labels except "goal".
 
         ``views`` limits the views to render; it has no effect with one camera.
         """
@@ -286,7 +289,7 @@ class ApartmentsWorld(World):
 
 
 class Labels(Mapping[str, np.ndarray]):
-    """The labels of a pose, computed when they are read.
+    """The labels of a pose, which are computed when they are read.
 
     Args:
         apartment: The apartment.
@@ -294,7 +297,7 @@ class Labels(Mapping[str, np.ndarray]):
         heading: Radians.
         ids: Face ids of the views.
         depth: Depth of the views in metres.
-        marks: Furniture that marks the goal; None: no label "goal".
+        marks: Furniture that marks the goal, or None for no label "goal".
     """
 
     def __init__(

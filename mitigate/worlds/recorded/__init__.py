@@ -42,12 +42,12 @@ def open_recording(
 ) -> list[Frames | Bag | LerobotEpisode]:
     """Open the drives of a bag, a folder, a LeRobot dataset, or a folder of drives.
 
-    Times and poses are read now, frames later by :func:`load`.
+    Times and poses are read immediately; frames are read later by :func:`load`.
 
     Args:
         path: A bag, a folder of frames, a dataset, or a folder with several drives.
-        topics: Topics of a bag; None: the only ones that fit.
-        hfov: Horizontal field of view in degrees, where the recording does not contain it.
+        topics: Topics of a bag; None uses the only suitable ones.
+        hfov: Horizontal field of view in degrees, if the recording does not contain it.
         unit: Metres per count of 16-bit depth in a folder of frames.
         yaw: Direction of a bag's cameras in degrees to the right of the heading.
         cameras: Cameras to read from a recording by ``mitigate run`` or from a dataset; None: all.
@@ -58,7 +58,7 @@ def open_recording(
         The drives.
 
     Raises:
-        FileNotFoundError: ``path`` does not exist or has no drive.
+        FileNotFoundError: ``path`` does not exist or contains no drive.
         ValueError: A drive is damaged, or an option does not apply to it.
     """
     path = Path(path)

@@ -2,9 +2,9 @@
 
 The package ``rosbags`` reads them; ROS need not be installed. Images (``sensor_msgs`` Image and
 CompressedImage), ``CameraInfo`` and poses (``nav_msgs/Odometry``, ``geometry_msgs/PoseStamped`` and
-``PoseWithCovarianceStamped``) are read. Poses use the axes of REP 103: x ahead, y to the left, z
-up. Times come from the headers of the messages, if they have one. A text file next to the bag, with
-its name and ``.txt``, may contain the instruction.
+``PoseWithCovarianceStamped``) are read. Poses use the axes of REP 103: x forward, y left, z up.
+Times are read from the headers of the messages, if they have headers. A text file next to the bag,
+with its name and ``.txt``, may contain the instruction.
 """
 
 from __future__ import annotations
@@ -47,23 +47,25 @@ POSES = (
     "geometry_msgs/msg/PoseStamped",
     "geometry_msgs/msg/PoseWithCovarianceStamped",
 )
-OFF = "none"  # value of a topic option that turns the topic off
-# does not match /depth_camera/image_raw
+OFF = "none"  # value of a topic option that disables the topic
+# this pattern does not match /depth_camera/image_raw
 _DEPTH_TOPIC = re.compile(r"(?:^|[/_])depth(?:$|/|_(?!camera))")
-_OTHER_IMAGES = re.compile(r"infra|mask|(?:^|[/_])ir(?:$|[/_])")  # infrared images and masks
-_OTHER_POSES = re.compile(r"goal|target|waypoint|initial_?pose")  # not where the robot is
+# names of infrared images and masks
+_OTHER_IMAGES = re.compile(r"infra|mask|(?:^|[/_])ir(?:$|[/_])")
+# names of poses that are not the robot's position
+_OTHER_POSES = re.compile(r"goal|target|waypoint|initial_?pose")
 
 KINDS = (RGB, DEPTH)
 # Heuristic limits.
-MAX_POSES = 16 * MAX_INSTANTS  # poses per drive: 500 Hz for images at 30 Hz
-MAX_BUFFER_BYTES = 1 << 30  # images that wait for images of another topic
+MAX_POSES = 16 * MAX_INSTANTS  # maximum poses per drive: 500 Hz for images at 30 Hz
+MAX_BUFFER_BYTES = 1 << 30  # maximum bytes of images that wait for images of another topic
 
 
 class Bag(Source):
     """A drive in a bag.
 
     Args:
-        path: A file or a folder.
+        path: Path of the bag, a file or a folder.
         topics: Topics to read.
         hfov: Horizontal field of view in degrees of cameras without CameraInfo.
         yaw: Direction of the cameras in degrees to the right of the robot's heading.
@@ -75,7 +77,7 @@ class Bag(Source):
     stepped = False
 
     def __init__(self, path: Path, topics: Topics, hfov: float | None, yaw: float = 0.0) -> None:
-        resolved = path.resolve()  # `.` has a name only when resolved
+        resolved = path.resolve()  # resolved, because `.` has no name
         self.path = path
         self.signals = {}
         self.name = resolved.name if path.is_dir() else path.stem
@@ -117,14 +119,14 @@ class Bag(Source):
                 while done < len(chosen) and all(indices[k][done] in buffer[k] for k in self.kinds):
                     yield {k: buffer[k][indices[k][done]] for k in self.kinds}
                     done += 1
-                    for k in self.kinds:  # drop the images that no later instant uses
+                    for k in self.kinds:  # discards images that no later time step uses
                         buffer[k] = {n: f for n, f in buffer[k].items() if last_use[k][n] >= done}
 
     # ----------------------------------------------------------------------------- reading
 
     @contextmanager
     def _open(self) -> Iterator[Any]:
-        """Open a reader; any error of ``rosbags`` becomes a ValueError that names the bag."""
+        """Open a reader; convert any error of ``rosbags`` to a ValueError that names the bag."""
         try:
             from rosbags.highlevel import AnyReader
             from rosbags.typesys import Stores, get_typestore
@@ -147,7 +149,7 @@ class Bag(Source):
             if self.path.is_file() and (pointer := lfs_problem(self.path)):
                 raise ValueError(f"{self.path} {pointer}.") from error
             if isinstance(error, ValueError) and str(self.path) in str(error):
-                raise  # raised by this package, already names the bag
+                raise  # raised by this package, so it already names the bag
             reason = " ".join(str(error).split())[:300]
             raise ValueError(
                 f"{self.path} cannot be read as a bag: {reason}. If its end is missing, repair it "
@@ -157,15 +159,16 @@ class Bag(Source):
     def _messages(
         self, reader: Any, names: Sequence[str], decode: Mapping[str, set[int]]
     ) -> Iterator[tuple[str, tuple[float, float], Any]]:
-        """Yield the messages of some topics in the order of the bag.
+        """Yield the messages of some topics in their order in the bag.
 
         Args:
             reader: The open reader.
             names: Keys of ``self.topics``.
-            decode: Indices of the messages to decode, by name; names without an entry: all.
+            decode: Indices of the messages to decode, by name; if a name has no entry, all are
+                decoded.
 
         Yields:
-            Name, seconds (from the header, as received), and the message or None.
+            The name, the seconds (from the header, and as received), and the message or None.
         """
         by_topic: dict[str, list[str]] = {}
         for name in names:
@@ -183,7 +186,7 @@ class Bag(Source):
     def _index(
         self, reader: Any, hfov: float | None
     ) -> tuple[dict[str, list[float]], list[tuple[float, ...]], dict[str, Lens]]:
-        """Return the times of the images, (time, x, y, heading) of the poses, and the lenses."""
+        """Return the times of images, the poses (time, x, y, heading), and the lenses."""
         stamps: dict[str, list[tuple[float, float]]] = {name: [] for name in (*self.kinds, POSE)}
         poses: list[tuple[float, ...]] = []
         lenses: dict[str, Lens] = {}
@@ -220,7 +223,7 @@ class Bag(Source):
     def _match(
         self, stamps: Mapping[str, list[float]], table: Sequence[tuple[float, ...]], yaw: float
     ) -> None:
-        """Set the times, the poses and the index of each camera's image for each instant."""
+        """For each time step, set the time, the pose and the index of each camera's image."""
         records: dict[str, Sequence] = {**stamps, **({POSE: table} if POSE in self.topics else {})}
         for name, messages in records.items():
             if not messages:
@@ -244,9 +247,9 @@ class Bag(Source):
 
 
 def _open_part(part: Any, open_: Callable[[], None]) -> None:
-    """Open a reader of ``rosbags``, which then parses the definitions of the read types only.
+    """Open a reader of ``rosbags`` that parses only the definitions of the types that are read.
 
-    Otherwise one definition that it cannot parse, such as a service event, would make the
+    Otherwise, one definition that ``rosbags`` cannot parse, such as a service event, would make the
     whole bag unreadable.
     """
     from rosbags.interfaces import MessageDefinition, MessageDefinitionFormat
@@ -269,7 +272,8 @@ def _choose_clock(stamps: Sequence[tuple[float, float]]) -> list[float]:
 
 @dataclass(frozen=True)
 class Topics:
-    """Names of the topics of a bag. None: the only topic that fits; "none": do not read.
+    """The names of the topics in a bag. None means the only suitable topic, and "none" means that
+    the topic is not read.
 
     Attributes:
         rgb: Images of the RGB camera.
@@ -287,7 +291,7 @@ class Topics:
 
     @property
     def set_options(self) -> list[str]:
-        """Names of the topics that are not None."""
+        """The names of the topics that are not None."""
         return [name for name, topic in vars(self).items() if topic is not None]
 
 
@@ -303,15 +307,15 @@ def choose_topics(
         path: Path of the bag, for error messages.
         available: Message type of each topic in the bag.
         topics: The user's choice.
-        counts: Number of messages of each topic, if known. A topic with one message next to several
-            images holds no trajectory.
+        counts: Number of messages of each topic, if known. If there is one message but several
+            images, the topic contains no trajectory.
 
     Returns:
-        Topics by name; topics that the bag lacks are left out.
+        The topics by name, without topics that the bag lacks.
 
     Raises:
-        ValueError: A chosen topic is missing or of another type, several topics fit, or the bag has
-            no images.
+        ValueError: A chosen topic is missing or has a wrong type, several topics are suitable, or
+            the bag contains no images.
     """
     images = [
         name
@@ -362,7 +366,7 @@ def _choose_topic(
     available: Mapping[str, str | None],
     kinds: Sequence[str],
 ) -> str | None:
-    """Return the topic that the user named, or the only candidate; None without candidates."""
+    """Return the topic that the user named, or the only candidate, or None."""
     if named == OFF:
         return None
     if named is not None:
@@ -385,7 +389,8 @@ def _choose_topic(
 def _infos_of(topic: str, infos: Sequence[str]) -> list[str]:
     """Return the CameraInfo topics of an image topic.
 
-    ROS names it ``<camera>/camera_info``; else return the topics with the same first name.
+    In ROS, the name is ``<camera>/camera_info``. If that is missing, return the topics with the
+    same first name.
     """
     namespace = topic
     while "/" in namespace.strip("/"):

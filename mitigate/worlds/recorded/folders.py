@@ -2,12 +2,12 @@
 
 Three layouts are supported:
 
-* ``recording.json`` and ``<scene>/<episode>/<camera>/000000.png``: written by
-  ``mitigate run record=``;
+* ``recording.json`` and ``<scene>/<episode>/<camera>/000000.png``: the layout of ``mitigate run
+  record=``;
 * ``rgb.txt``, ``depth.txt``, ``groundtruth.txt``: the layout of the TUM RGB-D benchmark (Sturm et
   al., IROS 2012), which most tools for RGB-D cameras write; ``associations.txt`` may replace both
   lists;
-* ``rgb/`` and ``depth/`` with one file per step, sorted by name. ``poses.csv`` is optional and has
+* ``rgb/`` and ``depth/``: one file per step, sorted by name. ``poses.csv`` is optional and has
   one line "x,y,heading" per step (metres, radians, forward is (-sin h, cos h)).
 
 The last two layouts may contain the instruction as ``instruction.txt``.
@@ -52,15 +52,16 @@ POSES = "poses.csv"
 INSTRUCTION = "instruction.txt"
 # The layout of the TUM RGB-D benchmark.
 LISTS = ("rgb.txt", "depth.txt")
-ASSOCIATIONS = "associations.txt"  # both lists in one, by associate.py of that benchmark
+# both lists in one file, written by associate.py of that benchmark
+ASSOCIATIONS = "associations.txt"
 TRAJECTORY = "groundtruth.txt"
-TUM_UNIT = 1 / 5000  # metres per count; TUM RGB-D benchmark, file formats
+TUM_UNIT = 1 / 5000  # metres per count (TUM RGB-D benchmark, file formats)
 # TUM's default calibration: width 640 pixels, focal length 525
 TUM_HFOV = math.degrees(2 * math.atan(320 / 525))
 
 FIX = "Copy it again, or leave this drive out."
-MAX_NUMBER = 1e6  # heuristic limit of a number in a recording (metres, degrees)
-MAX_HEADING = 50.0  # radians, heuristic: eight turns; larger headings are in degrees
+MAX_NUMBER = 1e6  # maximum of a number in a recording, in metres or degrees (heuristic)
+MAX_HEADING = 50.0  # in radians (heuristic): eight turns; larger headings must be in degrees
 
 
 @dataclass
@@ -68,7 +69,7 @@ class Frames(Source):
     """A drive in files.
 
     Attributes:
-        files: One file per instant, by camera.
+        files: One file per time step, by camera.
         unit: Metres per count of 16-bit depth.
     """
 
@@ -102,12 +103,12 @@ def open_folder(
 
     Args:
         path: The folder.
-        hfov: Horizontal field of view in degrees, where the folder does not contain it.
-        unit: Metres per count of 16-bit depth, where the folder does not contain it.
-        cameras: Cameras to read from a recording by ``mitigate run``; None: all.
+        hfov: Horizontal field of view in degrees, if the folder does not contain it.
+        unit: Metres per count of 16-bit depth, if the folder does not contain it.
+        cameras: Cameras to read from a recording by ``mitigate run``, or None for all.
 
     Returns:
-        The drives, without their frames.
+        The drives without their frames.
 
     Raises:
         FileNotFoundError: A file is missing.
@@ -116,7 +117,7 @@ def open_folder(
     if (path / RECORDING).is_file():
         if unit is not None:
             raise ValueError(f"{path} contains the unit of its depth. Remove unit=.")
-        # a hidden folder is an episode that is still being recorded, or whose program was killed
+        # a hidden folder is an episode that is still being recorded or whose program was killed
         episodes = sorted(file.parent for file in path.glob(f"[!.]*/[!.]*/{STEPS}"))
         drives = (_read_recorded(folder, path, hfov, cameras) for folder in episodes)
         return [drive for drive in drives if drive is not None]
@@ -142,7 +143,7 @@ def is_drive(folder: Path) -> bool:
 def _read_recorded(
     folder: Path, recording: Path, hfov: float | None, chosen: Sequence[str] | None
 ) -> Frames | None:
-    """Read an episode of a recording by ``mitigate run``; None if it has no frames.
+    """Read an episode of a recording by ``mitigate run``; return None if it has no frames.
 
     An interrupted episode ends with its last complete step.
     """
@@ -191,7 +192,7 @@ def _read_recorded(
 
 
 def _check_calls(steps: Sequence[Any], files: Mapping[str, Sequence[Path]]) -> None:
-    """Raise ValueError if a frame does not belong to its step, as after a missing frame."""
+    """Raise ValueError if a frame does not belong to its step, because a frame is missing."""
     for index, step in enumerate(steps):
         call = step.get("call") if isinstance(step, dict) else None
         for paths in files.values():
@@ -203,13 +204,13 @@ def _check_calls(steps: Sequence[Any], files: Mapping[str, Sequence[Path]]) -> N
 
 
 def _is_level(described: Mapping[str, Any], name: str) -> bool:
-    """Return whether a camera faces horizontally; assumed if the recording does not say."""
+    """Return whether a camera is level, which is assumed if the recording does not state it."""
     camera = described.get(name)
     return not isinstance(camera, dict) or camera.get("level") is not False
 
 
 def _read_lens(name: str, frame: Path, described: Mapping[str, Any], hfov: float | None) -> Lens:
-    """Return the lens of a camera from ``cameras.json``, or from a frame of it and ``hfov``."""
+    """Return the lens of a camera, from ``cameras.json`` or from one of its frames and ``hfov``."""
     camera = described.get(name)
     file = frame.parent.parent / CAMERAS
     if camera is None:
@@ -230,10 +231,10 @@ def _read_lens(name: str, frame: Path, described: Mapping[str, Any], hfov: float
 
 
 def _number_or_none(values: Mapping[str, Any], key: str, file: Path) -> float | None:
-    """Return a number of a JSON object, or None if it is missing or null.
+    """Return a number in a JSON object, or None if it is missing or null.
 
     Raises:
-        ValueError: The value is not a number, or too large.
+        ValueError: The value is not a number, or it is too large.
     """
     value = values.get(key)
     if value is None:
@@ -248,7 +249,7 @@ def _number_or_none(values: Mapping[str, Any], key: str, file: Path) -> float | 
 def _recorded_poses(steps: Sequence[Any], file: Path) -> np.ndarray | None:
     """Return the poses in the lines of steps.jsonl, float64 [N, 3].
 
-    None if a line has no pose, with a warning if others have one.
+    The result is None if a line has no pose, with a warning if other lines have poses.
     """
     count = sum(map(_has_pose, steps))
     if count < len(steps):
@@ -320,7 +321,7 @@ def _read_poses(file: Path) -> np.ndarray:
 
 
 def _check_radians(poses: np.ndarray, file: Path) -> np.ndarray:
-    """Return ``poses`` [N, 3]; raise ValueError if the headings are degrees."""
+    """Return ``poses`` [N, 3]; raise ValueError if the headings are in degrees."""
     headings = poses[:, 2]
     if len(poses) and np.ptp(headings) > 0 and np.abs(headings).max() > MAX_HEADING:
         raise ValueError(
@@ -330,7 +331,7 @@ def _check_radians(poses: np.ndarray, file: Path) -> np.ndarray:
 
 
 def _list_frames(folder: Path) -> list[Path]:
-    """Return the frames of a folder by name, comparing digits as numbers."""
+    """Return the frames of a folder sorted by name, comparing digits as numbers."""
     if not folder.is_dir():
         return []
     files = [p for p in folder.iterdir() if p.suffix.lower() in SUFFIXES and p.name[0] != "."]
@@ -356,11 +357,12 @@ def _read_lines(file: Path) -> list[Any]:
 def _read_tum(path: Path, hfov: float | None, unit: float) -> Frames:
     """Read a drive in the layout of TUM RGB-D.
 
-    An instant is an RGB image with the depth image and the pose nearest in time. The heading is
-    the direction of the camera's optical axis.
+    A time step consists of an RGB image with the depth image and the pose that are nearest in time.
+    The heading is the direction of the camera's optical axis.
 
     Raises:
-        ValueError: A file is damaged, or no frame of one list is near in time to the others.
+        ValueError: A file is damaged, or no frame of one list is near in time to frames of the
+            others.
     """
     if any((path / name).is_file() for name in LISTS):
         listed = {kind: _read_list(path, f"{kind}.txt") for kind in (RGB, DEPTH)}
@@ -391,7 +393,8 @@ def _read_tum(path: Path, hfov: float | None, unit: float) -> Frames:
 
 
 def _read_list(path: Path, name: str) -> list[tuple[float, Path]]:
-    """Read the lines of a list of images as (time, file); raise ValueError for a file outside."""
+    """Read the lines of a list of images as (time, file); raise ValueError for a file outside the
+    folder."""
     return sorted(_read_entry(path, name, line, row) for line, row in _read_rows(path / name, 2))
 
 
@@ -399,7 +402,7 @@ def _read_associations(path: Path) -> dict[str, list[tuple[float, Path]]]:
     """Read lines "time file time file"; the files of the first line tell RGB from depth.
 
     Raises:
-        ValueError: A file lies outside of the folder, or both files are of one kind.
+        ValueError: A file lies outside the folder, or both files have the same kind.
     """
     rows = list(_read_rows(path / ASSOCIATIONS, 4))
     pairs = [
@@ -419,7 +422,7 @@ def _read_associations(path: Path) -> dict[str, list[tuple[float, Path]]]:
 
 
 def _read_entry(path: Path, name: str, line: int, row: Sequence[str]) -> tuple[float, Path]:
-    """Return the time and the file of a line of a list."""
+    """Return the time and the file in a line of a list."""
     file = path / row[1]
     if "\0" in row[1] or path.resolve() not in file.resolve().parents:
         raise ValueError(f"{path / name}, line {line}, names a file outside of {path}.")
@@ -430,8 +433,8 @@ def _read_trajectory(file: Path) -> np.ndarray:
     """Read lines "time x y z qx qy qz qw" as float64 [N, 4], (time, x, y, heading).
 
     Raises:
-        ValueError: Most poses face up or down. This happens if the poses are of a robot frame
-            (x forward) instead of an optical axis.
+        ValueError: Most poses face up or down. This happens if the poses describe a robot frame (x
+            forward) instead of a camera's optical axis.
     """
     rows = []
     for line, row in _read_rows(file, 8):
@@ -455,7 +458,7 @@ def _read_rows(
 ) -> Iterator[tuple[int, list[str]]]:
     """Yield the number and the words of each line that is not a comment.
 
-    Lines may have more than ``columns`` words, unless there is a ``separator``.
+    A line may have more than ``columns`` words, unless there is a ``separator``.
     """
     if not file.is_file():
         return
@@ -476,7 +479,7 @@ def number(word: str, file: Path, line: int) -> float:
     """Parse a finite number.
 
     Raises:
-        ValueError: It is not a finite number; the message names file and line.
+        ValueError: The word is not a finite number; the message names file and line.
     """
     try:
         value = float(word)

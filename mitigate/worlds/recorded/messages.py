@@ -16,10 +16,10 @@ from mitigate.core.observation import DEPTH, RGB
 from mitigate.corruptions.frame_files import NO_READING
 from mitigate.worlds.recorded.source import Lens, plan_pose
 
-FISHEYE = ("equidistant", "fisheye")  # distortion models of ROS
-MAX_SIDE = 1 << 13  # pixels of an image, a heuristic limit
-COMPRESSED_DEPTH_HEADER = 12  # bytes before the PNG of `compressedDepth`
-_COLOURS = {  # encoding: channels, and the conversion to RGB
+FISHEYE = ("equidistant", "fisheye")  # names of distortion models in ROS
+MAX_SIDE = 1 << 13  # maximum side of an image in pixels (heuristic)
+COMPRESSED_DEPTH_HEADER = 12  # number of bytes before the PNG data in `compressedDepth`
+_COLOURS = {  # maps an encoding to its channels and the conversion to RGB
     "rgb8": (3, None),
     "bgr8": (3, cv2.COLOR_BGR2RGB),
     "rgba8": (4, cv2.COLOR_RGBA2RGB),
@@ -27,7 +27,7 @@ _COLOURS = {  # encoding: channels, and the conversion to RGB
     "mono8": (1, cv2.COLOR_GRAY2RGB),
     "8UC3": (3, cv2.COLOR_BGR2RGB),
 }
-# encoding: type of a pixel, and metres per count (REP 118)
+# maps an encoding to the pixel type and the metres per count (REP 118)
 _DEPTHS = {"16UC1": ("u2", 0.001), "mono16": ("u2", 0.001), "32FC1": ("f4", 1.0)}
 
 
@@ -42,9 +42,9 @@ def read_pose(message: Any) -> tuple[float, float, float]:
 
 
 def _field(message: Any, *names: str) -> Any:
-    """Return the first of these fields that a message has, or None.
+    """Return the first of ``names`` that is a field of the message, or None.
 
-    ROS 1 and 2 name some fields differently, and the bag defines the classes of its messages.
+    ROS 1 and ROS 2 name some fields differently, and the bag defines the classes of its messages.
     """
     return next((getattr(message, name) for name in names if hasattr(message, name)), None)
 
@@ -63,7 +63,7 @@ def read_stamp(raw: bytes, ros2: bool) -> float:
 
 
 def camera_matrix(message: Any) -> np.ndarray:
-    """Return the flattened 3x3 matrix of a CameraInfo: ``K`` in ROS 1, ``k`` in ROS 2."""
+    """Return the flattened 3x3 matrix of a CameraInfo, which is ``K`` in ROS 1, ``k`` in ROS 2."""
     return np.asarray(_field(message, "k", "K")).reshape(-1)
 
 
@@ -71,7 +71,7 @@ def read_lens(kind: str, message: Any, path: Path) -> Lens:
     """Return the lens of a CameraInfo.
 
     Raises:
-        ValueError: Focal lengths or sizes are invalid, or the lens is a fisheye.
+        ValueError: Focal lengths or sizes are invalid, or the lens is a fisheye lens.
     """
     matrix = camera_matrix(message).astype(np.float64)
     if matrix.shape != (9,) or not (matrix[0] > 0 and matrix[4] > 0 and np.isfinite(matrix).all()):
@@ -97,10 +97,10 @@ def read_lens(kind: str, message: Any, path: Path) -> Lens:
 
 
 def read_image(message: Any, kind: str, path: Path) -> np.ndarray:
-    """Return the image of a message: uint8 [H, W, 3], or float32 metres [H, W], 0 for no reading.
+    """Return a message's image: uint8 [H, W, 3], or float32 metres [H, W] with 0 for missing depth.
 
     Raises:
-        ValueError: The encoding is unknown or not of this ``kind``, or the image is damaged.
+        ValueError: The encoding is unknown or wrong for this ``kind``, or the image is damaged.
     """
     if _field(message, "format") is not None:
         return _read_compressed(message, kind, path)
@@ -162,7 +162,8 @@ def _read_compressed(message: Any, kind: str, path: Path) -> np.ndarray:
 
 
 def _is_image(data: np.ndarray) -> bool:
-    """Return whether the bytes start as a PNG or JPEG of an allowed size, without decoding it."""
+    """Return whether the bytes start like a PNG or JPEG of an allowed size, without decoding
+    them."""
     try:
         with Image.open(io.BytesIO(data.tobytes()), formats=("PNG", "JPEG")) as opened:
             return max(opened.size) <= MAX_SIDE
@@ -171,5 +172,5 @@ def _is_image(data: np.ndarray) -> bool:
 
 
 def _clean_depth(depth: np.ndarray) -> np.ndarray:
-    """Return float32 depth with 0 for readings that are negative or not finite."""
+    """Return float32 depth in which negative and non-finite values are replaced by 0."""
     return np.where(np.isfinite(depth) & (depth > 0), depth, 0).astype(np.float32)

@@ -1,7 +1,7 @@
-"""Load a recorded drive as an agent's observations, and replay it as a world.
+"""Load a recorded drive as observations for an agent, and replay it as a world.
 
-The frames of any camera are cropped and resized to square views of 90 degrees, the field of view
-that agents expect. Pixels outside the recorded image are black (no reading in depth).
+The frames of each camera are cropped and resized to square views of 90 degrees, the field of view
+that agents expect. Pixels outside the recorded image are black, or missing depth.
 """
 
 from __future__ import annotations
@@ -34,30 +34,32 @@ from mitigate.worlds.episodes import Episode, Instruction
 from mitigate.worlds.recorded.source import Lens, Source
 from mitigate.worlds.world import World, check_metres
 
-NO_ACTION = -1  # a movement that no action of an agent describes: backwards or sideways
+# action number for a motion that is not an action of an agent, such as backwards or sideways
+NO_ACTION = -1
 
 OBSERVED = "observation."  # names of signals that an agent may read begin with this
 
 # Heuristic limits.
-STEP_TOLERANCE = 0.98  # share of a step: rounding must not skip a step of exactly full length
-MIN_MOVE = 0.05  # metres: odometry of a standing robot moves by less
-MIN_LAST_STEP = 0.5  # share of a step; a shorter last step is merged into the step before
-MAX_FRAME_BYTES = 1 << 32  # all frames of a drive
-MAX_OFF_HEADING = 1 / 3  # share of the moving steps that may go another way than the heading
-MIN_MOVING_STEPS = 5  # fewer moving steps are too few to warn about the heading
-SUPERSAMPLING = 4  # canvas pixels per pixel of a partly covered view, along each side
-MAX_YAW_ERROR = 3.0  # degrees between a camera and its view of the panorama
+# as a fraction of a step, so that rounding does not skip a step of exactly full length
+STEP_TOLERANCE = 0.98
+MIN_MOVE = 0.05  # in metres; the odometry of a standing robot moves by less
+MIN_LAST_STEP = 0.5  # as a fraction of a step; a shorter last step is merged into the previous step
+MAX_FRAME_BYTES = 1 << 32  # maximum bytes of all frames of a drive
+MAX_OFF_HEADING = 1 / 3  # fraction of moving steps whose direction may differ from the heading
+MIN_MOVING_STEPS = 5  # minimum number of moving steps for a warning about the heading
+SUPERSAMPLING = 4  # canvas pixels per pixel of a partially covered view, along each side
+MAX_YAW_ERROR = 3.0  # maximum degrees between a camera and its view of the panorama
 
 
 @dataclass(frozen=True)
 class Recording:
-    """One drive of T steps, loaded into memory.
+    """One recorded drive of T steps, loaded into memory.
 
     Attributes:
         name: Name of the drive.
-        instruction: Instruction text; may be empty.
+        instruction: Instruction text, which may be empty.
         frames: "rgb" uint8 [T, S, S, 3] and "depth" float32 metres [T, S, S, 1], or with 12 views
-            [T, 12, S, S, C]. Sensors that were not recorded are missing.
+            [T, 12, S, S, C]. Sensors that were not recorded are absent.
         times: float64 [T], seconds since the first step.
         poses: float64 [T, 3], (x, y, heading), or None if unknown.
         driven: The driver's actions, or None if the poses are unknown.
@@ -82,7 +84,7 @@ class Recording:
 
 
 def load(source: Source, *, views: int, size: int, step: Step) -> Recording:
-    """Load the frames of ``source`` at the instants that are one step apart.
+    """Load the frames of ``source`` at times that are one agent step apart.
 
     Args:
         source: An opened drive.
@@ -154,7 +156,7 @@ def kinds(source: Source, views: int) -> list[str]:
 
 
 def _assign_cameras(source: Source, views: int) -> dict[tuple[str, int], str]:
-    """Return the camera of each (kind, view): the front camera, or the whole panorama."""
+    """Return the camera of each (kind, view), for the front camera or the whole panorama."""
     assigned: dict[tuple[str, int], str] = {}
     for name, lens in source.cameras.items():
         yaw_error = abs((lens.yaw - 30.0 * lens.view + 180) % 360 - 180)
@@ -195,12 +197,12 @@ def square_view(frame: np.ndarray, lens: Lens, size: int) -> np.ndarray:
 
     Args:
         frame: uint8 [H, W, 3] or float32 [H, W].
-        lens: Lens of the camera that took it.
+        lens: Lens of the camera that took the frame.
         size: Height and width of the view in pixels.
 
     Returns:
         uint8 [size, size, 3] or float32 [size, size, 1]. A frame that already is such a view is
-        returned bit for bit.
+        returned unchanged.
     """
     is_depth = lens.kind == DEPTH
     frame = frame.reshape(*frame.shape[:2], -1)
@@ -219,10 +221,10 @@ def square_view(frame: np.ndarray, lens: Lens, size: int) -> np.ndarray:
 def _partial_view(
     frame: np.ndarray, edges: tuple[float, float, float, float], size: int, is_depth: bool
 ) -> np.ndarray:
-    """Draw a frame that covers only part of the view.
+    """Draw a frame that covers only a part of the view.
 
-    The frame is drawn on a larger canvas first, so that rounding moves its edges by a fraction of
-    a pixel only.
+    The frame is first drawn on a larger canvas, so that rounding moves its edges only by a fraction
+    of a pixel.
     """
     height, width = frame.shape[:2]
     left, right, top, bottom = edges
@@ -240,7 +242,8 @@ def _partial_view(
 
 
 def _resize(frame: np.ndarray, width: int, height: int, is_depth: bool) -> np.ndarray:
-    """Resize a frame. Depth takes the nearest pixel, so that missing readings stay missing."""
+    """Resize a frame. Depth is resized to the nearest pixel, so that missing depth stays
+    missing."""
     shrinks = width < frame.shape[1] or height < frame.shape[0]
     smooth = cv2.INTER_AREA if shrinks else cv2.INTER_LINEAR
     return cv2.resize(
@@ -249,7 +252,7 @@ def _resize(frame: np.ndarray, width: int, height: int, is_depth: bool) -> np.nd
 
 
 def _check_headings(name: str, poses: np.ndarray, driven: Driven) -> None:
-    """Warn if too many of the steps that move go another way than the heading."""
+    """Warn if too many moving steps have a direction that differs from the heading."""
     moves = np.hypot(*np.diff(poses[:, :2], axis=0).T) >= MIN_MOVE
     moves &= np.isin(driven.actions[:-1], (FORWARD, NO_ACTION))
     off_heading = int((driven.actions[:-1][moves] == NO_ACTION).sum())
@@ -264,9 +267,10 @@ def _check_headings(name: str, poses: np.ndarray, driven: Driven) -> None:
 
 
 class RecordedWorld(World):
-    """A world that replays a recording: each step returns its next instant, whatever the action.
+    """World that replays a recording: each step returns the next recorded step, whatever the
+    action.
 
-    The episode ends after the last instant. Success cannot be measured here.
+    The episode ends after the last recorded step. Success cannot be measured in a recording.
     """
 
     rule = "recorded: the way is the driver's"
@@ -278,7 +282,7 @@ class RecordedWorld(World):
         self.done = True
 
     def episode(self) -> Episode:
-        """Return the drive as an episode with its name and instruction."""
+        """Return the recorded drive as an episode with its name and instruction."""
         name = self.recording.name
         origin = (0.0, 0.0, 0.0)
         return Episode(
@@ -299,7 +303,7 @@ class RecordedWorld(World):
         return self._observation()
 
     def step(self, action: int) -> Observation:
-        """Return the next instant, or the last one again when the episode ends.
+        """Return the next recorded observation, or the last one again when the episode ends.
 
         Raises:
             RuntimeError: The episode is over.
@@ -311,7 +315,7 @@ class RecordedWorld(World):
         return self._observation()
 
     def measures(self) -> dict[str, float]:
-        """Return an empty dict: the driver, not the agent, chose the path."""
+        """Return an empty dict, because the driver and not the agent chose the path."""
         return {}
 
     def _observation(self) -> Observation:
@@ -330,12 +334,12 @@ class RecordedWorld(World):
 
 @dataclass(frozen=True)
 class Step:
-    """Distance between two instants that an agent observes; by default one step of the agent.
+    """Distance between two observations of an agent; the default is one step of the agent.
 
     Attributes:
-        metres: Metres moved since the last instant.
-        degrees: Degrees turned since the last instant.
-        seconds: Seconds since the last instant; used where poses are unknown.
+        metres: Metres moved since the last observation.
+        degrees: Degrees turned since the last observation.
+        seconds: Seconds since the last observation; used if poses are unknown.
 
     Raises:
         ValueError: A value is not above 0.
@@ -351,22 +355,22 @@ class Step:
                 raise ValueError(f"step.{name} must be above 0, got {value:g}.")
 
     def share(self, before: np.ndarray, after: np.ndarray) -> float:
-        """Return the distance between two poses [3] as a share of a step."""
+        """Return the distance between two poses [3] as a fraction of a step."""
         moved = float(np.hypot(*(after[:2] - before[:2]))) / self.metres
         return max(moved, abs(turn(before[2], after[2])) / math.radians(self.degrees))
 
     def choose(self, times: np.ndarray, poses: np.ndarray | None) -> np.ndarray:
-        """Choose the instants that an agent observes.
+        """Choose the recorded times at which an agent observes.
 
-        These are the first instant, each that is a step away from the one before, and the last.
-        The last replaces the one before it if both are at nearly the same pose.
+        These are the first time, each time that is one step after the previous choice, and the last
+        time. The last time replaces the previous choice if both have nearly the same pose.
 
         Args:
             times: float64 [N], seconds.
             poses: float64 [N, 3], or None if unknown.
 
         Returns:
-            Indices of the chosen instants, int [T].
+            Indices of the chosen times, int [T].
         """
         chosen = [0]
         for index in range(1, len(times)):
@@ -387,11 +391,11 @@ class Step:
 
 @dataclass(frozen=True)
 class Driven:
-    """The driver's movement at each of T steps; the last step is STOP.
+    """The driver's motion at each of T steps, of which the last is STOP.
 
     Attributes:
-        actions: int [T], the nearest action of an agent, or ``NO_ACTION``.
-        metres: float [T], metres moved forward; negative when backwards.
+        actions: int [T], the most similar action of an agent, or ``NO_ACTION``.
+        metres: float [T], metres moved forward; negative if backwards.
         radians: float [T], radians turned to the left.
     """
 
@@ -401,14 +405,15 @@ class Driven:
 
 
 def turn(before: float, after: float) -> float:
-    """Return the radians turned to the left from one heading to another, -pi to pi."""
+    """Return the angle in radians to the left between two headings, from -pi to pi."""
     return float((after - before + math.pi) % (2 * math.pi) - math.pi)
 
 
 def driver_actions(poses: np.ndarray) -> Driven:
-    """Return the movements between poses [T, 3]; the last action is STOP.
+    """Return the motions between poses [T, 3]; the last action is STOP.
 
-    A step that both moves and turns counts as the larger part, in units of 0.25 m and 15 degrees.
+    If a step both moves and turns, the larger part determines its action, in units of 0.25 m and 15
+    degrees.
     """
     count = len(poses)
     actions = np.full(count, STOP)
@@ -432,6 +437,6 @@ def driver_actions(poses: np.ndarray) -> Driven:
 
 
 def movements(actions: np.ndarray) -> Driven:
-    """Return the movements of a driver who takes ``actions`` in full steps."""
+    """Return the motions of a driver who takes ``actions`` in full steps."""
     turned = math.radians(TURN_DEGREES) * ((actions == LEFT) * 1.0 - (actions == RIGHT))
     return Driven(actions, FORWARD_METRES * (actions == FORWARD), turned)

@@ -1,7 +1,7 @@
-"""The interface of an opened recording: instants with frames of named cameras, and poses.
+"""Define the interface of an opened recording: time steps with poses and frames of named cameras.
 
-A source reads times and poses when it is opened, and frames only on request. ``folders.py`` and
-``bags.py`` open sources from files.
+A source reads times and poses when it is opened, and reads frames only on request. ``folders.py``
+and ``bags.py`` open sources from files.
 """
 
 from __future__ import annotations
@@ -16,17 +16,20 @@ import numpy as np
 from mitigate.core.observation import VIEW_STEP_DEGREES
 
 # Heuristic limits.
-MAX_FRAME_GAP = 0.1  # seconds between frames of one instant: one frame at 10 Hz
-MAX_POSE_GAP = 2.0  # seconds between two poses that may be interpolated
-MAX_INSTANTS = 1 << 20  # instants per drive: 9 hours at 30 Hz
-MAX_TEXT_BYTES = 1 << 28  # bytes of a text file that lists files or poses
+MAX_FRAME_GAP = 0.1  # maximum seconds between frames of the same time step: one frame at 10 Hz
+MAX_POSE_GAP = 2.0  # maximum seconds between two poses for interpolation
+MAX_INSTANTS = 1 << 20  # maximum time steps per drive: 9 hours at 30 Hz
+MAX_TEXT_BYTES = 1 << 28  # maximum bytes of a text file that lists files or poses
 MAX_INSTRUCTION_BYTES = 1 << 16
-MIN_HFOV = 10.0  # horizontal field of view in degrees
+MIN_HFOV = 10.0  # limits of the horizontal field of view in degrees
 MAX_HFOV = 179.0
-MIN_VFOV = 1.0  # vertical field of view in degrees
-MAX_CENTRE_OFFSET = 4.0  # image widths or heights between the principal point and the middle
-MIN_LEVEL = 0.3  # horizontal share of a direction with a heading: at most 73 degrees up or down
-MAX_ASPECT_ERROR = 0.02  # relative difference between the aspects of an image and its CameraInfo
+MIN_VFOV = 1.0  # minimum vertical field of view in degrees
+# maximum distance of the principal point from the image centre, in image widths or heights
+MAX_CENTRE_OFFSET = 4.0
+# minimum horizontal part of a direction that has a heading: at most 73 degrees up or down
+MIN_LEVEL = 0.3
+# maximum relative difference between the aspect ratios of an image and its CameraInfo
+MAX_ASPECT_ERROR = 0.02
 
 
 @dataclass(frozen=True)
@@ -74,7 +77,7 @@ class Lens:
         """Return (fx, fy, cx, cy) in pixels of an image of this size.
 
         Raises:
-            ValueError: The image has another aspect than ``size``.
+            ValueError: The aspect ratio of the image differs from that of ``size``.
         """
         if self.focal is None or self.centre is None or self.size is None:
             focal = width / 2 / math.tan(math.radians(self.hfov) / 2)
@@ -93,24 +96,25 @@ class Lens:
 
     @property
     def view(self) -> int:
-        """Index of the nearest view of the panorama, see ``core/observation.py``."""
+        """The index of the nearest view of the panorama (see ``core/observation.py``)."""
         return round(self.yaw / VIEW_STEP_DEGREES) % round(360 / VIEW_STEP_DEGREES)
 
 
 @dataclass
 class Source:
-    """Base class of an opened drive of N instants.
+    """Base class of an opened recording of N time steps.
 
     Attributes:
         name: Name of the drive.
-        instruction: Instruction text; may be empty.
+        instruction: Instruction text, which may be empty.
         cameras: Lens of each camera by name.
         times: float64 [N], seconds, increasing.
         poses: float64 [N, 3], (x, y, heading) in the plan frame of ``core/observation.py``, or
             None if unknown.
-        stepped: Whether each instant is one step of an agent; otherwise a frame of the camera.
-        dropped: Number of instants left out because no pose or no frame of the other camera was
-            near in time.
+        stepped: Whether each time step is one step of an agent; otherwise it is a frame of the
+            camera.
+        dropped: Number of time steps that were skipped because no pose or no frame of the other
+            camera was near in time.
         signals: Recorded numbers by name, such as "action": float64 [N, size].
     """
 
@@ -124,13 +128,12 @@ class Source:
     signals: Mapping[str, np.ndarray] = field(default_factory=dict, kw_only=True)
 
     def frames(self, chosen: Sequence[int]) -> Iterator[dict[str, np.ndarray]]:
-        """Yield the frame of each camera at each chosen instant, in order.
+        """Yield the frames of all cameras at each chosen time step, in order.
 
         Args:
             chosen: Increasing indices of instants.
 
-        Yields:
-            uint8 [H, W, 3], or float32 metres [H, W] with 0 for no reading, by camera.
+        Yields: frames by camera, uint8 [H, W, 3] or float32 metres [H, W] with 0 for missing depth.
 
         Raises:
             ValueError: A frame is damaged.
@@ -147,7 +150,7 @@ def plan_pose(
         x: Metres.
         y: Metres.
         quaternion: Rotation (x, y, z, w) of the agent or its camera.
-        axis: Direction [3] that faces forward before the rotation.
+        axis: Direction [3] that is forward before the rotation.
 
     Returns:
         The pose. The heading is NaN if the agent faces up or down, or if ``quaternion`` is not a
@@ -208,13 +211,13 @@ def interpolate_poses(times: np.ndarray, table: np.ndarray) -> tuple[np.ndarray,
 
 @dataclass(frozen=True)
 class Instants:
-    """The instants at which all cameras have a frame and the pose is known.
+    """The time steps at which all cameras have a frame and the pose is known.
 
     Attributes:
         times: float64 [N], seconds.
         poses: float64 [N, 3], or None if unknown.
-        frames: Index of the frame of each camera at each instant, int [N], by camera.
-        dropped: Number of instants left out.
+        frames: Index of each camera's frame at each time step, int [N], by camera.
+        dropped: Number of skipped time steps.
     """
 
     times: np.ndarray
@@ -227,11 +230,12 @@ def match_times(stamps: Mapping[str, Sequence[float]], table: np.ndarray | None)
     """Match the frames of several cameras and the poses by time.
 
     Args:
-        stamps: Seconds of the frames of each camera. The first camera defines the instants.
+        stamps: Times of the frames of each camera, in seconds. The first camera defines the time
+            steps.
         table: float64 [M, 4], (time, x, y, heading) of the known poses, or None.
 
     Returns:
-        The instants that are complete; may be none.
+        The complete time steps, possibly none.
     """
     times = np.sort(next(iter(stamps.values())))
     complete = np.ones(len(times), bool)
@@ -254,7 +258,7 @@ def match_times(stamps: Mapping[str, Sequence[float]], table: np.ndarray | None)
 
 
 def read_instruction(file: Path) -> str:
-    """Read the instruction from a text file; empty if the file does not exist.
+    """Read the instruction from a text file, or return "" if the file does not exist.
 
     Raises:
         ValueError: The text is too long or not UTF-8.
@@ -272,7 +276,7 @@ def read_text(file: Path, max_bytes: int = MAX_TEXT_BYTES) -> str:
         ValueError: The file is larger than ``max_bytes``.
     """
     with open(file, "rb") as stream:
-        # read() allocates as much memory as it may read, so limit it to the size of the file
+        # read() allocates memory for its maximum, so the maximum is limited to the size of the file
         raw = stream.read(min(max_bytes, file.stat().st_size) + 1)
     if len(raw) > max_bytes:
         raise ValueError(f"{file} must have at most {max_bytes} bytes. Cut the recording.")

@@ -1,8 +1,9 @@
 """Protect against decompression bombs and executable SQLite schemas in bags from untrusted sources.
 
-``rosbags`` decompresses chunks, messages and whole files without a limit, and queries whatever a
-database declares as its tables. This module replaces its decompressors, once per process, by ones
-with a limit. It checks databases and metadata before ``rosbags`` opens them.
+``rosbags`` decompresses chunks, messages and whole files without a limit, and queries anything that
+a database declares as a table. This module replaces the decompressors of ``rosbags``, once per
+process, by versions with a limit. It also checks databases and metadata before ``rosbags`` opens
+them.
 """
 
 from __future__ import annotations
@@ -18,17 +19,18 @@ from typing import Any
 from mitigate.core.files import FREE, RATIO
 
 METADATA = "metadata.yaml"
-MAX_METADATA_BYTES = 1 << 20  # heuristic limit; the metadata of 100 topics has 1e5 bytes
+# maximum bytes of metadata (heuristic); the metadata of 100 topics has 1e5 bytes
+MAX_METADATA_BYTES = 1 << 20
 COMPRESSED = (".zstd", ".zst")
-_budgets: list[Budget] = []  # one per open bag, the newest last
+_budgets: list[Budget] = []  # one budget per open bag, with the newest last
 
 
 class Bomb(ValueError):
-    """Compressed data expand to far more bytes than they have."""
+    """Raised if compressed data expand to far more bytes than their size."""
 
 
 class Budget:
-    """Number of bytes that a bag of ``size`` bytes may expand to while it is read once."""
+    """The number of bytes to which a bag of ``size`` bytes may expand while it is read once."""
 
     def __init__(self, size: int) -> None:
         self.limit = self.left = FREE + RATIO * size
@@ -52,8 +54,8 @@ def bounded(path: Path) -> Iterator[None]:
     """Limit what ``rosbags`` may decompress while it reads ``path`` (a file or a folder).
 
     Raises:
-        ValueError: A database or metadata are not as a recorder writes them. Inside the context,
-            :class:`Bomb` if the bag expands to too many bytes.
+        ValueError: The database or the metadata contain something that no recorder writes. Inside
+            the context, :class:`Bomb` is raised if the bag expands to too many bytes.
     """
     files = [path] if path.is_file() else [file for file in path.iterdir() if file.is_file()]
     size = sum(file.stat().st_size for file in files)
@@ -73,7 +75,7 @@ def _check(files: list[Path], size: int) -> None:
             raise ValueError(f"its {METADATA} has more than {MAX_METADATA_BYTES} bytes")
         if file.suffix == ".db3":
             check_tables(file)
-        if file.suffix in COMPRESSED:  # rosbags decompresses these to the disk
+        if file.suffix in COMPRESSED:  # rosbags decompresses these files to the disk
             with open(file, "rb") as compressed, _zstd().open(compressed, "rb") as unpacked:
                 budget = Budget(size)
                 while block := unpacked.read(1 << 20):
@@ -81,10 +83,10 @@ def _check(files: list[Path], size: int) -> None:
 
 
 def check_tables(file: Path) -> None:
-    """Check that a query of a database cannot run code that the database brings.
+    """Check that a query of a database cannot run code that is stored in the database.
 
     Raises:
-        ValueError: It has views, triggers, virtual tables or computed columns.
+        ValueError: The database has views, triggers, virtual tables or computed columns.
     """
     try:
         with closing(sqlite3.connect(f"{file.resolve().as_uri()}?immutable=1", uri=True)) as base:
@@ -114,7 +116,7 @@ def _count(unpacked: bytes) -> bytes:
 
 
 def _max_length() -> int:
-    """Return one byte more than the budget allows, so that an excess is noticed."""
+    """Return the budget plus one byte, so that an excess is noticed."""
     return _budgets[-1].left + 1 if _budgets else FREE
 
 
@@ -122,7 +124,7 @@ def decompress_bounded(make: Callable[[], Any], data: bytes) -> bytes:
     """Decompress one or several concatenated streams within the budget.
 
     Args:
-        make: Returns a new decompressor.
+        make: Function that returns a new decompressor.
         data: The compressed bytes.
 
     Returns:
@@ -146,7 +148,7 @@ def decompress_bounded(make: Callable[[], Any], data: bytes) -> bytes:
 
 
 class Zstd:
-    """Replacement of the module ``zstd`` that ``rosbags`` uses."""
+    """Replacement for the module ``zstd`` that ``rosbags`` uses."""
 
     @staticmethod
     def decompress(data: bytes) -> bytes:
@@ -155,7 +157,7 @@ class Zstd:
 
     @staticmethod
     def open(file: Any, mode: str = "rb") -> io.BufferedIOBase:
-        """Open a compressed file, whose expanded size :func:`bounded` has checked."""
+        """Open a compressed file whose expanded size has been checked by :func:`bounded`."""
         return _zstd().open(file, mode)
 
 

@@ -1,4 +1,4 @@
-"""The frontier agent: its map, its search, and the objects that it finds."""
+"""Tests of the frontier agent: its map, its search, and the objects that it finds."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ NOTHING = np.full((4, 2), 0.01, np.float32)
 
 
 def wall(metres: float, size: int = 32) -> np.ndarray:
-    """Return the depth [H, W] of a wall ahead, with floor and ceiling."""
+    """Return a depth image [H, W] of a wall ahead, with floor and ceiling."""
     up = np.abs(1 - (2 * np.arange(size) + 1) / size)[:, None] + np.zeros(size)
     return np.minimum(metres, 1.25 / up).astype(np.float32)
 
@@ -69,7 +69,8 @@ def test_frontiers_border_on_unknown_cells():
 
 
 def test_grid_locates_the_object_from_two_views():
-    """One observation gives a direction; a second one from the side gives the intersection."""
+    """One observation gives only a direction; a second observation from the side gives a
+    position."""
     grid = Grid(np.zeros(3), 1.25)
     ahead = np.array([[0.02, 0.02], [0.95, 0.3], [0.02, 0.02], [0.02, 0.02]], np.float32)
     for _ in range(3):
@@ -170,4 +171,4 @@ def test_act_all_keeps_episodes_independent():
         assert new_agent.act_all([view], [alone]) == [actions[1]]
         view = world.step(actions[1])
     assert np.array_equal(alone.grid.evidence, memories[1].grid.evidence)
-    assert set(gone) > {LEFT}  # it has turned around, and left
+    assert set(gone) > {LEFT}  # the agent has turned around and moved away

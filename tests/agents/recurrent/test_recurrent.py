@@ -1,4 +1,4 @@
-"""The recurrent agent: batches of decisions equal step-by-step actions."""
+"""Tests of the recurrent agent: batches of decisions equal step-by-step actions."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def agent(*sensors: str, **settings) -> RecurrentAgent:
     seed_everything(0, "recurrent")
     new_agent = RecurrentAgent(sensors or (RGB, DEPTH), 8, 8, SMALL, size=SIZE, **settings).eval()
     with torch.no_grad():
-        new_agent.policy.act[-1].bias[STOP] = -4.0  # untrained, it would stop at once
+        new_agent.policy.act[-1].bias[STOP] = -4.0  # an untrained agent would stop at once
     return new_agent
 
 
@@ -47,7 +47,7 @@ def walked(by: RecurrentAgent, count: int = 2, *, share: float = 0.5, clean: boo
 
 @pytest.fixture
 def short_episodes(monkeypatch):
-    """Episodes end after 40 steps."""
+    """World whose episodes end after 40 steps."""
     monkeypatch.setattr(simulator, "MAX_STEPS", 40)
 
 
@@ -61,7 +61,8 @@ def test_recurrent_agent_is_trainable_and_seeing():
 def test_decide_equals_step_by_step_actions():
     new_agent, episode = agent(), load_episodes("val_seen")[0]
     with torch.no_grad():
-        new_agent.policy.act[-1].bias[FORWARD] = 50.0  # whatever it sees, so both take the same way
+        # independent of the frames, so that both take the same route
+        new_agent.policy.act[-1].bias[FORWARD] = 50.0
     how = {"expert_share": 0.0, "rngs": [generator(0, "same")]}
     piece = new_agent.collect([World()], [episode], **how)
     with torch.no_grad():
@@ -90,8 +91,9 @@ def test_collect_never_takes_the_agents_stop():
     with torch.no_grad():
         new_agent.policy.act[-1].bias[STOP] = 50.0
     piece = walked(new_agent, 1, share=0.0)
-    assert piece["lengths"][0] > 1  # with its own STOP the walk would end at once
-    assert piece["answer"][-1] == STOP  # the expert's ends it
+    # if the agent's own STOP were taken, the rollout would end at once
+    assert piece["lengths"][0] > 1
+    assert piece["answer"][-1] == STOP  # the expert's STOP ends the rollout
 
 
 @pytest.mark.usefixtures("short_episodes")
@@ -132,7 +134,7 @@ def test_collect_weights_changes_of_action():
 
 
 def test_rgb_agent_ignores_depth(monkeypatch):
-    monkeypatch.setattr(simulator, "MAX_STEPS", 60)  # untrained, it does not stop before
+    monkeypatch.setattr(simulator, "MAX_STEPS", 60)  # the untrained agent does not stop earlier
     new_agent, episode = agent(RGB), load_episodes("val_seen")[1]
     clean = run_episode(new_agent, World(), episode, Corruption("clean", 0.0), 0)
     gone = run_episode(new_agent, World(), episode, Corruption("missing_data", 1.0), 0)
@@ -159,7 +161,7 @@ def test_act_all_keeps_episodes_independent():
     seen = [World().reset(episode) for episode in episodes]
     memories = [new_agent.begin(episode.instruction.text) for episode in episodes]
     actions = new_agent.act_all(seen, memories)
-    for number in (2, 0):  # alone, in another place of the batch
+    for number in (2, 0):  # run alone, at a different position in the batch
         alone = new_agent.begin(episodes[number].instruction.text)
         assert new_agent.act_all([seen[number]], [alone]) == [actions[number]]
         assert torch.equal(alone.state.hidden, memories[number].state.hidden)
@@ -171,7 +173,7 @@ def test_act_all_keeps_episodes_independent():
 def test_evaluation_of_many_episodes_gives_equal_rows(tmp_path):
     new_agent, episodes = agent(), load_episodes("val_seen")[:4]
     with torch.no_grad():
-        new_agent.policy.act[-1].bias[STOP] = 0.1  # it goes some steps
+        new_agent.policy.act[-1].bias[STOP] = 0.1  # the agent takes some steps
     met = [CLEAN, Corruption("low_light", 0.8), Corruption("black_box", 1.0)]
     how = {"name": "test", "split": "val_seen"}
     records = evaluate(new_agent, World, episodes, met, out=tmp_path / "all.jsonl", **how)
@@ -198,7 +200,8 @@ def test_constructor_rejects_invalid_arguments():
 
 
 def test_state_separates_last_and_summed_attention():
-    """They once shared a tensor, so that training rollouts followed another policy."""
+    """Two values once used the same tensor, so that training rollouts followed a different
+    policy."""
     new_agent = agent()
     state = State.start(new_agent.policy.read(new_agent.tokens(["go left", "go right"])))
     fresh = State(state.hidden[:1] + 1, state.last[:1] + 0.1, state.sum[:1] + 0.7)

@@ -1,4 +1,4 @@
-"""The reference agent with a pretrained encoder (EfficientNet-Lite0)."""
+"""Tests of the reference agent with a pretrained encoder (EfficientNet-Lite0)."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ def test_checkpoint_leaves_out_public_weights(tmp_path):
     again = agent()
     with torch.no_grad():
         for parameter in again.parameters():
-            parameter.add_(0.1)  # also the shared ones: loading restores them
+            parameter.add_(0.1)  # including shared public weights, which loading restores
     checkpoint.load_weights(again, tmp_path)
     assert torch.equal(features(new_agent), features(again))
     assert torch.equal(features(new_agent), features(copy.deepcopy(new_agent)))

@@ -1,4 +1,4 @@
-"""The topological map on small examples: positions and merging of ghosts, and routes."""
+"""Tests of the topological map on small examples: positions and merging of ghosts, and routes."""
 
 from __future__ import annotations
 
@@ -23,7 +23,8 @@ def places(graph: TopologicalMap) -> list[list[float]]:
 
 
 def corridor() -> TopologicalMap:
-    """Nodes at y = 0, 2, 4; a ghost to the right of the first and one ahead of the last."""
+    """Return a map with nodes at y = 0, 2, 4, a ghost to the right of the first and one after the
+    last."""
     graph = TopologicalMap()
     graph.add(pose(0, 0), waypoints((RIGHT, 1.5), (0, 2)))
     graph.add(pose(0, 2), waypoints((0, 2)))
@@ -43,7 +44,8 @@ def test_add_places_ghosts_clockwise_from_the_heading():
 def test_add_merges_near_waypoints():
     graph = TopologicalMap()
     graph.add(pose(0, 0), waypoints((0, 2)))
-    graph.add(pose(1, 0), waypoints((LEFT, 0.2)))  # joins nothing: it is the second node itself
+    # not joined, because it is the second node itself
+    graph.add(pose(1, 0), waypoints((LEFT, 0.2)))
     graph.add(pose(0, 3.2), waypoints((BACK, 1)))  # 0.2 m from the first ghost
     assert places(graph) == [[0, 2.1]]
     ghost = next(iter(graph.ghosts.values()))
@@ -56,7 +58,7 @@ def test_add_joins_waypoints_at_visited_nodes():
     graph.add(pose(3, 0), waypoints())
     graph.add(pose(3, 3), waypoints((0, 1)))
     before = len(graph.ghosts)
-    graph.add(pose(3, 0.1), waypoints((LEFT, 2.9)))  # looks at the first node
+    graph.add(pose(3, 0.1), waypoints((LEFT, 2.9)))  # faces the first node
     assert len(graph.ghosts) == before and graph.edges[1][0] == pytest.approx(3)
 
 
@@ -85,7 +87,8 @@ def test_route_follows_visited_nodes():
 def test_route_takes_the_shorter_way():
     graph = corridor()
     graph.add(pose(1.5, 3), waypoints())
-    graph.add(pose(1.5, 0), waypoints((RIGHT, 2)))  # where the first ghost was: joined to node 0
+    # at the position of the first ghost, so it is joined to node 0
+    graph.add(pose(1.5, 0), waypoints((RIGHT, 2)))
     assert 0 in graph.edges[4]
     assert np.allclose(graph.route_to_node(2), [[1.5, 3], [0, 4]])  # 4.8 m, not 5.5 m
     assert np.allclose(graph.route_to_node(1), [[0, 0], [0, 2]])
@@ -98,7 +101,8 @@ def test_decision_lists_stop_nodes_and_ghosts():
     assert output.panorama == 2 and output.nodes.tolist() == [0, 1, 2]
     assert output.geometry.shape == (1 + 3 + 2, GEOMETRY)
     assert output.travel == pytest.approx([5.5, 2.0])
-    assert output.sightings[:, 0].tolist() == [[0, 3], [2, 0]]  # panorama and view that saw each
+    # the panorama and view that saw each ghost
+    assert output.sightings[:, 0].tolist() == [[0, 3], [2, 0]]
     assert (output.sightings[:, 1:] == -1).all()
 
 

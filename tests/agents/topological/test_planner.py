@@ -1,4 +1,4 @@
-"""The planner: scores do not depend on padding or on the order of ghosts."""
+"""Tests of the planner: scores do not depend on padding or on the order of ghosts."""
 
 from __future__ import annotations
 
@@ -99,7 +99,7 @@ def test_planner_allows_only_stop_and_ghosts(planner):
 def test_planner_reads_instruction_and_views(planner):
     output, tokens = decision(3), pad([Vocabulary().encode(text) for text in TEXT])
     first, second = (score(planner, [output], [row], [0], 3, tokens) for row in (0, 1))
-    other = score(planner, [output], [0], [1], 4, tokens)  # other panoramas behind the same map
+    other = score(planner, [output], [0], [1], 4, tokens)  # different panoramas with the same map
     allowed = torch.isfinite(first)
     assert (first - second)[allowed].abs().max() > 1e-4
     assert (first - other)[allowed].abs().max() > 1e-4

@@ -1,4 +1,4 @@
-"""Imitation rollouts: the oracle's answers, scheduled sampling, and worlds of stored features."""
+"""Tests of imitation rollouts: the oracle's answers, scheduled sampling, and stored features."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ SIZE, SCENE = 16, "apartments/train/000000"
 
 
 class RoomWorld:
-    """An empty room whose views are noise; a route is one step."""
+    """An empty room whose views are noise, and in which a route is one step."""
 
     rule_metres = 2.0
     done = False
@@ -92,7 +92,7 @@ def test_oracle_stops_at_the_goal():
 
 @pytest.mark.parametrize("metres", [0.2, 0.5, 1.5])
 def test_oracle_stops_only_where_it_counts(monkeypatch, metres):
-    """A stricter rule only delays the stop."""
+    """A stricter success rule only delays the stop."""
     free, _ = traces_of(1.0)
     monkeypatch.setattr(RoomWorld, "rule_metres", metres)
     bound, _ = traces_of(1.0)
@@ -111,7 +111,8 @@ def test_roll_out_ends_at_the_limit():
 
 
 def test_roll_out_ends_with_the_episode(monkeypatch):
-    """It also ends in the middle of a route, because worlds reject steps after the last one."""
+    """A rollout also ends in the middle of a route, because worlds reject steps after the last
+    one."""
     monkeypatch.setattr(simulator, "MAX_STEPS", 12)
     worlds, episodes = [ApartmentsWorld(SIZE) for _ in range(3)], load_episodes("val_seen")[:3]
     rngs = [np.random.default_rng(n) for n in range(3)]
@@ -213,12 +214,13 @@ class Unguided(ApartmentsWorld):
 
 def test_live_walk_requires_an_expert():
     with pytest.raises(ValueError, match="Unguided has no expert"):
-        world = Corrupted(Unguided(SIZE), CLEAN, 0)  # the message names the user's own world
+        # the message contains the class of the user's world
+        world = Corrupted(Unguided(SIZE), CLEAN, 0)
         LiveWalk(world, load_episodes("val_seen")[0])
 
 
 def test_stored_folders_keep_the_class_name(tmp_path):
-    """tensordict stores the name of the class in the folder and looks it up on loading."""
+    """tensordict stores the class name in the folder and looks it up when loading."""
     arrays = {
         "xy": torch.rand(2, 2),
         "views": torch.rand(2, VIEWS, 4).half(),

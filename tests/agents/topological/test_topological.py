@@ -1,4 +1,5 @@
-"""The closed loop: when the agent reads frames, when it stops, and that it is deterministic."""
+"""Tests of the agent in closed loop: when it reads frames and stops, and that it is
+deterministic."""
 
 from __future__ import annotations
 
@@ -42,7 +43,7 @@ def test_act_reads_frames_only_to_decide(simulator):
     agent = wanderer()
     actions, looks = drive(agent, simulator)
     assert len(looks) == agent.decisions > 3
-    # once per decision, with movements between
+    # once per decision, with motion in between
     assert len(set(looks)) == len(looks) < len(actions) / 2
 
 

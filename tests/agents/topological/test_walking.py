@@ -1,4 +1,5 @@
-"""Waypoints lead to free places, and the controller reaches them by odometry alone."""
+"""Tests that waypoints lead to free places, and that the controller reaches them by odometry
+alone."""
 
 from __future__ import annotations
 
@@ -46,7 +47,7 @@ def test_controller_reaches_its_targets(number):
 
 def test_controller_gives_up_on_a_blocked_target():
     space = room(4, 4)
-    end, steps = walk(space, (2, 2), 0.0, [(2, 6), (1, 1)])  # the first lies outside
+    end, steps = walk(space, (2, 2), 0.0, [(2, 6), (1, 1)])  # the first position lies outside
     assert np.hypot(*(end - (1, 1))) < 0.2 and steps < 60
 
 
@@ -74,13 +75,13 @@ def test_free_directions_gives_free_distances():
     metres = 0.25 * grid.sum(1)
     assert grid.shape == (ANGLES, 12) and set(np.unique(grid)) == {0, 1}
     assert metres[np.abs(YAWS).argmin()] <= 0.75 < 2.9 < metres[np.abs(YAWS - np.pi).argmin()]
-    assert (np.diff(grid, axis=1) <= 0).all()  # free up to some distance, then blocked
+    assert (np.diff(grid, axis=1) <= 0).all()  # free up to some distance, and then blocked
 
 
 @pytest.mark.parametrize("quarters", [1, 2, 3])
 def test_free_directions_turns_against_the_heading(quarters):
     space, xy = room(5, 3), np.array([1.0, 1.2])
-    # moved left by this offset: all moves are to the right
+    # shifted to the left by this offset, because all moves are to the right
     turned = free_directions(space, xy, quarters * np.pi / 2)
     assert np.array_equal(
         np.roll(free_directions(space, xy, 0.0), quarters * ANGLES // 4, 0), turned
@@ -106,7 +107,7 @@ def test_select_finds_both_ends_of_a_corridor():
     space = room(1.0, 9)
     chosen = select(sure(space, np.array([0.5, 4.5]), 0.0))
     assert abs(np.cos(chosen[:2, 0])).min() > 0.99
-    assert np.cos(chosen[0, 0]) * np.cos(chosen[1, 0]) < 0  # one ahead, one behind
+    assert np.cos(chosen[0, 0]) * np.cos(chosen[1, 0]) < 0  # one waypoint ahead and one behind
     assert chosen[:2, 1] == pytest.approx(LONGEST)
 
 

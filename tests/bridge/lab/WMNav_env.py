@@ -1,4 +1,5 @@
-"""A stand-in of WMNav's environment, for tests: its methods, in its order, and its try-except."""
+"""A stand-in for WMNav's environment in tests: its methods in the same order, and its
+try-except."""
 
 import json
 

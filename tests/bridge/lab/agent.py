@@ -1,4 +1,4 @@
-"""An agent's program on the stand-in lab: knows nothing of mitigate. Python 3.6 to 3.13.
+"""An agent's program on the stand-in lab that does not know mitigate. Python 3.6 to 3.13.
 
 usage: agent.py OUT [--workers N] [--start METHOD] [--cameras N] [--steps N] ...
 """

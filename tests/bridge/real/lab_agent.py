@@ -2,8 +2,8 @@
 
 usage: lab_agent.py OUT EPISODES.json.gz
 
-habitat-sim is not on the package index; the lab only needs its names when it is imported, so blank
-modules stand for it. Tasks, measures, sensors, dataset and Env are the lab's.
+habitat-sim is not on the package index. habitat-lab needs only its names at import, so empty
+modules replace it. Tasks, measures, sensors, dataset and Env are those of habitat-lab.
 """
 
 import hashlib
@@ -62,7 +62,7 @@ from habitat.core.simulator import AgentState, SensorSuite, Simulator  # noqa: E
 
 @registry.register_simulator(name="Plane-v0")
 class Plane(Simulator):
-    """An endless plane; the lab's own RGB and depth sensors read its frames."""
+    """An infinite plane, whose frames are read by habitat-lab's RGB and depth sensors."""
 
     def __init__(self, config):
         agent = config.agents.main_agent

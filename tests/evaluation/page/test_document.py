@@ -1,4 +1,4 @@
-"""The page holds the numbers of the rows and their episodes up to a limit, and loads nothing."""
+"""Tests that the page contains the numbers and episodes of the rows up to a limit."""
 
 from __future__ import annotations
 
@@ -115,7 +115,7 @@ def test_cell_is_packed_with_all_seeds_or_none(rows):
 
 
 def test_page_share_uses_common_episodes(rows):
-    """Like a PRS: the retained share of the measured success."""
+    """Like a PRS, this is the retained fraction of the measured success."""
     sure = column(10, {"spatter": 10}, name="sure", agent="cccccccccccc", spl=0.4)
     lost = [r | {"success": 0, "spl": 0.1} if r["episode_id"] == "9" else r for r in sure]
     fewer = [r for r in lost if (r["episode_id"], r["corruption"]) != ("9", "spatter")]
@@ -128,7 +128,7 @@ def test_page_share_uses_common_episodes(rows):
     ]
     least = [r for r in fewer if r["corruption"] == "clean" or r["episode_id"] < "5"]
     (displayed,) = page_data(report(rows + least))[0]["sections"]
-    assert displayed["cells"][2][place][3:] == [None, None]  # too few for a PRS
+    assert displayed["cells"][2][place][3:] == [None, None]  # too few episodes for a PRS
 
 
 @pytest.mark.parametrize("x", [0.3125, 0.31250000001, 0.0049999999, 0.125, 1 / 3, 0.0, 37 / 900])
@@ -165,7 +165,8 @@ def test_page_escapes_texts_and_names_no_address(rows):
     assert len(re.findall(r"<script", text)) == 3 and len(re.findall(r"</script", text)) == 3
     assert "<!--" not in text and page_data(text)[0]["sections"][0]["columns"][0]["label"] == evil
     addresses = set(re.findall(r"https?://[^\"'\s)]+", text))
-    assert addresses == {"http://www.w3.org/2000/svg"}  # a name, not an address to load
+    # a name that must not be loaded as an address
+    assert addresses == {"http://www.w3.org/2000/svg"}
 
 
 def test_choose_alternates_outcomes_and_corruptions():
@@ -178,13 +179,14 @@ def test_choose_alternates_outcomes_and_corruptions():
         for episode, won in zip("abcd", wins, strict=True)
     ]
     chosen = choose(output, ["base", "hard"], 9)
-    assert [episode for episode, _ in chosen] == ["b", "a", "d", "c"]  # in the order of KINDS
+    # outcomes in the order of KINDS
+    assert [episode for episode, _ in chosen] == ["b", "a", "d", "c"]
     assert {met.name for _, met in chosen} == {"spatter", "flare"} and len(KINDS) == 4
     assert choose(output, ["base", "hard"], 2) == chosen[:2]
 
 
 def walked_rows(agents: dict, world: ApartmentsWorld, episode: Episode) -> list[dict]:
-    """Clean and low-light results of agents, by their hashes."""
+    """Return clean and low-light rows of agents, by their hashes."""
     output = []
     for name, agent in agents.items():
         for met in (Corruption("clean", 0.0), Corruption("low_light", 0.6)):
@@ -199,7 +201,7 @@ def test_walk_again_compares_with_the_row():
     world, (episode,) = ApartmentsWorld(16), load_episodes("val_seen")[:1]
     agents = {"base": Straight(1), "hard": Straight(3)}
     records = walked_rows(agents, world, episode)
-    records[-1]["steps"] += 1  # a row that differs
+    records[-1]["steps"] += 1  # a row that differs from the new result
     (drawn,) = walk_again(agents, world, [episode], records, most=3, seed=0)
     assert [walk["agrees"] for walk in drawn["walks"]] == [True, True, False]
     assert drawn["picture"].startswith("data:image/png;base64,")

@@ -1,4 +1,4 @@
-"""A panorama of an apartment, and untrained restorers."""
+"""Fixtures: a panorama of an apartment, and untrained restorers."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from mitigate.worlds.apartments.world import ApartmentsWorld
 
 @pytest.fixture(scope="session")
 def panorama() -> dict[str, np.ndarray]:
-    """A clean observation of 12 views of 64 pixels, from a layout of val_seen."""
+    """A clean observation with 12 views of 64 pixels, from a layout of val_seen."""
     world = ApartmentsWorld(64)
     world.enter("apartments/val_seen/100000")
     seen, _ = world.put(world.point(generator(0, "place")), 0.3, views=None, rgb=True)
@@ -22,7 +22,7 @@ def panorama() -> dict[str, np.ndarray]:
 
 @pytest.fixture
 def untrained() -> Restorer:
-    """A small restorer whose gate takes every frame for corrupted."""
+    """A small restorer whose gate classifies every frame as corrupted."""
     torch.manual_seed(0)
     return opened(Restorer(width=8, depth_width=8).eval())
 

@@ -1,5 +1,4 @@
-"""Frames that the gate accepts are unchanged; others are corrected and filled, and keep their
-form."""
+"""Tests that clean frames are unchanged, and that others are corrected and filled."""
 
 from __future__ import annotations
 
@@ -55,8 +54,8 @@ def test_untrained_restorer_hardly_changes_a_frame(untrained, sensor, shape):
 
 
 def wall(metres: float, hole: bool = False) -> np.ndarray:
-    """A camera in front of a wall, with sensor noise of 2 cm; ``hole``: 4 % of it has no
-    reading."""
+    """Return depth of a wall with sensor noise of 2 cm; with ``hole``, 4 % of the pixels are
+    missing."""
     noise = np.random.default_rng(0).normal(0, 0.02, (96, 96))
     output = (metres + noise).astype(np.float32)
     output[40:60, 40:60] *= not hole
@@ -79,7 +78,7 @@ def test_near_wall_with_a_hole_is_filled():
 
 def test_depth_mostly_out_of_range_is_kept_with_a_warning(untrained):
     frame = wall(5.0)
-    frame[:9] = 12.0  # 9.4 % of it
+    frame[:9] = 12.0  # 9.4 % of the frame
     assert untrained.restore(DEPTH, frame).max() <= 10
     frame[:10] = 12.0
     with pytest.warns(UserWarning, match="farther than 10 m"):
@@ -123,7 +122,7 @@ def test_large_frame_keeps_its_detail():
     restorer = opened(Restorer([RGB], width=8, size=32).eval())
     net = restorer.nets[RGB]
     with torch.no_grad():
-        net.net.head.bias.view(-1, 4)[:3] = np.log(2.0)  # every gain is 2
+        net.net.head.bias.view(-1, 4)[:3] = np.log(2.0)  # sets every gain to 2
         net.net.head.bias.view(-1, 4)[6:] = -100.0  # nothing is lost
     frame = frames(RGB, 128, 128) // 2
     output = restorer.restore(RGB, frame)
@@ -276,10 +275,10 @@ def test_damaged_folder_is_rejected(untrained, tmp_path, change, words):
     change(tmp_path)
     with pytest.raises((ValueError, FileNotFoundError), match=words) as error:
         load_restorer(tmp_path)
-    assert "delete" not in str(error.value)  # it needs every file
+    assert "delete" not in str(error.value)  # the folder must contain every file
 
 
-# what is shipped ---------------------------------------------------------------------------------
+# shipped weights ---------------------------------------------------------------------------------
 
 
 @pytest.fixture(scope="module")
@@ -377,7 +376,8 @@ def test_report_corrupts_depth_up_to_the_world_range(panorama):
 
 @pytest.mark.parametrize("met", [[CLEAN], [CLEAN, Corruption("flare", 0.6)]])
 def test_report_without_fitting_corruption_has_no_picture(tmp_path, panorama, met):
-    """As after a training with suite=clean, or with RGB corruptions only for a depth restorer."""
+    """This happens after training with suite=clean, or with only RGB corruptions for a depth
+    restorer."""
     only = opened(Restorer([DEPTH], depth_width=4).eval())
     report.write(only, report.Instants([panorama]), met, 0, tmp_path, "one")
     assert [path.name for path in tmp_path.iterdir()] == ["restoration.md"]

@@ -1,4 +1,4 @@
-"""A chat model of a few thousand weights, in a folder as transformers writes it."""
+"""Fixtures: a chat model of a few thousand weights, in a folder of transformers."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ LORA = {"r": 2, "alpha": 4, "targets": ["q_proj", "down_proj"]}
 
 
 def write_tiny_model(folder, template: str | None = TEMPLATE):
-    """Write config, weights and tokenizer; pad and end mark are one token, as in SmolLM2."""
+    """Write config, weights and tokenizer; the pad and end tokens are equal, as in SmolLM2."""
     from tokenizers import Tokenizer, decoders, models, pre_tokenizers, trainers
     from transformers import LlamaConfig, LlamaForCausalLM, PreTrainedTokenizerFast
 
@@ -51,5 +51,5 @@ def write_tiny_model(folder, template: str | None = TEMPLATE):
 
 @pytest.fixture(scope="session")
 def tiny_base(tmp_path_factory) -> str:
-    """The folder of the tiny model."""
+    """The folder with the tiny model."""
     return str(write_tiny_model(tmp_path_factory.mktemp("tiny-llama")))

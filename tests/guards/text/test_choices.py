@@ -1,4 +1,4 @@
-"""Names, folders, labels and content hashes of safeguards."""
+"""Tests of names, folders, labels and content hashes of safeguards."""
 
 from __future__ import annotations
 

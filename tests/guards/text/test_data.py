@@ -1,4 +1,4 @@
-"""Training texts: varied, apart from what is tested on; chat files that are read with care."""
+"""Tests of training texts (varied, separate from test texts) and of reading chat files."""
 
 from __future__ import annotations
 
@@ -80,7 +80,7 @@ def test_draw_pair_targets_fit_their_kind(pairs):
     assert all(p.source == p.target for p in pairs if p.kind == "identity")
     attacked = [p for p in pairs if p.kind == "black_box"]
     before_plain = sum(p.source.endswith(p.target) for p in attacked) / len(attacked)
-    assert 0.6 < before_plain < 0.95  # the other attacks precede spoken texts, which are rewritten
+    assert 0.6 < before_plain < 0.95  # the other attacks precede styled texts, which are rewritten
     assert 0.1 < sum(not p.target for p in attacked) / len(attacked) < 0.5
 
 

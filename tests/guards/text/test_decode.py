@@ -1,4 +1,4 @@
-"""Hidden words are read, and honest text is left alone."""
+"""Tests that hidden words are decoded, and that honest text is not changed."""
 
 from __future__ import annotations
 

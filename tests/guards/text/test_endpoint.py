@@ -1,4 +1,4 @@
-"""The prompted safeguard against a small local server that is good, slow, broken or rude."""
+"""Tests of an endpoint safeguard with a local server that is correct, slow or broken."""
 
 from __future__ import annotations
 
@@ -20,15 +20,16 @@ from mitigate.guards.text.language_models.endpoint import ENVELOPE, ChatEndpoint
 
 
 class Server(ThreadingHTTPServer):
-    """Answers with ``replies`` in turn (status, body, seconds of delay), the last one for ever."""
+    """A server that answers with ``replies`` in turn (status, body, delay), and repeats the
+    last."""
 
     daemon_threads = True
 
     def __init__(self):
         super().__init__(("127.0.0.1", 0), Handler)
         self.replies, self.requests = [], []
-        self.drops, self.pause = 1 << 30, 0.0  # bytes of a piece, seconds before each
-        self.headers = 0  # that drip before the first
+        self.drops, self.pause = 1 << 30, 0.0  # bytes per piece, and seconds before each piece
+        self.headers = 0  # header bytes that are sent slowly before the first piece
         self.url = f"http://127.0.0.1:{self.server_port}/v1"
 
 
@@ -53,7 +54,7 @@ class Handler(BaseHTTPRequestHandler):
             for n in range(0, len(reply), self.server.drops):
                 time.sleep(self.server.pause)
                 self.wfile.write(reply[n : n + self.server.drops])
-        except OSError:  # the client gave up
+        except OSError:  # the client has closed the connection
             pass
 
     def log_message(self, *_):
@@ -163,7 +164,7 @@ def test_endpoint_explains_a_wrong_url_or_cache(tmp_path):
     with pytest.raises(ValueError, match="is not a valid URL"):
         ChatEndpoint("localhost:8000", "m")
     (tmp_path / "notes").write_text("not a data base, but long enough to be taken for one" * 40)
-    with pytest.raises(ValueError, match="is no cache"):
+    with pytest.raises(ValueError, match="is not a cache"):
         ChatEndpoint("http://localhost:8000", "m", cache=tmp_path / "notes")
 
 
@@ -200,7 +201,7 @@ def test_endpoint_keeps_its_deadline_when_a_server_drips(server, headers):
 
 
 def test_endpoint_keeps_its_deadline_with_dead_addresses(server, monkeypatch):
-    """A socket whose queue is full never accepts; each such address would use up the timeout."""
+    """A socket with a full queue never accepts, so each such address would use up the timeout."""
     with socket.socket() as dead:
         dead.bind(("127.0.0.1", 0))
         dead.listen(0)
@@ -293,7 +294,7 @@ def test_cache_treats_an_untrusted_file_as_data(server, tmp_path):
         cache = tmp_path / f"{number}.sqlite"
         with sqlite3.connect(cache) as handle:
             handle.executescript(script)
-        with pytest.raises(ValueError, match="is no cache of endpoint answers"):
+        with pytest.raises(ValueError, match="is not a cache of endpoint answers"):
             endpoint(server, cache=cache)
     cache = tmp_path / "answers.sqlite"
     client = endpoint(server, cache=cache)
@@ -321,7 +322,7 @@ def test_cache_survives_flipped_bytes(server, tmp_path):
         try:
             assert endpoint(server, cache=cache).rewrite(["text 7"])[0] is not None
         except ValueError as error:
-            assert "is no cache" in str(error)
+            assert "is not a cache" in str(error)
 
 
 @contextmanager

@@ -1,4 +1,4 @@
-"""A classifier is trained, saved and loaded; a new mechanism in the data is learned."""
+"""Tests of training, saving and loading a classifier, and of learning a new mechanism."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ ATTACKS = [
 
 @pytest.fixture(scope="module")
 def data(tmp_path_factory):
-    """A few lines of every bank, and a mechanism that no other line resembles."""
+    """Write a few lines of every text collection, and a mechanism that no other line resembles."""
     folder = tmp_path_factory.mktemp("data")
     source = ROOT / "tools/safeguard/data"
     for part in ("banks", "styles"):

@@ -1,4 +1,4 @@
-"""The gate accepts what says the same and refuses everything else."""
+"""Tests that the gate accepts rewrites with the same meaning, and rejects all others."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ def test_rewrite_accepts_empty_answer_only_without_facts():
 
 
 def test_rewrite_refused_catches_lies():
-    """Rewrites with one fact changed, written by hand."""
+    """The hand-written rewrites each change one fact."""
     with open(ROOT / "tools/safeguard/data/banks/lies.jsonl", encoding="utf-8") as file:
         lies = [json.loads(line) for line in file]
     caught = [bool(rewrite_refused(lie["true"], lie["lie"])) for lie in lies]

@@ -1,4 +1,4 @@
-"""The safeguard: attacks go, honest text stays, a model's answers pass the gate or do not count."""
+"""Tests of the safeguard: it removes attacks, keeps honest text, and checks a model's answers."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def safeguard():
 
 
 class Scripted:
-    """A rewriter that gives prepared answers and remembers what it was asked."""
+    """A rewriter that returns prepared answers and records its inputs."""
 
     def __init__(self, answer):
         self.answer = answer
@@ -64,7 +64,7 @@ def test_canonicalise_removes_attacks_of_known_mechanisms(safeguard, attack, pla
 
 
 def test_canonicalise_removes_most_fresh_attacks(safeguard):
-    """A floor below the measured share, on the half of the banks that settings are chosen by."""
+    """The bound is below the measured fraction, on the half of the texts for choosing settings."""
     plain = [line["plain"] for line in bank("styles", "choose")]
     good = [
         is_removed(line["text"], route, value) and not is_lost(route, value)
@@ -177,7 +177,8 @@ def test_canonicalise_lowers_capitals_and_fills_masks(safeguard):
     filled = safeguard.canonicalise("Turn left [MASK] walk past [MASK] bed.").text
     assert not rules.MASK.search(filled) and facts(filled).landmarks == ("bed",)
     hidden = "Turn [MASK] at the sofa, then stop."
-    assert safeguard.canonicalise(hidden).text == hidden  # no small word says where to turn
+    # no function word gives the direction of a turn
+    assert safeguard.canonicalise(hidden).text == hidden
 
 
 def test_canonicalise_repairs_the_suites_attacks(safeguard):

@@ -1,4 +1,4 @@
-"""Text metrics on repairs whose scores are known."""
+"""Tests of text metrics on repairs whose scores are known."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The language model: what is trained, what is masked, what is saved, what goes wrong."""
+"""Tests of the language model: trained and masked tokens, saved weights, and errors."""
 
 from __future__ import annotations
 
@@ -207,7 +207,7 @@ def test_open_adapter_reports_damage_before_loading_the_base(model, tmp_path, mo
     for change in ({"r": 3}, {"target_modules": ["v_proj"]}):
         config.write_text(json.dumps({**message, **change}), "utf-8")
         folders.seal(tmp_path, "safeguard")
-        with pytest.raises(ValueError, match="does not fit its adapter_config.json.* is no LoRA"):
+        with pytest.raises(ValueError, match="does not fit its adapter_config.json.* not a LoRA"):
             open_adapter(tmp_path)
     assert not loaded
 

@@ -1,4 +1,4 @@
-"""The text report, and the safeguard in front of an agent in the evaluation."""
+"""Tests of the text report, and of the safeguard in an evaluation."""
 
 from __future__ import annotations
 
@@ -66,7 +66,7 @@ def test_training_reports_before_and_after(tiny_base, tmp_path, capsys):
 
 
 class Listener(torch.nn.Module):
-    """Remembers the instructions and stops at once."""
+    """An agent that records the instructions and stops at once."""
 
     heard: list[str] = []  # shared on purpose
 

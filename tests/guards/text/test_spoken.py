@@ -1,4 +1,4 @@
-"""People's texts by voice: what is learned from, and what is kept for the figures."""
+"""Tests of hand-written texts by style: which are used for training, and which for figures."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The benchmark: its clocks, other libraries, and its page."""
+"""Tests of the benchmark: its clocks, other libraries, and its page."""
 
 from __future__ import annotations
 

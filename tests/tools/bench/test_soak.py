@@ -1,4 +1,4 @@
-"""The soak test finds growth of memory and files, and reports series that are too short."""
+"""Tests that the soak test detects growth of memory and files, and reports short series."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ HOURS = np.linspace(0, 1, 600)
 
 
 def wander(seed: int, share: float = 0.9) -> np.ndarray:
-    """Noise of standard deviation 3 in which each value is near the one before."""
+    """Return noise with standard deviation 3 in which each value is near the previous one."""
     rng = np.random.default_rng(seed)
     values = np.zeros(len(HOURS))
     for n in range(1, len(values)):

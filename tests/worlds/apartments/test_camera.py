@@ -1,4 +1,4 @@
-"""A world with one forward camera: the first view of the panorama, with labels per column."""
+"""Tests of a world with one forward camera, which shows the panorama's first view."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def test_camera_labels_describe_columns_and_directions():
     wide = ApartmentsWorld()
     wide.reset(EPISODE)
     around = wide.truth()["free"]
-    left, right = around[110], around[19]  # 45 degrees to either side
+    left, right = around[110], around[19]  # 45 degrees to each side
     assert np.array_equal(truth["free"][0], left) and np.array_equal(truth["free"][-1], right)
 
 

@@ -1,4 +1,4 @@
-"""The torchrl environment with the corrupting transform: specs, rewards, equal pixels."""
+"""Tests of the torchrl environment with the corruption transform: specs, rewards and pixels."""
 
 from __future__ import annotations
 
@@ -24,12 +24,12 @@ def episodes():
 
 
 def actions_for(name: str, count: int) -> list[int]:
-    """Draw actions keyed by the run of an episode; about every tenth is STOP."""
+    """Return random actions keyed by the run of an episode; about every tenth is STOP."""
     return [int(a) for a in generator("walk", name).choice(4, count, p=[0.1, 0.5, 0.2, 0.2])]
 
 
 def walk(env: ApartmentsEnv | TransformedEnv, steps: int) -> dict[tuple[str, int], torch.Tensor]:
-    """Step through several episodes; return rgb and depth by (episode, frame)."""
+    """Step through several episodes, and return rgb and depth by (episode, frame)."""
     seen = {}
 
     def note(data) -> None:
@@ -51,7 +51,7 @@ def walk(env: ApartmentsEnv | TransformedEnv, steps: int) -> dict[tuple[str, int
 
 @pytest.fixture(scope="module")
 def clean(episodes):
-    """The clean frames of 60 steps."""
+    """Return the clean frames of 60 steps."""
     return walk(ApartmentsEnv(episodes, size=SIZE), 60)
 
 

@@ -1,4 +1,4 @@
-"""Export of apartments for Habitat."""
+"""Tests of exporting apartments for Habitat."""
 
 import gzip
 import json

@@ -1,4 +1,4 @@
-"""The renderer against ray casting: faces, depth in metres, directions, several scenes."""
+"""Tests of the renderer against ray casting: faces, depth, directions and several scenes."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def pose(apartment: Apartment, number: int) -> tuple[float, float, float]:
 
 
 def rays(heading: float, view: int) -> np.ndarray:
-    """Return the directions of pixel centres, 1 m along the optical axis: [S * S, 3]."""
+    """Return the directions of pixel centres, 1 m along the optical axis, as [S * S, 3]."""
     row, column = np.mgrid[0:SIZE, 0:SIZE]
     up, right = 1 - (2 * row + 1) / SIZE, (2 * column + 1) / SIZE - 1
     yaw = heading - np.radians(30 * view)
@@ -37,7 +37,7 @@ def rays(heading: float, view: int) -> np.ndarray:
 
 
 def cast(corners: np.ndarray, eye: np.ndarray, directions: np.ndarray) -> tuple[np.ndarray, ...]:
-    """Return distance and index of the nearest visible rectangle for every ray."""
+    """Return the distance and index of the nearest visible rectangle for every ray."""
     metres, hit = np.full(len(directions), np.inf), np.full(len(directions), -1)
     for index, (a, b, c, d) in enumerate(corners.astype(np.float64)):
         normal = np.cross(b - a, d - a)
@@ -87,7 +87,7 @@ def test_renderer_recovers_every_id(renderer):
         raw = np.frombuffer(renderer.image.get_ram_image(), np.uint8).reshape(-1, 4 * SIZE, 4)
         codes = raw[3 * SIZE :, :, :3]
         drawn = codes.any(-1)
-        assert (codes[drawn] % 8 == 4).all()  # a colour of the code, not blended
+        assert (codes[drawn] % 8 == 4).all()  # an unblended id colour
         assert drawn.mean() > 0.999 and ids.max() < len(apartment.faces.plane)
         assert (ids < 0).sum() == (~drawn).sum()
 
@@ -107,7 +107,7 @@ def test_view_k_faces_30_k_degrees_right(renderer):
     x, y, heading = pose(apartment, 0)
     rgb, depth, ids = renderer.render(x, y, heading)
     for k in (1, 3, 8):
-        turned = renderer.render(x, y, heading - np.radians(30 * k))  # clockwise: to the right
+        turned = renderer.render(x, y, heading - np.radians(30 * k))  # clockwise means to the right
         for before, after in zip((rgb, depth, ids), turned, strict=True):
             assert np.mean(np.roll(before, -k, axis=0) == after) > 0.99
 
@@ -151,7 +151,7 @@ def test_panorama_is_reproducible_after_other_scenes():
     first = renderer.render(*target)
     for again in zip(first, renderer.render(*target), strict=True):
         assert np.array_equal(*again)
-    for other in apartments[1:]:  # more scenes than the cache keeps: the first is built again
+    for other in apartments[1:]:  # more scenes than the cache holds, so the first is built again
         renderer.load(other)
         assert not np.array_equal(renderer.render(*pose(other, 0))[0], first[0])
     renderer.load(apartments[0])

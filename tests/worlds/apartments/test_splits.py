@@ -1,4 +1,4 @@
-"""The splits share no layout, palette or template; the shipped lists can be generated."""
+"""Tests that splits have no common layout, palette or template, and that lists can be generated."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Reading of recorded drives: folders and bags, choice of instants, square views."""
+"""Tests of reading recorded drives: folders and bags, choice of steps, and square views."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ SIZE = 32
 
 
 def steps(poses: list[tuple[float, float, float]]) -> list[dict[str, np.ndarray]]:
-    """Return random frames that differ from step to step, at these poses."""
+    """Return random frames at these poses, which differ from step to step."""
     rng = np.random.default_rng(0)
     return [
         {
@@ -41,7 +41,7 @@ def steps(poses: list[tuple[float, float, float]]) -> list[dict[str, np.ndarray]
 
 
 def path_poses() -> list[tuple[float, float, float]]:
-    """Return poses: two steps ahead, one turn to the left, one step, one turn to the right."""
+    """Return the poses of two steps, a turn to the left, one step, and a turn to the right."""
     turn = math.radians(15)
     ahead = 0.25 * np.array([-math.sin(turn), math.cos(turn)])
     there = (ahead[0], 0.5 + ahead[1])
@@ -90,7 +90,7 @@ def test_load_reads_a_bag_like_a_folder(folder, tmp_path, form):
 
 
 def bag_of(path: Path, headers: Sequence[int]) -> Path:
-    """Write a ROS 1 bag with one step per header time, received from second 1000 on."""
+    """Write a ROS 1 bag with one step per header time, and receipt times from second 1000."""
     store = get_typestore(Stores.ROS1_NOETIC)
     connections = {}
     with Writer(path) as writer:
@@ -169,7 +169,7 @@ def tum(folder: Path, frames: list[dict[str, np.ndarray]], hertz: float = 10.0) 
             cv2.imwrite(str(folder / kind / f"{time:.4f}.png"), picture)
             lists[kind].append(f"{time + (kind == DEPTH) * 0.01:.4f} {kind}/{time:.4f}.png")
         x, y, heading = step[POSE]
-        # the optical axis (z) looks ahead, x to the right, y down
+        # the optical axis (z) points forward, x to the right, y down
         ahead = np.array([-math.sin(heading), math.cos(heading), 0])
         right = np.array([math.cos(heading), math.sin(heading), 0])
         turned = np.stack([right, [0, 0, -1], ahead], 1)
@@ -201,7 +201,8 @@ def turn_poses(folder: Path, quaternion: str, numbers: Sequence[int]) -> None:
 
 def test_tum_folder_rejects_poses_of_a_robot_frame(tmp_path):
     folder = tum(tmp_path / "lab", steps([(0.0, 0.25 * i, 0.0) for i in range(8)]))
-    turn_poses(folder, "0 0 0.38 0.92", range(8))  # about the vertical: a frame with x ahead
+    # a rotation about the vertical, for a frame with x forward
+    turn_poses(folder, "0 0 0.38 0.92", range(8))
     with pytest.raises(ValueError, match=r"8 of 8 poses face up or down.*z ahead"):
         read(folder)
 
@@ -222,7 +223,7 @@ def test_tum_folder_rejects_a_file_outside(tmp_path):
 
 @pytest.fixture
 def recorded(tmp_path):
-    """A folder with one episode as ``mitigate run record=`` writes it."""
+    """Write a folder with one episode, as ``mitigate run record=`` does."""
     write_frames(tmp_path / "x", steps(path_poses()), "")
     episode = tmp_path / "recorded" / "kitchen" / "17"
     episode.mkdir(parents=True)
@@ -237,7 +238,7 @@ def recorded(tmp_path):
         for i, p in enumerate(path_poses())
     ]
     (episode / "steps.jsonl").write_text("".join(json.dumps(line) + "\n" for line in lines))
-    copytree(episode, episode.with_name(".18.4711.tmp"))  # left by a run that was killed
+    copytree(episode, episode.with_name(".18.4711.tmp"))  # left over from a run that was killed
     return tmp_path / "recorded"
 
 
@@ -296,7 +297,7 @@ def test_open_recording_rejects_other_encodings(folder):
 
 def test_load_warns_about_headings_off_the_path(folder):
     way = [(0.0, 0.25 * n, 0.0) for n in range(6)]
-    for heading, strange in ((0.0, False), (math.pi / 2, True)):  # of +x as ROS has it
+    for heading, strange in ((0.0, False), (math.pi / 2, True)):  # yaw from +x, as in ROS
         rows = "".join(f"{x},{y},{heading}\n" for x, y, _ in way)
         (folder / "poses.csv").write_text(rows)
         with warnings.catch_warnings(record=True) as caught:

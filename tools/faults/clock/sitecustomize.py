@@ -1,6 +1,6 @@
-"""Makes the clock jump about once per second in a Python whose PYTHONPATH names this folder.
+"""Make the clock jump about once per second in a Python whose PYTHONPATH contains this folder.
 
-``time.time`` jumps by up to a day in either direction. ``time.monotonic`` does not, as when an
+``time.time`` jumps by up to a day in either direction. ``time.monotonic`` does not jump, as when an
 administrator or NTP sets a machine's clock.
 """
 

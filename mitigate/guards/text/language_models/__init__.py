@@ -1,1 +1,1 @@
-"""Language models behind the safeguard: weights on disk, of packages, and behind an endpoint."""
+"""Language models for the safeguard, from a folder, a package or an endpoint."""

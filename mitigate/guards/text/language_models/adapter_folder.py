@@ -1,4 +1,5 @@
-"""A LoRA adapter on disk: PEFT's folder format, and a card that names the base it belongs to."""
+"""Read and write a LoRA adapter on disk, in PEFT's folder format with a card that names its base
+model."""
 
 from __future__ import annotations
 
@@ -15,7 +16,8 @@ from mitigate.core.json_files import read_json
 from mitigate.guards.text.choices import ADAPTER_CONFIG, ADAPTER_WEIGHTS
 
 CARD, CONFIG, ADAPTER = "card.json", ADAPTER_CONFIG, ADAPTER_WEIGHTS
-ENTRIES: dict[str, dict[str, tuple[type, ...]]] = {  # what is read of a card and of PEFT's config
+# the entries that are read from a card and from PEFT's config
+ENTRIES: dict[str, dict[str, tuple[type, ...]]] = {
     CARD: {"base": (str,), "base_sha256": (str,), "prompt": (str,)},
     CONFIG: {
         "r": (int,),
@@ -24,14 +26,15 @@ ENTRIES: dict[str, dict[str, tuple[type, ...]]] = {  # what is read of a card an
         "target_modules": (list,),
     },
 }
-HIGHEST_RANK = 1024  # above the width of the default base's layers (heuristic)
+# maximum rank, which is above the layer width of the default base model (heuristic)
+HIGHEST_RANK = 1024
 _AGAIN = "Fetch the folder again, or train it again with `make train RECIPE=safeguard_lora`."
 
 
 def write_adapter(
     folder: str | Path, network: Any, tensors: dict[str, Tensor], card: dict[str, Any]
 ) -> None:
-    """Write the adapter of a PEFT ``network``, its weights ``tensors``, and ``card``.
+    """Write the adapter of a PEFT ``network``, with its weights ``tensors`` and a ``card``.
 
     The files are replaced together and listed in a manifest.
     """
@@ -44,10 +47,10 @@ def write_adapter(
 
 
 def read_adapter(folder: str | Path) -> tuple[dict[str, Any], dict[str, Any]]:
-    """Return the card and PEFT's config of an adapter folder, which are data: of the config, only
-    what ``ENTRIES`` names is used.
+    """Return the card of an adapter folder and those entries of PEFT's config that ``ENTRIES``
+    names.
 
-    Raises FileNotFoundError for a missing file, ValueError for a damaged one.
+    Raises FileNotFoundError for a missing file, and ValueError for a damaged one.
     """
     missing = [n for n in (CARD, CONFIG, ADAPTER) if not (Path(folder) / n).is_file()]
     if missing:
@@ -66,8 +69,8 @@ def read_adapter(folder: str | Path) -> tuple[dict[str, Any], dict[str, Any]]:
 
 
 def adapter_tensors(folder: str | Path, config: dict[str, Any]) -> dict[str, Tensor]:
-    """Return the weights of an adapter folder: pairs of matrices, of the rank and for the modules
-    that its ``config`` names. Raises ValueError for damaged files and for other shapes.
+    """Return the weight matrices of an adapter folder, after checking them against its ``config``.
+    Raises ValueError for damaged files and wrong shapes.
     """
     file, rank = Path(folder) / ADAPTER, config["r"]
     tensors = load_tensors(file)
@@ -77,8 +80,8 @@ def adapter_tensors(folder: str | Path, config: dict[str, Any]) -> dict[str, Ten
         side = {"A.weight": 0, "B.weight": 1}.get(matrix)
         if not known or side is None or value.ndim != 2 or value.shape[side] != rank:
             raise ValueError(
-                f"{file} does not fit its {CONFIG}: {name} {list(value.shape)} is no LoRA of rank "
-                f"{rank} of {', '.join(config['target_modules'])}. {_AGAIN}"
+                f"{file} does not fit its {CONFIG}: {name} {list(value.shape)} is not a LoRA "
+                f"matrix of rank {rank} for {', '.join(config['target_modules'])}. {_AGAIN}"
             )
     if not tensors:
         raise ValueError(f"{file} holds no weights. {_AGAIN}")
@@ -86,7 +89,7 @@ def adapter_tensors(folder: str | Path, config: dict[str, Any]) -> dict[str, Ten
 
 
 def _entries(file: Path, kinds: dict[str, tuple[type, ...]]) -> dict[str, Any]:
-    """Return the JSON object in ``file``, whose entries must be of ``kinds``."""
+    """Return the JSON object in ``file``, whose entries must have the types ``kinds``."""
     damage = folders.problem(file)
     if damage:
         raise ValueError(f"{file} is cut short or damaged: it {damage}. {_AGAIN}")

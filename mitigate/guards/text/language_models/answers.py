@@ -1,4 +1,4 @@
-"""Answers of an endpoint, kept in a SQLite file, which may come from an untrusted source."""
+"""Cache the answers of an endpoint in a SQLite file, which is treated as untrusted."""
 
 from __future__ import annotations
 
@@ -9,25 +9,26 @@ from pathlib import Path
 from mitigate.core.files import make_folder
 from mitigate.core.output import open_output
 
-LONGEST = 1 << 16  # characters of an answer (heuristic)
-WAIT = 0.1  # seconds for a lock of another process, which count for no deadline (heuristic)
+LONGEST = 1 << 16  # maximum characters of an answer (heuristic)
+WAIT = 0.1  # seconds to wait for a lock of another process, not counted in any deadline (heuristic)
 
 
 class AnswerCache:
     """Keep texts by name.
 
-    Other damage, or a long write by another process, costs one more request and raises no error.
+    Other damage, or a long write by a different process, only causes one more request and no error.
 
     Raises:
-        ValueError: for a file that is not such a cache.
+        ValueError: the file is not a cache of this kind.
     """
 
     def __init__(self, path: Path) -> None:
         make_folder(path.parent)
-        if path.exists() or path.is_symlink():  # SQLite would follow a link
+        if path.exists() or path.is_symlink():  # checked because SQLite would follow a link
             open_output(path, "ab").close()
         self._path = path.resolve()
-        self._opened: dict[int, sqlite3.Connection] = {}  # by process: none survives a fork
+        # connections by process id, because a connection must not be used after a fork
+        self._opened: dict[int, sqlite3.Connection] = {}
         self._wait = 5.0
         try:
             file = self._file
@@ -42,13 +43,14 @@ class AnswerCache:
             ) from error
         except sqlite3.Error as error:
             raise ValueError(
-                f"{path} is no cache of endpoint answers ({error}): name another file, or delete "
+                f"{path} is not a cache of endpoint answers ({error}): name another file, or "
+                "delete "
                 "it."
             ) from error
         others = [name for kind, name in objects if (kind, name) not in _OURS]
-        if others:  # a view or trigger would run with our queries
+        if others:  # a view or trigger in the file would run with our queries
             raise ValueError(
-                f"{path} is no cache of endpoint answers (it holds {others[0]!r:.60}): name "
+                f"{path} is not a cache of endpoint answers (it holds {others[0]!r:.60}): name "
                 "another file, or delete it."
             )
         self._opened.clear()
@@ -62,7 +64,7 @@ class AnswerCache:
         return self._opened[os.getpid()]
 
     def get(self, name: str) -> str | None:
-        """Return the text that is kept under ``name``, None if it is missing or unusable."""
+        """Return the text that is stored under ``name``, or None if it is missing or unusable."""
         try:
             row = self._file.execute(
                 "SELECT answer FROM answers WHERE name = ? AND typeof(answer) = 'text' "
@@ -74,7 +76,7 @@ class AnswerCache:
         return None if row is None else row[0]
 
     def put(self, name: str, answer: str) -> None:
-        """Keep ``answer``, unless it is longer than ``get`` reads or the file cannot be written."""
+        """Store ``answer``, unless it is too long for ``get`` or the file cannot be written."""
         if len(answer) > LONGEST:
             return
         try:

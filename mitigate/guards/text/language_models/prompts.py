@@ -1,4 +1,4 @@
-"""Prompts placed before a text that a language model rewrites."""
+"""Define the prompts that are placed before a text for a language model to rewrite."""
 
 from __future__ import annotations
 
@@ -18,5 +18,5 @@ PROMPTS = {
 
 
 def prompt_messages(text: str, prompt: str) -> list[dict[str, str]]:
-    """Return the chat that asks for ``text`` to be rewritten."""
+    """Return the chat messages that ask the model to rewrite ``text``."""
     return [{"role": "system", "content": PROMPTS[prompt]}, {"role": "user", "content": text}]

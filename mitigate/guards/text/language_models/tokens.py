@@ -1,4 +1,4 @@
-"""Prompts and answers of a language model as token ids, one and many."""
+"""Convert prompts and answers of a language model to token ids, singly and in batches."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 def encode(tokenizer: Any, prompt: str, text: str) -> list[int]:
-    """Token ids of the chat that asks for ``text`` to be rewritten, up to the answer."""
+    """Return the token ids of the chat that asks to rewrite ``text``, up to the answer."""
     ids = tokenizer.apply_chat_template(
         prompt_messages(text, prompt), add_generation_prompt=True, return_dict=False
     )
@@ -23,7 +23,7 @@ def encode(tokenizer: Any, prompt: str, text: str) -> list[int]:
 
 
 def encode_pair(tokenizer: Any, prompt: str, pair: Pair) -> tuple[list[int], list[int]]:
-    """Token ids of the prompt, and of the completion with its end mark."""
+    """Return the token ids of the prompt, and of the completion with its end token."""
     answer = tokenizer(pair.target, add_special_tokens=False)["input_ids"]
     return encode(tokenizer, prompt, pair.source), [*answer, tokenizer.eos_token_id]
 
@@ -32,7 +32,8 @@ def collate(pairs: Sequence[tuple[list[int], list[int]]], pad: int) -> dict[str,
     """Pad on the left, so that completions end together.
 
     Returns ``input_ids, attention_mask, position_ids`` int64 [B, T] and ``completion`` bool [B, C]:
-    which of the last C tokens are completion, by position (pad and end mark may be one token).
+    which of the last C tokens belong to the completion, by position (because pad and end token may
+    be equal).
     """
     rows = [[*prompt, *answer] for prompt, answer in pairs]
     width, longest = max(map(len, rows)), max(len(answer) for _, answer in pairs)

@@ -1,1 +1,1 @@
-"""What the networks and the rules learn from: routes, voices, attacks and lessons made of them."""
+"""Training data of the safeguard: routes, texts in many styles, attacks and pairs of these."""

@@ -1,7 +1,8 @@
-"""Pairs to learn from: a corrupted text and the plain one; chat files to keep them in.
+"""Generate training pairs of a corrupted and a plain text, and read and write chat files.
 
-Pairs are drawn, not stored: pair ``index`` of a seed is the same in any process. Texts come from
-:mod:`mitigate.guards.text.learning.routes` and, if given, from a user's R2R or RxR episode files.
+Pairs are generated from a key instead of stored: pair ``index`` of a seed is the same in any
+process. Texts come from :mod:`mitigate.guards.text.learning.routes` and, if given, from a user's
+R2R or RxR episode files.
 """
 
 from __future__ import annotations
@@ -33,7 +34,7 @@ if TYPE_CHECKING:
     from typing_extensions import Unpack
 
 ROLES = ("system", "user", "assistant")
-KINDS = {  # shares of the pairs (heuristic, chosen on the validation families)
+KINDS = {  # fractions of the pairs by kind (heuristic, chosen on the validation families)
     "identity": 0.16,
     "style": 0.18,
     "spoken": 0.40,
@@ -42,8 +43,9 @@ KINDS = {  # shares of the pairs (heuristic, chosen on the validation families)
     "black_box": 0.12,
 }
 MASKS = ("[MASK]", "[MASK]", "[MASK]", "<mask>", "[UNK]")
-LONGEST_LINE = 1_000_000  # characters of a chat line; more is another kind of file (heuristic)
-_HELD_OUT = 8  # one in so many style phrases never occurs in training (heuristic)
+# maximum characters of a chat line; a longer line is not a chat (heuristic)
+LONGEST_LINE = 1_000_000
+_HELD_OUT = 8  # one of this many style phrases is excluded from training (heuristic)
 _SENTENCE = re.compile(r"(?<=[.!?])\s+")
 
 
@@ -76,7 +78,8 @@ VARIED: tuple[tuple[str, Unpack[tuple[tuple[str, ...], ...]]], ...] = (
 
 @dataclass(frozen=True)
 class Pair:
-    """``source``: what the model reads; ``target``: the plain text; ``kind``: of ``KINDS``."""
+    """``source`` is the text that the model reads, ``target`` the plain text, and ``kind`` one of
+    ``KINDS``."""
 
     source: str
     target: str
@@ -84,7 +87,8 @@ class Pair:
 
 
 def draw_pair(seed: int, index: int, texts: Sequence[str] = (), share: float = 0.5) -> Pair:
-    """Return pair ``index`` of ``seed``; the share ``share`` is made from ``texts``, if any."""
+    """Return pair ``index`` of ``seed``; a fraction ``share`` of all pairs is made from
+    ``texts``."""
     from_templates = not texts or generator(seed, "own", index).random() >= share
     hand_written = from_templates and spoken.available()
     kinds = {kind: part for kind, part in KINDS.items() if hand_written or kind != "spoken"}
@@ -122,7 +126,7 @@ def _masked(clean: str, key: Key, rng: np.random.Generator) -> Pair | None:
 
 def _attacked(clean: str, key: Key, rng: np.random.Generator) -> Pair | None:
     attack = " ".join(attacks(rng))
-    if rng.random() < 0.3:  # a passage may be nothing but attack
+    if rng.random() < 0.3:  # a passage may consist only of an attack
         return Pair(attack, "", "black_box")
     if rng.random() < 0.3 and spoken.available():
         source, plain = spoken.passage(rng)
@@ -162,7 +166,8 @@ _MAKE = {
 
 
 def attacks(rng: np.random.Generator) -> list[str]:
-    """Return one to three misleading sentences of the train split, or varied after its families."""
+    """Return one to three misleading sentences of the train split, or variations of its
+    families."""
     bank = [sentence for group in prefixes("train").values() for sentence in group]
     return [
         bank[int(rng.integers(len(bank)))] if rng.random() < 0.4 else vary(rng)
@@ -171,19 +176,19 @@ def attacks(rng: np.random.Generator) -> list[str]:
 
 
 def vary(rng: np.random.Generator) -> str:
-    """Return one of our sentences, in one of the train families."""
+    """Return an attack sentence in one of the training families."""
     pattern, *slots = VARIED[int(rng.integers(len(VARIED)))]
     text = pattern.format(*(options[int(rng.integers(len(options)))] for options in slots))
     return text[0].upper() + text[1:] + ("." if rng.random() < 0.9 else "!")
 
 
 def holds_held_out(source: str, manner: str) -> bool:
-    """Return whether ``said`` holds one of the manner's phrases that training never shows."""
+    """Return whether ``said`` contains a phrase of the style that is excluded from training."""
     return any(pattern.search(source) for pattern in held_out(manner))
 
 
 def held_out(manner: str) -> list[re.Pattern[str]]:
-    """Return the phrases of a manner (openers, frames, commands, closers) kept out of training."""
+    """Return the phrases of a style (openers, frames, commands, closers) excluded from training."""
     voice = VOICES[manner]
     groups = [voice.openers, voice.closers, *voice.frames.values(), *voice.commands.values()]
     phrases = {p for group in groups for p in group if len(re.sub(r"\{\w*\}", "", p).split()) > 1}
@@ -200,7 +205,7 @@ def _told(clause: Any) -> str:
 
 
 def _align(commands: list[str], source: list[str]) -> list[tuple[str, int | None]] | None:
-    """Give each spoken sentence the command it says (None: it only frames), or give up."""
+    """Assign to each styled sentence its plain command (None if it has none), or return None."""
     found: list[tuple[str, int | None]] = []
     at = 0
     for sentence in source:
@@ -218,13 +223,13 @@ def _align(commands: list[str], source: list[str]) -> list[tuple[str, int | None
 
 
 def _tells(sentence: str, command: str) -> bool:
-    """Return whether they share a word of content."""
+    """Return whether two texts have a content word in common."""
     words = {w for w in re.findall(r"[a-z]+", command.lower()) if len(w) > 3}
     return bool(words & set(re.findall(r"[a-z]+", sentence.lower())))
 
 
 def _window(sentences: list[str], rng: np.random.Generator) -> str:
-    """Return some sentences in a row, as the safeguard will cut a long text."""
+    """Return some consecutive sentences, as when the safeguard cuts a long text."""
     if rng.random() < 0.4:
         return " ".join(sentences)
     first = int(rng.integers(len(sentences)))
@@ -232,7 +237,7 @@ def _window(sentences: list[str], rng: np.random.Generator) -> str:
 
 
 def read_texts(files: Iterable[str | Path]) -> list[str]:
-    """Return the English instructions of R2R or RxR episode files, each text once."""
+    """Return the English instructions of R2R or RxR episode files without duplicates."""
     texts: dict[str, None] = {}
     for file in files:
         for episode in read_episodes(file):
@@ -243,10 +248,10 @@ def read_texts(files: Iterable[str | Path]) -> list[str]:
 
 
 def read_chats(path: str | Path) -> Iterator[Pair]:
-    """Yield the pairs of a chat file, line by line.
+    """Yield the pairs of a chat file, one per line.
 
-    A line is ``{"messages": [system?, user, assistant]}``. Raises ValueError naming file, line and
-    what is wrong.
+    A line is ``{"messages": [system?, user, assistant]}``. Raises ValueError that names the file,
+    the line and the problem.
     """
     with open_text(path) as file:
         for number, line in enumerate(iter(lambda: file.readline(LONGEST_LINE), ""), 1):

@@ -1,4 +1,4 @@
-"""What the classifier learns from: attacks and honest texts."""
+"""Load the training texts of the classifier: attacks and honest texts."""
 
 from __future__ import annotations
 
@@ -18,17 +18,17 @@ from mitigate.corruptions.language.style import MANNERS
 from mitigate.guards.text.learning.routes import draw_route
 from mitigate.guards.text.learning.styler import draw_styled
 
-ROUTES = 1200  # drawn from templates, and as many in random styles
-# Weights of lines: hand-written honest texts that look like attacks count most.
+ROUTES = 1200  # number of routes from templates, and the same number in random styles
+# Weights of texts; hand-written honest texts that look like attacks have the highest weight.
 ALIKE = {"lookalikes": 2.0, "fresh_lookalikes": 2.0, "near_misses": 2.0, "odd_routes": 2.0}
 
 
 @dataclass(frozen=True)
 class Line:
-    """A text that is whole attack or whole honest.
+    """A training text that is either entirely an attack or entirely honest.
 
-    ``styled``: whether an honest text is in a style; None where that is open. An attack around the
-    route holds "{route}".
+    ``styled`` states whether an honest text is in an unusual style, or is None if unknown. An
+    attack that surrounds the route contains "{route}".
     """
 
     text: str
@@ -38,7 +38,7 @@ class Line:
 
 
 def read_lines(folder: Path, routes: int = ROUTES) -> list[Line]:
-    """Return all lines to learn from. Raises FileNotFoundError outside a checkout."""
+    """Return all training texts. Raises FileNotFoundError outside a checkout."""
     banks = folder / "banks"
     if not banks.is_dir():
         raise FileNotFoundError(
@@ -50,7 +50,8 @@ def read_lines(folder: Path, routes: int = ROUTES) -> list[Line]:
         attacks = _json(banks / f"{name}.jsonl", "attack")
         lines += [Line(d["attack"], True) for d in attacks]
     lines += [Line(text, True, 0.7) for text in _text(banks / "fit_attacks.txt")]
-    for split in ("train", "validation"):  # never the test families, which the suite speaks
+    # never the test families, which the corruption suite uses
+    for split in ("train", "validation"):
         for texts in prefixes(split).values():
             lines += [Line(text, True) for text in texts]
     for name, weight in ALIKE.items():
@@ -78,8 +79,8 @@ def read_lines(folder: Path, routes: int = ROUTES) -> list[Line]:
 
 
 def _json(file: Path, *keys: str) -> Iterator[dict[str, Any]]:
-    """Yield the objects of a JSON-lines file. Raises ValueError for a line that is no JSON object
-    with texts under ``keys``."""
+    """Yield the objects in a JSON-lines file. Raises ValueError for a line that is not a JSON
+    object with texts under ``keys``."""
     with open(file, encoding="utf-8") as opened:
         for number, line in enumerate(opened, 1):
             if not line.strip():
@@ -103,7 +104,7 @@ def _text(file: Path) -> list[str]:
 
 
 def varied(lines: Sequence[Line]) -> list[Line]:
-    """Return the lines, and copies of some as careless people or people who hide words write."""
+    """Return the texts, with additional copies of some that are careless or hide their words."""
     results = list(lines)
     for number, line in enumerate(lines):
         rng = generator(0, "varied", number)
@@ -116,7 +117,8 @@ def varied(lines: Sequence[Line]) -> list[Line]:
             text = text.rstrip(".!")
         elif draw < 0.36 and line.attack and "{route}" not in text:
             text = HIDE[int(rng.integers(len(HIDE)))](text)
-        elif draw < 0.38 and not line.attack:  # a scanned text has digits for letters as well
+        # a scanned text may also have digits instead of letters
+        elif draw < 0.38 and not line.attack:
             text = _leet(text, "o")
         else:
             continue

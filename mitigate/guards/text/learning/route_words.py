@@ -1,7 +1,8 @@
-"""Words and phrases of routes through buildings: rooms, things, doors, and templates of clauses.
+"""Define words and phrases of routes in buildings: rooms, things, doors and clause templates.
 
-All are ours. In a template {a} is a thing, {aa} another, {room}, {door}, {stairs}, {place}, {side}
-left or right, {n} a number. ``learning/routes.py`` makes whole instructions of them.
+All are ours. In a template, {a} is a thing and {aa} a different thing. Further fields are {room},
+{door}, {stairs}, {place}, {side} (left or right) and {n} (a number). ``learning/routes.py``
+composes whole instructions from them.
 """
 
 from __future__ import annotations
@@ -107,6 +108,6 @@ ASIDES = ("you should see a {look} {a} ahead of you", "the {a} will be on your {
 
 
 def route_words() -> str:
-    """Return all of these words in one text, the templates' fields in braces."""
+    """Return all these words in one text, with template fields in braces."""
     listed = (*ASIDES, *ROOMS, *THINGS, *LOOKS, *STAIRS, *DOORS, *PLACES)
     return " ".join((OPEN, MIDDLE, CLOSE, *listed))

@@ -1,7 +1,7 @@
-"""Clean instructions to learn from: many manners of describing a walk through a building.
+"""Generate clean training instructions that describe a route through a building in many ways.
 
-All text is ours. No sentence holds a phrase of the apartments' validation templates, so that a
-safeguard trained on it meets those for the first time in evaluation.
+All text is ours. No sentence contains a phrase of the apartments' validation templates, so a
+safeguard that is trained on these instructions first meets those phrases in evaluation.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ _FIELDS = {"open": OPEN.split("|"), "middle": MIDDLE.split("|"), "close": CLOSE.
 
 
 def draw_route(rng: np.random.Generator, longest: int = 7) -> str:
-    """Return one instruction of at most ``longest`` clauses, a few of them verbose or careless."""
+    """Return one instruction of at most ``longest`` clauses, some of them verbose or careless."""
     while True:
         text = _careless(_joined(_clauses(rng, longest), rng), rng)
         if not overlaps_validation(text):
@@ -46,7 +46,7 @@ def _validation() -> re.Pattern[str]:
 
 
 def overlaps_validation(text: str) -> bool:
-    """Return whether ``text`` holds a filled phrase of the apartments' validation templates."""
+    """Return whether ``text`` contains a filled phrase of the apartments' validation templates."""
     return _validation().search(re.sub(r"[^a-z]+", " ", text.lower())) is not None
 
 
@@ -85,7 +85,7 @@ def _thing(rng: np.random.Generator) -> str:
 
 
 def _joined(clauses: list[str], rng: np.random.Generator) -> str:
-    few = [_pick(JOINS, rng) for _ in range(2)]  # a writer keeps to one or two ways
+    few = [_pick(JOINS, rng) for _ in range(2)]  # a writer uses only one or two ways of wording
     text = clauses[0]
     for clause in clauses[1:]:
         aside = clause.startswith(("you ", "the ", "there ", "on the ", "it is "))
@@ -94,7 +94,7 @@ def _joined(clauses: list[str], rng: np.random.Generator) -> str:
 
 
 def _careless(text: str, rng: np.random.Generator) -> str:
-    """Leave marks of real writers: no capitals, no full stop, double spaces."""
+    """Add traits of real writers: no capitals, no full stop, or double spaces."""
     draw = rng.random(4)
     if draw[0] < 0.12:
         text = text.lower()

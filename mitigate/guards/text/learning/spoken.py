@@ -1,9 +1,10 @@
-"""Texts in many styles, written by hand, each with the same route in plain words.
+"""Load hand-written texts in many styles, each with the same route in plain words.
 
-They are data for training and tests, outside the package: ``tools/safeguard/data/styles`` of a
+These texts are training and test data outside the package: ``tools/safeguard/data/styles`` of a
 checkout. A line of ``<style>.jsonl`` is ``{"task": "route", "parts": [[said, plain], ...]}``; the
-task may be "object", too. The parts are in order, each some whole sentences with their plain
-translation, empty for a part that says nothing of the way. Whole styles are kept out of training.
+task may also be "object". Each part consists of whole sentences and their plain translation, which
+is empty for a part that does not describe the route. Some styles are excluded from training
+completely.
 """
 
 from __future__ import annotations
@@ -19,11 +20,11 @@ from mitigate.core.files import find
 from mitigate.core.names import unknown
 
 FOLDER = "tools/safeguard/data/styles"
-VALIDATION = ("butler", "gps", "non_native")  # settings are chosen on these
-# and figures reported on these
+VALIDATION = ("butler", "gps", "non_native")  # styles on which settings are chosen
+# styles on which figures are reported
 TEST = ("bureaucratic", "elaborate", "poetic", "storyteller", "tour_guide")
 SPLITS = ("train", "validation", "test")
-LONGEST = 80  # words of a passage used for training (heuristic)
+LONGEST = 80  # maximum words of a training passage (heuristic)
 
 
 @dataclass(frozen=True)
@@ -41,18 +42,18 @@ class Spoken:
 
     @property
     def plain(self) -> str:
-        """The same in plain words."""
+        """The same text in plain words."""
         return " ".join(plain for _, plain in self.parts if plain)
 
 
 def available() -> bool:
-    """Return whether the texts are here: they come with a checkout, not with the package."""
+    """Return whether the texts are available, which is the case only in a checkout."""
     return find(FOLDER).is_dir()
 
 
 @lru_cache(maxsize=4)
 def spoken(split: str) -> tuple[Spoken, ...]:
-    """All texts of a split's voices. Raises ValueError for an unknown split."""
+    """Return all texts of the styles in a split. Raises ValueError for an unknown split."""
     if split not in SPLITS:
         raise ValueError(unknown("split", split, SPLITS))
     styles = {"validation": VALIDATION, "test": TEST}.get(split)
@@ -66,12 +67,12 @@ def spoken(split: str) -> tuple[Spoken, ...]:
 
 @lru_cache(maxsize=32)
 def voice(name: str) -> tuple[Spoken, ...]:
-    """All texts of a voice."""
+    """Return all texts of a style."""
     return tuple(_read(find(FOLDER) / f"{name}.jsonl"))
 
 
 def passage(rng: np.random.Generator) -> tuple[str, str]:
-    """Some parts in a row of a text of the train voices: (said, plain)."""
+    """Return consecutive parts of a text in a training style: (said, plain)."""
     texts = spoken("train")
     parts = texts[int(rng.integers(len(texts)))].parts
     share = rng.random()

@@ -1,7 +1,7 @@
-"""Routes in random styles: random persons, verbs, frames and ways to join clauses.
+"""Generate routes in random styles, with random persons, verbs, phrases and conjunctions.
 
-They teach the classifier that odd words do not make an attack. What they say need not be pretty.
-The words are data of a checkout: ``tools/safeguard/data/styler.json``.
+These routes teach the classifier that unusual words alone are not an attack. The sentences need not
+sound natural. The words are read from a checkout: ``tools/safeguard/data/styler.json``.
 """
 
 from __future__ import annotations
@@ -73,7 +73,7 @@ def draw_styled(rng: np.random.Generator) -> str:
 
 
 def _written(text: str, draw: float, rng: np.random.Generator) -> str:
-    """Return a text as telegrams, messages or careless people write it."""
+    """Rewrite a text in the manner of telegrams, chat messages or careless writing."""
     if draw < 0.08:
         return text.upper()
     if draw < 0.2:
@@ -84,7 +84,7 @@ def _written(text: str, draw: float, rng: np.random.Generator) -> str:
             lambda m: m[1] + re.sub(r"[aeiou]", "", m[2]) if rng.random() < 0.5 else m[0],
             text,
         )
-    if draw < 0.32:  # final letters and consonants dropped
+    if draw < 0.32:  # with final letters and consonants dropped
         return re.sub(
             r"ing\b", "in'", re.sub(r"\bth", lambda m: "d" if rng.random() < 0.3 else m[0], text)
         )

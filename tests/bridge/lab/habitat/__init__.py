@@ -1,8 +1,8 @@
-"""A stand-in of habitat-lab's structure, for tests: its calls, in its order, over a tiny world.
+"""A stand-in for habitat-lab in tests: the same calls in the same order, in a tiny world.
 
-Python 3.6 to 3.13. The bridge wraps the same places here as in habitat-lab 0.1.5 to 0.3: the sensor
-suites of simulator and task have one class, a task resets the simulator, and an Env updates the
-measures.
+Python 3.6 to 3.13. The bridge wraps the same methods here as in habitat-lab 0.1.5 to 0.3: the
+sensor suites of simulator and task have one class, a task resets the simulator, and an Env updates
+the measures.
 """
 
 from habitat.core.env import Env

@@ -1,4 +1,4 @@
-"""A stand-in of habitat-sim's structure, for tests of programs without the lab."""
+"""A stand-in for habitat-sim, for tests of programs without habitat-lab."""
 
 from habitat_sim.simulator import Simulator
 

@@ -1,4 +1,4 @@
-"""A task: words of the episode, a goal picture, and whether it was a success."""
+"""A task with the words of the episode, a goal picture, and a success measure."""
 
 from habitat.core.simulator import Sensor, SensorSuite, SensorTypes
 

@@ -1,4 +1,4 @@
-"""Env: episodes one after the other."""
+"""Env, which runs episodes one after the other."""
 
 from habitat.core.embodied_task import EmbodiedTask
 from habitat.core.simulator import AgentState, Simulator
@@ -55,7 +55,7 @@ class Env:
     def reset(self):
         self.current_episode = next(self._iterator)
         self.episode_over, self._steps = False, 0
-        self.sim.state = AgentState([0, 0, 0], 0.0)  # the lab does so in sim.reconfigure
+        self.sim.state = AgentState([0, 0, 0], 0.0)  # habitat-lab does this in sim.reconfigure
         observations = self.task.reset(episode=self.current_episode)
         self.task.measurements.reset_measures(episode=self.current_episode, task=self.task)
         return observations

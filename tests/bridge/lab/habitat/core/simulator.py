@@ -1,4 +1,4 @@
-"""Sensors, and a simulator of an agent on an endless plane."""
+"""Sensors, and a simulator of an agent on an infinite plane."""
 
 import enum
 import math
@@ -11,7 +11,7 @@ class SensorTypes(enum.Enum):
 
 
 class Config:
-    """Upper-case options, as before habitat-lab 0.2.3."""
+    """Upper-case options, as in habitat-lab before 0.2.3."""
 
     def __init__(self, **options):
         self.__dict__.update(options)
@@ -69,7 +69,8 @@ class Simulator:
         wave = 0.5 + 0.4 * np.sin(6 * columns + yaw + x) * np.cos(5 * rows + z)
         if sensor.sensor_type is SensorTypes.COLOR:
             shades = np.stack([wave, wave**2, 1 - wave, wave], -1)
-            return (255 * shades).astype(np.uint8)[:, :, :3]  # as the lab: a view, no copy
+            # as in habitat-lab, a view instead of a copy
+            return (255 * shades).astype(np.uint8)[:, :, :3]
         return wave[:, :, None].astype(np.float32)
 
     def get_agent_state(self, agent_id=0):
