@@ -43,7 +43,7 @@ def named_values(function: types.FunctionType) -> dict[str, Any]:
     codes = [function.__code__]
     for code in codes:
         codes += [part for part in code.co_consts if isinstance(part, types.CodeType)]
-    names = {name for code in codes for name in code.co_names}
+    names = sorted({name for code in codes for name in code.co_names})
     values: dict[str, Any] = {}
     scopes = [function.__globals__]
     for scope in scopes:

@@ -80,7 +80,7 @@ def lines(encoder: Encoder, folder: str | Path) -> str:
 
 
 def _inner(encoder: Encoder) -> Any:
-    return encoder.model.model if encoder.wrapped else encoder.model
+    return encoder.model
 
 
 def card(folder: str | Path) -> dict[str, Any]:

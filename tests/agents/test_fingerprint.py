@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import copy
 import importlib
+import os
 import shutil
+import subprocess
 import sys
 import types
 
@@ -633,3 +635,22 @@ def test_code_of_reads_packages_and_skips_what_is_not_python(tmp_path, monkeypat
     assert code_of(sys.modules["own_package.agent"].Agent).unreadable
     for name in ("own_package.agent", "own_package.parts", "own_package"):
         sys.modules.pop(name)
+
+
+def test_fingerprint_does_not_depend_on_the_hash_seed():
+    program = (
+        "from mitigate.agents.fingerprint import code_of\n"
+        "from tests.evaluation.straight import Straight\n"
+        "print(list(code_of(Straight).parts['names']))"
+    )
+    orders = {
+        subprocess.run(
+            [sys.executable, "-c", program],
+            env={**os.environ, "PYTHONHASHSEED": str(seed)},
+            capture_output=True,
+            text=True,
+            check=True,
+        ).stdout
+        for seed in range(3)
+    }
+    assert orders == {"['Straight.() FORWARD', 'Straight.() STOP']\n"}

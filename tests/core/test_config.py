@@ -311,9 +311,9 @@ def test_nested_program_ends_in_one_paragraph(monkeypatch, tmp_path, capsys):
 
     def program():
         running = programs.Running(chain)
-        while running.poll() is None:
+        while (problem := running.poll()) is None:
             time.sleep(0.02)
-        raise ValueError(running.outcome.problem)
+        raise ValueError(problem)
 
     with pytest.raises(SystemExit) as stop:
         conf.main(program, "sweep")

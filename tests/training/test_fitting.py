@@ -145,7 +145,7 @@ def test_plan_warns_about_stages_shorter_than_the_warmup(capsys):
     ],
 )
 def test_plan_rejects_runs_without_stages(tmp_path, options):
-    assert "all of its stages were left out" in refusal(tmp_path, *options)
+    assert "all of its stages were skipped" in refusal(tmp_path, *options)
 
 
 class Walker(StepwiseAgent):
