@@ -127,6 +127,8 @@ def compare(rows: Iterable[Row]) -> Comparison:
             actions.
     """
     rows = list(rows)
+    if not rows:
+        raise ValueError("There are no rows to compare. Evaluate the agents first.")
     cells: dict[tuple[str, str], dict[str, list[Row]]] = defaultdict(lambda: defaultdict(list))
     for row in rows:
         cells[row["name"], row["corruption"]][row["episode_id"]].append(row)

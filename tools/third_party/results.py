@@ -99,9 +99,8 @@ def measure(
 
 
 def tables(known: list[Row], unseen: list[Row]) -> str:
-    return (
-        f"Corruptions of the suite\n\n{compare(known)}\n\nUnseen corruptions\n\n{compare(unseen)}"
-    )
+    parts = {"Corruptions of the suite": known, "Unseen corruptions": unseen}
+    return "\n\n".join(f"{title}\n\n{compare(part)}" for title, part in parts.items() if part)
 
 
 def stored_tables(file: Path) -> str:
