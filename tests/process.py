@@ -47,7 +47,9 @@ def load_config(primary: str, words: Iterable[str] = ()) -> DictConfig:
 gc.disable()  # until the tests are collected, imported objects are not garbage
 conf.load_config = load_config
 SLOW_FIXTURES = {"cluster"}  # a Ray cluster takes long to start
-for command in ("train", "evaluate", "table1", "table2", "sweep", "run", "replay", "export_drive"):
+for command in (
+    *("train", "evaluate", "table1", "table2", "sweep", "harden", "run", "replay", "export_drive"),
+):
     import_module(COMMANDS[command].module)  # registers the types of its options
 
 
