@@ -101,8 +101,8 @@ def measure(
 ) -> dict[str, tuple[float, float, float]]:
     """Return the score of each condition with its 95 % interval over poses.
 
-    The score of "clean" and RGB corruptions is the F1 of objects; that of "clean depth" and depth
-    corruptions is the overlap of free space.
+    The score of "clean" and RGB corruptions is the F1 of objects; the score of "clean depth" and
+    depth corruptions is the overlap of free space.
     """
     things, free = poses.counts(agent, CLEAN, restorer)
     scores = {"clean": _ratio(things), "clean depth": _ratio(free)}

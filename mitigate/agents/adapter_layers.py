@@ -64,11 +64,11 @@ class FrameGate(Adapter):
     """Classify each frame ``[n, C, h, w]`` that enters a module as clean or corrupted.
 
     The adapters after the gate in the same encoder correct only the frames for which the gate is
-    open (:func:`through`). For a frame that is classified as clean, the features equal those of the
-    encoder without adapters. The gate reads the mean, the standard deviation and the maximum of two
-    convolutions, and :func:`textures`; for a panorama, it also reads the means of these features
-    over all views. During training the gate is always open, so that the adapters learn from all
-    frames; the gate is trained together with the adapters.
+    open (:func:`through`). For a frame that is classified as clean, the output equals the output of
+    the encoder without adapters. The gate reads the mean, the standard deviation and the maximum
+    of two convolutions, and :func:`textures`; for a panorama, it also reads the means of these
+    features over all views. During training the gate is always open, so that the adapters learn
+    from all frames; the gate is trained together with the adapters.
 
     Args:
         channels: number of input channels.

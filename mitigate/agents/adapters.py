@@ -149,7 +149,7 @@ def adapter_parameters(model: nn.Module) -> list[nn.Parameter]:
 def scale_adapters(model: nn.Module, strength: float) -> None:
     """Scale the corrections of all adapters in ``model`` by ``strength``.
 
-    A strength of 1 keeps the corrections. With 0, the model's output equals that of the model
+    A strength of 1 keeps the corrections. With 0, the output equals the output of the model
     without adapters. Values between 0 and 1 trade robustness for clean success. The weights of the
     adapters change in place, so a checkpoint saved afterwards contains the scaled adapters.
 

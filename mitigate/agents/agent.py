@@ -202,8 +202,8 @@ class _AgentView(Agent):
 
 
 def stated_settings(agent: Any) -> dict[str, Any] | None:
-    """Return the ``settings`` of ``agent``, which are a method or a mapping, or None if there are
-    none."""
+    """Return the ``settings`` of ``agent``, which are a method or a mapping, or None if it has
+    no settings."""
     settings = read(agent, "settings")
     return None if settings is None else dict(settings() if callable(settings) else settings)
 

@@ -75,7 +75,7 @@ def fingerprint(
 def contents(agent: Any, version: str | None = None) -> Contents:
     """Return everything that determines the behaviour of ``agent``.
 
-    A shipped agent adds the attributes that differ from those of a new agent with the same
+    A shipped agent adds the attributes that differ from a new agent with the same
     settings. An agent whose ``settings()`` is missing or inherited adds all its attributes.
     """
     shipped = KIND in vars(type(agent))
@@ -125,7 +125,7 @@ def _definer(agent: Any) -> Any:
 
 
 def _changes(agent: Any, nets: Mapping[str, nn.Module]) -> dict[str, Any]:
-    """Return how the attributes and layers of a shipped agent differ from those of a new agent.
+    """Return how the attributes and layers of a shipped agent differ from a new agent.
 
     Weights, the memory of an episode and further attributes are excluded.
     """
@@ -224,17 +224,17 @@ def code_of(*kinds: type) -> Contents:
     for each in classes:
         functions = methods(each)
         for name, function in functions.items():
-            own = function.__qualname__ == f"{each.__qualname__}.{name}" or name.startswith("__")
-            if is_users(function) and not own:
+            original = function.__qualname__ == f"{each.__qualname__}.{name}" or name.startswith("__")
+            if is_users(function) and not original:
                 unreadable[f"{each.__qualname__}.{name}"] = "a replaced method"
         if each not in users:
             continue
         named = [(k, part) for k, part in vars(each).items() if k not in functions and k[0] != "_"]
         waiting = [*functions.values()]
         for function in waiting:
-            found = named_values(function)
-            named += [(f"() {name}", part) for name, part in found.items()]
-            called = [one for one in found.values() if isinstance(one, types.FunctionType)]
+            globals_named = named_values(function)
+            named += [(f"() {name}", part) for name, part in globals_named.items()]
+            called = [one for one in globals_named.values() if isinstance(one, types.FunctionType)]
             waiting += [one for one in called if is_users(one) and one not in waiting]
         for name, part in named:
             place = f"{each.__qualname__}.{name}"

@@ -23,7 +23,7 @@ def networks(agent: Any) -> dict[str, nn.Module]:
     Attributes, containers, closures and the global variables that methods name are searched,
     without running the agent's code.
     """
-    found: dict[str, nn.Module] = {}
+    by_place: dict[str, nn.Module] = {}
     seen: dict[int, Any] = {}
     waiting: deque[tuple[str, Any]] = deque([("", agent)])
     while waiting and len(seen) < MOST_VALUES:
@@ -32,13 +32,13 @@ def networks(agent: Any) -> dict[str, nn.Module]:
             continue
         seen[id(value)] = value  # a reference, so that the id stays unique
         if isinstance(value, nn.Module):
-            found[place] = value
+            by_place[place] = value
             seen |= {id(module): module for module in value.modules()}
             parts = [part for module in value.modules() for part in _parts(module)]
         else:
             parts = [*_parts(value)]
         waiting.extend((f"{place}.{name}".strip("."), part) for name, part in parts)
-    return found
+    return by_place
 
 
 def _parts(value: Any) -> Iterable[tuple[Any, Any]]:

@@ -47,10 +47,10 @@ def named_values(function: types.FunctionType) -> dict[str, Any]:
     values: dict[str, Any] = {}
     scopes = [function.__globals__]
     for scope in scopes:
-        found = {name: scope[name] for name in names if name in scope}
-        modules = [part for part in found.values() if isinstance(part, types.ModuleType)]
+        in_scope = {name: scope[name] for name in names if name in scope}
+        modules = [part for part in in_scope.values() if isinstance(part, types.ModuleType)]
         scopes += [vars(m) for m in modules if _is_users(m.__name__, _file(m.__name__))]
-        values = found | values
+        values = in_scope | values
     for name, cell in zip(function.__code__.co_freevars, function.__closure__ or (), strict=True):
         with suppress(ValueError):  # the cell is empty
             values[name] = cell.cell_contents

@@ -191,7 +191,7 @@ class Rig:
         missing: Value in metres for missing depth.
         turn: Direction of increasing yaw, "left" (Habitat) or "right".
         streams: Recent frames by group, which an earlier rig of this environment filled; None:
-            there was none.
+            this is the first rig.
 
     Raises:
         ValueError: A camera cannot be corrupted, or there are too many.

@@ -1,7 +1,7 @@
 """Plan a run: its conditions, and the settings on which their results depend.
 
 The settings decide whether a finished condition is reused. The labels of a run distinguish its rows
-from those of a different agent.
+from the rows of a different agent.
 """
 
 from __future__ import annotations

@@ -157,7 +157,7 @@ class _WithoutHydraLine:
         return len(text) if text.startswith(HYDRA_LINE) else self._stream.write(text)
 
     def __getattr__(self, name: str) -> Any:
-        return getattr(self._stream, name)  # all other attributes are those of the stream
+        return getattr(self._stream, name)  # all other attributes come from the stream
 
 
 def explain(error: Exception, primary: str, options: Sequence[str] = ()) -> str:

@@ -22,5 +22,5 @@ def take_over(view: Any, thing: Any, names: Iterable[str]) -> None:
 
 
 def missing_members(thing: Any, names: Sequence[str]) -> list[str]:
-    """Return those of ``names`` that ``thing`` lacks or that are empty (the default)."""
+    """Return the ``names`` that ``thing`` lacks or that are empty (the default)."""
     return [name for name in names if not getattr(thing, name, None)]

@@ -37,7 +37,7 @@ class Memory:
         return result
 
     def _take(self, key: Hashable) -> Any:
-        """Remove and return a result, or return None if there is none."""
+        """Remove and return a result, or return None if no result is left."""
         result = self._results.pop(key, None)
         if result is not None:
             self.bytes -= _bytes(result)

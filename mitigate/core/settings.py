@@ -94,7 +94,7 @@ def read_agent(file: Path, target: str, known: Collection[str]) -> dict[str, Any
 
 
 def named(target: object) -> str:
-    """Return the value of ``agent=`` for the class ``target``, or "" if there is none."""
+    """Return the value of ``agent=`` for the class ``target``, or "" if no file has one."""
     files = sorted((PACKAGE / "conf" / "agent").glob("*.yaml"))
     for file in files:
         lines = file.read_text(encoding="utf-8").splitlines()

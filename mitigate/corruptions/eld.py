@@ -158,9 +158,9 @@ def _sample(views, opacity, streams, row_streams, photons, read, row, decode, of
 def low_light_noise(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
     """Apply ``low_light`` and add sensor noise; uint8 [V, H, W, 3].
 
-    The darkness mask is that of ``low_light``. Up to s = 0.6, the mean brightness equals that of
-    ``low_light`` within 1 %. At higher severities, clipping noise at 0 brightens the frame, so that
-    s = 1 is not darker than s = 0.8.
+    The darkness mask is the mask of ``low_light``. Up to s = 0.6, the mean brightness equals the
+    brightness under ``low_light`` within 1 %. At higher severities, clipping noise at 0 brightens
+    the frame, so that s = 1 is not darker than s = 0.8.
     """
     count, height, width, _ = views.shape
     t = tables(severity)

@@ -118,8 +118,8 @@ class Schedule:
         return dict(zip(self.names, self._weights, strict=True))
 
     def only(self, modality_: str) -> Schedule:
-        """Return this schedule with only the corruptions of one modality; raise ValueError if there
-        is none."""
+        """Return this schedule with only the corruptions of one modality; raise ValueError if no
+        corruption is left."""
         names = tuple(name for name in self.names if modality(name) == modality_)
         if not names:
             raise ValueError(

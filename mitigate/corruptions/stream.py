@@ -150,12 +150,12 @@ class FrameStream:
                 del past[0]
 
     def _arriving(self, entry: str, parts: Sequence[Corruption], key: Key) -> np.ndarray:
-        """Return the frame that arrives, corrupted as when it was taken."""
-        taken = key.frame
+        """Return the frame that arrives, corrupted as it was when it was recorded."""
+        frame_shown = key.frame
         for late in (part for part in parts if shows_past(part)):
-            taken -= _draw(late, replace(key, frame=taken))
-        taken = max(taken, key.frame - OLDEST)  # a pair may add two ages
-        instant, frame = self._recall(entry, taken)
+            frame_shown -= _draw(late, replace(key, frame=frame_shown))
+        frame_shown = max(frame_shown, key.frame - OLDEST)  # a pair may add two ages
+        instant, frame = self._recall(entry, frame_shown)
         arriving: dict[str, Any] = {entry: frame.copy()}
         if POSE in self._past:
             arriving[POSE] = self._recall(POSE, instant)[1]

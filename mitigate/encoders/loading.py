@@ -254,7 +254,7 @@ def read_state(path: Path) -> dict[str, Tensor]:
 
 
 def _named_tensors(state: Any, levels: int = LEVELS) -> dict[str, Tensor]:
-    """Return the tensors of a mapping, or those of its nested mappings with dotted names."""
+    """Return the tensors of a mapping, or the tensors of its nested mappings with dotted names."""
     if not isinstance(state, Mapping):
         return {}
     tensors = {str(name): value for name, value in state.items() if isinstance(value, Tensor)}

@@ -1,6 +1,6 @@
 """Define the options of ``conf/evaluate.yaml``, and column and folder names that depend on them.
 
-Training uses parts of these options. The names are those of table columns and output folders.
+Training uses parts of these options. Table columns and output folders have these names.
 """
 
 from __future__ import annotations

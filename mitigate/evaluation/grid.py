@@ -30,7 +30,7 @@ from mitigate.evaluation import metrics
 from mitigate.evaluation.episode_lists import by_list
 from mitigate.evaluation.rows import Row, cuts, scene_of, upsert
 
-BLOCKS = {  # blocks of this project's corruptions; those of other packages have no block
+BLOCKS = {  # blocks of this project's corruptions; corruptions of other packages have no block
     "RGB": names("rgb"),
     "Depth": names("depth"),
     "Instruction": names("instruction"),
@@ -291,7 +291,7 @@ class Grid:
     def retention(
         self, labels: Sequence[str], names: Iterable[str], severity: float, metric: str
     ) -> list[Retention] | None:
-        """Return the values for each column's PRS over ``names``, or None if there are none.
+        """Return the values for each column's PRS over ``names``, or None if a value is missing.
 
         All columns use the same corruptions and episodes: those corruptions that every column
         measured on at least a fraction :data:`COVERAGE` of the episodes, and the episodes that have

@@ -53,7 +53,7 @@ GREATEST = 1e9  # maximum value of a measure, in metres or steps (heuristic)
 _NAME = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.+-]*")
 _HASH = re.compile(r"[A-Za-z0-9_.-]+")
 _TEXTS = (*(key for key, kind in IDENTITY.items() if kind is str), "version", "weights", SCENE)
-# patterns of episode ids: those of apartments, and those of the bridge
+# patterns of episode ids: first apartments, then the bridge
 _OF_A_SCENE = re.compile(r"(\d+)-\w+-\d+|(.+)/[^/]+")
 _SHARES = ("severity", "success", "spl", "ndtw", "cut")  # entries that are numbers from 0 to 1
 _NUMBERS = ("severity", "seed", *MEASURES)

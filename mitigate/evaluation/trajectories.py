@@ -77,7 +77,7 @@ def draw_trajectories(
     trajectories.
 
     The first agent runs the episode clean and corrupted; the others run it only corrupted. With the
-    ``seed`` of an evaluation, the trajectories are those of its rows. If the world has a method
+    ``seed`` of an evaluation, the trajectories belong to its rows. If the world has a method
     ``draw(axes)``, it draws the plan.
 
     Args:
@@ -145,7 +145,7 @@ def _picture(frames: np.ndarray, far: float) -> np.ndarray:
 def won_back(rows: Sequence[Row], before: str, after: str) -> Iterator[tuple[str, Corruption]]:
     """Yield each (episode id, corruption) at which ``before`` fails and ``after`` succeeds.
 
-    The order is that of the rows, and each episode and each corruption occurs only once.
+    The order follows the rows, and each episode and each corruption occurs only once.
     """
     won = {(r["name"], r["episode_id"], r["corruption"], r["severity"]): r["success"] for r in rows}
     done: set[str] = set()

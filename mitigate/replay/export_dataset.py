@@ -58,7 +58,10 @@ class DatasetWriter:
         self._tasks.append(task)
 
     def write(self) -> None:
-        """Write all files. ``meta/info.json`` is last, so that a part of a dataset is none."""
+        """Write all files.
+
+        ``meta/info.json`` is last, so that an incomplete dataset cannot be opened.
+        """
         height, width = self._episodes[0][0][RGB].shape[:2]
         tasks = list(dict.fromkeys(self._tasks))
         cameras = {

@@ -57,7 +57,7 @@ class Walks:
     Args:
         make_agent: function that constructs an agent, which then loads the folder.
         make_world: function that constructs the world.
-        episodes: episodes, of which the first ``WALKS`` are run.
+        episodes: episodes; the first ``WALKS`` of them are run.
     """
 
     def __init__(
@@ -160,7 +160,8 @@ def add_programs(folder: Path) -> Path:
     """Write ``program.pt2`` of the hardened ``folder`` again and list it in the card.
 
     Returns:
-        The file. The outputs of the program on the probe are compared with those of the agent.
+        The file. The outputs of the program on the probe are compared with the outputs of the
+        agent.
 
     Raises:
         FileNotFoundError: ``folder`` is not a complete hardened folder.

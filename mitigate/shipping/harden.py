@@ -191,8 +191,8 @@ def harden(
         "steps": steps,
         "seed": seed,
     }
-    own = {name: value for name, value in available.items() if name in parameters}
-    objective = METHODS[method](**own, **settings)
+    shared_arguments = {name: value for name, value in available.items() if name in parameters}
+    objective = METHODS[method](**shared_arguments, **settings)
     identity: dict[str, Any] = {
         "policy": before.version,
         "losses": 2,  # version: the first had no imitation

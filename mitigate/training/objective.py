@@ -1,7 +1,7 @@
 """Define the interface of objectives, which consist of a loss and a source of batches.
 
 A stage of a recipe (YAML) names an objective and lists its arguments. :class:`ObjectiveSpec` passes
-each argument to the constructor that declares it: that of the objective or of its source.
+each argument to the constructor that declares it, which belongs to the objective or to its source.
 """
 
 from __future__ import annotations

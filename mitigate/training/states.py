@@ -90,7 +90,8 @@ def load(path: Path) -> dict[str, Any]:
 
 
 def load_newest(folder: Path) -> tuple[Path, dict[str, Any]] | None:
-    """Return the newest intact checkpoint in ``folder`` and its state, or None if there is none.
+    """Return the newest intact checkpoint in ``folder`` and its state, or None if the folder has
+    no intact checkpoint.
 
     A line is printed for each damaged checkpoint that is skipped. Raises Damaged if all checkpoints
     are damaged (none is deleted), and the errors of :func:`load`.

@@ -184,7 +184,7 @@ def _changed(
     """Yield the episodes with their instructions corrupted, one at a time.
 
     With ``every``, unchanged instructions also get tokens from ``words``, because its vocabulary
-    differs from that of the file.
+    differs from the vocabulary of the file.
     """
     for episode in episodes:
         counts.episodes += 1

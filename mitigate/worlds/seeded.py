@@ -50,7 +50,7 @@ def seeded_episodes(seeds: Iterable[int], instruction: str = "Reach the goal.") 
     ]
 
 
-FIRST_TRAINING_SEED = 1_000_000  # seeds of training episodes; those of comparisons are smaller
+FIRST_TRAINING_SEED = 1_000_000  # seeds of training episodes; seeds of comparisons are smaller
 RETURN = "return"  # name of a measure, and of the rule in worlds without a success criterion
 SCORES = ("success", RETURN)
 

@@ -1,7 +1,7 @@
 """The examples of docs/lerobot.md, with a class that has the methods of a lerobot policy.
 
-lerobot cannot be installed next to this project. The methods and the decorators ``no_grad`` are
-those of ``PreTrainedPolicy`` and ``ACTPolicy`` in lerobot 0.6.
+lerobot cannot be installed next to this project. The methods and the decorators ``no_grad`` equal
+``PreTrainedPolicy`` and ``ACTPolicy`` in lerobot 0.6.
 """
 
 from __future__ import annotations

@@ -155,7 +155,7 @@ def test_nan_logits_give_nan_loss():
 
 
 def test_imitation_adds_weighted_auxiliary_losses():
-    """Two decisions with two choices, of which the correct one has probability 0.8 and 0.4."""
+    """Two decisions with two choices, where the correct one has probability 0.8 and 0.4."""
     logits = torch.tensor([[0.8, 0.2], [0.6, 0.4]]).log()
     decisions = SimpleNamespace(
         target=torch.tensor([[1.0, 0.0], [0.0, 1.0]]), weight=torch.tensor([1.0, 3.0])

@@ -2,8 +2,8 @@
 
     python -m tools.bench.steps runs/native runs/capped --most 4
 
-CI trains once with all instructions of the processor, and once with those of an older processor
-(``ONEDNN_MAX_CPU_ISA=AVX2 ATEN_CPU_CAPABILITY=avx2``). Both runs log every step
+CI trains once with all instructions of the processor, and once with the instructions of an older
+processor (``ONEDNN_MAX_CPU_ISA=AVX2 ATEN_CPU_CAPABILITY=avx2``). Both runs log every step
 (``trainer.log_every=1``) and use one thread (``OMP_NUM_THREADS=1``), so that the CPU seconds of a
 step hardly depend on other load. The cheapest step of a stage is used, because other load only adds
 time. The first step is a warm-up and is not used.
@@ -60,7 +60,7 @@ def step_costs(run: Path) -> dict[str, float]:
 
 
 def slower(reference: dict[str, float], other: dict[str, float]) -> dict[str, float]:
-    """Return, by stage, the seconds per step of ``other`` divided by those of ``reference``.
+    """Return, by stage, the seconds per step of ``other`` divided by the seconds of ``reference``.
 
     Raises:
         ValueError: The runs have different stages.

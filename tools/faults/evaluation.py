@@ -1,4 +1,4 @@
-"""Inject faults into evaluations, whose rows must equal those of an undisturbed evaluation."""
+"""Inject faults into evaluations, whose rows must equal the rows of an undisturbed evaluation."""
 
 from __future__ import annotations
 
@@ -88,7 +88,7 @@ def jump_clock(evaluation: Evaluation) -> str:
 
 
 def start_twice(evaluation: Evaluation) -> str:
-    """Start two evaluations in the same folder, of which one must be rejected."""
+    """Start two evaluations in the same folder; one of them must be rejected."""
     return check_one_rejected([evaluation.start(), evaluation.start()])
 
 

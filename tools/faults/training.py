@@ -1,4 +1,5 @@
-"""Inject faults into a recipe's training, whose weights must equal those of an undisturbed run.
+"""Inject faults into a recipe's training, whose weights must equal the weights of an undisturbed
+run.
 
 The same training run is disturbed by all faults in turn, and resumes after each. A training run
 that ends before a fault is compared, deleted and started again.
@@ -189,7 +190,7 @@ def delete_cache(training: Training) -> str:
 
 
 def start_twice(training: Training) -> str:
-    """Start two training runs in the same folder, of which one must be rejected without a
+    """Start two training runs in the same folder; one of them must be rejected without a
     change."""
     both = [training.start(), training.start()]
     problem = check_one_rejected(both)
@@ -280,7 +281,7 @@ def break_training(recipe: str, out: Path, seed: int, faults: list[str]) -> dict
     """Return the outcome of each fault of a recipe's training.
 
     An outcome is "survived", "not run: ..." or a description of the problem. At the end, the
-    weights are compared with those of an undisturbed run, bit for bit.
+    weights are compared with the weights of an undisturbed run, bit for bit.
     """
     rng = random.Random(f"{seed} {recipe}")
     unbroken = Training(recipe, out / recipe / "unbroken" / "run", rng)

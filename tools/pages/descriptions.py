@@ -1,7 +1,7 @@
 """The tables of the docs: what each corruption models, its formula and its sources.
 
-The texts are in ``descriptions.yaml``, with names of constants in braces. A name is that of a
-module's constant (``{rgb.BLUR_LENGTH:g}``) or of a value of ``DERIVED``.
+The texts are in ``descriptions.yaml``, with names of constants in braces. A name refers to
+a module's constant (``{rgb.BLUR_LENGTH:g}``) or to a value of ``DERIVED``.
 """
 
 from __future__ import annotations

@@ -45,8 +45,8 @@ class Movement:
 
 def motion_slip(severity: float, key: Key) -> Movement:
     """Return a movement that falls short by a random part in each step."""
-    kept = 1.0 - severity * SLIP * uniform(digest(key, "motion_slip", frame=True))
-    return Movement(gain=kept, turn=kept)
+    remaining = 1.0 - severity * SLIP * uniform(digest(key, "motion_slip", frame=True))
+    return Movement(gain=remaining, turn=remaining)
 
 
 def motion_drift(severity: float, key: Key) -> Movement:

@@ -83,7 +83,7 @@ def run(
     """Write a corrupted copy of a dataset.
 
     The key of a frame is the seed, "episode-000003" and the number of the frame in its episode, so
-    all cameras of an instant get the same draws. Statistics in the metadata stay those of the
+    all cameras of an instant get the same draws. The metadata keeps the statistics of the
     original.
 
     Args:
@@ -162,7 +162,10 @@ def _encoding(dataset: Dataset, camera: Camera, form: str) -> Encoding:
 
 
 def _copy(work: Copy) -> None:
-    """Write every file of the copy; meta/info.json is last, so that an incomplete copy is none."""
+    """Write every file of the copy.
+
+    meta/info.json is last, so that an incomplete copy cannot be opened.
+    """
     from_video = [camera for camera in work.cameras if camera.stored == VIDEO]
     in_rows = [camera for camera in work.cameras if camera.stored != VIDEO]
     episodes = work.dataset.episodes.values()

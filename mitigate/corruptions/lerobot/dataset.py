@@ -91,7 +91,7 @@ class Dataset:
         return {name: size for name, size in sizes.items() if size <= MAX_SIGNAL}
 
     def choose_cameras(self, kind: str, names: Sequence[str] | None = None) -> list[Camera]:
-        """Return the cameras of a kind ("rgb", "depth"), or those of ``names`` of this kind.
+        """Return the cameras of a kind ("rgb", "depth"), or the ``names`` of this kind.
 
         Raises:
             ValueError: A name is unknown, or its camera cannot be used.

@@ -21,7 +21,7 @@ class DepthCode:
 
     A code c of 0 to ``MAX_CODE`` is ``near + (far - near) * c / MAX_CODE`` metres, or with
     ``log`` the same for the logarithm of (metres + ``shift``): ``quantize_depth`` of lerobot. The
-    defaults are those of lerobot (``DepthEncoderConfig``).
+    defaults come from lerobot (``DepthEncoderConfig``).
 
     Code 0 means no reading here: lerobot gives this code to pixels without a reading, and to depth
     up to ``near``.

@@ -216,14 +216,14 @@ def encode(
     """
     av = video_library()
     with open_output(target, "wb") as file, av.open(file, "w", format=CONTAINER) as output:
-        written = _add_stream(output, camera, encoding, fps)
+        output_stream = _add_stream(output, camera, encoding, fps)
         for frame in frames:
             if camera.code is None:
                 new = av.VideoFrame.from_ndarray(frame, format=RGB_PIXELS)
             else:
                 new = av.VideoFrame.from_ndarray(camera.code.codes(frame), format=DEPTH_PIXELS)
-            output.mux(written.encode(new))
-        output.mux(written.encode(None))
+            output.mux(output_stream.encode(new))
+        output.mux(output_stream.encode(None))
 
 
 def _add_stream(output: Any, camera: Camera, encoding: Encoding, rate: Any) -> Any:
@@ -261,8 +261,8 @@ def corrupt_video(
         av.open(file, "w", format=CONTAINER) as output,
     ):
         rate = stream.average_rate or stream.guessed_rate or Fraction(30)
-        written = _add_stream(output, camera, encoding, rate)
-        written.codec_context.time_base = stream.time_base
+        output_stream = _add_stream(output, camera, encoding, rate)
+        output_stream.codec_context.time_base = stream.time_base
         for number, frame in enumerate(container.decode(stream)):
             clean = _as_frame(source, camera, frame)
             if frame.pts is None:
@@ -270,8 +270,8 @@ def corrupt_video(
             corrupted = corrupt(clean, float(frame.pts * stream.time_base), number)
             new = _encoded(av, frame, clean, corrupted, camera, source)
             new.pts, new.time_base = frame.pts, stream.time_base
-            output.mux(written.encode(new))
-        output.mux(written.encode(None))
+            output.mux(output_stream.encode(new))
+        output.mux(output_stream.encode(None))
 
 
 def _encoded(

@@ -17,7 +17,7 @@ from mitigate.corruptions.record import TEST, VALIDATION, Record
 BLOCKS = (4, 8, 16, 32)  # block sides in pixels, as in the transforms of H.264 and H.265
 BLOCKS_ACROSS = 28  # number of blocks along the shorter side: 8 px at 224
 DEAD_ZONE = 0.40  # width of the dead zone as a fraction of white, at s = 1
-CHROMA = 2.0  # dead zone of the colour channels, relative to that of grey
+CHROMA = 2.0  # dead zone of the colour channels, relative to the dead zone of grey
 SLICES = 14  # number of slices per frame height: macroblocks of 16 px at 224
 LOST = 0.8  # fraction of lost slices at s = 1
 NOTHING = 128  # grey level that a decoder shows if there is no earlier frame

@@ -34,7 +34,7 @@ CLOSE = 1e-5  # tolerance, because entries round figures to six digits
 
 
 def rows_of(entry: LeaderboardEntry) -> list[Row]:
-    """Return the rows in the file that ``entry`` names, including those of other agents.
+    """Return the rows in the file that ``entry`` names, including rows of other agents.
 
     Raises:
         FileNotFoundError: the file is not available.

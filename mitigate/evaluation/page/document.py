@@ -48,7 +48,7 @@ def _page(data: dict[str, Any], packed: str) -> str:
 def check_out(out: Path | str) -> Path:
     """Return ``out`` as a path; raise ValueError unless it is the name of an HTML file.
 
-    A page replaces an existing file, so the path must not be that of a row file.
+    A page replaces an existing file, so the path must not be the path of a row file.
     """
     path = Path(out)
     if path.suffix.lower() not in SUFFIXES or path.is_dir():

@@ -69,7 +69,7 @@ class Adaptation(Guard):
     @contextmanager
     def attach(self, agent: Any) -> Iterator[None]:
         tensors = self.tensors(agent)
-        own = [tensor.detach().clone() for tensor in tensors]
+        before = [tensor.detach().clone() for tensor in tensors]
         try:
             if self._adapted is not None:
                 _fill(tensors, self._adapted)
@@ -78,7 +78,7 @@ class Adaptation(Guard):
             if self.continual:
                 self._adapted = [tensor.detach().clone() for tensor in tensors]
         finally:
-            _fill(tensors, own)
+            _fill(tensors, before)
 
 
 @torch.no_grad()

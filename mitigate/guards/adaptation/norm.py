@@ -2,7 +2,7 @@
 
 A BatchNorm layer subtracts the mean that its inputs had in training. Under corruption the inputs
 have another mean and variance (Schneider et al. 2020). Before each call, this guard moves both
-towards those of the current input.
+towards the statistics of the current input.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from mitigate.guards.adaptation.choices import EPISODE
 
 
 class Norm(Adaptation):
-    """Move the statistics of BatchNorm layers towards those of the episode.
+    """Move the statistics of BatchNorm layers towards the statistics of the episode.
 
     Args:
         momentum: weight of the current input, from 0 to 1; 0 changes nothing.

@@ -61,8 +61,8 @@ class Recentre(Adaptation):
     def settings(self) -> dict[str, Any]:
         digest = hashlib.sha256(b"".join(mean.numpy().tobytes() for mean in self.means))
         modules = None if self.modules is None else list(self.modules)
-        own = {"modules": modules, "prior": self.prior, "means": digest.hexdigest()}
-        return {**super().settings(), **own}
+        entries = {"modules": modules, "prior": self.prior, "means": digest.hexdigest()}
+        return {**super().settings(), **entries}
 
     def check_agent(self, agent: Any) -> None:
         _modules(agent, self.modules)

@@ -40,7 +40,7 @@ def goal_field(scene_id: str, goals: tuple[tuple[float, float, float], ...]) -> 
 
 
 class Simulator:
-    """Simulator of one agent in one apartment. Actions and step limit are those of VLN-CE
+    """Simulator of one agent in one apartment. Actions and step limit come from VLN-CE
     (``core/observation.py``)."""
 
     def __init__(self, size: int = 64, renderer: Renderer | None = None) -> None:

@@ -100,7 +100,8 @@ def open_episodes(
         hfov: Horizontal field of view of the cameras in degrees; None: 90.
         cameras: Names of at most one RGB and one depth camera; None: the only ones.
         episodes: Numbers of episodes; None: all.
-        tolerance: Most seconds between a row and its video frame; None: that of lerobot, 0.0001.
+        tolerance: Most seconds between a row and its video frame; None: the default of lerobot,
+            0.0001.
 
     Returns:
         The episodes, without their frames.
@@ -128,13 +129,13 @@ def open_episodes(
     for episode, rows, mine in rows_of(dataset, dataset.choose_episodes(episodes)):
         if episode.data not in signals:
             signals = {episode.data: dataset.read_signals(episode.data)}
-        own = {name: values[mine] for name, values in signals[episode.data].items()}
+        observations = {name: values[mine] for name, values in signals[episode.data].items()}
         drives.append(
             LerobotEpisode(
                 dataset,
                 episode,
                 rows,
-                own,
+                observations,
                 chosen,
                 90.0 if hfov is None else hfov,
                 TOLERANCE if tolerance is None else tolerance,

@@ -391,7 +391,7 @@ class Step:
 
 @dataclass(frozen=True)
 class Driven:
-    """The driver's motion at each of T steps, of which the last is STOP.
+    """The driver's motion at each of T steps, and the last is STOP.
 
     Attributes:
         actions: int [T], the most similar action of an agent, or ``NO_ACTION``.

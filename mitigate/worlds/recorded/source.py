@@ -77,7 +77,7 @@ class Lens:
         """Return (fx, fy, cx, cy) in pixels of an image of this size.
 
         Raises:
-            ValueError: The aspect ratio of the image differs from that of ``size``.
+            ValueError: The aspect ratio of the image differs from the aspect ratio of ``size``.
         """
         if self.focal is None or self.centre is None or self.size is None:
             focal = width / 2 / math.tan(math.radians(self.hfov) / 2)

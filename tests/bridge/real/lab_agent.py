@@ -3,7 +3,7 @@
 usage: lab_agent.py OUT EPISODES.json.gz
 
 habitat-sim is not on the package index. habitat-lab needs only its names at import, so empty
-modules replace it. Tasks, measures, sensors, dataset and Env are those of habitat-lab.
+modules replace it. Tasks, measures, sensors, dataset and Env come from habitat-lab.
 """
 
 import hashlib

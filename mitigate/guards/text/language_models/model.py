@@ -27,7 +27,7 @@ from mitigate.guards.text.language_models.base import PRECISIONS, SMOLLM2, base_
 from mitigate.guards.text.language_models.prompts import PROMPTS
 from mitigate.guards.text.language_models.tokens import collate, encode
 
-# tokens that begin a turn: those of ChatML (SmolLM2) and of Llama 3
+# tokens that begin a turn in ChatML (SmolLM2) and in Llama 3
 TURNS = ("<|im_start|>", "<|start_header_id|>")
 LONGEST = 512  # maximum prompt tokens; a longer text is not rewritten (heuristic)
 

@@ -1,4 +1,4 @@
-"""A simulator with two agents, of which one acts and the other shows the goal."""
+"""A simulator with two agents, where one acts and the other shows the goal."""
 
 import enum
 
