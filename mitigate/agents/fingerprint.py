@@ -224,8 +224,8 @@ def code_of(*kinds: type) -> Contents:
     for each in classes:
         functions = methods(each)
         for name, function in functions.items():
-            original = function.__qualname__ == f"{each.__qualname__}.{name}" or name.startswith("__")
-            if is_users(function) and not original:
+            same_name = function.__qualname__ == f"{each.__qualname__}.{name}"
+            if is_users(function) and not (same_name or name.startswith("__")):
                 unreadable[f"{each.__qualname__}.{name}"] = "a replaced method"
         if each not in users:
             continue
