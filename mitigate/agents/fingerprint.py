@@ -152,7 +152,7 @@ def _entries(
         agent: the agent.
         nets: its networks.
         attributes: whether attributes of the agent and of the user's modules count. Attributes of
-            other modules, which ``settings()`` may not list, always count.
+            other modules are always included, because ``settings()`` might not list them.
     """
     entries: dict[str, Any] = {}
     unreadable: dict[str, str] = {}

@@ -97,8 +97,9 @@ def weigher(
     """
     if learned and rate is not None:
         raise ValueError(
-            f"rate must be null for a learned reliability, got {rate}. It belongs to the rule on "
-            "magnitudes; a learned reliability has only a cap."
+            f"rate must be null for a learned reliability, got {rate}. Only the rule that weights "
+            "views by the magnitude of their features uses a rate; a learned reliability has only "
+            "a cap."
         )
     if learned:
         return LearnedReliability(width, cap)

@@ -42,7 +42,7 @@ def networks(agent: Any) -> dict[str, nn.Module]:
 
 
 def _parts(value: Any) -> Iterable[tuple[Any, Any]]:
-    """Return what ``value`` holds directly, by name."""
+    """Return the attributes or items of ``value`` by name."""
     if isinstance(value, dict):
         return dict.items(value)
     if type(value) in (list, tuple, set, frozenset):

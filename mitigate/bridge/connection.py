@@ -123,7 +123,7 @@ class Connection:
             "stopped": self.on_stopped,
         }
         self.rig: Rig | None = None
-        self.streams: dict[Group, FrameStream] = {}  # by group, also across descriptions
+        self.streams: dict[Group, FrameStream] = {}  # kept when the cameras are described again
         self.offsets: dict[str, int] = {}
         self.scene = ""
         self.episode = ""

@@ -265,8 +265,8 @@ class ConditionTask:
 
     The result of a job is a description of its problem, or an empty text. The folder of the run
     must be on a file system that all machines can access. Finished conditions are kept. If a
-    machine dies, its condition is measured again on a different machine, because an unchanged
-    program cannot be resumed.
+    machine dies, its condition is measured again on a different machine, because the user's
+    program, which runs unmodified, cannot resume.
 
     Args:
         plan: The run; the path of its output folder must be absolute.

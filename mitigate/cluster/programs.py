@@ -135,10 +135,11 @@ def run(
     """Run ``chains``, ``jobs`` at a time, on the machines of ``launcher``.
 
     Calls ``ended`` with the number and the problem ("": none) of each chain that ended. If this
-    call is interrupted, the chains are stopped too; those on this machine can save first.
+    call is interrupted, the chains of programs are stopped too; programs on this machine can save
+    first.
 
     Raises:
-        WorkersDied: The worker of a chain died too often.
+        WorkersDied: The process that runs a chain of programs died too often.
     """
     if launcher.name == "local":
         return _run_here(list(enumerate(chains)), jobs, progress, ended)

@@ -13,7 +13,7 @@ def unknown(what: str, name: object, allowed: Iterable[str]) -> str:
     Args:
         what: kind of thing, such as "corruption".
         name: the unknown name.
-        allowed: the names that exist; they are sorted if they have no order.
+        allowed: the names that exist; a set is sorted.
     """
     allowed = list(allowed) if isinstance(allowed, (list, tuple, Mapping)) else sorted(allowed)
     near = difflib.get_close_matches(str(name), allowed, n=1)

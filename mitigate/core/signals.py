@@ -69,7 +69,7 @@ class SignalDelay:
 def delay_signals(on: bool = True) -> Iterator[SignalDelay]:
     """Delay the first signal during the block, so that current work can be finished and saved.
 
-    The signal sets ``number`` in this block and in each outer block of this kind. A second signal
+    The signal sets ``number`` of this context manager and of all enclosing ones. A second signal
     ends the command immediately. Only the main thread can delay signals; in other threads this has
     no effect.
 

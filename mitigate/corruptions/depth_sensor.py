@@ -83,7 +83,7 @@ def _is_near(pixels, limit):
     for i in range(0, pixels.size, step):
         valid += is_valid(pixels[i])
         near += is_valid(pixels[i]) & (pixels[i] <= limit)
-        # enough near pixels, even if all others are valid and far
+        # the result is known: even if all other pixels are valid and far, enough are near
         if MIN_NEAR * near * step >= pixels.size:
             return True
     return MIN_NEAR * near >= valid

@@ -36,7 +36,7 @@ class DatasetFrames:
         held_out: share of the scenes that are unseen.
         block: frames per block of a single episode, or fewer, so that five blocks are unseen.
         episodes: numbers of the episodes to read; None: all.
-        tolerance: most seconds between a row and its video frame.
+        tolerance: maximum seconds between a row and its video frame.
 
     Raises:
         FileNotFoundError: There is no such dataset, or a file is missing.

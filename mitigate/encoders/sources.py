@@ -258,7 +258,7 @@ def split_single(
 
     Args:
         scenes: frames of each scene.
-        block: frames per block, or fewer, so that ``FEWEST_UNSEEN`` blocks are unseen.
+        block: frames per block; reduced if fewer than ``FEWEST_UNSEEN`` blocks would be unseen.
         held_out: share of the blocks that are unseen.
     """
     if len(scenes) > 1:

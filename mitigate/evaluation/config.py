@@ -195,7 +195,7 @@ def default_folder(config: EvaluateConfig, name: str) -> str:
 
 
 def _severities(config: EvaluateConfig) -> str:
-    """Return the severities in the form of a folder name's part."""
+    """Return the severities as text for a folder name."""
     depth = "" if config.severity_depth is None else f"-d{config.severity_depth:g}"
     return f"{config.severity:g}{depth}"
 

@@ -217,7 +217,7 @@ class Grid:
 
     @property
     def heading(self) -> str:
-        """The name of the split, with the first episode if there are several lists."""
+        """The name of the split; with several episode lists, also the id of the first episode."""
         return f"{self.split} from {self.begins}" if self.begins else self.split
 
     def cell(self, label: str, corruption: str, severity: float, metric: str) -> np.ndarray:

@@ -204,7 +204,7 @@ class Section:
         return frozenset((gap.column, gap.corruption) for gap in self.gaps)
 
     def whole(self, part: str) -> int:
-        """Return how many corruptions a complete PRS over a block, or half a block, needs."""
+        """Return the number of corruptions in a block (a part of the table) or in half a block."""
         block = part if part in self.blocks else part.rpartition(",")[0]
         return len(expected_corruptions(block, self.parts[part]))
 

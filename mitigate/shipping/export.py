@@ -143,9 +143,9 @@ def finished(run: Path, walks: Walks | None = None) -> tuple[dict[str, Any], Any
     kind = loading.kind_of(config)
     if walks is None and kind != loading.TARGET:
         raise ValueError(
-            f"{run} holds a {kind.rpartition('.')[2]}, which is exported without programs and is "
-            "checked by running episodes. Pass walks=Walks(...) (on the command line: "
-            f"agent={settings.named(kind)})."
+            f"{run} holds a {kind.rpartition('.')[2]}, which is exported without compiled "
+            "programs, so the export is checked by running episodes. Pass walks=Walks(...) (on the "
+            f"command line: agent={settings.named(kind)})."
         )
     agent = loading.build_from(config) if walks is None else walks.make_agent()
     checkpoint.load_weights(agent, weights)

@@ -193,8 +193,8 @@ def leave_out_stages(config: TrainConfig, agent: nn.Module) -> None:
     """Set stages that have nothing to train in ``agent`` to None, and print them.
 
     Raises:
-        ValueError: No stage is left. A blinded agent may have no stage left; in that case it is
-            only evaluated.
+        ValueError: No stage is left. An agent without one of its sensors may have no stage left; it
+            is then only evaluated.
     """
     for name, stage in config.active_stages.items():
         reason = nothing_to_train(stage.recipe, agent)
@@ -418,8 +418,8 @@ def check_stages(name: str, agent: nn.Module, stages: list[StagePlan], ranks: Ra
 def agent_config(node: Mapping[str, Any], agent: nn.Module) -> dict[str, Any]:
     """Return the config that is written with the weights of ``agent``.
 
-    The config contains the agent's ``settings()``, such as its vocabulary. The config contains no
-    class names inside the agent, which are determined by the reader's config.
+    The config contains the agent's ``settings()``, such as its vocabulary. It contains no class
+    names of the agent's parts. The program that loads the agent takes them from its own config.
     """
 
     def data(value: Any) -> Any:

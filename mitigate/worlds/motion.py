@@ -95,7 +95,7 @@ class FaultyMotion(WorldWrapper):
         return self._move(action, movement)
 
     def _move(self, action: Any, movement: Movement) -> Observation:
-        """Take a step of a robot that drives."""
+        """Move a wheeled robot by one step."""
         if action not in MOVES:  # the world reports the error
             return self._inner.step(action)
         robot: Any = self._inner  # a Movable, or a wrapper of one

@@ -51,7 +51,8 @@ def seeded_episodes(seeds: Iterable[int], instruction: str = "Reach the goal.") 
 
 
 FIRST_TRAINING_SEED = 1_000_000  # seeds of training episodes; seeds of comparisons are smaller
-RETURN = "return"  # name of a measure, and of the rule in worlds without a success criterion
+# name of the measure; also the success rule of worlds without a success criterion
+RETURN = "return"
 SCORES = ("success", RETURN)
 
 
@@ -398,7 +399,7 @@ def _as_bool(value: Any, source: str, episode: str) -> bool:
 
 
 def _check_success(success: Any, rule: str | None) -> None:
-    """Raise ValueError for an invalid ``success`` argument, or a function without a rule."""
+    """Raise ValueError if ``success`` is invalid, or is a function and ``rule`` is not set."""
     if callable(success):
         if not rule:
             raise ValueError(

@@ -388,7 +388,7 @@ def test_halves_of_unseen_corruptions_have_a_prs():
     assert matches["PRS-SR (unseen RGB, validation)"][0].startswith("**1.00**")
     assert matches["PRS-SR (unseen RGB, test)"][0].startswith("**0.50**")
     half = lines(column(8, dict.fromkeys(test, 4)))
-    # a complete half, in which nothing is missing
+    # all corruptions of one half of the unseen suite are present
     assert half["**PRS-SR (unseen RGB)**"][0].endswith("]")
     assert "PRS-SR (unseen RGB, test)" not in half
     part = lines(column(8, dict.fromkeys(test[1:], 4)))

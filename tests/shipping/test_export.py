@@ -1,4 +1,7 @@
-"""Tests that a hardened checkpoint reloads to the same outputs, or is not written or rejected."""
+"""Tests that a hardened checkpoint reloads to the same outputs.
+
+Otherwise it is not written, or loading rejects it.
+"""
 
 from __future__ import annotations
 

@@ -21,7 +21,7 @@ PACKAGES = ("numpy", "numba", "opencv-python-headless", "torch")
 
 
 def steady(call: Callable[[int], object], seconds: float) -> float:
-    """Return the milliseconds of the fastest ``call(i)``, as the mean over i < ``CYCLE``."""
+    """Return the mean over i < ``CYCLE`` of the shortest time of ``call(i)``, in milliseconds."""
     fastest = [float("inf")] * CYCLE
     call(0)  # compiles
     end = time.perf_counter() + seconds

@@ -117,7 +117,7 @@ class Training:
         return ""
 
     def finish(self) -> str:
-        """Run to the end; describe a problem, or return ""."""
+        """Run to the end. Return the problem, or ""."""
         command = self.start()
         start = time.monotonic()
         problem = command.problem(0) or self.check_resumed(command)
@@ -199,7 +199,7 @@ def start_twice(training: Training) -> str:
 
 
 def check_one_rejected(both: list[Command]) -> str:
-    """Wait until one of two commands is rejected; describe a problem, or return ""."""
+    """Wait until one of two commands is rejected. Return the problem, or ""."""
     for _ in range(int(TIMEOUT / 0.1)):
         ended = [command for command in both if not command.runs()]
         if ended:

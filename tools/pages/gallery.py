@@ -186,7 +186,7 @@ def read_frame(rgb: Path, depth: Path) -> tuple[np.ndarray, np.ndarray]:
     if metres.dtype.kind != "f":
         raise ValueError(
             f"{depth} holds {metres.dtype}, not metres as floating-point numbers. Divide counts by "
-            "the sensor's counts a metre first (millimetres by 1000)."
+            "the sensor's counts per metre first (millimetres: 1000)."
         )
     return np.ascontiguousarray(picture[..., ::-1]), np.array(metres, np.float32)
 

@@ -275,7 +275,7 @@ def object_cells(grid: Grid, least: float) -> np.ndarray:
     """Return the group of cells [n, 2] with the most evidence for the object.
 
     A cell counts if its evidence is above ``least`` and above ``SHARE`` of the highest evidence.
-    More observations therefore make the group smaller.
+    So each observation that agrees with earlier ones makes the group of cells smaller.
     """
     likely = grid.evidence > max(least, SHARE * float(grid.evidence.max()))
     if not likely.any():

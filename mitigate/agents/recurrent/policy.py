@@ -199,7 +199,14 @@ class Policy(TextReader):
         return self.column_norm(x)
 
     def step(self, text: Text, columns: Tensor, moves: Tensor, state: State) -> State:
-        """Advance E episodes by one step: columns [E, 4, width], moves [E, MOVES]."""
+        """Advance E episodes by one step.
+
+        Args:
+            text: the encoded instructions.
+            columns: features of four image columns, [E, 4, width].
+            moves: the last motions, [E, MOVES].
+            state: the memory before this step.
+        """
         return self._step(text, columns, self._inputs(columns, moves), state)
 
     def _inputs(self, columns: Tensor, moves: Tensor) -> Tensor:

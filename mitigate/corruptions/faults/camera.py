@@ -170,7 +170,7 @@ def _warp_depth(views, rotations, before, after, nearest, z_max, missing, out):
 
 
 def _sign(key: Key, name: str) -> float:
-    """Return 1 or -1, for the episode."""
+    """Return a random sign, 1 or -1, that is constant in an episode."""
     return 1.0 if uniform(digest(key, name)) < 0.5 else -1.0
 
 

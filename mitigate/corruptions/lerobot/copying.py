@@ -58,7 +58,7 @@ class Copy:
         settings: Corruption and format.
         cameras: Cameras to corrupt.
         encodings: Encoding of the videos of each camera.
-        tolerance: Most seconds between a row and its video frame.
+        tolerance: Maximum seconds between a row and its video frame.
         summary: Content of ``corrupt.json``.
         progress: Counts corrupted frames.
     """
@@ -93,7 +93,7 @@ def run(
             format) and videos as H.264 in RGB; "same": JPEG stays JPEG and videos keep their
             codec, with the quality of lerobot.
         cameras: Cameras to corrupt; None: all of the sensor that the corruption changes.
-        tolerance: Most seconds between a row and its video frame.
+        tolerance: Maximum seconds between a row and its video frame.
 
     Returns:
         The summary, also written to ``out/corrupt.json``.
@@ -237,7 +237,7 @@ def _copy_file(source: Path, path: Path) -> None:
 
 
 def _checksum(*paths: Path) -> str:
-    """Return one checksum of the input and the output of a file; "" if one cannot be read."""
+    """Return a checksum over a file and its copy, or "" if either cannot be read."""
     try:
         return _short_hash("".join(map(sha256, paths)))
     except OSError:

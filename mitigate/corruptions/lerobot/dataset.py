@@ -33,7 +33,7 @@ from mitigate.corruptions.lerobot.tables import FIX, integers, numbers, read_col
 # columns of every row of data/: DEFAULT_FEATURES of lerobot
 COLUMNS = ("episode_index", "frame_index", "timestamp", "task_index")
 TOLERANCE = 1e-4  # seconds between a row and its video frame: tolerance_s of lerobot
-MAX_SIGNAL = 1 << 12  # numbers per row of a feature that is read as a signal
+MAX_SIGNAL = 1 << 12  # maximum numbers per row of a feature that is read as a signal
 
 
 @dataclass(frozen=True)

@@ -30,7 +30,7 @@ def read_frames(
         cameras: Cameras to read.
         chosen: Increasing numbers of frames.
         times: Seconds from the start of the episode to each chosen frame.
-        tolerance: Most seconds between a row and its video frame.
+        tolerance: Maximum time in seconds between a row and its video frame.
 
     Yields:
         uint8 [H, W, 3], or float32 metres [H, W] with 0 for no reading, by camera.

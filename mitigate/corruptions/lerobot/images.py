@@ -76,7 +76,7 @@ def _unit(stored: np.ndarray, camera: Camera) -> float:
 
 
 def encode(pixels: np.ndarray, form: str, keep_format: bool) -> bytes:
-    """Encode an image as :func:`decode` returns it.
+    """Encode an image in the array format that :func:`decode` returns.
 
     Args:
         pixels: The image.

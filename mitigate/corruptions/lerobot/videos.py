@@ -17,7 +17,7 @@ from mitigate.core.output import open_output
 from mitigate.corruptions.lerobot.metadata import Camera
 from mitigate.corruptions.lerobot.tables import FIX, INSTALL, check_file
 
-# Reading: only this container, so that a playlist cannot name other files or addresses.
+# Only this container is read, because a playlist could name other files or addresses.
 CONTAINER = "mp4"
 RGB_PIXELS = "rgb24"
 DEPTH_PIXELS = "gray12le"
@@ -140,7 +140,7 @@ def decode(
         path: The video.
         camera: Its camera.
         times: Increasing seconds.
-        tolerance: Most seconds between a time and its frame.
+        tolerance: Maximum seconds between a time and its frame.
 
     Yields:
         uint8 [H, W, 3], or float32 metres [H, W] with 0 for no reading.
@@ -154,7 +154,7 @@ def decode(
     pending = list(times)[::-1]
     before: tuple[float, Any] | None = None  # the frame before, and its time
     with open_video(path, camera) as (container, stream):
-        # one frame earlier: the first frame may lie a rounding error before its time
+        # start one frame earlier, because rounding can make the first frame's time too small
         container.seek(max(0, round(pending[-1] / stream.time_base) - 1), stream=stream)
         for frame in container.decode(stream):
             if frame.pts is None:

@@ -34,8 +34,8 @@ def parted(choice: str) -> tuple[str, str | None]:
 def callable_of(choice: str) -> CallableChoice | None:
     """Return the parts of ``module:callable``, or None for a folder.
 
-    If a path with this name exists, the value is a folder; "rgb" and "depth" after the colon are
-    its sensors.
+    If a path with this name exists, the value is a folder. In ``FOLDER:rgb`` and ``FOLDER:depth``,
+    the part after the colon is a sensor.
     """
     match = _CALLABLE.fullmatch(choice)
     if match is None or match[2] in SENSORS or Path(choice).exists():

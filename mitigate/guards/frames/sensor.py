@@ -28,7 +28,7 @@ TOLERANCE = 0.02  # error below which a pixel is correct, as a fraction of the r
 # Margin as a fraction of the range. About 99 % of clean pixels differ by less from the other views
 # (measured on 20 panoramas of val_seen: 98.6 and 99.2 %).
 MARGIN = {RGB: 0.2, DEPTH: 0.02}
-ALONE = 2.0  # initial decrease of the logit per margin outside the range (heuristic)
+ALONE = 2.0  # a value one margin outside the range first lowers the logit by this (heuristic)
 LOST = -3.0  # initial logit of "lost", for a probability of 5 % (heuristic)
 SUREST = 6.0  # bound of the logit, so that its gradient never vanishes (heuristic)
 # Heuristic limits for depth. Frames of the apartments are far from both limits.

@@ -23,7 +23,8 @@ ROUTE = -1.0  # English text with a score below this is certainly a route
 CONTRAST = 0.3
 LIMIT = 3.0  # the score of the rest is clipped to this absolute value
 NAMED = 0.3  # subtracted from the score of a sentence that names a place or a turn
-# this, divided by the number of words, is subtracted, because short sentences are ambiguous
+# this value, divided by the number of words, is subtracted from the score, because short sentences
+# are ambiguous
 BRIEF = 2.0
 STEP = 5  # maximum number of words of a short route step such as "Turn back."
 SENTENCE = 1.2  # a sentence with a score above this is foreign

@@ -1,8 +1,9 @@
 """Check that a change of an instruction keeps its meaning. Each function returns the reason to
 reject a change, or "".
 
-A deletion removes whole pieces, so the remaining text is checked. A rewrite is checked fact by
-fact: turns, stops, landmarks, numbers, colours, relations and negations, in order.
+A deletion removes whole pieces and keeps the wording of the others, so only the completeness of the
+remaining text is checked. A rewrite is checked fact by fact: turns, stops, landmarks, numbers,
+colours, relations and negations, in order.
 """
 
 from __future__ import annotations

@@ -94,8 +94,8 @@ def fill_masks(text: str) -> str:
 
 
 def _hidden_adjective(match: re.Match[str]) -> str:
-    """Return the replacement of "the [mask]", which is "the" before a noun; otherwise the mask
-    hides a noun and is kept."""
+    """Return the replacement of "the [mask]". If a noun follows, it is "the". Otherwise the
+    mask hides a noun, and the text is kept."""
     which, behind = match["which"], match["next"].lower()
     doing = behind.endswith("ing") and behind not in _NOUNS | _ROOMS
     if not behind or behind in _BEHIND or doing:

@@ -102,7 +102,10 @@ def _frames(config: TrainConfig, sensor: str) -> tuple[Frames, Frames]:
 
 
 def _conditions(config: TrainConfig, sensor: str) -> list[Corruption]:
-    """Return clean and the suite's corruptions of ``sensor``, or all corruptions of the sensor."""
+    """Return the clean condition and the suite's corruptions of ``sensor``.
+
+    If the suite has no corruption of the sensor, all corruptions of the sensor are returned.
+    """
     met = conditions(config.suite.conditions, config.severity, None)
     chosen = [corruption.name for corruption in met if corruption.modality == sensor]
     return [

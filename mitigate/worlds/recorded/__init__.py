@@ -52,7 +52,7 @@ def open_recording(
         yaw: Direction of a bag's cameras in degrees to the right of the heading.
         cameras: Cameras to read from a recording by ``mitigate run`` or from a dataset; None: all.
         episodes: Numbers of the episodes of a dataset; None: all.
-        tolerance: Most seconds between a row of a dataset and its video frame; None: 0.0001.
+        tolerance: Maximum seconds between a row of a dataset and its video frame; None: 0.0001.
 
     Returns:
         The drives.

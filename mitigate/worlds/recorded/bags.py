@@ -234,7 +234,7 @@ class Bag(Source):
         instants = match_times(stamps, np.array(table) if table else None)
         if not len(instants.times):
             raise ValueError(
-                f"{self.path}: no image has a message of each other topic near in time "
+                f"{self.path}: no image has messages of all other topics close to its time "
                 f"({instants.dropped} images, {len(table)} poses). Choose other topics: "
                 "topics.rgb=, topics.depth=, topics.pose=."
             )

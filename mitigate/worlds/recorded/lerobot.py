@@ -29,7 +29,7 @@ class LerobotEpisode(Source):
         signals: Numbers of each row by feature, float64 [N, size].
         cameras: Cameras to read.
         hfov: Horizontal field of view in degrees.
-        tolerance: Most seconds between a row and its video frame.
+        tolerance: Maximum seconds between a row and its video frame.
 
     Raises:
         ValueError: The episode is too long, or its task is unknown.
@@ -100,8 +100,8 @@ def open_episodes(
         hfov: Horizontal field of view of the cameras in degrees; None: 90.
         cameras: Names of at most one RGB and one depth camera; None: the only ones.
         episodes: Numbers of episodes; None: all.
-        tolerance: Most seconds between a row and its video frame; None: the default of lerobot,
-            0.0001.
+        tolerance: Maximum time in seconds between a row and its video frame; None: 0.0001, as
+            in lerobot.
 
     Returns:
         The episodes, without their frames.
