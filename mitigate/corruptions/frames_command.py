@@ -20,8 +20,8 @@
   no_reading  count of a 16-bit PNG that means no reading, next to 0 (65535)
   hfov        horizontal field of view in degrees, which the camera faults need
   cameras     cameras of a LeRobot dataset, with commas; default: all that the corruption applies to
-  tolerance   maximum seconds between a row of a LeRobot dataset and its video frame (0.0001); episode,
-              unit and no_reading do not apply to such a dataset
+  tolerance   maximum seconds between a row of a LeRobot dataset and its video frame (0.0001);
+              episode, unit and no_reading do not apply to such a dataset
 
   --list      list the corruptions: what they corrupt, what severity means, their draws and source
   --help      this help

@@ -33,7 +33,7 @@ class DatasetFrames:
         camera: name of the camera; None: the only one of ``sensor``.
         sensor: "rgb" or "depth".
         size: side in pixels to which frames are resized; None: unchanged.
-        held_out: share of the scenes that are unseen.
+        held_out: fraction of the scenes that are held out.
         block: frames per block of a single episode, or fewer, so that five blocks are unseen.
         episodes: numbers of the episodes to read; None: all.
         tolerance: maximum seconds between a row and its video frame.

@@ -259,7 +259,7 @@ def split_single(
     Args:
         scenes: frames of each scene.
         block: frames per block; reduced if fewer than ``FEWEST_UNSEEN`` blocks would be unseen.
-        held_out: share of the blocks that are unseen.
+        held_out: fraction of the blocks that are held out.
     """
     if len(scenes) > 1:
         return dict(scenes)
