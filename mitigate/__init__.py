@@ -1,5 +1,6 @@
 """Corrupt the inputs of navigation agents, measure the effect, and train and ship hardened
-agents."""
+agents.
+"""
 
 from __future__ import annotations
 

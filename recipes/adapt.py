@@ -188,7 +188,8 @@ def differ(frames: Tensor, clean: Tensor) -> Tensor:
 
 def share(values: Tensor, where: Tensor) -> Tensor:
     """Return the mean of ``values`` [n] where the mask ``where`` [n] is true, or 0 if it is never
-    true."""
+    true.
+    """
     return (values * where).sum() / where.sum().clamp(min=1)
 
 
@@ -206,7 +207,8 @@ def check_backbone(agent: nn.Module, expected: str) -> None:
 
 def has_adapters(agent: nn.Module, *modules: nn.Module) -> None:
     """Raise ValueError unless one of ``modules`` (default: the agent) has adapters; print their "
-    "size."""
+    "size.
+    """
     if not any(adapted(module) for module in modules or (agent,)):
         raise ValueError(
             "The encoders of the agent have no adapters. Set targets in agent.adapters, as "

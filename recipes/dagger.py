@@ -82,7 +82,8 @@ class Dagger(Imitate):
 
     def jobs(self, step: int) -> list[tuple]:
         """Return the jobs of ``Rollouts`` with the oracle's share, or no jobs in steps without
-        rollouts."""
+        rollouts.
+        """
         if step % self.every:
             return []
         expert, jobs = falling_share(step, self.steps, self.least), super().jobs(step)

@@ -114,7 +114,8 @@ class Restore(Objective):
 
     def _error(self, out: Tensor, target: Tensor, valid: Tensor) -> Tensor:
         """Return the sum of L1 errors over scales, the L1 error of gradients, and the wrong
-        fraction."""
+        fraction.
+        """
         total = out.new_zeros(())
         difference = (out - target) * valid
         charged = torch.where(difference > 0, self.w_far * difference, difference)

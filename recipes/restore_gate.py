@@ -55,7 +55,8 @@ class Judged(NamedTuple):
     @property
     def labels(self) -> tuple[Tensor, Tensor]:
         """Return masks [N] of the time steps that should be restored, and of those used in the
-        loss."""
+        loss.
+        """
         intact = self.spent <= SPENT
         better = (self.before > 0) & (self.after < BETTER * self.before) & intact
         return better, better | (self.after >= self.before) | ~intact
@@ -154,7 +155,8 @@ class RestoreGate(Objective):
     @torch.no_grad()
     def _judged(self, pairs: Pairs, count: int, which: str, ring: bool) -> Judged:
         """Measure ``count`` time steps, as panoramas if ``ring`` is true, else each view
-        separately."""
+        separately.
+        """
         parts: list[tuple[Tensor, ...]] = []
         step, collected, device = OFFSETS[which], 0, self.net.threshold.device
         with Progress(f"{self.modality}, {which}", count, unit="instant") as progress:

@@ -51,7 +51,8 @@ def check_sizes(owner: str, kernel: int = 1, **sizes: int | None) -> None:
 
 class Judged:
     """The gate's logits ``[n]`` for the last batch; the gate is open for frames with a logit above
-    0."""
+    0.
+    """
 
     logits: Tensor
 

@@ -55,7 +55,7 @@ def insert_adapters(
     gate: bool = False,
     middle: int | None = None,
 ) -> list[str]:
-    """Freeze ``model`` and add an adapter to every module that a target pattern matches.
+    r"""Freeze ``model`` and add an adapter to every module that a target pattern matches.
 
     Train with the backbone in eval mode. In training mode, batches change the running statistics of
     BatchNorm layers, even frozen ones. The adapters then no longer fit the saved backbone, and
@@ -66,7 +66,7 @@ def insert_adapters(
             w]``. With ``run``, a target may also return tokens or a vector, alone or as the first
             item of a tuple or list.
         target_modules: regular expressions, each matched against the whole dotted name of a module
-            or its end (``"stages\\.[01]"`` finds ``rgb_encoder.stages.0``).
+            or its end (``"stages\.[01]"`` finds ``rgb_encoder.stages.0``).
         reduction: the number of channels is divided by this to get the bottleneck width.
         kernel: convolution size of adapters for maps.
         ring: targets that get a :class:`RingAdapter` instead of the adapter from
@@ -172,7 +172,8 @@ def scale_adapters(model: nn.Module, strength: float) -> None:
 
 def trainable_share(model: nn.Module) -> float:
     """Return the parameter count of the adapters, as a fraction of the backbone's parameter
-    count."""
+    count.
+    """
     count = sum(p.numel() for p in adapter_parameters(model))
     return count / max(1, sum(p.numel() for p in model.parameters()) - count)
 
@@ -363,7 +364,8 @@ def moved_statistics(model: nn.Module) -> bool:
 
 def _attach(module: nn.Module, adapter: Adapter, usual: Tensor) -> None:
     """Add ``adapter`` to ``module``; ``usual`` provides device and dtype if the module has no
-    weights."""
+    weights.
+    """
     like = next(module.parameters(), usual)
     module.add_module(NAME, adapter.to(like.device, like.dtype))
     if isinstance(adapter, FrameGate):

@@ -107,7 +107,8 @@ class Agent:
 
     def remembering(self) -> AbstractContextManager:
         """Return a context in which identical frames are encoded only once; actions do not
-        change."""
+        change.
+        """
         return nullcontext()
 
     def precompute(self, piece: Any, *, clean: bool) -> Any:
@@ -203,7 +204,8 @@ class _AgentView(Agent):
 
 def stated_settings(agent: Any) -> dict[str, Any] | None:
     """Return the ``settings`` of ``agent``, which are a method or a mapping, or None if it has
-    no settings."""
+    no settings.
+    """
     settings = read(agent, "settings")
     return None if settings is None else dict(settings() if callable(settings) else settings)
 
@@ -287,7 +289,8 @@ class Decisions(Protocol):
 @runtime_checkable
 class Trainable(Protocol):
     """The interface of an agent that objectives can train: an :class:`Agent` and an
-    ``nn.Module``."""
+    ``nn.Module``.
+    """
 
     def parts(self) -> dict[str, nn.Module]:
         """Return the modules that can be frozen, trained and adapted; they hold all parameters."""

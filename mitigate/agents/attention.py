@@ -1,5 +1,6 @@
 """Define attention, transformer layers, and the instruction encoder of the planner and the
-policy."""
+policy.
+"""
 
 from __future__ import annotations
 

@@ -147,7 +147,8 @@ def agent_option(options: Sequence[str], weights: str) -> list[str]:
 
 def with_kind(options: Sequence[str]) -> list[str]:
     """Return the ``options`` of an evaluation, with ``agent=`` added for the weights in
-    ``checkpoint=``."""
+    ``checkpoint=``.
+    """
     weights = values(options, "checkpoint")
     added = agent_option(options, weights[0]) if len(weights) == 1 else []
     return [*options, *added]

@@ -178,7 +178,8 @@ def f1(logits: Tensor, targets: Tensor) -> Tensor:
 
 def free_loss(logits: Tensor, target: Tensor) -> Tensor:
     """Return the mean binary cross-entropy of free-space logits ``[..., directions,
-    distances]``."""
+    distances]``.
+    """
     return F.binary_cross_entropy_with_logits(logits.float(), target)
 
 
@@ -193,7 +194,8 @@ def agreement(logits: Tensor, target: Tensor) -> Tensor:
 
 def label_output(views: Tensor, logits: Tensor, sensor: str, truth: Tensor | None) -> Output:
     """Return the output of ``see``: the features "views", and with ``truth`` also losses and
-    figures."""
+    figures.
+    """
     out = Output(features={"views": views})
     if truth is None:
         return out

@@ -315,7 +315,8 @@ def hash_of(parts: Mapping[str, Any], sensors: Mapping[str, Sensor], front: str 
 
 def code_sha(objective: nn.Module) -> str:
     """Return the hash of the user's code in an objective and its agent; "" if there is no such
-    code."""
+    code.
+    """
     kinds = [type(module) for net in networks(objective).values() for module in net.modules()]
     code = "\n".join(code_of(type(objective), *kinds).parts.get("code", ()))
     return code and hashlib.sha256(code.encode()).hexdigest()[:DIGITS]

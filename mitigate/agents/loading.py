@@ -220,7 +220,8 @@ def config_of(weights: Path) -> Path:
 
 def reject_other_models(run: Path) -> None:
     """Raise ValueError for a run (or its folder ``agent``) whose model is not a navigation
-    agent."""
+    agent.
+    """
     config = run / CONFIG
     node = settings.read(config).get("agent") if config.is_file() else None
     target = str(node.get("_target_")) if isinstance(node, dict) else ""
@@ -284,7 +285,8 @@ def _settings_in(config: Path, again: str) -> dict[str, Any]:
 
 def _as_json(value: Any) -> Any:
     """Return ``value`` as it would be after writing and reading it as JSON; a tuple becomes a
-    list."""
+    list.
+    """
     return json.loads(json.dumps(value, default=lambda one: read(one, "tolist", "__str__")()))
 
 
@@ -293,7 +295,8 @@ def _as_json(value: Any) -> Any:
 
 def kind_of(config: Path) -> str:
     """Return the kind (in ``schema.KINDS``) of the agent in ``config``; the default is the first
-    kind."""
+    kind.
+    """
     node = settings.read(config).get("agent")
     target = node.get("_target_") if isinstance(node, dict) else None
     return target if isinstance(target, str) and target in schema.KINDS else TARGET

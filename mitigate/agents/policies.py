@@ -135,7 +135,8 @@ class Policy(Agent, nn.Module):
 
     def train(self, mode: bool = True) -> Any:
         """Keep the network in eval mode, so that dropout is off and normalisation statistics do not
-        change."""
+        change.
+        """
         return super().train(False)
 
     def reset(self, instruction: str) -> None:

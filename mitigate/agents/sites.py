@@ -39,7 +39,8 @@ class Site:
 
 def first(output: Any) -> Any:
     """Return ``output``; if it is a tuple or list, as from Hugging Face blocks, return the first
-    item."""
+    item.
+    """
     return output[0] if isinstance(output, (tuple, list)) and len(output) else output
 
 

@@ -115,7 +115,8 @@ class Attempt:
 
     def poll(self) -> str | None:
         """Return None while the command runs, and then a description of the problem or an empty
-        text."""
+        text.
+        """
         try:
             return self._poll()
         except ValueError as error:  # the events are damaged
@@ -258,7 +259,8 @@ class Attempt:
 
     def _check_count(self, reports: Reports) -> str:
         """Describe the problem if fewer episodes ended than were announced or chosen, else return
-        ""."""
+        "".
+        """
         cell = self.cell
         chosen = cell.chosen.least() if cell.chosen is not None and cell.clean is None else 0
         least = max(reports.announced, chosen)
@@ -302,7 +304,8 @@ class Attempt:
 
     def _check_episodes(self, reports: Reports) -> str:
         """Describe the problem if episodes are missing, unfinished or without result, else return
-        ""."""
+        "".
+        """
         cell = self.cell
         if reports.lost:
             return (

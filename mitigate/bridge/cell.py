@@ -76,7 +76,8 @@ def folder_name(condition: str, severity: float, repeat: int = 0) -> str:
 
 def write_done(folder: Path, entries: Mapping[str, Any]) -> None:
     """Write ``done.json``: Write ``entries`` and a checksum of the events. After this, the
-    condition is finished."""
+    condition is finished.
+    """
     seal = {"bytes": (folder / EVENTS).stat().st_size, "sha256": sha256(folder / EVENTS)}
     with atomic_text(folder / DONE) as file:
         json.dump({**entries, "events": seal}, file)
@@ -210,7 +211,8 @@ class Cell:
 
     def is_done(self) -> bool:
         """Return whether the condition is finished and complete. Raises ValueError if settings
-        changed."""
+        changed.
+        """
         entries = self.entries()
         if entries is None:
             return False
@@ -252,7 +254,8 @@ class Cell:
 
     def clean_episodes(self) -> set[str]:
         """Return the episodes that ended under the clean condition, or none for the clean condition
-        itself."""
+        itself.
+        """
         if self.clean is None:
             return set()
         return set(results.read(self.clean, self.count_closed).ends)
@@ -321,7 +324,8 @@ class Cell:
 
     def summary(self) -> str:
         """Return its progress: Return a summary such as "41 episodes, success 58.5 (own: ...), 2
-        without a path ..."."""
+        without a path ...".
+        """
         reports, rows = self.reports(), self.rows()
         rule_text = "" if self.rule is None else str(RULES[self.rule])
         first_rule = rule_text or (rows[0]["rule"] if rows else "")

@@ -288,7 +288,8 @@ class Connection:
 
     def on_end(self, message: Mapping[str, Any]) -> dict[str, Any]:
         """Record the result of an episode; if an exception is raised, the episode stays
-        unfinished."""
+        unfinished.
+        """
         if message.get("how") == BROKEN:
             self._leave(_one_line(message.get("fault")))
             return {}

@@ -89,7 +89,8 @@ def put_aside(folder: Path, kind: str) -> None:
 
 def episode_name(scene: str, episode: str) -> str:
     """Return the name of an episode in rows, which includes the scene because ObjectNav uses the
-    same ids in every scene."""
+    same ids in every scene.
+    """
     stem = stem_of(scene)
     return f"{stem}/{episode}" if stem else str(episode)
 
@@ -128,7 +129,8 @@ def read_end(message: Mapping[str, Any], episode: str) -> dict[str, Any]:
 
 def _check_end(end: dict[str, Any]) -> dict[str, Any]:
     """Return the fields of an episode's end without unknown values. Raises ValueError as
-    `read_end`."""
+    `read_end`.
+    """
     metrics = end.get("metrics", {})
     if not isinstance(metrics, dict):
         raise ValueError("metrics that are not numbers by name")

@@ -106,7 +106,8 @@ def make_cells(plan: Plan) -> list[Cell]:
 
 def _check_guards(guards: Guards) -> None:
     """Raise ValueError for a guard that changes the agent, because that runs in a different
-    process."""
+    process.
+    """
     if guards.adapts:
         raise ValueError(
             f"The guard {guards.label} adapts the agent itself, but the bridge cannot change the "
@@ -157,7 +158,8 @@ def _settings(plan: Plan, guards: Guards) -> tuple[dict[str, Any], dict[str, Any
 
 def watched_values(config: RunConfig) -> dict[str, str | None] | None:
     """Return the hashes of files and the values of variables in ``watch=``, or None if it is
-    unset."""
+    unset.
+    """
     names = [str(name) for name in config.watch or ()]
     if not names:
         return None

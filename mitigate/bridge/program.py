@@ -104,7 +104,8 @@ class Command:
 
     def left(self) -> list[str]:
         """Wait up to ``GRACE`` for the processes of an ended command; describe the remaining
-        ones."""
+        ones.
+        """
         until = time.monotonic() + GRACE
         while (pids := self.running()) and time.monotonic() < until:
             time.sleep(PAUSE)

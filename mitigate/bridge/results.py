@@ -78,7 +78,8 @@ class Reports:
 
     def end(self, name: str, event: dict[str, Any]) -> None:
         """Record the end of an episode; a completed episode replaces an earlier incomplete
-        attempt."""
+        attempt.
+        """
         before = self.ends.get(name)
         if before is None or (_how(event) == OVER != _how(before)):
             self.ends[name] = event

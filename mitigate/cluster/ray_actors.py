@@ -102,7 +102,8 @@ def results(
 
 class _Crew:
     """State of the run: actors, their unfinished jobs, and groups that no actor has received
-    yet."""
+    yet.
+    """
 
     def __init__(
         self,

@@ -230,7 +230,8 @@ def _again(
     share: _Share, task: Task, launcher: SlurmConfig, progress: Progress, done: int, total: int
 ) -> int:
     """Return the number of the next attempt for a share; raise WorkersDied after too many
-    attempts."""
+    attempts.
+    """
     try:
         problem: Any = share.job.exception()
     except Exception as error:  # submitit raises its own errors for jobs without a result

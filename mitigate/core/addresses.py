@@ -65,7 +65,8 @@ def check_choice(choice: object) -> None:
 
 def is_plain(choice: object) -> bool:
     """Return whether a value of ``safeguard=`` cannot be an address, so that messages may show
-    it."""
+    it.
+    """
     return isinstance(choice, str) and bool(_PLAIN.fullmatch(choice)) and "//" not in choice
 
 

@@ -270,7 +270,8 @@ def save_agent(agent: nn.Module, folder: str | Path, config: str | None = None) 
 
 def load_agent(agent: nn.Module, path: str | Path) -> None:
     """Load weights from :func:`save_agent` into ``agent``; errors are as in
-    :func:`load_weights`."""
+    :func:`load_weights`.
+    """
     if isinstance(agent, OwnFormat):
         agent.load(path)
     else:

@@ -44,7 +44,8 @@ def write(path: Path, write: Callable[[Path], Any]) -> Path:
 
 def _sums_before(path: Path) -> list[str]:
     """Return the checksums of the file that is being replaced, or an empty list if there is no
-    file."""
+    file.
+    """
     try:
         if sidecar(path).is_file() and path.is_file():
             return _sums(path)
@@ -76,14 +77,16 @@ def problem(path: Path) -> str:
 
 def delete(path: Path) -> None:
     """Delete ``path`` and its sidecar. The sidecar is deleted first, because a file without a
-    sidecar is valid."""
+    sidecar is valid.
+    """
     sidecar(path).unlink(missing_ok=True)
     path.unlink(missing_ok=True)
 
 
 def delete_orphans(folder: Path, pattern: str) -> None:
     """Delete sidecars in ``folder`` whose file no longer exists; the glob ``pattern`` matches the
-    files."""
+    files.
+    """
     for note in folder.glob(pattern + SUFFIX):
         if not note.with_suffix("").is_file():
             note.unlink(missing_ok=True)

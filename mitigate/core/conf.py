@@ -162,7 +162,8 @@ class _WithoutHydraLine:
 
 def explain(error: Exception, primary: str, options: Sequence[str] = ()) -> str:
     """Return a paragraph that explains an error in composing ``conf/<primary>.yaml`` with
-    ``options``."""
+    ``options``.
+    """
     text = f"{error}\n{error.__cause__ or ''}"
     if isinstance(error, MissingConfigException) and error.options is not None:
         group, _, name = (error.missing_cfg_file or "").rpartition("/")

@@ -1,5 +1,6 @@
 """Report which requirements this machine meets and which are missing: ``make doctor``. Needs only
-Python itself."""
+Python itself.
+"""
 
 from __future__ import annotations
 
@@ -107,7 +108,8 @@ def _packages() -> list[str]:
 
 def _requirements() -> dict[str, list[str]]:
     """Return the packages of each extra of the installed mitigate; the key "" has the required
-    ones."""
+    ones.
+    """
     extras: defaultdict[str, list[str]] = defaultdict(list)
     for requirement in requires("mitigate") or ():
         name, _, marker = requirement.partition(";")

@@ -302,6 +302,7 @@ def problem(file: Path) -> str:
 
 def is_listed(file: Path) -> bool:
     """Return whether a manifest, or a sidecar of an older version, contains the sha256 of
-    ``file``."""
+    ``file``.
+    """
     manifest = read_manifest(file.parent)
     return bool(manifest and file.name in manifest.files) or checksums.sidecar(file).is_file()

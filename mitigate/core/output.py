@@ -33,7 +33,8 @@ class UnsafePathError(ValueError):
 
 class FolderLostError(OSError):
     """An output folder, or a command's files in it, was removed or replaced by a different
-    process."""
+    process.
+    """
 
 
 @dataclass

@@ -63,7 +63,8 @@ def draw_path(
 
 def depth_picture(depth: np.ndarray, far: float = Z_MAX) -> np.ndarray:
     """Return depth [H, W] as uint8 RGB [H, W, 3], in which near is bright, ``far`` metres is dark,
-    and missing values are white."""
+    and missing values are white.
+    """
     valid = np.isfinite(depth) & (depth > 0)
     near = 1.0 - np.where(valid, np.clip(depth / far, 0.0, 1.0), 0.0)
     picture = cv2.applyColorMap(np.rint(255.0 * near).astype(np.uint8), cv2.COLORMAP_VIRIDIS)

@@ -91,7 +91,8 @@ class Progress:
 
     def line(self) -> str:
         """Return e.g. Return a line such as ``train: step 120/700, 3.1 steps/s, 3 min 10 s left,
-        loss 0.31``."""
+        loss 0.31``.
+        """
         elapsed = time.monotonic() - self._began
         now = self.done - self.start
         if now <= 0:
@@ -123,7 +124,8 @@ def say(text: str) -> None:
 
 def duration(seconds: float) -> str:
     """Return e.g. Format a duration: ``8 s``, ``3 min 10 s``, ``1 h 05 min`` or (if infinite)
-    ``unknown time``."""
+    ``unknown time``.
+    """
     if math.isinf(seconds):
         return "unknown time"
     whole = round(seconds)

@@ -112,7 +112,8 @@ def unknown(file: Path | str, key: str, allowed: Collection[str]) -> str:
 
 class _PlainLoader(yaml.SafeLoader):
     """SafeLoader that rejects YAML features which plain data does not need, before expanding
-    them."""
+    them.
+    """
 
     _depth = 0
 

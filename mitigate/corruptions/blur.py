@@ -20,7 +20,8 @@ _I16, _I32 = np.int16, np.int32
 @njit(cache=True)
 def _pad(view, y, rx, scale, row):
     """Write row y of uint8 [H, W, 3], multiplied by scale, to row [3 (W + 2 rx)] with repeated
-    edges."""
+    edges.
+    """
     height, width, _ = view.shape
     source = view[min(max(y, 0), height - 1)].reshape(-1)
     middle = row[3 * rx : 3 * (rx + width)]
@@ -35,7 +36,8 @@ def _pad(view, y, rx, scale, row):
 @njit(cache=True)
 def _hat(row, out):
     """Smooth a row: out = (left + 2 row + right) / 4, rounded, per colour; out is 6 entries
-    shorter."""
+    shorter.
+    """
     left, centre, right = row, row[3:], row[6:]
     for i in range(out.size):
         outer = _I16(_I16(left[i]) + _I16(right[i]))
@@ -54,7 +56,8 @@ def _add_taps(total, a, b, c, d, wa, wb, wc, wd):
 @njit(cache=True)
 def _mix(total, blurred, source, remainder, target):
     """Write (total blurred + source remainder) / 65536, rounded, to target, and set total to
-    zero."""
+    zero.
+    """
     for i in range(target.size):
         mean = _I32(_I32(total[i]) * blurred)
         target[i] = _I32(_I32(mean + _I32(_I32(source[i]) * remainder)) + _I32(32768)) >> 16
@@ -119,7 +122,8 @@ def line(views, dy, dx, weights, step, strength, out):
 @njit(cache=True)
 def _smooth(row, near, far):
     """Smooth rows: row = (row + 2 near + far) / 4, int16 in [0, 2^14]; row must not overlap the
-    others."""
+    others.
+    """
     for i in range(near.size):
         outer = _I16(_I16(row[i] + far[i]) >> _I16(1))
         row[i] = _I16(_I16(_I16(outer + near[i]) + _I16(1)) >> _I16(1))

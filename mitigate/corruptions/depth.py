@@ -67,7 +67,8 @@ def larger(row, other):
 @njit(cache=True)
 def farthest_along(row, spare, reach):
     """Replace each entry by the maximum of the 2 reach + 1 entries that start with it, by
-    doubling."""
+    doubling.
+    """
     have, want, size = 1, 2 * reach + 1, row.size
     while have < want:
         step = min(have, want - have)
@@ -80,7 +81,8 @@ def farthest_along(row, spare, reach):
 @njit(cache=True)
 def extremes(view, reach, sign, out):
     """Write to out [H, W] the maximum of sign z in a square of 2 reach + 1, or -inf if none is
-    valid."""
+    valid.
+    """
     height, width = view.shape
     rows = height + 2 * reach
     wide = np.full((rows, width + 2 * reach), np.float32(-np.inf), np.float32)
@@ -207,7 +209,8 @@ def _drop(views, holes, streams, missing, z_max, out):
 
 def missing_data(views: np.ndarray, severity: float, key: Key, sensor: DepthSensor) -> np.ndarray:
     """Remove depth where a random field is in its top 0.5 s; a quarter of these pixels becomes
-    z_max. The field moves every 5 frames."""
+    z_max. The field moves every 5 frames.
+    """
     count, height, width = views.shape
     holes = hole_map(digest(key, "missing_data"), severity, height, width)
     placement = int(key.frame) // HOLE_FRAMES

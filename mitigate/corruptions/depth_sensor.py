@@ -77,7 +77,8 @@ def flat(views: np.ndarray) -> np.ndarray:
 @njit(cache=True)
 def _is_near(pixels, limit):
     """Return whether at least 1 of ``MIN_NEAR`` valid pixels is at most ``limit``, or no pixel is
-    valid."""
+    valid.
+    """
     near = valid = 0
     step = pixels.size // UNIT_SAMPLES + 1
     for i in range(0, pixels.size, step):

@@ -133,7 +133,8 @@ def _levels(source, opacity, part, out):
 @njit(cache=True)
 def _sample(views, opacity, streams, row_streams, photons, read, row, decode, offset, out):
     """Sample noisy frames uint8 [V, H, W, 3]; unsigned indices avoid numba's check for negative
-    ones."""
+    ones.
+    """
     count, height, width, _ = views.shape
     size = 3 * width
     flat, into = views.reshape(count, height, size), out.reshape(count, height, size)

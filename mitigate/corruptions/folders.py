@@ -1,5 +1,6 @@
 """Corrupt the frames of a folder into a new folder; runs can resume, and files are written
-atomically."""
+atomically.
+"""
 
 from __future__ import annotations
 
@@ -228,7 +229,8 @@ def _output(path: Path, form: str) -> Path:
 
 def _begin(out: Path, settings: Settings, plan: Plan) -> dict:
     """Check the results of an earlier run in ``out``, and then write settings and episodes
-    there."""
+    there.
+    """
     versions = {"suite_version": SUITE_VERSION, **version(settings.corruption)}
     settings_now = {**versions, **asdict(settings), "unit": settings.metres_per_count}
     checksums: dict[str, str] = {}

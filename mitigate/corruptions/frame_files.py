@@ -286,7 +286,8 @@ def make_plan(source: Path, out: Path | None, kinds: Sequence[str], episode: str
 
 def count_suffixes(suffixes: Mapping[str, int]) -> str:
     """Return counts of files by suffix as text, with the most frequent suffix first: "3 .tif, 1
-    .webp"."""
+    .webp".
+    """
     ordered = sorted(suffixes, key=lambda suffix: (-suffixes[suffix], suffix))
     return ", ".join(f"{suffixes[suffix]} {suffix or 'without suffix'}" for suffix in ordered)
 

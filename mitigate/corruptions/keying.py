@@ -164,7 +164,8 @@ def view_streams(key: Key, name: str, views: int) -> np.ndarray:
 
 def unit_normals(bits: int) -> np.ndarray:
     """Return standard normal quantiles of 2^bits equally likely bins, with variance one,
-    float64."""
+    float64.
+    """
     count = 1 << bits
     half = np.array([NormalDist().inv_cdf((i + 0.5) / count) for i in range(count // 2)])
     table = np.concatenate([half, -half[::-1]])

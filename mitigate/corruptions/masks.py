@@ -35,7 +35,8 @@ NEUTRAL = (1.0, 1.0, 1.0)
 @njit(cache=True)
 def _expand(share, weight, out):
     """Write min(share [H, W] times channel weight, 1) to out int16 [H, 3 W], in units of
-    1/32768."""
+    1/32768.
+    """
     for y in range(share.shape[0]):
         row, target = share[y], out[y]
         for c in range(3):
@@ -49,7 +50,8 @@ def opacity_mask(
     share: np.ndarray, strength: float, tint: tuple[float, float, float]
 ) -> np.ndarray:
     """Return the opacity mask int16 [H, 3 W], which is share [H, W] (>= 0) times strength and
-    tint."""
+    tint.
+    """
     out = np.empty((share.shape[0], 3 * share.shape[1]), np.int16)
     _expand(share, strength * np.array(tint), out)
     return out
@@ -155,7 +157,8 @@ def flare_centres(
 @lru_cache(maxsize=1)
 def _glow_table() -> np.ndarray:
     """Return the glow at distances of 0 to 1.5 diagonals at severity 1, float32 [GLOW_CELLS +
-    1]."""
+    1].
+    """
     r = np.arange(GLOW_CELLS + 1) * (GLOW_REACH / GLOW_CELLS)
     glow = FLARE_CORE * np.exp(-0.5 * (r / FLARE_CORE_WIDTH) ** 2)
     return (glow + FLARE_HALO * np.exp(-r / FLARE_HALO_WIDTH)).astype(np.float32)
@@ -172,7 +175,8 @@ def _look_up(down, right, table, out):
 @cached
 def flare_mask(x: float, y: float, severity: float, height: int, width: int) -> np.ndarray:
     """Return the opacity of the glow around the pixel (x, y), int16 [H, 3 W] in units of
-    1/32768."""
+    1/32768.
+    """
     cells = GLOW_CELLS / GLOW_REACH / math.hypot(height, width)
     down = ((np.arange(height) + 0.5 - y) * cells) ** 2
     right = ((np.arange(width) + 0.5 - x) * cells) ** 2

@@ -59,7 +59,8 @@ def line_taps(length: float, angle: float, step: int = 1) -> tuple:
 
 def motion_blur(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
     """Blend with a nearly horizontal line blur of length 0.10 s W; lengths below 1 px have no
-    effect."""
+    effect.
+    """
     length = BLUR_LENGTH * severity * views.shape[2]
     if length < 1.0:
         return views.copy()
@@ -86,7 +87,8 @@ def low_light(views: np.ndarray, severity: float, key: Key, heading=None) -> np.
 
 def spatter(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
     """Cover the image with mud or water where a random field, fixed per episode, is in its top 0.45
-    s."""
+    s.
+    """
     height, width = views.shape[1:3]
     mask = masks.spatter_mask(digest(key, "spatter"), severity, height, width)
     return _covered(views, mask, masks.spatter_row(digest(key, "spatter_colour"), width))
@@ -94,7 +96,8 @@ def spatter(views: np.ndarray, severity: float, key: Key, heading=None) -> np.nd
 
 def flare(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
     """Add a glow (screen blending) to the views that see a light with a fixed direction in the
-    world."""
+    world.
+    """
     count, height, width, _ = views.shape
     out, white = np.empty_like(views), masks.colour_row(WHITE, width)
     centres = masks.flare_centres(digest(key, "flare"), count, height, width, heading)

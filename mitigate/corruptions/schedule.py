@@ -109,7 +109,8 @@ class Schedule:
     @classmethod
     def always(cls, name: str, severity: float) -> Schedule:
         """Return a schedule that applies one corruption at ``severity`` to every frame, as in
-        evaluation."""
+        evaluation.
+        """
         return cls("per_episode", severity, clean_share=0.0, names=(name,))
 
     @property
@@ -119,7 +120,8 @@ class Schedule:
 
     def only(self, modality_: str) -> Schedule:
         """Return this schedule with only the corruptions of one modality; raise ValueError if no
-        corruption is left."""
+        corruption is left.
+        """
         names = tuple(name for name in self.names if modality(name) == modality_)
         if not names:
             raise ValueError(
@@ -155,7 +157,8 @@ class Schedule:
 
     def draw(self, seed: int, episode: str, frame: int) -> tuple[Corruption, Key]:
         """Return the corruption and the key of a frame, which depend only on the arguments and
-        weights."""
+        weights.
+        """
         episode = str(episode)
         if self.mode == "clean":
             return CLEAN, Key(seed, episode, frame)
@@ -185,7 +188,8 @@ class Schedule:
 
     def state_dict(self) -> dict:
         """Return the state for a checkpoint as JSON data, so that a resumed run has the same
-        weights."""
+        weights.
+        """
         return {"success": None if self.success is None else dict(self.success)}
 
     def load_state_dict(self, state: dict) -> None:

@@ -28,7 +28,8 @@ MAX_VIEWS = 36
 
 def rgb_views(frame: np.ndarray) -> np.ndarray:
     """Return the frame as contiguous uint8 [V, H, W, 3]; raise ValueError if it is not an RGB
-    frame."""
+    frame.
+    """
     if frame.dtype != np.uint8:
         raise ValueError(
             f"RGB frames must be uint8 in 0-255, got {frame.dtype}. Convert them: "
@@ -46,7 +47,8 @@ def rgb_views(frame: np.ndarray) -> np.ndarray:
 
 def depth_views(frame: np.ndarray, sensor: DepthSensor, name: str) -> np.ndarray:
     """Return the frame as contiguous float32 [V, H, W]; raise ValueError for RGB or other
-    dtypes."""
+    dtypes.
+    """
     if frame.ndim > 2 and frame.shape[-1] == 3:
         raise ValueError(
             f"{name} needs a depth frame, but the last axis of {frame.shape} is 3, as in "
@@ -127,7 +129,8 @@ def check_name(name: str, allowed: tuple[str, ...] | None = None) -> str:
 
 def check_severity(severity: float) -> float:
     """Return ``severity`` as a float in [0, 1]; raise ValueError otherwise, and for str and
-    bool."""
+    bool.
+    """
     try:
         value = math.nan if isinstance(severity, (str, bool, np.bool_)) else float(severity)
     except (TypeError, ValueError):

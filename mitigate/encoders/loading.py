@@ -222,7 +222,8 @@ def load_weights(model: nn.Module, weights: str, prefix: str = "") -> None:
 
 def _fits(loaded: Tensor, expected: Tensor) -> bool:
     """Return whether a weight may replace another: float types may differ, but not integers and
-    floats."""
+    floats.
+    """
     same = loaded.shape == expected.shape and loaded.layout == expected.layout
     return same and (loaded.is_floating_point() or not expected.is_floating_point())
 

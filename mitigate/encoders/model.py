@@ -319,7 +319,8 @@ class Encoder(nn.Module):
 
     def _probe(self, count: int) -> Any:
         """Return the output for noise frames, because some normalisations give NaN for constant
-        frames."""
+        frames.
+        """
         size, channels = self.transform.size, SENSORS[self.sensor]
         noise = torch.rand(count, channels, size, size, generator=torch.Generator().manual_seed(0))
         like = next(self.model.parameters(), noise)

@@ -106,7 +106,8 @@ def cosine(corrupted: np.ndarray, clean: np.ndarray, centre: np.ndarray) -> np.n
 
 def retrieval(corrupted: np.ndarray, clean: np.ndarray, centre: np.ndarray) -> np.ndarray:
     """Return for each frame [N] whether the nearest clean frame (centred cosine) is the same
-    frame."""
+    frame.
+    """
     similarity = _unit(corrupted - centre) @ _unit(clean - centre).T
     return (similarity.argmax(1) == np.arange(len(corrupted))).astype(np.float32)
 

@@ -55,7 +55,8 @@ class Shot:
 @runtime_checkable
 class Source(Protocol):
     """A source of frames; ``files`` states whether these are files, which may be damaged or
-    change."""
+    change.
+    """
 
     files: bool
 

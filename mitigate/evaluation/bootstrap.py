@@ -159,7 +159,8 @@ def means(table: ArrayLike, *, shares: bool = False, **options: Any) -> list[Est
 
 def prs(clean: ArrayLike, corrupted: ArrayLike, **options: Any) -> Estimate:
     """Return PRS with its interval, for ``clean`` [N] and ``corrupted`` [K, N] on the same
-    episodes."""
+    episodes.
+    """
     value, samples = _prs(clean, corrupted, options)
     return _estimate(value, samples)
 
@@ -173,7 +174,8 @@ def prs_difference(
     first: tuple[ArrayLike, ArrayLike], second: tuple[ArrayLike, ArrayLike], **options: Any
 ) -> Estimate:
     """Return the paired difference PRS(first) - PRS(second) of two (clean [N], corrupted [K,
-    N])."""
+    N]).
+    """
     counts = {np.shape(part)[-1] for pair in (first, second) for part in pair}
     if len(counts) > 1:
         raise ValueError(

@@ -234,7 +234,8 @@ class _Scores:
 
     def prs(self, names: Sequence[str]) -> list[Line]:
         """Return the lines of PRS-SR by sensor, or no lines if an agent never succeeds on clean
-        frames."""
+        frames.
+        """
         if not all(self.values(agent, CLEAN, "success").any() for agent in self.agents):
             return []
         groups: dict[str, list[str]] = {}

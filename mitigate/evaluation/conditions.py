@@ -16,7 +16,8 @@ if TYPE_CHECKING:
 
 def suite_of(*modalities: str) -> list[str]:
     """Resolve ``${suite:rgb,depth}`` in a config to clean and the suite's corruptions of these
-    sensors."""
+    sensors.
+    """
     from mitigate.corruptions.registry import names
 
     return ["clean", *names(*modalities)]
@@ -39,7 +40,8 @@ OmegaConf.register_new_resolver("unseen", unseen_of, replace=True)
 
 def suite_conditions(suite: Mapping[str, Any]) -> list[str]:
     """Return the names of a suite's conditions. Raises ValueError for a suite without
-    conditions."""
+    conditions.
+    """
     if "conditions" not in suite:
         raise ValueError("suite has no conditions. List them in its file: conditions: [clean, ...]")
     return list(suite["conditions"])

@@ -69,7 +69,8 @@ class CostConfig:
 
 def times(cost: float, factor: float | None) -> float | None:
     """Resolve ``${times:2.7,${cost.episodes}}`` in a config to the product, or None if a factor is
-    unknown."""
+    unknown.
+    """
     return None if factor is None else cost * factor
 
 

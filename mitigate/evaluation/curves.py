@@ -32,7 +32,8 @@ class Curve:
 
 def curves(grid: Grid, corruption: str, least: int = 1) -> list[Curve]:
     """Return the curve of each column that has ``corruption`` at no fewer than ``least``
-    severities."""
+    severities.
+    """
     lines = (_curve(grid, column, corruption, least) for column in grid.columns)
     return [line for line in lines if line is not None]
 

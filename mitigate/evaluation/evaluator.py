@@ -93,7 +93,8 @@ class EpisodeTask:
 
     def work(self, jobs: Sequence[Job]) -> Iterator[dict[str, Any]]:
         """Yield the rows of ``jobs``, which should belong to one episode, because frames are
-        cached."""
+        cached.
+        """
         assert self.world is not None, "work() is called while ready()"
         # features that were computed before an adaptation must not be used after it
         agent_memory = nullcontext() if self.guards.adapts else as_agent(self.agent).remembering()
@@ -261,7 +262,8 @@ def _jobs(
     episodes: list[Episode], conditions: list[Corruption], label: dict[str, Any]
 ) -> list[Job]:
     """Return all jobs in the order of episodes, each with the entries of its row except
-    measures."""
+    measures.
+    """
     return [
         (
             episode,

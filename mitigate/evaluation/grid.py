@@ -227,7 +227,8 @@ class Grid:
 
     def over(self, labels: Iterable[str], seeds: Iterable[int], severity: float) -> Grid:
         """Return the grid of columns at ``severity`` with only ``seeds``, which all columns must
-        have."""
+        have.
+        """
         seeds = tuple(seeds)
         cells = {
             (label, name, severity, metric): values
@@ -274,7 +275,8 @@ class Grid:
 
     def blocks_at(self, severity: float) -> dict[str, tuple[str, ...]]:
         """Return the measured corruptions at ``severity`` by block; the block "Pairs" holds pairs
-        of corruptions, and "Other" all remaining ones."""
+        of corruptions, and "Other" all remaining ones.
+        """
         measured = {name for _, name, at, _ in self.cells if at == severity and name != "clean"}
         rest = sorted(measured.difference(*BLOCKS.values()))
         more = {"Pairs": [n for n in rest if AND in n], "Other": [n for n in rest if AND not in n]}

@@ -221,7 +221,8 @@ def notes(folder: Path, split: str) -> list[Path]:
 
 def _read(note: Path) -> dict[str, dict[str, Any]]:
     """Read the entries of a folder's ``note``, by split. Raises ValueError if the note is
-    damaged."""
+    damaged.
+    """
     again = f"Copy the file back, or move {note.parent} aside and evaluate again."
     known = read_object(note, again)
     for split, entry in known.items():
@@ -402,7 +403,8 @@ def kind_of(value: object) -> str:
 
 def json_hash(value: Any) -> str:
     """Return 12 hex digits of the hash of JSON data, which may contain numbers of other
-    libraries."""
+    libraries.
+    """
     return hashlib.sha256(json.dumps(value, default=float).encode()).hexdigest()[:12]
 
 

@@ -34,7 +34,8 @@ FEW = 10  # with fewer episodes than this, the table prints no difference in bol
 
 def markdown(parts: Sequence[Section], pictures: Sequence[Sequence[str]] = ()) -> str:
     """Return the tables as Markdown; ``pictures[i]`` contains the picture files to show under
-    section i."""
+    section i.
+    """
     texts = []
     for index, section in enumerate(parts):
         names = pictures[index] if index < len(pictures) else ()

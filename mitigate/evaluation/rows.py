@@ -69,7 +69,8 @@ def identity(row: Row) -> tuple:
 
 def of_episode(episode: Episode) -> Row:
     """Return the entries of a row that identify its episode, and its scene if the scene has a
-    name."""
+    name.
+    """
     scene = stem_of(episode.scene_id)
     valid = scene and not allowed(SCENE, scene)
     return {"episode_id": episode.episode_id, **({SCENE: scene} if valid else {})}
@@ -178,7 +179,8 @@ def write(path: Path | str, rows: Iterable[Row], *, fewer: bool = False) -> None
 
 def upsert(*parts: Iterable[Row]) -> list[Row]:
     """Return the rows of all ``parts``, one per identity: the last row, at the position of the
-    first."""
+    first.
+    """
     return list({identity(row): row for row in chain(*parts)}.values())
 
 

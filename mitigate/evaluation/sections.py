@@ -210,7 +210,8 @@ class Section:
 
     def marks(self, value: Retained, *parts: str) -> str:
         """Return the marks of a value: * missing episodes, † missing corruptions, ‡ low clean
-        value."""
+        value.
+        """
         measured, expected = len(value.corruptions), sum(map(self.whole, parts))
         fewer = "*" * (value.episodes < len(self.grid.episodes))
         return fewer + f" † {measured}/{expected}" * (measured < expected) + " ‡" * value.near_floor

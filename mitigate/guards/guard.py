@@ -82,7 +82,8 @@ class Guard:
 
     def observe_all(self, observations: Sequence[Mapping[str, Any]]) -> list[Mapping[str, Any]]:
         """Apply :meth:`observe` to each observation; the observations belong to different
-        episodes."""
+        episodes.
+        """
         return [self.observe(observation) for observation in observations]
 
     def attach(self, agent: Any) -> AbstractContextManager:

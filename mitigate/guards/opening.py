@@ -51,7 +51,8 @@ class TextGuard(Guard):
 
 class AnsweredText(Guard):
     """The precomputed answers of a :class:`TextGuard`, for worker processes. Other texts stay
-    unchanged."""
+    unchanged.
+    """
 
     def __init__(self, answers: dict[str, str], label: str, fingerprint: str) -> None:
         self.answers = answers

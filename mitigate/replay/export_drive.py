@@ -158,7 +158,8 @@ def oracle(
 
 def write_frames(path: Path, steps: Sequence[dict[str, np.ndarray]], instruction: str) -> None:
     """Write a recorded drive as a folder with ``rgb/``, ``depth/``, ``poses.csv`` and
-    ``instruction.txt``."""
+    ``instruction.txt``.
+    """
     for number, step in enumerate(steps):
         write_bytes(path / RGB / f"{number:06d}.png", _png(step[RGB][..., ::-1]))
         write_bytes(path / DEPTH / f"{number:06d}.png", _png(counts(step[DEPTH][..., 0], UNIT)))

@@ -97,7 +97,8 @@ def _percent(share: Estimate) -> str:
 
 def heatmap(changes: AgentChanges, severity: float, path: Path) -> Path:
     """Draw the fraction of changed decisions, with one row per condition and one column per
-    agent."""
+    agent.
+    """
     agents = list(changes)
     names = [name for name in _conditions(changes) if name != "clean"]
     values = np.full((len(names), len(agents)), np.nan)

@@ -193,7 +193,8 @@ def add_programs(folder: Path) -> Path:
 
 def _check_free(target: Path, overwrite: bool) -> None:
     """Raise ValueError unless ``target`` does not exist or is a hardened folder that may be
-    replaced."""
+    replaced.
+    """
     if not os.path.lexists(target):
         return
     if not overwrite:

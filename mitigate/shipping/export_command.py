@@ -92,7 +92,8 @@ def main() -> None:
 
 def _own_kind(run: Path) -> list[str]:
     """Return the option ``agent=`` for ``run``, if it is a shipped kind of agent without
-    programs."""
+    programs.
+    """
     from mitigate.agents import loading
 
     config = run / loading.CONFIG

@@ -122,8 +122,9 @@ def harden(
         policy: a trained policy of stable-baselines3 or torchrl, or an ``nn.Module``
             (``agents/policies.py``). The policy is not changed.
         world: function that constructs a world, such as ``lambda: GymWorld(gymnasium.make(...))``.
-        forward, recurrent: how to call an ``nn.Module``
+        forward: function that calls an ``nn.Module``
             (:class:`~mitigate.agents.policies.ModulePolicy`).
+        recurrent: whether an ``nn.Module`` has a memory.
         method: "self_distil": the policy teaches its copy. "ppo": the copy learns from the reward
             of the world.
         listed: episodes of the comparison; None means seeds 0 to 49 of the environment.
@@ -134,7 +135,8 @@ def harden(
         tune: "all" to train all weights, or "adapters" to insert adapters into the frozen policy.
         targets: regular expressions for the modules that get adapters; None means every
             convolution, or the first layer if there is none.
-        steps, lr: number of training steps, and learning rate.
+        steps: number of training steps.
+        lr: learning rate.
         broad_share: fraction of corrupted frames that get random compositions instead of the
             suite's corruptions. These prepare the policy for corruptions that the suite does not
             contain.
@@ -268,7 +270,8 @@ def harden(
 
 def _check_folder(trainer: Trainer, folder: Path) -> None:
     """Raise ValueError if the folder contains a run of a different policy or with different
-    settings."""
+    settings.
+    """
     newest = states.load_newest(trainer.folder)
     if newest is None:
         return

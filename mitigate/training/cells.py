@@ -1,5 +1,6 @@
 """Define the options of a table and its cells: a column with a seed, its training and
-evaluations."""
+evaluations.
+"""
 
 from __future__ import annotations
 
@@ -40,7 +41,8 @@ MEASURED = ("split", "episodes", "conditions", "severity")
 @dataclass
 class TablesConfig:
     """Types of the options in ``conf/table2.yaml`` and ``conf/table1.yaml``, which document
-    them."""
+    them.
+    """
 
     runs: str = "runs"
     out: str = "runs/table"

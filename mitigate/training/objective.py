@@ -170,7 +170,8 @@ class Objective(nn.Module):
 
     def evaluate(self, step: int) -> dict[str, float]:
         """Return scalars that are measured after ``step`` updates; called every ``eval_every``
-        steps."""
+        steps.
+        """
         return {}
 
     def figures(self, step: int) -> dict[str, np.ndarray]:

@@ -90,7 +90,8 @@ class FramePairs:
 
     def __getstate__(self) -> dict[str, Any]:
         """Return the state for pickling without frames; workers receive only the frames of their
-        jobs."""
+        jobs.
+        """
         return {**self.__dict__, "frames": None}
 
     def jobs(self, step: int) -> list[tuple[int, int, Frames]]:
@@ -149,7 +150,8 @@ def pairs_of(
 
 def with_clean_share(pairs: Pairs, share: float) -> Pairs:
     """Return a copy of ``pairs`` in which a fraction ``share`` stays clean; call before
-    ``start``."""
+    ``start``.
+    """
     copied = copy.copy(pairs)
     copied.schedule = replace(pairs.schedule, clean_share=share)
     return copied

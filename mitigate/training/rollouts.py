@@ -103,7 +103,8 @@ class Rollouts(DrawsBySuccess):
 
     def work(self, job: tuple) -> tuple[Any, np.ndarray | None]:
         """Return the decisions in the episodes of a piece, and a picture of the last "
-        "observation."""
+        "observation.
+        """
         step, piece, pieces, count, state = job
         self.set_schedule(state)
         rngs = [generator(self.seed, "rollout", step, piece, i) for i in range(count)]

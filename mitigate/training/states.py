@@ -130,7 +130,8 @@ def differences(old: Any, new: Any, path: str = "") -> list[str]:
 
 def check_same(folder: Path, old: dict[str, Any], new: dict[str, Any]) -> None:
     """Raise ValueError if the run in ``folder`` has a config (``old``) that differs from
-    ``new``."""
+    ``new``.
+    """
     different = differences(old, new)
     if different:
         raise ValueError(

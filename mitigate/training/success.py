@@ -30,7 +30,8 @@ class DrawsBySuccess:
 
     def refresh(self, step: int, workers: int | None = None) -> None:
         """Measure the success under every corruption on training episodes, and update the "
-        "schedule."""
+        "schedule.
+        """
         rates = measure(
             self.agent,
             self.schedule,
@@ -103,7 +104,8 @@ def measure(
 
 def refuse(schedule: Schedule | None) -> None:
     """Raise ValueError if a success-distributed schedule is used in a recipe that measures no
-    success."""
+    success.
+    """
     if schedule is not None and schedule.mode == "success_distributed":
         raise ValueError(
             "schedule=success_distributed needs success rates, which this recipe does not measure. "

@@ -243,7 +243,8 @@ class Trainer:
 
     def _evaluate_due(self, done: int, journal: Journal, ending: SignalDelay) -> None:
         """Evaluate and log figures if they are due after ``done`` steps, unless a signal was
-        received."""
+        received.
+        """
         if ending.number is None and self._due(self.eval_every, done):
             self._evaluate(done, journal)
         if ending.number is None and self._due(self.figure_every, done):

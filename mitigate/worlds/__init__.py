@@ -1,2 +1,3 @@
 """Worlds: the interface, episode files, the generated apartments, and wrappers for other
-environments."""
+environments.
+"""

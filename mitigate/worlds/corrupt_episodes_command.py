@@ -149,7 +149,8 @@ def check_for_file(corruption: str) -> None:
 
 def _check_target(source: Path, out: Path) -> None:
     """Raise ValueError unless ``out`` does not exist, or has not changed since :func:`run` wrote
-    it."""
+    it.
+    """
     fix = "Give another name, or move the file away first."
     summary = Path(f"{out}{SUMMARY}")
     if source.resolve() in (out.resolve(), summary.resolve()):

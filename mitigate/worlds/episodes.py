@@ -49,7 +49,8 @@ class Record:
 
     def get(self, key: str, kinds: type | tuple[type, ...], default: Any = ...) -> Any:
         """Return the value of ``key``, checked against ``kinds``; a default of ``...`` means
-        required."""
+        required.
+        """
         value = self.raw.get(key)
         if value is None and default is not ...:
             return default
@@ -308,7 +309,8 @@ def read_extras(path: Path | str) -> dict[str, Any]:
 
 def _members(path: Path | str) -> Iterator[tuple[str, Any]]:
     """Yield the members of an episode file; raise a clear error for a file of the discrete R2R
-    task."""
+    task.
+    """
     try:
         yield from json_members(path, "episodes")
     except JsonListError as error:

@@ -82,7 +82,8 @@ class GymWorld(SeededWorld):
 
 def _by_name(observation: Any) -> dict[str, Any]:
     """Return the parts of an observation or space by dotted name, or ``WHOLE`` if it has no
-    parts."""
+    parts.
+    """
     parts = _attribute(observation, "spaces", observation)
     if not isinstance(parts, Mapping):
         return {WHOLE: observation}

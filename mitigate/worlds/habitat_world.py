@@ -205,7 +205,8 @@ class HabitatWorld(World):
 
     def distance_to_goal(self, position: np.ndarray | None = None) -> float:
         """Return the geodesic distance in metres from a position [3] (or the agent) to the nearest
-        goal."""
+        goal.
+        """
         import habitat_sim
 
         path = habitat_sim.MultiGoalShortestPath()
@@ -277,7 +278,8 @@ class HabitatWorld(World):
 
     def _camera(self, kind: str, view: int) -> Any:
         """Return the camera of a view, 30 degrees to the right per view (Habitat's yaw goes to the
-        left)."""
+        left).
+        """
         habitat_sim = _habitat_sim()
         types = habitat_sim.SensorType
         spec = habitat_sim.CameraSensorSpec()
@@ -348,7 +350,8 @@ class NavmeshExpert(Expert):
 
     def distance(self, xy: np.ndarray) -> float:
         """Return the geodesic distance in metres from a plan position [2] on the agent's floor to
-        the goal."""
+        the goal.
+        """
         height = float(self.world._position()[1])
         return self.world.distance_to_goal(np.array([xy[0], height, -xy[1]], np.float32))
 

@@ -53,7 +53,8 @@ class Rule:
     @property
     def stop_within(self) -> float:
         """Distance in metres at which an oracle stops: 1 (heuristic), or the rule's distance if
-        smaller."""
+        smaller.
+        """
         return min(1.0, self.metres)
 
     @property

@@ -1,5 +1,6 @@
 """Define the base class of worlds that wrap other libraries' environments, with a seed per
-episode."""
+episode.
+"""
 
 from __future__ import annotations
 
@@ -328,7 +329,8 @@ class SeededWorld(World):
     @contextmanager
     def _calling(self, what: str) -> Iterator[None]:
         """Convert any error of the user's code in the block to a ValueError that names the
-        episode."""
+        episode.
+        """
         try:
             yield
         except MemoryError:  # explained by core/errors.py
@@ -343,7 +345,8 @@ class SeededWorld(World):
 
     def _observation(self, values: Mapping[str, Any]) -> Observation:
         """Return an observation with copied arrays, because an environment may reuse its
-        buffers."""
+        buffers.
+        """
         absent = [entry for entry in self.entries.values() if entry not in values]
         if absent:
             raise ValueError(

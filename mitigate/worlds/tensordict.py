@@ -124,7 +124,8 @@ class WorldEnv(EnvBase):
 
     def _choose_episode(self, number: int) -> tuple[Episode, str]:
         """Return episode ``number`` and its unique name, which depend only on list or seed, and
-        number."""
+        number.
+        """
         if isinstance(self.episodes, TrainingEpisodes):
             rng = generator(self.seed, self.key, number)
             episode = self.episodes.draw(rng, (0, 1))

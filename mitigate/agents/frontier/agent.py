@@ -170,7 +170,8 @@ class FrontierAgent(SideBySide, nn.Module):
         count: int,
     ) -> list[int]:
         """Return one action for each of the first ``count`` episodes; their frames are encoded
-        together."""
+        together.
+        """
         concepts = self._recognise(np.stack([checked.frame(o, RGB, 1) for o in observations]))
         episodes = [*zip(memories, observations, concepts, strict=True)][:count]
         return [runner._act(observation, columns) for runner, observation, columns in episodes]
@@ -186,7 +187,8 @@ class FrontierAgent(SideBySide, nn.Module):
 
     def _act(self, observation: Mapping[str, np.ndarray], concepts: np.ndarray) -> int:
         """Return an action; ``concepts`` [4, C] holds the probability of each concept in each
-        column."""
+        column.
+        """
         pose = checked.pose(observation).astype(np.float64)
         self._update_map(observation, pose, concepts)
         self.actions += 1
@@ -196,7 +198,8 @@ class FrontierAgent(SideBySide, nn.Module):
 
     def taken(self, action: int, metres: float, radians: float) -> None:
         """Discard the route after a motion that the agent did not choose, and plan again at the
-        next step."""
+        next step.
+        """
         self._planned = 0
         if action != FORWARD:
             self._before = None
@@ -274,7 +277,8 @@ class FrontierAgent(SideBySide, nn.Module):
 
     def _check(self, thing: np.ndarray, pose: np.ndarray) -> int | None:
         """Turn to the object's cells and stop if the object is visible nearby; else discard the
-        cells."""
+        cells.
+        """
         dx, dy = self.grid.place(thing).mean(0) - pose[:2]
         error = np.arctan2(-dx, dy) - pose[2]
         error = np.degrees((error + np.pi) % (2 * np.pi) - np.pi)

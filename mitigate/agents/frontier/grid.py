@@ -84,8 +84,8 @@ class Grid:
             depth: float32 [H, W] metres, 90 degrees ahead.
             pose: [3].
             seen: [n, 2], the probabilities that the object is visible, and that it is visible
-                within 2 m, for each column from left to right. worth: [n], the likelihood that the
-                object lies in the direction of each column.
+                within 2 m, for each column from left to right.
+            worth: [n], the likelihood that the object lies in the direction of each column.
         """
         self._looks += 1
         camera = (*map(float, pose[:2] - self.origin), float(pose[2]), float(self.eye))
@@ -245,7 +245,8 @@ def routes(grid: Grid, xy: np.ndarray) -> Routes:
 
 def _graph(open_: np.ndarray, price: np.ndarray) -> coo_matrix:
     """Return the 8-connected graph of open cells; the cost of an edge is its length times the mean
-    price of its cells."""
+    price of its cells.
+    """
     index = np.arange(open_.size).reshape(open_.shape)
     parts = []
     for di, dj in ((0, 1), (1, 0), (1, 1), (1, -1)):

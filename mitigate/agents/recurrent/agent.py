@@ -241,7 +241,8 @@ class RecurrentAgent(SideBySide, nn.Module):
 
     def decide(self, decisions: WalkDecisions, *, clean: bool = False) -> Output:
         """Return logits over the actions, and the features "views" [N, F] and "state" [N,
-        width]."""
+        width].
+        """
         seen, prefix = decisions.seen, "clean_" if clean else ""
         losses: dict[str, Tensor] = {}
         views = seen.get(f"{prefix}views")
@@ -305,7 +306,8 @@ class RecurrentAgent(SideBySide, nn.Module):
         self, observations: Sequence[Mapping[str, np.ndarray]], memories: Sequence[Walk], count: int
     ) -> list[int]:
         """Return the most probable actions of the first ``count`` episodes, and update their
-        memories."""
+        memories.
+        """
         frames = {
             name: np.stack([checked.frame(seen, name, 1) for seen in observations])
             for name in self.sensors

@@ -119,7 +119,8 @@ class State:
 
 def gated(inputs: Tensor, hidden: Tensor, cell: nn.GRUCell) -> Tensor:
     """Return the next hidden state of ``cell``; ``inputs`` [E, 3 width] are its projected
-    inputs."""
+    inputs.
+    """
     reset, update, new = inputs.chunk(3, -1)
     state = F.linear(hidden, cell.weight_hh, cell.bias_hh)
     state_reset, state_update, state_new = state.chunk(3, -1)
@@ -211,7 +212,8 @@ class Policy(TextReader):
 
     def _inputs(self, columns: Tensor, moves: Tensor) -> Tensor:
         """Return the part of both cells' inputs that needs no memory, [..., 6 width], for all
-        steps."""
+        steps.
+        """
         x = self.whole(columns.flatten(-2)) + self.move(moves)
         width = x.shape[-1]
         first = F.linear(x, self.first.weight_ih, self.first.bias_ih)

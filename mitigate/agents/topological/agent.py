@@ -279,7 +279,8 @@ class TopologicalAgent(Agent, nn.Module):
 
     def decide(self, decisions: MapDecisions, *, clean: bool = False) -> Output:
         """Return logits over [stop] and ghosts, and features "views" [P, 12, F] and "nodes" [n,
-        width]."""
+        width].
+        """
         views, losses, figures = self._perception(decisions, clean)
         planner, valid = self.planner, decisions.valid
         out = planner(planner.read(decisions.tokens), planner.look(views), decisions)
@@ -402,7 +403,8 @@ class TopologicalAgent(Agent, nn.Module):
 
     def taken(self, action: int, metres: float, radians: float) -> None:
         """Discard the route after a motion that the agent did not choose, and decide at the next
-        step."""
+        step.
+        """
         self.controller = Controller()
         self._chosen = None
         self.decisions = 0  # the limit counts only decisions since the last intervention

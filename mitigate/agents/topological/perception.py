@@ -39,7 +39,8 @@ _MARGIN = 0.25  # distance in metres between a waypoint and an obstacle
 
 class WaypointHead(nn.Module):
     """Predict logits ``[n, 120, 12]`` from depth features ``[n, 12, width]``; circular over
-    views."""
+    views.
+    """
 
     def __init__(self, width: int = 128, hidden: int = 160) -> None:
         super().__init__()

@@ -54,7 +54,8 @@ class DecisionBatch:
 
 def collate(decisions: list[Decision], episodes: list[int], offsets: list[int]) -> DecisionBatch:
     """Pad decisions; ``episodes[i]`` is the index of the text, ``offsets[i]`` of the first
-    panorama."""
+    panorama.
+    """
     n = max(len(d.nodes) for d in decisions)
     g = max(1, max(len(d.ghosts) for d in decisions))
     b = len(decisions)

@@ -36,7 +36,8 @@ _TRAVEL = 0.4  # weight of the path to a ghost relative to the path from the gho
 
 class Walk(Protocol):
     """The state of one rollout: pose, motion along routes, the expert, and the end of the
-    episode."""
+    episode.
+    """
 
     episode: Episode
 
@@ -81,7 +82,8 @@ class Trace:
 @dataclass
 class Piece:
     """Rollouts of several episodes: their traces, and the observations [P, ...] of all
-    decisions."""
+    decisions.
+    """
 
     traces: list[Trace]
     seen: dict[str, np.ndarray]

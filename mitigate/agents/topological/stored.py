@@ -237,7 +237,8 @@ def _features(
     agent: Any, frames: list[tuple], known: list[tuple] | None = None
 ) -> dict[str, np.ndarray]:
     """Return features of frames by name, except for sensors whose frames equal those in
-    ``known``."""
+    ``known``.
+    """
     seen = np.stack([frame[2] for frame in frames]).view(np.int64)  # torch cannot map uint64
     features = {"seen": seen}
     rgb, depth = ([frame[i] for frame in frames] for i in (0, 1))

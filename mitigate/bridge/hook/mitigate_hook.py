@@ -156,7 +156,8 @@ def _report(problem):
 
 class Channel:
     """The connection between one environment and the server. Every failure ends the process
-    (``stop``)."""
+    (``stop``).
+    """
 
     def __init__(self):
         _load_numpy()
@@ -477,7 +478,8 @@ class Session:
 
     def _distances(self):
         """Return the geodesic distances to the goals from start and end, and whether STOP was
-        called."""
+        called.
+        """
         if self.sim is None or self.episode is None:
             return {}
         stopped = _get(self.task, "is_stop_called")
@@ -780,7 +782,8 @@ def _env_step(original, env, *args, **kwargs):
 
 def _env_close(original, env, *args, **kwargs):
     """Wrap ``Env.close``, so that programs which open one Env per episode do not leak
-    connections."""
+    connections.
+    """
     _end_episode(env, CLOSE)
     suite = _get(env.sim, "sensor_suite")
     try:
@@ -920,7 +923,8 @@ def _describe_simulator(sim):
 
 def _wmnav_episode(original, env, number, *args, **kwargs):
     """Wrap WMNav's ``Env._run_episode``, which opens one simulator per episode without
-    habitat-lab."""
+    habitat-lab.
+    """
     _thread.session = session = _thread.session or Session()
     episode = env.all_episodes[number]
     words = episode["object_category"]

@@ -41,7 +41,8 @@ def drawn(
     key: Key, name: str, primitives: Sequence[Primitive]
 ) -> tuple[list[Primitive], np.random.Generator]:
     """Return the primitives of the key's episode, in order, and a generator for their
-    parameters."""
+    parameters.
+    """
     rng = stream(digest(key, name))
     places = rng.permutation(len(primitives))[: 1 + rng.choice(len(COUNTS), p=COUNTS)]
     return [primitives[place] for place in places], rng
@@ -72,7 +73,8 @@ def log_uniform(rng: np.random.Generator, low: float, high: float) -> float:
 
 def shapes(rng: np.random.Generator, shape: tuple[int, int], area: float) -> np.ndarray:
     """Return a mask [H, W] of one to eight shapes that cover about the fraction ``area`` of the
-    map."""
+    map.
+    """
     height, width = shape
     mask = np.zeros((height, width), np.uint8)
     count = int(rng.integers(1, 9))

@@ -147,7 +147,8 @@ def covered(views, strength, rng, now):
 
 def hidden(views, strength, rng, now):
     """Fill random shapes, common to all views or different, with a colour, noise or other image
-    parts."""
+    parts.
+    """
     height, width = views.shape[1:3]
     area, kind, alike = 0.6 * strength * rng.uniform(0.1, 1.0), rng.random(), rng.random() < 0.7
     mask, colour, out = shapes(rng, (height, width), area), _colour(rng), views.copy()

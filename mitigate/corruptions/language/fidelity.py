@@ -102,7 +102,8 @@ def _changes(
     new_words: Iterable[str],
 ) -> list[str]:
     """List names in ``old`` that ``new_words`` lacks, and names in ``new`` that ``old_words``
-    lacks."""
+    lacks.
+    """
     lost = [f"{kind} lost: {name}" for name in dict.fromkeys(old) if name not in new_words]
     return lost + [
         f"{kind} invented: {name}" for name in dict.fromkeys(new) if name not in old_words
@@ -189,7 +190,8 @@ def _names(tokens: list[Token]) -> list[tuple[int, str, bool]]:
 
 def _phrase(tokens: list[Token], place: int) -> tuple[str, int]:
     """Return the canonical name and the length of the longest known phrase that starts at
-    ``place``."""
+    ``place``.
+    """
     for length in range(min(landmarks.LONGEST, len(tokens) - place), 1, -1):
         words = [token.lower for token in tokens[place : place + length]]
         for last in (words[-1], words[-1].removesuffix("s")):

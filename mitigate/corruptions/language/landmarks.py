@@ -22,7 +22,8 @@ _KEEP_S = ("ss", "us", "is", "as", "os")
 
 def normal(noun: str) -> str:
     """Return the canonical name of a noun, which is the first synonym in lower case and
-    singular."""
+    singular.
+    """
     word = noun.lower().removesuffix("'s").removesuffix("s'")
     if word in CANONICAL or word in SYNONYMS:
         return CANONICAL.get(word, word)

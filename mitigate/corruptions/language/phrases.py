@@ -81,7 +81,8 @@ PATTERNS = {
 @dataclass(frozen=True)
 class Voice:
     """The phrases of one style: templates by kind of clause, frames by place, openers and
-    closers."""
+    closers.
+    """
 
     openers: tuple[str, ...]
     frames: dict[str, tuple[str, ...]]

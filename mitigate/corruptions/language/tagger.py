@@ -96,7 +96,8 @@ def _spacy() -> Any:
 
 def _spacy_tags(pipeline: Any, text: str) -> list[Token]:
     """Return our tokens with the tags of ``pipeline``, except for words that it often tags
-    wrongly."""
+    wrongly.
+    """
     places = {token.idx: token.pos_ for token in pipeline(text)}
     return [
         token
@@ -135,7 +136,8 @@ def _tag(token: Token, before: Token | None, after: Token | None) -> str:
 
 def _by_context(word: str, before: Token | None, after: Token | None) -> str:
     """Tag a word with two classes by its neighbours; for example, after a determiner it is a
-    noun."""
+    noun.
+    """
     first, second = words.AMBIGUOUS[word]
     if word in ("left", "right"):
         return _side(before, after)

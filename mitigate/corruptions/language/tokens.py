@@ -17,7 +17,8 @@ class Tokenizer(Protocol):
 
     def encode(self, text: str, length: int | None) -> tuple[tuple[int, ...], bool]:
         """Return the tokens and whether they were cut; with ``length`` they are padded or cut to
-        it."""
+        it.
+        """
         ...
 
 

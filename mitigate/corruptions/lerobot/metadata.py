@@ -88,6 +88,7 @@ class Episode:
 
 
 def check_version(file: Path, info: Mapping[str, Any]) -> None:
+    """Raise ValueError unless the dataset has version 3."""
     version = info.get("codebase_version")
     number = re.fullmatch(r"v?(\d+)\.(\d+)(\.\d+)?", version) if isinstance(version, str) else None
     if number is None:
@@ -106,6 +107,7 @@ def check_version(file: Path, info: Mapping[str, Any]) -> None:
 
 
 def check_features(file: Path, info: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the features of the dataset; raise ValueError if one is invalid."""
     features = info.get("features")
     if not isinstance(features, dict) or not 0 < len(features) <= MAX_FEATURES:
         raise ValueError(
@@ -190,6 +192,7 @@ def read_tasks(path: Path) -> dict[int, str]:
 
 
 def read_episodes(path: Path, info: Mapping[str, Any], videos: list[str]) -> dict[int, Episode]:
+    """Return the episodes of the dataset at ``path`` by number."""
     files = sorted((path / EPISODES).glob("*/*.parquet"))
     if not files:
         raise FileNotFoundError(f"{path} has no files {EPISODES}/chunk-*/file-*.parquet. {FIX}")

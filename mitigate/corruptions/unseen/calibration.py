@@ -32,7 +32,8 @@ def valid(views: np.ndarray) -> np.ndarray:
 
 def clip_valid(views: np.ndarray, moved: np.ndarray, sensor: DepthSensor) -> np.ndarray:
     """Return ``moved``, clipped to the sensor's range, at pixels where ``views`` is valid, else
-    ``views``."""
+    ``views``.
+    """
     inside = np.clip(moved, NEAREST, np.float32(sensor.z_max))
     return np.where(valid(views), inside, views)
 
@@ -67,7 +68,8 @@ def wiggle_table(phase: float, amplitude: float, z_max: float) -> np.ndarray:
 
 def wiggling(views: np.ndarray, severity: float, key: Key, sensor: DepthSensor) -> np.ndarray:
     """Add 0.3 s sin(2 pi (z/P + p)), the error from harmonics of a time-of-flight camera's
-    light."""
+    light.
+    """
     phase = uniform(digest(key, "wiggling"))
     table = wiggle_table(phase, WIGGLE * severity, sensor.z_max)
     clean = np.clip(np.where(valid(views), views, 0), 0, np.float32(sensor.z_max))

@@ -41,7 +41,8 @@ def block_side(height: int, width: int) -> int:
 @lru_cache(maxsize=1)
 def opponents() -> np.ndarray:
     """Return an orthonormal colour matrix float32 [3, 3]: grey, red - blue, and green against
-    both."""
+    both.
+    """
     rows = np.array([[1.0, 1.0, 1.0], [1.0, 0.0, -1.0], [-1.0, 2.0, -1.0]])
     return (rows / np.linalg.norm(rows, axis=1, keepdims=True)).astype(np.float32)
 
@@ -83,7 +84,8 @@ def _lose(cells, least):
 @njit(cache=True)
 def _gather(view, weights, cells):
     """Fill cells [b, b, n] with the blocks of one opponent colour of uint8 [H, W, 3]; edges are
-    repeated."""
+    repeated.
+    """
     height, width, _ = view.shape
     side, across = cells.shape[0], -(-width // cells.shape[0])
     for y in range(-(-height // side) * side):
@@ -129,7 +131,8 @@ def compression(views: np.ndarray, severity: float, key: Key, heading=None) -> n
 
 def lost_slices(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
     """Replace a fraction 0.8 s of the 14 slices of every view by grey, starting at a random
-    column."""
+    column.
+    """
     count, height, width, _ = views.shape
     out, edges = views.copy(), np.rint(np.linspace(0, height, SLICES + 1)).astype(int)
     for view, stream in enumerate(view_streams(key, "lost_slices", count)):

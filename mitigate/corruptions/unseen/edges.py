@@ -92,7 +92,8 @@ def _shade(views, offset, side, missing, z_max, out):
 
 def edge_shadow(views: np.ndarray, severity: float, key: Key, sensor: DepthSensor) -> np.ndarray:
     """Remove pixels in the shadow of nearer surfaces, for a projector that is 0.5 s metres to the
-    side."""
+    side.
+    """
     width, out = views.shape[2], np.empty_like(views)
     focal = 0.5 * width / math.tan(math.radians(HFOV_DEGREES) / 2.0)
     offset = np.float32(BASELINE * severity * focal)

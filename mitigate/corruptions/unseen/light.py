@@ -75,7 +75,8 @@ def haze_mask(value: int, severity: float, height: int, width: int) -> np.ndarra
 
 def haze(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
     """Blend each view with haze, x t + A (1 - t), as from smoke; views show different parts of the
-    field."""
+    field.
+    """
     count, height, width, _ = views.shape
     value, out = digest(key, "haze"), np.empty_like(views)
     mask = haze_mask(value, severity, height, width)

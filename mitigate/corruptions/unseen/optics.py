@@ -64,7 +64,8 @@ def displaced(view, down, right, out):
 @cached
 def slopes(value: int, height: int, width: int) -> tuple[np.ndarray, np.ndarray]:
     """Return the vertical and horizontal slopes of a random surface, float32 [H, W], with joint rms
-    1."""
+    1.
+    """
     surface = field(value, height, width, DROPS)[0].astype(np.float64)
     down, right = (np.roll(surface, -1, axis) - np.roll(surface, 1, axis) for axis in (0, 1))
     scale = 1.0 / max(math.sqrt(np.mean(down**2 + right**2)), 1e-9)
@@ -73,7 +74,8 @@ def slopes(value: int, height: int, width: int) -> tuple[np.ndarray, np.ndarray]
 
 def refraction(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
     """Displace pixels by the slope of a wet pane's surface; the rms displacement is 0.045 s of the
-    side."""
+    side.
+    """
     _, height, width, _ = views.shape
     reach = np.float32(BEND * severity * min(height, width))
     down, right = slopes(digest(key, "refraction"), height, width)
@@ -85,7 +87,8 @@ def refraction(views: np.ndarray, severity: float, key: Key, heading=None) -> np
 
 def _along(value: int, number: int, height: int, width: int) -> tuple[np.ndarray, np.ndarray]:
     """Return the distances to a scratch's line and beyond its ends, float64 [H, W], in image
-    sides."""
+    sides.
+    """
     draw = [uniform(value, 5 * number + part) for part in range(4)]
     side, angle = min(height, width), math.pi * draw[2]
     half = 0.5 * (SCRATCH_LONG[0] + (SCRATCH_LONG[1] - SCRATCH_LONG[0]) * draw[3])

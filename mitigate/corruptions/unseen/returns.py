@@ -40,7 +40,8 @@ _U = np.uint64
 
 def ripple(views: np.ndarray, severity: float, key: Key, sensor: DepthSensor) -> np.ndarray:
     """Add waves to walls: the error is 0.06 s z^2 F for a random field F. The field F is shifted
-    for every view and frame."""
+    for every view and frame.
+    """
     count, height, width = views.shape
     waves = field(digest(key, "ripple"), height, width, RIPPLE_CORRELATION)[0]
     moved = np.where(valid(views), np.minimum(views, np.float32(sensor.z_max)), 0)

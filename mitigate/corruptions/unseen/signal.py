@@ -68,7 +68,8 @@ def _strike(views, streams, least, out):
 
 def impulse_noise(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
     """Set a fraction 0.3 s of the pixels of every frame to 0 or 255, separately per colour
-    channel."""
+    channel.
+    """
     out, count = np.empty_like(views), len(views)
     least = _U(round(IMPULSES * severity * 2**32))
     streams = view_streams(key, "impulse_noise", count)

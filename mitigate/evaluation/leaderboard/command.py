@@ -128,7 +128,8 @@ def _rows_behind(entry: LeaderboardEntry, rows: Iterable[Row]) -> list[Row]:
 
 def _files(paths: Sequence[Path | str]) -> list[Path]:
     """Return the files of entries in ``paths``, or in ``docs/leaderboard`` if there are no
-    paths."""
+    paths.
+    """
     folders = [Path(path) for path in paths] or [find(FOLDER)]
     files = [f for p in folders for f in (sorted(p.glob("*.json")) if p.is_dir() else [p])]
     if not files:
@@ -190,7 +191,8 @@ def add(
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Run from the command line; return the exit status (2 for invalid input, 1 for a wrong
-    entry)."""
+    entry).
+    """
     options = vars(_parser().parse_args(argv))
     what = options.pop("what")
     wrong: list[str] = []

@@ -73,7 +73,8 @@ def entry_of(
 
 def left_out(entry: LeaderboardEntry, rows: Iterable[Row]) -> str:
     """Describe seeds and conditions of the entry's agent in ``rows`` that the entry omits, or
-    return ""."""
+    return "".
+    """
     comparable = [
         row
         for row in _chosen(rows, entry.name, entry.severity, entry.split)

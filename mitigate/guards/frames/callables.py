@@ -91,7 +91,8 @@ class FramesCallable(Guard):
 
     def _check(self, results: Any, frames: Mapping[str, np.ndarray]) -> None:
         """Raise ValueError unless ``results`` contains a subset of ``frames`` with the same shapes
-        and dtypes."""
+        and dtypes.
+        """
         if not isinstance(results, Mapping):
             self._reject(f"returned a {type(results).__name__}, not a dict")
         for name, frame in results.items():

@@ -20,7 +20,8 @@ FACTOR = 8  # height and width of the input must be multiples of this many pixel
 
 class Encoded(NamedTuple):
     """Feature maps of three levels, and their mean magnitudes and maxima ``stats`` [n, 14
-    width]."""
+    width].
+    """
 
     fine: Tensor
     middle: Tensor
@@ -83,7 +84,8 @@ class UNet(nn.Module):
 
     def encode(self, x: Tensor, views: int) -> Encoded:
         """Return the maps of ``x`` [n, inputs, h, w]; each group of ``views`` rows is one time
-        step."""
+        step.
+        """
         x = F.pixel_unshuffle(x, 2).contiguous(memory_format=torch.channels_last)
         fine = self.fine(active(self.stem(x)))
         middle = self.middle(active(self.down1(fine)))

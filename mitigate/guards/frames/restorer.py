@@ -162,7 +162,8 @@ class Restorer(nn.Module, Guard):
 
     def _views(self, sensor: str, frame: np.ndarray) -> np.ndarray:
         """Return ``frame`` as a contiguous, writable array [V, H, W, c]; raise an error if it is
-        invalid."""
+        invalid.
+        """
         if not isinstance(frame, np.ndarray):
             raise TypeError(
                 f"A {sensor} frame must be a numpy array, not {type(frame).__name__}: give a torch "

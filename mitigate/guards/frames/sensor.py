@@ -91,7 +91,8 @@ class SensorRestorer(nn.Module):
 
     def small(self, x: Tensor, valid: Tensor) -> tuple[Tensor, Tensor]:
         """Resize values and mask to the working size, so that holes do not darken their
-        neighbours."""
+        neighbours.
+        """
         size = self.working(*x.shape[-2:])
         if size == tuple(x.shape[-2:]):
             return x, valid

@@ -1,5 +1,6 @@
 """Parse the values of ``safeguard=`` (names, folders and endpoints), with their labels and
-hashes."""
+hashes.
+"""
 
 from __future__ import annotations
 
@@ -32,7 +33,8 @@ ANSWERS = "3"  # version of the rules for accepting answers of a language model
 
 def current(choice: str) -> str:
     """Return the current name of a choice. This warns about the names ``tagger`` and ``reader``,
-    which no longer exist."""
+    which no longer exist.
+    """
     first, plus, second = choice.partition("+")
     if first not in REPLACED:
         return choice
@@ -52,7 +54,8 @@ def _warn(name: str, choice: str, instead: str) -> None:
 
 def check(choice: object) -> None:
     """Raise ValueError if a choice is not a safeguard, or FileNotFoundError if a folder contains
-    none. This reads no weights and sends no requests."""
+    none. This reads no weights and sends no requests.
+    """
     text = choice if isinstance(choice, str) else ""
     check_choice(text)  # checked before any output can contain the value
     first, plus, second = text.partition("+")
@@ -109,7 +112,8 @@ def not_in(folder: str | Path) -> str:
 
 def label(choice: str) -> str:
     """Return a label for a safeguard: its name, a folder with its hash, or an endpoint's host and
-    model."""
+    model.
+    """
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         choice = current(choice)
@@ -126,7 +130,8 @@ def label(choice: str) -> str:
 
 def identity(choice: str) -> str:
     """Return the label of a safeguard with a hash of its version and weights (unknown for
-    endpoints). "none" has no hash."""
+    endpoints). "none" has no hash.
+    """
     if choice == "none":
         return choice
 

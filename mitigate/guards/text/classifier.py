@@ -160,7 +160,8 @@ def weighted(found: Mapping[int, int], idf: np.ndarray) -> tuple[np.ndarray, np.
 @lru_cache(maxsize=4)
 def load(folder: str | Path) -> Classifier:
     """Load the classifier in a folder. Raises FileNotFoundError if a file is missing, and
-    ValueError if a file is damaged."""
+    ValueError if a file is damaged.
+    """
     config_file, file = Path(folder) / CONFIG, Path(folder) / WEIGHTS
     for needed in (config_file, file):
         if not needed.is_file():

@@ -49,7 +49,8 @@ ENGLISH, HIDDEN = 0.6, 0.45
 @dataclass(frozen=True)
 class Decoded:
     """``text``: the readable copy. ``marks`` lists the ways in which words were hidden, such as
-    "code" or "leet"."""
+    "code" or "leet".
+    """
 
     text: str
     marks: frozenset[str]

@@ -96,7 +96,8 @@ def _matrix(term_counts: Sequence[Mapping[int, int]], idf: np.ndarray) -> csr_ma
 
 def regression(x: Any, y: np.ndarray, weight: np.ndarray, steps: int) -> tuple[np.ndarray, float]:
     """Fit a logistic regression with an L2 penalty and balanced classes; return weights and
-    bias."""
+    bias.
+    """
     weight = weight / np.where(y, weight[y].sum(), weight[~y].sum()) * len(y) / 2
     sign = np.where(y, 1.0, -1.0)
 

@@ -38,7 +38,8 @@ def words(text: str) -> list[str]:
 
 def leaves_no_instruction(text: str, removed: str, rest: str) -> str:
     """Return the reason why ``rest``, the text without ``removed``, is not an instruction, or
-    ""."""
+    "".
+    """
     if len(words(rest)) < 2 and rest.isascii():
         return "nothing would be left"
     if not rest.isascii() or len(rest) > LONG:
@@ -57,7 +58,8 @@ def is_too_long(heard: str, rewrite: str) -> bool:
 
 def rewrite_refused(heard: str, rewrite: str | None, last: bool = False) -> str:
     """Return the reason why ``said`` must not replace ``heard``, or ""; with ``last``, a stop may
-    be added."""
+    be added.
+    """
     if rewrite is None:
         return "no answer in time"
     if is_too_long(heard, rewrite) or len(words(rewrite)) > len(words(heard)) + LONGER:

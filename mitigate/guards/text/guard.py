@@ -89,7 +89,8 @@ class Safeguard:
 
     def canonicalise(self, text: str) -> Decision:
         """Return the decision on one instruction. Raises TypeError if the instruction is not
-        text."""
+        text.
+        """
         return self.canonicalise_all([text])[0]
 
     def canonicalise_all(self, texts: Iterable[str]) -> list[Decision]:

@@ -72,7 +72,8 @@ def fill_masks(text: str) -> str:
     """Return ``text`` with every sequence of masks replaced by the best-fitting function word.
 
     A mask is kept if it hides a noun, a turn or part of a word. A mask that hides an adjective
-    before a noun is removed."""
+    before a noun is removed.
+    """
     if not re.search(r"[A-Za-z]", MASK.sub(" ", text)):
         return text
     text = _STAYS.sub(lambda m: m.group().replace("[mask]", "[MASK]"), MASK.sub("[mask]", text))
@@ -95,7 +96,8 @@ def fill_masks(text: str) -> str:
 
 def _hidden_adjective(match: re.Match[str]) -> str:
     """Return the replacement of "the [mask]". If a noun follows, it is "the". Otherwise the
-    mask hides a noun, and the text is kept."""
+    mask hides a noun, and the text is kept.
+    """
     which, behind = match["which"], match["next"].lower()
     doing = behind.endswith("ing") and behind not in _NOUNS | _ROOMS
     if not behind or behind in _BEHIND or doing:

@@ -50,7 +50,8 @@ GAP, HEAD = 6, 20  # size in pixels of gaps between blocks, and of their heading
 
 class Score(NamedTuple):
     """Mean errors and fractions of correct pixels before and after, and the fraction of restored
-    time steps."""
+    time steps.
+    """
 
     before: Estimate
     after: Estimate
@@ -115,7 +116,8 @@ def measure(
     restorer: Restorer, data: Instants, corruptions: Sequence[Corruption], seed: int
 ) -> dict[tuple[str, str], Score]:
     """Return scores by sensor and condition; each corruption is scored for the sensor that it
-    changes."""
+    changes.
+    """
     scores: dict[tuple[str, str], Score] = {}
     pairs = [(s, c) for c in corruptions for s in restorer.nets if c is CLEAN or s in c.modalities]
     pairs = [(s, c) for s, c in pairs if s in data.clean[0]]
@@ -201,7 +203,8 @@ def sheet(
 
 def _far(frames: dict[str, np.ndarray]) -> float:
     """Return the minimum over the drawn views of their mean depth, because near walls show
-    little."""
+    little.
+    """
     depth = frames.get(DEPTH)
     return 0.0 if depth is None or depth.ndim < 4 else float(depth[[*SHOWN]].mean((1, 2, 3)).min())
 

@@ -1,4 +1,6 @@
-"""Write apartments for Habitat: mitigate export_scene OUT split=val_unseen scenes=3
+"""Write apartments for Habitat.
+
+  mitigate export_scene OUT split=val_unseen scenes=3
 
   OUT      folder for scenes, episodes and configs
   split    train, val_seen or val_unseen (default)
@@ -80,7 +82,8 @@ def export(out: Path, split: str, scenes: int | None, tasks: Sequence[str]) -> l
 
 def _episodes(split: str, task: str, scenes: int | None) -> list[Episode]:
     """Return the shipped episodes of the first ``scenes`` apartments, or generate them for
-    train."""
+    train.
+    """
     if split == "train":
         return list(fixed_episodes(split, task, PER_APARTMENT * (scenes or TRAIN)))
     episodes = load_episodes(split, task)

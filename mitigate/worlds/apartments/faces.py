@@ -1,5 +1,6 @@
 """Build the faces of an apartment, which are rectangles with colours, textures and baked
-shading."""
+shading.
+"""
 
 from __future__ import annotations
 
@@ -114,7 +115,8 @@ class FaceBuilder:
         tile: float = 1.0,
     ) -> None:
         """Add a rectangle in the plane ``axis = at`` facing ``sign``; low/high are on the other
-        axes."""
+        axes.
+        """
         self.kinds.append((axis, sign, pattern, room, category, instance))
         self.places.append((at, tile, *low, *high))
         self.colours.append(colour)

@@ -90,7 +90,8 @@ def _events(
     apartment: Apartment, path: np.ndarray, heading: float, target: int, rng: np.random.Generator
 ) -> list[Event]:
     """Return the first turn, the room changes with their turns and up to two landmarks, in
-    order."""
+    order.
+    """
     steps = np.hypot(*np.diff(path, axis=0).T)
     along = np.concatenate([[0.0], np.cumsum(steps)])
     events = [Event(0.0, turn_word(_direction(path, along, 0.0), heading))]

@@ -44,7 +44,8 @@ def free_directions(space: FreeSpace, xy: np.ndarray, heading: float) -> np.ndar
 
 def ahead(directions: np.ndarray) -> np.ndarray:
     """Select the :func:`free_directions` inside the forward 90-degree view, as [30, 12], left to
-    right."""
+    right.
+    """
     half = round(ANGLES * HFOV_DEGREES / 720)
     middle = round(ANGLES / VIEWS / 2)  # bin 0 is half a view step to the left
     return np.roll(directions, half - middle, 0)[: 2 * half]

@@ -60,6 +60,8 @@ Rect = tuple[float, float, float, float]  # x0, y0, x1, y1
 
 @dataclass(frozen=True)
 class Room:
+    """A rectangular room of one kind, such as a kitchen."""
+
     rect: Rect
     kind: str
 
@@ -71,7 +73,8 @@ class Room:
 @dataclass(frozen=True)
 class Door:
     """A doorway centred on (x, y) between two rooms; ``axis`` of the wall's normal is 0 (x) or 1
-    (y)."""
+    (y).
+    """
 
     x: float
     y: float
@@ -125,7 +128,8 @@ def _cut(rect: Rect, rng: np.random.Generator) -> list[Rect]:
 
 def shared_wall(a: Rect, b: Rect) -> tuple[int, float, float, float] | None:
     """Return (axis of the normal, wall coordinate, low, high) of the wall between two rooms, or
-    None."""
+    None.
+    """
     for axis in (0, 1):
         other = 1 - axis
         for near, far in ((a, b), (b, a)):
@@ -216,6 +220,7 @@ def _door_clearance(door: Door) -> Rect:
 
 
 def grow(rect: Rect, by: float) -> Rect:
+    """Return a rectangle that is larger by ``by`` metres on each side."""
     return rect[0] - by, rect[1] - by, rect[2] + by, rect[3] + by
 
 

@@ -78,7 +78,8 @@ class FreeSpace:
 
     def shortest_path(self, start: int, field: np.ndarray) -> np.ndarray:
         """Return the cell centres ``[n, 2]`` on the path from ``start`` to the zero of
-        ``distances``."""
+        ``distances``.
+        """
         path, graph = [start], self.graph
         while field[path[-1]] > 1e-6:
             near = slice(graph.indptr[path[-1]], graph.indptr[path[-1] + 1])
@@ -88,7 +89,8 @@ class FreeSpace:
 
     def move(self, xy: np.ndarray, heading: float, metres: float) -> tuple[np.ndarray, bool]:
         """Move straight and slide along walls, as agents do in VLN-CE's R2R; return (xy,
-        collided)."""
+        collided).
+        """
         dx, dy = -np.sin(heading), np.cos(heading)
         distance = _march(self.free, xy[0], xy[1], dx, dy, metres)
         new = np.array([xy[0] + dx * distance, xy[1] + dy * distance])
@@ -102,7 +104,8 @@ class FreeSpace:
 
     def rays(self, xy: np.ndarray, count: int, reach: float) -> np.ndarray:
         """Return free distances in metres (at most ``reach``) along ``count`` even headings from 0
-        (CCW)."""
+        (CCW).
+        """
         return _rays(self.free, float(xy[0]), float(xy[1]), count, reach)
 
 

@@ -123,7 +123,8 @@ class Renderer:
         """Render the current scene at a pose.
 
         Args:
-            x, y: plan position in metres.
+            x: plan position in metres.
+            y: plan position in metres.
             heading: counter-clockwise radians.
             views: views to draw; all other views are 0, and -1 in ids. The pixels of drawn views do
                 not depend on this.
@@ -261,7 +262,8 @@ def _make_pipe(core: Any) -> Any:
 
 def _id_colours(ids: np.ndarray) -> np.ndarray:
     """Encode face id + 1 in base 32 as colours float32 [n, 3], which are not affected by
-    rounding."""
+    rounding.
+    """
     code = ids + 1
     digits = np.stack([code % 32, code // 32 % 32, code // 1024 % 32], 1)
     return (digits * 8 + 4).astype(np.float32) / 255

@@ -41,7 +41,8 @@ def goal_field(scene_id: str, goals: tuple[tuple[float, float, float], ...]) -> 
 
 class Simulator:
     """Simulator of one agent in one apartment. Actions and step limit come from VLN-CE
-    (``core/observation.py``)."""
+    (``core/observation.py``).
+    """
 
     def __init__(self, size: int = 64, renderer: Renderer | None = None) -> None:
         self.size = size
@@ -141,7 +142,8 @@ class Simulator:
 
     def distance_to_goal(self, xy: np.ndarray | None = None) -> float:
         """Return the geodesic distance in metres from ``xy`` (default: the agent) to the nearest
-        goal."""
+        goal.
+        """
         return float(self.field[self.space.cell_of(self.xy if xy is None else xy)])
 
 

@@ -189,7 +189,8 @@ def _view_field(scene_id: str, things: tuple[int, ...]) -> np.ndarray:
 
 def fixed_episodes(split: str, task: str, count: int) -> Iterator[Episode]:
     """Yield the episodes of a validation split: ``_PER_APARTMENT`` episodes per apartment, by
-    seed."""
+    seed.
+    """
     low, _ = SEED_RANGES[split]
     for number in range(count):
         yield make_episode(Apartment(low + number // _PER_APARTMENT), task, number % _PER_APARTMENT)
@@ -240,6 +241,7 @@ def load_episodes(split: str, task: str = "vln") -> list[Episode]:
 
 
 def main() -> None:
+    """Write the episode list of a split from the command line."""
     parser = argparse.ArgumentParser(
         description="Write the fixed episode list of a split as a VLN-CE file."
     )

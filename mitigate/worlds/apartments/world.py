@@ -157,7 +157,8 @@ class ApartmentsWorld(World):
 
     def _field(self) -> np.ndarray:
         """Return the distance in metres from each free cell to the rule's target (goal or view
-        points)."""
+        points).
+        """
         points = RULES[self._rule].view_points
         return view_field(self.simulator.episode) if points else self.simulator.field
 
@@ -254,7 +255,8 @@ class ApartmentsWorld(World):
 
     def enter(self, scene: str) -> None:
         """Select the scene that ``point`` and ``put`` use. Raises ValueError for an unknown
-        scene."""
+        scene.
+        """
         self._entered: Apartment = apartment_of(scene)
 
     def point(self, rng: np.random.Generator) -> np.ndarray:

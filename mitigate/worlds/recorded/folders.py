@@ -394,7 +394,8 @@ def _read_tum(path: Path, hfov: float | None, unit: float) -> Frames:
 
 def _read_list(path: Path, name: str) -> list[tuple[float, Path]]:
     """Read the lines of a list of images as (time, file); raise ValueError for a file outside the
-    folder."""
+    folder.
+    """
     return sorted(_read_entry(path, name, line, row) for line, row in _read_rows(path / name, 2))
 
 

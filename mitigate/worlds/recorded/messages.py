@@ -163,7 +163,8 @@ def _read_compressed(message: Any, kind: str, path: Path) -> np.ndarray:
 
 def _is_image(data: np.ndarray) -> bool:
     """Return whether the bytes start like a PNG or JPEG of an allowed size, without decoding
-    them."""
+    them.
+    """
     try:
         with Image.open(io.BytesIO(data.tobytes()), formats=("PNG", "JPEG")) as opened:
             return max(opened.size) <= MAX_SIDE

@@ -243,7 +243,8 @@ def _partial_view(
 
 def _resize(frame: np.ndarray, width: int, height: int, is_depth: bool) -> np.ndarray:
     """Resize a frame. Depth is resized to the nearest pixel, so that missing depth stays
-    missing."""
+    missing.
+    """
     shrinks = width < frame.shape[1] or height < frame.shape[0]
     smooth = cv2.INTER_AREA if shrinks else cv2.INTER_LINEAR
     return cv2.resize(

@@ -1,5 +1,6 @@
 """Read and write a LoRA adapter on disk, in PEFT's folder format with a card that names its base
-model."""
+model.
+"""
 
 from __future__ import annotations
 

@@ -82,7 +82,8 @@ class ChatEndpoint:
 
     def rewrite(self, texts: Sequence[str], seconds: float | None = None) -> list[str | None]:
         """Return the answer to each text, or None if there was no usable answer in time
-        (``seconds``). The reasons are listed in ``failures``."""
+        (``seconds``). The reasons are listed in ``failures``.
+        """
         ends = None if seconds is None else time.monotonic() + seconds
         progress = tqdm(texts, desc=self.model, disable=None if len(texts) > 8 else True)
         return [self._answer(text, ends) for text in progress]

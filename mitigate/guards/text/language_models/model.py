@@ -82,7 +82,8 @@ class LanguageModel(nn.Module):
 
     def loss(self, inputs: dict[str, Tensor]) -> tuple[Tensor, Tensor]:
         """Return the summed cross-entropy over the completions of :func:`collate`, and correct
-        tokens."""
+        tokens.
+        """
         keep = inputs["completion"].shape[1]
         logits = self.network(
             input_ids=inputs["input_ids"],
@@ -126,7 +127,8 @@ class LanguageModel(nn.Module):
     @contextmanager
     def untuned(self) -> Iterator[LanguageModel]:
         """Yield the model as before fine-tuning: without adapter, and with the explanatory
-        prompt."""
+        prompt.
+        """
         tuned, self.prompt = self.prompt, "prompted"
         from peft import PeftModel
 

@@ -79,7 +79,8 @@ VARIED: tuple[tuple[str, Unpack[tuple[tuple[str, ...], ...]]], ...] = (
 @dataclass(frozen=True)
 class Pair:
     """``source`` is the text that the model reads, ``target`` the plain text, and ``kind`` one of
-    ``KINDS``."""
+    ``KINDS``.
+    """
 
     source: str
     target: str
@@ -88,7 +89,8 @@ class Pair:
 
 def draw_pair(seed: int, index: int, texts: Sequence[str] = (), share: float = 0.5) -> Pair:
     """Return pair ``index`` of ``seed``; a fraction ``share`` of all pairs is made from
-    ``texts``."""
+    ``texts``.
+    """
     from_templates = not texts or generator(seed, "own", index).random() >= share
     hand_written = from_templates and spoken.available()
     kinds = {kind: part for kind, part in KINDS.items() if hand_written or kind != "spoken"}
@@ -167,7 +169,8 @@ _MAKE = {
 
 def attacks(rng: np.random.Generator) -> list[str]:
     """Return one to three misleading sentences of the train split, or variations of its
-    families."""
+    families.
+    """
     bank = [sentence for group in prefixes("train").values() for sentence in group]
     return [
         bank[int(rng.integers(len(bank)))] if rng.random() < 0.4 else vary(rng)

@@ -80,7 +80,8 @@ def read_lines(folder: Path, routes: int = ROUTES) -> list[Line]:
 
 def _json(file: Path, *keys: str) -> Iterator[dict[str, Any]]:
     """Yield the objects in a JSON-lines file. Raises ValueError for a line that is not a JSON
-    object with texts under ``keys``."""
+    object with texts under ``keys``.
+    """
     with open(file, encoding="utf-8") as opened:
         for number, line in enumerate(opened, 1):
             if not line.strip():
