@@ -135,16 +135,26 @@ def main(arguments: Sequence[str] | None = None) -> None:
         sys.path.insert(0, os.getcwd())
     name, *options = [*(sys.argv[1:] if arguments is None else arguments), ""]
     options = options[:-1]
+    try:
+        status = _run(name, options)
+        sys.stdout.flush()
+    except BrokenPipeError:  # the program that reads the output, such as head, has closed it
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        status = 128 + signal.SIGPIPE
+    sys.exit(status)
+
+
+def _run(name: str, options: Sequence[str]) -> int | None:
+    """Run the command ``name`` and return its exit status."""
     if name in ("", "-h", "--help", "help"):
         print(usage())
-        sys.exit(0 if name else 2)
+        return 0 if name else 2
     name = name.replace("-", "_")
     if name not in COMMANDS:
         sys.exit(f"mitigate: {unknown('command', name, COMMANDS)} See mitigate --help.")
     sys.argv = [f"mitigate {name}", *options]
     try:
-        status = import_module(COMMANDS[name].module).main()
-        sys.stdout.flush()
+        return import_module(COMMANDS[name].module).main()
     except ModuleNotFoundError as error:
         message = missing_package_message(f"mitigate {name}", error, COMMANDS[name].extra)
         if not message:
@@ -153,11 +163,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     # commands that can resume catch this themselves and print how to resume
     except KeyboardInterrupt:
         print(f"\nmitigate {name}: stopped.", file=sys.stderr)
-        status = 128 + signal.SIGINT
-    except BrokenPipeError:  # the program that reads the output, such as head, has closed it
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        status = 128 + signal.SIGPIPE
-    sys.exit(status)
+        return 128 + signal.SIGINT
 
 
 def usage() -> str:
