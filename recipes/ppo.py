@@ -8,7 +8,7 @@ sees the clean frames.
 A round of rollouts is a number of whole episodes. Each round gives a fixed number of steps. The
 collectors of torchrl are not used, because their environments keep running between rounds: a
 resumed training could not return to their state. Here each episode starts from its seed, and a
-resumed training repeats the round that was interrupted with the weights of its start. So it ends
+resumed run repeats the interrupted round with the weights that this round began with. So it ends
 with the same bits if the environment gives the same episode for the same seed and actions.
 """
 

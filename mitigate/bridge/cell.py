@@ -134,7 +134,7 @@ def _compare_events(folder: Path, entries: Mapping[str, Any]) -> None:
     count = entries["episodes_told"]
     if not output.is_regular(events):
         raise damaged(folder, f"the file is missing, and {DONE} records {count} episodes")
-    # the error from reading names the damaged line
+    # the error message of the reader states the damaged line
     reports = results.read(folder, count_closed=True)
     seal = entries.get("events")
     if seal is not None:

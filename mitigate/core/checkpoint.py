@@ -126,8 +126,8 @@ def check_finite(module: nn.Module, what: str) -> None:
     bad = not_finite(module)
     if bad:
         raise ValueError(
-            f"{what} hold NaN or infinity in {len(bad)} tensors ({', '.join(bad[:3])}): the "
-            "training that made them diverged. Choose other weights, or train again with a lower "
+            f"{what} hold NaN or infinity in {len(bad)} tensors ({', '.join(bad[:3])}): their "
+            "training diverged. Choose other weights, or train again with a lower "
             "trainer.lr."
         )
 

@@ -22,7 +22,7 @@ GZIP_MAGIC = b"\x1f\x8b"  # RFC 1952
 # first line of a pointer file (Git LFS specification)
 LFS_START = b"version https://git-lfs.github.com/spec/"
 RECORDING = "recording.json"  # file in the folder of a recording by `mitigate run record=FOLDER`
-LONGEST_DRAFT = 200  # maximum bytes of a file's name in the name of its unfinished file
+LONGEST_DRAFT = 200  # maximum bytes of the final name that the temporary name contains
 # A gzip file may unpack to FREE + RATIO * its size in bytes (heuristic; our files have 15 to 31).
 RATIO = 128
 FREE = 1 << 24

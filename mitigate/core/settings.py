@@ -94,7 +94,7 @@ def read_agent(file: Path, target: str, known: Collection[str]) -> dict[str, Any
 
 
 def named(target: object) -> str:
-    """Return the value of ``agent=`` for the class ``target``, or "" if no file has one."""
+    """Return the option ``agent=`` that selects the class ``target``, or "" if no file does."""
     files = sorted((PACKAGE / "conf" / "agent").glob("*.yaml"))
     for file in files:
         lines = file.read_text(encoding="utf-8").splitlines()

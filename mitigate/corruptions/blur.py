@@ -177,9 +177,9 @@ def _weigh_columns(row, centre, step, weights, rounding, total):
 def gaussian(views, weights, levels, out):
     """Convolve images uint8 [V, H, W, 3] with a separable kernel.
 
-    ``weights`` int16 [r + 1], in units of 1/65536 with r even, are for taps that are 2^levels
-    pixels apart. The first weight is half of the centre weight. The image is first smoothed by (1 2
-    1)/4 with steps of 1, 2, ... 2^(levels - 1) pixels, so that pixels between the taps also
+    ``weights`` int16 [r + 1] (r is even) are in units of 1/65536; neighbouring taps are 2^levels
+    pixels apart. The first weight is half of the centre weight. The image is first smoothed by
+    (1 2 1)/4 with steps of 1, 2, ... 2^(levels - 1) pixels, so that pixels between the taps also
     contribute ("a trous").
     """
     count, height, width, _ = views.shape

@@ -66,9 +66,7 @@ def larger(row, other):
 
 @njit(cache=True)
 def farthest_along(row, spare, reach):
-    """Replace each entry by the maximum of the 2 reach + 1 entries that start with it, by
-    doubling.
-    """
+    """Replace entry i by the maximum of entries i to i + 2 reach, by doubling the window."""
     have, want, size = 1, 2 * reach + 1, row.size
     while have < want:
         step = min(have, want - have)

@@ -38,7 +38,7 @@ class Record:
         label: Title in tables; by default the name in words.
         source: Sources of the constants, in a word or two.
         episode: What is drawn once per episode.
-        frame: What is drawn for each frame.
+        frame: Which random values are drawn for each frame.
         version: Version of a corruption outside the suite; rows of another version are not reused.
             Those of the suite have the version of the suite.
         half: Half of an unseen corruption, ``VALIDATION`` or ``TEST``. Methods may be chosen on the

@@ -44,8 +44,8 @@ class Schedule:
         severity_depth: s for depth corruptions; None means ``severity``.
         clean_share: Fraction of frames (``per_frame``) or episodes that stay clean, in [0, 1].
         names: Corruptions to choose from.
-        broad_share: Fraction in [0, 1] of corrupted frames or episodes that get a random
-            composition (``broad``) with the modality of the sampled corruption instead.
+        broad_share: Fraction in [0, 1] of corrupted frames or episodes in which a random
+            composition (``broad``) of the same modality replaces the sampled corruption.
         alpha: Exponent in the weights of ``success_distributed``, >= 0.
         floor: Minimum of the weights, >= 0; if above 0, every corruption can be sampled.
         success: SR_k in [0, 1] by name; None means uniform weights until ``refresh``.

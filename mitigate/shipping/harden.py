@@ -56,7 +56,7 @@ from mitigate.worlds.seeded import FIRST_TRAINING_SEED, seeded_episodes
 from mitigate.worlds.world import World
 
 OUT = Path("runs/harden")
-EPISODES = 50  # default episodes of the comparison (heuristic): SR within about 10 points
+EPISODES = 50  # default number of compared episodes (heuristic): accurate to about 10 points of SR
 TUNE = ("all", "adapters")
 SPLIT = "compared"
 METHODS: dict[str, type[Objective]] = {"self_distil": SelfDistil, "ppo": Ppo}

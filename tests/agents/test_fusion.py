@@ -133,7 +133,10 @@ def planner(fusion: dict | None) -> Planner:
 
 @torch.no_grad()
 def ghosts(fusion: dict | None, features: torch.Tensor, sightings: torch.Tensor) -> torch.Tensor:
-    """Return the tokens of ghosts that the flat views ``sightings`` [G, 4] faced."""
+    """Return the tokens of ghosts, which are waypoints that were seen but not visited.
+
+    The flat views ``sightings`` [G, 4] faced them.
+    """
     model, batch = planner(fusion), collate([decision(4)], [0], [0])
     batch.sightings[0, : len(sightings)] = sightings
     tokens = model.look(features)

@@ -111,7 +111,7 @@ def cost(
         bar: The target in milliseconds; None without a target.
     """
     tiny = np.ascontiguousarray(frame[:, :TINY, :TINY])
-    heading = 0.3 if len(frame) > 1 else None  # without a heading, a single view has the flare
+    heading = 0.3 if len(frame) > 1 else None  # without heading: the flare is in one view
 
     def episode(i, image=frame, number=0):
         key = Key(SEED, f"bench {number}", i)

@@ -312,7 +312,10 @@ class FrontierAgent(SideBySide, nn.Module):
         return cells[int(cost.argmin())] if np.isfinite(cost.min()) else None
 
     def _frontier(self, ways: Routes) -> np.ndarray | None:
-        """Return the nearest cell [2] of the frontier with the highest value minus path cost."""
+        """Choose the frontier with the highest value minus path cost.
+
+        Returns its nearest cell [2].
+        """
         best = -np.inf
         target = None
         for group in frontiers(self.grid):

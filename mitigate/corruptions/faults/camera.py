@@ -40,7 +40,7 @@ class Mount:
         pitch: Degrees up.
         roll: Degrees clockwise, seen from behind the camera.
         yaw: Degrees to the left.
-        fov: Degrees that the horizontal field of view is wider.
+        fov: Degrees by which the horizontal field of view is widened.
     """
 
     height: float = 0.0

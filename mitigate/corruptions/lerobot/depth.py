@@ -28,7 +28,7 @@ class DepthCode:
 
     Attributes:
         near: Metres of code 0.
-        far: Metres of code ``MAX_CODE``.
+        far: Depth in metres that the code ``MAX_CODE`` stands for.
         shift: Metres added before the logarithm.
         log: Whether codes are logarithmic.
     """

@@ -18,7 +18,7 @@ from mitigate.core.progress import Progress
 
 OUT = Path("runs/report.html")
 ROWS = "docs/results"
-MOST_WALKS = 200  # maximum number per page (heuristic), because each has a picture of about 100 KB
+MOST_WALKS = 200  # maximum episodes per page (heuristic): each adds a picture of about 100 KB
 
 
 def run(

@@ -136,7 +136,7 @@ class Classifier:
         return self.of_sums(*self.total(clauses))
 
     def total(self, clauses: Sequence[Clause]) -> tuple[float, float]:
-        """Return the sums of ``product`` and ``square`` over some clauses."""
+        """Return the sum of ``product`` and the sum of ``square`` over some clauses."""
         return sum(c.product for c in clauses), sum(c.square for c in clauses)
 
     def of_sums(self, product: float, square: float) -> float:

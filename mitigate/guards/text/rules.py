@@ -26,7 +26,7 @@ _SHOUT = re.compile(r"(?<![\[<])\b[A-Z][A-Z'’]+\b")
 _VERBS = MOTION | STOPS | TURN_VERBS
 _NOUNS = frozenset(CANONICAL) | frozenset(CANONICAL.values())
 _ROOMS = bag("dining living sitting waiting landing ceiling building opening railing painting")
-# Words that may follow a hidden noun.
+# Words that may follow a masked noun.
 _BEHIND = SMALL | bag(
     "beside behind under between before past down up through across opposite towards toward "
     "but without not again until facing leading closest nearest along around near above below out "
@@ -95,8 +95,9 @@ def fill_masks(text: str) -> str:
 
 
 def _hidden_adjective(match: re.Match[str]) -> str:
-    """Return the replacement of "the [mask]". If a noun follows, it is "the". Otherwise the
-    mask hides a noun, and the text is kept.
+    """Return the replacement of "the [mask]".
+
+    If a noun follows the mask, it is "the". Otherwise the mask hides a noun, and the text is kept.
     """
     which, behind = match["which"], match["next"].lower()
     doing = behind.endswith("ing") and behind not in _NOUNS | _ROOMS

@@ -78,7 +78,7 @@ def alone(rewriter: Rewriter) -> Repairer:
 
 
 def guarded(safeguard: Safeguard) -> Repairer:
-    """Return a safeguard as a repairer."""
+    """Return a safeguard as a function that repairs an instruction."""
     return lambda texts: [decision.text for decision in safeguard.canonicalise_all(texts)]
 
 

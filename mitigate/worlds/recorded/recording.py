@@ -40,7 +40,7 @@ NO_ACTION = -1
 OBSERVED = "observation."  # names of signals that an agent may read begin with this
 
 # Heuristic limits.
-# as a fraction of a step, so that rounding does not skip a step of exactly full length
+# tolerance in steps, so that rounding does not lose a motion of exactly one step
 STEP_TOLERANCE = 0.98
 MIN_MOVE = 0.05  # in metres; the odometry of a standing robot moves by less
 MIN_LAST_STEP = 0.5  # as a fraction of a step; a shorter last step is merged into the previous step
