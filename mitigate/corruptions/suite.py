@@ -320,6 +320,11 @@ def corrupt(
             "(docs/faults.md)."
         )
     rgb = record.modality == "rgb" or (record.modality == FRAMES and frame.dtype == np.uint8)
+    if record.modality == "rgb" and frame.dtype.kind == "f" and frame.shape[-1:] != (3,):
+        raise ValueError(
+            f"{name} needs an RGB frame [H, W, 3], but {frame.dtype} {list(frame.shape)} looks "
+            f"like depth. Corruptions of depth: {', '.join(registry.known('depth'))}."
+        )
     views = rgb_views(frame) if rgb else depth_views(frame, sensor, name)
     if severity == 0.0:
         return frame.copy()

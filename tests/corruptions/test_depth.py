@@ -200,3 +200,8 @@ def test_half_size_depth_is_corrupted_alike(scene):
             for z in (full, half)
         ]
         assert errors[0] == pytest.approx(errors[1], rel=0.15), name
+
+
+def test_corrupt_names_the_depth_corruptions_for_depth_under_an_rgb_corruption():
+    with pytest.raises(ValueError, match=r"spatter needs an RGB frame .* missing_data"):
+        corrupt(np.ones((8, 8), np.float32), "spatter", 0.5, key=0)
