@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 import signal
 import subprocess
@@ -131,10 +132,9 @@ def test_closed_pipe_ends_the_command_silently():
 
 
 def test_help_into_a_closed_pipe_ends_without_a_traceback():
+    reader, writer = os.pipe()
+    os.close(reader)
     program = "from mitigate.cli import main; main(['--help'])"
-    process = subprocess.Popen(
-        [sys.executable, "-c", program], stdout=subprocess.PIPE, stderr=subprocess.PIPE
-    )
-    process.stdout.close()
-    assert (process.stderr.read(), process.wait()) == (b"", 128 + signal.SIGPIPE)
-    process.stderr.close()
+    process = subprocess.run([sys.executable, "-c", program], stdout=writer, stderr=subprocess.PIPE)
+    os.close(writer)
+    assert (process.stderr, process.returncode) == (b"", 128 + signal.SIGPIPE)
