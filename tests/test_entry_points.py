@@ -71,7 +71,7 @@ def test_commands_run(code, tmp_path):
 
 
 def test_named_options_match_the_code():
-    listed = re.search(r"Options \(`CorruptObservationConfig`\): (.*?)\. An", PAGE, re.DOTALL)
+    listed = re.search(r"options \(`CorruptObservationConfig`\) are (.*?)\. An", PAGE, re.DOTALL)
     assert listed is not None
     names = re.findall(r"`(\w+)`", listed[1])
     assert names == [n for n in CorruptObservationConfig.__dataclass_fields__ if n != "type"]
