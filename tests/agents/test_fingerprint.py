@@ -637,6 +637,7 @@ def test_code_of_reads_packages_and_skips_what_is_not_python(tmp_path, monkeypat
         sys.modules.pop(name)
 
 
+@pytest.mark.slow
 def test_fingerprint_does_not_depend_on_the_hash_seed():
     program = (
         "from mitigate.agents.fingerprint import code_of\n"

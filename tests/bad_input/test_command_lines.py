@@ -99,14 +99,21 @@ WRONG = {
 }
 # these command lines run through Hydra, which takes three times as long as only composing
 THROUGH_HYDRA = {"trainer.lr=inf", "severity=2", "recipe=", "agent=hello", "a b", "x=[1,2"}
-LINES = [(name, *line) for name, lines in WRONG.items() for line in lines]
-IDS = [f"{name} {option[:40]}" for name, option, _ in LINES]
+LINES = [
+    pytest.param(
+        *(name, option, words),
+        id=f"{name} {option[:40]}",
+        marks=[pytest.mark.slow] * (number % 4 > 0),
+    )
+    for name, lines in WRONG.items()
+    for number, (option, words) in enumerate(lines)
+]
 FAST = settings(
     max_examples=60, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
 )
 
 
-@pytest.mark.parametrize(("name", "option", "words"), LINES, ids=IDS)
+@pytest.mark.parametrize(("name", "option", "words"), LINES)
 def test_wrong_option_is_named_before_anything_is_written(
     tmp_path, monkeypatch, capsys, name, option, words
 ):

@@ -51,6 +51,7 @@ def test_attempt_begins_in_an_empty_folder(run, skips, tmp_path):
     assert (aside / "events.jsonl").exists()
 
 
+@pytest.mark.slow
 def test_attempt_keeps_finished_result_until_next_one_finishes(run, skips, tmp_path):
     out, recorded = tmp_path / "o", tmp_path / "recorded"
     options, fails = f"conditions=[clean] record={recorded}", tmp_path / "fails"

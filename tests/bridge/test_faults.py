@@ -47,6 +47,7 @@ def test_hook_stops_if_the_server_is_killed(tmp_path):
     assert agent.returncode == 97 and "server" in output
 
 
+@pytest.mark.slow
 def test_hook_stops_if_the_server_does_not_answer(tmp_path):
     with Listener(condition("spatter"), tmp_path, patience=1.0) as listener:
         agent = start(listener, tmp_path, "--pause", 0.2, "--steps", 100)

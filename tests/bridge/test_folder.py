@@ -102,7 +102,7 @@ time.sleep(30)
 """
 
 
-@pytest.mark.parametrize("session", ["", "os.setsid()"])
+@pytest.mark.parametrize("session", ["", pytest.param("os.setsid()", marks=pytest.mark.slow)])
 def test_run_reports_the_episode_of_a_background_process(run, tmp_path, monkeypatch, session):
     from mitigate.bridge import attempt
 

@@ -62,6 +62,10 @@ def sleeper(tmp_path):
         os.kill(pid, signal.SIGKILL)
 
 
+def slow(value):
+    return pytest.param(value, marks=pytest.mark.slow)
+
+
 def running(folder):
     """Return the processes whose command line names the program in ``folder``."""
     matches = []
@@ -74,7 +78,7 @@ def running(folder):
     return [pid for pid in matches if pid != os.getpid()]
 
 
-@pytest.mark.parametrize("how", DETACHED)
+@pytest.mark.parametrize("how", ["setsid", *(slow(how) for how in DETACHED if how != "setsid")])
 def test_run_does_not_finish_a_condition_whose_command_detaches(run, sleeper, tmp_path, how):
     result = run(tmp_path / "o", "conditions=[clean]", sleeper(how))
     assert result.returncode == 1 and "1 process that it started still ran" in result.stderr, (
@@ -146,7 +150,7 @@ CHILDREN = {
 }
 
 
-@pytest.mark.parametrize("child", CHILDREN)
+@pytest.mark.parametrize("child", ["keeps its environment", slow("clears its environment")])
 def test_run_ends_processes_whose_parent_was_killed(run, tmp_path, child):
     file = tmp_path / "nav.py"
     file.write_text(

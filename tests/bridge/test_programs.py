@@ -152,6 +152,7 @@ episode.finish(success=1, spl=1.0)
 """
 
 
+@pytest.mark.slow
 def test_adapters_are_attached_to_an_encoder(tmp_path, monkeypatch):
     (tmp_path / "their_encoder.py").write_text(ENCODER)
     (tmp_path / "program.py").write_text(PROGRAM)

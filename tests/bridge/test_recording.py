@@ -20,6 +20,7 @@ from mitigate.encoders.sources import TRAIN, UNSEEN, FolderFrames
 from .conftest import AGENT, condition
 
 
+@pytest.mark.slow
 def test_recorder_writes_clean_frames_poses_actions_and_measures(command, tmp_path):
     folder = tmp_path / "recording"
     met = condition("low_light", observers=[Recorder(folder)])

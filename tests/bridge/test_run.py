@@ -56,6 +56,7 @@ def test_run_measures_a_program_and_resumes(run, tmp_path):
     assert other.returncode == 1 and "was run with another seed" in other.stderr
 
 
+@pytest.mark.slow
 def test_run_chooses_equal_episodes_in_every_condition(run, tmp_path):
     result = run(
         tmp_path / "o", "corruption=spatter episodes=5", f"{AGENT} --episodes 24 --workers 2"
@@ -116,6 +117,7 @@ def test_run_explains_failed_commands(run, tmp_path, command, words):
     assert result.returncode == 1 and words in result.stderr, result.stderr
 
 
+@pytest.mark.slow
 def test_run_does_not_hang_after_a_dead_worker(run, tmp_path):
     result = run(
         tmp_path / "o",

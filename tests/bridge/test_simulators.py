@@ -125,6 +125,7 @@ def test_corrupt_stops_for_a_corrupted_frame(tmp_path, again):
     assert process.returncode == 97 and "is corrupted already" in reports.problems[0]
 
 
+@pytest.mark.slow
 def test_close_leaves_nothing_behind(tmp_path):
     code = ENV + (
         "import gc, time\nopen_files = []\n"

@@ -58,6 +58,7 @@ def bomb(path, size):
     return path
 
 
+@pytest.mark.slow
 def test_gzip_bomb_is_rejected_before_unpacking(tmp_path):
     path = bomb(tmp_path / "bomb.gz", 1 << 28)
     before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss

@@ -351,6 +351,7 @@ def test_every_shipped_agent_builds_from_its_settings(folder):
     assert settings.read(folder / loading.CONFIG)["agent"]
 
 
+@pytest.mark.slow
 def test_every_config_makes_settings_that_are_read_again(tmp_path):
     for recipe in sorted((ROOT / "conf/recipe").glob("*.yaml")):
         cfg = conf.load_config("train", [f"recipe={recipe.stem}"])

@@ -196,6 +196,7 @@ def test_ctrl_c_ends_workers_during_a_job(tmp_path):
     assert not alive(stopped_by(signal.SIGINT, tmp_path))
 
 
+@pytest.mark.slow
 def test_workers_whose_parent_was_killed_end_after_their_job(tmp_path):
     pids, end = stopped_by(signal.SIGKILL, tmp_path), time.monotonic() + 5
     while alive(pids):

@@ -68,6 +68,7 @@ def test_tables_match_the_slow_sampler(severity, level):
     assert rows[0].std() == pytest.approx(rows[1].std(), rel=0.15, abs=0.1)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("severity", [0.3, 0.6, 1.0])
 @pytest.mark.parametrize("level", [12, 90, 220])
 def test_distribution_matches_the_slow_sampler(severity, level):

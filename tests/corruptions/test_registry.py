@@ -102,6 +102,7 @@ def run(installed: dict[str, str], folder: Path, *command: str) -> str:
     return done.stdout
 
 
+@pytest.mark.slow
 def test_external_corruption_joins_a_suite_and_a_schedule(
     add_to_path, tmp_path, monkeypatch, capsys
 ):

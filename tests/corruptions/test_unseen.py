@@ -59,6 +59,7 @@ def test_unknown_half_is_rejected():
         Record("fog", "rgb", lambda views, *_: views, "s", half="train")
 
 
+@pytest.mark.slow
 def test_unseen_corruptions_are_in_their_suites_only():
     def suite(name: str) -> list[str]:
         return list(conf.load_config("evaluate", [f"suite={name}"]).suite.conditions)
@@ -92,6 +93,7 @@ def drawn(node: dict) -> set[str]:
     return matches | set(schedule.names)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("option", [f"recipe={r}" for r in RECIPES])
 def test_recipes_draw_no_unseen_corruption(option):
     cfg = OmegaConf.to_container(conf.load_config("train", [option]), resolve=True)

@@ -153,6 +153,7 @@ def test_module_imports_only_numpy_and_torch():
     assert not [n for n in ast.walk(tree) if isinstance(n, ast.ImportFrom)]
 
 
+@pytest.mark.slow
 def test_module_works_as_a_copy(tmp_path):
     """The check runs in a separate process that cannot import this project."""
     saved(tmp_path)

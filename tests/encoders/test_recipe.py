@@ -66,7 +66,7 @@ def config(tmp_path, pictures, *options: str):
     return conf.load_config("train", [*settings, *small, f"runs={tmp_path}", "workers=0"])
 
 
-@pytest.mark.parametrize("gate", [False, True])
+@pytest.mark.parametrize("gate", [pytest.param(False, marks=pytest.mark.slow), True])
 def test_training_reduces_the_distance_to_clean_features(tmp_path, pictures, gate):
     encoder = result(adapters={"targets": [r"blocks\.\d"], "reduction": 1, "gate": gate})
     recipe = recipe_of(encoder, pictures)
@@ -124,6 +124,7 @@ def test_training_writes_a_folder_for_plain_torch(tmp_path, pictures, capsys):
     assert sum(p.abs().sum() for p in adapter_parameters(again.model)) > 0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("tune", ["all", "adapters"])
 def test_training_of_an_exported_program(tmp_path, pictures, tune):
     adapters = {"targets": [r"blocks\.\d"]} if tune == "adapters" else None
@@ -140,6 +141,7 @@ def test_training_of_an_exported_program(tmp_path, pictures, tune):
     assert torch.equal(recipe.teacher(frames), result(model=net, tune="all", output=None)(frames))
 
 
+@pytest.mark.slow
 def test_report_compares_with_the_initial_encoder(tmp_path, pictures):
     own_value = ["agent=encoder", "agent.model=tests.encoders.shapes:TinyNet", "agent.output=pool"]
     # new random weights, which are hardly trained
@@ -197,6 +199,7 @@ def test_training_tunes_all_weights(tmp_path, pictures):
     assert torch.equal(plain.stem.weight, again.model.stem.weight)
 
 
+@pytest.mark.slow
 def test_training_of_a_depth_encoder(tmp_path):
     own_value = [
         "recipe=encoder",

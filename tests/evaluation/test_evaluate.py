@@ -129,6 +129,7 @@ class Net(nn.Linear):
         return int(self.bias.argmax())
 
 
+@pytest.mark.slow
 def test_load_accepts_foreign_safetensors(policies, tmp_path):
     net = Net()
     nn.init.constant_(net.bias, 0.0)

@@ -61,6 +61,7 @@ def test_two_workers_give_the_rows_of_one(finished, tmp_path):
     assert (tmp_path / "rows.jsonl").read_bytes() == (folder / "rows.jsonl").read_bytes()
 
 
+@pytest.mark.slow
 def test_evaluate_rejects_workers_whose_classes_are_others(tmp_path, monkeypatch):
     agent = Straight(1)
     run(tmp_path / "equal", workers=2, agent=agent, conditions=[CLEAN])
@@ -77,6 +78,7 @@ def test_evaluate_warns_of_conflicting_rows(tmp_path):
         assert run(tmp_path, agent=Straight(1), conditions=[CLEAN]) == [other, one[1]]
 
 
+@pytest.mark.slow
 def test_rows_behind_a_restorer_are_of_another_agent(tmp_path):
     conditions = [CLEAN, Corruption("black_out", 0.9)]
     seen = []
@@ -100,6 +102,7 @@ def test_rows_behind_a_restorer_are_of_another_agent(tmp_path):
     assert run(tmp_path, episodes=1, conditions=conditions, guards=Guards([restorer])) != behind
 
 
+@pytest.mark.slow
 def test_rows_with_a_callable_do_not_depend_on_workers(tmp_path):
     guards = open_guards("classifier", "tests.guards.filters:Brighter")
     conditions = [CLEAN, Corruption("low_light", 0.9), Corruption("black_box", 0.9)]

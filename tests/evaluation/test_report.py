@@ -266,6 +266,7 @@ def test_heading_names_the_agents():
     assert "Several seeds" not in markdown([mild]) and "Several seeds" in markdown([strong])
 
 
+@pytest.mark.slow
 def test_table_accepts_seeds_and_a_reference(tmp_path, capsys):
     records = column(8, ALL) + column(2, ALL, seed=1) + column(6, ALL, **HARD)
     (tmp_path / "rows.jsonl").write_text("".join(json.dumps(r) + "\n" for r in records))
@@ -322,6 +323,7 @@ def test_pictures_show_what_was_measured(tmp_path):
         assert f"({path.name})" in paths[0].read_text("utf-8")
 
 
+@pytest.mark.slow
 def test_table_command_joins_files_and_folders(tmp_path, capsys):
     rows.append(tmp_path / "runs/base/rows.jsonl", column(8, ALL))
     rows.append(tmp_path / "hardened.jsonl.gz", column(7, ALL, **HARD))

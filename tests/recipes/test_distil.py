@@ -175,7 +175,7 @@ def test_policy_kl_is_zero_for_equal_policies_and_ignores_masks():
     ("kind", "modality"),
     [
         ("views", "rgb"),
-        ("adapters", "depth"),
+        pytest.param("adapters", "depth", marks=pytest.mark.slow),
         pytest.param("views", "depth", marks=pytest.mark.slow),
         pytest.param("adapters", "rgb", marks=pytest.mark.slow),
     ],
@@ -202,6 +202,7 @@ def test_adapters_train_alone(tmp_path):
     assert objective.evaluate(2) == {"backbone_unchanged": 1.0} and weights_sha(agent) != start
 
 
+@pytest.mark.slow
 def test_adapt_views_scales_adapters_at_the_end(tmp_path):
     agents = [small(adapters=ADAPTERS) for _ in range(2)]
     for agent, strength in zip(agents, (1.0, 0.25), strict=True):
@@ -221,6 +222,7 @@ def test_adapt_views_scales_adapters_at_the_end(tmp_path):
         assemble(AdaptViews, resumed, modality="rgb", **VIEWS, strength=0)
 
 
+@pytest.mark.slow
 def test_gate_learns_which_views_are_corrupted(tmp_path):
     agent = small(adapters={**ADAPTERS, "gates": ["rgb_encoder.stem"]})
     objective = assemble(AdaptViews, agent, modality="rgb", **VIEWS, own=True)

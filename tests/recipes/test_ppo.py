@@ -120,6 +120,7 @@ def test_ppo_repeats_an_interrupted_round_from_its_state():
     assert task.batch(task.updates)["environment_steps"] == 40
 
 
+@pytest.mark.slow
 def test_ppo_raises_the_return():
     task = objective(rollout=60, batch=60, epochs=8)
     optimizer = torch.optim.Adam([p for p in task.parameters() if p.requires_grad], 1e-2)

@@ -6,12 +6,15 @@ import re
 import sys
 from pathlib import Path
 
+import pytest
+
 from mitigate.core import conf
 from mitigate.training import states, train
 
 PAGE = (Path(__file__).parents[2] / "recipes/README.md").read_text(encoding="utf-8")
 
 
+@pytest.mark.slow
 def test_readme_example_of_a_recipe_trains(tmp_path, monkeypatch):
     (tmp_path / "recipe").mkdir()
     for kind, name in (("python", "steady.py"), ("yaml", "recipe/steady.yaml")):

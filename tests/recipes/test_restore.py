@@ -55,6 +55,7 @@ def test_restore_batch_is_a_function_of_the_step():
     assert set(views) == {1, 12}
 
 
+@pytest.mark.slow
 def test_gate_trains_and_sets_its_threshold(tmp_path):
     arguments = recipe_of(names=("low_light", "foreign_object"), panoramas=2, single=0.0)
     Trainer(arguments, steps=40, lr=2e-3, folder=tmp_path / "first", precision="fp32").fit()

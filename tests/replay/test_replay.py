@@ -340,6 +340,7 @@ def lab(tmp_path):
     return str(path)
 
 
+@pytest.mark.slow
 def test_replay_keeps_other_files_of_its_folder(tmp_path, lab, mitigate):
     out = tmp_path / "out"
     out.mkdir()
@@ -356,6 +357,7 @@ def test_replay_keeps_other_files_of_its_folder(tmp_path, lab, mitigate):
     assert not (out / ".lock").exists()
 
 
+@pytest.mark.slow
 def test_replay_rejects_a_file_or_a_folder_in_use(tmp_path, lab, mitigate):
     out = tmp_path / "out"
     options = ("agents=[checkpoints/recurrent/base]", "conditions=[flare]", f"out={out}")

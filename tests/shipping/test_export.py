@@ -282,6 +282,7 @@ def test_evaluation_and_training_take_a_folder_of_adapters(place):
         building.build_agent(node_of(TINY), weights=folder, seed=0)
 
 
+@pytest.mark.slow
 def test_loading_needs_neither_hydra_nor_the_simulator(place, tmp_path):
     code = """
 import sys

@@ -124,7 +124,11 @@ PPO |= {"suite": ["low_light", "spatter"], "critic_rounds": 0}
 
 @pytest.mark.parametrize(
     ("kind", "options"),
-    [(SelfDistil, SHORT), (SelfDistil, SHORT | {"tune": "adapters"}), (Ppo, PPO)],
+    [
+        (SelfDistil, SHORT),
+        pytest.param(SelfDistil, SHORT | {"tune": "adapters"}, marks=pytest.mark.slow),
+        pytest.param(Ppo, PPO, marks=pytest.mark.slow),
+    ],
 )
 def test_harden_resumes_to_the_same_bits(tmp_path, kind, options, monkeypatch):
     whole = mitigate.harden(trained(), world, listed=FEW, out=tmp_path / "whole", **options)
@@ -145,6 +149,7 @@ def test_harden_resumes_to_the_same_bits(tmp_path, kind, options, monkeypatch):
     assert [r["success"] for r in resumed.rows] == [r["success"] for r in whole.rows]
 
 
+@pytest.mark.slow
 def test_harden_with_adapters_leaves_the_policy_frozen(tmp_path):
     net = trained()
     result = mitigate.harden(net, world, listed=FEW, tune="adapters", out=tmp_path, **SHORT)
@@ -210,6 +215,7 @@ def test_harden_rejects_arguments_before_any_episode(tmp_path, options, message)
     assert not (tmp_path / "rows.jsonl").exists()
 
 
+@pytest.mark.slow
 def test_harden_takes_a_model_of_stable_baselines(tmp_path):
     sb3 = pytest.importorskip("stable_baselines3")
     wide = {"size": 36}

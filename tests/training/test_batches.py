@@ -96,6 +96,7 @@ def test_two_workers_train_the_same_weights_as_zero(ahead, two, tmp_path):
     assert trained(tmp_path / "two", two, ahead=ahead) == alone
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("ahead,busy", [(True, 6), (False, 3)])
 def test_many_workers_work_on_several_steps_at_once(ahead, busy, tmp_path):
     with Workers(7) as workers:
@@ -107,6 +108,7 @@ def test_many_workers_work_on_several_steps_at_once(ahead, busy, tmp_path):
     assert [options[n] for n in range(7)] == [18 // busy] * busy + [0] * (7 - busy)
 
 
+@pytest.mark.slow
 def test_batches_with_lag_do_not_depend_on_workers(two, tmp_path):
     alone = trained(tmp_path / "alone", None, lag=2, save_every=3)
     assert alone != trained(tmp_path / "prompt", None, save_every=3)
@@ -117,6 +119,7 @@ def test_batches_with_lag_do_not_depend_on_workers(two, tmp_path):
         assert trained(tmp_path / "seven", workers, lag=2, save_every=3) == alone
 
 
+@pytest.mark.slow
 def test_workers_do_not_deadlock_on_full_pipes(tmp_path):
     seeding.seed_everything(0, "init")
     recipe = Bulky()
@@ -148,7 +151,15 @@ def test_batches_made_of_no_weights_know_no_lag(two, tmp_path):
 
 
 @pytest.mark.parametrize("where", ["job", "message"])
-@pytest.mark.parametrize("how", [{"ahead": True}, {}, {"lag": 2, "save_every": 0}], ids=str)
+@pytest.mark.parametrize(
+    "how",
+    [
+        pytest.param({"ahead": True}, marks=pytest.mark.slow),
+        {},
+        pytest.param({"lag": 2, "save_every": 0}, marks=pytest.mark.slow),
+    ],
+    ids=str,
+)
 def test_killed_worker_is_replaced_and_nothing_is_lost(how, where, tmp_path, capsys):
     mark = tmp_path / where
     mark.touch()

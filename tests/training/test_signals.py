@@ -100,9 +100,10 @@ def run(folder: Path, number: int) -> subprocess.CompletedProcess:
     )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("number", "status"),
-    [(signal.SIGTERM, 143), pytest.param(signal.SIGINT, 130, marks=pytest.mark.slow)],
+    [(signal.SIGTERM, 143), (signal.SIGINT, 130)],
 )
 def test_interrupted_training_saves_and_resumes_to_the_same_result(tmp_path, number, status):
     ended = run(tmp_path, int(number))

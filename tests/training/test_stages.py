@@ -56,6 +56,7 @@ def test_every_agent_kind_states_its_world_requirements(kind):
     assert conf.load_config("evaluate", [f"agent={kind}"]).checkpoint == cfg.weights.base
 
 
+@pytest.mark.slow
 def test_stage_may_reference_a_removed_one(tmp_path, capsys, monkeypatch):
     monkeypatch.setattr(simulator, "MAX_STEPS", 40)
     small = ["agent.size=16", "env.size=16", "agent.depth_width=8", "init=null", "trainer.steps=1"]

@@ -179,6 +179,7 @@ def test_undefined_or_partial_score_is_marked(tmp_path, quick):
     assert "† 1/8" in report
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "table, split, suite",
     [
@@ -222,6 +223,7 @@ def test_report_can_be_rebuilt_from_rows_only(tmp_path, quick):
     assert not (tmp_path / "again" / "cells").exists()
 
 
+@pytest.mark.slow
 def test_further_evaluations_are_measured_and_reported_apart(tmp_path, quick, monkeypatch):
     """Each evaluation uses the table's options and its own ones, and its rows are stored
     separately."""
@@ -259,6 +261,7 @@ def test_additional_evaluation_limits_episodes(tmp_path, table, requests, walked
     assert conf.load_config("evaluate", measured).episodes == walked
 
 
+@pytest.mark.slow
 def test_null_column_or_evaluation_is_left_out(tmp_path):
     null = ["columns.base=null", "evaluations.pairs=null", "+evaluations.mine=null"]
     columns = less("table2", ["base", "da_per_frame"])  # each option list is composed and checked

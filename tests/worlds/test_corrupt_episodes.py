@@ -146,6 +146,7 @@ def test_run_reports_the_gate_of_a_style(tmp_path):
     assert gate["clauses"] == 3 * gate["rewrites"] and gate["kept_original"] == 0
 
 
+@pytest.mark.slow
 def test_run_memory_does_not_grow_with_the_file(tmp_path):
     peaks = []
     for count in (150, 1200):
@@ -351,6 +352,7 @@ def test_module_runs_as_a_program(tmp_path):
     assert json.loads(printed.stdout)["changed"] == 1 and "notice" in printed.stderr
 
 
+@pytest.mark.slow
 @needs_r2r_ce
 @pytest.mark.parametrize("family", [*MANNERS, "capitalize", "mask", "black_box"])
 def test_run_corrupts_real_r2r_ce_episodes(tmp_path, family):

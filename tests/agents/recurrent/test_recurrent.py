@@ -76,6 +76,7 @@ def test_decide_equals_step_by_step_actions():
         seen = world.step(FORWARD)
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("short_episodes")
 def test_collect_keeps_rollouts_independent():
     new_agent = agent()

@@ -205,6 +205,7 @@ def test_shipped_entry_loads(path):
     assert (ROOT / entry.rows["file"]).is_file() and (ROOT / entry.link).exists()
 
 
+@pytest.mark.slow
 def test_shipped_entry_matches_its_rows_and_a_rerun(tmp_path, monkeypatch):
     """Run two episodes with the shipped weights, clean and with missing depth."""
     entry = load(ROOT / "docs/leaderboard/base.json")

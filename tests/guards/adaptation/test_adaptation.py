@@ -262,6 +262,7 @@ def test_benchmark_adapts_and_separates_its_rows(tmp_path, adapt):
     assert len({row["agent"] for row in rows}) == 2
 
 
+@pytest.mark.slow
 def test_benchmark_without_reset_repeats_episodes_before_missing_rows(tmp_path):
     net = normalised()
     options = ARGUMENTS | {"adapt": Tent(lr=0.5, reset="never")}

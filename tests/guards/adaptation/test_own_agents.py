@@ -30,7 +30,7 @@ DARK = Corruption("low_light", 0.8)
 EPISODE = load_episodes("val_seen")[0]
 
 
-@pytest.fixture(params=list(KINDS))
+@pytest.fixture(params=["topological", pytest.param("recurrent", marks=pytest.mark.slow)])
 def kind(request, monkeypatch):
     monkeypatch.setattr(simulator, "MAX_STEPS", 40)
     return KINDS[request.param]

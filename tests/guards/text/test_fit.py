@@ -41,6 +41,7 @@ def data(tmp_path_factory):
     return folder
 
 
+@pytest.mark.slow
 def test_fit_learns_a_new_mechanism_and_reloads_the_same(data, tmp_path, monkeypatch):
     monkeypatch.setattr(fit, "STEPS", 30)
     output = fit.fit(data, routes=40, log=io.StringIO())

@@ -248,6 +248,7 @@ HUGE = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("text", HUGE.values(), ids=HUGE)
 def test_safeguard_reads_a_huge_instruction_in_bounded_time(text):
     """Issue T2, item 9."""

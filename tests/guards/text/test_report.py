@@ -22,6 +22,7 @@ from tests.guards.text.conftest import LORA
 TEXTS = ["Walk past the sofa and turn left at the door.", "Leave the pantry. Stop by the piano."]
 
 
+@pytest.mark.slow
 def test_report_tries_every_text_in_every_family():
     hurt = report.corrupted(TEXTS, report.FAMILIES, 1.0, "validation")
     assert len(hurt) == len(TEXTS) * len(report.FAMILIES)
@@ -55,6 +56,7 @@ def test_report_names_a_file_without_instructions(tmp_path):
         report.main(["classifier", "--texts", str(tmp_path / "texts.txt"), "--out", str(tmp_path)])
 
 
+@pytest.mark.slow
 def test_training_reports_before_and_after(tiny_base, tmp_path, capsys):
     torch.manual_seed(0)
     cfg = read(conf.load_config("train", ["recipe=safeguard_lora", "evaluation.episodes=4"]))

@@ -39,6 +39,7 @@ def test_split_of_follows_the_seed_ranges():
         split_of(150_000)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("a", "b"), PAIRS)
 def test_layouts_differ_between_seeds(a, b):
     def plans(split):
