@@ -62,6 +62,7 @@ def test_run_reports_unfinished_episodes(run, program, tmp_path):
     assert not (folder / "done.json").exists() and measured(out) == {("clean", 0.0)}
 
 
+@pytest.mark.slow
 def test_run_repeats_a_condition_that_lacks_episodes_of_clean(run, program, tmp_path):
     out = tmp_path / "o"
     assert run(out, "conditions=[low_light]", program).returncode == 0
@@ -76,6 +77,7 @@ def test_run_repeats_a_condition_that_lacks_episodes_of_clean(run, program, tmp_
     assert "clean: done before" in again.stdout and "low_light-s0.6: started" in again.stdout
 
 
+@pytest.mark.slow
 def test_run_reports_an_episode_that_never_began(run, program, tmp_path):
     folder = tmp_path / "o" / "conditions"
     assert run(tmp_path / "o", "conditions=[clean]", program).returncode == 0
@@ -132,6 +134,7 @@ def test_run_repeats_clean_if_it_lacks_episodes(run, tmp_path):
     assert result.returncode == 0 and "clean: started" in result.stdout
 
 
+@pytest.mark.slow
 def test_table_holds_all_finished_conditions(run, program, tmp_path):
     out = tmp_path / "o"
     run(out, "conditions=[low_light,spatter]", program)
@@ -152,6 +155,7 @@ def test_table_leaves_out_other_settings(run, program, tmp_path):
     assert measured(out) == {("clean", 0.0), ("flare", 0.6)}
 
 
+@pytest.mark.slow
 def test_table_starts_with_the_requested_rule(run, tmp_path):
     out = tmp_path / "o"
     result = run(out, "conditions=[spatter] rule=objectnav")

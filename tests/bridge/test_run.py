@@ -128,6 +128,7 @@ def test_run_does_not_hang_after_a_dead_worker(run, tmp_path):
     assert "ended in the middle of episode s" in result.stderr
 
 
+@pytest.mark.slow
 def test_run_ends_a_silent_command_that_lost_an_episode(run, tmp_path, monkeypatch):
     from mitigate.bridge import attempt
 

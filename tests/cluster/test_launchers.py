@@ -115,6 +115,7 @@ def test_slurm_yields_every_result_once(slurm_launcher, tmp_path):
     assert not list((tmp_path / "slurm").iterdir())  # no files are left behind
 
 
+@pytest.mark.slow
 def test_slurm_resubmits_after_a_killed_job(slurm_launcher, tmp_path):
     values, _ = run(slurm_launcher(), Squares(tmp_path, deadly=[(2, 1)]))
     assert values == EXPECTED

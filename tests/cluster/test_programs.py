@@ -76,7 +76,8 @@ def test_run_runs_each_chain(tmp_path):
         assert one.log.read_text() == "1\n"
 
 
-@pytest.mark.parametrize("kind", [pytest.param("ray", marks=pytest.mark.slow), "slurm"])
+@pytest.mark.slow
+@pytest.mark.parametrize("kind", ["ray", "slurm"])
 def test_chain_resumes_after_its_worker_is_killed(kind, request, tmp_path):
     launcher = request.getfixturevalue(f"{kind}_launcher")
     result = [chain(tmp_path, "one", deadly=True), chain(tmp_path, "two")]

@@ -57,6 +57,7 @@ def composed(path) -> dict:
     return resolved(conf.load_config(command, [f"{path.parent}={path.stem}"]))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("path", YAMLS, ids=str)
 def test_every_yaml_composes_and_its_targets_import(path):
     assert len(path.parts) == 2 or path.stem in conf.TYPES

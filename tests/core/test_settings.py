@@ -127,6 +127,7 @@ def test_interpolation_is_rejected_anywhere(tmp_path, traps, place):
     assert not (tmp_path / "sentinel").exists()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("trap", ["literal", "torch.hub.load", "torch.load", "numpy.load"])
 @pytest.mark.parametrize("place", ["in a dict", "in a list"])
 def test_evaluating_a_trapped_folder_runs_nothing(tmp_path, traps, monkeypatch, trap, place):
@@ -217,6 +218,7 @@ DAMAGED = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("text", DAMAGED.values(), ids=DAMAGED)
 def test_value_that_is_not_plain_data_is_rejected_soon(tmp_path, text):
     began = time.process_time()

@@ -296,6 +296,7 @@ except KeyboardInterrupt:
 """
 
 
+@pytest.mark.slow
 def test_ctrl_c_during_worker_imports_prints_one_message(tmp_path):
     (tmp_path / "slow_task.py").write_text(SLOW)
     paths = os.pathsep.join([str(tmp_path), str(Path(__file__).parents[2])])

@@ -48,6 +48,7 @@ def slow_sample(levels, gain, severity, rng):
     return np.rint(255 * bright ** (1 / 2.2)).astype(np.uint8)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("severity", [0.1, 0.3, 0.6, 0.8, 1.0])
 @pytest.mark.parametrize("level", [0, 12, 90, 220])
 def test_tables_match_the_slow_sampler(severity, level):

@@ -120,6 +120,7 @@ def test_identical_text_passes_and_single_changes_do_not(name):
     assert flips > 50 and missed <= 0.01 * flips, (missed, flips)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("manner", MANNERS)
 @pytest.mark.parametrize("name", CORPORA)
 def test_most_rewrites_pass_and_all_returned_ones_do(manner, name):

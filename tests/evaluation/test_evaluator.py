@@ -55,6 +55,7 @@ def finished(tmp_path_factory):
     return folder, run(folder)
 
 
+@pytest.mark.slow
 def test_two_workers_give_the_rows_of_one(finished, tmp_path):
     folder, rows = finished
     assert run(tmp_path, workers=2) == rows
@@ -180,6 +181,7 @@ def test_result_does_not_depend_on_earlier_episodes(finished, tmp_path):
     assert alone == [row for row in rows if row["corruption"] == CONDITIONS[-1].name]
 
 
+@pytest.mark.slow
 def test_row_of_a_pair_holds_its_version(tmp_path):
     names = ("low_light+missing_data", "spatter+mask", "haze", "ripple+flare")
     records = run(tmp_path, episodes=1, conditions=[CLEAN, *(Corruption(n, 0.6) for n in names)])

@@ -28,6 +28,7 @@ def measured(agent, episode, world):
     return [run_episode(agent, world, episode, c, 0) for c in CONDITIONS]
 
 
+@pytest.mark.slow
 def test_measures_do_not_depend_on_the_cache():
     agent, episode, world = wanderer(stop=0.0), load_episodes("val_seen")[0], ApartmentsWorld(SIZE)
     alone = measured(agent, episode, world)

@@ -72,6 +72,7 @@ def test_blind_run_stores_whole_features_for_the_next(folder):
     assert spread(recipe(folder, ("depth",)))[1] == 0.0
 
 
+@pytest.mark.slow
 def test_views_of_another_size_are_stored_apart(folder):
     objective = [recipe(folder, size=n, agent_size=m) for n, m in ((64, 64), (32, 64), (32, 32))]
     assert len({recipe.rollouts.store.folder for recipe in objective}) == 3

@@ -21,6 +21,7 @@ def value(printed: str, row: str) -> float:
     return float(line.split("|")[2].split()[0])
 
 
+@pytest.mark.slow
 def test_measure_loses_things_or_free_space_by_corruption(printed):
     assert value(printed, "Foreign object") < 0.5 * value(printed, "Clean RGB")
     assert value(printed, "Missing data") < 0.7 * value(printed, "Clean depth")

@@ -331,6 +331,7 @@ def test_paper_figures_appear_only_at_their_severity(tmp_path):
     assert "| Motion blur | 40.0 |" in lines
 
 
+@pytest.mark.slow
 def test_trajectories_show_episodes_won_back_by_the_last_agent(tmp_path, quick, monkeypatch):
     """Make every cell use the base agent's weights, so that a test takes seconds."""
     monkeypatch.setattr(tables.Cell, "agent", ())

@@ -115,6 +115,7 @@ def test_drawn_episodes_depend_only_on_the_seed():
     assert names(1, worker=1, workers=2)[:1] == names(1)[1:2]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("mode", ["per_episode", "per_frame"])
 def test_pixels_do_not_depend_on_parallel_environments(episodes, clean, mode):
     schedule = Schedule(mode, 0.8, clean_share=0.2)
