@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from mitigate.agents.loading import load, load_hardened
-    from mitigate.agents.policies import as_policy, load_policy
+    from mitigate.agents.policies.wrapping import as_policy, load_policy
     from mitigate.evaluation.benchmark import benchmark
     from mitigate.evaluation.leaderboard.entry import LeaderboardEntry
     from mitigate.shipping.harden import harden
@@ -36,12 +36,12 @@ __all__ = [
 ]
 _MODULES = {
     "LeaderboardEntry": "mitigate.evaluation.leaderboard.entry",
-    "as_policy": "mitigate.agents.policies",
+    "as_policy": "mitigate.agents.policies.wrapping",
     "benchmark": "mitigate.evaluation.benchmark",
     "harden": "mitigate.shipping.harden",
     "load": "mitigate.agents.loading",
     "load_hardened": "mitigate.agents.loading",
-    "load_policy": "mitigate.agents.policies",
+    "load_policy": "mitigate.agents.policies.wrapping",
 }
 
 

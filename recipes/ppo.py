@@ -22,8 +22,9 @@ import numpy as np
 import torch
 from torch import Tensor, nn
 
-from mitigate.agents.actor_critic import ActorCritic, Joint
-from mitigate.agents.policies import Policy, divergence, last_convolution
+from mitigate.agents.policies.actor_critic import ActorCritic, Joint
+from mitigate.agents.policies.answers import divergence
+from mitigate.agents.policies.policy import Policy, last_convolution
 from mitigate.core import checkpoint
 from mitigate.core.contracts import read
 from mitigate.core.pictures import picture

@@ -34,7 +34,8 @@ from safetensors.numpy import load_file, save
 from torch import Tensor
 
 from mitigate.agents.adapters import adapted
-from mitigate.agents.policies import Answer, Policy, copied, divergence, imitation, last_convolution
+from mitigate.agents.policies.answers import Answer, divergence, imitation
+from mitigate.agents.policies.policy import Policy, copied, last_convolution
 from mitigate.core import checkpoint
 from mitigate.core.files import write_bytes
 from mitigate.core.observation import DEPTH, RGB

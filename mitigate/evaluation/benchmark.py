@@ -16,7 +16,7 @@ from mitigate.agents.agent import as_agent
 from mitigate.agents.building import agent_option
 from mitigate.agents.networks import in_eval_mode
 from mitigate.agents.observation import check_fits
-from mitigate.agents.policies import as_policy, is_policy
+from mitigate.agents.policies.wrapping import as_policy, is_policy
 from mitigate.cluster.launcher import count
 from mitigate.core import conf, seeding
 from mitigate.core.build import locate, maker
@@ -85,7 +85,7 @@ def benchmark(
 
     Args:
         agent: any object with the interface in ``mitigate/agents/agent.py``, a path of weights, or
-            a policy of a supported library (``mitigate/agents/policies.py``).
+            a policy of a supported library (``mitigate/agents/policies/``).
         name: heading of the entry; the default is the folder of the weights or the class of the
             agent.
         version: string that identifies state of the agent that cannot be read, such as hooks;

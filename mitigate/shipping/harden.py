@@ -27,7 +27,9 @@ from mitigate.agents.adapters import (
     save_adapters,
     trainable_share,
 )
-from mitigate.agents.policies import Forward, Policy, as_policy, copied, last_convolution
+from mitigate.agents.policies.module import Forward
+from mitigate.agents.policies.policy import Policy, copied, last_convolution
+from mitigate.agents.policies.wrapping import as_policy
 from mitigate.agents.sites import find_sites
 from mitigate.core import checkpoint, conf, seeding
 from mitigate.core.locks import FolderLock
@@ -120,10 +122,10 @@ def harden(
 
     Args:
         policy: a trained policy of stable-baselines3 or torchrl, or an ``nn.Module``
-            (``agents/policies.py``). The policy is not changed.
+            (``agents/policies/``). The policy is not changed.
         world: function that constructs a world, such as ``lambda: GymWorld(gymnasium.make(...))``.
         forward: function that calls an ``nn.Module``
-            (:class:`~mitigate.agents.policies.ModulePolicy`).
+            (:class:`~mitigate.agents.policies.module.ModulePolicy`).
         recurrent: whether an ``nn.Module`` has a memory.
         method: "self_distil": the policy teaches its copy. "ppo": the copy learns from the reward
             of the world.

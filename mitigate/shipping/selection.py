@@ -14,7 +14,7 @@ from pathlib import Path
 import torch
 from torch import Tensor
 
-from mitigate.agents.policies import Policy, copied
+from mitigate.agents.policies.policy import Policy, copied
 from mitigate.core.progress import say
 from mitigate.corruptions import Corruption
 from mitigate.evaluation.comparison import CLEAN as CLEAN_NAME

@@ -10,7 +10,9 @@ from gymnasium import spaces
 from torch import nn
 from torch.distributions import Categorical, Normal
 
-from mitigate.agents.policies import as_policy, copied, divergence, imitation, load_policy, mode
+from mitigate.agents.policies.answers import divergence, imitation, mode
+from mitigate.agents.policies.policy import copied
+from mitigate.agents.policies.wrapping import as_policy, load_policy
 from mitigate.core import checkpoint
 from mitigate.worlds.gym import GymWorld
 from mitigate.worlds.seeded import seeded_episodes

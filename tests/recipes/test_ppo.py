@@ -5,8 +5,8 @@ import pytest
 import torch
 from torch.distributions import Categorical, Normal, OneHotCategorical
 
-from mitigate.agents.actor_critic import Joint
-from mitigate.agents.policies import as_policy
+from mitigate.agents.policies.actor_critic import Joint
+from mitigate.agents.policies.wrapping import as_policy
 from mitigate.corruptions import Schedule
 from mitigate.recipes.ppo import Ppo
 from mitigate.shipping.harden import _Training

@@ -5,7 +5,8 @@ import pytest
 import torch
 from torch import nn
 
-from mitigate.agents.policies import as_policy, last_convolution
+from mitigate.agents.policies.policy import last_convolution
+from mitigate.agents.policies.wrapping import as_policy
 from mitigate.corruptions import Schedule
 from mitigate.recipes.self_distil import SelfDistil
 from mitigate.shipping.harden import _Training

@@ -8,7 +8,7 @@ from gymnasium import spaces
 from torch import nn
 
 import mitigate
-from mitigate.agents.policies import as_policy
+from mitigate.agents.policies.wrapping import as_policy
 from mitigate.core import checkpoint
 from mitigate.recipes.ppo import Ppo
 from mitigate.recipes.self_distil import SelfDistil

@@ -5,7 +5,8 @@ import torch
 from torch import nn
 
 import mitigate
-from mitigate.agents.policies import as_policy, copied
+from mitigate.agents.policies.policy import copied
+from mitigate.agents.policies.wrapping import as_policy
 from mitigate.corruptions import CLEAN, Corruption
 from mitigate.shipping.selection import MIXES, average, choose, score
 from mitigate.training.trainer import Trainer

@@ -18,7 +18,7 @@ from torch import Tensor, nn
 
 from mitigate.agents.agent import as_agent
 from mitigate.agents.networks import in_eval_mode
-from mitigate.agents.policies import Policy, last_convolution
+from mitigate.agents.policies.policy import Policy, last_convolution
 from mitigate.core.contracts import missing_members
 from mitigate.core.precision import computing
 from mitigate.guards.adaptation.adaptation import Adaptation, channel_means

@@ -17,7 +17,7 @@ from torch import Tensor, nn
 from torch.nn.modules.batchnorm import _NormBase
 
 from mitigate.agents.agent import KnowsEntropy
-from mitigate.agents.policies import Policy
+from mitigate.agents.policies.policy import Policy
 from mitigate.core.spaces import Box
 from mitigate.guards.adaptation.adaptation import NO_LAYER, Adaptation, modules_of
 from mitigate.guards.adaptation.choices import EPISODE

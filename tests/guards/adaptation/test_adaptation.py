@@ -7,7 +7,7 @@ import torch
 from torch import nn
 
 import mitigate
-from mitigate.agents.policies import as_policy
+from mitigate.agents.policies.wrapping import as_policy
 from mitigate.core import checkpoint
 from mitigate.corruptions import CLEAN, Corruption
 from mitigate.evaluation.episode import run_episode

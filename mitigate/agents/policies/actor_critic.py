@@ -1,7 +1,7 @@
 """Policies of other libraries as actor-critics, for reinforcement learning.
 
-:class:`ActorCritic` adds a critic to a :class:`~mitigate.agents.policies.Policy`: an estimate of
-the return from the current frame on.
+:class:`ActorCritic` adds a critic to a :class:`~mitigate.agents.policies.policy.Policy`: an
+estimate of the return from the current frame on.
 """
 
 from __future__ import annotations
@@ -15,7 +15,8 @@ import torch
 from torch import Tensor, nn
 from torch.distributions import Categorical, Distribution, OneHotCategorical
 
-from mitigate.agents.policies import Policy, StableBaselinesPolicy, copied
+from mitigate.agents.policies.policy import Policy, copied
+from mitigate.agents.policies.stable_baselines import StableBaselinesPolicy
 
 _CATEGORICAL = (Categorical, OneHotCategorical)  # torchrl's OneHotCategorical is a Categorical
 HIDDEN = 64  # width of a new critic, the default of stable-baselines3

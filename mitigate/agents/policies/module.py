@@ -1,0 +1,76 @@
+"""Policies that are plain torch modules."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import numpy as np
+import torch
+from torch import Tensor, nn
+from torch.distributions import Categorical
+
+from mitigate.agents.agent import check_logits
+from mitigate.agents.policies.answers import Answer, parts
+from mitigate.agents.policies.policy import Policy, flat
+from mitigate.core.spaces import ActionSpace, Discrete, MultiDiscrete
+
+Forward = Callable[..., Any]
+
+
+class ModulePolicy(Policy):
+    """A plain ``nn.Module``.
+
+    ``forward(network, observation)``, or with ``recurrent`` ``forward(network, observation,
+    memory)``, returns logits of the actions [B, n] (discrete actions), actions [B, ...]
+    (continuous ones), a ``torch.distributions`` object, or a list of these; with ``recurrent``
+    also the new memory. By default, the network itself is called. ``observation`` holds tensors on
+    the network's device.
+    """
+
+    def __init__(
+        self,
+        network: nn.Module,
+        native: Any,
+        space: ActionSpace,
+        forward: Forward | None = None,
+        recurrent: bool = False,
+    ) -> None:
+        super().__init__(network, native, space)
+        self._forward = forward
+        self.recurrent = recurrent
+
+    def answer(self, observation: Any, memory: Any = None) -> tuple[Answer, Any]:
+        inputs = _tensors(observation, self.device)
+        arguments = (inputs, memory) if self.recurrent else (inputs,)
+        try:
+            output = (
+                self.network(*arguments)
+                if self._forward is None
+                else self._forward(self.network, *arguments)
+            )
+        except KeyError as error:
+            raise ValueError(
+                f"{self.name} reads the entry {error}, but the world passes only "
+                f"{', '.join(flat(inputs))}. Name every entry that the policy reads: "
+                "GymWorld(entries={...})."
+            ) from error
+        if self.recurrent:
+            output, memory = output
+        if isinstance(output, Tensor):
+            return self._of_tensor(output), memory
+        return parts(output), memory
+
+    def _of_tensor(self, output: Tensor) -> Answer:
+        if isinstance(self.space, Discrete):
+            return [Categorical(logits=check_logits(output, self))]
+        if isinstance(self.space, MultiDiscrete):
+            counts = self.space.counts.ravel().tolist()
+            return [Categorical(logits=part) for part in output.split(counts, -1)]
+        return output
+
+
+def _tensors(observation: Any, device: torch.device) -> Any:
+    if isinstance(observation, Mapping):
+        return {name: _tensors(value, device) for name, value in observation.items()}
+    return torch.from_numpy(np.array(observation)).to(device)
