@@ -28,13 +28,13 @@ Severity = float | Sequence[float]  # a value, or the lower and upper end of a r
 class Schedule:
     """Samples the corruption and the key of each frame.
 
-    Modes:
-        ``clean``: nothing is corrupted.
-        ``per_frame``: each frame gets its own corruption and random numbers (transient faults).
-        ``per_episode``: each episode gets its own corruption and random numbers (persistent
-        faults). ``success_distributed``: each episode gets corruption k with a probability
-        proportional to (1 - SR_k)^alpha + floor, where SR_k is the success rate under k in an
-        earlier evaluation.
+    The modes are:
+
+    - ``clean``: nothing is corrupted.
+    - ``per_frame``: each frame gets its own corruption and random numbers (transient faults).
+    - ``per_episode``: each episode gets its own corruption and random numbers (persistent faults).
+    - ``success_distributed``: each episode gets corruption k with a probability proportional to
+      (1 - SR_k)^alpha + floor, where SR_k is the success rate under k in an earlier evaluation.
 
     Args:
         mode: One of MODES.

@@ -16,7 +16,9 @@ from mitigate.evaluation.grid import Grid
 from mitigate.evaluation.sections import Section, label
 
 COLOURS = mpl.colormaps["viridis"]  # readable without colour vision; bright means good
-LINES = [mpl.colormaps["tab10"](index) for index in range(10)]
+# Colours of Okabe and Ito (2008), which colour-blind readers can distinguish, without their yellow
+OKABE_ITO = ("#0072b2", "#e69f00", "#009e73", "#d55e00", "#cc79a7", "#56b4e9", "#000000")
+LINES = [mpl.colors.to_rgba(colour) for colour in OKABE_ITO]
 DASHES = ("-", "--", "-.", ":")
 WIDTH, MARKER = 1.2, 3.0  # width of a line and size of its markers, in points
 # decrease of the marker size per column, and the largest marker size, in points
@@ -33,8 +35,8 @@ def heatmap(section: Section, path: Path | str) -> Path:
     its own value. With many agents the panels are stacked vertically.
     """
     rows = [3 + len(names) for names in section.blocks.values()]
-    width, narrow = 1.6 + 1.15 * len(section.columns), len(section.columns) < STACKED
-    size = (1.0 + len(rows) * width, 1.9 + 0.36 * max(rows))
+    width, narrow = 1.6 + 0.95 * len(section.columns), len(section.columns) < STACKED
+    size = (1.0 + len(rows) * width, 2.0 + 0.36 * max(rows))
     if not narrow:
         size = (1.0 + width, 1.0 + sum(0.9 + 0.36 * count for count in rows))
     figure = Figure(figsize=size, layout="constrained")
@@ -48,7 +50,7 @@ def heatmap(section: Section, path: Path | str) -> Path:
         f"SR (%) / SPL on {plain(grid.heading)}, severity {section.severity:g}, "
         f"N = {len(grid.episodes)}\n"
         f"{plain(grid.rule)}; suite {plain(grid.suite)}",
-        fontsize=9,
+        fontsize=10,
     )
     return _save(figure, path)
 
@@ -59,30 +61,30 @@ def severity_curves(grid: Grid, path: Path | str) -> Path:
     If lines coincide, all remain visible, because later lines have dashes and smaller markers.
     """
     names = grid.corruptions
-    across = min(4, len(names))
+    across = min(3, len(names))
     down = math.ceil(len(names) / across)
     figure = Figure(figsize=(2.6 * across + 0.6, 2.0 * down + 1.2), layout="constrained")
     axes = figure.subplots(down, across, sharex=True, sharey=True, squeeze=False).ravel()
     for axis, name in zip(axes, names, strict=False):
         _draw_curves(axis, grid, name)
-        axis.set_title(label(name), fontsize=9)
+        axis.set_title(label(name), fontsize=11)
         axis.set(xlim=(-0.03, 1.03), ylim=(-3, 103))
-        axis.tick_params(labelsize=8)
+        axis.tick_params(labelsize=9)
         axis.grid(alpha=0.3)
     for axis in axes[len(names) :]:
         axis.set_visible(False)
     for axis in axes[max(0, len(names) - across) : len(names)]:
-        axis.set_xlabel("severity", fontsize=8)
+        axis.set_xlabel("severity", fontsize=10)
         axis.tick_params(labelbottom=True)
-    figure.supylabel("SR (%)", fontsize=9)
+    figure.supylabel("SR (%)", fontsize=10)
     figure.suptitle(
         f"SR against severity on {plain(grid.heading)}, N = {len(grid.episodes)}; "
         f"{plain(grid.rule)}; suite {plain(grid.suite)}",
-        fontsize=9,
+        fontsize=10,
     )
     drawn = {line.get_label(): line for axis in axes for line in axis.get_lines()}
     handles = [drawn[x] for x in map(plain, grid.columns) if x in drawn]
-    figure.legend(handles=handles, loc="outside lower center", ncols=across, fontsize=8)
+    figure.legend(handles=handles, loc="outside lower center", ncols=across, fontsize=10)
     return _save(figure, path)
 
 
@@ -110,13 +112,13 @@ def _panel(axis: Axes, section: Section, block: str, names: tuple[str, ...]) -> 
     axis.imshow(colours, cmap=COLOURS, vmin=0, vmax=1, aspect="auto")
     for (i, j), text in np.ndenumerate(texts):
         colour = text_colour(colours[i, j])
-        axis.text(j, i, text, ha="center", va="center", fontsize=8, color=colour)
+        axis.text(j, i, text, ha="center", va="center", fontsize=10, color=colour)
     axis.axhline(1.5, color="black", linewidth=1.5)
     axis.set_xticks(
-        range(shape[1]), map(plain, section.columns), rotation=25, ha="right", fontsize=8
+        range(shape[1]), map(plain, section.columns), rotation=25, ha="right", fontsize=10
     )
-    axis.set_yticks(range(shape[0]), rows, fontsize=8)
-    axis.set_title(block, fontsize=9)
+    axis.set_yticks(range(shape[0]), rows, fontsize=10)
+    axis.set_title(block, fontsize=11)
 
 
 def _draw_curves(axis: Axes, grid: Grid, name: str) -> None:

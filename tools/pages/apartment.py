@@ -37,12 +37,12 @@ def show(seed: int, episode: int, task: str, size: int, out: Path) -> None:
     simulator = Simulator(size)
     simulator.reset(drawn)
     observation = simulator.observe()
-    figure = Figure(figsize=(10, 11.5), layout="constrained")
-    axes = figure.subplots(3, 1, height_ratios=(1, 1, 3.2))
+    figure = Figure(figsize=(9, 13.5), layout="constrained")
+    axes = figure.subplots(3, 1, height_ratios=(1, 1, 4))
     axes[0].imshow(strip(observation[RGB]))
     axes[0].set_title(
         f"panorama at the start, straight ahead in the middle ({drawn.scene_id})",
-        fontsize=10,
+        fontsize=11,
     )
     depth = axes[1].imshow(strip(observation[DEPTH])[..., 0], cmap="viridis_r")
     figure.colorbar(depth, ax=list(axes[:2]), label="depth [m]", fraction=0.03, pad=0.01)
@@ -57,8 +57,8 @@ def show(seed: int, episode: int, task: str, size: int, out: Path) -> None:
     )
     arrow = 0.6 * np.array([-np.sin(simulator.heading), np.cos(simulator.heading)])
     axes[2].arrow(*simulator.xy, *arrow, width=0.05, color="#1f77b4", zorder=8)
-    figure.suptitle("\n".join(textwrap.wrap(drawn.instruction.text, 100)), fontsize=11)
-    write_figure(out, figure, dpi=80, facecolor="white")
+    figure.suptitle("\n".join(textwrap.wrap(drawn.instruction.text, 90)), fontsize=12)
+    write_figure(out, figure, dpi=90, facecolor="white")
     print(
         f"{drawn.episode_id}: {drawn.geodesic_distance:.1f} m. {drawn.instruction.text}\n"
         f"wrote {out}"

@@ -13,6 +13,7 @@ from mitigate.core.files import write_figure
 from mitigate.corruptions.keying import Key
 from mitigate.corruptions.registry import modality
 from mitigate.corruptions.suite import NAMES, corrupt
+from mitigate.evaluation.plots import DASHES, OKABE_ITO
 
 GRID = np.linspace(0.0, 1.0, 101)
 EPISODES = 3  # number of random keys over which a curve is averaged
@@ -114,30 +115,36 @@ def curves(
 
 
 def draw(by_name: dict[str, Curve], path: Path, grid: np.ndarray = GRID) -> None:
-    """Draw three panels as a PNG: SSIM and PSNR of RGB corruptions, and the mean error of depth
+    """Draw a PNG with three panels: SSIM and PSNR of RGB corruptions, and the mean error of depth
     corruptions."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
-    figure = Figure(figsize=(12, 3.6), layout="constrained")
+    figure = Figure(figsize=(8, 6.4), layout="constrained")
     FigureCanvasAgg(figure)
-    panels = figure.subplots(1, 3)
+    panels = figure.subplots(2, 2).ravel()
     titles = ("RGB: SSIM to the clean frame", "RGB: PSNR in dB", "Depth: mean error in metres")
-    lines = ("-", "--", ":", "-.")
-    for axis, title, kind in zip(panels, titles, ("ssim", "psnr", "error"), strict=True):
+    for axis, title, kind in zip(panels, titles, ("ssim", "psnr", "error"), strict=False):
         sensor = "depth" if kind == "error" else "rgb"
         for number, name in enumerate(n for n in by_name if modality(n) == sensor):
             values = getattr(by_name[name], kind)
             # equal frames have no finite PSNR
             values = np.where(np.isfinite(values), values, np.nan)
             seen = np.isfinite(values).all(0)
-            colour, line = f"C{number % 8}", lines[number % 2 + 2 * (number // 8)]
-            axis.plot(grid[seen], values[:, seen].mean(0), line, c=colour, label=name)
+            colour = OKABE_ITO[number % len(OKABE_ITO)]
+            dash = DASHES[number % len(DASHES)]
+            axis.plot(grid[seen], values[:, seen].mean(0), dash, c=colour, label=name)
         axis.set(title=title, xlabel="severity")
         axis.grid(alpha=0.3)
     panels[0].set_ylim(0, 1.02)
     panels[1].set_ylim(0, 55)
     panels[2].set(yscale="log")
-    panels[1].legend(fontsize=7, ncols=2, loc="upper right")
-    panels[2].legend(fontsize=7, loc="lower right")
-    write_figure(path, figure, dpi=90)
+    panels[3].axis("off")
+    for axis, title, place in (
+        (panels[0], "RGB", "upper left"),
+        (panels[2], "Depth", "lower left"),
+    ):
+        handles = axis.get_lines()
+        legend = panels[3].legend(handles=handles, title=title, loc=place, ncols=2, handlelength=3)
+        panels[3].add_artist(legend)
+    write_figure(path, figure, dpi=110)

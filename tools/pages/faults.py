@@ -29,10 +29,13 @@ from tools.pages.corruptions import formulas
 
 DOCS = Path(__file__).resolve().parents[2] / "docs"
 APARTMENT, SIZE = 200021, 72  # the apartment of the other pages; pixels of a view
-FRAMES = 16  # instants per row
+FRAMES = 12  # instants per row
 SEVERITY = 0.6
-COLOURS = ("#000000", "#0072b2", "#d55e00", "#009e73", "#cc79a7", "#8c564b")
+CAMERA_COLUMNS = ("clean", "rendered, 0.5", "rendered, 1", "warped, 0.5", "warped, 1")
+COLOURS = ("#000000", "#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00")
+DASHES = ("-", "--", "-.", ":", "-", "--")  # so that the paths differ without colour
 LABEL, GUTTER = 190, 3  # pixels: names of rows, between cells
+TITLE = 22  # pixels: height of the titles of columns
 JPEG_QUALITY = 80
 FONT = cv2.FONT_HERSHEY_SIMPLEX
 PICTURES = {
@@ -47,7 +50,7 @@ def write_page(folder: Path = DOCS) -> None:
     """Write the page and its pictures into ``folder``."""
     _write_picture(folder / PICTURES["temporal"], timeline())
     _write_picture(folder / PICTURES["camera"], camera_sheet())
-    write_figure(folder / PICTURES["motion"], paths(), dpi=70, facecolor="white")
+    write_figure(folder / PICTURES["motion"], paths(), dpi=100, facecolor="white")
     text = TEMPLATE.read_text("utf-8").format(
         frames=FRAMES,
         apartment=APARTMENT,
@@ -66,7 +69,8 @@ def timeline() -> np.ndarray:
     depth_only = [fault for fault in faults if fault.modalities == (DEPTH,)]
     rows = [(fault, RGB) for fault in (CLEAN, *faults) if fault not in depth_only]
     rows += [(fault, DEPTH) for fault in (CLEAN, *depth_only)]
-    return _sheet([(fault.name.split("+"), _views(fault, entry)) for fault, entry in rows])
+    steps = [str(step) for step in range(FRAMES)]
+    return _sheet([(fault.name.split("+"), _views(fault, entry)) for fault, entry in rows], steps)
 
 
 def _views(corruption: Corruption, entry: str) -> list[np.ndarray]:
@@ -92,13 +96,13 @@ def camera_sheet() -> np.ndarray:
     rows = []
     for name in registry.fault_names("camera"):
         severities = (0.5, 1.0)
-        pictures = [clean]
+        pictures = [clean]  # the columns are CAMERA_COLUMNS
         faults = [Corruption(name, severity) for severity in severities]
         pictures += [Corrupted(world, fault, 0).reset(episode)[RGB] for fault in faults]
         if name != "camera_height":
             pictures += [corrupt(clean, name, s, key=key, hfov=HFOV_DEGREES) for s in severities]
         rows.append(([name], pictures))
-    return _sheet(rows, 2 * SIZE)
+    return _sheet(rows, CAMERA_COLUMNS, 2 * SIZE)
 
 
 def paths() -> Figure:
@@ -108,11 +112,12 @@ def paths() -> Figure:
     commands = list(_commands(world, episode))
     figure = Figure(figsize=(9, 6), layout="constrained")
     axes = figure.subplots()
-    for name, colour in zip(("clean", *registry.fault_names("motion")), COLOURS, strict=True):
+    names = ("clean", *registry.fault_names("motion"))
+    for name, colour, dash in zip(names, COLOURS, DASHES, strict=True):
         corruption = CLEAN if name == "clean" else Corruption(name, SEVERITY)
         faulty = motion.with_motion(world, corruption, seed=0)
         poses = [faulty.reset(episode), *(faulty.step(command) for command in commands)]
-        draw_path(axes, np.stack([pose[POSE][:2] for pose in poses]), colour, name)
+        draw_path(axes, np.stack([pose[POSE][:2] for pose in poses]), colour, name, dash)
     world.draw(axes)
     axes.set_aspect("equal")
     axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
@@ -131,19 +136,26 @@ def _picture(frame: np.ndarray) -> np.ndarray:
     return frame if frame.shape[-1] == 3 else depth_picture(frame[..., 0], 6.0)
 
 
-def _sheet(rows: Sequence[tuple[list[str], list[np.ndarray]]], size: int = SIZE) -> np.ndarray:
-    """Draw rows of pictures with the lines of their names to the left."""
+def _sheet(
+    rows: Sequence[tuple[list[str], list[np.ndarray]]], titles: Sequence[str], size: int = SIZE
+) -> np.ndarray:
+    """Draw rows of pictures under the titles of the columns, with the names of rows to the left."""
     side = size + GUTTER
-    columns = max(len(pictures) for _, pictures in rows)
-    sheet = np.full((side * len(rows), LABEL + side * columns, 3), 255, np.uint8)
+    sheet = np.full((TITLE + side * len(rows), LABEL + side * len(titles), 3), 255, np.uint8)
+    for column, title in enumerate(titles):
+        _write(sheet, title, LABEL + column * side, TITLE - 7)
     for row, (lines, pictures) in enumerate(rows):
+        top = TITLE + row * side
         for number, line in enumerate(lines):
-            place = (6, row * side + size // 2 + 16 * number)
-            cv2.putText(sheet, line, place, FONT, 0.45, (0, 0, 0), 1, cv2.LINE_AA)
+            _write(sheet, line, 6, top + size // 2 + 20 * number)
         for column, picture in enumerate(pictures):
             left = LABEL + column * side
-            sheet[row * side : row * side + size, left : left + size] = picture
+            sheet[top : top + size, left : left + size] = picture
     return sheet
+
+
+def _write(sheet: np.ndarray, text: str, x: int, y: int) -> None:
+    cv2.putText(sheet, text, (x, y), FONT, 0.6, (0, 0, 0), 1, cv2.LINE_AA)
 
 
 def _write_picture(path: Path, sheet: np.ndarray) -> None:

@@ -21,6 +21,7 @@ PAGES = {  # maps a page of the site to a file of the checkout
     "security.md": "SECURITY.md",
 }
 CONFIGS = ("train", "evaluate", "run", "replay", "sweep", "table1", "table2", "export_drive")
+ROLE = re.compile(r":(?:attr|class|data|func|meth|mod):<code>(?:~[\w.]*\.)?")  # of docstrings
 LINK = re.compile(r"(!?)\[([^\]]*)\]\((?!\w+:|#)([^)#\s]+)(#[^)\s]*)?\)")
 
 
@@ -29,6 +30,8 @@ def on_files(files: Files, config) -> Files:
     for page, source in PAGES.items():
         text = (ROOT / source).read_text(encoding="utf-8")
         files.append(File.generated(config, page, content=_relink(text, source, page)))
+    style = (ROOT / "tools/site/site.css").read_text(encoding="utf-8")
+    files.append(File.generated(config, "site.css", content=style))
     files.append(File.generated(config, "reference/commands.md", content=commands_page()))
     files.append(File.generated(config, "reference/configuration.md", content=configs_page()))
     return files
@@ -39,6 +42,11 @@ def on_page_markdown(markdown: str, page, config, files: Files) -> str:
     if page.file.generated_by:
         return markdown
     return _relink(markdown, f"docs/{page.file.src_uri}", page.file.src_uri)
+
+
+def on_page_content(html: str, page, config, files: Files) -> str:
+    """Render the Sphinx roles of docstrings, such as :func:`load`, as code."""
+    return ROLE.sub("<code>", html)
 
 
 def _relink(text: str, source: str, page: str) -> str:
@@ -52,7 +60,7 @@ def _relink(text: str, source: str, page: str) -> str:
             name, anchor = "index.md", ""
         elif target in pages:
             name = pages[target]
-        elif target.startswith("docs/") and not target.startswith("docs/leaderboard"):
+        elif target.startswith("docs/") and not target.startswith("docs/leaderboard/"):
             name = target.removeprefix("docs/")
         else:
             return label

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
+
+import numpy as np
 
 from mitigate.worlds.apartments.apartment import Apartment
 from mitigate.worlds.apartments.layout import CATALOGUE, DOOR
@@ -17,11 +20,14 @@ _ROOMS = {
     "dining room": "#faf6da",
 }
 
+STEPS = 17  # number of places for a room's name from one wall to the opposite one
+NAME_WIDTH = 1.6  # approximate width of a room's name in metres
+
 
 def draw_plan(axes: Any, apartment: Apartment) -> None:
     """Draw rooms, doorways and furniture from above on matplotlib axes, in metres."""
     for room in apartment.rooms:
-        _draw_room(axes, room)
+        _draw_room(axes, room, apartment.furniture)
     for door in apartment.doors:
         half = (0.07, DOOR / 2) if door.axis == 0 else (DOOR / 2, 0.07)
         corner, size = (door.x - half[0], door.y - half[1]), (2 * half[0], 2 * half[1])
@@ -37,11 +43,32 @@ def draw_plan(axes: Any, apartment: Apartment) -> None:
     axes.axis("off")
 
 
-def _draw_room(axes: Any, room: Any) -> None:
+def _draw_room(axes: Any, room: Any, furniture: Sequence[Any]) -> None:
     x0, y0, x1, y1 = room.rect
     _draw_box(axes, (x0, y0), (x1 - x0, y1 - y0), fc=_ROOMS[room.kind], ec="#333333", lw=2.5)
     style = {"ha": "center", "va": "center", "fontsize": 10, "color": "#333333", "zorder": 4}
-    axes.text((x0 + x1) / 2, (y0 + y1) / 2, room.kind, **style)
+    axes.text(*_free_place(room.rect, furniture), room.kind, **style)
+
+
+def _free_place(
+    rect: tuple[float, float, float, float], furniture: Sequence[Any]
+) -> tuple[float, float]:
+    """Return the place for a room's name that is farthest from the furniture (metres)."""
+    x0, y0, x1, y1 = rect
+    places = [
+        (x, y)
+        for y in np.linspace(y0, y1, STEPS)[2:-2]
+        for x in (x0 + (x1 - x0) * np.array([0.5, 0.4, 0.6]))
+    ]
+    return max(places, key=lambda place: min((_gap(place, p.rect) for p in furniture), default=0))
+
+
+def _gap(place: tuple[float, float], rect: tuple[float, float, float, float]) -> float:
+    """Return the distance from the name at ``place`` to a piece of furniture (metres)."""
+    x0, y0, x1, y1 = rect
+    across = max(x0 - place[0], place[0] - x1, 0.0)
+    along = max(y0 - place[1], place[1] - y1, 0.0)
+    return max(across - NAME_WIDTH / 2, 0.0) + along
 
 
 def _draw_piece(axes: Any, piece: Any, colour: Any) -> None:
@@ -50,7 +77,7 @@ def _draw_piece(axes: Any, piece: Any, colour: Any) -> None:
     size = (x1 - x0, max(y1 - y0, 0.05))
     _draw_box(axes, (x0, y0), size, fc=colour, ec="#222222", lw=0.7, alpha=alpha, zorder=3)
     box = {"fc": "white", "ec": "none", "alpha": 0.6, "pad": 0.4}
-    style = {"ha": "center", "va": "center", "fontsize": 5, "zorder": 5, "bbox": box}
+    style = {"ha": "center", "va": "center", "fontsize": 6, "zorder": 5, "bbox": box}
     axes.text(*piece.centre, piece.category, **style)
 
 
