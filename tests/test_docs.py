@@ -125,6 +125,11 @@ def test_corrupt_frames_tutorial_prints_what_it_shows(monkeypatch, tmp_path, cap
     assert capsys.readouterr().out.strip() == printed[1]
 
 
+def test_program_tutorial_shows_the_whole_program():
+    blocks = python_blocks(ROOT / "docs/tutorials/measure_a_program.md")
+    assert blocks[0] == (ROOT / "docs/tutorials/my_program.py").read_text(encoding="utf-8")
+
+
 TUTORIALS = sorted(ROOT.glob("docs/tutorials/*.py"))
 
 

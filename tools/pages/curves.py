@@ -120,7 +120,7 @@ def draw(by_name: dict[str, Curve], path: Path, grid: np.ndarray = GRID) -> None
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
-    figure = Figure(figsize=(8, 6.4), layout="constrained")
+    figure = Figure(figsize=(8, 7.8), layout="constrained")
     FigureCanvasAgg(figure)
     panels = figure.subplots(2, 2).ravel()
     titles = ("RGB: SSIM to the clean frame", "RGB: PSNR in dB", "Depth: mean error in metres")
