@@ -115,6 +115,17 @@ def test_readme_program_runs_and_loses_success(mitigate, tmp_path):
     assert "| Clean SR | 100.0" in output and "| Missing data | 0.0" in output
 
 
+@pytest.mark.slow
+def test_habitat_tutorial_gives_its_table(mitigate, tmp_path):
+    page = ROOT / "docs/tutorials/measure_a_habitat_agent.md"
+    line = next(line for line in shell_lines(page) if " run " in line)
+    options = [f"out={tmp_path}", *shlex.split(line.removeprefix("mitigate run "))]
+    options = [sys.executable if option == "python" else option for option in options]
+    output = mitigate("run", *options)
+    table = re.findall(r"^\| [CLM].*\|$", page.read_text(encoding="utf-8"), re.M)
+    assert len(table) == 4 and all(f"{row}\n" in output for row in table)
+
+
 def test_corrupt_frames_tutorial_prints_what_it_shows(monkeypatch, tmp_path, capsys):
     monkeypatch.chdir(tmp_path)
     page = ROOT / "docs/tutorials/corrupt_frames.md"
@@ -125,9 +136,14 @@ def test_corrupt_frames_tutorial_prints_what_it_shows(monkeypatch, tmp_path, cap
     assert capsys.readouterr().out.strip() == printed[1]
 
 
-def test_program_tutorial_shows_the_whole_program():
-    blocks = python_blocks(ROOT / "docs/tutorials/measure_a_program.md")
-    assert blocks[0] == (ROOT / "docs/tutorials/my_program.py").read_text(encoding="utf-8")
+@pytest.mark.parametrize(
+    ("page", "script"),
+    [("measure_a_program", "my_program"), ("measure_a_habitat_agent", "habitat_agent")],
+)
+def test_tutorial_shows_the_whole_program(page, script):
+    folder = ROOT / "docs/tutorials"
+    blocks = python_blocks(folder / f"{page}.md")
+    assert blocks[0] == (folder / f"{script}.py").read_text(encoding="utf-8")
 
 
 TUTORIALS = sorted(ROOT.glob("docs/tutorials/*.py"))

@@ -1,7 +1,7 @@
 """Env, which runs episodes one after the other."""
 
 from habitat.core.embodied_task import EmbodiedTask
-from habitat.core.simulator import AgentState, Simulator
+from habitat.core.simulator import Simulator
 
 
 class Words:
@@ -45,7 +45,8 @@ class Env:
         self._dataset = make_dataset() if dataset is None else dataset
         self.number_of_episodes = len(self._dataset.episodes)
         self._iterator = iter(self._dataset.episodes)
-        self.sim = self._sim = Simulator(**(config or {}))
+        options = dict(config or {})
+        self.sim = self._sim = options.pop("simulator", Simulator)(**options)
         self.task = self._task = EmbodiedTask(self.sim)
         self.episode_over, self._steps, self.current_episode = False, 0, None
 
@@ -55,7 +56,7 @@ class Env:
     def reset(self):
         self.current_episode = next(self._iterator)
         self.episode_over, self._steps = False, 0
-        self.sim.state = AgentState([0, 0, 0], 0.0)  # habitat-lab does this in sim.reconfigure
+        self.sim.reconfigure(self.current_episode)
         observations = self.task.reset(episode=self.current_episode)
         self.task.measurements.reset_measures(episode=self.current_episode, task=self.task)
         return observations
