@@ -13,6 +13,11 @@ def markdown_of(name: str) -> str:
     )
 
 
+def plain_text(markdown: str) -> str:
+    """Return Markdown for a terminal, without the backslashes of :func:`markdown_of`."""
+    return re.sub(r"\\([\\|`*~\[\]!<#])", r"\1", markdown)
+
+
 def markdown_table(head: Sequence[str], rows: Iterable[Iterable[object]], words: int = 1) -> str:
     """Return a Markdown table.
 

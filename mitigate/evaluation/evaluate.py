@@ -19,6 +19,7 @@ from mitigate.cluster import launcher
 from mitigate.core import conf
 from mitigate.core.contracts import missing_members
 from mitigate.core.locks import FolderLock
+from mitigate.core.markdown import plain_text
 from mitigate.core.names import counted, name_of
 from mitigate.evaluation import config as options
 from mitigate.evaluation.conditions import check_sensors, conditions
@@ -164,9 +165,9 @@ def write_table(files: list[Path], out: Path, selected: list[dict[str, Any]] | N
     paths = report.write(all_rows, out)
     others = 0 if selected is None else len(all_rows) - len(selected)
     if selected is None or others <= 0:
-        print(paths[0].read_text(encoding="utf-8"))
+        print(plain_text(paths[0].read_text(encoding="utf-8")))
     else:
-        print(report.markdown(sections(selected)))
+        print(plain_text(report.markdown(sections(selected))))
         print(f"{out} holds {counted(others, 'other row')}, too; {paths[0]} includes them.")
     print("\n".join(f"wrote {path}" for path in paths), flush=True)
 

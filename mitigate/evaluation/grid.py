@@ -218,7 +218,8 @@ class Grid:
     @property
     def heading(self) -> str:
         """The name of the split; with several episode lists, also the id of the first episode."""
-        return f"{self.split} from {self.begins}" if self.begins else self.split
+        split = "unnamed split" if self.split == "unnamed" else self.split
+        return f"{split} from {self.begins}" if self.begins else split
 
     def cell(self, label: str, corruption: str, severity: float, metric: str) -> np.ndarray:
         """Return the values [N] of a cell, which are all NaN if nothing was measured."""

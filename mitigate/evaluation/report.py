@@ -37,6 +37,7 @@ def markdown(parts: Sequence[Section], pictures: Sequence[Sequence[str]] = ()) -
     section i.
     """
     texts = []
+    several_rules = len({section.grid.rule for section in parts}) > 1
     for index, section in enumerate(parts):
         names = pictures[index] if index < len(pictures) else ()
         images = "\n".join(f"![{Path(name).stem}]({name})" for name in names)
@@ -44,7 +45,7 @@ def markdown(parts: Sequence[Section], pictures: Sequence[Sequence[str]] = ()) -
             images = NO_PICTURE
         table = _table(section)
         about = f"{NO_WIDTH}\n" * (NO_INTERVAL in table) + _notes(section)
-        texts.append(f"{_heading(section)}\n\n{table}\n\n{about}\n\n{images}")
+        texts.append(f"{_heading(section, several_rules)}\n\n{table}\n\n{about}\n\n{images}")
     return "\n\n".join(text.strip() for text in texts) + "\n"
 
 
@@ -95,10 +96,13 @@ def _is_drawable(grid: Grid) -> bool:
     return len(grid.corruptions) <= MOST_CORRUPTIONS and len(grid.columns) <= MOST_COLUMNS
 
 
-def _heading(section: Section) -> str:
+def _heading(section: Section, several_rules: bool) -> str:
+    """Return the heading, with the name of the success rule if the report has several."""
     grid, columns = section.grid, section.columns
     at = f"severity {section.severity:g}" if section.blocks else "clean only"
     at = f"{section.kind}, {at}" if section.kind else at
+    if several_rules:
+        at += f", success rule {markdown_of(grid.rule.partition(':')[0])}"
     by_column = {c: ", ".join(map(str, grid.seeds[c, section.severity])) for c in columns}
     seeds = "seeds " + "; ".join(f"{n} of {markdown_of(c)}" for c, n in by_column.items())
     if len({*by_column.values()}) == 1:

@@ -13,6 +13,7 @@ import sys
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
+from mitigate.core.markdown import plain_text
 from mitigate.core.options import check_paths
 
 OUT = Path("runs/table")
@@ -83,6 +84,6 @@ def main(argv: Sequence[str] | None = None) -> int:
 
         print(f"table: {error_message(error)}", file=sys.stderr)
         return 2
-    print(paths[0].read_text(encoding="utf-8"))
+    print(plain_text(paths[0].read_text(encoding="utf-8")))
     print("\n".join(f"wrote {path}" for path in paths))
     return 0

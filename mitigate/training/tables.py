@@ -17,6 +17,7 @@ from omegaconf import DictConfig
 
 from mitigate.core import build
 from mitigate.core.files import atomic_text
+from mitigate.core.markdown import plain_text
 from mitigate.core.output import is_regular, output_folder
 from mitigate.core.progress import say
 from mitigate.evaluation.episode_lists import episodes, training_episodes
@@ -116,7 +117,7 @@ def write_report(config: TablesConfig, out: Path, paths: Sequence[Path | str]) -
     figures = {name: list(values) for name, values in config.paper.items()}
     with atomic_text(out / REPORT) as file:
         file.write("\n".join(report.beside(section, figures) for section in chosen))
-    print((out / REPORT).read_text(encoding="utf-8"), flush=True)
+    print(plain_text((out / REPORT).read_text(encoding="utf-8")), flush=True)
     return out / REPORT
 
 
