@@ -12,7 +12,7 @@ import signal
 import time
 from typing import IO, Any
 
-from mitigate.bridge.cell import Cell, describe_lost, hash_files, write_done
+from mitigate.bridge.cell import Cell, describe_lost, files_in, hash_files, write_done
 from mitigate.bridge.events import DONE, EVENTS, LOCK, put_aside
 from mitigate.bridge.hook import mitigate_hook
 from mitigate.bridge.program import GRACE, Command
@@ -30,8 +30,13 @@ DISCONNECT_TIME = 5.0  # seconds to wait until the connections of an ended comma
 MAX_SILENCE = 10
 MAX_NAMED = 3  # maximum number of processes that a message lists
 CRASH = (
-    "If the agent crashes on corrupted input, a loop without Habitat can count that as a failure: "
-    "try ... except, and episode.finish(success=False) (docs/bridge.md)."
+    " If the agent crashes on corrupted input, count that as a failure: catch the exception, and "
+    "let the agent stop (with Habitat), or call episode.finish(success=False) (docs/bridge.md)."
+)
+NOT_LOADED = (
+    "no Python process of it loaded the hook. Does a script replace PYTHONPATH (let it append), "
+    "does it run python with -E, -I or -S, with a Python before 3.6, or in a container "
+    "(docs/bridge.md)?"
 )
 
 
@@ -147,9 +152,18 @@ class Attempt:
         if not problem:
             entries = {**cell.settings, "condition": cell.corruption.name}
             entries |= {"severity": cell.corruption.severity, "repeat": cell.repeat}
-            entries |= {"files": self.files, "episodes_told": len(cell.reports().ends)}
+            entries |= {"files": self.files, "created": self._created_files()}
+            entries |= {"episodes_told": len(cell.reports().ends)}
             write_done(cell.folder, entries)
         return problem
+
+    def _created_files(self) -> list[str]:
+        """Return the files in the command that did not exist when it was started: its outputs."""
+        return [str(file) for file in files_in(self.cell.command) if str(file) not in self.files]
+
+    def _crash_hint(self) -> str:
+        """Return advice for agents that crash on corrupted input, or "" for a clean run."""
+        return CRASH if self.cell.corruption.severity else ""
 
     def _check_events(self) -> None:
         """Raise FolderLostError if the events or their folder were removed or replaced."""
@@ -225,8 +239,8 @@ class Attempt:
         if reports.lost and (reports.connected < 1 or silence > MAX_SILENCE * self.cell.patience):
             return (
                 f"a process of the command ended in the middle of episode {reports.lost[0]}, and "
-                f"no other process sent a message for {silence:.0f} s. The command was stopped. "
-                f"{CRASH}{self.cell.output_excerpt()}"
+                f"no other process sent a message for {silence:.0f} s. The command was stopped."
+                f"{self._crash_hint()}{self.cell.output_excerpt()}"
             )
         return None
 
@@ -236,8 +250,11 @@ class Attempt:
         if reports.problems:
             return reports.problems[0]
         if status:
-            hint = f"\n{CRASH}" if reports.lost else ""
-            return f"the command ended with status {status}.{self.cell.output_excerpt()}{hint}"
+            excerpt = self.cell.output_excerpt()
+            if not reports.hellos and not self.loaded:
+                return f"the command ended with status {status}, and {NOT_LOADED}{excerpt}"
+            hint = f"\n{self._crash_hint().strip()}" if reports.lost else ""
+            return f"the command ended with status {status}.{excerpt}{hint}"
         if self.left and not reports.lost:
             return self._describe_left()
         return (
@@ -276,16 +293,13 @@ class Attempt:
     def _check_interception(self, reports: Reports) -> str:
         """Describe the problem if the bridge received nothing from the agent, else return ""."""
         if not reports.hellos and not self.loaded:
-            return (
-                "the command ended, but no Python process of it loaded the hook. Does a script "
-                "replace PYTHONPATH (let it append), does it run python with -E, -I or -S, or in a "
-                f"container (docs/bridge.md)?{self.cell.output_excerpt()}"
-            )
+            return f"the command ended, but {NOT_LOADED}{self.cell.output_excerpt()}"
         if not reports.hellos:
             return (
-                "the command ended, and its Python loaded the hook, but it imported neither "
-                "habitat-lab nor habitat-sim and never called mitigate_hook.connect, so the bridge "
-                "received nothing. A loop without Habitat calls three functions "
+                "the command ended, and its Python loaded the hook, but it used neither "
+                "habitat-lab (habitat.core.env) nor habitat-sim (habitat_sim.simulator) and never "
+                "called mitigate_hook.connect, so the bridge received nothing. A different package "
+                "named habitat does not count: it needs the three calls of a loop without Habitat "
                 f"(docs/bridge.md).{self.cell.output_excerpt()}"
             )
         if mitigate_hook.ADAPTERS in self.cell.environment and not reports.adapted:
@@ -309,8 +323,8 @@ class Attempt:
         cell = self.cell
         if reports.lost:
             return (
-                f"the command ended, but {describe_lost(reports)}. Run again; the condition is "
-                f"measured again. {CRASH}{cell.output_excerpt()}"
+                f"the command ended, but {describe_lost(reports)}. Then run again; the condition "
+                f"is measured again.{self._crash_hint()}{cell.output_excerpt()}"
             )
         if reports.connected > 0:
             return (
@@ -322,8 +336,8 @@ class Attempt:
             return (
                 f"{cell.describe_missing(missing)}, such as {missing[0]}: a process died or gave "
                 "up before its first step, or the command draws its episodes at random (fix its "
-                "seed, and choose some by episodes=). Run again; the condition is measured again. "
-                f"{CRASH}{cell.output_excerpt()}"
+                "seed, and choose some by episodes=). Run again; the condition is measured again."
+                f"{self._crash_hint()}{cell.output_excerpt()}"
             )
         extra = cell.extra_episodes()
         if extra:
@@ -331,15 +345,15 @@ class Attempt:
                 f"{counted(len(extra), 'episode')} ended under it that the clean run lacks, such "
                 f"as {extra[0]}: a process of the clean run died or gave up before its first step, "
                 "or the command draws its episodes at random (fix its seed, and choose some by "
-                f"episodes=). Run again; clean is measured again, too. {CRASH}"
+                "episodes=). Run again; clean is measured again, too."
             )
         if problem := cell.rule_problem():
             return problem
         if not cell.rows():
             return (
                 f"none of {counted(len(reports.ends), 'episode')} that ended reported a result, so "
-                "there are no rows: the metrics hold no success, and neither the metrics nor the "
-                "simulator a distance to a goal. Add the Success measure to the task, or call "
+                "there are no rows: the metrics hold no success, and no success rule can judge "
+                "the episodes. Add the Success measure to the task, set rule=, or call "
                 "episode.finish(success=...)."
             )
         return ""

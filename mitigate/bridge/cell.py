@@ -62,10 +62,11 @@ SCHEMA: Mapping[str, tuple[Callable[[Any], bool], str]] = {
     "severity": (lambda value: _is_number(value) and 0 <= value <= 1, "a number from 0 to 1"),
     "repeat": (_is_count, "a whole number >= 0"),
     "files": (lambda value: isinstance(value, dict), "an object"),
+    "created": (lambda value: isinstance(value, list), "a list"),
     "episodes_told": (_is_count, "a whole number >= 0"),
     "events": (_is_seal, "the size (bytes) and the sha256 of the events"),
 }
-OLDER = ("events",)  # entries that older versions did not write
+OLDER = ("events", "created")  # entries that older versions did not write
 
 
 def folder_name(condition: str, severity: float, repeat: int = 0) -> str:
@@ -340,7 +341,7 @@ class Cell:
         same = len(set(without_path.values())) == 1 and len(without_path) == len(rules)
         for rule, count in list(without_path.items())[: 1 if same else None]:
             by_rule = "" if same else f" by {rule}"
-            parts.append(f"{count} without a path{by_rule}: SPL is success")
+            parts.append(f"{count} successful without a path{by_rule}: their SPL is 1")
         for how, name in ((RESET, "reset"), (CLOSE, "closed")):
             count = sum(end.get("how") == how for end in reports.ends.values())
             if 0 < count < len(reports.ends):
@@ -366,10 +367,13 @@ class Cell:
 def describe_lost(reports: Reports) -> str:
     """Return a text such as "2 episodes were left unfinished, such as s0/2: a process died ...".
 
-    If possible, the example is an episode whose reason is known.
+    If possible, the example is an episode whose reason is known. The text ends with advice.
     """
     name = next((name for name in reports.lost if reports.dropped[name]), reports.lost[0])
-    reason = reports.dropped[name] or "a process of the command died, or its loop gave up"
+    reason = reports.dropped[name] or (
+        "a process of the command died, or the program left the episode. If it left the episode, "
+        "let it call env.close(), or episode.finish() in a loop of your own"
+    )
     if reports.dropped[name] not in ("", CUT_OFF):
         reason = (
             f"it was reset or closed during an exception, {reason}. If the program ends its "
@@ -382,15 +386,16 @@ def describe_lost(reports: Reports) -> str:
 
 
 def hash_files(command: Sequence[str]) -> dict[str, dict[str, Any]]:
-    """Return size and sha256 of the files in a command, given as words or after ``=``."""
+    """Return size and sha256 of the files in a command."""
     hashes = {}
-    for path in dict.fromkeys(_files_in(command)):
+    for path in dict.fromkeys(files_in(command)):
         size = path.stat().st_size
         hashes[str(path)] = {"size": size, "sha256": sha256(path) if size <= MAX_HASHED else None}
     return hashes
 
 
-def _files_in(command: Sequence[str]) -> Iterator[Path]:
+def files_in(command: Sequence[str]) -> Iterator[Path]:
+    """Yield the existing files in a command, given as words or after ``=``."""
     for word in command:
         for text in (word, word.partition("=")[2]):
             # a word may also be code instead of a file name

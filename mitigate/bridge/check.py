@@ -24,6 +24,7 @@ from mitigate.bridge.config import RunConfig, check_options, command_name
 from mitigate.bridge.plan import Plan, make_cells
 from mitigate.bridge.results import NORMALISED_HINT, NORMALISED_LIMIT, Reports
 from mitigate.core.files import write_bytes, write_figure
+from mitigate.core.names import counted
 from mitigate.core.observation import DEPTH, RGB
 from mitigate.core.output import output_folder
 from mitigate.core.pictures import depth_picture
@@ -113,6 +114,7 @@ def check(config: RunConfig, command: Sequence[str]) -> Path | None:
     for kind in sorted({_sensors(part)[0] for part in applicable} - kinds):
         print(f"the first call has no {kind} frame: no {kind} corruption is drawn")
     drawn = [part for part in dict.fromkeys(applicable) if kinds.intersection(_sensors(part))]
+    print(f"check: drawing {counted(len(drawn), 'corruption')}", flush=True)
     figure = draw_sheet(rig, frames, drawn, reports.first, config.seed)
     path = write_figure(out / "sheet.png", figure)
     print(f"wrote {path}: the first frame of the agent under each condition", flush=True)
@@ -239,6 +241,7 @@ def draw_sheet(
         note = f"at call {call}" if call else ""
         if np.array_equal(views, before, equal_nan=True):
             note = f"no change in {TRIED_CALLS} calls"
+            print(f"  {corruption.name}: {note} with the first frame", flush=True)
         rows.append(([corruption.name, note], group, views))
     columns = 1 + min(MAX_DRAWN, max(len(group.cameras) for _, group, _ in rows))
     figure = Figure(figsize=(SIDE * columns, SIDE * len(rows)), dpi=100, layout="constrained")

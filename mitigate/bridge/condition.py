@@ -103,7 +103,8 @@ def why_not_applicable(corruption: Corruption, clean: Reports) -> str:
     for part in corruption.parts:
         sensors = {*record(part.name).modalities} & {"rgb", "depth"}
         if sensors and not sensors & kinds:
-            return f"the agent has no {' or '.join(sorted(sensors))} camera"
+            unread = f" (not read as cameras: {', '.join(clean.unread)})" if clean.unread else ""
+            return f"the agent has no {' or '.join(sorted(sensors))} camera{unread}"
         if record(part.name).family == CAMERA:
             if part.name == "camera_height":
                 return "the bridge cannot render from another height"

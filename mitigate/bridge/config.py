@@ -82,7 +82,7 @@ def check_options(config: RunConfig, command: Sequence[str]) -> None:
     if not command:
         raise ValueError(
             "A command is missing. Write it after --, as you would type it: mitigate run "
-            "corruption=spatter -- bash run_r2r/main.bash eval 2333"
+            "conditions=[spatter] -- bash run_r2r/main.bash eval 2333"
         )
     if config.rule is not None and config.rule not in RULES:
         raise ValueError(unknown("rule", config.rule, RULES))

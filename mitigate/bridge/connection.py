@@ -219,7 +219,8 @@ class Connection:
         self.offsets, size = self.rig.lay_out(kinds)
         if message["cameras"] not in self.described:  # RGB and depth may come in separate calls
             self.described.append(message["cameras"])
-            write_event(self.folder, event="spec", cameras=message["cameras"])
+            unread = [_one_line(text) for text in message.get("unread") or ()]
+            write_event(self.folder, event="spec", cameras=message["cameras"], unread=unread)
         if not size:
             return {"offsets": {}}
         return {**self.shared.make(size), "offsets": self.offsets}
@@ -299,7 +300,8 @@ class Connection:
         if self.calls == 0 and not failed:
             raise ValueError(
                 f"episode {self.episode} ended, but the bridge received none of its frames. The "
-                "program takes frames in a way that the bridge does not intercept."
+                "program takes frames in a way that the bridge does not intercept, or no sensor "
+                "has the sensor_type SensorTypes.COLOR or SensorTypes.DEPTH (docs/bridge.md)."
             )
         if self.calls and not failed:
             self._check_kinds()
@@ -311,6 +313,7 @@ class Connection:
             scene=self.scene,
             episode=self.episode,
             seconds=round(self.seconds, 4),
+            loop=self.loop,
             **end,
         )
         self.open = False

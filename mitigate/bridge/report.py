@@ -18,6 +18,7 @@ from mitigate.bridge.events import DONE
 from mitigate.bridge.plan import corruption_settings
 from mitigate.bridge.results import OWN
 from mitigate.core.files import write_bytes, write_text
+from mitigate.core.markdown import plain_text
 from mitigate.core.names import counted
 from mitigate.corruptions import CLEAN, Corruption
 from mitigate.evaluation import bootstrap, report, rows
@@ -51,7 +52,13 @@ def write_report(cells: Sequence[Cell], out: Path) -> None:
     rule = cells[0].rule
     first = OWN if rule is None else str(RULES[rule])
     paths = report.write(new_rows, out, first=first, least=2)
-    print((out / "table.md").read_text("utf-8"), *(f"wrote {path}" for path in paths), sep="\n")
+    if len({row["rule"] for row in new_rows}) > 1:
+        print(
+            "There is a table per success rule. The first uses the program's own rule or rule=. "
+            "The second uses a common rule, to compare programs whose own rules differ.\n"
+        )
+    table = plain_text((out / "table.md").read_text("utf-8"))
+    print(table, *(f"wrote {path}" for path in paths), sep="\n")
     clean_runs = [cell.rows() for cell in finished if cell.corruption.name == "clean"]
     if len(clean_runs) > 1:
         text = describe_randomness(clean_runs)

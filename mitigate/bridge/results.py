@@ -21,7 +21,10 @@ from mitigate.worlds.measures import RULES, Rule, path_length, spl
 OWN = "own: the agent's Success measure"
 # depth in metres that never exceeds this value may be normalised (heuristic)
 NORMALISED_LIMIT = 1.01
-NORMALISED_HINT = "is it normalised? If so, set normalize_depth, min_depth and max_depth"
+NORMALISED_HINT = (
+    "is it normalised? If so, describe it, with the camera's own name and range: corrupt(..., "
+    "cameras={'depth': {'normalize_depth': True, 'min_depth': 0.0, 'max_depth': 10.0}})"
+)
 CUT_OFF = (
     "its Env was closed before the episode was over while other Envs ran in parallel, as when an "
     "evaluator stops after a number of episodes. Choose episodes by episodes= and let the program "
@@ -38,6 +41,8 @@ class Reports:
     Attributes:
         hellos: The first message of each connection, with the versions of Python and libraries.
         cameras: The cameras of all calls, in their first description.
+        unread: Observations of the first call that look like frames, but whose sensors are no
+            cameras, with the type of the sensor.
         ends: The end of each episode by name: the first end at which it was over, or else the first
             end.
         repeated: Number of episodes that ended more than once.
@@ -54,6 +59,7 @@ class Reports:
 
     hellos: list[dict[str, Any]] = field(default_factory=list)
     cameras: list[dict[str, Any]] = field(default_factory=list)
+    unread: list[str] = field(default_factory=list)
     ends: dict[str, dict[str, Any]] = field(default_factory=dict)
     repeated: int = 0
     dropped: dict[str, str] = field(default_factory=dict)
@@ -85,6 +91,11 @@ class Reports:
             self.ends[name] = event
         elif _how(event) != CLOSE:
             self.repeated += 1
+            if event.get("loop"):
+                self.problems.append(
+                    f"each episode must have its own name, but {name} ended twice. Pass a "
+                    "different name or scene to mitigate_hook.connect for each episode."
+                )
         if before is not None and before["scene"] != event["scene"]:
             self.problems.append(
                 f"scene files must have different names, got {before['scene']} and "
@@ -141,6 +152,7 @@ def _add(reports: Reports, event: dict[str, Any], began: dict[int, int]) -> None
     elif kind == "bye":
         reports.connected -= 1
     elif kind == "spec":
+        reports.unread = reports.unread or event.get("unread", [])
         known = {camera.get("name") for camera in reports.cameras}
         reports.cameras += [c for c in event["cameras"] if c.get("name") not in known]
     elif kind == "dataset":
@@ -202,25 +214,28 @@ def rows(
     return result
 
 
-def _common_rule(reports: Reports) -> Rule:
-    follows_text = reports.first.get("text") and not reports.first.get("category")
-    return COMMON["words" if follows_text else "objects"]
+def _common_rules(reports: Reports) -> list[Rule]:
+    """Return the common rule of the task; a task without words or objects (PointNav) has none."""
+    if reports.first.get("category"):
+        return [COMMON["objects"]]
+    return [COMMON["words"]] if reports.first.get("text") else []
 
 
 def _choose_rules(reports: Reports, rule: str | None, clean: Reports | None = None) -> list[Rule]:
     """Return the requested success rule and the common success rule.
 
-    The common rule is omitted if it could judge only some episodes: if it cannot judge an episode
-    that the agent's own rule can judge, or if neither this condition nor the clean one reports a
-    distance.
+    The common rule is omitted if the task has none, or if it could judge only some episodes: if it
+    cannot judge an episode that the agent's own rule can judge, or if neither this condition nor
+    the clean one reports a distance.
     """
-    common = _common_rule(reports)
+    common = _common_rules(reports)
     ends = [*reports.ends.values()]
-    partial = any(_missing(end, common) for end in ends if "success" in end.get("metrics", {}))
+    own = [end for end in ends if "success" in end.get("metrics", {})]
+    partial = any(_missing(end, rule) for end in own for rule in common)
     all_ends = [*ends, *(clean.ends.values() if clean is not None else ())]
     no_distance = all(_goal_distance(end) is None for end in all_ends)
     requested = [RULES[rule]] if rule else []
-    return requested + ([] if partial or no_distance else [common])
+    return requested + ([] if partial or no_distance else common)
 
 
 def _judge(end: dict[str, Any], rule: str | None, rules: Iterable[Rule]) -> Iterable[Row]:

@@ -168,15 +168,16 @@ def _select_applicable(cells: Sequence[Cell]) -> tuple[list[Cell], list[str]]:
 def _warn_changed_files(cells: Sequence[Cell], out: Path, known: Sequence[str] = ()) -> list[str]:
     """Print and return the files in the command that changed after conditions finished.
 
-    Files in ``known`` are returned but not printed.
+    Files in ``known``, and files that the command created, are not printed.
     """
     changed: dict[str, list[str]] = {}
     now = hash_files(cells[0].command)
     for cell in cells:
         for file in cell.changed_files(now):
             changed.setdefault(file, []).append(cell.name)
+    created = {file for cell in cells for file in (cell.entries() or {}).get("created", ())}
     for file, names in changed.items():
-        if file in known:
+        if file in known or file in created:
             continue
         more = f" and {len(names) - 3} more" if len(names) > 3 else ""
         was = "was" if len(names) == 1 else "were"
@@ -184,7 +185,8 @@ def _warn_changed_files(cells: Sequence[Cell], out: Path, known: Sequence[str] =
             f"run: {file} changed since {', '.join(names[:3])}{more} {was} run. The old results "
             "are kept, and one table holds old and new results. To measure again, choose another "
             f"folder (out=...) or remove {out / 'conditions'}. With watch=[{file}] a changed file "
-            "counts as another agent.",
+            "counts as another agent. If the command writes this file, name it "
+            f"{{out}}/{Path(file).name} in the command.",
             flush=True,
         )
     return list(changed)
@@ -228,7 +230,7 @@ def _run_here(cells: Sequence[Cell], jobs: int) -> list[str]:
             if running and time.monotonic() - last_print > PROGRESS_INTERVAL:
                 last_print = time.monotonic()
                 for attempt in running:
-                    print(f"{attempt.cell.name}: {attempt.cell.summary()}", flush=True)
+                    print(f"{attempt.cell.name}, so far: {attempt.cell.summary()}", flush=True)
     finally:
         for attempt in running:
             attempt.kill()
@@ -364,5 +366,5 @@ def _check_line(options: Sequence[str]) -> None:
     if words:
         raise ValueError(
             f"Options must be key=value, got {words[0]}. If it begins the command to run, write -- "
-            "before it: mitigate run corruption=spatter -- python agent.py"
+            "before it: mitigate run conditions=[spatter] -- python agent.py"
         )

@@ -182,6 +182,24 @@ def test_run_names_a_program_that_changes_during_it(run, tmp_path):
     assert result.returncode == 0 and "nav.py changed since clean was run" in result.stdout
 
 
+def test_run_mentions_crashes_on_corrupted_input_only_if_it_is_corrupted(run, tmp_path):
+    file = tmp_path / "nav.py"
+    file.write_text(PROGRAM.replace("(seen != frame).any()", "True"))
+    result = run(tmp_path / "o", "conditions=[spatter]", f"{sys.executable} {file} x a")
+    assert "1 episode was left unfinished" in result.stderr and "env.close()" in result.stderr
+    assert "corrupted input" not in result.stderr
+
+
+def test_run_ignores_a_file_that_the_command_creates(run, tmp_path):
+    file, result_file = tmp_path / "nav.py", tmp_path / "out.json"
+    file.write_text(PROGRAM + "open(sys.argv[2], 'a').write('1')\n")
+    command = f"{sys.executable} {file} {{condition}} {result_file}"
+    for _ in range(2):
+        result = run(tmp_path / "o", "conditions=[spatter]", command)
+        assert result.returncode == 0 and "changed since" not in result.stdout
+    assert result_file.read_text() == "11"
+
+
 def test_hash_files_finds_files_in_a_command(tmp_path):
     file = tmp_path / "nav.py"
     file.write_text("pass")

@@ -81,6 +81,18 @@ def test_reports_count_an_episode_lost_at_its_first_frame(tmp_path):
     assert reports.lost == ["a"] and sorted(reports.ends) == ["b", "c"]
 
 
+@pytest.mark.parametrize("processes", [1, 2])
+def test_reports_name_an_episode_that_ends_twice(tmp_path, processes):
+    code = (
+        f"for n in range(2):\n    if {processes} == 1 or os.fork() == 0:\n"
+        "        episode = mitigate_hook.connect('a')\n        episode.corrupt({'rgb': rgb})\n"
+        f"        episode.finish(success=1)\n        if {processes} == 2: os._exit(0)\n"
+        f"if {processes} == 2: os.wait(), os.wait()\n"
+    )
+    _, reports = run_loop(tmp_path, code)
+    assert "must have its own name, but a ended twice" in reports.problems[0]
+
+
 def test_finish_without_a_frame_accepts_only_failure(tmp_path):
     process, reports = run_loop(tmp_path, "mitigate_hook.connect('a').finish(success=False)")
     assert process.returncode == 0 and reports.ends["a"]["metrics"]["success"] == 0

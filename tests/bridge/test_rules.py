@@ -90,6 +90,23 @@ def test_run_rejects_a_rule_that_judges_only_some_episodes(run, tmp_path, first)
     assert "1 of 2 episodes did not report. Pass finish(stopped=...)" in result.stderr
 
 
+def test_rows_have_no_common_rule_without_words_or_objects(tmp_path):
+    code = LOOP.replace(', instruction="go"', "")
+    with Listener(condition(), tmp_path) as listener:
+        python(listener, code % "episode.finish(success=False, distance_to_goal=0.05)")
+    assert {row["rule"] for row in rows(read(tmp_path), CLEAN, LABEL, None)} == {OWN}
+
+
+def test_run_prints_one_plain_table_per_rule(run, tmp_path):
+    file = tmp_path / "nav.py"
+    file.write_text(LOOP % "episode.finish(success=True, distance_to_goal=2.0)")
+    result = run(tmp_path / "o", "conditions=[clean]", f"{sys.executable} {file}")
+    for name in ("own", "etpnav"):
+        assert f"## unnamed split, clean only, success rule {name}\n" in result.stdout
+    assert "geodesic <= 3.0 m" in result.stdout and "\\" not in result.stdout
+    assert "geodesic \\<= 3.0 m" in (tmp_path / "o/table.md").read_text()
+
+
 def test_rows_omit_common_rule_without_all_episodes(tmp_path):
     known = "distance_to_goal=0.05 if name == 'a' else None"
     judged, _, _ = judge(tmp_path, f"episode.finish(success=True, {known})", None)
@@ -141,8 +158,8 @@ def test_run_warns_about_depth_and_missing_paths(run, tmp_path):
     file.write_text(LOOP % "episode.finish(success=name == 'a', distance_to_goal=2.0)")
     result = run(tmp_path / "o", "conditions=[spatter]", f"{sys.executable} {file}")
     assert result.returncode == 0 and result.stdout.count("is it normalised? If so") == 2
-    assert f"1 without a path by {OWN}: SPL is success" in result.stdout
-    assert f"2 without a path by {RULES['etpnav']}: SPL is success" in result.stdout
+    assert f"1 successful without a path by {OWN}: their SPL is 1" in result.stdout
+    assert f"2 successful without a path by {RULES['etpnav']}: their SPL is 1" in result.stdout
 
 
 @pytest.mark.parametrize("rule", ["etpnav", "objectnav"])

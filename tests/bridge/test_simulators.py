@@ -2,6 +2,9 @@
 
 import pytest
 
+from mitigate.bridge.condition import why_not_applicable
+from mitigate.corruptions import Corruption
+
 from .conftest import condition
 from .test_loops import run_loop
 
@@ -123,6 +126,42 @@ def test_corrupt_stops_for_a_corrupted_frame(tmp_path, again):
     ).replace("{}}", "{'type': 'rgb'}}")
     process, reports = run_loop(tmp_path, code)
     assert process.returncode == 97 and "is corrupted already" in reports.problems[0]
+
+
+@pytest.mark.parametrize(
+    ("source", "words"),
+    [
+        ("class Env:\n    def reset(self): pass", "has no make_dataset, Env.step, Env.close, Env."),
+        (
+            "make_dataset = 1\nclass Env:\n    reset = step = close = render = 0\n"
+            "    def __init__(self, config, dataset): pass",
+            "Env has no sim",
+        ),
+    ],
+)
+def test_hook_rejects_a_different_package_named_habitat(tmp_path, source, words):
+    package = tmp_path / "own" / "habitat" / "core"
+    package.mkdir(parents=True)
+    for folder in (package.parent, package):
+        (folder / "__init__.py").touch()
+    (package / "env.py").write_text(source)
+    code = f"sys.path.insert(0, {str(tmp_path / 'own')!r})\n"
+    code += "from habitat.core.env import Env\nEnv(None)\n"
+    process, reports = run_loop(tmp_path, code)
+    assert process.returncode == 97 and words in reports.problems[0], process.stdout
+    assert "call connect, corrupt and finish" in reports.problems[0]
+
+
+def test_reports_name_float_images_that_are_no_camera(tmp_path):
+    code = ENV + (
+        "from habitat.core.simulator import SensorTypes\nenv = Env(config={})\n"
+        "env.sim.sensor_suite.sensors['depth'].sensor_type = SensorTypes.TEXT\n"
+        "env.reset(); env.step(1); env.close()"
+    )
+    _, reports = run_loop(tmp_path, code)
+    assert why_not_applicable(Corruption("multipath", 0.6), reports) == (
+        "the agent has no depth camera (not read as cameras: depth with sensor_type TEXT)"
+    )
 
 
 @pytest.mark.slow

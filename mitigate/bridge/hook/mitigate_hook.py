@@ -209,9 +209,12 @@ class Channel:
             stop("the server answered another message.")
         return answer
 
-    def map_memory(self, cameras):
-        """Describe the cameras to the server and map the memory that it provides."""
-        answer = self.ask("spec", cameras=cameras)
+    def map_memory(self, cameras, unread):
+        """Describe the cameras to the server and map the memory that it provides.
+
+        ``unread`` names observations that look like frames and whose sensors are no cameras.
+        """
+        answer = self.ask("spec", cameras=cameras, unread=unread)
         self.layout = {name: int(offset) for name, offset in answer["offsets"].items()}
         self.memory = None
         if not self.layout:
@@ -314,6 +317,7 @@ class Session:
     def __init__(self):
         self.channel = None
         self.cameras = None  # camera descriptions that the server has received
+        self.unread = []  # observations that look like frames and whose sensors are no cameras
         self.sim = self.task = self.episode = None
         self.active = False  # whether an episode has begun and not ended
         self.busy = False
@@ -387,7 +391,7 @@ class Session:
             for c in cameras
         ]
         if described != self.cameras:
-            channel.map_memory(described)
+            channel.map_memory(described, self.unread)
             self.cameras = described
         for camera in described:
             if camera["name"] in channel.layout:
@@ -642,13 +646,26 @@ def _get_observations(original, suite, *args, **kwargs):
     if "task" in kwargs or "episode" in kwargs:
         return _call_clean(original, suite, *args, **kwargs)
     observations = original(suite, *args, **kwargs)
-    cameras = [_describe_sensor(s) for s in suite.sensors.values() if s.uuid in observations]
-    cameras = [camera for camera in cameras if camera["type"] in (COLOR, DEPTH)]
+    described = [_describe_sensor(s) for s in suite.sensors.values() if s.uuid in observations]
+    cameras = [camera for camera in described if camera["type"] in (COLOR, DEPTH)]
     if _is_clean_call() or not cameras:
         return observations
     session = _session_of(suite)
+    if session.cameras is None:
+        session.unread = [
+            f"{sensor['name']} with sensor_type {sensor['type'].upper() or None}"
+            for sensor in described
+            if sensor not in cameras and _is_float_image(observations[sensor["name"]])
+        ]
     heading = None if session.sim is None else _heading(session.sim.get_agent_state())
     return session.corrupt(observations, cameras, heading)
+
+
+def _is_float_image(value):
+    """Return whether an observation has two dimensions above 8 and a floating-point dtype."""
+    shape = _shape(value)
+    floating = str(_get(value, "dtype", "")).startswith("float")
+    return floating and len(shape) > 1 and sorted(shape)[-2] > 8
 
 
 def _task_reset(original, task, episode, *args, **kwargs):
@@ -732,7 +749,9 @@ def _update_measures(original, measurements, *args, **kwargs):
 
 def _env_init(original, env, config, dataset=None, *args, **kwargs):
     """Wrap ``Env.__init__`` to keep only the selected episodes of the dataset."""
-    return original(env, config, _keep_selected(dataset), *args, **kwargs)
+    original(env, config, _keep_selected(dataset), *args, **kwargs)
+    if _get(env, "sim") is None:
+        stop(f"habitat.core.env.Env has no sim, so it is not habitat-lab's. {OWN_ENV}")
 
 
 def _make_dataset(original, *args, **kwargs):
@@ -1262,36 +1281,50 @@ PATCHES = {  # maps a module to (class or "" for a function, method, wrapper) tu
     ),
     "WMNav_env": (("Env", "_run_episode", _wmnav_episode),),
 }
+OWN_ENV = (
+    "For an environment of your own, call connect, corrupt and finish of mitigate_hook "
+    "(docs/bridge.md), and give it a name other than habitat."
+)
 OPTIONAL = ("get_sensor_observations_async_finish",)  # methods that some versions lack
 
 
 def patch(module):
     """Wrap the methods of a module that was just imported."""
     _load_numpy()
+    missing = []
     for owner, method, wrapper in PATCHES[module.__name__]:
         kind = _get(module, owner) if owner else module
         original = None if kind is None else _get(kind, method)
         if original is not None:
             setattr(kind, method, _wrap(original, wrapper))
         elif method not in OPTIONAL:
-            stop(_missing_method(module, owner, method))
+            missing.append((owner, method))
+    if missing:
+        stop(_describe_missing(module, missing))
 
 
-def _missing_method(module, owner, method):
-    """Return the message for a method that does not exist and cannot be wrapped."""
+def _describe_missing(module, missing):
+    """Return the message for methods, (class, name) pairs, that cannot be wrapped."""
     adapters = json.loads(os.environ.get(ADAPTERS) or "{}")
     if adapters.get("module") == module.__name__:
         classes = [n for n, kind in vars(module).items() if isinstance(kind, type)]
         encoders = ", ".join(n for n in classes if _get(vars(module)[n], "forward")) or "none"
         return (
-            f"adapters= names the class {owner} of {module.__name__}, but the module has no such "
+            f"adapters= names the class {missing[0][0]} of {module.__name__}, but it has no such "
             f"class with a forward method; it has {encoders}. Write "
             "FOLDER:package.module:Class.attribute."
         )
+    package = _package(module.__name__)
+    wrapped = [f"{n} ({_join(PATCHES[n])})" for n in PATCHES if _package(n) == package]
     return (
-        f"{module.__name__} has no {owner} {method}: the bridge does not support this version "
-        "(supported: habitat-lab 0.1.5 to 0.3)."
+        f"{module.__name__} has no {_join(missing)}. The bridge supports habitat-lab 0.1.5 to 0.3, "
+        f"and wraps {', '.join(wrapped)}. {OWN_ENV}"
     )
+
+
+def _join(methods):
+    """Return the names of methods, given as tuples that begin with class and name."""
+    return ", ".join(f"{owner}.{name}" if owner else name for owner, name, *_ in methods)
 
 
 def _wrap(original, wrapper):

@@ -11,3 +11,6 @@ if sys.version_info >= (3, 6):
 
     mitigate_hook.install()
     mitigate_hook.run_hidden_sitecustomize(__file__)
+else:
+    version = "%d.%d" % sys.version_info[:2]
+    sys.stderr.write("mitigate: the hook needs Python 3.6 or newer, got %s.\n" % version)
