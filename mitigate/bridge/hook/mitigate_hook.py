@@ -662,10 +662,8 @@ def _get_observations(original, suite, *args, **kwargs):
 
 
 def _is_float_image(value):
-    """Return whether an observation has two dimensions above 8 and a floating-point dtype."""
-    shape = _shape(value)
-    floating = str(_get(value, "dtype", "")).startswith("float")
-    return floating and len(shape) > 1 and sorted(shape)[-2] > 8
+    """Return whether an observation has the shape of a frame and a floating-point dtype."""
+    return _may_be_frame(_shape(value)) and str(_get(value, "dtype")).startswith("float")
 
 
 def _task_reset(original, task, episode, *args, **kwargs):
@@ -1172,12 +1170,12 @@ def _find_cameras(observations, cameras):
 def _find_frame(value, name):
     """Return name and shape of the first array in an entry that may be a frame, else None.
 
-    Nested dicts and lists are searched. A frame has two dimensions above 8.
+    Nested dicts and lists are searched.
     """
     if value is None or isinstance(value, (str, bytes, int, float)):
         return None
     shape = _shape(value)
-    if len(shape) > 1 and sorted(shape)[-2] > 8:
+    if _may_be_frame(shape):
         return name, shape
     if callable(_get(value, "items")):
         parts = value.items()
@@ -1187,6 +1185,11 @@ def _find_frame(value, name):
         parts = enumerate(value) if isinstance(value, (list, tuple)) else ()
     frames = (_find_frame(part, f"{name}.{key}") for key, part in parts)
     return next((frame for frame in frames if frame is not None), None)
+
+
+def _may_be_frame(shape):
+    """Return whether an array of this shape may be a frame: it has two dimensions above 8."""
+    return len(shape) > 1 and sorted(shape)[-2] > 8
 
 
 def _shape(value):
