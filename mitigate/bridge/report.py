@@ -54,8 +54,8 @@ def write_report(cells: Sequence[Cell], out: Path) -> None:
     paths = report.write(new_rows, out, first=first, least=2)
     if len({row["rule"] for row in new_rows}) > 1:
         print(
-            "There is a table per success rule. The first uses the program's own rule or rule=. "
-            "The second uses a common rule, to compare programs whose own rules differ.\n"
+            "There are tables for two success rules: first the rule of the program or of rule=, "
+            "then a common rule, to compare programs whose own rules differ.\n"
         )
     table = plain_text((out / "table.md").read_text("utf-8"))
     print(table, *(f"wrote {path}" for path in paths), sep="\n")
