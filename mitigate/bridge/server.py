@@ -51,6 +51,7 @@ class Listener:
         self.pid = 0
 
     def __enter__(self) -> Listener:
+        warm_up(self.condition.corruption)  # before the command starts to wait for answers
         listening = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
         listening.bind(self.address)  # the socket is in a folder that only this user can access
         os.chmod(self.address, 0o600)
@@ -115,7 +116,6 @@ class Listener:
 
     def _accept(self, listening: socket.socket) -> None:
         parent = os.getppid()
-        warm_up(self.condition.corruption)
         listening.settimeout(1.0)
         while True:
             try:
