@@ -105,14 +105,14 @@ def make_cells(plan: Plan) -> list[Cell]:
 
 
 def _check_guards(guards: Guards) -> None:
-    """Raise ValueError for a guard that changes the agent, because that runs in a different
+    """Raise ValueError for a guard that overrides ``attach``, because the agent runs in a different
     process.
     """
     if guards.adapts:
         raise ValueError(
-            f"The guard {guards.label} adapts the agent itself, but the bridge cannot change the "
-            "agent of another program. Leave restore= out, or choose a guard that changes frames "
-            "or instructions only."
+            f"The guard {guards.label} adapts the agent or remembers earlier frames, which the "
+            "bridge cannot do for another program. Leave restore= out, or choose a guard without "
+            "memory that changes only frames or instructions."
         )
 
 

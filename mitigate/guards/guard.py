@@ -44,8 +44,7 @@ class EpisodeStart:
 
 
 class Guard:
-    """Base class of guards. Base class of guards; subclasses override methods, whose defaults
-    change nothing.
+    """Base class of guards. Subclasses override methods, whose defaults change nothing.
 
     An episode's result must not depend on other episodes or on their order. So ``observe`` must not
     keep state between calls, unless the guard overrides ``attach``. In that case, episodes run one

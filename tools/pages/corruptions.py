@@ -65,7 +65,8 @@ def formulas(names: tuple[str, ...] = NAMES) -> str:
 def _cells(name: str) -> tuple[str, ...]:
     entry = record(name)
     scopes = (scope if scope != "-" else "" for scope in (entry.episode, entry.frame))
-    return (f"`{name}`", *DESCRIPTIONS[name], *scopes)
+    cells = (*DESCRIPTIONS[name], *scopes)
+    return (f"`{name}`", *(cell.replace("|", "\\|") for cell in cells))
 
 
 def _strengths(curves: dict[str, Curve]) -> str:

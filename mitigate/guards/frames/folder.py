@@ -52,8 +52,7 @@ def card(folder: str | Path) -> dict[str, Any]:
         raise FileNotFoundError(
             f"There is no restorer at {folder}: {', '.join(missing)} missing. Train a restorer "
             "with `make train RECIPE=restore` (its folder is runs/.../agent), or name "
-            "checkpoints/restorer or "
-            "a function (module:callable)."
+            "checkpoints/restorer or a function (module:callable)."
         )
     damage = folders.problem(folder / CARD)
     if damage:
