@@ -37,7 +37,7 @@ class HardenConfig:
     tune: str = "all"
     targets: list[str] | None = None
     steps: int = 1500
-    lr: float = 3e-4
+    lr: float | None = None
     broad_share: float = 0.5
     schedule: str = "per_episode"
     validation: int = 16

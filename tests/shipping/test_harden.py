@@ -160,6 +160,23 @@ def test_harden_with_adapters_leaves_the_policy_frozen(tmp_path):
     assert torch.equal(loaded(frames), result.policy(frames))
 
 
+@pytest.mark.parametrize(("tune", "rate"), [("all", 3e-4), ("adapters", 2e-3)])
+def test_adapters_have_a_higher_learning_rate(tmp_path, monkeypatch, tune, rate):
+    given = {}
+
+    class Stop(Exception):
+        pass
+
+    def trainer(objective, **options):
+        given.update(options)
+        raise Stop
+
+    monkeypatch.setattr("mitigate.shipping.harden.Trainer", trainer)
+    with pytest.raises(Stop):
+        mitigate.harden(trained(), world, listed=FEW, out=tmp_path, **SHORT | {"tune": tune})
+    assert given["lr"] == rate
+
+
 def test_harden_with_ppo_and_adapters_leaves_the_policy_frozen(tmp_path):
     net = trained()
     options = PPO | {"tune": "adapters", "schedule": "per_frame"}
