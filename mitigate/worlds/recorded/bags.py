@@ -13,9 +13,10 @@ import math
 import re
 import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 from functools import partial
+from itertools import takewhile
 from pathlib import Path
 from typing import Any
 
@@ -25,13 +26,18 @@ from mitigate.core.files import lfs_problem
 from mitigate.core.names import unknown
 from mitigate.core.observation import DEPTH, POSE, RGB
 from mitigate.worlds.recorded.messages import (
+    DamagedImage,
     camera_matrix,
+    depth_unit,
+    encoding_of,
+    kind_of,
     read_image,
     read_lens,
     read_pose,
     read_stamp,
 )
 from mitigate.worlds.recorded.source import (
+    MAX_FRAME_GAP,
     MAX_INSTANTS,
     Lens,
     Source,
@@ -55,6 +61,14 @@ _OTHER_IMAGES = re.compile(r"infra|mask|(?:^|[/_])ir(?:$|[/_])")
 # names of poses that are not the robot's position
 _OTHER_POSES = re.compile(r"goal|target|waypoint|initial_?pose")
 
+COMPRESSED = ("/compressed", "/compressedDepth")  # image_transport appends these to a topic
+# the first bytes of each format, and a program that repairs it
+FORMATS = {
+    ".bag": (b"#ROSBAG V", "`rosbag reindex`"),
+    ".mcap": (b"\x89MCAP0\r\n", "`mcap recover`"),
+    ".db3": (b"SQLite format 3\0", "`sqlite3 OLD.db3 .recover | sqlite3 NEW.db3`"),
+}
+
 KINDS = (RGB, DEPTH)
 # Heuristic limits.
 MAX_POSES = 16 * MAX_INSTANTS  # maximum poses per drive: 500 Hz for images at 30 Hz
@@ -69,6 +83,8 @@ class Bag(Source):
         topics: Topics to read.
         hfov: Horizontal field of view in degrees of cameras without CameraInfo.
         yaw: Direction of the cameras in degrees to the right of the robot's heading.
+        unit: Metres per count of depth; None: 0.001 for whole numbers, 1 for 32FC1.
+        tolerance: Maximum seconds between the messages of a time step; None: 0.1.
 
     Raises:
         ValueError: The bag is damaged or lacks a topic, or ``rosbags`` is not installed.
@@ -76,16 +92,28 @@ class Bag(Source):
 
     stepped = False
 
-    def __init__(self, path: Path, topics: Topics, hfov: float | None, yaw: float = 0.0) -> None:
+    def __init__(
+        self,
+        path: Path,
+        topics: Topics,
+        hfov: float | None,
+        yaw: float = 0.0,
+        unit: float | None = None,
+        tolerance: float | None = None,
+    ) -> None:
         resolved = path.resolve()  # resolved, because `.` has no name
         self.path = path
+        self.unit = unit
+        self.tolerance = MAX_FRAME_GAP if tolerance is None else tolerance
         self.signals = {}
+        self.damaged = []
         self.name = resolved.name if path.is_dir() else path.stem
         self.instruction = read_instruction(resolved.parent / f"{self.name}.txt")
         with self._open() as reader:
             available = {name: info.msgtype for name, info in reader.topics.items()}
             counts = {name: info.msgcount for name, info in reader.topics.items()}
-            self.topics = choose_topics(path, available, topics, counts)
+            encodings = self._read_encodings(reader)
+            self.topics = choose_topics(path, available, topics, counts, encodings)
             self.kinds = [kind for kind in KINDS if kind in self.topics]
             stamps, poses, lenses = self._index(reader, hfov)
         if hfov is not None and all(kind in lenses for kind in self.kinds):
@@ -95,21 +123,40 @@ class Bag(Source):
             kind: lenses[kind] if kind in lenses else self._lens_without_info(kind, hfov)
             for kind in self.kinds
         }
+        self.formats = self._describe(encodings)
+
+    def depth_advice(self) -> str:
+        return "Set unit= (metres per count), such as unit=0.0001."
+
+    def _describe(self, encodings: Mapping[str, str]) -> dict[str, str]:
+        """Return the topic of each sensor, with the encoding of images and the unit of depth."""
+        formats = {POSE: self.topics[POSE]} if POSE in self.topics else {}
+        for kind in self.kinds:
+            topic = self.topics[kind]
+            encoding = encodings.get(topic, "")
+            formats[kind] = f"{topic}, {encoding}"
+            if kind == DEPTH:
+                unit = depth_unit(encoding) if self.unit is None else self.unit
+                assumed = " (assumed)" if self.unit is None else ""
+                formats[kind] += f", {unit:g} metres per count{assumed}"
+        return formats
 
     def frames(self, chosen: Sequence[int]) -> Iterator[dict[str, np.ndarray]]:
         indices = {kind: [int(self._image_numbers[kind][i]) for i in chosen] for kind in self.kinds}
         last_use = {kind: {n: at for at, n in enumerate(w)} for kind, w in indices.items()}
-        buffer: dict[str, dict[int, np.ndarray]] = {kind: {} for kind in self.kinds}
+        buffer: dict[str, dict[int, np.ndarray | None]] = {kind: {} for kind in self.kinds}
         done = 0
         counts = dict.fromkeys(self.kinds, -1)
         with self._open() as reader:
             decode = {kind: set(numbers) for kind, numbers in indices.items()}
-            for kind, _, message in self._messages(reader, self.kinds, decode):
+            for kind, times, message in self._messages(reader, self.kinds, decode):
                 counts[kind] += 1
                 if message is not None:
-                    buffer[kind][counts[kind]] = read_image(message, kind, self.path)
-                    images = [image for waiting in buffer.values() for image in waiting.values()]
-                    if sum(image.nbytes for image in images) > MAX_BUFFER_BYTES:
+                    buffer[kind][counts[kind]] = self._read_image(
+                        message, kind, counts[kind], times
+                    )
+                    waiting = [image for images in buffer.values() for image in images.values()]
+                    if sum(i.nbytes for i in waiting if i is not None) > MAX_BUFFER_BYTES:
                         raise ValueError(
                             f"{self.path}: images of the same time must be close together in the "
                             f"bag, but over {MAX_BUFFER_BYTES >> 30} GiB of others lie between "
@@ -117,16 +164,33 @@ class Bag(Source):
                             "out (topics.depth=none)."
                         )
                 while done < len(chosen) and all(indices[k][done] in buffer[k] for k in self.kinds):
-                    yield {k: buffer[k][indices[k][done]] for k in self.kinds}
+                    step = {k: buffer[k][indices[k][done]] for k in self.kinds}
+                    images = {k: image for k, image in step.items() if image is not None}
+                    yield images if len(images) == len(step) else {}
                     done += 1
                     for k in self.kinds:  # discards images that no later time step uses
                         buffer[k] = {n: f for n, f in buffer[k].items() if last_use[k][n] >= done}
+
+    def _read_image(
+        self, message: Any, kind: str, number: int, times: tuple[float, float]
+    ) -> np.ndarray | None:
+        """Return the image of a message, or None if it is damaged."""
+        try:
+            with self._explained():
+                return read_image(message, kind, self.path, self.unit)
+        except DamagedImage as error:
+            seconds = (times[0] or times[1]) - self.times[0]
+            self.damaged.append(
+                f"message {number} on {self.topics[kind]}, {seconds:.1f} s after the start, is "
+                f"damaged ({str(error).removeprefix(f'{self.path}: ').rstrip('.')})"
+            )
+            return None
 
     # ----------------------------------------------------------------------------- reading
 
     @contextmanager
     def _open(self) -> Iterator[Any]:
-        """Open a reader; convert any error of ``rosbags`` to a ValueError that names the bag."""
+        """Open a reader."""
         try:
             from rosbags.highlevel import AnyReader
             from rosbags.typesys import Stores, get_typestore
@@ -135,14 +199,21 @@ class Bag(Source):
                 "Bags need the package rosbags, which is not installed. Run pip install -e "
                 "'.[bags]'."
             ) from error
-        try:
-            default_types = get_typestore(Stores.ROS2_HUMBLE)
-            with bounded(self.path):
+        with ExitStack() as stack:
+            with self._explained():
+                default_types = get_typestore(Stores.ROS2_HUMBLE)
+                stack.enter_context(bounded(self.path))
                 reader: Any = AnyReader([self.path], default_typestore=default_types)
                 for part in reader.readers:
                     part.open = partial(_open_part, part, part.open)
-                with reader:
-                    yield reader
+                stack.enter_context(reader)
+            yield reader
+
+    @contextmanager
+    def _explained(self) -> Iterator[None]:
+        """Convert errors caused by the content of the bag to a ValueError that names the bag."""
+        try:
+            yield
         except OSError:
             raise
         except Exception as error:
@@ -150,11 +221,22 @@ class Bag(Source):
                 raise ValueError(f"{self.path} {pointer}.") from error
             if isinstance(error, ValueError) and str(self.path) in str(error):
                 raise  # raised by this package, so it already names the bag
-            reason = " ".join(str(error).split())[:300]
+            reason = " ".join(str(error).split())[:300].rstrip(".")
             raise ValueError(
-                f"{self.path} cannot be read as a bag: {reason}. If its end is missing, repair it "
-                "with `rosbag reindex` (ROS 1), `ros2 bag reindex` or `mcap recover`."
+                f"{self.path} cannot be read as a bag: {reason}. {_repair_advice(self.path)}"
             ) from error
+
+    def _read_encodings(self, reader: Any) -> dict[str, str]:
+        """Return the encoding of the first image on each image topic."""
+        encodings: dict[str, str] = {}
+        for connection in reader.connections:
+            if connection.msgtype in IMAGES and connection.topic not in encodings:
+                with self._explained():
+                    for _, _, raw in reader.messages(connections=[connection]):
+                        message = reader.deserialize(raw, connection.msgtype)
+                        encodings[connection.topic] = encoding_of(message)
+                        break
+        return encodings
 
     def _messages(
         self, reader: Any, names: Sequence[str], decode: Mapping[str, set[int]]
@@ -175,13 +257,14 @@ class Bag(Source):
             by_topic.setdefault(self.topics[name], []).append(name)
         connections = [c for c in reader.connections if c.topic in by_topic]
         counts = dict.fromkeys(names, -1)
-        for connection, received, raw in reader.messages(connections=connections):
-            times = read_stamp(raw, reader.is2), received / 1e9
-            for name in by_topic[connection.topic]:
-                counts[name] += 1
-                needed = name not in decode or counts[name] in decode[name]
-                message = reader.deserialize(raw, connection.msgtype) if needed else None
-                yield name, times, message
+        with self._explained():
+            for connection, received, raw in reader.messages(connections=connections):
+                times = read_stamp(raw, reader.is2), received / 1e9
+                for name in by_topic[connection.topic]:
+                    counts[name] += 1
+                    needed = name not in decode or counts[name] in decode[name]
+                    message = reader.deserialize(raw, connection.msgtype) if needed else None
+                    yield name, times, message
 
     def _index(
         self, reader: Any, hfov: float | None
@@ -200,13 +283,14 @@ class Bag(Source):
                         f"{self.path} must have at most {limit} messages on {self.topics[name]}. "
                         "Cut the recording."
                     )
-            if name == POSE:
-                poses.append(read_pose(message))
-            elif name not in self.kinds:
-                kind = name.removeprefix("info ")
-                usable = hfov is None or bool((camera_matrix(message)[:1] > 0).any())
-                if kind not in lenses and usable:
-                    lenses[kind] = read_lens(kind, message, self.path)
+            with self._explained():
+                if name == POSE:
+                    poses.append(read_pose(message))
+                elif name not in self.kinds:
+                    kind = name.removeprefix("info ")
+                    usable = hfov is None or bool((camera_matrix(message)[:1] > 0).any())
+                    if kind not in lenses and usable:
+                        lenses[kind] = read_lens(kind, message, self.path)
         seconds = {name: _choose_clock(pairs) for name, pairs in stamps.items()}
         timed = zip(seconds.pop(POSE), poses, strict=True)
         return seconds, [(time, *pose) for time, pose in timed], lenses
@@ -231,19 +315,31 @@ class Bag(Source):
                     f"{self.path} has no message on {self.topics[name]}. Set topics.{name}=none to "
                     "leave it out."
                 )
-        instants = match_times(stamps, np.array(table) if table else None)
+        instants = match_times(stamps, np.array(table) if table else None, self.tolerance)
         if not len(instants.times):
-            raise ValueError(
-                f"{self.path}: no image has messages of all other topics close to its time "
-                f"({instants.dropped} images, {len(table)} poses). Choose other topics: "
-                "topics.rgb=, topics.depth=, topics.pose=."
-            )
+            raise ValueError(f"{self.path}: {instants.mismatch(self.tolerance, self.topics)}")
         self.times = instants.times
         self.poses = instants.poses
         if self.poses is not None:
             self.poses[:, 2] -= math.radians(yaw)
         self.dropped = instants.dropped
         self._image_numbers = instants.frames
+
+
+def _repair_advice(path: Path) -> str:
+    """Return how to repair a bag that cannot be read."""
+    files = [path] if path.is_file() else [f for f in path.iterdir() if f.suffix in FORMATS]
+    for file in files:
+        start, program = FORMATS.get(file.suffix, (b"", ""))
+        with open(file, "rb") as stream:
+            first = stream.read(len(start))
+        if not first:
+            return f"{file} is empty. Copy it again."
+        if first != start:
+            return f"{file} is not a {file.suffix} file: it starts with {first!r}. Copy it again."
+        metadata = "" if path.is_file() else "`ros2 bag reindex` writes metadata.yaml again. "
+        return f"{metadata}If {file.name} is cut short or damaged, repair a copy with {program}."
+    return "Copy the folder again: it has no file with messages."
 
 
 def _open_part(part: Any, open_: Callable[[], None]) -> None:
@@ -300,6 +396,7 @@ def choose_topics(
     available: Mapping[str, str | None],
     topics: Topics,
     counts: Mapping[str, int] | None = None,
+    encodings: Mapping[str, str] | None = None,
 ) -> dict[str, str]:
     """Choose the topics "rgb", "depth", "pose", "info rgb" and "info depth".
 
@@ -309,6 +406,8 @@ def choose_topics(
         topics: The user's choice.
         counts: Number of messages of each topic, if known. If there is one message but several
             images, the topic contains no trajectory.
+        encodings: Encoding of the first image of each topic, if known. Topics without a known
+            encoding count as depth if their names say so.
 
     Returns:
         The topics by name, without topics that the bag lacks.
@@ -317,14 +416,13 @@ def choose_topics(
         ValueError: A chosen topic is missing or has a wrong type, several topics are suitable, or
             the bag contains no images.
     """
+    counts = counts or {}
     images = [
         name
         for name, kind in available.items()
         if kind in IMAGES and not _OTHER_IMAGES.search(name)
     ]
-    depth = [n for n in images if _DEPTH_TOPIC.search(n) and n != topics.rgb]
-    rgb = [n for n in images if n not in depth and n != topics.depth]
-    counts = counts or {}
+    rgb, depth = _sort_images(_drop_copies(images, counts), topics, encodings or {})
     several = max((counts.get(name, 0) for name in images), default=0) > 1
     typed = [name for name, kind in available.items() if kind in POSES]
     others = [n for n in typed if _OTHER_POSES.search(n) or (several and counts.get(n) == 1)]
@@ -335,12 +433,12 @@ def choose_topics(
             f"poses, not the path of the robot. If it does, set topics.pose={others[0]}.",
             stacklevel=3,
         )
-    chosen = {
-        RGB: _choose_topic(path, RGB, topics.rgb, rgb, available, IMAGES),
-        DEPTH: _choose_topic(path, DEPTH, topics.depth, depth, available, IMAGES),
-        POSE: _choose_topic(path, POSE, topics.pose, poses, available, POSES),
+    found = {
+        RGB: _candidates(path, RGB, topics.rgb, rgb, available, IMAGES),
+        DEPTH: _candidates(path, DEPTH, topics.depth, depth, available, IMAGES),
+        POSE: _candidates(path, POSE, topics.pose, poses, available, POSES),
     }
-    if not (chosen[RGB] or chosen[DEPTH]):
+    if not (found[RGB] or found[DEPTH]):
         listed = ", ".join(f"{name} ({kind})" for name, kind in list(available.items())[:12])
         raise ValueError(
             f"{path} has no topic with images. Its topics are {listed or 'none'}. Record a topic "
@@ -351,46 +449,82 @@ def choose_topics(
         (RGB, "info", topics.info),
         (DEPTH, "depth_info", topics.depth_info),
     ):
-        if chosen[kind]:
-            candidates = _infos_of(str(chosen[kind]), infos)
-            topic = _choose_topic(path, option, named, candidates, available, (INFO,))
-            chosen[f"info {kind}"] = topic
-    return {name: topic for name, topic in chosen.items() if topic}
+        fitting = _infos_of(found[kind][0], infos) if found[kind] else []
+        found[option] = _candidates(path, option, named, fitting, available, (INFO,))
+    _check_single(path, found)
+    found["info rgb"] = found.pop("info")
+    found["info depth"] = found.pop("depth_info") if found[DEPTH] else []
+    return {name: candidates[0] for name, candidates in found.items() if candidates}
 
 
-def _choose_topic(
+def _drop_copies(images: Sequence[str], counts: Mapping[str, int]) -> list[str]:
+    """Return the image topics without compressed copies of other topics that have messages."""
+    copies = {raw + suffix for raw in images if counts.get(raw, 1) for suffix in COMPRESSED}
+    return [name for name in images if name not in copies]
+
+
+def _sort_images(
+    images: Sequence[str], topics: Topics, encodings: Mapping[str, str]
+) -> tuple[list[str], list[str]]:
+    """Return the topics with RGB images and those with depth images.
+
+    The encoding decides, and the name if the encoding does not show it. If several topics of one
+    kind have a fitting encoding, those with a fitting name come first: a topic such as
+    ``/camera/depth/colored`` is RGB only if there is no other RGB topic.
+    """
+    named_depth = [name for name in images if _DEPTH_TOPIC.search(name)]
+    depth = []
+    for name in images:
+        kind = kind_of(encodings.get(name, "")) or (DEPTH if name in named_depth else RGB)
+        if kind == DEPTH and name != topics.rgb:
+            depth.append(name)
+    rgb = [name for name in images if name not in depth and name != topics.depth]
+    return (
+        [name for name in rgb if name not in named_depth] or rgb,
+        [name for name in depth if name in named_depth] or depth,
+    )
+
+
+def _candidates(
     path: Path,
     option: str,
     named: str | None,
-    candidates: Sequence[str],
+    fitting: Sequence[str],
     available: Mapping[str, str | None],
     kinds: Sequence[str],
-) -> str | None:
-    """Return the topic that the user named, or the only candidate, or None."""
+) -> list[str]:
+    """Return the topic that the user named, or the fitting topics."""
+    if named is None:
+        return list(fitting)
     if named == OFF:
-        return None
-    if named is not None:
-        if named not in available:
-            raise ValueError(f"{path}: {unknown('topic', named, available)}")
-        if available[named] not in kinds:
-            raise ValueError(
-                f"{path}: topics.{option} must be a topic of {' or '.join(kinds)}, got {named}, "
-                f"which is {available[named]}."
-            )
-        return named
-    if len(candidates) > 1:
+        return []
+    if named not in available:
+        raise ValueError(f"{path}: {unknown('topic', named, available)}")
+    if available[named] not in kinds:
         raise ValueError(
-            f"{path} has several topics for {option}: {', '.join(candidates)}. Choose one: "
-            f"topics.{option}={candidates[0]} (or {OFF})"
+            f"{path}: topics.{option} must be a topic of {' or '.join(kinds)}, got {named}, "
+            f"which is {available[named]}."
         )
-    return candidates[0] if candidates else None
+    return [named]
+
+
+def _check_single(path: Path, found: Mapping[str, Sequence[str]]) -> None:
+    """Raise ValueError if several topics fit an option."""
+    open_choices = {option: names for option, names in found.items() if len(names) > 1}
+    if open_choices:
+        listed = "; ".join(f"{option}: {', '.join(n)}" for option, n in open_choices.items())
+        choice = " ".join(f"topics.{option}={n[0]}" for option, n in open_choices.items())
+        raise ValueError(
+            f"{path} has several topics for {listed}. Choose one each, for example with {choice} "
+            f"({OFF}: do not read this sensor)."
+        )
 
 
 def _infos_of(topic: str, infos: Sequence[str]) -> list[str]:
     """Return the CameraInfo topics of an image topic.
 
     In ROS, the name is ``<camera>/camera_info``. If that is missing, return the topics with the
-    same first name.
+    same first name that share most of the further words.
     """
     namespace = topic
     while "/" in namespace.strip("/"):
@@ -398,4 +532,11 @@ def _infos_of(topic: str, infos: Sequence[str]) -> list[str]:
         if f"{namespace}/camera_info" in infos:
             return [f"{namespace}/camera_info"]
     camera = "/" + topic.strip("/").partition("/")[0] + "/"
-    return [info for info in infos if info.startswith(camera)][:2]
+    shared = {info: _shared_words(topic, info) for info in infos if info.startswith(camera)}
+    return [info for info, count in shared.items() if count == max(shared.values())]
+
+
+def _shared_words(topic: str, other: str) -> int:
+    """Return how many words at the start of two topics are equal; / and _ separate words."""
+    pairs = zip(re.split("[/_]", topic), re.split("[/_]", other), strict=False)
+    return len([*takewhile(lambda pair: pair[0] == pair[1], pairs)])

@@ -1,15 +1,15 @@
 """Load a recorded drive as observations for an agent, and replay it as a world.
 
 The frames of each camera are cropped and resized to square views of 90 degrees, the field of view
-that agents expect. Pixels outside the recorded image are black, or missing depth.
+that agents expect. Pixels outside the recorded image are black, or missing depth (``views.py``).
 """
 
 from __future__ import annotations
 
 import math
 import warnings
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
 
 import cv2
 import numpy as np
@@ -31,7 +31,9 @@ from mitigate.core.observation import (
 )
 from mitigate.core.progress import Progress
 from mitigate.worlds.episodes import Episode, Instruction
-from mitigate.worlds.recorded.source import Lens, Source
+from mitigate.worlds.recorded.source import Source
+from mitigate.worlds.recorded.summary import Camera, describe, warn_about
+from mitigate.worlds.recorded.views import border_fraction, covered_tangent, square_view
 from mitigate.worlds.world import World, check_metres
 
 # action number for a motion that is not an action of an agent, such as backwards or sideways
@@ -47,7 +49,7 @@ MIN_LAST_STEP = 0.5  # as a fraction of a step; a shorter last step is merged in
 MAX_FRAME_BYTES = 1 << 32  # maximum bytes of all frames of a drive
 MAX_OFF_HEADING = 1 / 3  # fraction of moving steps whose direction may differ from the heading
 MIN_MOVING_STEPS = 5  # minimum number of moving steps for a warning about the heading
-SUPERSAMPLING = 4  # canvas pixels per pixel of a partially covered view, along each side
+MIN_READABLE = 0.5  # minimum fraction of steps without a damaged image
 MAX_YAW_ERROR = 3.0  # maximum degrees between a camera and its view of the panorama
 
 
@@ -64,6 +66,7 @@ class Recording:
         poses: float64 [T, 3], (x, y, heading), or None if unknown.
         driven: The driver's actions, or None if the poses are unknown.
         signals: Recorded numbers by name, such as "action": float64 [T, size].
+        summary: What was read, as one line of text for the drive and one per sensor.
     """
 
     name: str
@@ -73,6 +76,7 @@ class Recording:
     poses: np.ndarray | None
     driven: Driven | None
     signals: Mapping[str, np.ndarray] = field(default_factory=dict)
+    summary: Sequence[str] = ()
 
     @property
     def sensors(self) -> dict[str, Sensor]:
@@ -83,7 +87,7 @@ class Recording:
         return {name: sensor for name, sensor in sensors.items() if name in recorded}
 
 
-def load(source: Source, *, views: int, size: int, step: Step) -> Recording:
+def load(source: Source, *, views: int, size: int, step: Step, crop: bool = False) -> Recording:
     """Load the frames of ``source`` at times that are one agent step apart.
 
     Args:
@@ -91,12 +95,14 @@ def load(source: Source, *, views: int, size: int, step: Step) -> Recording:
         views: Number of views per frame: 1 (one camera) or 12 (panorama).
         size: Height and width of a view in pixels.
         step: Distance between two instants.
+        crop: Whether to fill the views with the largest square field of view that all cameras
+            cover, in place of 90 degrees with a black border.
 
     Returns:
-        The drive with its frames in memory.
+        The drive with its frames in memory. Steps with a damaged image are left out.
 
     Raises:
-        ValueError: The source lacks a camera, is damaged or too large.
+        ValueError: The source lacks a camera, is too large, or most of its images are damaged.
     """
     if source.stepped and step != Step():
         raise ValueError(
@@ -120,30 +126,76 @@ def load(source: Source, *, views: int, size: int, step: Step) -> Recording:
         kind: np.zeros((*shape, 3 if kind == RGB else 1), np.uint8 if kind == RGB else np.float32)
         for kind, _ in view_cameras
     }
+    readable = np.ones(len(chosen), bool)
+    shapes: dict[str, tuple[int, int]] = {}  # height and width of each camera's first image
+    tangent = 1.0
     with Progress(f"read {source.name}", len(chosen), unit="instant") as progress:
         for row, images in enumerate(source.frames(chosen.tolist())):
+            progress.advance()
+            readable[row] = bool(images)
+            if not images:
+                continue
+            if not shapes:
+                shapes = {name: images[name].shape[:2] for name in view_cameras.values()}
+                tangent = _tangent(source, shapes) if crop else 1.0
             for (kind, view), camera in view_cameras.items():
                 target = frames[kind][row] if views == 1 else frames[kind][row, view]
                 try:
-                    target[...] = square_view(images[camera], source.cameras[camera], size)
+                    target[...] = square_view(images[camera], source.cameras[camera], size, tangent)
                 except (ValueError, cv2.error) as error:
                     raise ValueError(f"{source.name}, {camera}: {error}.") from error
-            progress.advance()
+        if not readable.all():
+            _check_damage(source, readable)
+            progress.say(
+                f"{source.name}: left out {(~readable).sum()} of {len(readable)} steps with "
+                f"damaged images, the first because {source.damaged[0]}"
+            )
+            chosen = chosen[readable]
+            frames = {kind: array[readable] for kind, array in frames.items()}
         if source.dropped:
             progress.say(
                 f"{source.name}: left out {source.dropped} frames that have no pose or no frame of "
                 "the other camera near in time"
             )
     if DEPTH in frames:
-        unit = "For 16-bit PNG set unit= (metres per count)."
-        check_metres(frames[DEPTH], f"the depth of {source.name}", unit)
+        check_metres(frames[DEPTH], f"the depth of {source.name}", source.depth_advice())
     poses = None if source.poses is None else source.poses[chosen]
     times = source.times[chosen] - source.times[0]
     driven = None if poses is None else driver_actions(poses)
     if poses is not None and driven is not None:
         _check_headings(source.name, poses, driven)
     signals = {name: values[chosen] for name, values in source.signals.items()}
-    return Recording(source.name, source.instruction, frames, times, poses, driven, signals)
+    recording = Recording(source.name, source.instruction, frames, times, poses, driven, signals)
+    first_cameras = {kind: name for (kind, view), name in reversed([*view_cameras.items()])}
+    cameras = {
+        kind: Camera(
+            source.cameras[name],
+            shapes[name],
+            source.formats.get(name, name),
+            border_fraction(source.cameras[name], *shapes[name], tangent),
+        )
+        for kind, name in sorted(first_cameras.items(), reverse=True)
+    }
+    warn_about(source, recording, cameras)
+    degrees = 2 * math.degrees(math.atan(tangent))
+    return replace(recording, summary=describe(source, recording, cameras, step, degrees))
+
+
+def _tangent(source: Source, shapes: Mapping[str, tuple[int, int]]) -> float:
+    """Return the tangent of half the field of view of cropped views."""
+    try:
+        return covered_tangent((source.cameras[name], shape) for name, shape in shapes.items())
+    except ValueError as error:
+        raise ValueError(f"{source.name}: {error}.") from error
+
+
+def _check_damage(source: Source, readable: np.ndarray) -> None:
+    """Raise ValueError if too many steps have damaged images."""
+    if readable.mean() < MIN_READABLE:
+        raise ValueError(
+            f"{source.name}: {(~readable).sum()} of {len(readable)} steps have damaged images, the "
+            f"first because {source.damaged[0]}. Record it again, or choose another topic."
+        )
 
 
 def kinds(source: Source, views: int) -> list[str]:
@@ -190,66 +242,6 @@ def _list_cameras(source: Source) -> str:
     cameras = source.cameras.items()
     listed = [f"{name} ({lens.kind}, {lens.yaw:g} degrees)" for name, lens in cameras]
     return ", ".join(listed[:6]) + (" ..." if len(listed) > 6 else "") or "none"
-
-
-def square_view(frame: np.ndarray, lens: Lens, size: int) -> np.ndarray:
-    """Crop and resize a frame to a square view of 90 degrees.
-
-    Args:
-        frame: uint8 [H, W, 3] or float32 [H, W].
-        lens: Lens of the camera that took the frame.
-        size: Height and width of the view in pixels.
-
-    Returns:
-        uint8 [size, size, 3] or float32 [size, size, 1]. A frame that already is such a view is
-        returned unchanged.
-    """
-    is_depth = lens.kind == DEPTH
-    frame = frame.reshape(*frame.shape[:2], -1)
-    height, width = frame.shape[:2]
-    fx, fy, cx, cy = lens.intrinsics(height, width)
-    edges = (cx - fx, cx + fx, cy - fy, cy + fy)
-    if min(edges[0], edges[2], width - edges[1], height - edges[3]) < -0.5:
-        return _partial_view(frame, edges, size, is_depth)
-    left, right, top, bottom = (round(edge) for edge in edges)
-    view = frame[max(0, top) : bottom, max(0, left) : right]
-    if view.shape[:2] != (size, size):
-        view = _resize(view, size, size, is_depth)
-    return view.reshape(size, size, -1)
-
-
-def _partial_view(
-    frame: np.ndarray, edges: tuple[float, float, float, float], size: int, is_depth: bool
-) -> np.ndarray:
-    """Draw a frame that covers only a part of the view.
-
-    The frame is first drawn on a larger canvas, so that rounding moves its edges only by a fraction
-    of a pixel.
-    """
-    height, width = frame.shape[:2]
-    left, right, top, bottom = edges
-    large = SUPERSAMPLING * size
-    scale_x = large / (right - left)
-    scale_y = large / (bottom - top)
-    x0, x1 = (round(min(large, max(0, (x - left) * scale_x))) for x in (0, width))
-    y0, y1 = (round(min(large, max(0, (y - top) * scale_y))) for y in (0, height))
-    canvas = np.zeros((large, large, frame.shape[2]), frame.dtype)
-    if x1 > x0 and y1 > y0:
-        crop = frame[max(0, round(top)) : round(bottom), max(0, round(left)) : round(right)]
-        resized = _resize(crop, x1 - x0, y1 - y0, is_depth)
-        canvas[y0:y1, x0:x1] = resized.reshape(y1 - y0, x1 - x0, -1)
-    return _resize(canvas, size, size, is_depth).reshape(size, size, -1)
-
-
-def _resize(frame: np.ndarray, width: int, height: int, is_depth: bool) -> np.ndarray:
-    """Resize a frame. Depth is resized to the nearest pixel, so that missing depth stays
-    missing.
-    """
-    shrinks = width < frame.shape[1] or height < frame.shape[0]
-    smooth = cv2.INTER_AREA if shrinks else cv2.INTER_LINEAR
-    return cv2.resize(
-        frame, (width, height), interpolation=cv2.INTER_NEAREST_EXACT if is_depth else smooth
-    )
 
 
 def _check_headings(name: str, poses: np.ndarray, driven: Driven) -> None:
