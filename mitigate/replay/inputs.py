@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from mitigate.core.build import imported
 from mitigate.core.contracts import missing_members
-from mitigate.core.names import name_of
+from mitigate.core.names import name_of, short
 from mitigate.core.progress import say
 from mitigate.guards.guard import NO_GUARDS, Guards
 
@@ -59,11 +59,11 @@ def _load(agent: Any) -> Any:
     from mitigate.agents.loading import load
 
     if not isinstance(agent, (str, Path)):
-        _check_agent(agent, f"agents has a {type(agent).__name__}")
+        _check_agent(agent, f"agents contains {short(agent)}")
         return agent
     if ":" in str(agent) and not Path(agent).exists():
         instance = imported(str(agent), "agents")()
-        _check_agent(instance, f"agents={agent} returned a {type(instance).__name__}")
+        _check_agent(instance, f"agents={agent} returned {short(instance)}")
         return instance
     try:
         return load(agent)

@@ -136,12 +136,15 @@ def replay_recordings(
 def run(
     config: ReplayConfig, paths: Sequence[str], agents: Mapping[str, Any] | None = None
 ) -> Path:
-    """Run agents on the drives at ``paths`` and return the folder of the report.
+    """Run agents on the drives at ``paths``.
 
     Args:
         config: The options.
         paths: The drives.
         agents: Agents by name; None loads those that ``config`` names.
+
+    Returns:
+        The folder of the report, which is not written if ``config.check`` is set.
 
     Raises:
         FileNotFoundError: A drive or an agent's folder does not exist.
@@ -150,12 +153,15 @@ def run(
     from mitigate.guards.opening import open_guards
 
     check_options(config, paths)
+    out = Path(config.out or f"{config.runs}/replay/{_name(paths)}-s{config.severity:g}")
+    if config.check:
+        load_drives(config, open_drives(config, paths), [1])
+        return out
     names = [name for name in config.names if name != "clean"]
     corruptions = conditions(["clean", *names], config.severity, config.severity_depth)
     guards = open_guards(None, config.restore)
     if agents is None:
         agents = load_agents(list(config.agents))
-    out = Path(config.out or f"{config.runs}/replay/{_name(paths)}-s{config.severity:g}")
     settings = _settings(config, paths, agents)
     settings["restorer"] = guards.frames_hash()
     _check_earlier(out, settings)
@@ -181,7 +187,10 @@ def run(
 
 def check_options(config: ReplayConfig, paths: Sequence[str]) -> None:
     """Raise ValueError for invalid options, or if there is no drive."""
-    _drives(paths)
+    if not paths:
+        raise ValueError(
+            "A drive is missing: mitigate replay FOLDER_OR_BAG agents=[checkpoints/recurrent/base]"
+        )
     if not 16 <= config.size <= 1024:
         raise ValueError(f"size must be 16 to 1024 pixels, got {config.size}.")
     if not {*config.names} - {"clean"} or config.severity == 0:
@@ -189,15 +198,6 @@ def check_options(config: ReplayConfig, paths: Sequence[str]) -> None:
             "Clean frames alone leave nothing to compare. Add a corruption to conditions=, with "
             "severity above 0."
         )
-
-
-def _drives(paths: Sequence[str]) -> Sequence[str]:
-    """Return ``paths``; raise ValueError if there are none."""
-    if not paths:
-        raise ValueError(
-            "A drive is missing: mitigate replay FOLDER_OR_BAG agents=[checkpoints/recurrent/base]"
-        )
-    return paths
 
 
 def _name(paths: Sequence[str]) -> str:
@@ -392,10 +392,7 @@ def hydra_main(cfg: DictConfig) -> None:
     """Hydra's entry."""
     config = conf.typed(cfg, "replay")
     assert isinstance(config, ReplayConfig)
-    if config.check:
-        load_drives(config, open_drives(config, _drives(_paths)), [1])
-    else:
-        run(config, _paths)
+    run(config, _paths)
 
 
 def main() -> None:

@@ -18,6 +18,7 @@ from mitigate.core.observation import (
     DEPTH,
     FORWARD,
     FORWARD_METRES,
+    HFOV_DEGREES,
     LEFT,
     POSE,
     RGB,
@@ -66,6 +67,7 @@ class Recording:
         poses: float64 [T, 3], (x, y, heading), or None if unknown.
         driven: The driver's actions, or None if the poses are unknown.
         signals: Recorded numbers by name, such as "action": float64 [T, size].
+        hfov: Field of view of the square views in degrees.
         summary: What was read, as one line of text for the drive and one per sensor.
     """
 
@@ -76,6 +78,7 @@ class Recording:
     poses: np.ndarray | None
     driven: Driven | None
     signals: Mapping[str, np.ndarray] = field(default_factory=dict)
+    hfov: float = HFOV_DEGREES
     summary: Sequence[str] = ()
 
     @property
@@ -84,7 +87,11 @@ class Recording:
         first = next(iter(self.frames.values()))
         sensors = cameras(first.shape[-2], first.shape[1] if first.ndim == 5 else 1)
         recorded = {*self.frames, *([] if self.poses is None else [POSE])}
-        return {name: sensor for name, sensor in sensors.items() if name in recorded}
+        return {
+            name: replace(sensor, hfov=sensor.hfov and self.hfov)
+            for name, sensor in sensors.items()
+            if name in recorded
+        }
 
 
 def load(source: Source, *, views: int, size: int, step: Step, crop: bool = False) -> Recording:
@@ -121,42 +128,9 @@ def load(source: Source, *, views: int, size: int, step: Step, crop: bool = Fals
             f"{needed / 2**30:.1f} GiB for {len(chosen)} steps. Cut the recording,{longer} or use "
             "smaller frames (size=)."
         )
-    shape = (len(chosen), *([views] if views > 1 else []), size, size)
-    frames = {
-        kind: np.zeros((*shape, 3 if kind == RGB else 1), np.uint8 if kind == RGB else np.float32)
-        for kind, _ in view_cameras
-    }
-    readable = np.ones(len(chosen), bool)
-    shapes: dict[str, tuple[int, int]] = {}  # height and width of each camera's first image
-    tangent = 1.0
-    with Progress(f"read {source.name}", len(chosen), unit="instant") as progress:
-        for row, images in enumerate(source.frames(chosen.tolist())):
-            progress.advance()
-            readable[row] = bool(images)
-            if not images:
-                continue
-            if not shapes:
-                shapes = {name: images[name].shape[:2] for name in view_cameras.values()}
-                tangent = _tangent(source, shapes) if crop else 1.0
-            for (kind, view), camera in view_cameras.items():
-                target = frames[kind][row] if views == 1 else frames[kind][row, view]
-                try:
-                    target[...] = square_view(images[camera], source.cameras[camera], size, tangent)
-                except (ValueError, cv2.error) as error:
-                    raise ValueError(f"{source.name}, {camera}: {error}.") from error
-        if not readable.all():
-            _check_damage(source, readable)
-            progress.say(
-                f"{source.name}: left out {(~readable).sum()} of {len(readable)} steps with "
-                f"damaged images, the first because {source.damaged[0]}"
-            )
-            chosen = chosen[readable]
-            frames = {kind: array[readable] for kind, array in frames.items()}
-        if source.dropped:
-            progress.say(
-                f"{source.name}: left out {source.dropped} frames that have no pose or no frame of "
-                "the other camera near in time"
-            )
+    read = _read_views(source, chosen.tolist(), view_cameras, size, crop)
+    chosen = chosen[read.readable]
+    frames = read.frames
     if DEPTH in frames:
         check_metres(frames[DEPTH], f"the depth of {source.name}", source.depth_advice())
     poses = None if source.poses is None else source.poses[chosen]
@@ -165,37 +139,90 @@ def load(source: Source, *, views: int, size: int, step: Step, crop: bool = Fals
     if poses is not None and driven is not None:
         _check_headings(source.name, poses, driven)
     signals = {name: values[chosen] for name, values in source.signals.items()}
-    recording = Recording(source.name, source.instruction, frames, times, poses, driven, signals)
-    first_cameras = {kind: name for (kind, view), name in reversed([*view_cameras.items()])}
+    hfov = 2 * math.degrees(math.atan(read.tangent))
+    recording = Recording(
+        source.name, source.instruction, frames, times, poses, driven, signals, hfov
+    )
     cameras = {
         kind: Camera(
             source.cameras[name],
-            shapes[name],
+            read.shapes[name],
             source.formats.get(name, name),
-            border_fraction(source.cameras[name], *shapes[name], tangent),
+            border_fraction(source.cameras[name], *read.shapes[name], read.tangent),
         )
-        for kind, name in sorted(first_cameras.items(), reverse=True)
+        for (kind, view), name in view_cameras.items()
+        if view == 0
     }
     warn_about(source, recording, cameras)
-    degrees = 2 * math.degrees(math.atan(tangent))
-    return replace(recording, summary=describe(source, recording, cameras, step, degrees))
+    return replace(recording, summary=describe(source, recording, cameras, step))
 
 
-def _tangent(source: Source, shapes: Mapping[str, tuple[int, int]]) -> float:
-    """Return the tangent of half the field of view of cropped views."""
-    try:
-        return covered_tangent((source.cameras[name], shape) for name, shape in shapes.items())
-    except ValueError as error:
-        raise ValueError(f"{source.name}: {error}.") from error
+@dataclass(frozen=True)
+class _Views:
+    """The square views of a drive.
+
+    Attributes:
+        frames: Frames of the readable steps, as in :class:`Recording`.
+        readable: Whether all images of each chosen step could be read, bool [T].
+        shapes: Height and width of each camera's images.
+        tangent: Tangent of half the views' field of view.
+    """
+
+    frames: dict[str, np.ndarray]
+    readable: np.ndarray
+    shapes: dict[str, tuple[int, int]]
+    tangent: float
 
 
-def _check_damage(source: Source, readable: np.ndarray) -> None:
-    """Raise ValueError if too many steps have damaged images."""
-    if readable.mean() < MIN_READABLE:
-        raise ValueError(
-            f"{source.name}: {(~readable).sum()} of {len(readable)} steps have damaged images, the "
-            f"first because {source.damaged[0]}. Record it again, or choose another topic."
-        )
+def _read_views(
+    source: Source,
+    chosen: Sequence[int],
+    view_cameras: Mapping[tuple[str, int], str],
+    size: int,
+    crop: bool,
+) -> _Views:
+    """Read the frames at the chosen time steps; the arguments are those of :func:`load`."""
+    views = 1 + max(view for _, view in view_cameras)
+    shape = (len(chosen), *([views] if views > 1 else []), size, size)
+    frames = {
+        kind: np.zeros((*shape, 3 if kind == RGB else 1), np.uint8 if kind == RGB else np.float32)
+        for kind, _ in view_cameras
+    }
+    readable = np.ones(len(chosen), bool)
+    shapes: dict[str, tuple[int, int]] = {}
+    tangent = 1.0
+    with Progress(f"read {source.name}", len(chosen), unit="instant") as progress:
+        for row, images in enumerate(source.frames(chosen)):
+            progress.advance()
+            readable[row] = bool(images)
+            if not images:
+                continue
+            camera = ", ".join(view_cameras.values())
+            try:
+                if not shapes:
+                    shapes = {name: images[name].shape[:2] for name in view_cameras.values()}
+                    lenses = [(source.cameras[name], shapes[name]) for name in shapes]
+                    tangent = covered_tangent(lenses) if crop else 1.0
+                for (kind, view), camera in view_cameras.items():
+                    target = frames[kind][row] if views == 1 else frames[kind][row, view]
+                    target[...] = square_view(images[camera], source.cameras[camera], size, tangent)
+            except (ValueError, cv2.error) as error:
+                raise ValueError(f"{source.name}, {camera}: {error}.") from error
+        if not readable.all():
+            damage = (
+                f"{(~readable).sum()} of {len(readable)} steps with damaged images, the first "
+                f"because {source.damaged[0]}"
+            )
+            if readable.mean() < MIN_READABLE:
+                raise ValueError(f"{source.name} has {damage}. Choose another topic.")
+            progress.say(f"{source.name}: left out {damage}")
+            frames = {kind: array[readable] for kind, array in frames.items()}
+        if source.dropped:
+            progress.say(
+                f"{source.name}: left out {source.dropped} frames that have no pose or no frame of "
+                "the other camera near in time"
+            )
+    return _Views(frames, readable, shapes, tangent)
 
 
 def kinds(source: Source, views: int) -> list[str]:

@@ -44,7 +44,6 @@ def describe(
     recording: Recording,
     cameras: Mapping[str, Camera],
     step: Step,
-    degrees: float,
 ) -> list[str]:
     """Return one line for the drive, one per camera and one for the pose.
 
@@ -53,7 +52,6 @@ def describe(
         recording: The loaded drive.
         cameras: The front camera by sensor.
         step: Distance between two steps.
-        degrees: Field of view of the square views.
     """
     seconds = float(source.times[-1] - source.times[0])
     drive = f"{recording.name}: {counted(len(recording.times), 'step')}"
@@ -70,12 +68,13 @@ def describe(
     if source.damaged:
         drive += f"; {counted(len(source.damaged), 'damaged image')} left out"
     lines = [drive]
+    view = recording.hfov
     for kind, camera in cameras.items():
         height, width = camera.shape
         across, down = camera.lens.fields_of_view(height, width)
         assumed = " (assumed)" if camera.lens.assumed else ""
         line = f"{kind}: {camera.format}, {width} x {height}, {across:.0f} x {down:.0f} degrees"
-        line += f"{assumed}, seen as {degrees:.0f} x {degrees:.0f}"
+        line += f"{assumed}, seen as {view:.0f} x {view:.0f}"
         if camera.border >= 0.005:
             nothing = "a black border" if kind == RGB else "a border without reading"
             line += f"; {100 * camera.border:.0f} % of each view is {nothing}"

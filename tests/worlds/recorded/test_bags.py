@@ -155,6 +155,7 @@ def test_crop_fills_the_view_with_the_field_that_all_cameras_cover(tmp_path):
     middle = slice((WIDTH - HEIGHT) // 2, (WIDTH + HEIGHT) // 2)
     assert np.array_equal(drive.frames[RGB][2], colour(2)[:, middle])
     assert (drive.frames[DEPTH] > 0).all()
+    assert drive.sensors[RGB].hfov == pytest.approx(73.74, abs=0.01)
     assert "seen as 74 x 74" in drive.summary[1] and "border" not in "".join(drive.summary)
 
 
@@ -297,7 +298,7 @@ def test_load_skips_and_counts_damaged_images(tmp_path):
 def test_load_rejects_a_drive_with_mostly_damaged_images(tmp_path):
     images = [{**jpeg(n), "data": jpeg(n)["data"][: 20 if n else None]} for n in range(COUNT)]
     bag = write(tmp_path / "robot.bag", {RAW: images})
-    message = rf"5 of 6 steps have damaged images, the first because message 1 on {RAW}, 1.0 s"
+    message = rf"5 of 6 steps with damaged images, the first because message 1 on {RAW}, 1.0 s"
     with pytest.raises(ValueError, match=message):
         read(bag)
 
