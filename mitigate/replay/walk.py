@@ -86,7 +86,7 @@ def walk(
         driven = movements(clean.actions)
     episode = world.episode()
     observation = corrupted_world.reset(episode)
-    actions = []
+    actions: list[int | np.ndarray] = []
     aims = []
     seen = {}
     contract = as_agent(agent)

@@ -118,6 +118,8 @@ class Bag(Source):
             stamps, poses, lenses = self._index(reader, hfov)
         if hfov is not None and all(kind in lenses for kind in self.kinds):
             raise ValueError(f"{path} contains the field of view of its cameras. Remove hfov=.")
+        if unit is not None and DEPTH not in self.kinds:
+            raise ValueError(f"{path} is read without depth. Remove unit=, or set topics.depth=.")
         self._match(stamps, poses, yaw)
         self.cameras = {
             kind: lenses[kind] if kind in lenses else self._lens_without_info(kind, hfov)
@@ -147,6 +149,7 @@ class Bag(Source):
         buffer: dict[str, dict[int, np.ndarray | None]] = {kind: {} for kind in self.kinds}
         done = 0
         counts = dict.fromkeys(self.kinds, -1)
+        self.damaged = []
         with self._open() as reader:
             decode = {kind: set(numbers) for kind, numbers in indices.items()}
             for kind, times, message in self._messages(reader, self.kinds, decode):

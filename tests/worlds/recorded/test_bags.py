@@ -207,6 +207,12 @@ def test_unit_scales_floats_in_millimetres(tmp_path):
     assert np.allclose(read(bag, unit=0.001).frames[DEPTH], 2)
 
 
+def test_unit_is_rejected_without_depth(tmp_path):
+    bag = write(tmp_path / "robot.bag", {RAW: each(rgb)})
+    with pytest.raises(ValueError, match="read without depth. Remove unit="):
+        open_recording(bag, unit=0.001)
+
+
 # ----------------------------------------------------------------------------------- topics
 
 
