@@ -280,7 +280,7 @@ def replay(
         Changes,
         compare,
         decision_lines,
-        unused_actions,
+        neglected_actions,
         walk,
     )
 
@@ -313,9 +313,9 @@ def replay(
                     lines = decision_lines(labels, drive, answers["clean"][drive.name], answer)
                     file.writelines(json.dumps(line) + "\n" for line in lines)
                     progress.advance(note=f"{name}, {corruption.name}")
-                if corruption.name == "clean" and (unused := unused_actions(drives, corrupted)):
+                if corruption.name == "clean" and (rare := neglected_actions(drives, corrupted)):
                     notes.append(
-                        f"{name} never chooses {' or '.join(unused)} on clean frames, but the "
+                        f"{name} rarely chooses {' or '.join(rare)} on clean frames, but the "
                         "driver often does. The agent may not fit this camera or drive: few "
                         "changed decisions then do not mean that it is robust."
                     )

@@ -29,6 +29,7 @@ MIN_AIM_SHIFT = 0.5  # shift in metres (two steps) below which an aim counts as 
 MIN_ACTION_SHIFT = 0.1  # fraction of a number's range in continuous actions
 ROUNDING = 1e-6  # absolute difference below which continuous actions are equal
 OFTEN = 0.2  # minimum fraction of steps with an action that the driver takes often
+RARELY = 0.1  # an agent that takes an action less often, relative to the driver, takes it rarely
 MIN_BLOCKS = 8  # minimum number of blocks of steps for the bootstrap
 # number of consecutive steps that are resampled together, because they are correlated
 BLOCK_STEPS = 10
@@ -150,15 +151,19 @@ def changed_steps(clean: Answers, corrupted: Answers) -> np.ndarray:
     return (np.abs(corrupted.actions - clean.actions) > limit + ROUNDING).any(1)
 
 
-def unused_actions(recordings: Sequence[Recording], clean: Mapping[str, Answers]) -> list[str]:
-    """Return the actions that the driver often takes, but the agent never on clean frames."""
+def neglected_actions(recordings: Sequence[Recording], clean: Mapping[str, Answers]) -> list[str]:
+    """Return the actions that the driver often takes, but the agent rarely on clean frames."""
     drives = [r for r in recordings if r.driven is not None and clean[r.name].actions.ndim == 1]
     if not drives:
         return []
     driven = np.concatenate([r.driven.actions for r in drives if r.driven is not None])
-    chosen = {int(action) for r in drives for action in clean[r.name].actions}
-    often = [action for action in ACTIONS if (driven == action).mean() >= OFTEN]
-    return [ACTIONS[action] for action in often if action not in chosen]
+    chosen = np.concatenate([clean[r.name].actions for r in drives])
+    return [
+        name
+        for action, name in ACTIONS.items()
+        if (driven == action).mean() >= OFTEN
+        and (chosen == action).mean() < RARELY * (driven == action).mean()
+    ]
 
 
 def decision_lines(

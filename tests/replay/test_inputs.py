@@ -16,7 +16,7 @@ from mitigate.corruptions import CLEAN, Corruption
 from mitigate.replay import report
 from mitigate.replay.export_drive import write_frames
 from mitigate.replay.inputs import check_drives, load_agents
-from mitigate.replay.walk import Answers, compare, unused_actions, walk
+from mitigate.replay.walk import Answers, compare, neglected_actions, walk
 from mitigate.worlds.recorded import Recording, open_recording
 from mitigate.worlds.recorded.recording import movements
 
@@ -180,12 +180,22 @@ def recording(actions: list[int]) -> Recording:
     return Recording("lab", "go", frames, times, poses, movements(np.array(actions)))
 
 
-def test_unused_actions_are_those_that_only_the_driver_takes():
+def test_neglected_actions_are_those_that_mostly_the_driver_takes():
     drive = recording([FORWARD] * 7 + [LEFT] * 2 + [STOP])
     turns = {"lab": Answers(np.full(10, LEFT), np.full((10, 2), np.nan))}
-    assert unused_actions([drive], turns) == ["forward"]
+    assert neglected_actions([drive], turns) == ["forward"]
     moves = {"lab": Answers(np.full(10, FORWARD), np.full((10, 2), np.nan))}
-    assert unused_actions([drive], moves) == ["left"]
+    assert neglected_actions([drive], moves) == ["left"]
+    same = {"lab": Answers(drive.driven.actions, np.full((10, 2), np.nan))}
+    assert neglected_actions([drive], same) == []
+
+
+def test_table_shows_a_warning_next_to_the_numbers():
+    drive = recording([FORWARD] * 10)
+    clean = {"lab": walk(Steering(), drive, CLEAN, 0)}
+    changes = {"mine": {"clean": compare([drive], clean, clean)}}
+    text = report.table(changes, 0.6, 10, 1, notes=["mine rarely chooses forward."])
+    assert text.index("**Warning:** mine rarely chooses forward.") < text.index("| condition |")
 
 
 def test_compare_measures_the_distance_of_continuous_actions():
