@@ -41,7 +41,9 @@ def load_agents(agents: Any) -> dict[str, Any]:
 
 def _unique_names(agents: Sequence[Any]) -> list[str]:
     if not agents:
-        raise ValueError("agents must list at least one folder of weights, got [].")
+        raise ValueError(
+            "agents must list at least one folder of weights or module:callable, got []."
+        )
     texts = [
         str(agent) if isinstance(agent, (str, Path)) else type(agent).__name__ for agent in agents
     ]

@@ -115,7 +115,7 @@ def test_load_agents_points_to_own_code_if_there_are_no_weights():
         ),
         (Careful, "contains <class .*, which is a class, not an object"),
         ([Careful(), Careful()], "In Python, give names"),
-        ([], "at least one folder"),
+        ([], "at least one folder of weights or module:callable"),
         ([f"{__name__}:Carful"], "Did you mean Careful"),
     ],
 )
