@@ -190,7 +190,7 @@ def picture(
         axis.set_title(text, fontsize=8)
     legend = ""
     if modality == DEPTH:
-        legend = "; yellow: near, blue: the farthest point of the clean frame, white: no reading"
+        legend = "; yellow: near, violet: the farthest point of the clean frame, white: no reading"
     title = f"{recording.name}: {modality} clean, and under {corruption.name}{legend}"
     figure.suptitle(plain(title), fontsize=10)
     return write_figure(path, figure, dpi=DPI, facecolor="white")

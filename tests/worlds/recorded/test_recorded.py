@@ -19,10 +19,10 @@ from rosbags.typesys import Stores, get_typestore
 from mitigate.core.observation import DEPTH, FORWARD, LEFT, POSE, RGB, RIGHT, STOP
 from mitigate.replay.export_drive import TOPICS, messages, write_bag, write_frames
 from mitigate.worlds.recorded import RecordedWorld, Step, load, open_recording
-from mitigate.worlds.recorded.bags import IMAGES, INFO, Topics, choose_topics
 from mitigate.worlds.recorded.messages import read_stamp
 from mitigate.worlds.recorded.recording import NO_ACTION, driver_actions
 from mitigate.worlds.recorded.source import Lens, interpolate_poses
+from mitigate.worlds.recorded.topics import IMAGES, INFO, Topics, choose_topics
 from mitigate.worlds.recorded.views import square_view
 
 SIZE = 32
