@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from mitigate.agents.policies.wrapping import as_policy, load_policy
     from mitigate.evaluation.benchmark import benchmark
     from mitigate.evaluation.leaderboard.entry import LeaderboardEntry
+    from mitigate.replay.replay import replay_recordings
     from mitigate.shipping.harden import harden
 
 # OpenMP reads this variable when torch is imported.
@@ -33,6 +34,7 @@ __all__ = [
     "load",
     "load_hardened",
     "load_policy",
+    "replay_recordings",
 ]
 _MODULES = {
     "LeaderboardEntry": "mitigate.evaluation.leaderboard.entry",
@@ -42,6 +44,7 @@ _MODULES = {
     "load": "mitigate.agents.loading",
     "load_hardened": "mitigate.agents.loading",
     "load_policy": "mitigate.agents.policies.wrapping",
+    "replay_recordings": "mitigate.replay.replay",
 }
 
 

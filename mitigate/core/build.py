@@ -6,7 +6,8 @@ with downloaded weights is read as data, because a ``_target_`` in it could run 
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
+from importlib import import_module
 from inspect import signature
 from typing import Any
 
@@ -118,6 +119,33 @@ def locate(target: str) -> Any:
         return get_object(target)
     except ImportError as error:
         raise ValueError(_not_loaded(error)) from error
+
+
+def imported(name: str | None, option: str) -> Callable[..., Any]:
+    """Return the callable ``module:callable`` that an option names.
+
+    Raises:
+        ValueError: The module cannot be imported, or lacks the callable.
+    """
+    module_name, _, attribute = (name or "").partition(":")
+    if not (module_name and attribute):
+        raise ValueError(
+            f"{option} must be module:callable, such as my_policy:make_{option}, got {name!r:.200}."
+        )
+    try:
+        module = import_module(module_name)
+    except ImportError as error:
+        raise ValueError(
+            f"{option}={name} cannot be imported: {error}. Run the command in the folder of the "
+            "module, or install its package."
+        ) from error
+    if not hasattr(module, attribute):
+        callables = [n for n, v in vars(module).items() if callable(v) and not n.startswith("_")]
+        raise ValueError(f"{option}={name}: {unknown('callable', attribute, callables)}")
+    target = getattr(module, attribute)
+    if not callable(target):
+        raise ValueError(f"{option}={name} must be callable, got type {type(target).__name__}.")
+    return target
 
 
 def _not_loaded(error: object) -> str:

@@ -306,6 +306,8 @@ def _choices(group: str, primary: str) -> str:
     listed separately, because recipes exist for them.
     """
     files = sorted((CONF / group).glob("*.yaml"))
+    if primary == "replay":  # clean frames alone leave nothing to compare
+        files = [path for path in files if path.stem != "clean"]
     if group != "agent":
         return ", ".join(path.stem for path in files)
     others = [path.stem for path in files if not walks(path)]

@@ -1,17 +1,19 @@
 """Run agents on recorded drives: ``mitigate replay DRIVE agents=[checkpoints/recurrent/base]``.
 
 DRIVE is a folder of frames, a bag of ROS 1, ROS 2 or MCAP, or a LeRobot dataset; several are
-allowed. Each agent gets the clean drive and the drive under each corruption, and decides at each
-step what it would do. The output is every decision (``decisions.jsonl``), the share that each
-corruption changes (``table.md``, ``changes.png``), and pictures of some changed decisions.
+allowed. An agent is a folder of weights, or module:callable for your own code. Each agent gets the
+clean drive and the drive under each corruption, and decides at each step what it would do. The
+output is every decision (``decisions.jsonl``), the share that each corruption changes
+(``table.md``, ``changes.png``), and pictures of some changed decisions.
 """
 
 from __future__ import annotations
 
 import json
+import re
 import sys
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import asdict, dataclass, field, replace
+from dataclasses import asdict, dataclass, field
 from functools import partial
 from itertools import product
 from pathlib import Path
@@ -19,19 +21,22 @@ from typing import Any
 
 import hydra
 from omegaconf import MISSING, DictConfig
+from omegaconf.errors import OmegaConfBaseException
 
 from mitigate.core import conf
 from mitigate.core.files import atomic_text
 from mitigate.core.json_files import read_json
 from mitigate.core.locks import FolderLock
-from mitigate.core.names import name_of, short
+from mitigate.core.names import short
 from mitigate.core.options import paths_and_overrides
 from mitigate.core.output import is_regular
 from mitigate.evaluation.conditions import conditions, suite_conditions
 from mitigate.guards.guard import NO_GUARDS, Guards
+from mitigate.replay.inputs import check_drives, load_agents, load_drives, open_drives, views_of
 
 DECISIONS, TABLE, SETTINGS = "decisions.jsonl", "table.md", "replay.json"
-UNSAVED = ("out", "runs", "suite")  # options that do not affect results
+UNSAVED = ("out", "runs", "suite", "check")  # options that do not affect results
+ADDED = {"crop": False}  # options that reports of earlier versions lack
 
 
 @dataclass
@@ -69,11 +74,13 @@ class ReplayConfig:
     hfov: float | None = None
     unit: float | None = None
     yaw: float = 0.0
+    crop: bool = False
     cameras: list[str] | None = None
     episodes: list[int] | None = None
     tolerance: float | None = None
     step: StepConfig = field(default_factory=StepConfig)
     topics: TopicsConfig = field(default_factory=TopicsConfig)
+    check: bool = False
     out: str | None = None
     runs: str = "runs"
     suite: Any = MISSING
@@ -87,8 +94,57 @@ class ReplayConfig:
 conf.register("replay", ReplayConfig)
 
 
-def run(config: ReplayConfig, paths: Sequence[str]) -> Path:
-    """Run agents on the drives at ``paths`` and return the folder of the report.
+def replay_recordings(
+    agents: Any,
+    recordings: str | Path | Sequence[str | Path],
+    *,
+    suite: str = "full",
+    **options: Any,
+) -> Path:
+    """Run agents on recorded drives, print the table, and write the report.
+
+    The call does the same as the command ``mitigate replay`` and also accepts agents as objects.
+
+    Args:
+        agents: An agent (an object with ``reset`` and ``act``), a folder of weights, or
+            ``module:callable``; a list of these, or a mapping of names to these.
+        recordings: The path of one or several drives: bags, folders, or LeRobot datasets.
+        suite: Name of the suite of corruptions.
+        options: Other options of ``mitigate replay --help``, such as ``conditions=["flare"]``,
+            ``instruction="..."``, ``topics={"rgb": "/front/image_raw"}`` or ``out="report"``.
+
+    Returns:
+        The folder of the report, with ``table.md`` and ``decisions.jsonl``.
+
+    Raises:
+        FileNotFoundError: A drive or an agent's folder does not exist.
+        ValueError: An option is invalid, or a drive is damaged or lacks inputs of an agent.
+    """
+    loaded = load_agents(agents)
+    paths = [recordings] if isinstance(recordings, (str, Path)) else list(recordings)
+    if "out" in options:
+        options["out"] = str(options["out"])
+    cfg = conf.load_config("replay", [f"suite={suite}"])
+    try:
+        cfg.merge_with({**options, "agents": [*loaded]})
+    except OmegaConfBaseException as error:
+        raise ValueError(conf.explain(error, "replay")) from error
+    config = conf.typed(cfg, "replay")
+    return run(config, [*map(str, paths)], loaded)
+
+
+def run(
+    config: ReplayConfig, paths: Sequence[str], agents: Mapping[str, Any] | None = None
+) -> Path:
+    """Run agents on the drives at ``paths``.
+
+    Args:
+        config: The options.
+        paths: The drives.
+        agents: Agents by name; None loads those that ``config`` names.
+
+    Returns:
+        The folder of the report, which is not written if ``config.check`` is set.
 
     Raises:
         FileNotFoundError: A drive or an agent's folder does not exist.
@@ -97,16 +153,21 @@ def run(config: ReplayConfig, paths: Sequence[str]) -> Path:
     from mitigate.guards.opening import open_guards
 
     check_options(config, paths)
+    out = Path(config.out or f"{config.runs}/replay/{_name(paths)}-s{config.severity:g}")
+    if config.check:
+        load_drives(config, open_drives(config, paths), [1])
+        return out
     names = [name for name in config.names if name != "clean"]
     corruptions = conditions(["clean", *names], config.severity, config.severity_depth)
     guards = open_guards(None, config.restore)
-    agents = load_agents(config.agents)
-    out = Path(config.out or f"{config.runs}/replay/{_name(paths)}-s{config.severity:g}")
+    if agents is None:
+        agents = load_agents(list(config.agents))
     settings = _settings(config, paths, agents)
     settings["restorer"] = guards.frames_hash()
     _check_earlier(out, settings)
-    views = {agent.views for agent in agents.values()}
-    recordings = load_recordings(config, paths, views, guards)
+    sources = open_drives(config, paths)
+    check_drives(sources, agents, guards)
+    recordings = load_drives(config, sources, {views_of(agent) for agent in agents.values()})
     with FolderLock(out) as lock:
         lock.expect(out / SETTINGS, out / DECISIONS, out / TABLE)
         for name, corruption in product(agents, corruptions):  # removes pictures of an earlier run
@@ -130,8 +191,6 @@ def check_options(config: ReplayConfig, paths: Sequence[str]) -> None:
         raise ValueError(
             "A drive is missing: mitigate replay FOLDER_OR_BAG agents=[checkpoints/recurrent/base]"
         )
-    if not config.agents:
-        raise ValueError("agents must list at least one folder of weights, got [].")
     if not 16 <= config.size <= 1024:
         raise ValueError(f"size must be 16 to 1024 pixels, got {config.size}.")
     if not {*config.names} - {"clean"} or config.severity == 0:
@@ -139,60 +198,6 @@ def check_options(config: ReplayConfig, paths: Sequence[str]) -> None:
             "Clean frames alone leave nothing to compare. Add a corruption to conditions=, with "
             "severity above 0."
         )
-
-
-def load_agents(weights: Sequence[str]) -> dict[str, Any]:
-    """Load the agents from folders of weights, by unique names."""
-    from mitigate.agents.loading import load
-
-    if len(set(weights)) < len(weights):
-        raise ValueError(f"agents must be different folders, got [{','.join(weights)}].")
-    names = [name_of(folder) for folder in weights]
-    if len(set(names)) < len(names):
-        names = [folder.rstrip("/") for folder in weights]
-    return {name: load(folder) for name, folder in zip(names, weights, strict=True)}
-
-
-def load_recordings(
-    config: ReplayConfig, paths: Sequence[str], views: set[int], guards: Guards = NO_GUARDS
-) -> dict[int, list[Any]]:
-    """Load every drive for each number of views in ``views`` (12: panorama, 1: one camera).
-
-    Raises:
-        ValueError: A drive has no frames for the ``guards`` (checked before any frame is read), it
-            has no instruction, or two drives have the same name.
-    """
-    from mitigate.worlds.recorded import Step, Topics, kinds, load, open_recording
-
-    step = Step(**vars(config.step))
-    open_drives = partial(
-        open_recording,
-        topics=Topics(**vars(config.topics)),
-        hfov=config.hfov,
-        unit=config.unit,
-        yaw=config.yaw,
-        cameras=config.cameras,
-        episodes=config.episodes,
-        tolerance=config.tolerance,
-    )
-    recordings: dict[int, list[Any]] = {count: [] for count in views}
-    sources = [source for path in paths for source in open_drives(path)]
-    for source, count in product(sources if guards else [], views):
-        guards.check_shown(kinds(source, count), source.name)
-    for source, count in product(sources, views):
-        drive = load(source, views=count, size=config.size, step=step)
-        instruction = config.instruction or drive.instruction
-        if not instruction:
-            raise ValueError(
-                f"{drive.name} has no instruction. Set instruction='\"walk to the door\"'."
-            )
-        recordings[count].append(replace(drive, instruction=instruction))
-    for drives in recordings.values():
-        names = [drive.name for drive in drives]
-        duplicates = {name for name in names if names.count(name) > 1}
-        if duplicates:
-            raise ValueError(f"Two drives have the name {duplicates.pop()!r}. Rename one.")
-    return recordings
 
 
 def _name(paths: Sequence[str]) -> str:
@@ -205,12 +210,20 @@ def _name(paths: Sequence[str]) -> str:
 def _settings(
     config: ReplayConfig, paths: Sequence[str], agents: Mapping[str, Any]
 ) -> dict[str, Any]:
-    """Return all settings that determine the report, as JSON data."""
+    """Return all settings that determine the report, as JSON data.
+
+    Agents without weights are described only by the name of their class.
+    """
+    from torch import nn
+
     from mitigate.core.checkpoint import weights_sha
 
     settings = {key: value for key, value in asdict(config).items() if key not in UNSAVED}
     settings["conditions"] = config.conditions or suite_conditions(config.suite)
-    shas = {name: weights_sha(agent) for name, agent in agents.items()}
+    shas = {
+        name: weights_sha(agent) if isinstance(agent, nn.Module) else type(agent).__qualname__
+        for name, agent in agents.items()
+    }
     return {**settings, "drives": [str(Path(path).resolve()) for path in paths], "weights": shas}
 
 
@@ -227,6 +240,7 @@ def _check_earlier(out: Path, settings: dict[str, Any]) -> None:
     earlier = read_json(out / SETTINGS, fix)
     if not isinstance(earlier, dict):
         raise ValueError(f"{out / SETTINGS} was not written by a replay. {fix}")
+    earlier = ADDED | earlier
     different = [name for name, value in settings.items() if earlier.get(name) != value]
     if different:
         name = different[0]
@@ -261,15 +275,23 @@ def replay(
     """
     from mitigate.core.progress import Progress
     from mitigate.replay import report
-    from mitigate.replay.walk import Answers, Changes, compare, decision_lines, walk
+    from mitigate.replay.walk import (
+        Answers,
+        Changes,
+        compare,
+        decision_lines,
+        neglected_actions,
+        walk,
+    )
 
     changes: dict[str, dict[str, Changes]] = {}
     pictures: list[Path] = []
     steps = [len(drive.times) for drive in next(iter(recordings.values()))]
     total = len(agents) * len(corruptions) * len(steps)
-    with Progress("replay", total, unit="drive") as progress, atomic_text(out / DECISIONS) as file:
+    notes: list[str] = []
+    with Progress("replay", total, unit="run") as progress, atomic_text(out / DECISIONS) as file:
         for name, agent in agents.items():
-            drives = recordings[agent.views]
+            drives = recordings[views_of(agent)]
             answers: dict[str, dict[str, Answers]] = {}
             for corruption in corruptions:
                 reason = inapplicable(corruption, agent, drives)
@@ -291,6 +313,13 @@ def replay(
                     lines = decision_lines(labels, drive, answers["clean"][drive.name], answer)
                     file.writelines(json.dumps(line) + "\n" for line in lines)
                     progress.advance(note=f"{name}, {corruption.name}")
+                if corruption.name == "clean" and (rare := neglected_actions(drives, corrupted)):
+                    notes.append(
+                        f"{name} rarely chooses {' or '.join(rare)} on clean frames, but the "
+                        "driver often does. The agent may not fit this camera or drive: few "
+                        "changed decisions then do not mean that it is robust."
+                    )
+                    progress.say(f"Warning: {notes[-1]}")
             changes[name] = {n: compare(drives, answers["clean"], a) for n, a in answers.items()}
             worst = _worst(corruptions, changes[name])
             if worst is not None:
@@ -298,8 +327,9 @@ def replay(
                 path = _picture_file(out, name, worst.name)
                 pictures += _draw(drives, worst, answers, draw, path)
     with atomic_text(out / TABLE) as table:
-        text = report.table(changes, severity, sum(steps), len(steps), guards)
-        table.write(text)
+        drives = next(iter(recordings.values()))
+        text = report.table(changes, severity, sum(steps), len(steps), guards, notes)
+        table.write(text + report.summaries(drives))
     print(text.partition("\nFalse stops")[0])
     pictures.insert(0, report.heatmap(changes, severity, out / "changes.png"))
     print("\n".join(f"wrote {path}" for path in (out / DECISIONS, out / TABLE, *pictures)))
@@ -338,9 +368,10 @@ def _draw(
 ) -> list[Path]:
     """Draw decisions that a corruption changed, from the drive with the most such decisions."""
     from mitigate.replay import report
+    from mitigate.replay.walk import changed_steps
 
     clean, corrupted = answers["clean"], answers[corruption.name]
-    differs = {name: clean[name].actions != corrupted[name].actions for name in clean}
+    differs = {name: changed_steps(clean[name], corrupted[name]) for name in clean}
     drive = max(drives, key=lambda d: int(differs[d.name].sum()))
     steps = report.spread([int(i) for i in differs[drive.name].nonzero()[0]])
     if not steps:
@@ -350,7 +381,7 @@ def _draw(
 
 
 def _picture_file(out: Path, name: str, condition: str) -> Path:
-    return out / f"{name.replace('/', '-')}-{condition}.png"
+    return out / f"{re.sub('[/:]', '-', name)}-{condition}.png"
 
 
 _paths: list[str] = []  # the drives that were given on the command line

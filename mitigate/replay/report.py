@@ -16,9 +16,15 @@ from mitigate.core.pictures import depth_picture, strip
 from mitigate.corruptions import Corruption
 from mitigate.evaluation.bootstrap import Estimate
 from mitigate.evaluation.plots import COLOURS, DPI, plain, text_colour
-from mitigate.evaluation.sections import label
 from mitigate.guards.guard import NO_GUARDS, Guards
-from mitigate.replay.walk import ACTIONS, MIN_BLOCKS, Answers, Changes
+from mitigate.replay.walk import (
+    BLOCK_STEPS,
+    MIN_ACTION_SHIFT,
+    MIN_BLOCKS,
+    Answers,
+    Changes,
+    named_action,
+)
 from mitigate.worlds.recorded import Recording
 
 AgentChanges = Mapping[str, Mapping[str, Changes]]  # maps agent and condition to the changes
@@ -26,7 +32,12 @@ MAX_CELLS = 6  # maximum number of decisions in a picture
 
 
 def table(
-    changes: AgentChanges, severity: float, steps: int, drives: int, guards: Guards = NO_GUARDS
+    changes: AgentChanges,
+    severity: float,
+    steps: int,
+    drives: int,
+    guards: Guards = NO_GUARDS,
+    notes: Sequence[str] = (),
 ) -> str:
     """Return the report as Markdown.
 
@@ -36,6 +47,7 @@ def table(
         steps: Number of steps of all drives.
         drives: Number of drives.
         guards: Guards that processed the frames.
+        notes: Warnings that the reader must know.
 
     Returns:
         A table of changed decisions and a table of the other measures.
@@ -52,16 +64,23 @@ def table(
         "Brackets are 95 % bootstrap intervals over blocks of ten steps; with fewer than "
         f"{MIN_BLOCKS} blocks, or if all are equal, Wilson's intervals.{restorer}",
         "",
+        *(f"**Warning:** {markdown_of(note)}\n" for note in notes),
     ]
+    if steps < MIN_BLOCKS * BLOCK_STEPS:
+        lines += [
+            f"Below {MIN_BLOCKS * BLOCK_STEPS} steps the intervals are too wide to compare "
+            "corruptions: replay a longer drive, or several drives.",
+            "",
+        ]
     rows = []
     for name in conditions:
         cells = [_percent(changes[a][name].changed) if name in changes[a] else "–" for a in agents]
-        rows.append([label(name), *cells])
+        rows.append([name, *cells])
     means = []
     for agent in agents:
         shares = [c.changed.value for name, c in changes[agent].items() if name != "clean"]
         means.append(f"{100 * sum(shares) / len(shares):.1f}" if shares else "–")
-    rows.append(["**mean**", *means])
+    rows.append([f"**mean of {len(conditions)}**", *means])
     table = markdown_table(["condition", *map(markdown_of, agents)], rows)
     return "\n".join([*lines, table, "", *_other_measures(changes)]) + "\n"
 
@@ -72,23 +91,44 @@ def _conditions(changes: AgentChanges) -> list[str]:
 
 
 def _other_measures(changes: AgentChanges) -> list[str]:
-    """Return a table of stops, aims (target positions) and agreement with the driver."""
-    lines = [
+    """Return a table of stops, aims (target positions) and agreement with the driver.
+
+    The distance between actions is added if an agent has continuous actions.
+    """
+    text = (
         "False stops: steps with STOP here but not on clean frames; missed stops: the reverse. Aim "
         "moved: share of the steps, in %, at which the point that the agent moves to is more than "
         "0.5 m from that on clean frames. As the driver: share of the steps, in %, with the same "
-        "action as the driver.",
-        "",
-    ]
+        "action as the driver."
+    )
+    head = ["agent", "condition", "false stops", "missed stops", "aim moved", "as the driver"]
+    continuous = any(c.distance for by_condition in changes.values() for c in by_condition.values())
+    if continuous:
+        head.append("distance")
+        text += (
+            " Distance: mean Euclidean distance of continuous actions to those on clean frames. "
+            "Such a decision counts as changed if one number moves by more than "
+            f"{100 * MIN_ACTION_SHIFT:g} % of its range on clean frames."
+        )
     rows = []
     for agent, by_condition in changes.items():
         for name, change in by_condition.items():
             aim = "–" if change.aim is None else _percent(change.aim)
             agreement = "–" if change.agreement is None else _percent(change.agreement)
-            counts = (change.stops, change.missed)
-            rows.append([markdown_of(agent), label(name), *counts, aim, agreement])
-    head = ("agent", "condition", "false stops", "missed stops", "aim moved", "as the driver")
-    return [*lines, markdown_table(head, rows, words=2)]
+            cells = [markdown_of(agent), name, change.stops, change.missed, aim, agreement]
+            gap = change.distance
+            distance = "–" if gap is None else f"{gap.value:.3g} {gap.interval('.3g')}"
+            rows.append([*cells, distance][: len(head)])
+    return [text, "", markdown_table(head, rows, words=2)]
+
+
+def summaries(recordings: Sequence[Recording]) -> str:
+    """Return what was read from each drive, as Markdown."""
+    lines = ["", "Drives:", ""]
+    for recording in recordings:
+        first, *others = recording.summary or (recording.name,)
+        lines += [f"- {markdown_of(first)}", *(f"    - {markdown_of(line)}" for line in others)]
+    return "\n".join(lines) + "\n"
 
 
 def _percent(share: Estimate) -> str:
@@ -115,7 +155,7 @@ def heatmap(changes: AgentChanges, severity: float, path: Path) -> Path:
         colour = text_colour(1 - value)
         axes.text(j, i, f"{100 * value:.0f}", ha="center", va="center", color=colour, fontsize=9)
     axes.set_xticks(range(len(agents)), [*map(plain, agents)], rotation=25, ha="right", fontsize=9)
-    axes.set_yticks(range(len(names)), [label(name) for name in names], fontsize=9)
+    axes.set_yticks(range(len(names)), names, fontsize=9)
     axes.set_title(f"changed decisions, %, severity {severity:g}", fontsize=10)
     return write_figure(path, figure, dpi=DPI, facecolor="white")
 
@@ -145,10 +185,12 @@ def picture(
         gap = np.full((len(before), max(1, len(before) // 40), 3), 255, np.uint8)
         views = (before, gap, _view(seen[modality], frames[step]))
         axis.imshow(np.concatenate(views, 1), interpolation="nearest")
-        old, new = (ACTIONS.get(int(a.actions[step]), "?") for a in (clean, corrupted))
+        old, new = (named_action(a.actions[step]) for a in (clean, corrupted))
         text = f"step {step}, {recording.times[step]:.1f} s: {old} -> {new}"
         axis.set_title(text, fontsize=8)
-    legend = "; white: no reading" if modality == DEPTH else ""
+    legend = ""
+    if modality == DEPTH:
+        legend = "; yellow: near, violet: the farthest point of the clean frame, white: no reading"
     title = f"{recording.name}: {modality} clean, and under {corruption.name}{legend}"
     figure.suptitle(plain(title), fontsize=10)
     return write_figure(path, figure, dpi=DPI, facecolor="white")

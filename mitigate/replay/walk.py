@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from mitigate.agents.agent import Agent, as_agent
+from mitigate.core.contracts import read
 from mitigate.core.observation import FORWARD, LEFT, RIGHT, STOP
 from mitigate.corruptions import Corruption
 from mitigate.evaluation import bootstrap
@@ -25,6 +26,10 @@ from mitigate.worlds.world import Corrupted
 ACTIONS = {STOP: "stop", FORWARD: "forward", LEFT: "left", RIGHT: "right"}
 # Heuristic limits.
 MIN_AIM_SHIFT = 0.5  # shift in metres (two steps) below which an aim counts as unchanged
+MIN_ACTION_SHIFT = 0.1  # fraction of a number's range in continuous actions
+ROUNDING = 1e-6  # absolute difference below which continuous actions are equal
+OFTEN = 0.2  # minimum fraction of steps with an action that the driver takes often
+RARELY = 0.1  # an agent that takes an action less often, relative to the driver, takes it rarely
 MIN_BLOCKS = 8  # minimum number of blocks of steps for the bootstrap
 # number of consecutive steps that are resampled together, because they are correlated
 BLOCK_STEPS = 10
@@ -35,7 +40,7 @@ class Answers:
     """The decisions of an agent on a drive of T steps.
 
     Attributes:
-        actions: int [T].
+        actions: int [T], or float [T, A] for continuous actions.
         aims: float [T, 2], the plan position (metres) to which the agent moves, or NaN.
         seen: Frames of some steps as the agent received them, by step and sensor.
     """
@@ -78,22 +83,27 @@ def walk(
     world = RecordedWorld(recording)
     corrupted_world = guarded(Corrupted(world, corruption, seed), guards)
     driven = recording.driven
-    if driven is None and clean is not None:
+    if driven is None and clean is not None and clean.actions.ndim == 1:
         driven = movements(clean.actions)
     episode = world.episode()
     observation = corrupted_world.reset(episode)
-    actions = []
+    actions: list[int | np.ndarray] = []
     aims = []
     seen = {}
     contract = as_agent(agent)
     with instructed(agent, episode, corruption, seed, guards):
         for step in range(len(recording.times)):
             try:
-                action = action_of(agent.act(observation), agent)
+                action = _decision(agent.act(observation), agent)
             except KeyError as error:
                 raise ValueError(
                     f"{recording.name} lacks an input of {type(agent).__name__}: {error.args[0]}"
                 ) from error
+            if actions and np.shape(action) != np.shape(actions[0]):
+                raise ValueError(
+                    f"act() of {type(agent).__name__} must return actions of one shape, got "
+                    f"{list(np.shape(actions[0]))} and {list(np.shape(action))}."
+                )
             actions.append(action)
             aim = contract.aim
             aims.append((np.nan, np.nan) if aim is None else tuple(aim))
@@ -109,6 +119,53 @@ def walk(
     return Answers(np.array(actions), np.array(aims, np.float64), seen)
 
 
+def _decision(answer: Any, agent: Agent) -> int | np.ndarray:
+    """Return an answer as a whole number, or as float [A] if it is a continuous action.
+
+    Raises:
+        ValueError: The answer is neither.
+    """
+    if isinstance(answer, (list, tuple)) or read(answer, "shape"):
+        values = np.asarray(answer)
+        if values.dtype.kind == "f" and values.size and np.isfinite(values).all():
+            return values.astype(np.float64).reshape(-1)
+    return action_of(answer, agent)
+
+
+def named_action(action: Any) -> str | list[float]:
+    """Return the name of a discrete action, or the rounded numbers of a continuous one."""
+    if np.ndim(action):
+        return [round(float(value), 4) for value in action]
+    return ACTIONS.get(int(action), str(action))
+
+
+def changed_steps(clean: Answers, corrupted: Answers) -> np.ndarray:
+    """Return whether each decision changed, bool [T].
+
+    A continuous action counts as changed if one of its numbers moves by more than
+    ``MIN_ACTION_SHIFT`` of that number's range on clean frames.
+    """
+    if clean.actions.ndim == 1:
+        return clean.actions != corrupted.actions
+    limit = MIN_ACTION_SHIFT * np.ptp(clean.actions, axis=0)
+    return (np.abs(corrupted.actions - clean.actions) > limit + ROUNDING).any(1)
+
+
+def neglected_actions(recordings: Sequence[Recording], clean: Mapping[str, Answers]) -> list[str]:
+    """Return the actions that the driver often takes, but the agent rarely on clean frames."""
+    drives = [r for r in recordings if r.driven is not None and clean[r.name].actions.ndim == 1]
+    if not drives:
+        return []
+    driven = np.concatenate([r.driven.actions for r in drives if r.driven is not None])
+    chosen = np.concatenate([clean[r.name].actions for r in drives])
+    return [
+        name
+        for action, name in ACTIONS.items()
+        if (driven == action).mean() >= OFTEN
+        and (chosen == action).mean() < RARELY * (driven == action).mean()
+    ]
+
+
 def decision_lines(
     labels: dict[str, Any], recording: Recording, clean: Answers, corrupted: Answers
 ) -> list[dict[str, Any]]:
@@ -121,8 +178,8 @@ def decision_lines(
             "recording": recording.name,
             "step": step,
             "time": round(float(recording.times[step]), 3),
-            "action": ACTIONS.get(int(action), str(action)),
-            "clean": ACTIONS.get(int(clean.actions[step]), str(clean.actions[step])),
+            "action": named_action(action),
+            "clean": named_action(clean.actions[step]),
         }
         if recording.driven is not None:
             line["driver"] = ACTIONS.get(int(recording.driven.actions[step]), "other")
@@ -137,14 +194,16 @@ class Changes:
     """Changes of an agent's decisions under one condition, over all drives.
 
     Attributes:
-        changed: Fraction of steps whose action differs from that on clean frames.
+        changed: Fraction of steps whose action differs from that on clean frames
+            (:func:`changed_steps`).
         stops: Number of steps with STOP under this condition but not on clean frames.
         missed: Number of steps with STOP on clean frames but not under this condition.
         aim: Fraction of steps whose aim moved by more than ``MIN_AIM_SHIFT``, or None if the agent
             has no aim.
         agreement: Fraction of steps with the driver's action, among steps whose motion is an
-            action; None if the driver's actions are unknown.
+            action; None if the driver's actions are unknown, or the agent's are continuous.
         steps: Number of steps.
+        distance: Mean Euclidean distance of continuous actions to those on clean frames, or None.
     """
 
     changed: Estimate
@@ -153,6 +212,7 @@ class Changes:
     aim: Estimate | None
     agreement: Estimate | None
     steps: int
+    distance: Estimate | None = None
 
 
 def compare(
@@ -160,7 +220,11 @@ def compare(
 ) -> Changes:
     """Compare decisions with those on clean frames; both are dicts by the name of the drive."""
     pairs = [(clean[r.name], corrupted[r.name]) for r in recordings]
-    changed = [a.actions != b.actions for a, b in pairs]
+    changed = [changed_steps(a, b) for a, b in pairs]
+    if pairs[0][0].actions.ndim == 2:
+        gaps = [np.linalg.norm(b.actions - a.actions, axis=1) for a, b in pairs]
+        steps = sum(map(len, changed))
+        return Changes(_share(changed), 0, 0, None, None, steps, _mean(gaps))
     stops = sum(int(((b.actions == STOP) & (a.actions != STOP)).sum()) for a, b in pairs)
     missed = sum(int(((a.actions == STOP) & (b.actions != STOP)).sum()) for a, b in pairs)
     moved = [np.hypot(*(b.aims - a.aims).T) for a, b in pairs]
@@ -191,16 +255,30 @@ def _share(drives: Sequence[np.ndarray]) -> Estimate:
     Args:
         drives: bool [T] for each drive.
     """
-    blocks = [block for drive in drives for block in _blocks(drive)]
-    true = np.array([block.sum() for block in blocks])
-    steps = np.array([len(block) for block in blocks])
-    value = float(true.sum() / steps.sum())
-    if len(blocks) >= MIN_BLOCKS and np.ptp(true / steps) > 0:
-        return bootstrap.ratio(true, steps)
-    n, z = len(blocks), bootstrap.Z
+    estimate = _mean(drives)
+    if not np.isnan(estimate.low):
+        return estimate
+    value = estimate.value
+    n, z = sum(len(_blocks(drive)) for drive in drives), bootstrap.Z
     middle = (value + z * z / (2 * n)) / (1 + z * z / n)
     half = z * np.sqrt(value * (1 - value) / n + z * z / (4 * n * n)) / (1 + z * z / n)
     return Estimate(value, max(0.0, float(middle - half)), min(1.0, float(middle + half)))
+
+
+def _mean(drives: Sequence[np.ndarray]) -> Estimate:
+    """Estimate the mean over all steps from blocks of steps.
+
+    The interval is undefined with fewer than ``MIN_BLOCKS`` blocks, or if all are equal.
+
+    Args:
+        drives: float [T] for each drive.
+    """
+    blocks = [block for drive in drives for block in _blocks(drive)]
+    sums = np.array([block.sum() for block in blocks])
+    steps = np.array([len(block) for block in blocks])
+    if len(blocks) >= MIN_BLOCKS and np.ptp(sums / steps) > 0:
+        return bootstrap.ratio(sums, steps)
+    return Estimate(float(sums.sum() / steps.sum()), np.nan, np.nan)
 
 
 def _blocks(drive: np.ndarray) -> list[np.ndarray]:

@@ -8,16 +8,14 @@ directory or from installed packages. The same command again continues an interr
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable
 from dataclasses import dataclass, field
-from importlib import import_module
 from typing import Any
 
 import hydra
 from omegaconf import MISSING, DictConfig
 
 from mitigate.core import conf
-from mitigate.core.names import unknown
+from mitigate.core.build import imported
 from mitigate.evaluation.conditions import suite_conditions
 
 
@@ -81,34 +79,6 @@ def run(config: HardenConfig) -> Any:
         **options,
         **settings,
     )
-
-
-def imported(name: str | None, option: str) -> Callable[..., Any]:
-    """Return the callable ``module:callable`` that an option names.
-
-    Raises:
-        ValueError: The module cannot be imported, or lacks the callable.
-    """
-    module_name, _, attribute = (name or "").partition(":")
-    if not (module_name and attribute):
-        raise ValueError(
-            f"{option} must be module:callable, such as {option}=my_policy:make_{option}, got "
-            f"{name!r:.200}."
-        )
-    try:
-        module = import_module(module_name)
-    except ImportError as error:
-        raise ValueError(
-            f"{option}={name} cannot be imported: {error}. Run the command in the folder of the "
-            "module, or install its package."
-        ) from error
-    if not hasattr(module, attribute):
-        callables = [n for n, v in vars(module).items() if callable(v) and not n.startswith("_")]
-        raise ValueError(f"{option}={name}: {unknown('callable', attribute, callables)}")
-    target = getattr(module, attribute)
-    if not callable(target):
-        raise ValueError(f"{option}={name} must be callable, got type {type(target).__name__}.")
-    return target
 
 
 @hydra.main(version_base="1.3", config_path=str(conf.CONF), config_name="harden")

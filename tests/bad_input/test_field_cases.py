@@ -27,7 +27,7 @@ from mitigate.encoders.loading import load_weights
 from mitigate.evaluation.episode_lists import LIST_HASH, keep_list_hash
 from mitigate.worlds.episodes import read_extras
 from mitigate.worlds.recorded import open_recording
-from mitigate.worlds.recorded.bags import Topics, choose_topics
+from mitigate.worlds.recorded.topics import Topics, choose_topics
 from mitigate.worlds.transforms import CorruptObservation
 from mitigate.worlds.wrappers import CorruptObservation as Wrapper
 

@@ -232,7 +232,7 @@ def test_replay_writes_decisions_tables_and_pictures(tmp_path, mitigate, monkeyp
     assert "Frames of rgb went through the restorer `" in table
     assert (out / "changes.png").is_file() and (out / "table.md").is_file()
     assert json.loads((out / "replay.json").read_text())["drives"] == [str(bag)]
-    assert "Foreign object" in printed
+    assert "foreign_object" in printed
 
 
 def test_replay_rejects_an_unused_restorer_before_reading_frames(tmp_path, mitigate):

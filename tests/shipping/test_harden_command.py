@@ -7,8 +7,9 @@ import pytest
 
 from mitigate.cli import main
 from mitigate.core import conf
+from mitigate.core.build import imported
 from mitigate.shipping.harden import harden
-from mitigate.shipping.harden_command import HardenConfig, imported, run
+from mitigate.shipping.harden_command import HardenConfig, run
 
 HERE = "tests.shipping.test_harden"
 NAMES = [f"policy={HERE}:trained", f"world={HERE}:world"]

@@ -71,10 +71,31 @@ class Frames(Source):
     Attributes:
         files: One file per time step, by camera.
         unit: Metres per count of 16-bit depth.
+        unit_given: Whether the user or the recording states ``unit``; otherwise it is a default.
     """
 
     files: Mapping[str, Sequence[Path]]
     unit: float
+    unit_given: bool = True
+
+    def __post_init__(self) -> None:
+        assumed = "" if self.unit_given else " (assumed)"
+        self.formats = {
+            name: f"{name}, 16-bit PNG, {self.unit:g} metres per count{assumed}"
+            if self._is_counted(name)
+            else f"{name}, {files[0].suffix[1:].upper()}"
+            for name, files in self.files.items()
+        }
+
+    def _is_counted(self, camera: str) -> bool:
+        """Return whether a camera's files hold depth in counts of ``unit``."""
+        is_npy = self.files[camera][0].suffix.lower() == ".npy"
+        return self.cameras[camera].kind == DEPTH and not is_npy
+
+    def depth_advice(self) -> str:
+        if any(map(self._is_counted, self.files)):
+            return "Set unit= (metres per count), such as unit=0.0001."
+        return super().depth_advice()
 
     def frames(self, chosen: Sequence[int]) -> Iterator[dict[str, np.ndarray]]:
         for index in chosen:
@@ -97,7 +118,11 @@ class Frames(Source):
 
 
 def open_folder(
-    path: Path, hfov: float | None, unit: float | None, cameras: Sequence[str] | None = None
+    path: Path,
+    hfov: float | None,
+    unit: float | None,
+    cameras: Sequence[str] | None = None,
+    tolerance: float | None = None,
 ) -> list[Frames]:
     """Open the drives of a folder in one of the three layouts.
 
@@ -106,6 +131,7 @@ def open_folder(
         hfov: Horizontal field of view in degrees, if the folder does not contain it.
         unit: Metres per count of 16-bit depth, if the folder does not contain it.
         cameras: Cameras to read from a recording by ``mitigate run``, or None for all.
+        tolerance: Maximum seconds between the frames of a time step of a TUM folder; None: 0.1.
 
     Returns:
         The drives without their frames.
@@ -126,8 +152,8 @@ def open_folder(
             f"cameras= applies only to a recording by mitigate run, which {path} is not. Remove "
             "cameras=."
         )
-    if any((path / name).is_file() for name in (*LISTS, ASSOCIATIONS)):
-        return [_read_tum(path, hfov, TUM_UNIT if unit is None else unit)]
+    if is_tum(path):
+        return [_read_tum(path, hfov, unit, MAX_FRAME_GAP if tolerance is None else tolerance)]
     if (path / TRAJECTORY).is_file():
         raise ValueError(
             f"{path} has {TRAJECTORY}, but lacks the lists of its frames. Add {' or '.join(LISTS)}."
@@ -138,6 +164,11 @@ def open_folder(
 def is_drive(folder: Path) -> bool:
     """Return whether a folder contains frames in one of the three layouts."""
     return any((folder / name).exists() for name in (RECORDING, *LISTS, ASSOCIATIONS, RGB, DEPTH))
+
+
+def is_tum(folder: Path) -> bool:
+    """Return whether a folder has the layout of TUM RGB-D."""
+    return any((folder / name).is_file() for name in (*LISTS, ASSOCIATIONS))
 
 
 def _read_recorded(
@@ -214,7 +245,7 @@ def _read_lens(name: str, frame: Path, described: Mapping[str, Any], hfov: float
     camera = described.get(name)
     file = frame.parent.parent / CAMERAS
     if camera is None:
-        return Lens(frame_files.modality(frame), 90.0 if hfov is None else hfov)
+        return _assumed_lens(frame_files.modality(frame), hfov)
     if not isinstance(camera, dict) or camera.get("kind") not in (RGB, DEPTH):
         raise ValueError(
             f"{file}: kind of camera {name} must be {RGB} or {DEPTH}, got {short(camera)}. {FIX}"
@@ -228,6 +259,11 @@ def _read_lens(name: str, frame: Path, described: Mapping[str, Any], hfov: float
             f"{file} contains the field of view of camera {name} ({recorded_hfov:g}). Remove hfov=."
         )
     return Lens(camera["kind"], recorded_hfov or hfov or 0.0, yaw or 0.0)
+
+
+def _assumed_lens(kind: str, hfov: float | None, default: float = 90.0) -> Lens:
+    """Return a lens with a field of view from the user, or with a default."""
+    return Lens(kind, default if hfov is None else hfov, assumed=hfov is None)
 
 
 def _number_or_none(values: Mapping[str, Any], key: str, file: Path) -> float | None:
@@ -301,13 +337,14 @@ def _read_simple(path: Path, hfov: float | None, unit: float | None) -> Frames:
     return Frames(
         name=path.name,
         instruction=read_instruction(path / INSTRUCTION),
-        cameras={kind: Lens(kind, 90.0 if hfov is None else hfov) for kind in files},
+        cameras={kind: _assumed_lens(kind, hfov) for kind in files},
         files=files,
         times=np.arange(len(stems[0])) * 1.0,
         poses=poses,
         stepped=True,
         dropped=0,
         unit=0.001 if unit is None else unit,
+        unit_given=unit is not None,
     )
 
 
@@ -354,7 +391,7 @@ def _read_lines(file: Path) -> list[Any]:
     return records
 
 
-def _read_tum(path: Path, hfov: float | None, unit: float) -> Frames:
+def _read_tum(path: Path, hfov: float | None, unit: float | None, tolerance: float) -> Frames:
     """Read a drive in the layout of TUM RGB-D.
 
     A time step consists of an RGB image with the depth image and the pose that are nearest in time.
@@ -373,22 +410,21 @@ def _read_tum(path: Path, hfov: float | None, unit: float) -> Frames:
         raise ValueError(f"{path}: its lists name no image. Add lines to {' or '.join(LISTS)}.")
     stamps = {kind: [time for time, _ in lines] for kind, lines in listed.items()}
     has_poses = (path / TRAJECTORY).is_file()
-    instants = match_times(stamps, _read_trajectory(path / TRAJECTORY) if has_poses else None)
+    table = _read_trajectory(path / TRAJECTORY) if has_poses else None
+    instants = match_times(stamps, table, tolerance)
     if not len(instants.times):
-        raise ValueError(
-            f"{path}: the times of its lists must be within {MAX_FRAME_GAP} s of each other. Check "
-            "that all use the same clock."
-        )
+        raise ValueError(f"{path}: {instants.mismatch(tolerance)}")
     return Frames(
         name=path.name,
         instruction=read_instruction(path / INSTRUCTION),
-        cameras={kind: Lens(kind, TUM_HFOV if hfov is None else hfov) for kind in listed},
+        cameras={kind: _assumed_lens(kind, hfov, TUM_HFOV) for kind in listed},
         times=instants.times,
         poses=instants.poses,
         stepped=False,
         dropped=instants.dropped,
         files={kind: [listed[kind][i][1] for i in rows] for kind, rows in instants.frames.items()},
-        unit=unit,
+        unit=TUM_UNIT if unit is None else unit,
+        unit_given=unit is not None,
     )
 
 

@@ -28,7 +28,7 @@ class LerobotEpisode(Source):
         rows: Its rows.
         signals: Numbers of each row by feature, float64 [N, size].
         cameras: Cameras to read.
-        hfov: Horizontal field of view in degrees.
+        hfov: Horizontal field of view in degrees; None: 90.
         tolerance: Maximum seconds between a row and its video frame.
 
     Raises:
@@ -42,7 +42,7 @@ class LerobotEpisode(Source):
         rows: Rows,
         signals: dict[str, np.ndarray],
         cameras: Sequence[Camera],
-        hfov: float,
+        hfov: float | None,
         tolerance: float,
     ) -> None:
         name = f"{dataset.path.resolve().name}/episode-{episode.index:06d}"
@@ -54,7 +54,10 @@ class LerobotEpisode(Source):
         super().__init__(
             name=name,
             instruction=_instruction(dataset, rows, name),
-            cameras={camera.name: Lens(camera.kind, hfov) for camera in cameras},
+            cameras={
+                camera.name: Lens(camera.kind, 90.0 if hfov is None else hfov, assumed=hfov is None)
+                for camera in cameras
+            },
             times=rows.times,
             poses=None,
             stepped=False,
@@ -137,7 +140,7 @@ def open_episodes(
                 rows,
                 observations,
                 chosen,
-                90.0 if hfov is None else hfov,
+                hfov,
                 TOLERANCE if tolerance is None else tolerance,
             )
         )

@@ -18,6 +18,7 @@ from mitigate.worlds.recorded.source import Lens, plan_pose
 
 FISHEYE = ("equidistant", "fisheye")  # names of distortion models in ROS
 MAX_SIDE = 1 << 13  # maximum side of an image in pixels (heuristic)
+MAX_ENCODING = 100  # maximum characters of an encoding; longer ones are cut (heuristic)
 COMPRESSED_DEPTH_HEADER = 12  # number of bytes before the PNG data in `compressedDepth`
 _COLOURS = {  # maps an encoding to its channels and the conversion to RGB
     "rgb8": (3, None),
@@ -27,8 +28,28 @@ _COLOURS = {  # maps an encoding to its channels and the conversion to RGB
     "mono8": (1, cv2.COLOR_GRAY2RGB),
     "8UC3": (3, cv2.COLOR_BGR2RGB),
 }
-# maps an encoding to the pixel type and the metres per count (REP 118)
-_DEPTHS = {"16UC1": ("u2", 0.001), "mono16": ("u2", 0.001), "32FC1": ("f4", 1.0)}
+_DEPTHS = {"16UC1": "u2", "mono16": "u2", "32FC1": "f4"}  # maps an encoding to its pixel type
+
+
+class DamagedImage(ValueError):
+    """Raised if the bytes of a single image cannot be decoded."""
+
+
+def encoding_of(message: Any) -> str:
+    """Return the ``encoding`` of an Image, or the ``format`` of a CompressedImage."""
+    return str(_field(message, "format", "encoding"))[:MAX_ENCODING]
+
+
+def kind_of(encoding: str) -> str | None:
+    """Return "rgb" or "depth" for an encoding, or None if images of both kinds may have it."""
+    if "compressedDepth" in encoding or encoding.startswith(("16UC1", "32FC1")):
+        return DEPTH
+    return RGB if "jpeg" in encoding or encoding.startswith(tuple(_COLOURS)) else None
+
+
+def depth_unit(encoding: str) -> float:
+    """Return the metres per count that REP 118 prescribes: 1 for 32FC1, 0.001 for integers."""
+    return 1.0 if encoding == "32FC1" else 0.001
 
 
 def read_pose(message: Any) -> tuple[float, float, float]:
@@ -96,35 +117,44 @@ def read_lens(kind: str, message: Any, path: Path) -> Lens:
     return Lens(kind, focal=focal, centre=centre, size=size)
 
 
-def read_image(message: Any, kind: str, path: Path) -> np.ndarray:
+def read_image(message: Any, kind: str, path: Path, unit: float | None = None) -> np.ndarray:
     """Return a message's image: uint8 [H, W, 3], or float32 metres [H, W] with 0 for missing depth.
 
+    Args:
+        message: An Image or a CompressedImage.
+        kind: "rgb" or "depth".
+        path: The bag, for error messages.
+        unit: Metres per count of depth; None: :func:`depth_unit`.
+
     Raises:
-        ValueError: The encoding is unknown or wrong for this ``kind``, or the image is damaged.
+        DamagedImage: The image cannot be decoded.
+        ValueError: The encoding is unknown or wrong for this ``kind``.
     """
+    if unit is None:
+        unit = depth_unit(encoding_of(message))
     if _field(message, "format") is not None:
-        return _read_compressed(message, kind, path)
+        return _read_compressed(message, kind, path, unit)
     height = int(message.height)
     width = int(message.width)
     encoding = str(message.encoding)
-    table: Mapping[str, tuple] = _COLOURS if kind == RGB else _DEPTHS
+    table: Mapping[str, object] = _COLOURS if kind == RGB else _DEPTHS
     if encoding not in table:
         raise ValueError(
             f"{path}: the encoding of {kind} images must be one of {', '.join(table)}, got "
             f"{encoding!r}. Convert them, or choose another topic (topics.{kind}=)."
         )
     if not (0 < height <= MAX_SIDE and 0 < width <= MAX_SIDE):
-        raise ValueError(
+        raise DamagedImage(
             f"{path}: images must have 1 to {MAX_SIDE} pixels per side, got {height} x {width}."
         )
     data = np.ascontiguousarray(message.data).view(np.uint8)
     byte_order = "><"[not message.is_bigendian]
-    dtype = np.dtype(byte_order + _DEPTHS[encoding][0]) if kind == DEPTH else np.dtype(np.uint8)
+    dtype = np.dtype(byte_order + _DEPTHS[encoding]) if kind == DEPTH else np.dtype(np.uint8)
     channels = 1 if kind == DEPTH else _COLOURS[encoding][0]
     row_bytes = width * channels * dtype.itemsize
     step = int(message.step) if height > 1 else row_bytes
     if step < row_bytes or len(data) < (height - 1) * step + row_bytes:
-        raise ValueError(f"{path}: an image of {height} x {width} has only {len(data)} bytes.")
+        raise DamagedImage(f"{path}: an image of {height} x {width} has only {len(data)} bytes.")
     padded = np.zeros(height * step, np.uint8)
     padded[: min(len(data), height * step)] = data[: height * step]
     rows = np.ascontiguousarray(padded.reshape(height, step)[:, :row_bytes])
@@ -132,13 +162,13 @@ def read_image(message: Any, kind: str, path: Path) -> np.ndarray:
         stored = rows.view(dtype)
         if dtype.kind == "u":
             stored = np.where(stored == NO_READING, 0, stored)
-        return _clean_depth(stored * _DEPTHS[encoding][1])
+        return _clean_depth(stored * unit)
     pixels = rows.reshape(height, width, channels)
     conversion = _COLOURS[encoding][1]
     return pixels if conversion is None else cv2.cvtColor(pixels, conversion)
 
 
-def _read_compressed(message: Any, kind: str, path: Path) -> np.ndarray:
+def _read_compressed(message: Any, kind: str, path: Path, unit: float) -> np.ndarray:
     """Decode an image in PNG or JPEG."""
     data = np.ascontiguousarray(message.data).view(np.uint8)
     encoding = str(message.format)
@@ -146,14 +176,14 @@ def _read_compressed(message: Any, kind: str, path: Path) -> np.ndarray:
         data = data[COMPRESSED_DEPTH_HEADER:]
     pixels = cv2.imdecode(data, cv2.IMREAD_UNCHANGED) if _is_image(data) else None
     if pixels is None:
-        raise ValueError(f"{path}: an image in the format {encoding[:40]!r} cannot be decoded.")
+        raise DamagedImage(f"{path}: an image in the format {encoding[:40]!r} cannot be decoded.")
     if kind == DEPTH:
         if pixels.dtype != np.uint16 or pixels.ndim != 2 or encoding.startswith("32FC1"):
             raise ValueError(
-                f"{path}: compressed depth must be 16-bit PNG in millimetres, got the format "
+                f"{path}: compressed depth must be 16-bit PNG, got the format "
                 f"{encoding[:40]!r}. Record the raw images."
             )
-        return _clean_depth(np.where(pixels == NO_READING, 0, pixels) * 0.001)
+        return _clean_depth(np.where(pixels == NO_READING, 0, pixels) * unit)
     if pixels.dtype != np.uint8:
         raise ValueError(f"{path}: compressed RGB images must be uint8, got {pixels.dtype}.")
     if pixels.ndim == 2:

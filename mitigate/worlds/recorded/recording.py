@@ -1,15 +1,15 @@
 """Load a recorded drive as observations for an agent, and replay it as a world.
 
 The frames of each camera are cropped and resized to square views of 90 degrees, the field of view
-that agents expect. Pixels outside the recorded image are black, or missing depth.
+that agents expect. Pixels outside the recorded image are black, or missing depth (``views.py``).
 """
 
 from __future__ import annotations
 
 import math
 import warnings
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
 
 import cv2
 import numpy as np
@@ -18,6 +18,7 @@ from mitigate.core.observation import (
     DEPTH,
     FORWARD,
     FORWARD_METRES,
+    HFOV_DEGREES,
     LEFT,
     POSE,
     RGB,
@@ -31,7 +32,9 @@ from mitigate.core.observation import (
 )
 from mitigate.core.progress import Progress
 from mitigate.worlds.episodes import Episode, Instruction
-from mitigate.worlds.recorded.source import Lens, Source
+from mitigate.worlds.recorded.source import Source
+from mitigate.worlds.recorded.summary import Camera, describe, warn_about
+from mitigate.worlds.recorded.views import border_fraction, covered_tangent, square_view
 from mitigate.worlds.world import World, check_metres
 
 # action number for a motion that is not an action of an agent, such as backwards or sideways
@@ -47,7 +50,7 @@ MIN_LAST_STEP = 0.5  # as a fraction of a step; a shorter last step is merged in
 MAX_FRAME_BYTES = 1 << 32  # maximum bytes of all frames of a drive
 MAX_OFF_HEADING = 1 / 3  # fraction of moving steps whose direction may differ from the heading
 MIN_MOVING_STEPS = 5  # minimum number of moving steps for a warning about the heading
-SUPERSAMPLING = 4  # canvas pixels per pixel of a partially covered view, along each side
+MIN_READABLE = 0.5  # minimum fraction of steps without a damaged image
 MAX_YAW_ERROR = 3.0  # maximum degrees between a camera and its view of the panorama
 
 
@@ -64,6 +67,8 @@ class Recording:
         poses: float64 [T, 3], (x, y, heading), or None if unknown.
         driven: The driver's actions, or None if the poses are unknown.
         signals: Recorded numbers by name, such as "action": float64 [T, size].
+        hfov: Field of view of the square views in degrees.
+        summary: What was read, as one line of text for the drive and one per sensor.
     """
 
     name: str
@@ -73,6 +78,8 @@ class Recording:
     poses: np.ndarray | None
     driven: Driven | None
     signals: Mapping[str, np.ndarray] = field(default_factory=dict)
+    hfov: float = HFOV_DEGREES
+    summary: Sequence[str] = ()
 
     @property
     def sensors(self) -> dict[str, Sensor]:
@@ -80,10 +87,14 @@ class Recording:
         first = next(iter(self.frames.values()))
         sensors = cameras(first.shape[-2], first.shape[1] if first.ndim == 5 else 1)
         recorded = {*self.frames, *([] if self.poses is None else [POSE])}
-        return {name: sensor for name, sensor in sensors.items() if name in recorded}
+        return {
+            name: replace(sensor, hfov=sensor.hfov and self.hfov)
+            for name, sensor in sensors.items()
+            if name in recorded
+        }
 
 
-def load(source: Source, *, views: int, size: int, step: Step) -> Recording:
+def load(source: Source, *, views: int, size: int, step: Step, crop: bool = False) -> Recording:
     """Load the frames of ``source`` at times that are one agent step apart.
 
     Args:
@@ -91,12 +102,14 @@ def load(source: Source, *, views: int, size: int, step: Step) -> Recording:
         views: Number of views per frame: 1 (one camera) or 12 (panorama).
         size: Height and width of a view in pixels.
         step: Distance between two instants.
+        crop: Whether to fill the views with the largest square field of view that all cameras
+            cover, in place of 90 degrees with a black border.
 
     Returns:
-        The drive with its frames in memory.
+        The drive with its frames in memory. Steps with a damaged image are left out.
 
     Raises:
-        ValueError: The source lacks a camera, is damaged or too large.
+        ValueError: The source lacks a camera, is too large, or most of its images are damaged.
     """
     if source.stepped and step != Step():
         raise ValueError(
@@ -115,35 +128,101 @@ def load(source: Source, *, views: int, size: int, step: Step) -> Recording:
             f"{needed / 2**30:.1f} GiB for {len(chosen)} steps. Cut the recording,{longer} or use "
             "smaller frames (size=)."
         )
-    shape = (len(chosen), *([views] if views > 1 else []), size, size)
-    frames = {
-        kind: np.zeros((*shape, 3 if kind == RGB else 1), np.uint8 if kind == RGB else np.float32)
-        for kind, _ in view_cameras
-    }
-    with Progress(f"read {source.name}", len(chosen), unit="instant") as progress:
-        for row, images in enumerate(source.frames(chosen.tolist())):
-            for (kind, view), camera in view_cameras.items():
-                target = frames[kind][row] if views == 1 else frames[kind][row, view]
-                try:
-                    target[...] = square_view(images[camera], source.cameras[camera], size)
-                except (ValueError, cv2.error) as error:
-                    raise ValueError(f"{source.name}, {camera}: {error}.") from error
-            progress.advance()
-        if source.dropped:
-            progress.say(
-                f"{source.name}: left out {source.dropped} frames that have no pose or no frame of "
-                "the other camera near in time"
-            )
+    read = _read_views(source, chosen.tolist(), view_cameras, size, crop)
+    chosen = chosen[read.readable]
+    frames = read.frames
     if DEPTH in frames:
-        unit = "For 16-bit PNG set unit= (metres per count)."
-        check_metres(frames[DEPTH], f"the depth of {source.name}", unit)
+        check_metres(frames[DEPTH], f"the depth of {source.name}", source.depth_advice())
     poses = None if source.poses is None else source.poses[chosen]
     times = source.times[chosen] - source.times[0]
     driven = None if poses is None else driver_actions(poses)
     if poses is not None and driven is not None:
         _check_headings(source.name, poses, driven)
     signals = {name: values[chosen] for name, values in source.signals.items()}
-    return Recording(source.name, source.instruction, frames, times, poses, driven, signals)
+    hfov = 2 * math.degrees(math.atan(read.tangent))
+    recording = Recording(
+        source.name, source.instruction, frames, times, poses, driven, signals, hfov
+    )
+    cameras = {
+        kind: Camera(
+            source.cameras[name],
+            read.shapes[name],
+            source.formats.get(name, name),
+            border_fraction(source.cameras[name], *read.shapes[name], read.tangent),
+        )
+        for (kind, view), name in view_cameras.items()
+        if view == 0
+    }
+    warn_about(source, recording, cameras)
+    return replace(recording, summary=describe(source, recording, cameras, step))
+
+
+@dataclass(frozen=True)
+class _Views:
+    """The square views of a drive.
+
+    Attributes:
+        frames: Frames of the readable steps, as in :class:`Recording`.
+        readable: Whether all images of each chosen step could be read, bool [T].
+        shapes: Height and width of each camera's images.
+        tangent: Tangent of half the views' field of view.
+    """
+
+    frames: dict[str, np.ndarray]
+    readable: np.ndarray
+    shapes: dict[str, tuple[int, int]]
+    tangent: float
+
+
+def _read_views(
+    source: Source,
+    chosen: Sequence[int],
+    view_cameras: Mapping[tuple[str, int], str],
+    size: int,
+    crop: bool,
+) -> _Views:
+    """Read the frames at the chosen time steps; the arguments are those of :func:`load`."""
+    views = 1 + max(view for _, view in view_cameras)
+    shape = (len(chosen), *([views] if views > 1 else []), size, size)
+    frames = {
+        kind: np.zeros((*shape, 3 if kind == RGB else 1), np.uint8 if kind == RGB else np.float32)
+        for kind, _ in view_cameras
+    }
+    readable = np.ones(len(chosen), bool)
+    shapes: dict[str, tuple[int, int]] = {}
+    tangent = 1.0
+    with Progress(f"read {source.name}", len(chosen), unit="instant") as progress:
+        for row, images in enumerate(source.frames(chosen)):
+            progress.advance()
+            readable[row] = bool(images)
+            if not images:
+                continue
+            camera = ", ".join(view_cameras.values())
+            try:
+                if not shapes:
+                    shapes = {name: images[name].shape[:2] for name in view_cameras.values()}
+                    lenses = [(source.cameras[name], shapes[name]) for name in shapes]
+                    tangent = covered_tangent(lenses) if crop else 1.0
+                for (kind, view), camera in view_cameras.items():
+                    target = frames[kind][row] if views == 1 else frames[kind][row, view]
+                    target[...] = square_view(images[camera], source.cameras[camera], size, tangent)
+            except (ValueError, cv2.error) as error:
+                raise ValueError(f"{source.name}, {camera}: {error}.") from error
+        if not readable.all():
+            damage = (
+                f"{(~readable).sum()} of {len(readable)} steps with damaged images, the first "
+                f"because {source.damaged[0]}"
+            )
+            if readable.mean() < MIN_READABLE:
+                raise ValueError(f"{source.name} has {damage}. Choose another topic.")
+            progress.say(f"{source.name}: left out {damage}")
+            frames = {kind: array[readable] for kind, array in frames.items()}
+        if source.dropped:
+            progress.say(
+                f"{source.name}: left out {source.dropped} frames that have no pose or no frame of "
+                "the other camera near in time"
+            )
+    return _Views(frames, readable, shapes, tangent)
 
 
 def kinds(source: Source, views: int) -> list[str]:
@@ -190,66 +269,6 @@ def _list_cameras(source: Source) -> str:
     cameras = source.cameras.items()
     listed = [f"{name} ({lens.kind}, {lens.yaw:g} degrees)" for name, lens in cameras]
     return ", ".join(listed[:6]) + (" ..." if len(listed) > 6 else "") or "none"
-
-
-def square_view(frame: np.ndarray, lens: Lens, size: int) -> np.ndarray:
-    """Crop and resize a frame to a square view of 90 degrees.
-
-    Args:
-        frame: uint8 [H, W, 3] or float32 [H, W].
-        lens: Lens of the camera that took the frame.
-        size: Height and width of the view in pixels.
-
-    Returns:
-        uint8 [size, size, 3] or float32 [size, size, 1]. A frame that already is such a view is
-        returned unchanged.
-    """
-    is_depth = lens.kind == DEPTH
-    frame = frame.reshape(*frame.shape[:2], -1)
-    height, width = frame.shape[:2]
-    fx, fy, cx, cy = lens.intrinsics(height, width)
-    edges = (cx - fx, cx + fx, cy - fy, cy + fy)
-    if min(edges[0], edges[2], width - edges[1], height - edges[3]) < -0.5:
-        return _partial_view(frame, edges, size, is_depth)
-    left, right, top, bottom = (round(edge) for edge in edges)
-    view = frame[max(0, top) : bottom, max(0, left) : right]
-    if view.shape[:2] != (size, size):
-        view = _resize(view, size, size, is_depth)
-    return view.reshape(size, size, -1)
-
-
-def _partial_view(
-    frame: np.ndarray, edges: tuple[float, float, float, float], size: int, is_depth: bool
-) -> np.ndarray:
-    """Draw a frame that covers only a part of the view.
-
-    The frame is first drawn on a larger canvas, so that rounding moves its edges only by a fraction
-    of a pixel.
-    """
-    height, width = frame.shape[:2]
-    left, right, top, bottom = edges
-    large = SUPERSAMPLING * size
-    scale_x = large / (right - left)
-    scale_y = large / (bottom - top)
-    x0, x1 = (round(min(large, max(0, (x - left) * scale_x))) for x in (0, width))
-    y0, y1 = (round(min(large, max(0, (y - top) * scale_y))) for y in (0, height))
-    canvas = np.zeros((large, large, frame.shape[2]), frame.dtype)
-    if x1 > x0 and y1 > y0:
-        crop = frame[max(0, round(top)) : round(bottom), max(0, round(left)) : round(right)]
-        resized = _resize(crop, x1 - x0, y1 - y0, is_depth)
-        canvas[y0:y1, x0:x1] = resized.reshape(y1 - y0, x1 - x0, -1)
-    return _resize(canvas, size, size, is_depth).reshape(size, size, -1)
-
-
-def _resize(frame: np.ndarray, width: int, height: int, is_depth: bool) -> np.ndarray:
-    """Resize a frame. Depth is resized to the nearest pixel, so that missing depth stays
-    missing.
-    """
-    shrinks = width < frame.shape[1] or height < frame.shape[0]
-    smooth = cv2.INTER_AREA if shrinks else cv2.INTER_LINEAR
-    return cv2.resize(
-        frame, (width, height), interpolation=cv2.INTER_NEAREST_EXACT if is_depth else smooth
-    )
 
 
 def _check_headings(name: str, poses: np.ndarray, driven: Driven) -> None:

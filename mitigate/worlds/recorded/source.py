@@ -13,7 +13,7 @@ from pathlib import Path
 
 import numpy as np
 
-from mitigate.core.observation import VIEW_STEP_DEGREES
+from mitigate.core.observation import POSE, VIEW_STEP_DEGREES
 
 # Heuristic limits.
 MAX_FRAME_GAP = 0.1  # maximum seconds between frames of the same time step: one frame at 10 Hz
@@ -43,6 +43,7 @@ class Lens:
         focal: Focal lengths (fx, fy) in pixels of an image of ``size``.
         centre: Principal point (cx, cy) in pixels of an image of ``size``.
         size: Width and height of the image in pixels.
+        assumed: Whether ``hfov`` is a default that the recording does not confirm.
 
     Raises:
         ValueError: The field of view or the principal point is out of range.
@@ -54,6 +55,7 @@ class Lens:
     focal: tuple[float, float] | None = None
     centre: tuple[float, float] | None = None
     size: tuple[int, int] | None = None
+    assumed: bool = False
 
     def __post_init__(self) -> None:
         hfov = vfov = self.hfov
@@ -94,6 +96,12 @@ class Lens:
         cx, cy = self.centre
         return fx * scale_x, fy * scale_y, cx * scale_x, cy * scale_y
 
+    def fields_of_view(self, height: int, width: int) -> tuple[float, float]:
+        """Return the horizontal and vertical field of view in degrees of an image of this size."""
+        fx, fy, _, _ = self.intrinsics(height, width)
+        across = 2 * math.degrees(math.atan2(width / 2, fx))
+        return across, 2 * math.degrees(math.atan2(height / 2, fy))
+
     @property
     def view(self) -> int:
         """The index of the nearest view of the panorama (see ``core/observation.py``)."""
@@ -116,6 +124,9 @@ class Source:
         dropped: Number of time steps that were skipped because no pose or no frame of the other
             camera was near in time.
         signals: Recorded numbers by name, such as "action": float64 [N, size].
+        formats: Where and how frames and poses are stored, as text by camera and for "pose", such
+            as "/odom" or "16-bit PNG, 0.001 metres per count (assumed)".
+        damaged: A description of each damaged image that ``frames`` has met.
     """
 
     name: str
@@ -126,6 +137,12 @@ class Source:
     stepped: bool
     dropped: int
     signals: Mapping[str, np.ndarray] = field(default_factory=dict, kw_only=True)
+    formats: Mapping[str, str] = field(default_factory=dict, kw_only=True)
+    damaged: list[str] = field(default_factory=list, kw_only=True)
+
+    def depth_advice(self) -> str:
+        """Return how to correct depth that is not in metres."""
+        return "Convert it to metres."
 
     def frames(self, chosen: Sequence[int]) -> Iterator[dict[str, np.ndarray]]:
         """Yield the frames of all cameras at each chosen time step, in order.
@@ -134,9 +151,10 @@ class Source:
             chosen: Increasing indices of instants.
 
         Yields: frames by camera, uint8 [H, W, 3] or float32 metres [H, W] with 0 for missing depth.
+            The dict is empty if an image is damaged, which is then described in ``damaged``.
 
         Raises:
-            ValueError: A frame is damaged.
+            ValueError: A frame is damaged, and this kind of recording tolerates no damage.
         """
         raise NotImplementedError(f"{type(self).__name__} defines no frames(chosen)")
 
@@ -185,12 +203,15 @@ def find_nearest(times: np.ndarray, others: np.ndarray) -> tuple[np.ndarray, np.
     return nearest, np.abs(others[nearest] - times)
 
 
-def interpolate_poses(times: np.ndarray, table: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def interpolate_poses(
+    times: np.ndarray, table: np.ndarray, tolerance: float = MAX_FRAME_GAP
+) -> tuple[np.ndarray, np.ndarray]:
     """Interpolate poses at ``times``.
 
     Args:
         times: float64 [N], seconds.
         table: float64 [M, 4], (time, x, y, heading) of the known poses.
+        tolerance: Seconds from a recorded pose within which a time always has a pose.
 
     Returns:
         Poses, float64 [N, 3], and whether each is known, bool [N]. Poses in a gap of more than
@@ -205,7 +226,7 @@ def interpolate_poses(times: np.ndarray, table: np.ndarray) -> tuple[np.ndarray,
     xy = [np.interp(times, pose_times, poses[:, column]) for column in (0, 1)]
     after = np.searchsorted(pose_times, times)
     gaps = np.concatenate([[np.inf], np.diff(pose_times), [np.inf]])[after]
-    close = find_nearest(times, pose_times)[1] <= MAX_FRAME_GAP
+    close = find_nearest(times, pose_times)[1] <= tolerance
     return np.stack([*xy, headings], 1), (gaps <= MAX_POSE_GAP) | close
 
 
@@ -218,21 +239,45 @@ class Instants:
         poses: float64 [N, 3], or None if unknown.
         frames: Index of each camera's frame at each time step, int [N], by camera.
         dropped: Number of skipped time steps.
+        distances: Median seconds between the time steps, skipped or not, and the nearest frame or
+            pose, by camera and for "pose".
     """
 
     times: np.ndarray
     poses: np.ndarray | None
     frames: dict[str, np.ndarray]
     dropped: int
+    distances: dict[str, float]
+
+    def mismatch(self, tolerance: float, names: Mapping[str, str] | None = None) -> str:
+        """Return a message for a recording without a complete time step.
+
+        Args:
+            tolerance: The maximum seconds that :func:`match_times` used.
+            names: Displayed name of each camera and of "pose"; default: the keys.
+        """
+        first, *others = [(names or {}).get(name, name) for name in self.distances]
+        _, *seconds = self.distances.values()
+        listed = [f"{name} by {s:.3g} s" for name, s in zip(others, seconds, strict=True)]
+        return (
+            f"the times of its frames and poses must be within {tolerance:g} s of each other, but "
+            f"those of {first} typically differ from {' and '.join(listed)}. Correct the clocks, "
+            "allow more (tolerance=, in seconds), or leave one out."
+        )
 
 
-def match_times(stamps: Mapping[str, Sequence[float]], table: np.ndarray | None) -> Instants:
+def match_times(
+    stamps: Mapping[str, Sequence[float]],
+    table: np.ndarray | None,
+    tolerance: float = MAX_FRAME_GAP,
+) -> Instants:
     """Match the frames of several cameras and the poses by time.
 
     Args:
         stamps: Times of the frames of each camera, in seconds. The first camera defines the time
             steps.
         table: float64 [M, 4], (time, x, y, heading) of the known poses, or None.
+        tolerance: Maximum seconds between a time step and its frames.
 
     Returns:
         The complete time steps, possibly none.
@@ -240,20 +285,24 @@ def match_times(stamps: Mapping[str, Sequence[float]], table: np.ndarray | None)
     times = np.sort(next(iter(stamps.values())))
     complete = np.ones(len(times), bool)
     frames = {}
+    distances = {}
     for name, seconds in stamps.items():
         order = np.argsort(seconds, kind="stable")
         nearest, distance = find_nearest(times, np.sort(seconds))
         frames[name] = order[nearest]
-        complete &= distance <= MAX_FRAME_GAP
+        distances[name] = float(np.median(distance))
+        complete &= distance <= tolerance
     poses = None
     if table is not None:
-        poses, known = interpolate_poses(times, table)
+        poses, known = interpolate_poses(times, table, tolerance)
+        distances[POSE] = float(np.median(find_nearest(times, np.sort(table[:, 0]))[1]))
         complete &= known
     return Instants(
         times[complete],
         None if poses is None else poses[complete],
         {name: index[complete] for name, index in frames.items()},
         int((~complete).sum()),
+        distances,
     )
 
 

@@ -10,7 +10,8 @@ import pytest
 
 from mitigate.core.observation import DEPTH as DEPTH_ENTRY
 from mitigate.core.observation import RGB
-from mitigate.replay.replay import ReplayConfig, load_recordings
+from mitigate.replay.inputs import load_drives, open_drives
+from mitigate.replay.replay import ReplayConfig
 from mitigate.worlds.recorded import RecordedWorld, Step, load, open_recording
 from tests.lerobot_files import (
     DEPTH,
@@ -99,7 +100,7 @@ def test_options_that_do_not_fit_a_dataset_are_rejected(film, options, message):
 @pytest.mark.parametrize("options", [{"episodes": [0]}, {"tolerance": 0.1}])
 def test_options_of_datasets_are_rejected_for_other_folders(tmp_path, options):
     (tmp_path / "rgb").mkdir()
-    with pytest.raises(ValueError, match="apply only to a LeRobot dataset"):
+    with pytest.raises(ValueError, match="(applies only to|does not apply to)"):
         open_recording(tmp_path, **options)
 
 
@@ -127,5 +128,5 @@ def test_several_tasks_in_one_episode_warn(film, tmp_path):
 
 def test_replay_loads_the_chosen_episodes(film):
     config = ReplayConfig(agents=[], suite={}, episodes=[0, 2], size=HEIGHT)
-    (drives,) = load_recordings(config, [str(film)], {1}).values()
+    (drives,) = load_drives(config, open_drives(config, [film]), [1]).values()
     assert [drive.instruction for drive in drives] == [TASKS[0], TASKS[0]]

@@ -19,10 +19,11 @@ from rosbags.typesys import Stores, get_typestore
 from mitigate.core.observation import DEPTH, FORWARD, LEFT, POSE, RGB, RIGHT, STOP
 from mitigate.replay.export_drive import TOPICS, messages, write_bag, write_frames
 from mitigate.worlds.recorded import RecordedWorld, Step, load, open_recording
-from mitigate.worlds.recorded.bags import IMAGES, INFO, Topics, choose_topics
 from mitigate.worlds.recorded.messages import read_stamp
-from mitigate.worlds.recorded.recording import NO_ACTION, driver_actions, square_view
+from mitigate.worlds.recorded.recording import NO_ACTION, driver_actions
 from mitigate.worlds.recorded.source import Lens, interpolate_poses
+from mitigate.worlds.recorded.topics import IMAGES, INFO, Topics, choose_topics
+from mitigate.worlds.recorded.views import square_view
 
 SIZE = 32
 
@@ -432,8 +433,8 @@ def test_choose_topics_of_a_camera_called_depth_camera():
 
 def test_open_recording_rejects_options_without_effect(folder, tmp_path):
     bag = write_bag(tmp_path / "robot", steps(path_poses()), "bag")
-    with pytest.raises(ValueError, match="unit="):
-        open_recording(bag, unit=0.001)
+    with pytest.raises(ValueError, match="cameras="):
+        open_recording(bag, cameras=["rgb"])
     with pytest.raises(ValueError, match="apply only to a bag"):
         open_recording(folder, topics=Topics(rgb="/a"))
     with pytest.raises(ValueError, match="step by step"):

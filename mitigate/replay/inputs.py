@@ -1,0 +1,166 @@
+"""Open the agents and the drives of a replay, and check that they fit."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from mitigate.core.build import imported
+from mitigate.core.contracts import missing_members
+from mitigate.core.names import name_of, short
+from mitigate.core.progress import say
+from mitigate.guards.guard import NO_GUARDS, Guards
+
+if TYPE_CHECKING:
+    from mitigate.replay.replay import ReplayConfig
+    from mitigate.worlds.recorded import Recording, Source
+
+CONTRACT = (
+    "an agent is an object with reset(instruction) and act(observation) "
+    "(docs/bring-your-own.md); mitigate.as_policy makes one of a trained policy"
+)
+
+
+def load_agents(agents: Any) -> dict[str, Any]:
+    """Load agents by unique names.
+
+    Args:
+        agents: An agent, a folder of weights, ``module:callable`` of a callable that returns an
+            agent, a list of these, or a mapping of names to these.
+
+    Raises:
+        FileNotFoundError: There are no weights at a path.
+        ValueError: Two agents have the same name, or an object is not an agent.
+    """
+    if not isinstance(agents, Mapping):
+        listed = list(agents) if isinstance(agents, (list, tuple)) else [agents]
+        agents = dict(zip(_unique_names(listed), listed, strict=True))
+    return {name: _load(agent) for name, agent in agents.items()}
+
+
+def _unique_names(agents: Sequence[Any]) -> list[str]:
+    if not agents:
+        raise ValueError(
+            "agents must list at least one folder of weights or module:callable, got []."
+        )
+    texts = [
+        str(agent) if isinstance(agent, (str, Path)) else type(agent).__name__ for agent in agents
+    ]
+    if len(set(texts)) < len(texts):
+        raise ValueError(
+            f"agents must be different, got [{','.join(texts)}]. In Python, give names: "
+            "agents={'before': ..., 'after': ...}."
+        )
+    names = [name_of(text) for text in texts]
+    return names if len(set(names)) == len(names) else [text.rstrip("/") for text in texts]
+
+
+def _load(agent: Any) -> Any:
+    """Return an agent from an object, a folder of weights, or ``module:callable``."""
+    from mitigate.agents.loading import load
+
+    if not isinstance(agent, (str, Path)):
+        _check_agent(agent, f"agents contains {short(agent)}")
+        return agent
+    if ":" in str(agent) and not Path(agent).exists():
+        instance = imported(str(agent), "agents")()
+        _check_agent(instance, f"agents={agent} returned {short(instance)}")
+        return instance
+    try:
+        return load(agent)
+    except FileNotFoundError as error:
+        raise FileNotFoundError(
+            f"{error} For an agent of your own, write agents=[module:callable], such as "
+            "agents=[my_policy:load]."
+        ) from error
+
+
+def _check_agent(agent: Any, what: str) -> None:
+    missing = missing_members(agent, ("reset", "act"))
+    if missing or isinstance(agent, type):
+        lacking = "is a class, not an object" if isinstance(agent, type) else f"lacks {missing[0]}"
+        raise ValueError(f"{what}, which {lacking}: {CONTRACT}.")
+
+
+def views_of(agent: Any) -> int:
+    """Return the number of views that an agent reads; the default is one camera."""
+    from mitigate.agents.agent import as_agent
+
+    return as_agent(agent).views or 1
+
+
+def open_drives(config: ReplayConfig, paths: Iterable[str | Path]) -> list[Source]:
+    """Open every drive at ``paths`` without reading its frames.
+
+    Raises:
+        FileNotFoundError: A drive does not exist.
+        ValueError: A drive is damaged, or two drives have the same name.
+    """
+    from mitigate.worlds.recorded import open_recording
+
+    sources: list[Source] = []
+    for path in paths:
+        sources += open_recording(
+            path,
+            instruction=config.instruction or None,
+            topics={k: v for k, v in vars(config.topics).items() if v is not None},
+            hfov=config.hfov,
+            unit=config.unit,
+            yaw=config.yaw,
+            cameras=config.cameras,
+            episodes=config.episodes,
+            tolerance=config.tolerance,
+        )
+    names = [source.name for source in sources]
+    duplicates = {name for name in names if names.count(name) > 1}
+    if duplicates:
+        raise ValueError(f"Two drives have the name {duplicates.pop()!r}. Rename one.")
+    return sources
+
+
+def check_drives(
+    sources: Sequence[Source], agents: Mapping[str, Any], guards: Guards = NO_GUARDS
+) -> None:
+    """Check that every drive has an instruction and the frames for the agents and guards.
+
+    Raises:
+        ValueError: A drive lacks one of them.
+    """
+    from mitigate.agents.agent import as_agent
+    from mitigate.worlds.recorded import kinds
+
+    for source in sources:
+        for name, agent in agents.items():
+            recorded = kinds(source, views_of(agent))
+            if guards:
+                guards.check_shown(recorded, source.name)
+            for sensor in {"rgb", "depth"} & {*(as_agent(agent).sensors or ())}:
+                if sensor not in recorded:
+                    raise ValueError(
+                        f"{name} reads {sensor}, which {source.name} lacks. Name its topic "
+                        f"(topics.{sensor}=), record it, or choose an agent without it, such as "
+                        "agents=[checkpoints/recurrent_rgb/base] for RGB only."
+                    )
+        if not source.instruction:
+            raise ValueError(
+                f"{source.name} has no instruction. Set instruction='\"walk to the door\"'."
+            )
+
+
+def load_drives(
+    config: ReplayConfig, sources: Sequence[Source], views: Iterable[int]
+) -> dict[int, list[Recording]]:
+    """Load every drive for each number of views (12: panorama, 1: one camera) and print what was
+    read.
+    """
+    from mitigate.worlds.recorded import Step, load
+
+    step = Step(**vars(config.step))
+    recordings: dict[int, list[Recording]] = {count: [] for count in views}
+    for source in sources:
+        for count, drives in recordings.items():
+            drive = load(source, views=count, size=config.size, step=step, crop=config.crop)
+            say("\n  ".join(drive.summary))
+            drives.append(drive)
+    return recordings

@@ -1,0 +1,209 @@
+"""Choose the topics of a bag: RGB and depth images, poses, and the CameraInfo of the cameras."""
+
+from __future__ import annotations
+
+import re
+import warnings
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from itertools import takewhile
+from pathlib import Path
+
+from mitigate.core.names import unknown
+from mitigate.core.observation import DEPTH, POSE, RGB
+from mitigate.worlds.recorded.messages import kind_of
+
+IMAGES = ("sensor_msgs/msg/Image", "sensor_msgs/msg/CompressedImage")
+INFO = "sensor_msgs/msg/CameraInfo"
+POSES = (
+    "nav_msgs/msg/Odometry",
+    "geometry_msgs/msg/PoseStamped",
+    "geometry_msgs/msg/PoseWithCovarianceStamped",
+)
+OFF = "none"  # value of a topic option that disables the topic
+# this pattern does not match /depth_camera/image_raw
+_DEPTH_TOPIC = re.compile(r"(?:^|[/_])depth(?:$|/|_(?!camera))")
+# names of infrared images and masks
+_OTHER_IMAGES = re.compile(r"infra|mask|(?:^|[/_])ir(?:$|[/_])")
+# names of poses that are not the robot's position
+_OTHER_POSES = re.compile(r"goal|target|waypoint|initial_?pose")
+
+COMPRESSED = ("/compressed", "/compressedDepth")  # image_transport appends these to a topic
+
+
+@dataclass(frozen=True)
+class Topics:
+    """The names of the topics in a bag. None means the only suitable topic, and "none" means that
+    the topic is not read.
+
+    Attributes:
+        rgb: Images of the RGB camera.
+        depth: Images of the depth camera.
+        pose: Poses of the robot.
+        info: CameraInfo of the RGB camera.
+        depth_info: CameraInfo of the depth camera.
+    """
+
+    rgb: str | None = None
+    depth: str | None = None
+    pose: str | None = None
+    info: str | None = None
+    depth_info: str | None = None
+
+    @property
+    def set_options(self) -> list[str]:
+        """The names of the topics that are not None."""
+        return [name for name, topic in vars(self).items() if topic is not None]
+
+
+def choose_topics(
+    path: Path,
+    available: Mapping[str, str | None],
+    topics: Topics,
+    counts: Mapping[str, int] | None = None,
+    encodings: Mapping[str, str] | None = None,
+) -> dict[str, str]:
+    """Choose the topics "rgb", "depth", "pose", "info rgb" and "info depth".
+
+    Args:
+        path: Path of the bag, for error messages.
+        available: Message type of each topic in the bag.
+        topics: The user's choice.
+        counts: Number of messages of each topic, if known. If there is one message but several
+            images, the topic contains no trajectory.
+        encodings: Encoding of the first image of each topic, if known. Topics without a known
+            encoding count as depth if their names say so.
+
+    Returns:
+        The topics by name, without topics that the bag lacks.
+
+    Raises:
+        ValueError: A chosen topic is missing or has a wrong type, several topics are suitable, or
+            the bag contains no images.
+    """
+    counts = counts or {}
+    images = [
+        name
+        for name, kind in available.items()
+        if kind in IMAGES and not _OTHER_IMAGES.search(name)
+    ]
+    rgb, depth = _sort_images(_drop_copies(images, counts), topics, encodings or {})
+    several = max((counts.get(name, 0) for name in images), default=0) > 1
+    typed = [name for name, kind in available.items() if kind in POSES]
+    others = [n for n in typed if _OTHER_POSES.search(n) or (several and counts.get(n) == 1)]
+    poses = [name for name in typed if name not in others]
+    if others and not poses and topics.pose is None:
+        warnings.warn(
+            f"{path} is read without poses: {', '.join(others)} seems to hold goals or single "
+            f"poses, not the path of the robot. If it does, set topics.pose={others[0]}.",
+            stacklevel=3,
+        )
+    candidates = {
+        RGB: _candidates(path, RGB, topics.rgb, rgb, available, IMAGES),
+        DEPTH: _candidates(path, DEPTH, topics.depth, depth, available, IMAGES),
+        POSE: _candidates(path, POSE, topics.pose, poses, available, POSES),
+    }
+    if not (candidates[RGB] or candidates[DEPTH]):
+        listed = ", ".join(f"{name} ({kind})" for name, kind in list(available.items())[:12])
+        raise ValueError(
+            f"{path} has no topic with images. Its topics are {listed or 'none'}. Record a topic "
+            f"of {' or '.join(IMAGES)}."
+        )
+    infos = [name for name, kind in available.items() if kind == INFO]
+    for kind, option, named in (
+        (RGB, "info", topics.info),
+        (DEPTH, "depth_info", topics.depth_info),
+    ):
+        candidates[option] = []
+        if candidates[kind]:
+            fitting = _infos_of(candidates[kind][0], infos)
+            candidates[option] = _candidates(path, option, named, fitting, available, (INFO,))
+    _check_single(path, candidates)
+    candidates["info rgb"] = candidates.pop("info")
+    candidates["info depth"] = candidates.pop("depth_info")
+    return {name: names[0] for name, names in candidates.items() if names}
+
+
+def _drop_copies(images: Sequence[str], counts: Mapping[str, int]) -> list[str]:
+    """Return the image topics without compressed copies of other topics that have messages."""
+    copies = {raw + suffix for raw in images if counts.get(raw, 1) for suffix in COMPRESSED}
+    return [name for name in images if name not in copies]
+
+
+def _sort_images(
+    images: Sequence[str], topics: Topics, encodings: Mapping[str, str]
+) -> tuple[list[str], list[str]]:
+    """Return the topics with RGB images and those with depth images.
+
+    The encoding decides, and the name if the encoding does not show it. If several topics of one
+    kind have a fitting encoding, those with a fitting name come first: a topic such as
+    ``/camera/depth/colored`` is RGB only if there is no other RGB topic.
+    """
+    named_depth = [name for name in images if _DEPTH_TOPIC.search(name)]
+    depth = []
+    for name in images:
+        kind = kind_of(encodings.get(name, "")) or (DEPTH if name in named_depth else RGB)
+        if kind == DEPTH and name != topics.rgb:
+            depth.append(name)
+    rgb = [name for name in images if name not in depth and name != topics.depth]
+    return (
+        [name for name in rgb if name not in named_depth] or rgb,
+        [name for name in depth if name in named_depth] or depth,
+    )
+
+
+def _candidates(
+    path: Path,
+    option: str,
+    named: str | None,
+    fitting: Sequence[str],
+    available: Mapping[str, str | None],
+    kinds: Sequence[str],
+) -> list[str]:
+    """Return the topic that the user named, or the fitting topics."""
+    if named is None:
+        return list(fitting)
+    if named == OFF:
+        return []
+    if named not in available:
+        raise ValueError(f"{path}: {unknown('topic', named, available)}")
+    if available[named] not in kinds:
+        raise ValueError(
+            f"{path}: topics.{option} must be a topic of {' or '.join(kinds)}, got {named}, "
+            f"which is {available[named]}."
+        )
+    return [named]
+
+
+def _check_single(path: Path, candidates: Mapping[str, Sequence[str]]) -> None:
+    """Raise ValueError if several topics fit an option."""
+    open_choices = {option: names for option, names in candidates.items() if len(names) > 1}
+    if open_choices:
+        listed = "; ".join(f"{option}: {', '.join(n)}" for option, n in open_choices.items())
+        choice = " ".join(f"topics.{option}={n[0]}" for option, n in open_choices.items())
+        raise ValueError(
+            f"{path} has several topics for {listed}. Choose one each, for example with {choice} "
+            f"({OFF}: do not read this sensor)."
+        )
+
+
+def _infos_of(topic: str, infos: Sequence[str]) -> list[str]:
+    """Return the CameraInfo topics of an image topic.
+
+    In ROS, the name is ``<camera>/camera_info``. If that is missing, return the topics with the
+    same first name that share most of the further words.
+    """
+    namespace = topic
+    while "/" in namespace.strip("/"):
+        namespace = namespace.rpartition("/")[0]
+        if f"{namespace}/camera_info" in infos:
+            return [f"{namespace}/camera_info"]
+    camera = "/" + topic.strip("/").partition("/")[0] + "/"
+    shared = {info: _shared_words(topic, info) for info in infos if info.startswith(camera)}
+    return [info for info, count in shared.items() if count == max(shared.values())]
+
+
+def _shared_words(topic: str, other: str) -> int:
+    """Return how many words at the start of two topics are equal; / and _ separate words."""
+    pairs = zip(re.split("[/_]", topic), re.split("[/_]", other), strict=False)
+    return len([*takewhile(lambda pair: pair[0] == pair[1], pairs)])
