@@ -9,7 +9,7 @@ from __future__ import annotations
 import copy
 import re
 import time
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass
 from inspect import signature
 from pathlib import Path
@@ -160,7 +160,11 @@ def harden(
         ValueError: An argument is invalid, or the folder contains a different run.
     """
     seeding.check(seed)
-    choices = {"method": (method, METHODS), "tune": (tune, TUNE), "schedule": (schedule, SCHEDULES)}
+    choices: dict[str, tuple[str, Collection[str]]] = {
+        "method": (method, METHODS),
+        "tune": (tune, TUNE),
+        "schedule": (schedule, SCHEDULES),
+    }
     for argument, (value, allowed) in choices.items():
         if value not in allowed:
             raise ValueError(f"{argument} must be one of {', '.join(allowed)}, got {value!r:.80}.")
