@@ -1,0 +1,142 @@
+"""Write critical severities and areas as Markdown tables, JSON and pictures."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from mitigate.core.files import atomic_text, make_folder
+from mitigate.core.markdown import markdown_of, markdown_table
+from mitigate.core.names import counted
+from mitigate.corruptions.registry import title
+from mitigate.evaluation.bootstrap import LEVEL, NO_INTERVAL, NO_WIDTH, RESAMPLES
+from mitigate.evaluation.critical import Score, Scores
+
+GRID_STEP = 0.05  # step of the full grid with which the number of episodes is compared
+
+
+def write(parts: Sequence[Scores], folder: Path | str) -> list[Path]:
+    """Write ``critical.md``, ``critical.json`` and a picture per grid; return their paths."""
+    from mitigate.evaluation import plots  # matplotlib is slow to import
+
+    folder = make_folder(folder)
+    pictures = ["critical.png", *(f"critical-{number}.png" for number in range(2, len(parts) + 1))]
+    texts = []
+    for part, picture in zip(parts, pictures, strict=True):
+        plots.severity_curves(part.grid, folder / picture)
+        texts.append(f"{markdown(part)}\n\n![SR against severity]({picture})\n")
+    with atomic_text(folder / "critical.md") as file:
+        file.write("\n".join(texts))
+    with atomic_text(folder / "critical.json") as file:
+        json.dump([entry for part in parts for entry in entries(part)], file, indent=1)
+        file.write("\n")
+    return [folder / "critical.md", folder / "critical.json", *(folder / one for one in pictures)]
+
+
+def markdown(part: Scores) -> str:
+    """Return one table per measure with a line per corruption, followed by notes."""
+    grid = part.grid
+    heads = [
+        " against ".join(markdown_of(column) for column in columns) for columns in part.comparisons
+    ]
+    texts = [
+        f"## {markdown_of(grid.heading)}, critical severities\n\n"
+        f"N = {_episodes(part)}, corruption suite {markdown_of(grid.suite)}. Success: "
+        f"{markdown_of(grid.rule)}. Brackets: {100 * LEVEL:.0f} % paired bootstrap over "
+        f"{grid.drawn}s, {RESAMPLES:,} resamples, each with its own decreasing fit."
+    ]
+    for loss in part.measures:
+        heading = "Area under the retention curve"
+        if loss is not None:
+            heading = f"Severity at which {100 * loss:g} % of the clean success is lost"
+        lines = []
+        for names in part.groups:
+            cells = [_cell(part.results.get((c, names, loss)), len(c)) for c in part.comparisons]
+            label = title(names[0]) if len(names) == 1 else f"**Mean of {len(names)} corruptions**"
+            lines.append([label, *cells])
+        texts.append(f"### {heading}\n\n{markdown_table(['Corruption', *heads], lines)}")
+    notes = [
+        "\\> 1: less is lost at severity 1, so the value is only known to be above 1 (censored). "
+        "Means and differences count it as 1; ≥ and ≤ mark the bounds that result.",
+        _cost(part),
+    ]
+    if len(part.columns) > 1:
+        notes.insert(1, "Differences in bold have intervals that exclude zero.")
+    if NO_INTERVAL in "".join(texts):
+        notes.append(NO_WIDTH)
+    return "\n\n".join([*texts, "\n".join(f"- {note}" for note in notes)])
+
+
+def _cell(score: Score | None, columns: int) -> str:
+    if score is None:
+        return "–"
+    estimate, form = score.estimate, ".2f" if columns == 1 else "+.2f"
+    if math.isinf(estimate.low):
+        return "> 1 [> 1]"
+    text = {"lower": "≥ ", "upper": "≤ "}.get(score.bound, "") + f"{estimate.value:{form}}"
+    if math.isinf(estimate.value):
+        text = "> 1"
+    elif score.bound == "unknown" and estimate.value == 0:
+        text = "both > 1"
+    elif columns == 2 and estimate.excludes_zero:
+        text = f"**{text}**"
+    high = "> 1" if math.isinf(estimate.high) else f"{estimate.high:{form}}"
+    interval = f"[{estimate.low:{form}}, {high}]" if estimate.has_width else NO_INTERVAL
+    return f"{text} {interval}"
+
+
+def _episodes(part: Scores) -> str:
+    """Return the number of episodes, or the range if the scores have different numbers."""
+    counts = [score.episodes for score in part.results.values()]
+    least = "" if min(counts) == max(counts) else f"{min(counts)} to "
+    return f"{least}{counted(max(counts), 'episode')}"
+
+
+def _cost(part: Scores) -> str:
+    """Return a text on the number of corrupted episodes, compared with a full grid."""
+    measured = whole = 0
+    for column in part.columns:
+        for name in part.corruptions:
+            for seed in part.seeds((column,), (name,)):
+                _, *corrupted = part.curve(column, name, seed).values()
+                common = int((~np.isnan(corrupted).any(axis=0)).sum())
+                measured += common * len(corrupted)
+                whole += common * round(1 / GRID_STEP)
+    return (
+        f"From {measured:,} corrupted episodes; severities in steps of {GRID_STEP:g} would need "
+        f"{whole:,}."
+    )
+
+
+def entries(part: Scores) -> list[dict[str, Any]]:
+    """Return the scores and differences as entries of ``critical.json``; null means above 1."""
+    grid = part.grid
+    results = []
+    for (columns, names, loss), score in part.results.items():
+        seeds = part.seeds(columns, names)
+        curves = [part.curve(columns[0], name, seed) for name in names for seed in seeds]
+        estimate = score.estimate
+        bounds = {"value": estimate.value, "low": estimate.low, "high": estimate.high}
+        results.append(
+            {
+                "split": grid.heading,
+                "suite": grid.suite,
+                "rule": grid.rule,
+                "column": columns[0],
+                "against": columns[1] if len(columns) == 2 else None,
+                "corruption": names[0] if len(names) == 1 else "mean",
+                "measure": "area" if loss is None else "critical_severity",
+                "loss": loss,
+                **{k: round(v, 6) if math.isfinite(v) else None for k, v in bounds.items()},
+                "bound": score.bound,
+                "episodes": score.episodes,
+                "seeds": seeds,
+                "severities": sorted({at for curve in curves for at in curve}),
+            }
+        )
+    return results
