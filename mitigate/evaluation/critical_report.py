@@ -16,20 +16,25 @@ from mitigate.core.names import counted
 from mitigate.corruptions.registry import title
 from mitigate.evaluation.bootstrap import LEVEL, NO_INTERVAL, NO_WIDTH, RESAMPLES
 from mitigate.evaluation.critical import Score, Scores
+from mitigate.evaluation.report import MOST_HEATMAPS, NO_PICTURE, is_drawable
 
 GRID_STEP = 0.05  # step of the full grid with which the number of episodes is compared
 
 
 def write(parts: Sequence[Scores], folder: Path | str) -> list[Path]:
-    """Write ``critical.md``, ``critical.json`` and a picture per grid; return their paths."""
+    """Write ``critical.md``, ``critical.json`` and pictures; return their paths."""
     from mitigate.evaluation import plots  # matplotlib is slow to import
 
     folder = make_folder(folder)
-    pictures = ["critical.png", *(f"critical-{number}.png" for number in range(2, len(parts) + 1))]
     texts = []
-    for part, picture in zip(parts, pictures, strict=True):
-        plots.severity_curves(part.grid, folder / picture)
-        texts.append(f"{markdown(part)}\n\n![SR against severity]({picture})\n")
+    pictures = []
+    for number, part in enumerate(parts, 1):
+        image = NO_PICTURE
+        if is_drawable(part.grid) and len(pictures) < MOST_HEATMAPS:
+            pictures.append("critical.png" if number == 1 else f"critical-{number}.png")
+            plots.severity_curves(part.grid, folder / pictures[-1])
+            image = f"![SR against severity]({pictures[-1]})"
+        texts.append(f"{markdown(part)}\n\n{image}\n")
     with atomic_text(folder / "critical.md") as file:
         file.write("\n".join(texts))
     with atomic_text(folder / "critical.json") as file:
