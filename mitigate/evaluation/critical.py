@@ -26,7 +26,8 @@ from mitigate.evaluation.sections import REFERENCES
 from mitigate.worlds.seeded import RETURN
 
 # The search stops when a crossing lies between two measured severities that are this close. In a
-# simulation with 100 episodes, the error is then no larger than that of a grid with step 0.05.
+# simulation with 100 episodes, the error is then as small as that of a grid with step 0.05
+# (docs/results/critical-severity.md#simulation).
 WIDTH = 0.1
 
 Curve = dict[float, np.ndarray]  # maps severities to the success [N] of the episodes of one seed
