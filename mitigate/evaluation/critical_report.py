@@ -44,27 +44,27 @@ def write(parts: Sequence[Scores], folder: Path | str) -> list[Path]:
 
 
 def markdown(part: Scores) -> str:
-    """Return one table per measure with a line per corruption, followed by notes."""
+    """Return a table per measure and one of its differences, by corruption, and notes."""
     grid = part.grid
-    heads = [
-        " against ".join(markdown_of(column) for column in columns) for columns in part.comparisons
-    ]
-    texts = [
-        f"## {markdown_of(grid.heading)}, critical severities\n\n"
-        f"N = {_episodes(part)}, corruption suite {markdown_of(grid.suite)}. Success: "
-        f"{markdown_of(grid.rule)}. Brackets: {100 * LEVEL:.0f} % paired bootstrap over "
-        f"{grid.drawn}s, {RESAMPLES:,} resamples, each with its own decreasing fit."
-    ]
+    seeds = {s for columns, names, _ in part.results for s in part.seeds(columns, names)}
+    columns = [names for names in part.comparisons if len(names) == 1]
+    pairs = [names for names in part.comparisons if len(names) == 2]
+    about = (
+        f"N = {_episodes(part)}, seed{'s' * (len(seeds) > 1)} "
+        f"{', '.join(map(str, sorted(seeds)))}, "
+        f"corruption suite {markdown_of(grid.suite)}. Success: {markdown_of(grid.rule)}. Brackets: "
+        f"{100 * LEVEL:.0f} % paired bootstrap over {grid.drawn}s, {RESAMPLES:,} resamples, each "
+        "with its own decreasing fit."
+    )
+    texts = [f"## {markdown_of(grid.heading)}, critical severities\n\n{about}"]
     for loss in part.measures:
         heading = "Area under the retention curve"
         if loss is not None:
             heading = f"Severity at which {100 * loss:g} % of the clean success is lost"
-        lines = []
-        for names in part.groups:
-            cells = [_cell(part.results.get((c, names, loss)), len(c)) for c in part.comparisons]
-            label = title(names[0]) if len(names) == 1 else f"**Mean of {len(names)} corruptions**"
-            lines.append([label, *cells])
-        texts.append(f"### {heading}\n\n{markdown_table(['Corruption', *heads], lines)}")
+        texts.append(f"### {heading}\n\n{_table(part, columns, loss)}")
+        if pairs:
+            reference = markdown_of(part.columns[0])
+            texts.append(f"Difference from {reference}:\n\n{_table(part, pairs, loss)}")
     notes = [
         "\\> 1: less is lost at severity 1, so the value is only known to be above 1 (censored). "
         "Means and differences count it as 1; ≥ and ≤ mark the bounds that result.",
@@ -75,6 +75,16 @@ def markdown(part: Scores) -> str:
     if NO_INTERVAL in "".join(texts):
         notes.append(NO_WIDTH)
     return "\n\n".join([*texts, "\n".join(f"- {note}" for note in notes)])
+
+
+def _table(part: Scores, comparisons: Sequence[tuple[str, ...]], loss: float | None) -> str:
+    """Return the table of one measure, whose columns are agents or pairs of agents."""
+    lines = []
+    for names in part.groups:
+        label = title(names[0]) if len(names) == 1 else f"**Mean of {len(names)} corruptions**"
+        scores = [part.results.get((columns, names, loss)) for columns in comparisons]
+        lines.append([label, *(_cell(score, len(comparisons[0])) for score in scores)])
+    return markdown_table(["Corruption", *(markdown_of(c[0]) for c in comparisons)], lines)
 
 
 def _cell(score: Score | None, columns: int) -> str:

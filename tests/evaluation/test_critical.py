@@ -268,7 +268,7 @@ def test_table_joins_row_files(tmp_path, capsys):
     assert table.main(arguments) == 0
     printed = capsys.readouterr().out
     assert "Severity at which 10 % of the clean success is lost" in printed
-    assert "other against base" in printed
+    assert "Difference from base:" in printed
     for name in ("critical.md", "critical.json", "critical.png"):
         assert (tmp_path / "out" / name).stat().st_size
     entries = json.loads((tmp_path / "out/critical.json").read_text())
