@@ -26,7 +26,7 @@ from mitigate.evaluation.sections import REFERENCES
 from mitigate.worlds.seeded import RETURN
 
 # The search stops when a crossing lies between two measured severities that are this close. In a
-# simulation with 100 episodes, the error is then as small as that of a grid with step 0.05
+# simulation with 100 episodes, the error is then similar to that of a grid with step 0.05
 # (docs/results/critical-severity.md#simulation).
 WIDTH = 0.1
 

@@ -27,7 +27,7 @@ def write(parts: Sequence[Scores], folder: Path | str) -> list[Path]:
 
     folder = make_folder(folder)
     texts = []
-    pictures = []
+    pictures: list[str] = []
     for number, part in enumerate(parts, 1):
         image = NO_PICTURE
         if is_drawable(part.grid) and len(pictures) < MOST_HEATMAPS:
