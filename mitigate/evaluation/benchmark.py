@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 import time
 from collections.abc import Callable, Iterable, Sequence
+from functools import partial
 from pathlib import Path
 from types import EllipsisType
 from typing import Any
@@ -31,6 +32,7 @@ from mitigate.evaluation import evaluate as evaluation
 from mitigate.evaluation import provenance
 from mitigate.evaluation.comparison import RANDOM, Comparison, RandomPolicy, compare
 from mitigate.evaluation.config import EvaluateConfig, read
+from mitigate.evaluation.critical import check_losses, first_conditions, search
 from mitigate.evaluation.episode import run_episode
 from mitigate.evaluation.episode_lists import (
     check_count,
@@ -66,6 +68,7 @@ def benchmark(
     episodes: int | EllipsisType | None = ...,
     suite: str | Sequence[str] = "full",
     severity: float = 0.6,
+    critical: Sequence[float] | None = None,
     seed: int = 0,
     safeguard: str | None = None,
     restore: str | None = None,
@@ -95,6 +98,9 @@ def benchmark(
             The default is 20 episodes of a split, or all of ``listed``.
         suite: a name in ``conf/suite`` or a list of corruptions.
         severity: from 0 to 1.
+        critical: fractions of the clean success, such as (0.1, 0.5). The call then also searches
+            for the severities at which these are lost, prints them and writes them to
+            ``critical.md`` in ``out``. The search needs more episodes than the printed estimate.
         seed: corruption seed.
         safeguard: guard for instructions, such as "rules" or "module:callable".
         restore: guard for frames, such as "checkpoints/restorer".
@@ -121,11 +127,14 @@ def benchmark(
         FileNotFoundError: Weights are missing.
     """
     config, met = _conditions(agent, suite, severity, seed, options)
+    losses = None if critical is None else check_losses(critical)
     texts = {"training_data": training_data, "link": link}
     make_world = world or maker(config.env.world)
     first, made_by = checked_world(make_world, [] if isinstance(suite, str) else met, version)
     if isinstance(suite, str):
         met = _visible(met, first, suite)
+    if losses is not None:
+        met = first_conditions(met, first.rule)
     if is_policy(agent):
         agent = as_policy(agent, first)
         name, version = name or agent.name, version or agent.version
@@ -144,11 +153,21 @@ def benchmark(
         with FolderLock(file.parent) as lock:
             provenance.keep(file.parent, first, made_by, split, chosen)
             lock.expect(file, *provenance.notes(file.parent, split))
-            rows = evaluate(
-                agent, make_world, chosen, met, out=file, workers=workers, guards=guards, **label
+            measure = partial(
+                evaluate,
+                agent,
+                make_world,
+                chosen,
+                out=file,
+                workers=workers,
+                guards=guards,
+                **label,
             )
+            rows = measure(conditions=met) if losses is None else search(measure, met, losses)
             if first.rule == RETURN:
                 return compare([*rows, *_random(first, make_world, chosen, file, split, seed)])
+    if losses is not None:
+        evaluation.write_critical(rows, losses, file.parent)
     texts["file"] = "" if file.is_absolute() else file.as_posix()
     sensors = sensor_lines(first.sensors, as_agent(agent).sensors)
     return entry_of(rows, name, severity=severity, sensors=sensors, **texts)

@@ -120,6 +120,7 @@ class EvaluateConfig:
     conditions: list[str] | None = None
     severity: float = 0.6
     severity_depth: float | None = None
+    critical: list[float] | None = None
     seed: int = 0
     workers: int | None = None
     launcher: Any = MISSING  # read: a LauncherConfig
@@ -162,6 +163,10 @@ def check(config: EvaluateConfig, overrides: Sequence[str] = ()) -> None:
         )
     check_choice(config.safeguard)
     seeding.check(config.seed)
+    if config.critical is not None:
+        from mitigate.evaluation.critical import check_losses
+
+        check_losses(config.critical)
     if config.workers is not None and not 1 <= config.workers <= MOST_WORKERS:
         raise ValueError(
             f"workers must be a number of processes from 1 to {MOST_WORKERS}, or null for one per "

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Mapping, Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -58,6 +59,7 @@ def evaluate_agent(config: EvaluateConfig, overrides: Sequence[str] = ()) -> Pat
     # slow imports come after the checks of the options
     from mitigate.core import build
     from mitigate.evaluation import provenance
+    from mitigate.evaluation.critical import first_conditions, search
     from mitigate.evaluation.evaluator import evaluate
     from mitigate.guards.opening import open_guards
     from mitigate.guards.text import choices
@@ -68,6 +70,8 @@ def evaluate_agent(config: EvaluateConfig, overrides: Sequence[str] = ()) -> Pat
     name = _column(config, overrides)
     first, made_by = provenance.first_world(world, config.version)
     check_sensors(met, first.sensors, env.name)
+    if config.critical is not None:
+        met = first_conditions(met, first.rule)
     choices.check(config.safeguard)
     out = Path(config.out or default_folder(config, name))
     guards = open_guards(
@@ -84,11 +88,11 @@ def evaluate_agent(config: EvaluateConfig, overrides: Sequence[str] = ()) -> Pat
             flush=True,
         )
         warn_of_tasks(agent, chosen, name, env.split)
-        rows = evaluate(
+        measure = partial(
+            evaluate,
             agent,
             world,
             chosen,
-            met,
             name=name,
             out=out / ROWS,
             split=config.split,
@@ -98,7 +102,10 @@ def evaluate_agent(config: EvaluateConfig, overrides: Sequence[str] = ()) -> Pat
             guards=guards,
             version=config.version,
         )
-        write_table([out / ROWS], out, rows)
+        if config.critical is None:
+            write_table([out / ROWS], out, measure(conditions=met))
+        else:
+            write_critical(search(measure, met, config.critical), config.critical, out)
     return out
 
 
@@ -151,6 +158,15 @@ def load(
             "an agent with shipped weights (agent=recurrent; docs/agents.md lists them)."
         )
     return agent.eval()
+
+
+def write_critical(rows: list[dict[str, Any]], losses: Sequence[float], out: Path) -> None:
+    """Write and print the critical severities of ``rows`` (``critical.py``)."""
+    from mitigate.evaluation import critical, critical_report
+
+    paths = critical_report.write(critical.scores(rows, losses), out)
+    print(paths[0].read_text(encoding="utf-8"))
+    print("\n".join(f"wrote {path}" for path in paths), flush=True)
 
 
 def write_table(files: list[Path], out: Path, selected: list[dict[str, Any]] | None = None) -> None:

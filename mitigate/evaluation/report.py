@@ -78,7 +78,7 @@ def write(
     heatmaps = 0
     grids: list[Grid] = []
     for section, names in zip(parts, pictures, strict=True):
-        if not section.blocks or not _is_drawable(section.grid) or heatmaps == MOST_HEATMAPS:
+        if not section.blocks or not is_drawable(section.grid) or heatmaps == MOST_HEATMAPS:
             continue
         names.append(_numbered("heatmap", heatmaps))
         plots.heatmap(section, folder / names[-1])
@@ -92,7 +92,8 @@ def write(
     return [folder / "table.md", *(folder / name for names in pictures for name in names)]
 
 
-def _is_drawable(grid: Grid) -> bool:
+def is_drawable(grid: Grid) -> bool:
+    """Return whether a picture can show all corruptions and columns of a grid."""
     return len(grid.corruptions) <= MOST_CORRUPTIONS and len(grid.columns) <= MOST_COLUMNS
 
 

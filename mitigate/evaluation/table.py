@@ -1,9 +1,11 @@
 """Join result rows into one table: ``mitigate table RUNS... [--seed N] [--against NAME]``.
 
 ``--draw scene`` computes intervals for new scenes, instead of new episodes in the same scenes.
+``--critical 0.1,0.5`` compares the severities at which 10 % and 50 % of the clean success are lost.
 
 The command accepts row files, and run or sweep folders that may be incomplete. It prints the table
-and writes ``table.md``, ``heatmap.png`` and ``severity.png``.
+and writes ``table.md``, ``heatmap.png`` and ``severity.png``, or with ``--critical`` the files
+``critical.md``, ``critical.json`` and ``critical.png``.
 """
 
 from __future__ import annotations
@@ -25,6 +27,7 @@ def run(
     seeds: Sequence[int] | None = None,
     against: str | None = None,
     drawn: str = "episode",
+    critical: Sequence[float] | None = None,
 ) -> list[Path]:
     """Join the rows of ``paths``, write the report to ``out``, and return its files (table first).
 
@@ -35,13 +38,18 @@ def run(
         against: the column with which the others are compared. The default is "base" or "before",
             or else the first column.
         drawn: unit that the bootstrap resamples, "episode" or "scene".
+        critical: fractions of the clean success; the report then consists of critical severities
+            and areas under the retention curve (``critical.py``).
 
     Raises:
         FileNotFoundError: A path contains no rows.
-        ValueError: Rows are damaged, or a seed or the column does not exist.
+        ValueError: Rows are damaged, a seed or the column does not exist, or ``critical`` is
+            invalid or needs rows that are missing.
     """
-    from mitigate.evaluation import report, rows
+    from mitigate.evaluation import critical_report, report, rows
+    from mitigate.evaluation.critical import check_losses, scores
 
+    losses = None if critical is None else check_losses(critical)
     all_rows = rows.gather(paths)
     available = sorted({row["seed"] for row in all_rows})
     for seed in seeds or ():
@@ -51,7 +59,19 @@ def run(
                 "no rows."
             )
     selected = [row for row in all_rows if seeds is None or row["seed"] in seeds]
+    if losses is not None:
+        return critical_report.write(scores(selected, losses, against, drawn), out)
     return report.write(selected, out, against=against, drawn=drawn)
+
+
+def _losses(text: str) -> list[float]:
+    """Return the numbers in ``text``, which are separated by commas and may be in brackets."""
+    try:
+        return [float(word) for word in text.strip("[] ").split(",")]
+    except ValueError:
+        raise argparse.ArgumentTypeError(
+            f"must be fractions such as 0.1,0.5, got {text!r:.40}"
+        ) from None
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -74,11 +94,25 @@ def main(argv: Sequence[str] | None = None) -> int:
         default="episode",
         help="unit that the bootstrap of the intervals draws (default episode)",
     )
+    parser.add_argument(
+        "--critical",
+        type=_losses,
+        metavar="LOSSES",
+        help="compare the severities at which these fractions of the clean success are lost, such "
+        "as 0.1,0.5",
+    )
     parser.add_argument("--out", type=Path, default=OUT, help=f"output folder (default {OUT})")
     options = parser.parse_intermixed_args(argv)
     try:
         check_paths(options.rows, "--out DIR")
-        paths = run(options.rows, options.out, options.seed, options.against, options.draw)
+        paths = run(
+            options.rows,
+            options.out,
+            options.seed,
+            options.against,
+            options.draw,
+            options.critical,
+        )
     except (OSError, ValueError) as error:
         from mitigate.core.errors import error_message
 

@@ -1,0 +1,373 @@
+"""Search for critical severities, and compute them and areas under retention curves.
+
+The critical severity of a corruption is the severity at which an agent has lost a fraction ``loss``
+of its clean success rate. SR is noisy and not strictly monotone in severity, so the value is read
+from a decreasing (isotonic) fit of SR over all measured severities. An agent that has lost less at
+severity 1 has a critical severity above 1 (it is censored), which is ``inf`` here. The area is the
+mean retention over severities from 0 to 1. Definitions: ``docs/reference/metrics.md``.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from mitigate.core.names import unknown
+from mitigate.corruptions import CLEAN, Corruption
+from mitigate.evaluation.bootstrap import LEVEL, ROUNDING, Estimate, resampled_means
+from mitigate.evaluation.grid import COVERAGE, DRAWN, METRICS, Grid, grids
+from mitigate.evaluation.rows import Row
+from mitigate.evaluation.sections import REFERENCES
+from mitigate.worlds.seeded import RETURN
+
+# The search stops when a crossing lies between two measured severities that are this close. In a
+# simulation with 100 episodes, the error is then similar to that of a grid with step 0.05
+# (docs/results/critical-severity.md#simulation).
+WIDTH = 0.1
+
+Curve = dict[float, np.ndarray]  # maps severities to the success [N] of the episodes of one seed
+
+
+def check_losses(losses: Sequence[float]) -> list[float]:
+    """Return ``losses`` in ascending order, without repeats.
+
+    Raises:
+        ValueError: There are no losses, or one is not between 0 and 1.
+    """
+    if not losses or not all(0 < loss < 1 for loss in losses):
+        raise ValueError(
+            "critical must hold fractions of the clean success between 0 and 1, such as [0.1,0.5], "
+            f"got {list(losses)}. A fraction of 0.1 asks for the severity at which 10 % is lost."
+        )
+    return sorted(set(losses))
+
+
+def decreasing(values: ArrayLike) -> np.ndarray:
+    """Return the least-squares decreasing fit of ``values`` [..., K] (isotonic regression).
+
+    Uses the min-max formula of Barlow et al. (1972): the fit at k is the minimum over a <= k of the
+    maximum over b >= k of the mean of values a to b.
+    """
+    values = np.asarray(values, float)
+    count = values.shape[-1]
+    sums = np.concatenate([np.zeros_like(values[..., :1]), np.cumsum(values, axis=-1)], axis=-1)
+    fit = np.full_like(values, np.inf)
+    for a in range(count):
+        means = (sums[..., a + 1 :] - sums[..., a : a + 1]) / np.arange(1, count - a + 1)
+        greatest = np.maximum.accumulate(means[..., ::-1], axis=-1)[..., ::-1]
+        fit[..., a:] = np.minimum(fit[..., a:], greatest)
+    return fit
+
+
+def crossing(severities: Sequence[float], rates: ArrayLike, loss: float) -> np.ndarray:
+    """Return the severity [...] at which the fit of ``rates`` has lost ``loss`` of its first value.
+
+    Between measured severities, the fit is interpolated linearly.
+
+    Args:
+        severities: K severities in ascending order, the first of which is 0 (clean).
+        rates: success rates [..., K].
+        loss: fraction of the clean success rate, between 0 and 1.
+
+    Returns:
+        The critical severities: ``inf`` if less is lost at all severities, NaN if the clean rate
+        is 0.
+    """
+    rates, at = np.asarray(rates, float), np.asarray(severities, float)
+    fit = decreasing(rates)
+    target = (1 - loss) * rates[..., :1]
+    lost = fit <= target + ROUNDING
+    after = np.maximum(lost.argmax(axis=-1), 1)  # the clean fit is not below the clean rate
+    high = np.take_along_axis(fit, after[..., None] - 1, axis=-1)[..., 0]
+    low = np.take_along_axis(fit, after[..., None], axis=-1)[..., 0]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        part = np.clip((high - target[..., 0]) / (high - low), 0, 1)
+    severity = at[after - 1] + part * (at[after] - at[after - 1])
+    return np.where(rates[..., 0] > 0, np.where(lost.any(axis=-1), severity, np.inf), np.nan)
+
+
+def area(severities: Sequence[float], rates: ArrayLike) -> np.ndarray:
+    """Return the mean retention [...] over severities from 0 to 1 (trapezoidal rule).
+
+    Args:
+        severities: K severities in ascending order, from 0 (clean) to 1.
+        rates: success rates [..., K]. Their measured values are used, not the decreasing fit.
+    """
+    rates = np.asarray(rates, float)
+    steps = np.diff(np.asarray(severities, float))
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return ((rates[..., 1:] + rates[..., :-1]) / 2 * steps).sum(axis=-1) / rates[..., 0]
+
+
+def next_severities(rates: dict[float, float], losses: Iterable[float]) -> list[float]:
+    """Return the severities to measure next, given SR by measured severity (0, 1 and others).
+
+    For each loss, this is the middle of the two measured severities between which the fit crosses.
+    The list is empty when these are at most :data:`WIDTH` apart or nothing crosses.
+    """
+    severities = sorted(rates)
+    fit = decreasing([rates[at] for at in severities])
+    chosen = set()
+    for loss in losses if rates[0.0] > 0 else ():
+        lost = fit <= (1 - loss) * rates[0.0] + ROUNDING
+        after = int(lost.argmax())
+        if lost.any() and severities[after] - severities[after - 1] > WIDTH + ROUNDING:
+            # rounded, so that rows have the same severity on every computer
+            chosen.add(round((severities[after - 1] + severities[after]) / 2, 6))
+    return sorted(chosen)
+
+
+def first_conditions(conditions: Sequence[Corruption], rule: str) -> list[Corruption]:
+    """Return the conditions with which a search starts: clean, ``conditions``, and each at
+    severity 1.
+
+    Raises:
+        ValueError: There is nothing to search for, or the world has no success.
+    """
+    corrupted = [one for one in conditions if one.name != "clean"]
+    if rule == RETURN:
+        raise ValueError(
+            "critical needs a world with a success criterion, but this one measures only the "
+            "return. Leave critical out."
+        )
+    if not corrupted or any(one.severity == 0 for one in corrupted):
+        raise ValueError(
+            "critical needs corruptions and a severity above 0, at which the search starts. Name "
+            "conditions such as [clean,spatter], and keep severity=0.6."
+        )
+    ends = [replace(one, severity=1.0) for one in corrupted]
+    return [*dict.fromkeys([CLEAN, *corrupted, *ends])]
+
+
+def search(
+    measure: Callable[..., list[Row]], conditions: Sequence[Corruption], losses: Sequence[float]
+) -> list[Row]:
+    """Measure ``conditions``, and bisect severities until all crossings are located.
+
+    All severities have the same episodes and keys. A decision depends only on rows that the search
+    requested earlier, so an interrupted search continues with the same severities.
+
+    Args:
+        measure: function of ``conditions`` that runs the episodes under these and returns the rows.
+        conditions: the conditions from :func:`first_conditions`.
+        losses: fractions of the clean success.
+
+    Returns:
+        All rows.
+    """
+    rows: list[Row] = []
+    new = [*conditions]
+    while new:
+        rows += measure(conditions=new)
+        values: dict[str, dict[float, list[float]]] = {}
+        for row in rows:
+            by_severity = values.setdefault(row["corruption"], {})
+            by_severity.setdefault(float(row["severity"]), []).append(row["success"])
+        clean = values.pop("clean")
+        new = [
+            Corruption(name, severity)
+            for name, by_severity in values.items()
+            for severity in next_severities(
+                {at: float(np.mean(one)) for at, one in (clean | by_severity).items()}, losses
+            )
+        ]
+        if new:
+            listed = ", ".join(f"{one.name} {one.severity:g}" for one in new)
+            print(f"critical: next severities: {listed}", flush=True)
+    return rows
+
+
+@dataclass(frozen=True)
+class Score:
+    """A critical severity or an area, a mean of several, or a difference of two columns.
+
+    Attributes:
+        estimate: value and interval; ``inf`` means above 1.
+        episodes: number of episodes, which are the same for all severities, columns and seeds.
+        bound: "" for an exact value. Means and differences count values above 1 as 1. So the true
+            value is at least ("lower") or at most ("upper") this one, or, if both columns have
+            values above 1, either ("unknown").
+    """
+
+    estimate: Estimate
+    episodes: int
+    bound: str = ""
+
+
+@dataclass(frozen=True, eq=False)
+class Scores:
+    """The scores of the columns of a grid.
+
+    Attributes:
+        grid: the results.
+        losses: fractions of the clean success.
+        columns: labels of the columns; the first one is the reference of differences.
+        corruptions: corruptions that at least one column has measured clean and at severity 1.
+    """
+
+    grid: Grid
+    losses: tuple[float, ...]
+    columns: tuple[str, ...]
+    corruptions: tuple[str, ...]
+
+    @property
+    def measures(self) -> tuple[float | None, ...]:
+        """The losses, followed by None, which stands for the area."""
+        return (*self.losses, None)
+
+    @property
+    def groups(self) -> list[tuple[str, ...]]:
+        """Each corruption, followed by all corruptions that every column has if these are several.
+
+        The scores of the last group are means over its corruptions.
+        """
+        every = tuple(
+            n for n in self.corruptions if all(self.seeds((c,), (n,)) for c in self.columns)
+        )
+        return [*((name,) for name in self.corruptions), *([every] if len(every) > 1 else [])]
+
+    @property
+    def comparisons(self) -> list[tuple[str, ...]]:
+        """Each column, followed by pairs of each other column and the reference."""
+        first, *others = self.columns
+        return [(first,), *((c,) for c in others), *((c, first) for c in others)]
+
+    def seeds(self, columns: Sequence[str], names: Sequence[str]) -> list[int]:
+        """Return the seeds with curves of all ``columns`` under all corruptions ``names``."""
+        runs = [set(self.grid.runs[column]) for column in columns]
+        return [
+            seed
+            for seed in sorted(set.intersection(*runs))
+            if all(self.curve(column, name, seed) for column in columns for name in names)
+        ]
+
+    def curve(self, column: str, name: str, seed: int) -> Curve:
+        """Return the curve of a seed, or an empty dict if there are no clean successes or severity
+        1 was not measured.
+
+        Severities that have less than a fraction :data:`COVERAGE` of the episodes are left out.
+        """
+        curve = {
+            at: values
+            for (corruption, at, metric), values in self.grid.runs[column][seed].items()
+            if metric == METRICS["SR"] and corruption in ("clean", name)
+        }
+        if not {0.0, 1.0} <= curve.keys():
+            return {}
+        ends = ~np.isnan(curve[0.0] + curve[1.0])
+        if not curve[0.0][ends].any():
+            return {}
+        covered = {at: (~np.isnan(values[ends])).mean() for at, values in curve.items()}
+        return {at: curve[at] for at in sorted(curve) if covered[at] >= COVERAGE}
+
+    @cached_property
+    def results(self) -> dict[tuple[tuple[str, ...], tuple[str, ...], float | None], Score]:
+        """All scores by (columns, corruptions, loss); a pair of columns has a difference."""
+        return {
+            (columns, names, loss): self.score(columns, names, loss)
+            for columns in self.comparisons
+            for names in self.groups
+            for loss in (self.measures if self.seeds(columns, names) else ())
+        }
+
+    def score(self, columns: Sequence[str], names: Sequence[str], loss: float | None) -> Score:
+        """Return the mean score of a column over corruptions and seeds, or for two columns the
+        first one's minus the second's, over the same seeds, episodes and resamples.
+
+        Args:
+            columns: one or two labels, which must have seeds in common.
+            names: corruptions.
+            loss: fraction of the clean success, or None for the area.
+        """
+        seeds = self.seeds(columns, names)
+        curves = [[self.curve(c, n, seed) for n in names for seed in seeds] for c in columns]
+        every = [values for lists in curves for curve in lists for values in curve.values()]
+        common = ~np.isnan(np.stack(every)).any(axis=0)
+        parts = [_scored(lists, common, self.grid.units[common], loss) for lists in curves]
+        count = int(common.sum())
+        above = [bool(np.isinf(part[:, 0]).any()) for part in parts]
+        if len(parts) == 1:
+            every_above = np.isinf(parts[0]).all(axis=0)
+            mean = np.where(every_above, np.inf, _restricted(parts[0], loss).mean(axis=0))
+            return Score(_estimate(mean), count, "lower" if above[0] else "")
+        first, second = (_restricted(part, loss).mean(axis=0) for part in parts)
+        bounds = {(True, False): "lower", (False, True): "upper", (True, True): "unknown"}
+        return Score(_estimate(first - second), count, bounds.get((above[0], above[1]), ""))
+
+
+def _scored(
+    curves: list[Curve], common: np.ndarray, units: np.ndarray, loss: float | None
+) -> np.ndarray:
+    """Return the critical severity or area of C curves [C, 1 + resamples], first of the data."""
+    tables = [np.stack([values[common] for values in curve.values()]) for curve in curves]
+    table = np.concatenate(tables)
+    means = np.concatenate([table.mean(axis=1)[None], resampled_means(table, units=units)])
+    parts = np.split(means, np.cumsum([len(one) for one in tables])[:-1], axis=1)
+    return np.stack(
+        [
+            area([*curve], part) if loss is None else crossing([*curve], part, loss)
+            for curve, part in zip(curves, parts, strict=True)
+        ]
+    )
+
+
+def _restricted(values: np.ndarray, loss: float | None) -> np.ndarray:
+    """Return critical severities of at most 1, or areas, which have no upper limit."""
+    return values if loss is None else np.minimum(values, 1)
+
+
+def _estimate(values: np.ndarray) -> Estimate:
+    """Return the first value with the percentile interval of the others.
+
+    The bounds are samples, because they may be infinite.
+    """
+    known = np.sort(values[1:][~np.isnan(values[1:])])  # a resample may contain no clean success
+    if not len(known):
+        return Estimate(float(values[0]), math.nan, math.nan)
+    tail = int((1 - LEVEL) / 2 * len(known))
+    return Estimate(float(values[0]), float(known[tail]), float(known[-1 - tail]))
+
+
+def scores(
+    rows: Iterable[Row],
+    losses: Sequence[float],
+    against: str | None = None,
+    drawn: str = DRAWN[0],
+) -> list[Scores]:
+    """Return the scores of each split, episode list, suite version and success rule in ``rows``.
+
+    Args:
+        rows: result rows of clean episodes and of corruptions at severity 1 and others.
+        losses: fractions of the clean success.
+        against: the column with which the others are compared; None means "base" or "before", or
+            else the first column.
+        drawn: unit that the bootstrap resamples, "episode" or "scene".
+
+    Raises:
+        ValueError: A loss or ``against`` is invalid, or no column has a corruption at severity 1.
+    """
+    chosen, rows = tuple(check_losses(losses)), list(rows)
+    names = sorted({row["name"] for row in rows})
+    if against is not None and against not in names:
+        raise ValueError(unknown("column", against, names))
+    first = REFERENCES if against is None else (against,)
+    results = []
+    for grid in grids((row for row in rows if row["rule"] != RETURN), drawn):
+        order = sorted(grid.columns, key=lambda label: grid.columns[label][0] not in first)
+        every = Scores(grid, chosen, tuple(order), tuple(grid.corruptions))
+        measured = {(c, n) for c in order for n in grid.corruptions if every.seeds((c,), (n,))}
+        columns = tuple(c for c in order if any(column == c for column, _ in measured))
+        usable = tuple(n for n in grid.corruptions if any(name == n for _, name in measured))
+        if usable:
+            results.append(replace(every, columns=columns, corruptions=usable))
+    if not results:
+        raise ValueError(
+            "A critical severity needs rows of clean successes and of a corruption at severity 1, "
+            "and there are none. Run `mitigate evaluate checkpoint=... critical=[0.1,0.5]` first."
+        )
+    return results
