@@ -25,6 +25,7 @@ ROLE = re.compile(r":(?:attr|class|data|func|meth|mod):<code>(?:~[\w.]*\.)?")  #
 CODE = re.compile(
     r"<pre.*?</pre>|<code.*?</code>|<span class=\"doc doc-object-name.*?</span>", re.S
 )
+BREAK = re.compile(r"([_./=,:(\[]+)(?=\w)")  # where a name may break
 NAME = re.compile(r"(?<![&\w])[^\s<>&]{16,}")  # long names, outside tags and HTML entities
 CELL = re.compile(r"<td([^>]*)>(.*?)</td>", re.S)
 OPTION = re.compile(r"^ {0,4}(\S+(?: \S+)*)(?: {2,}(.*))?$")  # a line of a help: name and meaning
@@ -68,9 +69,7 @@ def _allow_breaks(code: re.Match) -> str:
         return code[0]
     parts = re.split(r"(<[^>]*>)", code[0])
     for i in range(0, len(parts), 2):  # the text between the tags
-        parts[i] = NAME.sub(
-            lambda name: re.sub(r"([_./=,:(\[]+)(?=\w)", r"\1<wbr>", name[0]), parts[i]
-        )
+        parts[i] = NAME.sub(lambda name: BREAK.sub(r"\1<wbr>", name[0]), parts[i])
     return "".join(parts)
 
 
