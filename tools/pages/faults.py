@@ -26,6 +26,7 @@ from mitigate.worlds.apartments.world import ApartmentsWorld
 from mitigate.worlds.episodes import Episode
 from mitigate.worlds.world import Corrupted, World
 from tools.pages.corruptions import formulas
+from tools.pages.gallery import INK, PAPER
 
 DOCS = Path(__file__).resolve().parents[2] / "docs"
 APARTMENT, SIZE = 200021, 72  # the apartment of the other pages; pixels of a view
@@ -141,7 +142,8 @@ def _sheet(
 ) -> np.ndarray:
     """Draw rows of pictures under the titles of the columns, with the names of rows to the left."""
     side = size + GUTTER
-    sheet = np.full((TITLE + side * len(rows), LABEL + side * len(titles), 3), 255, np.uint8)
+    shape = (TITLE + side * len(rows), LABEL + side * len(titles), 3)
+    sheet = np.full(shape, PAPER, np.uint8)
     for column, title in enumerate(titles):
         _write(sheet, title, LABEL + column * side, TITLE - 7)
     for row, (lines, pictures) in enumerate(rows):
@@ -155,7 +157,7 @@ def _sheet(
 
 
 def _write(sheet: np.ndarray, text: str, x: int, y: int) -> None:
-    cv2.putText(sheet, text, (x, y), FONT, 0.6, (0, 0, 0), 1, cv2.LINE_AA)
+    cv2.putText(sheet, text, (x, y), FONT, 0.6, INK, 1, cv2.LINE_AA)
 
 
 def _write_picture(path: Path, sheet: np.ndarray) -> None:

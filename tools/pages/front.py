@@ -32,6 +32,7 @@ AGENTS = {"base agent": "checkpoints/base", "after `harden`": "checkpoints/harde
 # font size in points; smaller labels of the floor plan are not legible in the animation
 SMALL_TEXT = 8
 FRAMES, MILLISECONDS = 36, 160  # number of pictures in the animation, and their duration
+PAPER, INK = "#21252b", "#ebebeb"  # as in tools/pages/gallery.py
 COLOURS = ("#d55e00", "#0072b2")  # colours that colour-blind readers can distinguish
 
 
@@ -51,9 +52,9 @@ def draw_corrupted(path: Path) -> None:
             clean = name.startswith("clean")
             image = frame if clean else corrupt(frame, name, SEVERITY, key=key)
             axis.imshow(picture(image))
-            axis.set_title(name if clean else name.replace("_", " "), fontsize=14)
+            axis.set_title(name if clean else name.replace("_", " "), fontsize=14, color=INK)
             axis.axis("off")
-    write_figure(path, figure, dpi=80, facecolor="white")
+    write_figure(path, figure, dpi=80, facecolor=PAPER)
 
 
 def record(agent_folder: str, episode: Episode) -> tuple[list[Observation], bool]:

@@ -38,6 +38,7 @@ SUFFIXES = (".png", ".jpg", ".jpeg")  # file formats of a sheet
 GUTTER, TITLE, LABEL = 4, 24, 150  # sizes in pixels: gap between cells, column titles, row labels
 LINE = 16  # pixels between lines of a label
 JPEG_QUALITY = 88
+PAPER, INK = (33, 37, 43), (235, 235, 235)  # a dark sheet suits both modes of the site
 DOCS = Path(__file__).resolve().parents[2] / "docs"
 PAGE_SEED, PAGE_SIZE = 200021, 112  # the apartment and view size of the page
 CURVE_VIEWS = slice(0, 12, 3)  # views of the panorama that are used for the curves
@@ -62,7 +63,7 @@ def _cell(rgb: np.ndarray, depth: np.ndarray, name: str, severity: float, key: K
 
 
 def _write(sheet: np.ndarray, text: str, x: int, y: int) -> None:
-    cv2.putText(sheet, text, (x, y), cv2.FONT_HERSHEY_SIMPLEX, 0.45, (0, 0, 0), 1, cv2.LINE_AA)
+    cv2.putText(sheet, text, (x, y), cv2.FONT_HERSHEY_SIMPLEX, 0.45, INK, 1, cv2.LINE_AA)
 
 
 def contact_sheet(
@@ -101,7 +102,7 @@ def contact_sheet(
     key = key or Key(0, "contact sheet")
     high, wide = rgb.shape[1] + GUTTER, rgb.shape[2] * len(views) + GUTTER
     shape = (TITLE + high * len(names), LABEL + wide * len(severities), 3)
-    sheet = np.full(shape, 255, np.uint8)
+    sheet = np.full(shape, PAPER, np.uint8)
     for column, severity in enumerate(severities):
         _write(sheet, f"s = {severity:g}", LABEL + column * wide, TITLE - 8)
     for row, name in enumerate(names):

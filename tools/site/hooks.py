@@ -22,6 +22,13 @@ PAGES = {  # maps a page of the site to a file of the checkout
 }
 CONFIGS = ("train", "evaluate", "run", "replay", "sweep", "table1", "table2", "export_drive")
 ROLE = re.compile(r":(?:attr|class|data|func|meth|mod):<code>(?:~[\w.]*\.)?")  # of docstrings
+CODE = re.compile(
+    r"<pre.*?</pre>|<code.*?</code>|<span class=\"doc doc-object-name.*?</span>", re.S
+)
+BREAK = re.compile(r"([_./=,:(\[]+)(?=\w)")  # where a name may break
+NAME = re.compile(r"(?<![&\w])[^\s<>&]{16,}")  # long names, outside tags and HTML entities
+CELL = re.compile(r"<td([^>]*)>(.*?)</td>", re.S)
+OPTION = re.compile(r"^ {0,4}(\S+(?: \S+)*)(?: {2,}(.*))?$")  # a line of a help: name and meaning
 LINK = re.compile(r"(!?)\[([^\]]*)\]\((?!\w+:|#)([^)#\s]+)(#[^)\s]*)?\)")
 
 
@@ -45,8 +52,25 @@ def on_page_markdown(markdown: str, page, config, files: Files) -> str:
 
 
 def on_page_content(html: str, page, config, files: Files) -> str:
-    """Render the Sphinx roles of docstrings, such as :func:`load`, as code."""
-    return ROLE.sub("<code>", html)
+    """Render roles of docstrings as code, and let long names and cells fit on a phone."""
+    html = ROLE.sub("<code>", html)
+    return CELL.sub(_mark_long_cell, CODE.sub(_allow_breaks, html))
+
+
+def _mark_long_cell(cell: re.Match) -> str:
+    """Give cells with more than a few words a class, for which the style sets a minimum width."""
+    text = re.sub(r"<[^>]*>", "", cell[2])
+    return f'<td class="long"{cell[1]}>{cell[2]}</td>' if len(text) > 60 else cell[0]
+
+
+def _allow_breaks(code: re.Match) -> str:
+    """Let a browser break long names behind punctuation; code blocks stay unchanged."""
+    if code[0].startswith("<pre"):
+        return code[0]
+    parts = re.split(r"(<[^>]*>)", code[0])
+    for i in range(0, len(parts), 2):  # the text between the tags
+        parts[i] = NAME.sub(lambda name: BREAK.sub(r"\1<wbr>", name[0]), parts[i])
+    return "".join(parts)
 
 
 def _relink(text: str, source: str, page: str) -> str:
@@ -85,8 +109,43 @@ def commands_page() -> str:
             check=True,
         ).stdout
         parts += ["", f"## {name}", "", f"{command.about[0].upper()}{command.about[1:]}.", ""]
-        parts += ["```text", help_text.strip(), "```"]
+        parts += _help(help_text)
     return "\n".join(parts)
+
+
+def _help(text: str) -> list[str]:
+    """Return the help of a command as Markdown: paragraphs, commands, options and tables."""
+    parts: list[str] = []
+    previous = ""
+    for block in text.strip().split("\n\n"):
+        lines = block.splitlines()
+        if block.startswith("usage:"):
+            parts += ["```text", " ".join(block.split()), "```", ""]
+        elif all(line.lstrip().startswith("mitigate ") for line in lines):
+            parts += ["```bash", *(line.strip() for line in lines), "```", ""]
+        elif previous.endswith("defaults:"):
+            parts += ["```yaml", block, "```", ""]
+        elif re.match(r".*:\n {2,}\S", block):  # such as "options:" of argparse
+            parts += [lines[0].capitalize(), "", *_option_table(lines[1:]), ""]
+        elif re.match(r" {2,}\S|\S+ {2,}", block):
+            parts += [*_option_table(lines), ""]
+        else:
+            parts += [block.replace("``", "`"), ""]
+        previous = block
+    return parts
+
+
+def _option_table(lines: list[str]) -> list[str]:
+    """Return a table of names and meanings; lines that are indented further continue a meaning."""
+    rows: list[list[str]] = []
+    for line in lines:
+        match = OPTION.match(line)
+        if match:
+            rows.append([match[1], match[2] or ""])
+        else:
+            rows[-1][1] += f" {line.strip()}"
+    table = [f"| `{name}` | {meaning.strip()} |" for name, meaning in rows]
+    return ["| Name | Meaning |", "|---|---|", *table]
 
 
 def configs_page() -> str:
