@@ -13,10 +13,10 @@ from mitigate.core.addresses import check_choice, is_plain
 from mitigate.core.checksums import DIGITS
 from mitigate.core.files import find, sha256
 from mitigate.core.names import unknown
-from mitigate.guards.text.classifier import CONFIG, WEIGHTS
+from mitigate.guards.text.classifier import CONFIG, SHIPPED, WEIGHTS
 
 CHOICES = ("none", "classifier", "prompted", "lora", "http://host/v1@model")
-CLASSIFIER, ADAPTER = "checkpoints/safeguard_classifier", "checkpoints/safeguard"
+CLASSIFIER, ADAPTER = SHIPPED, "checkpoints/safeguard"
 # file names of an adapter in PEFT's format
 ADAPTER_CONFIG, ADAPTER_WEIGHTS = "adapter_config.json", "adapter_model.safetensors"
 # Names of earlier versions; all of them now mean the classifier.
@@ -27,7 +27,7 @@ FOLDER = (
     "adapter_model.safetensors of an adapter (`make train RECIPE=safeguard_lora`)."
 )
 # version of the decisions, which increases whenever any text is repaired differently
-VERSION = "11"
+VERSION = "12"
 ANSWERS = "3"  # version of the rules for accepting answers of a language model
 
 

@@ -1,7 +1,7 @@
-"""Score the clauses of an instruction with a logistic regression on TF-IDF features.
+"""Score the clauses of an instruction with logistic regressions on TF-IDF features.
 
-The terms are words, word pairs and letter groups. Inference needs only numpy; :mod:`fit` trains the
-weights.
+The terms are words, word pairs and letter groups. The scores are the features of the network in
+:mod:`segmenter`. Inference needs only numpy; :mod:`fit` trains the weights.
 """
 
 from __future__ import annotations
@@ -21,14 +21,18 @@ from safetensors import SafetensorError
 from safetensors.numpy import load_file
 
 from mitigate.core import checksums
+from mitigate.core.files import find
 from mitigate.core.json_files import read_json
 from mitigate.core.names import short
 from mitigate.guards.text.decode import Decoded, decode
 from mitigate.guards.text.pieces import Piece, clause_pieces, script, sentence_pieces
+from mitigate.guards.text.segmenter import NAMES, Segmenter, features
 
 BITS = 18
 SIZE = 1 << BITS  # size of the table of hashed features
+SHIPPED = "checkpoints/safeguard_classifier"
 CONFIG, WEIGHTS = "classifier.json", "classifier.safetensors"
+EMPTY = 1e-3  # a text with a smaller sum of squares contains no known term
 ARRAYS = ("idf", "alone", "style")
 _TOKEN = re.compile(r"[a-z]+(?:['’][a-z]+)?|\d+|[^\w\s]|[^\W\d_]+")
 _CAPITALS = re.compile(r"\b[A-Z]{2,}\b")
@@ -84,6 +88,7 @@ class Clause:
         script: "latin", "other", or "" without letters.
         product: Sum of the clause's TF-IDF values times the attack weights.
         square: Sum of the clause's squared TF-IDF values.
+        style: Log odds that the clause is in an unusual style.
     """
 
     piece: Piece
@@ -93,6 +98,7 @@ class Clause:
     script: str
     product: float
     square: float
+    style: float
 
 
 class Classifier:
@@ -100,7 +106,8 @@ class Classifier:
 
     Args:
         config: Settings: common words, and the biases of the attack and style weights.
-        arrays: ``idf``, attack weights ``alone`` and style weights ``style``, each [SIZE].
+        arrays: ``idf``, attack weights ``alone`` and style weights ``style``, each [SIZE], and the
+            weights of the network (``segmenter.NAMES``), which only a classifier in training lacks.
     """
 
     def __init__(self, config: dict[str, Any], arrays: dict[str, np.ndarray]) -> None:
@@ -110,6 +117,9 @@ class Classifier:
         self.style_bias = float(config["style_bias"])
         self.arrays = {name: arrays[name].astype(np.float32) for name in ARRAYS}
         self.idf = self.arrays["idf"]
+        if NAMES[0] in arrays:
+            self.segmenter = Segmenter(arrays)
+            self.arrays |= self.segmenter.arrays
 
     def clauses(self, text: str) -> list[Clause]:
         """Return the clauses of a text with their features."""
@@ -119,6 +129,8 @@ class Classifier:
                 raw = piece.of(text)
                 plain = decode(raw, self.known)
                 index, value = weighted(terms(plain, raw, piece.block), self.idf)
+                square = float(value @ value)
+                style = float(self.arrays["style"][index] @ value) / (math.sqrt(square) + 1e-6)
                 clause = Clause(
                     piece,
                     number,
@@ -126,22 +138,27 @@ class Classifier:
                     sum(1 + 2 * ("\u3000" <= c <= "\ud7ff") for c in raw if c.isalpha()),
                     script(raw),
                     float(self.arrays["alone"][index] @ value),
-                    float(value @ value),
+                    square,
+                    style + self.style_bias,
                 )
                 results.append(clause)
         return results
 
     def score(self, clauses: Sequence[Clause]) -> float:
         """Return the log odds that some clauses, taken together as one text, are an attack."""
-        return self.of_sums(*self.total(clauses))
+        product = sum(clause.product for clause in clauses)
+        return float(self.log_odds(product, sum(clause.square for clause in clauses)))
 
-    def total(self, clauses: Sequence[Clause]) -> tuple[float, float]:
-        """Return the sum of ``product`` and the sum of ``square`` over some clauses."""
-        return sum(c.product for c in clauses), sum(c.square for c in clauses)
+    def log_odds(self, product: Any, square: Any) -> np.ndarray:
+        """Return the log odds for sums of ``product`` and ``square``; 0 for an empty text."""
+        odds = product / np.sqrt(np.maximum(square, EMPTY)) + self.bias
+        return np.where(np.asarray(square) > EMPTY, odds, 0.0)
 
-    def of_sums(self, product: float, square: float) -> float:
-        """Return the log odds of a text with these sums, 0 for an empty one."""
-        return product / math.sqrt(square) + self.bias if square > 1e-3 else 0.0
+    def attack(self, text: str, clauses: Sequence[Clause], bonus: float) -> tuple[float, int, int]:
+        """Return the log odds that a text contains an attack, and the attack's first and last
+        clause. ``bonus`` lengthens the attack (:meth:`Segmenter.attack`).
+        """
+        return self.segmenter.attack(features(text, clauses, self), bonus)
 
     def styled(self, text: str) -> bool:
         """Return whether a sentence is written in an unusual style rather than as a plain route."""
@@ -172,8 +189,12 @@ def load(folder: str | Path) -> Classifier:
     try:
         config = read_json(config_file, _AGAIN)
         if not problem:
-            classifier = Classifier(config, load_file(file))
-            if all(array.shape == (SIZE,) for array in classifier.arrays.values()):
+            arrays = load_file(file)
+            if NAMES[0] not in arrays:  # an earlier version trained no network
+                shipped = load_file(find(SHIPPED) / WEIGHTS)
+                arrays |= {name: shipped[name] for name in NAMES}
+            classifier = Classifier(config, arrays)
+            if all(classifier.arrays[name].shape == (SIZE,) for name in ARRAYS):
                 return classifier
             problem = "has arrays of another shape"
     except (ValueError, KeyError, TypeError, IndexError, SafetensorError) as error:

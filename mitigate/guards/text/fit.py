@@ -2,7 +2,9 @@
 
 The command reads the texts of a checkout (``tools/safeguard/data``). One logistic regression learns
 whether a sentence or clause belongs to an attack, and a second one whether it is in an unusual
-style.
+style. Then a network learns where an attack begins and ends, from texts in which attacks are joined
+to honest texts. The scores of these texts come from regressions that were trained without their
+groups. Otherwise the network would rely on scores that are better than those of new texts.
 """
 
 from __future__ import annotations
@@ -13,6 +15,7 @@ import re
 import sys
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -26,18 +29,60 @@ from mitigate.core.files import find, make_folder, write_text
 from mitigate.guards.text import classifier as model
 from mitigate.guards.text.classifier import SIZE, Classifier
 from mitigate.guards.text.decode import decode
-from mitigate.guards.text.learning.lines import ROUTES, Line, read_lines, varied
+from mitigate.guards.text.learning.lines import ROUTES, Line, read_frames, read_lines, varied
+from mitigate.guards.text.learning.segmentation import LONGEST, Example, train
+from mitigate.guards.text.learning.splices import FOLDS, SPLICES, Splice, fold_of, splices
 from mitigate.guards.text.pieces import clause_pieces, sentence_pieces
+from mitigate.guards.text.segmenter import features
 
 DATA = "tools/safeguard/data"
 WORDS = 6000  # number of common words, which are used to recognise hidden text
 RIDGE = 2.0  # penalty
 STEPS, STYLE_STEPS = 90, 50
+FOLD_STEPS = 40  # steps of the regressions that are trained without one fold
 
 
-def fit(folder: Path, routes: int = ROUTES, log: Any = sys.stderr) -> Classifier:
+@dataclass(frozen=True)
+class Regressions:
+    """The regressions on TF-IDF values, and one regression for each fold, trained without it.
+
+    ``alone``, ``style`` and ``folds`` contain (weights [SIZE], bias).
+    """
+
+    words: list[str]
+    idf: np.ndarray
+    alone: tuple[np.ndarray, float]
+    style: tuple[np.ndarray, float]
+    folds: tuple[tuple[np.ndarray, float], ...]
+
+    def classifier(
+        self, fold: int | None = None, network: Mapping[str, np.ndarray] | None = None
+    ) -> Classifier:
+        """Return the classifier, without texts of ``fold`` if a fold is given."""
+        alone, bias = self.alone if fold is None else self.folds[fold]
+        config = {"words": self.words, "bias": bias, "style_bias": self.style[1]}
+        arrays = {"idf": self.idf, "alone": alone, "style": self.style[0]}
+        return Classifier(config, arrays | dict(network or {}))
+
+
+def fit(
+    folder: Path, routes: int = ROUTES, texts: int = SPLICES, log: Any = sys.stderr
+) -> Classifier:
     """Train a classifier on the data in a folder."""
     lines = read_lines(folder, routes)
+    regressions = regress(lines, log)
+    classifiers = [regressions.classifier(fold) for fold in range(FOLDS)]
+    examples = [
+        example
+        for splice in splices(lines, read_frames(folder), texts)
+        if (example := _example(splice, classifiers[splice.fold]))
+    ]
+    print(f"training the network on {len(examples)} texts", file=log, flush=True)
+    return regressions.classifier(network=train(examples, log))
+
+
+def regress(lines: Sequence[Line], log: Any = sys.stderr) -> Regressions:
+    """Train the logistic regressions on sentences and clauses."""
     words = common_words(lines)
     pieces = list(_pieces(varied(lines)))
     known = frozenset(words)
@@ -48,16 +93,46 @@ def fit(folder: Path, routes: int = ROUTES, log: Any = sys.stderr) -> Classifier
     for index, n in seen.items():
         idf[index] = np.log(len(terms) / n) + 1 if n > 1 else 0.0
     x = _matrix(terms, idf)
+    used = np.unique(x.indices)
+    x = x[:, used].tocsr()
     weight = np.array([weight for *_, weight in pieces])
     attack = np.array([line.attack for _, _, line, _ in pieces])
-    alone, bias = regression(x, attack, weight, STEPS)
-    right = (x @ alone + bias > 0) == attack
-    print(f"{100 * right.mean():.1f} % of them are recognised", file=log, flush=True)
+    fold = np.array([fold_of(line) for _, _, line, _ in pieces])
+
+    def regressed(rows: np.ndarray, y: np.ndarray, steps: int) -> tuple[np.ndarray, float]:
+        few, bias = regression(x[rows], y[rows], weight[rows], steps)
+        weights = np.zeros(SIZE, np.float32)
+        weights[used] = few
+        return weights, bias
+
+    folds = tuple(regressed(fold != number, attack, FOLD_STEPS) for number in range(FOLDS))
+    for number, (weights, bias) in enumerate(folds):
+        rows = fold == number
+        right = (x[rows] @ weights[used] + bias > 0) == attack[rows]
+        message = f"fold {number + 1}: {100 * right.mean():.1f} % of unseen pieces are recognised"
+        print(message, file=log, flush=True)
     known_style = np.array([line.styled is not None for _, _, line, _ in pieces])
-    styled = np.array([line.styled is True for _, _, line, _ in pieces])[known_style]
-    style, style_bias = regression(x[known_style], styled, weight[known_style], STYLE_STEPS)
-    config = {"words": words, "bias": bias, "style_bias": style_bias}
-    return Classifier(config, {"idf": idf, "alone": alone, "style": style})
+    styled = np.array([line.styled is True for _, _, line, _ in pieces])
+    everything = np.ones(len(pieces), bool)
+    alone = regressed(everything, attack, STEPS)
+    style = regressed(known_style, styled, STYLE_STEPS)
+    return Regressions(words, idf, alone, style, folds)
+
+
+def _example(splice: Splice, classifier: Classifier) -> Example | None:
+    """Return the features of a training text; None for texts with very many or no clauses."""
+    clauses = classifier.clauses(splice.text)
+    if not 0 < len(clauses) <= LONGEST:
+        return None
+    attack = [
+        any(
+            2 * (min(clause.piece.end, end) - max(clause.piece.start, start))
+            > clause.piece.end - clause.piece.start
+            for start, end in splice.attacks
+        )
+        for clause in clauses
+    ]
+    return Example(features(splice.text, clauses, classifier), np.array(attack))
 
 
 def common_words(lines: Sequence[Line]) -> list[str]:
@@ -91,7 +166,7 @@ def _matrix(term_counts: Sequence[Mapping[int, int]], idf: np.ndarray) -> csr_ma
     ends = np.cumsum([0, *(len(index) for index, _ in rows)])
     index = np.concatenate([index for index, _ in rows])
     value = np.concatenate([value for _, value in rows])
-    return csr_matrix((value.astype(np.float64), index, ends), (len(rows), SIZE))
+    return csr_matrix((value.astype(np.float32), index, ends), (len(rows), SIZE))
 
 
 def regression(x: Any, y: np.ndarray, weight: np.ndarray, steps: int) -> tuple[np.ndarray, float]:
@@ -116,7 +191,10 @@ def save(trained: Classifier, folder: Path) -> None:
     """Write a classifier into a folder."""
     make_folder(folder)
     write_text(folder / model.CONFIG, json.dumps(trained.config) + "\n")
-    arrays = {name: array.astype(np.float16) for name, array in trained.arrays.items()}
+    arrays = {
+        name: array.astype(np.float16 if name in model.ARRAYS else np.float32)
+        for name, array in trained.arrays.items()
+    }
     checksums.write(folder / model.WEIGHTS, lambda file: save_file(arrays, file))
 
 

@@ -116,22 +116,6 @@ def test_canonicalise_removes_an_attack_within_a_sentence(safeguard):
 
 
 @pytest.mark.parametrize(
-    ("scores", "runs"),
-    [
-        ([-3.0, 2.0, 0.0, -3.0, 1.5], [(1, 2), (4, 4)]),
-        ([0.0, 0.5, 0.9], []),
-        ([0.0, 2.0, 3.0], [(0, 2)]),
-    ],
-)
-def test_runs_reach_the_last_foreign_neighbour(scores, runs):
-    assert detect.runs(scores, scores, 1.0, -0.5) == runs
-
-
-def test_runs_start_at_seeds_alone():
-    assert detect.runs([0.0, 0.5, -3.0], [0.0, 2.0, -3.0], 1.0, -0.5) == []
-
-
-@pytest.mark.parametrize(
     "text",
     [
         "Find a chair.",

@@ -19,6 +19,7 @@ from mitigate.guards.text.learning.routes import draw_route
 from mitigate.guards.text.learning.styler import draw_styled
 
 ROUTES = 1200  # number of routes from templates, and the same number in random styles
+BLOCK = 20  # consecutive lines of a file without named groups that form one group
 # Weights of texts; hand-written honest texts that look like attacks have the highest weight.
 ALIKE = {"lookalikes": 2.0, "fresh_lookalikes": 2.0, "near_misses": 2.0, "odd_routes": 2.0}
 
@@ -27,12 +28,14 @@ ALIKE = {"lookalikes": 2.0, "fresh_lookalikes": 2.0, "near_misses": 2.0, "odd_ro
 class Line:
     """A training text that is either entirely an attack or entirely honest.
 
-    ``styled`` states whether an honest text is in an unusual style, or is None if unknown. An
-    attack that surrounds the route contains "{route}".
+    ``group`` names the mechanism, style or source of the text; texts of one group resemble each
+    other. ``styled`` states whether an honest text is in an unusual style, or is None if unknown.
+    An attack that surrounds the route contains "{route}".
     """
 
     text: str
     attack: bool
+    group: str
     weight: float = 1.0
     styled: bool | None = None
 
@@ -48,34 +51,46 @@ def read_lines(folder: Path, routes: int = ROUTES) -> list[Line]:
     lines = []
     for name in ("attacks", "fresh_attacks"):
         attacks = _json(banks / f"{name}.jsonl", "attack")
-        lines += [Line(d["attack"], True) for d in attacks]
-    lines += [Line(text, True, 0.7) for text in _text(banks / "fit_attacks.txt")]
+        lines += [Line(d["attack"], True, str(d.get("mechanism", name))) for d in attacks]
+    fit_attacks = enumerate(_text(banks / "fit_attacks.txt"))
+    lines += [Line(text, True, f"fit_attacks {i // BLOCK}", 0.7) for i, text in fit_attacks]
     # never the test families, which the corruption suite uses
     for split in ("train", "validation"):
-        for texts in prefixes(split).values():
-            lines += [Line(text, True) for text in texts]
+        for family, texts in prefixes(split).items():
+            lines += [Line(text, True, family) for text in texts]
     for name, weight in ALIKE.items():
-        lines += [Line(d["text"], False, weight) for d in _json(banks / f"{name}.jsonl", "text")]
-    lines += [Line(text, False, 1.5) for text in _text(banks / "fit_routes.txt")]
+        for i, d in enumerate(_json(banks / f"{name}.jsonl", "text")):
+            lines.append(Line(d["text"], False, f"{name} {i // BLOCK}", weight))
+    fit_routes = enumerate(_text(banks / "fit_routes.txt"))
+    lines += [Line(text, False, f"fit_routes {i // BLOCK}", 1.5) for i, text in fit_routes]
     for name in ("lies", "honest"):
-        for d in _json(banks / f"{name}.jsonl"):
-            lines += [Line(text, False, 0.5) for key, text in d.items() if key != "kind"]
+        for i, d in enumerate(_json(banks / f"{name}.jsonl")):
+            group = f"{name} {i // BLOCK}"
+            lines += [Line(text, False, group, 0.5) for key, text in d.items() if key != "kind"]
     for file in sorted((folder / "styles").glob("*.jsonl")):
         for d in _json(file):
             styled_text = " ".join(styled_text for styled_text, _ in d["parts"])
             plain = " ".join(plain for _, plain in d["parts"] if plain)
-            lines.append(Line(styled_text, False, 1.0, styled=True))
-            lines.append(Line(plain, False, 0.5, styled=False))
+            lines.append(Line(styled_text, False, file.stem, 1.0, styled=True))
+            lines.append(Line(plain, False, file.stem, 0.5, styled=False))
     for i in range(routes):
+        group = f"generated {i // BLOCK}"
         text = draw_route(generator(0, "fit", i))
-        lines.append(Line(text, False, 0.5))
+        lines.append(Line(text, False, group, 0.5))
         styled = draw_styled(generator(0, "styled", i))
-        lines.append(Line(styled, False, 0.7, styled=True))
+        lines.append(Line(styled, False, group, 0.7, styled=True))
         if i % 3 == 0:
             manner, key = MANNERS[i // 3 % len(MANNERS)], Key(0, f"fit {i}")
             corrupted = corrupt_instruction(text, manner, 1.0, key, split="train")
-            lines.append(Line(corrupted, False, 0.5))
+            lines.append(Line(corrupted, False, group, 0.5))
     return lines
+
+
+def read_frames(folder: Path) -> tuple[list[str], list[str]]:
+    """Return short sentences that introduce attacks, and short sentences that close them."""
+    texts = (folder / "banks/frames.txt").read_text(encoding="utf-8").split("\n\n")
+    before, after = (part.splitlines() for part in texts)
+    return [line for line in before if not line.startswith("# ")], after
 
 
 def _json(file: Path, *keys: str) -> Iterator[dict[str, Any]]:

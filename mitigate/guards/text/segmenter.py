@@ -1,0 +1,168 @@
+"""Find the span of clauses that is an attack, with a small recurrent network.
+
+A bidirectional GRU (Cho et al. 2014) reads the features of all clauses of a text. It gives each
+clause a score, and each boundary between clauses a score for being an edge of the attack. The score
+of a span is the sum of its clauses' scores and its two edges, relative to "no attack". The network
+judges a clause in its context, so that an unusual style alone is not an attack. Inference needs
+only numpy; :mod:`mitigate.guards.text.learning.segmentation` trains the network.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from mitigate.corruptions.language.fidelity import facts
+from mitigate.guards.text import gate
+
+if TYPE_CHECKING:
+    from mitigate.guards.text.classifier import Classifier, Clause
+
+FEATURES = 22  # number of features of a clause
+EDGES = (11, 12, 13, 15)  # features that describe the boundary before a clause
+GAP = 80  # number of characters that are searched for the character before a clause
+CLIP = 6.0  # largest absolute value of a feature
+SCALE = 0.5  # factor of the log odds among the features
+NAMES = (
+    "net_input", "net_input_bias", "net_from_input", "net_from_state",
+    "net_from_input_bias", "net_from_state_bias", "net_clause", "net_clause_bias", "net_edge",
+    "net_edge_bias", "net_none",
+)  # fmt: skip
+
+
+def features(text: str, clauses: Sequence[Clause], classifier: Classifier) -> np.ndarray:
+    """Return the features of clauses, [clauses, FEATURES].
+
+    The first ten are numbers: log odds that the clause, its sentence, the text up to and before the
+    clause, the text from and after the clause, and the whole text are an attack; the score of the
+    style; log numbers of words. The next twelve are 0 or 1.
+    """
+    count = len(clauses)
+    products = np.array([clause.product for clause in clauses])
+    squares = np.array([clause.square for clause in clauses])
+    words = np.array([clause.words for clause in clauses])
+    sentences = np.array([clause.sentence for clause in clauses])
+    _, sentence = np.unique(sentences, return_inverse=True)
+    by_sentence = classifier.log_odds(
+        np.bincount(sentence, products), np.bincount(sentence, squares)
+    )
+    sums = np.concatenate([[0.0], np.cumsum(products)])
+    norms = np.concatenate([[0.0], np.cumsum(squares)])
+    first = classifier.log_odds(sums, norms)
+    last = classifier.log_odds(sums[-1] - sums, norms[-1] - norms)
+    result = np.zeros((count, FEATURES), np.float32)
+    result[:, 0] = classifier.log_odds(products, squares)
+    result[:, 1] = by_sentence[sentence]
+    result[:, 2] = [clause.style for clause in clauses]
+    result[:, 3] = np.log(words + 1) - 1.5
+    result[:, 4] = first[1:]
+    result[:, 5] = first[:-1]
+    result[:, 6] = last[:-1]
+    result[:, 7] = last[1:]
+    result[:, 8] = first[-1]
+    result[:, 9] = np.log(words.sum() + 1) - 3.5
+    result[:, [0, 1, 2, 4, 5, 6, 7, 8]] *= SCALE
+    for place, clause in enumerate(clauses):
+        start = clause.piece.start
+        previous = clauses[place - 1] if place else None
+        before = text[max(0, start - GAP) : start].rstrip()[-1:]
+        gap = text[previous.piece.end : start] if previous else ""
+        result[place, 10:] = (
+            clause.piece.block,
+            previous is None or clause.sentence != previous.sentence,
+            before in tuple(".!?。"),
+            before in tuple(",;:"),
+            "\n" in gap,
+            before.isalnum(),
+            clause.script == "other",
+            _names_the_way(clause.piece.of(text)),
+            text[start].isupper(),
+            text[start].islower(),
+            place == 0,
+            place == count - 1,
+        )
+    return np.clip(result, -CLIP, CLIP)
+
+
+def _names_the_way(text: str) -> bool:
+    content = facts(text)
+    return bool(content.directions or set(content.landmarks) & gate.KNOWN)
+
+
+class Segmenter:
+    """The network. ``arrays`` contains ``NAMES``; H is the size of the state.
+
+    ``net_from_input`` [2, 3H, H] and ``net_from_state`` [2, 3H, H] are the weights of the forward
+    and the backward GRU, in the order reset, update, new.
+    """
+
+    def __init__(self, arrays: Mapping[str, np.ndarray]) -> None:
+        self.arrays = {name: arrays[name].astype(np.float32) for name in NAMES}
+
+    def attack(self, values: np.ndarray, bonus: float) -> tuple[float, int, int]:
+        """Return the log odds that the text contains an attack, and the best span.
+
+        Args:
+            values: the features of the clauses, [n, FEATURES].
+            bonus: added to the score of a span for each of its clauses, before the best is chosen.
+
+        Returns:
+            The log odds, and the first and the last clause of the span.
+        """
+        clause, edge = self.scores(values)
+        if len(clause) < 2:
+            return -np.inf, 0, 0
+        starts, ends = _sides(clause, edge)
+        total = np.logaddexp.accumulate(starts) + ends
+        # the whole text is not a span
+        total[-1] = np.logaddexp.reduce(starts[1:]) + ends[-1]
+        odds = float(np.logaddexp.reduce(total) - self.arrays["net_none"][0])
+        starts, ends = _sides(clause + bonus, edge)
+        best = np.maximum.accumulate(starts) + ends
+        best[-1] = starts[1:].max() + ends[-1]
+        last = int(best.argmax())
+        skipped = int(last == len(clause) - 1)
+        return odds, skipped + int(starts[skipped : last + 1].argmax()), last
+
+    def scores(self, values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return the scores of the clauses [n] and of the edges before and after them [n + 1]."""
+        a = self.arrays
+        inputs = np.tanh(values @ a["net_input"].T + a["net_input_bias"])
+        states = self._states(inputs)
+        clause = np.concatenate([states, inputs], 1) @ a["net_clause"] + a["net_clause_bias"]
+        nothing = np.zeros((1, states.shape[1]), np.float32)
+        marks = np.zeros((len(values) + 1, len(EDGES)), np.float32)
+        marks[:-1] = values[:, EDGES]
+        around = [np.concatenate([nothing, states]), np.concatenate([states, nothing]), marks]
+        return clause, np.concatenate(around, 1) @ a["net_edge"] + a["net_edge_bias"]
+
+    def _states(self, inputs: np.ndarray) -> np.ndarray:
+        """Return the states of the forward and the backward GRU, [n, 2H]."""
+        a = self.arrays
+        size = inputs.shape[1]
+        both = np.stack([inputs, inputs[::-1]])  # [2, n, H]
+        gates = both @ a["net_from_input"].transpose(0, 2, 1) + a["net_from_input_bias"][:, None]
+        weights = a["net_from_state"]
+        bias = a["net_from_state_bias"]
+        state = np.zeros((2, size), np.float32)
+        states = np.empty_like(both)
+        for step in range(len(inputs)):
+            recurrent = (weights @ state[:, :, None])[:, :, 0] + bias
+            now = gates[:, step]
+            mixed = _sigmoid(now[:, : 2 * size] + recurrent[:, : 2 * size])
+            new = np.tanh(now[:, 2 * size :] + mixed[:, :size] * recurrent[:, 2 * size :])
+            state = new + mixed[:, size:] * (state - new)
+            states[:, step] = state
+        return np.concatenate([states[0], states[1, ::-1]], 1)
+
+
+def _sides(clause: np.ndarray, edge: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return terms of the first and of the last clauses, whose sum is the score of a span."""
+    sums = np.cumsum(clause)
+    return edge[:-1] - sums + clause, edge[1:] + sums
+
+
+def _sigmoid(x: np.ndarray) -> np.ndarray:
+    return 1 / (1 + np.exp(-x))
