@@ -19,12 +19,12 @@ from mitigate.guards.text.pieces import Piece, without
 # if more than this fraction of letters is in a different script, the route may be in that script
 FOREIGN = 0.3
 ROUTE = -1.0  # English text with a score below this is certainly a route
-ATTACK = 0.7  # log odds above which a text contains an attack
-LONGER = 0.3  # bonus per clause of an attack; without it, parts of attacks were left over
+ATTACK = 2.6  # log odds above which a text contains an attack
+LONGER = 0.1  # bonus per clause of an attack; without it, parts of attacks were left over
 # a neighbour of an attack that says nothing about the way is removed above this score
-BESIDE = -0.5
-GOAL = 9  # a text with fewer words than this is often only an object goal
-BARE = 1.5  # added to ``ATTACK`` for such a short text
+BESIDE = -1.0
+GOAL = 17  # a single sentence with fewer words than this is often only an object goal
+BARE = 1.0  # added to ``ATTACK`` for such a sentence
 ATTACKS = 3  # maximum number of attacks that are removed from a text
 STEP = 5  # maximum number of words of a short route step such as "Turn back."
 SHORTEST = 3  # minimum words of an English attack that is removed from text in a different script
@@ -69,7 +69,7 @@ def foreign(text: str, classifier: Classifier) -> list[Piece]:
         return []
     odds, first, last = classifier.attack(text, clauses, LONGER)
     words = sum(clause.words for clause in clauses)
-    if odds <= ATTACK + BARE * (words < GOAL):
+    if odds <= ATTACK + BARE * (words < GOAL and clauses[-1].sentence == 0):
         return []
 
     def belongs(clause: Clause) -> bool:
