@@ -73,7 +73,7 @@ class Network(nn.Module):
 
 
 def train(examples: Sequence[Example], log: Any = sys.stderr) -> dict[str, np.ndarray]:
-    """Return the trained weights. The same examples and version of torch give the same weights."""
+    """Return the trained weights. The random numbers are seeded."""
     threads = torch.get_num_threads()
     torch.set_num_threads(1)
     torch.manual_seed(0)
