@@ -83,8 +83,6 @@ ALLOWED = {
     ("tools/mutation.py", "shutil.copy"): OWN,
     ("tools/mutation.py", "symlink_to"): OWN,
     ("tools/mutation.py", "write_text"): OWN,
-    ("tools/renew_cards.py", "copytree"): OWN,
-    ("tools/renew_cards.py", "write_text"): OWN,
 }
 
 

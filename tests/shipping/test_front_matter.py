@@ -3,17 +3,13 @@
 from __future__ import annotations
 
 import json
-import shutil
 from pathlib import Path
 
 import pytest
 from huggingface_hub import ModelCard
 
-from mitigate.agents import loading
-from mitigate.core import folders, older_folders
 from mitigate.evaluation.rows import gather
 from mitigate.shipping.card import front_matter, readme
-from tools.renew_cards import renew
 
 ROOT = Path(__file__).parents[2]
 SHIPPED = sorted((ROOT / "checkpoints/hardened").glob("[!.]*"))
@@ -81,31 +77,3 @@ def test_page_shows_words_of_rows_unchanged():
     card["metrics"][0]["suite"] = "1.1 <script>alert(1)</script> `x`"
     text = ModelCard(readme(card)).text
     assert r"suite 1.1 \<script>alert(1)\</script> \`x\`." in text
-
-
-def test_renew_changes_the_readme_and_the_manifest_alone(tmp_path):
-    folder = Path(shutil.copytree(ROOT / "checkpoints/hardened/conv_adapter", tmp_path / "mine"))
-    before = card_of(folder)
-    page = folder / "README.md"
-    page.write_text("# old\n", encoding="utf-8")
-    with pytest.raises(ValueError, match="README.md does not have the sha256"):
-        renew(folder)
-    assert page.read_text(encoding="utf-8") == "# old\n"  # as it was
-    page.write_text(readme(before), encoding="utf-8")
-    renew(folder)
-    remaining = older_folders.without_sums(before)
-    assert loading.check_hardened(folder) == {**remaining, "format": loading.FORMAT}
-    assert folders.read_manifest(folder).files.keys() == {*before["files"], "card.json"}
-    assert [p.name for p in tmp_path.iterdir()] == ["mine"]
-
-
-def test_renewing_adds_the_agent_of_rows_to_a_card(tmp_path):
-    folder = Path(shutil.copytree(ROOT / "checkpoints/hardened/conv_adapter", tmp_path / "mine"))
-    old = {k: v for k, v in card_of(folder).items() if k != "rows_agent"}
-    resigned = {**old, "sha256": older_folders.card_sha(old)}
-    (folder / "card.json").write_text(json.dumps(resigned), encoding="utf-8")
-    renew(folder, [{"agent": "a" * 12, "weights": "0" * 12}])  # of other weights
-    assert "rows_agent" not in card_of(folder) and "in rows the agent" not in readme(old)
-    renew(folder, [{"agent": "a" * 12, "weights": old["run_agent"]}])
-    assert loading.check_hardened(folder)["rows_agent"] == ["a" * 12]
-    assert f"Weights `{old['agent']}`, in rows the agent `{'a' * 12}`" in readme(card_of(folder))
