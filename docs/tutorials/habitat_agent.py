@@ -1,6 +1,6 @@
 """A small program on the API of habitat-lab, as an example for ``mitigate run``.
 
-    mitigate run "conditions=[clean,foreign_object,missing_data]" -- python docs/tutorials/habitat_agent.py
+    mitigate run "conditions=[low_light_noise,missing_data]" -- python docs/tutorials/habitat_agent.py
 
 An agent must walk to a red door, which it sees in RGB and depth frames, and call STOP there. The
 program never mentions ``mitigate``. A small stand-in takes the place of habitat-lab: it has the
