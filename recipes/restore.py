@@ -1,4 +1,4 @@
-"""Train a restorer on pairs of corrupted and clean frames, without agent, labels or actions.
+"""Train a restorer on pairs of corrupted and clean frames, without an agent, labels or actions.
 
     L = mean over scales of |out - clean| + w_grad |their image gradients|
         + w_right mean of e / (e + TOLERANCE), where e = |out - clean| of a pixel

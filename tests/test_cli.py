@@ -38,7 +38,8 @@ def test_unknown_command_names_the_nearest():
 
 
 def test_modules_are_those_that_the_documentation_runs():
-    """``python -m mitigate.train`` is ``mitigate train``; newer commands have only the latter."""
+    """``python -m mitigate.train`` is equivalent to ``mitigate train``; newer commands have only
+    the second form."""
     modules = {path.stem for path in (ROOT / "mitigate/commands").glob("*.py")}
     pages = [
         *ROOT.glob("*.md"),

@@ -212,7 +212,7 @@ def attributes_of(thing: Any) -> list[tuple[str, Any]]:
 def code_of(*kinds: type) -> Contents:
     """Return the source files of the user's classes among ``kinds``, and the values they name.
 
-    These are class attributes, and global variables that the methods name.
+    These are class attributes, and global variables that the methods refer to.
     """
     classes = dict.fromkeys(each for kind in kinds for each in kind.__mro__ if each is not object)
     users = [each for each in classes if is_users(each)]

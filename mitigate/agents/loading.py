@@ -183,7 +183,7 @@ def build_from(config: Path) -> Any:
 def _check_size(config: Path, weights: Path) -> None:
     """Raise ValueError if the agent in ``config`` is large and has more numbers than ``weights``.
 
-    The agent is built without memory for its weights.
+    The agent is built without allocating memory for its weights.
     """
     kind = kind_of(config)
     arguments = agent_settings(config, kind)

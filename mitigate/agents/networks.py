@@ -20,7 +20,7 @@ _SCALARS = (str, bytes, int, float, complex, type(None), types.ModuleType)
 def networks(agent: Any) -> dict[str, nn.Module]:
     """Return the networks that ``agent`` is or holds, by place, without the networks inside them.
 
-    Attributes, containers, closures and the global variables that methods name are searched,
+    Attributes, containers, closures and the global variables that methods refer to are searched,
     without running the agent's code.
     """
     by_place: dict[str, nn.Module] = {}

@@ -20,7 +20,7 @@ SENSES = (RGB, DEPTH, "instruction")
 MOST_TARGETS = 64  # maximum number of patterns in a list
 MOST_WORDS = 50_000  # largest size of a vocabulary
 _WORD = re.compile(r"[a-z]{1,40}")
-# patterns contain no groups and no counts
+# patterns contain no groups and no repetition counts
 _PATTERN = re.compile(r"[\w.\\\[\]|*+?-]{1,200}", re.ASCII)
 _REPEATS = 2  # maximum number of quantifiers in a pattern; more can backtrack for too long
 

@@ -11,7 +11,7 @@ One call of ``mitigate run`` passes through these modules, from top to bottom:
 - ``program``: starts the user's program and ends all of its processes.
 - ``server``, ``connection``: answer the program's processes (``hook/mitigate_hook.py``).
 - ``condition``, ``cameras``: corrupt instructions and frames; ``recording`` saves clean ones.
-- ``events``, ``results``: the reports of the processes about episodes, as JSON lines and as result
-  rows.
+- ``events`` and ``results`` hold what the processes report about episodes, as JSON lines and as
+  result rows.
 - ``cell``: one condition and its output folder; ``report`` writes the table of all conditions.
 """

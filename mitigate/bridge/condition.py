@@ -98,7 +98,7 @@ class Condition:
 
 
 def why_not_applicable(corruption: Corruption, clean: Reports) -> str:
-    """Return the reason why a corruption cannot reach this agent, or an empty text."""
+    """Return the reason why a corruption cannot reach this agent, or an empty string if it can."""
     kinds = {camera["type"] for camera in clean.cameras}
     for part in corruption.parts:
         sensors = {*record(part.name).modalities} & {"rgb", "depth"}

@@ -317,7 +317,7 @@ def _choices(group: str, primary: str) -> str:
 
 
 def walks(file: Path) -> bool:
-    """Return whether the agent of a ``file`` of ``conf/agent`` can run episodes.
+    """Return whether the agent that a ``file`` in ``conf/agent`` defines can run episodes.
 
     Such a file also sets entries outside its group: the shipped weights and options of the world.
     """

@@ -187,8 +187,8 @@ def make_folder(folder: Path | str) -> Path:
 def _draft(path: Path) -> Iterator[Path]:
     """Yield an empty file in the folder of ``path``, which becomes ``path`` after the block.
 
-    The file is flushed to disk and gets the mode of the umask. If the block raises an error, the
-    file is deleted. If needed, the folder is created.
+    The file is flushed to disk and gets the default permissions of the umask. If the block raises
+    an error, the file is deleted. If needed, the folder is created.
     """
     # The random part of the name prevents others from placing a link at a predictable path.
     name = os.fsdecode(os.fsencode(path.name)[:LONGEST_DRAFT])  # a file name has up to 255 bytes

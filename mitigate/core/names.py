@@ -48,7 +48,8 @@ def name_of(weights: str) -> str:
     """Return a display name for the weights at a path.
 
     For the ``agent`` folder of a run, it is the name of the run. For shipped weights it is the kind
-    of agent: ``checkpoints/frontier/base`` is "frontier", ``.../teacher`` "frontier_teacher".
+    of agent: ``checkpoints/frontier/base`` is named "frontier", and ``.../teacher`` is named
+    "frontier_teacher".
     """
     path = Path(weights.removesuffix(".safetensors"))
     while path.name in ("model", "agent", "run"):

@@ -214,8 +214,8 @@ def delete_folder(folder: Path | str) -> None:
     """Delete ``folder`` with its content, if it exists. This never deletes through a link.
 
     Raises:
-        UnsafePathError: ``folder`` is a link, a FIFO or a file, or it lies behind a link in an
-            output folder. Nothing was deleted.
+        UnsafePathError: ``folder`` is a symbolic link, a FIFO or a file, or its path goes through a
+            symbolic link inside an output folder. Nothing was deleted.
         FolderLostError: The output folder was removed or replaced.
     """
     check(folder)

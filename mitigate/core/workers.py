@@ -1,8 +1,8 @@
 """Run jobs in worker processes; if a worker dies, its jobs are run again at once.
 
 Each worker has its own pipe and receives one group of jobs at a time; results are returned one by
-one. When a worker dies, its pipe closes, so nothing waits for it. The parent process ends the
-workers; if the parent was killed, each worker ends after its current job.
+one. When a worker dies, its pipe closes, so no process waits for the worker. The parent process
+ends the workers; if the parent was killed, each worker ends after its current job.
 """
 
 from __future__ import annotations

@@ -34,7 +34,8 @@ ECHO_HERTZ = 20e6
 
 
 def echo_shift(gap: np.ndarray, severity: float) -> np.ndarray:
-    """Return the over-estimation in metres for a surface ``gap`` metres farther.
+    """Return by how many metres depth is overestimated when the surface behind is ``gap`` metres
+    farther away.
 
     The value is computed from the phasor sum of two light paths.
     """

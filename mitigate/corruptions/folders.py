@@ -211,7 +211,9 @@ def _corrupt_frame(
 
 
 def _checksum(source: Path, output: Path) -> str:
-    """Return one checksum of the input and the output of a frame; "" if a file cannot be read."""
+    """Return one checksum of the input file and the output file of a frame; "" if a file cannot be
+    read.
+    """
     try:
         return _short_hash(sha256(source) + sha256(output))
     except OSError:

@@ -105,7 +105,7 @@ def light_loss(value: int, severity: float, height: int, width: int) -> np.ndarr
 
 @cached
 def low_light_mask(value: int, severity: float, height: int, width: int) -> np.ndarray:
-    """Return the opacity of the darkness, int16 [H, 3 W] in units of 1/32768."""
+    """Return the opacity of the dark overlay, int16 [H, 3 W] in units of 1/32768."""
     return opacity_mask(light_loss(value, severity, height, width), 1.0, NEUTRAL)
 
 

@@ -41,8 +41,8 @@ class Record:
         frame: Which random values are drawn for each frame.
         version: Version of a corruption outside the suite; rows of another version are not reused.
             Those of the suite have the version of the suite.
-        half: Half of an unseen corruption, ``VALIDATION`` or ``TEST``. Methods may be chosen on the
-            validation half only.
+        half: The half to which an unseen corruption belongs: ``VALIDATION`` or ``TEST``. Methods
+            may be chosen on the validation half only.
         family: Family of a fault, one of ``FAMILIES``.
         draw: What a fault does at an instant, a pure function of (severity, key)
             (``mitigate/corruptions/faults``).

@@ -36,7 +36,7 @@ def line_taps(length: float, angle: float, step: int = 1) -> tuple:
 
     The number of taps is a multiple of four. The weight of every ``step``-th column is the part of
     the column that the line covers. It is divided between the two nearest rows. Weights are small
-    integers: a full column has step LINE_UNITS / length, at least 2.
+    integers. A fully covered column has the weight LINE_UNITS / length, which is at least 2.
     """
     half = 0.5 * length * math.cos(angle)
     units = max(2.0, math.floor(step * blur.LINE_UNITS / length)) / step

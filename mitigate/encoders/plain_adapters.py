@@ -21,7 +21,7 @@ import torch.nn.functional as F
 
 WEIGHTS, SETTINGS, SUM = "adapters.safetensors", "adapters.json", ".sha256"
 MANIFEST = "manifest.json"
-LONGEST = 1 << 24  # maximum bytes of a header (heuristic)
+LONGEST = 1 << 24  # maximum size of a header in bytes (heuristic)
 # numpy types of safetensors types; BF16, which numpy lacks, is read as half of a float32
 TYPES = {"F64": "<f8", "F32": "<f4", "F16": "<f2", "BF16": "<u2", "I64": "<i8", "U8": "<u1"}
 NUMBERS = {"channels": 1 << 20, "reduction": 1 << 20, "middle": 1 << 20, "kernel": 99, "batch": 1}

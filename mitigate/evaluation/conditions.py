@@ -86,7 +86,7 @@ def conditions(names: list[str], severity: float, severity_depth: float | None) 
 def check_sensors(met: Iterable[Corruption], sensors: Iterable[str], world: str) -> None:
     """Raise ValueError for corruptions of sensors that the world named ``world`` lacks.
 
-    A fault of both sensors needs only one of them.
+    A fault that affects both sensors also applies to an agent with only one of them.
     """
     from mitigate.corruptions.record import ACTION
     from mitigate.corruptions.registry import record

@@ -109,7 +109,8 @@ class EvaluateConfig:
 
     runs: str = "runs"
     checkpoint: str | None = None
-    # plain text, which check_choice checks, because Hydra would print an invalid value
+    # text, not an enum: check_choice checks it, because Hydra's error would print an invalid
+    # value
     safeguard: Any = "none"
     restore: str | None = None
     adapt: str | None = None

@@ -79,8 +79,8 @@ def spread(listed: Sequence[Episode], count: int | None) -> list[Episode]:
     """Return ``count`` episodes (all if None) that are spread evenly over the list, in list order.
 
     Lists are ordered by layout, so the first 40 episodes of ``val_unseen`` cover only 4 of its 30
-    layouts. The chosen indices are those whose multiples of the golden ratio have the smallest
-    fractional parts, which spreads any count evenly. A smaller choice is always a subset of a
+    layouts. The chosen indices i are those with the smallest fractional parts of i times the golden
+    ratio, which are spread evenly for any count. A smaller choice is always a subset of a
     larger one, so rows of 40 episodes can be reused for 100.
     """
     chosen = sorted(range(len(listed)), key=lambda i: i * GOLDEN % 1)[:count]

@@ -45,7 +45,8 @@ HARDENED = Path("checkpoints/hardened")
 RELOADED = 1e-5  # for the folder loaded in a new process, compared with the agent in this process
 EXPORTED = 1e-3  # for program.pt2 and the ONNX files, compared with the agent
 ROUNDED = 0.1  # for the float16 weights, compared with the float32 weights of the run
-REASON_WIDTH = 400  # maximum characters of a failed check's last line in a message (heuristic)
+# a message quotes at most this many characters of the last line of a failed check (heuristic)
+REASON_WIDTH = 400
 WALKS = 2  # number of episodes for comparing a reloaded agent of a different class (heuristic)
 _RUN = "import sys; from mitigate.shipping import export; export.{}(*sys.argv[1:])"
 _TRAIN = "Run `make train` to the end, then name its folder (runs/...)."

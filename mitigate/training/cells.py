@@ -89,7 +89,7 @@ class Cell:
 
     @property
     def trains(self) -> bool:
-        """Whether the agent is trained; otherwise its options name existing weights."""
+        """Whether to train the agent; if not, its options name existing weights."""
         return any(option.startswith("recipe=") for option in self.options)
 
     @property

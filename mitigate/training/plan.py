@@ -159,7 +159,9 @@ def check_teacher(config: TrainConfig) -> None:
 
 
 def warn_unused_schedule(config: TrainConfig) -> None:
-    """Warn if no stage uses the ``schedule``, or if it does not use a severity option."""
+    """Warn if no stage uses the ``schedule``, or if the schedule does not use a severity option
+    that was given.
+    """
     schedule = config.schedule or {}
     mode = schedule.get("mode")
     if mode is None or (mode == "clean" and not schedule.get("broad_share")):

@@ -84,7 +84,7 @@ class Rollouts(DrawsBySuccess):
     def identity(self) -> dict[str, str]:
         """Return hashes of the files on which the batches depend."""
         prior = {} if self.prior is None else {"prior_sha256": sha256(self.prior)}
-        # users' episodes may not come from files
+        # users' episodes do not necessarily come from files
         files: dict[str, str] = getattr(self.training, "identity", dict)()
         return {**files, **prior}
 

@@ -61,8 +61,8 @@ class Trainer:
             result depends on the lag but not on the number of workers.
         seed: seed of data order and noise.
         precision: one of ``precision.CHOICES``, used for all network computations; bf16 uses
-            autocast, and weights stay float32. A checkpoint records the choice of "auto"; a resumed
-            run keeps this choice.
+            autocast, and weights stay float32. A checkpoint records the value that "auto" selected;
+            a resumed run keeps this value.
         device: "auto" (CUDA if available), or any torch device.
         workers: worker processes that compute batches (``Objective.jobs``); None computes the same
             batches in this process.

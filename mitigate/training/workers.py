@@ -25,7 +25,8 @@ from mitigate.core.signals import leave_to_parent, start_worker
 from mitigate.core.workers import WorkersDied, context, packed, portable
 from mitigate.training.objective import Objective, do
 
-# more workers do not help, because recipes have 2 to 4 pieces per step, some steps in advance
+# more workers do not help: a step has only 2 to 4 pieces of work, and few steps are made in
+# advance
 MOST = 8
 PRELOAD = "mitigate.evaluation.evaluator"  # preloaded module, which imports the slow modules
 STUCK = 60.0  # seconds of silence after which an awaited worker is reported (heuristic)

@@ -77,7 +77,7 @@ class Rule:
         return success(distance, stopped or not self.stop, threshold=self.metres)
 
     def __str__(self) -> str:
-        """Return the text of the rule in rows and tables."""
+        """Return the wording of the rule in rows and tables."""
         distance = f"geodesic {'<=' if self.inclusive else '<'} {float(self.metres)} m"
         distance += " to a view point" if self.view_points else ""
         return f"{self.name}: {f'STOP and {distance}' if self.stop else f'{distance}, STOP or not'}"

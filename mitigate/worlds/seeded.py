@@ -264,7 +264,8 @@ class SeededWorld(World):
         raise NotImplementedError(f"{type(self).__name__} defines no _step_env()")
 
     def measures(self) -> dict[str, float]:
-        """Return success, spl, return and steps, and with a limit also ``cut`` and ``limit``.
+        """Return ``success``, ``spl``, ``return`` and ``steps``; with a limit also ``cut`` and
+        ``limit``.
 
         ``spl`` equals ``success``, because the shortest path is unknown. With the score "return",
         both are missing.

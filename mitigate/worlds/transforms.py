@@ -52,8 +52,9 @@ class CorruptObservation(Transform):
         hfov: Horizontal field of view of the cameras in degrees, which camera faults need.
 
     Raises:
-        ValueError: On data: episode or frame are missing, the schedule corrupts a missing entry, a
-            replay buffer meets a temporal fault, or as in ``corrupt_observation``.
+        ValueError: Raised for data in which the episode or frame is missing, if the schedule
+            corrupts a missing entry, if a temporal fault is applied to a replay buffer, and in the
+            cases of ``corrupt_observation``.
     """
 
     def __init__(

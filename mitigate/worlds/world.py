@@ -125,8 +125,8 @@ class World:
         """Render the current instant with a displaced camera, for camera faults.
 
         Returns:
-            The frames as in an observation; None if the world cannot. The frames of the
-            observation are then warped, which needs ``hfov`` of their sensors.
+            The frames as in an observation, or None if the world cannot provide them. The frames of
+            the observation are then warped, which needs ``hfov`` of their sensors.
         """
         return None
 

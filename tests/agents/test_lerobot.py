@@ -72,7 +72,7 @@ class ChunkPolicy(nn.Module):
         return self.model({"observation.images": [batch["observation.images.front"]]})[0]
 
     def forward(self, batch: dict[str, Tensor]) -> tuple[Tensor, dict[str, float]]:
-        raise AssertionError("forward of a lerobot policy is its loss, which needs actions")
+        raise AssertionError("`forward` of a lerobot policy computes its loss, so it needs actions")
 
 
 class Reach(gymnasium.Env):

@@ -1,10 +1,10 @@
 """Programs as forks of a Python process that has imported NumPy already.
 
 A new interpreter that imports NumPy needs a third of a second of CPU time, and the tests of the
-bridge start hundreds. A fork gets the arguments, the environment, the path and the output of a new
-interpreter. It imports ``sitecustomize`` as an interpreter does when it starts, and so the hook.
-``run`` starts one program. ``popen`` starts the supervisor of ``mitigate run``, which starts its
-program as a fork. Some tests start new interpreters (``conftest.py``).
+bridge start hundreds. Each fork is set up like a new interpreter, with its own arguments,
+environment, path and output. It imports ``sitecustomize`` as an interpreter does when it starts,
+and so the hook. ``run`` starts one program. ``popen`` starts the supervisor of ``mitigate run``,
+which starts its program as a fork. Some tests start new interpreters (``conftest.py``).
 """
 
 from __future__ import annotations

@@ -1,5 +1,5 @@
-"""Tests of broad augmentation: random compositions for training, by a schedule's
-``broad_share``."""
+"""Tests of broad augmentation: a schedule's ``broad_share`` sets the fraction of frames that get
+random compositions in training."""
 
 from __future__ import annotations
 

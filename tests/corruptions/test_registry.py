@@ -79,7 +79,7 @@ def installed(package) -> dict[str, str]:
 
 @pytest.fixture
 def add_to_path(package, monkeypatch):
-    """Return a function with which this process imports the package in its current state."""
+    """Return a function that makes this process import the package in its current state."""
 
     def forget():
         registry.plugin_records.cache_clear()

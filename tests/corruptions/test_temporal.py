@@ -49,7 +49,7 @@ def run(name: str, severity: float = 0.6, episode: str = "5-0", seed: int = 3) -
 
 
 def shown(name: str, severity: float = 0.6, entry: str = RGB, **key) -> list[int]:
-    """Return the number of the instant that each frame shows."""
+    """Return, for each frame, the index of the time step that it shows."""
     frames = [frames[entry][:, 1:] for frames in run(name, severity, **key)]
     assert all((frame == frame.flat[0]).all() for frame in frames)
     scale = 1.0 if entry == RGB else 16.0

@@ -103,7 +103,7 @@ def test_cache_is_cleared_when_weights_change():
 class Mortal(torch.nn.Module):
     """An agent that stops at once and, in one episode, kills its process (only one process)."""
 
-    settings = dict  # the episode of the death is not part of the agent's fingerprint
+    settings = dict  # the episode in which the process dies is not part of the agent's fingerprint
 
     def __init__(self, folder, deaths=1):
         super().__init__()

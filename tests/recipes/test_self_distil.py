@@ -1,4 +1,5 @@
-"""Tests of self-distillation: zero loss for equal answers, and the order of each step."""
+"""Tests of self-distillation: the loss is zero for equal answers, and the operations of a step run
+in the right order."""
 
 import numpy as np
 import pytest

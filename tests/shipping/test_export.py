@@ -621,7 +621,7 @@ def files_of_at_most(size: int) -> Iterator[None]:
 def test_full_disk_is_reported_and_leaves_nothing(
     place, exported, tmp_path, monkeypatch, capfd, full
 ):
-    """Return the error of ``export`` if weights and programs may not exceed some size."""
+    """Return the error that ``export`` raises if the size of weights and programs is limited."""
     weights = (place / "hardened/whole" / checkpoint.WEIGHTS).stat().st_size
     most = weights // 2 if full == "weights" else weights + 1000
     command = ["export", str(place / "runs/whole"), "mine", "--out", str(tmp_path)]

@@ -1,4 +1,5 @@
-"""Tests of which parts of an agent are trained, and of what other parts keep."""
+"""Tests that only the chosen parts of an agent are trained, and that other parts keep their
+weights."""
 
 from __future__ import annotations
 

@@ -95,7 +95,7 @@ def test_gym_world_runs_an_environment(entry):
     measures = run_episode(agent, world, episode(3), CLEAN, 0)
     assert measures["success"] == 1 and measures["steps"] == 4 == measures["decisions"]
     dark = run_episode(agent, world, episode(3), Corruption("low_light", 1.0), 0)
-    assert dark["success"] == 0 and dark["steps"] == 1  # the agent stops in frames that look dark
+    assert dark["success"] == 0 and dark["steps"] == 1  # the agent stops when a frame looks dark
     world.reset(episode(3))
     with pytest.raises(ValueError, match="must be 0 to 1, got"):
         world.step(5)

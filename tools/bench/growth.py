@@ -1,4 +1,5 @@
-"""Decide whether a series of measurements grows, from its slope with an interval."""
+"""Decide whether a series of measurements grows, based on its slope and the confidence interval of
+the slope."""
 
 from __future__ import annotations
 

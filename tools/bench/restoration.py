@@ -30,7 +30,7 @@ FOLDER = "checkpoints/restorer"
 
 
 def costs(restorer: Restorer, seconds: float) -> dict[tuple[str, str], tuple[float, float]]:
-    """Return milliseconds of a clean and of a restored frame, by size and sensor.
+    """Return the time in milliseconds for a clean and for a restored frame, by size and sensor.
 
     Args:
         restorer: The restorer, whose thresholds are changed and then restored.

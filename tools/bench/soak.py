@@ -39,7 +39,8 @@ Sample = tuple[float, int, float, int]  # all COLUMNS except the first
 
 
 def measured(pid: int) -> tuple[int, float, int]:
-    """Return the number, memory (RSS, MiB) and open files of ``pid`` and its descendants.
+    """Return the number of processes, the memory (RSS, MiB) and the number of open files of ``pid``
+    and its descendants.
 
     Shared memory is counted in each process. Processes that end during the call are not counted.
     """

@@ -24,7 +24,7 @@ def line(name: str, outcomes: Mapping[str, str], seconds: float) -> str:
 
 
 def count(outcomes: Outcomes) -> tuple[int, int]:
-    """Return how many faults were tried, and how many were survived."""
+    """Return how many faults were injected, and how many of them the program survived."""
     texts = [outcome for by_fault in outcomes.values() for outcome in by_fault.values()]
     tried = [outcome for outcome in texts if not outcome.startswith(NOT_RUN)]
     return len(tried), tried.count("survived")

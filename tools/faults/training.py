@@ -190,8 +190,8 @@ def delete_cache(training: Training) -> str:
 
 
 def start_twice(training: Training) -> str:
-    """Start two training runs in the same folder; one of them must be rejected without a
-    change."""
+    """Start two training runs in the same folder; one of them must be rejected without changing a
+    file."""
     both = [training.start(), training.start()]
     problem = check_one_rejected(both)
     running = next((command for command in both if command.runs()), both[0])

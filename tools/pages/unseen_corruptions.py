@@ -25,7 +25,7 @@ def page(
     unseen: Mapping[str, Curve], suite: Mapping[str, Curve], grid: np.ndarray, seed: int
 ) -> str:
     """Return the page as Markdown. ``unseen`` and ``suite`` are the curves on the ``grid`` of
-    severities, and ``seed`` is the apartment in the pictures."""
+    severities, and ``seed`` selects the apartment in the pictures."""
     return TEMPLATE.read_text("utf-8").format(
         rgb=len(registry.unseen_names("rgb")),
         depth=len(registry.unseen_names("depth")),

@@ -55,7 +55,7 @@ def make_world() -> GymWorld:
 
 
 def network() -> nn.Sequential:
-    """Return a network from RGB [N, 3, 64, 64] in 0-1 to an action."""
+    """Return a network that maps RGB [N, 3, 64, 64] with values from 0 to 1 to an action."""
     return nn.Sequential(
         nn.Conv2d(3, 16, 5, 2, 2),
         nn.ReLU(),

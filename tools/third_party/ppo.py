@@ -33,7 +33,7 @@ def train_ppo(
     target: float = np.inf,
     ent_coef: float = 0.01,
 ) -> None:
-    """Train a policy with PPO until its most probable actions reach a mean return; save its
+    """Train a policy with PPO until its most probable actions reach a given mean return; save its
     weights."""
     envs = VecNormalize(make_vec_env(make, n_envs=8, seed=100_000), norm_obs=False)
     test_env = VecNormalize(

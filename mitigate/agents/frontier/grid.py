@@ -28,14 +28,14 @@ THINGS_LOW, THINGS_HIGH = 0.05, 2.3
 # log-odds of an occupied and of a free observation, and the bound of their sum
 HIT, MISS, MOST = 0.9, 0.4, 3.5
 NEAR = 2.0  # distance in metres up to which training labels call an object near (agents/text.py)
-SLACK = 0.3  # tolerance of the distance NEAR in metres (heuristic)
+SLACK = 0.3  # tolerance in metres for the distance NEAR (heuristic)
 SURE = 40.0  # bound of the evidence for the object, a sum of log-odds
 
 RADIUS = 0.2  # clearance in metres from occupied cells
 TIGHT, WIDE = 3.0, 0.4  # cells with a clearance below WIDE metres cost TIGHT times as much
 # cost factor of unknown cells; it is finite, so that missing depth cannot enclose the agent
 UNKNOWN = 4.0
-MARGIN = 12  # margin in cells around the known area that planning includes
+MARGIN = 12  # planning also includes a margin of this many cells around the known area
 # cells with at least this fraction of the highest evidence belong to the object (heuristic)
 SHARE = 0.7
 SMALLEST = 4  # minimum number of cells of a frontier

@@ -350,7 +350,7 @@ class RecurrentAgent(SideBySide, nn.Module):
         on = {name: frame.to(self.device) for name, frame in frames.items()}
         columns = self.policy.look(self._perceive(on, {})[0])
         before, motion = walk.before
-        # copies, because tensors of inference mode have no gradients
+        # copied, because tensors created in inference mode have no gradients
         text = Text(*(part.clone() for part in walk.text))
         state = State(*(part.clone() for part in vars(before).values()))
         moves = torch.from_numpy(motion)[None].to(self.device)

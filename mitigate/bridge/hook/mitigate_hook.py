@@ -1013,7 +1013,7 @@ def _attach_adapters(encoder, folder, file, path):
 
 
 class Episode:
-    """One episode of a program loop without Habitat.
+    """One episode of a program that runs its own loop and does not use Habitat.
 
     Attributes:
         instruction: The instruction for the agent, corrupted if the condition changes words.
@@ -1214,8 +1214,8 @@ def wanted(episodes):
         episodes: List of (scene, episode id).
 
     Returns:
-        All episodes without ``episodes=``; otherwise about that many, selected by a hash of their
-        names.
+        All episodes if ``episodes=`` is not set; otherwise about that number, selected by a hash of
+        their names.
 
     Raises:
         RuntimeError: The program does not run under ``mitigate run``.

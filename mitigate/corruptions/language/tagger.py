@@ -78,7 +78,7 @@ def named(name: str = "own") -> Callable[[str], list[Token]]:
 
 @lru_cache(maxsize=1)
 def _spacy() -> Any:
-    """Load the first installed English spaCy pipeline by name."""
+    """Load the installed English spaCy pipeline whose name comes first."""
     try:
         import spacy
 

@@ -119,7 +119,7 @@ class Dataset:
         return [self.episodes[number] for number in sorted(chosen)]
 
     def read_rows(self, data: str) -> Rows:
-        """Read the rows of a file of data/.
+        """Read the rows of a file in data/.
 
         Raises:
             FileNotFoundError: The file is missing.

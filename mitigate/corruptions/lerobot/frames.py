@@ -28,7 +28,7 @@ def read_frames(
         dataset: The dataset.
         episode: The episode.
         cameras: Cameras to read.
-        chosen: Increasing numbers of frames.
+        chosen: Frame numbers, in increasing order.
         times: Seconds from the start of the episode to each chosen frame.
         tolerance: Maximum time in seconds between a row and its video frame.
 

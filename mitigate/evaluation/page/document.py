@@ -73,7 +73,7 @@ def _filled(frame: str, values: dict[str, str]) -> str:
 
 
 def _embedded(data: Any) -> str:
-    """Return JSON that an HTML parser reads as one text."""
+    """Return JSON that an HTML parser reads as a single text, without tags."""
     text = json.dumps(data, allow_nan=False, separators=(",", ":"))
     return text.replace("<", "\\u003c").replace(">", "\\u003e").replace("&", "\\u0026")
 

@@ -85,7 +85,7 @@ class Clause:
         sentence: Index of its sentence.
         words: Number of words.
         letters: Number of letters; a Chinese, Japanese or Korean character counts as three.
-        script: "latin", "other", or "" without letters.
+        script: "latin", "other", or "" if the text has no letters.
         product: Sum of the clause's TF-IDF values times the attack weights.
         square: Sum of the clause's squared TF-IDF values.
         style: Log odds that the clause is in an unusual style.

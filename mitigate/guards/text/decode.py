@@ -41,7 +41,7 @@ _MORSE_CODES = (
     ".-- -..- -.-- --.."
 )
 _MORSE_LETTERS = dict(zip(_MORSE_CODES.split(), "abcdefghijklmnopqrstuvwxyz", strict=True))
-_JOINERS = "\u200c\u200d"  # invisible joiners, which scripts of India and Persia need
+_JOINERS = "\u200c\u200d"  # invisible joiners, which Indic scripts and Persian need
 # minimum fraction of known words in decoded text, and maximum fraction in hidden text
 ENGLISH, HIDDEN = 0.6, 0.45
 

@@ -1,5 +1,5 @@
-"""Check that a change of an instruction keeps its meaning. Each function returns the reason to
-reject a change, or "".
+"""Check that a rewritten instruction keeps the meaning of the original. Each function returns the
+reason to reject a change, or "".
 
 A deletion removes whole pieces and keeps the wording of the others, so only the completeness of the
 remaining text is checked. A rewrite is checked fact by fact: turns, stops, landmarks, numbers,

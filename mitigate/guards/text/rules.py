@@ -71,8 +71,8 @@ def lower_capitals(text: str, known: frozenset[str]) -> str:
 def fill_masks(text: str) -> str:
     """Return ``text`` with every sequence of masks replaced by the best-fitting function word.
 
-    A mask is kept if it hides a noun, a turn or part of a word. A mask that hides an adjective
-    before a noun is removed.
+    A mask is kept if it hides a noun, a turn or part of a word. If a mask hides an adjective before
+    a noun, the mask is removed.
     """
     if not re.search(r"[A-Za-z]", MASK.sub(" ", text)):
         return text

@@ -162,7 +162,9 @@ class Segmenter:
 
 
 def _sides(clause: np.ndarray, edge: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return terms of the first and of the last clauses, whose sum is the score of a span."""
+    """Return one term for each first clause and one for each last clause; the score of a span is
+    the sum of its two terms.
+    """
     sums = np.cumsum(clause)
     return edge[:-1] - sums + clause, edge[1:] + sums
 

@@ -50,7 +50,8 @@ FORMATS = {
 
 KINDS = (RGB, DEPTH)
 # Heuristic limits.
-MAX_POSES = 16 * MAX_INSTANTS  # maximum poses per drive: 500 Hz for images at 30 Hz
+# maximum number of poses per drive: enough for poses at 500 Hz and images at 30 Hz
+MAX_POSES = 16 * MAX_INSTANTS
 MAX_BUFFER_BYTES = 1 << 30  # maximum bytes of images that wait for images of another topic
 
 

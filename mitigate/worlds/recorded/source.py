@@ -239,8 +239,8 @@ class Instants:
         poses: float64 [N, 3], or None if unknown.
         frames: Index of each camera's frame at each time step, int [N], by camera.
         dropped: Number of skipped time steps.
-        distances: Median seconds between the time steps, skipped or not, and the nearest frame or
-            pose, by camera and for "pose".
+        distances: Median time difference in seconds between a time step, skipped or not, and the
+            nearest frame or pose; one entry per camera, and one named "pose".
     """
 
     times: np.ndarray

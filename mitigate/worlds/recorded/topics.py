@@ -75,7 +75,7 @@ def choose_topics(
             encoding count as depth if their names say so.
 
     Returns:
-        The topics by name, without topics that the bag lacks.
+        The topics that the bag contains, by name.
 
     Raises:
         ValueError: A chosen topic is missing or has a wrong type, several topics are suitable, or

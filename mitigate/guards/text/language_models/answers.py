@@ -16,7 +16,8 @@ WAIT = 0.1  # seconds to wait for a lock of another process, not counted in any 
 class AnswerCache:
     """Keep texts by name.
 
-    Other damage, or a long write by a different process, only causes one more request and no error.
+    Other damage, or a slow write by a different process, raises no error; it only causes one more
+    request.
 
     Raises:
         ValueError: the file is not a cache of this kind.

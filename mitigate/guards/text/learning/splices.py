@@ -14,7 +14,7 @@ from mitigate.guards.text.decode import visible
 from mitigate.guards.text.learning.lines import Line
 from mitigate.guards.text.pieces import clause_pieces, sentence_pieces
 
-FOLDS = 4  # the texts are divided into this number of parts by their groups
+FOLDS = 4  # the texts are divided into this many parts, and each group stays in one part
 SPLICES = 24_000  # number of training texts of the network
 HONEST = 0.4  # fraction of texts without an attack
 LONGEST = 900  # maximum characters of a training text
