@@ -206,7 +206,7 @@ def test_files_need_a_field_of_view():
 
 def test_bridge_skips_faults_that_it_cannot_show():
     def reason(name, hfov):
-        reports = SimpleNamespace(cameras=[{"type": RGB, "hfov": hfov}], first={})
+        reports = SimpleNamespace(cameras=[{"type": RGB, "hfov": hfov}], unread=[], first={})
         return why_not_applicable(Corruption(name, 0.6), reports)
 
     assert reason("camera_roll", 90.0) == reason("frozen_frame", None) == ""

@@ -57,6 +57,7 @@ def test_attack_finds_nothing_in_a_single_clause():
     assert Segmenter(network().arrays()).attack(values(1), 0.5)[0] == -np.inf
 
 
+@pytest.mark.slow
 def test_train_finds_marked_clauses():
     rng = np.random.default_rng(0)
     examples = []
