@@ -40,6 +40,7 @@ def skips(tmp_path):
     return f"{sys.executable} {file}"
 
 
+@pytest.mark.slow
 def test_attempt_begins_in_an_empty_folder(run, skips, tmp_path):
     out = tmp_path / "o"
     broken = run(out, "conditions=[clean]", f"{skips} {{out}}/results.json die")
@@ -207,6 +208,7 @@ def test_wanted_rejects_episodes_that_are_not_pairs(monkeypatch, episodes):
         mitigate_hook.wanted(episodes)
 
 
+@pytest.mark.slow
 def test_run_explains_surplus_episodes(run, tmp_path, monkeypatch):
     from mitigate.bridge import plan
 

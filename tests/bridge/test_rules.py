@@ -75,6 +75,7 @@ def test_rows_count_a_failure_without_stop(run, tmp_path, far):
         assert sorted(successes) == [0.0, 1.0]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("first", ["rule=objectnav", ""])
 def test_run_rejects_a_rule_that_judges_only_some_episodes(run, tmp_path, first):
     file = tmp_path / "nav.py"

@@ -102,6 +102,7 @@ def test_recipes_draw_no_unseen_corruption(option):
     assert not set().union(*map(drawn, matches)) & set(UNSEEN_NAMES)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", SCHEDULES)
 def test_schedules_draw_unseen_corruptions_only_by_name(name):
     options = [f"schedule={name}", "recipe=imitation"]

@@ -61,6 +61,7 @@ def test_a_folder_source_names_the_env_for_datasets(folder):
         FolderFrames(str(folder))
 
 
+@pytest.mark.slow
 def test_recipe_encoder_trains_on_a_dataset(folder, tmp_path):
     options = [
         *("recipe=encoder", "env=lerobot", f"env.path={folder}", f"env.camera={FRONT}"),

@@ -157,6 +157,7 @@ def noisy_agent(random, count: int) -> tuple[np.ndarray, np.ndarray, list[float]
     return limits, noise, severities
 
 
+@pytest.mark.slow
 def test_intervals_cover_the_true_critical_severity(monkeypatch):
     """SR at s > 0 is 0.81 P(limit > s) + 0.05 and clean SR is 0.894, so half is lost at 0.5048."""
     fewer = partial(resampled_means, resamples=500)

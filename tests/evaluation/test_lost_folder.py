@@ -87,6 +87,7 @@ def config(tmp_path, monkeypatch):
     return compose
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "agent", ["Removes", "RemovesAndMakes", "RemovesLock", "RemovesRows", "RemovesNotes"]
 )

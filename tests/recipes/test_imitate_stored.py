@@ -88,6 +88,7 @@ def test_batch_trains_the_planner_only(folder):
     assert moved == {"planner"} and torch.isfinite(losses["loss"])
 
 
+@pytest.mark.slow
 def test_variants_are_corrupted_scenes_beside_the_clean_one(tmp_path):
     """Each variant is stored once with one corruption, and the schedule sets the fraction of clean
     rollouts."""

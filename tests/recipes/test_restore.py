@@ -31,6 +31,7 @@ def recipe_of(sensor: str = RGB, names=("foreign_object", "missing_data"), **opt
     return assemble(Restore, restorer, **world, modality=sensor, schedule=schedule, **how)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("sensor", "left"), [(RGB, 0.8), (DEPTH, 0.6)])
 def test_training_takes_a_corruption_away(tmp_path, sensor, left):
     recipe = recipe_of(sensor, panoramas=2, single=0.0)

@@ -248,6 +248,7 @@ def test_harden_takes_a_model_of_stable_baselines(tmp_path):
     assert result.policy.policy is not model.policy
 
 
+@pytest.mark.slow
 def test_harden_names_frames_that_were_lost(tmp_path):
     mitigate.harden(trained(), world, listed=FEW, out=tmp_path, **SHORT)
     for file in (tmp_path / "frames").iterdir():
@@ -269,6 +270,7 @@ def test_harden_rejects_another_policy_in_the_folder(tmp_path):
     assert (tmp_path / "rows.jsonl").read_bytes() == rows
 
 
+@pytest.mark.slow
 def test_harden_rejects_another_world_in_the_folder(tmp_path):
     mitigate.harden(trained(), world, listed=FEW, out=tmp_path, **SHORT)
     with pytest.raises(ValueError, match="another world"):

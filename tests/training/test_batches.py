@@ -202,6 +202,7 @@ def _no_job():
     raise OSError("no job can be made of this")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("fatal", "kind", "message"),
     [

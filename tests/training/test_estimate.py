@@ -40,6 +40,7 @@ def training(recipe: str, agent: str, *options: str) -> TrainConfig:
     return cfg
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("recipe", "agent", "minutes"), TIMED)
 def test_estimate_matches_measured_times(reference, tmp_path, recipe, agent, minutes):
     seconds = estimate.estimate(training(recipe, agent), tmp_path)

@@ -99,6 +99,7 @@ def test_evaluations_can_be_selected(tmp_path, option):
         assert "conditions=[clean,low_light_noise,missing_data]" in cell.commands(cfg)[-1][1]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("option", "message"),
     [

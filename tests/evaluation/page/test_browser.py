@@ -297,6 +297,7 @@ def test_see_leads_from_a_row_to_its_walk(page, report):
     assert page.ask("document.activeElement.id") == "walk-0"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "other",
     [{"severity": 0.3}, {"seed": 1}, {"split": "val_seen"}, {"rule": "view points"}, {"hash": "c"}],

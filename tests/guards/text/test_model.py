@@ -303,6 +303,7 @@ def test_training_reads_chats_of_the_user(model, tmp_path):
     assert recipe.pair(3) == Pair("PLEASE go.", "Go.", "chat")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("value, chats, files", [("cf", 0.25, 0.25), ("c", 0.5, 0), ("f", 0, 0.5)])
 def test_share_covers_chats_and_files_together(model, value, chats, files):
     recipe = SafeguardLora(model, share=0.5)
