@@ -11,11 +11,12 @@ import unicodedata
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-# Opening and closing marks that no route needs; the text between them is one piece.
+# Opening and closing marks that no route needs; the text between them is one piece. It has at most
+# 4,000 characters (heuristic), because searching to the end from each mark takes quadratic time.
 _BLOCK = re.compile(
-    r"<!--.*?(?:-->|$)|/\*.*?(?:\*/|$)|```.*?(?:```|$)|\{\{.*?\}\}"
-    r"|<(?P<tag>[a-zA-Z][\w:-]*)[^<>]*>.*?</\s*(?P=tag)\s*>"
-    r"|\[(?P<mark>[A-Za-z_]+)\].*?\[/\s*(?P=mark)\s*\]"
+    r"<!--.*?(?:-->|$)|/\*.*?(?:\*/|$)|```.*?(?:```|$)|\{\{.{0,4000}?\}\}"
+    r"|<(?P<tag>[a-zA-Z][\w:-]*)[^<>]*>.{0,4000}?</\s*(?P=tag)\s*>"
+    r"|\[(?P<mark>[A-Za-z_]+)\].{0,4000}?\[/\s*(?P=mark)\s*\]"
     r"|(?<![.\-\w])[.\-]{1,5}(?:[ /|]+[.\-]{1,5}){3,}(?![.\-\w])"
     r"|<\|[^<>|]*\|>|</[A-Za-z][^<>\n]{0,60}>|<[A-Za-z][\w:-]*(?:\s[^<>\n]{0,200}|/)>|<<[^<>]*>>"
     r"|</?(?:system|user|assistant|admin|human|tool|inst|prompt|s|im_start|im_end)>",
