@@ -76,8 +76,8 @@ def folder_name(condition: str, severity: float, repeat: int = 0) -> str:
 
 
 def write_done(folder: Path, entries: Mapping[str, Any]) -> None:
-    """Write ``done.json``: Write ``entries`` and a checksum of the events. After this, the
-    condition is finished.
+    """Write ``entries`` and a checksum of the events to ``done.json``. After this, the condition is
+    finished.
     """
     seal = {"bytes": (folder / EVENTS).stat().st_size, "sha256": sha256(folder / EVENTS)}
     with atomic_text(folder / DONE) as file:
@@ -324,7 +324,7 @@ class Cell:
         )
 
     def summary(self) -> str:
-        """Return its progress: Return a summary such as "41 episodes, success 58.5 (own: ...), 2
+        """Return a summary such as "41 episodes, success 58.5 (own: ...), 2
         without a path ...".
         """
         reports, rows = self.reports(), self.rows()

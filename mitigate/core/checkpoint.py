@@ -1,4 +1,4 @@
-"""Read and write weights: Read and write weights: ``model.safetensors`` in a folder, or a single
+"""Read and write weights: ``model.safetensors`` in a folder, or a single
 safetensors file.
 
 A folder has a manifest (``folders.py``); a single file has a sidecar with its sha256

@@ -22,7 +22,7 @@ def unknown(what: str, name: object, allowed: Iterable[str]) -> str:
 
 
 def counted(count: int, what: str) -> str:
-    """Return e.g. Return a count with its noun, such as ``1 episode`` or ``40 episodes``."""
+    """Return a count with its noun, such as ``1 episode`` or ``40 episodes``."""
     return f"{count} {what}" if count == 1 else f"{count} {what}s"
 
 

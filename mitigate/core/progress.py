@@ -90,7 +90,7 @@ class Progress:
         say(text)
 
     def line(self) -> str:
-        """Return e.g. Return a line such as ``train: step 120/700, 3.1 steps/s, 3 min 10 s left,
+        """Return a line such as ``train: step 120/700, 3.1 steps/s, 3 min 10 s left,
         loss 0.31``.
         """
         elapsed = time.monotonic() - self._began
@@ -123,7 +123,7 @@ def say(text: str) -> None:
 
 
 def duration(seconds: float) -> str:
-    """Return e.g. Format a duration: ``8 s``, ``3 min 10 s``, ``1 h 05 min`` or (if infinite)
+    """Format a duration: ``8 s``, ``3 min 10 s``, ``1 h 05 min`` or (if infinite)
     ``unknown time``.
     """
     if math.isinf(seconds):

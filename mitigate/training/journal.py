@@ -1,4 +1,4 @@
-"""Log a run: Log TensorBoard scalars and pictures, and show a progress bar or plain lines."""
+"""Log TensorBoard scalars and pictures, and show a progress bar or plain lines."""
 
 from __future__ import annotations
 
