@@ -9,11 +9,13 @@ from pathlib import Path
 from mitigate.core.names import unknown
 from mitigate.corruptions.lerobot import is_dataset
 from mitigate.worlds.recorded.bags import Bag
-from mitigate.worlds.recorded.folders import Frames, is_drive, is_tum, open_folder
+from mitigate.worlds.recorded.drive_files import Frames
+from mitigate.worlds.recorded.folders import is_drive, open_folder
 from mitigate.worlds.recorded.lerobot import LerobotEpisode, open_episodes
 from mitigate.worlds.recorded.recording import Driven, RecordedWorld, Recording, Step, kinds, load
 from mitigate.worlds.recorded.source import MAX_HFOV, MIN_HFOV, Source
 from mitigate.worlds.recorded.topics import Topics
+from mitigate.worlds.recorded.tum import is_tum
 
 __all__ = [
     "Driven",

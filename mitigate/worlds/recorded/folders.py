@@ -4,9 +4,7 @@ Three layouts are supported:
 
 * ``recording.json`` and ``<scene>/<episode>/<camera>/000000.png``: the layout of ``mitigate run
   record=``;
-* ``rgb.txt``, ``depth.txt``, ``groundtruth.txt``: the layout of the TUM RGB-D benchmark (Sturm et
-  al., IROS 2012), which most tools for RGB-D cameras write; ``associations.txt`` may replace both
-  lists;
+* ``rgb.txt``, ``depth.txt``, ``groundtruth.txt``: the layout of TUM RGB-D (``tum.py``);
 * ``rgb/`` and ``depth/``: one file per step, sorted by name. ``poses.csv`` is optional and has
   one line "x,y,heading" per step (metres, radians, forward is (-sin h, cos h)).
 
@@ -15,10 +13,8 @@ The last two layouts may contain the instruction as ``instruction.txt``.
 
 from __future__ import annotations
 
-import math
 import warnings
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -31,17 +27,22 @@ from mitigate.core.observation import DEPTH, RGB, Z_MAX
 from mitigate.corruptions import frame_files
 from mitigate.corruptions.frame_files import SUFFIXES, natural
 from mitigate.worlds.episodes import from_vlnce
+from mitigate.worlds.recorded.drive_files import (
+    INSTRUCTION,
+    Frames,
+    assumed_lens,
+    number,
+    read_rows,
+)
 from mitigate.worlds.recorded.source import (
     MAX_FRAME_GAP,
     MAX_INSTANTS,
     MAX_INSTRUCTION_BYTES,
     Lens,
-    Source,
-    match_times,
-    plan_pose,
     read_instruction,
     read_text,
 )
+from mitigate.worlds.recorded.tum import ASSOCIATIONS, LISTS, TRAJECTORY, is_tum, read_tum
 
 # The layout of `mitigate run record=`.
 CAMERAS = "cameras.json"
@@ -49,72 +50,9 @@ STEPS = "steps.jsonl"
 EPISODE = "episode.json"
 # The layout with rgb/ and depth/.
 POSES = "poses.csv"
-INSTRUCTION = "instruction.txt"
-# The layout of the TUM RGB-D benchmark.
-LISTS = ("rgb.txt", "depth.txt")
-# both lists in one file, written by associate.py of that benchmark
-ASSOCIATIONS = "associations.txt"
-TRAJECTORY = "groundtruth.txt"
-TUM_UNIT = 1 / 5000  # metres per count (TUM RGB-D benchmark, file formats)
-# TUM's default calibration: width 640 pixels, focal length 525
-TUM_HFOV = math.degrees(2 * math.atan(320 / 525))
-
 FIX = "Copy it again, or leave this drive out."
 MAX_NUMBER = 1e6  # maximum of a number in a recording, in metres or degrees (heuristic)
 MAX_HEADING = 50.0  # in radians (heuristic): eight turns; larger headings must be in degrees
-
-
-@dataclass
-class Frames(Source):
-    """A drive in files.
-
-    Attributes:
-        files: One file per time step, by camera.
-        unit: Metres per count of 16-bit depth.
-        unit_given: Whether the user or the recording states ``unit``; otherwise it is a default.
-    """
-
-    files: Mapping[str, Sequence[Path]]
-    unit: float
-    unit_given: bool = True
-
-    def __post_init__(self) -> None:
-        assumed = "" if self.unit_given else " (assumed)"
-        self.formats = {
-            name: f"{name}, 16-bit PNG, {self.unit:g} metres per count{assumed}"
-            if self._is_counted(name)
-            else f"{name}, {files[0].suffix[1:].upper()}"
-            for name, files in self.files.items()
-        }
-
-    def _is_counted(self, camera: str) -> bool:
-        """Return whether a camera's files hold depth in counts of ``unit``."""
-        is_npy = self.files[camera][0].suffix.lower() == ".npy"
-        return self.cameras[camera].kind == DEPTH and not is_npy
-
-    def depth_advice(self) -> str:
-        if any(map(self._is_counted, self.files)):
-            return "Set unit= (metres per count), such as unit=0.0001."
-        return super().depth_advice()
-
-    def frames(self, chosen: Sequence[int]) -> Iterator[dict[str, np.ndarray]]:
-        for index in chosen:
-            yield {name: self._read(name, files[index]) for name, files in self.files.items()}
-
-    def _read(self, camera: str, path: Path) -> np.ndarray:
-        try:
-            frame = frame_files.read(path, self.unit)
-        except (OSError, ValueError) as error:
-            raise ValueError(f"{path} {error}. Fix it, or remove it from the drive.") from error
-        kind = self.cameras[camera].kind
-        if (frame.shape[-1] == 3) != (kind == RGB):
-            raise ValueError(
-                f"{path} must be a {kind} frame, as the others of camera {camera!r}. Replace it."
-            )
-        if kind == RGB:
-            return frame
-        depth = frame[..., 0]
-        return np.where(np.isfinite(depth) & (depth > 0), depth, 0).astype(np.float32)
 
 
 def open_folder(
@@ -153,7 +91,7 @@ def open_folder(
             "cameras=."
         )
     if is_tum(path):
-        return [_read_tum(path, hfov, unit, MAX_FRAME_GAP if tolerance is None else tolerance)]
+        return [read_tum(path, hfov, unit, MAX_FRAME_GAP if tolerance is None else tolerance)]
     if (path / TRAJECTORY).is_file():
         raise ValueError(
             f"{path} has {TRAJECTORY}, but lacks the lists of its frames. Add {' or '.join(LISTS)}."
@@ -164,11 +102,6 @@ def open_folder(
 def is_drive(folder: Path) -> bool:
     """Return whether a folder contains frames in one of the three layouts."""
     return any((folder / name).exists() for name in (RECORDING, *LISTS, ASSOCIATIONS, RGB, DEPTH))
-
-
-def is_tum(folder: Path) -> bool:
-    """Return whether a folder has the layout of TUM RGB-D."""
-    return any((folder / name).is_file() for name in (*LISTS, ASSOCIATIONS))
 
 
 def _read_recorded(
@@ -245,7 +178,7 @@ def _read_lens(name: str, frame: Path, described: Mapping[str, Any], hfov: float
     camera = described.get(name)
     file = frame.parent.parent / CAMERAS
     if camera is None:
-        return _assumed_lens(frame_files.modality(frame), hfov)
+        return assumed_lens(frame_files.modality(frame), hfov)
     if not isinstance(camera, dict) or camera.get("kind") not in (RGB, DEPTH):
         raise ValueError(
             f"{file}: kind of camera {name} must be {RGB} or {DEPTH}, got {short(camera)}. {FIX}"
@@ -259,11 +192,6 @@ def _read_lens(name: str, frame: Path, described: Mapping[str, Any], hfov: float
             f"{file} contains the field of view of camera {name} ({recorded_hfov:g}). Remove hfov=."
         )
     return Lens(camera["kind"], recorded_hfov or hfov or 0.0, yaw or 0.0)
-
-
-def _assumed_lens(kind: str, hfov: float | None, default: float = 90.0) -> Lens:
-    """Return a lens with a field of view from the user, or with a default."""
-    return Lens(kind, default if hfov is None else hfov, assumed=hfov is None)
 
 
 def _number_or_none(values: Mapping[str, Any], key: str, file: Path) -> float | None:
@@ -337,7 +265,7 @@ def _read_simple(path: Path, hfov: float | None, unit: float | None) -> Frames:
     return Frames(
         name=path.name,
         instruction=read_instruction(path / INSTRUCTION),
-        cameras={kind: _assumed_lens(kind, hfov) for kind in files},
+        cameras={kind: assumed_lens(kind, hfov) for kind in files},
         files=files,
         times=np.arange(len(stems[0])) * 1.0,
         poses=poses,
@@ -350,7 +278,7 @@ def _read_simple(path: Path, hfov: float | None, unit: float | None) -> Frames:
 
 def _read_poses(file: Path) -> np.ndarray:
     """Read lines "x,y,heading", with or without a header line, as float64 [N, 3]."""
-    rows = list(_read_rows(file, 3, ","))
+    rows = list(read_rows(file, 3, ","))
     if rows and rows[0][1] == ["x", "y", "heading"]:
         rows = rows[1:]
     poses = np.array([[number(word, file, line) for word in row] for line, row in rows])
@@ -389,139 +317,3 @@ def _read_lines(file: Path) -> list[Any]:
                 problem = f"{file}, line {line_number}, cannot be read ({error!s:.200})."
                 raise ValueError(problem) from error
     return records
-
-
-def _read_tum(path: Path, hfov: float | None, unit: float | None, tolerance: float) -> Frames:
-    """Read a drive in the layout of TUM RGB-D.
-
-    A time step consists of an RGB image with the depth image and the pose that are nearest in time.
-    The heading is the direction of the camera's optical axis.
-
-    Raises:
-        ValueError: A file is damaged, or no frame of one list is near in time to frames of the
-            others.
-    """
-    if any((path / name).is_file() for name in LISTS):
-        listed = {kind: _read_list(path, f"{kind}.txt") for kind in (RGB, DEPTH)}
-    else:
-        listed = _read_associations(path)
-    listed = {kind: lines for kind, lines in listed.items() if lines}
-    if not listed:
-        raise ValueError(f"{path}: its lists name no image. Add lines to {' or '.join(LISTS)}.")
-    stamps = {kind: [time for time, _ in lines] for kind, lines in listed.items()}
-    has_poses = (path / TRAJECTORY).is_file()
-    table = _read_trajectory(path / TRAJECTORY) if has_poses else None
-    instants = match_times(stamps, table, tolerance)
-    if not len(instants.times):
-        raise ValueError(f"{path}: {instants.mismatch(tolerance)}")
-    return Frames(
-        name=path.name,
-        instruction=read_instruction(path / INSTRUCTION),
-        cameras={kind: _assumed_lens(kind, hfov, TUM_HFOV) for kind in listed},
-        times=instants.times,
-        poses=instants.poses,
-        stepped=False,
-        dropped=instants.dropped,
-        files={kind: [listed[kind][i][1] for i in rows] for kind, rows in instants.frames.items()},
-        unit=TUM_UNIT if unit is None else unit,
-        unit_given=unit is not None,
-    )
-
-
-def _read_list(path: Path, name: str) -> list[tuple[float, Path]]:
-    """Read the lines of a list of images as (time, file); raise ValueError for a file outside the
-    folder.
-    """
-    return sorted(_read_entry(path, name, line, row) for line, row in _read_rows(path / name, 2))
-
-
-def _read_associations(path: Path) -> dict[str, list[tuple[float, Path]]]:
-    """Read lines "time file time file"; the files of the first line tell RGB from depth.
-
-    Raises:
-        ValueError: A file lies outside the folder, or both files have the same kind.
-    """
-    rows = list(_read_rows(path / ASSOCIATIONS, 4))
-    pairs = [
-        [_read_entry(path, ASSOCIATIONS, n, row[at : at + 2]) for n, row in rows] for at in (0, 2)
-    ]
-    try:
-        listed = {frame_files.modality(pair[0][1]): sorted(pair) for pair in pairs if pair}
-    except frame_files.LeftOutError as error:
-        raise ValueError(
-            f"{path / ASSOCIATIONS}: its first line names a file that {error}."
-        ) from error
-    if rows and len(listed) != 2:
-        raise ValueError(
-            f"{path / ASSOCIATIONS} must name one RGB and one depth image per line. Correct it."
-        )
-    return {kind: listed[kind] for kind in (RGB, DEPTH) if listed}
-
-
-def _read_entry(path: Path, name: str, line: int, row: Sequence[str]) -> tuple[float, Path]:
-    """Return the time and the file in a line of a list."""
-    file = path / row[1]
-    if "\0" in row[1] or path.resolve() not in file.resolve().parents:
-        raise ValueError(f"{path / name}, line {line}, names a file outside of {path}.")
-    return number(row[0], path / name, line), file
-
-
-def _read_trajectory(file: Path) -> np.ndarray:
-    """Read lines "time x y z qx qy qz qw" as float64 [N, 4], (time, x, y, heading).
-
-    Raises:
-        ValueError: Most poses face up or down. This happens if the poses describe a robot frame (x
-            forward) instead of a camera's optical axis.
-    """
-    rows = []
-    for line, row in _read_rows(file, 8):
-        numbers = [number(word, file, line) for word in row[:8]]
-        pose = plan_pose(numbers[1], numbers[2], numbers[4:], (0.0, 0.0, 1.0))
-        rows.append((numbers[0], *pose))
-    if not rows:
-        raise ValueError(f"{file} has no pose. Add poses, or delete it to read without poses.")
-    invalid = sum(math.isnan(row[3]) for row in rows)
-    if 2 * invalid > len(rows):
-        raise ValueError(
-            f"{file}: {invalid} of {len(rows)} poses face up or down, or are not rotations. Poses "
-            "must be of the camera's optical axis (z ahead, x right, y down), with z up in the "
-            "room. Convert poses of a robot (x ahead), or delete the file to read without poses."
-        )
-    return np.array(sorted(rows))
-
-
-def _read_rows(
-    file: Path, columns: int, separator: str | None = None
-) -> Iterator[tuple[int, list[str]]]:
-    """Yield the number and the words of each line that is not a comment.
-
-    A line may have more than ``columns`` words, unless there is a ``separator``.
-    """
-    if not file.is_file():
-        return
-    for line_number, line in enumerate(read_text(file).splitlines(), 1):
-        if not line.strip() or line.lstrip().startswith("#"):
-            continue
-        row = [word.strip() for word in line.split(separator)]
-        if len(row) < columns or (separator and len(row) > columns):
-            raise ValueError(
-                f"{file}, line {line_number}, must have {columns} words, got {len(row)}."
-            )
-        if line_number > MAX_INSTANTS:
-            raise ValueError(f"{file} must have at most {MAX_INSTANTS} lines. Cut the recording.")
-        yield line_number, row
-
-
-def number(word: str, file: Path, line: int) -> float:
-    """Parse a finite number.
-
-    Raises:
-        ValueError: The word is not a finite number; the message names file and line.
-    """
-    try:
-        value = float(word)
-    except ValueError:
-        value = math.nan
-    if not math.isfinite(value):
-        raise ValueError(f"{file}, line {line}: must be a finite number, got {word[:40]!r}.")
-    return value

@@ -1,0 +1,111 @@
+"""A drive that is stored as one file per frame, and readers of the lists beside the frames."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from mitigate.core.observation import DEPTH, RGB
+from mitigate.corruptions import frame_files
+from mitigate.worlds.recorded.source import MAX_INSTANTS, Lens, Source, read_text
+
+INSTRUCTION = "instruction.txt"
+
+
+@dataclass
+class Frames(Source):
+    """A drive in files.
+
+    Attributes:
+        files: One file per time step, by camera.
+        unit: Metres per count of 16-bit depth.
+        unit_given: Whether the user or the recording states ``unit``; otherwise it is a default.
+    """
+
+    files: Mapping[str, Sequence[Path]]
+    unit: float
+    unit_given: bool = True
+
+    def __post_init__(self) -> None:
+        assumed = "" if self.unit_given else " (assumed)"
+        self.formats = {
+            name: f"{name}, 16-bit PNG, {self.unit:g} metres per count{assumed}"
+            if self._is_counted(name)
+            else f"{name}, {files[0].suffix[1:].upper()}"
+            for name, files in self.files.items()
+        }
+
+    def _is_counted(self, camera: str) -> bool:
+        """Return whether a camera's files hold depth in counts of ``unit``."""
+        is_npy = self.files[camera][0].suffix.lower() == ".npy"
+        return self.cameras[camera].kind == DEPTH and not is_npy
+
+    def depth_advice(self) -> str:
+        if any(map(self._is_counted, self.files)):
+            return "Set unit= (metres per count), such as unit=0.0001."
+        return super().depth_advice()
+
+    def frames(self, chosen: Sequence[int]) -> Iterator[dict[str, np.ndarray]]:
+        for index in chosen:
+            yield {name: self._read(name, files[index]) for name, files in self.files.items()}
+
+    def _read(self, camera: str, path: Path) -> np.ndarray:
+        try:
+            frame = frame_files.read(path, self.unit)
+        except (OSError, ValueError) as error:
+            raise ValueError(f"{path} {error}. Fix it, or remove it from the drive.") from error
+        kind = self.cameras[camera].kind
+        if (frame.shape[-1] == 3) != (kind == RGB):
+            raise ValueError(
+                f"{path} must be a {kind} frame, as the others of camera {camera!r}. Replace it."
+            )
+        if kind == RGB:
+            return frame
+        depth = frame[..., 0]
+        return np.where(np.isfinite(depth) & (depth > 0), depth, 0).astype(np.float32)
+
+
+def assumed_lens(kind: str, hfov: float | None, default: float = 90.0) -> Lens:
+    """Return a lens with a field of view from the user, or with a default."""
+    return Lens(kind, default if hfov is None else hfov, assumed=hfov is None)
+
+
+def read_rows(
+    file: Path, columns: int, separator: str | None = None
+) -> Iterator[tuple[int, list[str]]]:
+    """Yield the number and the words of each line that is not a comment.
+
+    A line may have more than ``columns`` words, unless there is a ``separator``.
+    """
+    if not file.is_file():
+        return
+    for line_number, line in enumerate(read_text(file).splitlines(), 1):
+        if not line.strip() or line.lstrip().startswith("#"):
+            continue
+        row = [word.strip() for word in line.split(separator)]
+        if len(row) < columns or (separator and len(row) > columns):
+            raise ValueError(
+                f"{file}, line {line_number}, must have {columns} words, got {len(row)}."
+            )
+        if line_number > MAX_INSTANTS:
+            raise ValueError(f"{file} must have at most {MAX_INSTANTS} lines. Cut the recording.")
+        yield line_number, row
+
+
+def number(word: str, file: Path, line: int) -> float:
+    """Parse a finite number.
+
+    Raises:
+        ValueError: The word is not a finite number; the message names file and line.
+    """
+    try:
+        value = float(word)
+    except ValueError:
+        value = math.nan
+    if not math.isfinite(value):
+        raise ValueError(f"{file}, line {line}: must be a finite number, got {word[:40]!r}.")
+    return value

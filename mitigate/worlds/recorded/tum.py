@@ -1,0 +1,136 @@
+"""Read drives in the layout of the TUM RGB-D benchmark (Sturm et al., IROS 2012).
+
+A folder has ``rgb.txt``, ``depth.txt`` and ``groundtruth.txt``; ``associations.txt`` may replace
+both lists. Most tools for RGB-D cameras write this layout.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+
+from mitigate.core.observation import DEPTH, RGB
+from mitigate.corruptions import frame_files
+from mitigate.worlds.recorded.drive_files import (
+    INSTRUCTION,
+    Frames,
+    assumed_lens,
+    number,
+    read_rows,
+)
+from mitigate.worlds.recorded.source import match_times, plan_pose, read_instruction
+
+LISTS = ("rgb.txt", "depth.txt")
+# both lists in one file, written by associate.py of that benchmark
+ASSOCIATIONS = "associations.txt"
+TRAJECTORY = "groundtruth.txt"
+TUM_UNIT = 1 / 5000  # metres per count (TUM RGB-D benchmark, file formats)
+# TUM's default calibration: width 640 pixels, focal length 525
+TUM_HFOV = math.degrees(2 * math.atan(320 / 525))
+
+
+def is_tum(folder: Path) -> bool:
+    """Return whether a folder has the layout of TUM RGB-D."""
+    return any((folder / name).is_file() for name in (*LISTS, ASSOCIATIONS))
+
+
+def read_tum(path: Path, hfov: float | None, unit: float | None, tolerance: float) -> Frames:
+    """Read a drive in the layout of TUM RGB-D.
+
+    A time step consists of an RGB image with the depth image and the pose that are nearest in time.
+    The heading is the direction of the camera's optical axis.
+
+    Raises:
+        ValueError: A file is damaged, or no frame of one list is near in time to frames of the
+            others.
+    """
+    if any((path / name).is_file() for name in LISTS):
+        listed = {kind: _read_list(path, f"{kind}.txt") for kind in (RGB, DEPTH)}
+    else:
+        listed = _read_associations(path)
+    listed = {kind: lines for kind, lines in listed.items() if lines}
+    if not listed:
+        raise ValueError(f"{path}: its lists name no image. Add lines to {' or '.join(LISTS)}.")
+    stamps = {kind: [time for time, _ in lines] for kind, lines in listed.items()}
+    has_poses = (path / TRAJECTORY).is_file()
+    table = _read_trajectory(path / TRAJECTORY) if has_poses else None
+    instants = match_times(stamps, table, tolerance)
+    if not len(instants.times):
+        raise ValueError(f"{path}: {instants.mismatch(tolerance)}")
+    return Frames(
+        name=path.name,
+        instruction=read_instruction(path / INSTRUCTION),
+        cameras={kind: assumed_lens(kind, hfov, TUM_HFOV) for kind in listed},
+        times=instants.times,
+        poses=instants.poses,
+        stepped=False,
+        dropped=instants.dropped,
+        files={kind: [listed[kind][i][1] for i in rows] for kind, rows in instants.frames.items()},
+        unit=TUM_UNIT if unit is None else unit,
+        unit_given=unit is not None,
+    )
+
+
+def _read_list(path: Path, name: str) -> list[tuple[float, Path]]:
+    """Read the lines of a list of images as (time, file); raise ValueError for a file outside the
+    folder.
+    """
+    return sorted(_read_entry(path, name, line, row) for line, row in read_rows(path / name, 2))
+
+
+def _read_associations(path: Path) -> dict[str, list[tuple[float, Path]]]:
+    """Read lines "time file time file"; the files of the first line tell RGB from depth.
+
+    Raises:
+        ValueError: A file lies outside the folder, or both files have the same kind.
+    """
+    rows = list(read_rows(path / ASSOCIATIONS, 4))
+    pairs = [
+        [_read_entry(path, ASSOCIATIONS, n, row[at : at + 2]) for n, row in rows] for at in (0, 2)
+    ]
+    try:
+        listed = {frame_files.modality(pair[0][1]): sorted(pair) for pair in pairs if pair}
+    except frame_files.LeftOutError as error:
+        raise ValueError(
+            f"{path / ASSOCIATIONS}: its first line names a file that {error}."
+        ) from error
+    if rows and len(listed) != 2:
+        raise ValueError(
+            f"{path / ASSOCIATIONS} must name one RGB and one depth image per line. Correct it."
+        )
+    return {kind: listed[kind] for kind in (RGB, DEPTH) if listed}
+
+
+def _read_entry(path: Path, name: str, line: int, row: Sequence[str]) -> tuple[float, Path]:
+    """Return the time and the file in a line of a list."""
+    file = path / row[1]
+    if "\0" in row[1] or path.resolve() not in file.resolve().parents:
+        raise ValueError(f"{path / name}, line {line}, names a file outside of {path}.")
+    return number(row[0], path / name, line), file
+
+
+def _read_trajectory(file: Path) -> np.ndarray:
+    """Read lines "time x y z qx qy qz qw" as float64 [N, 4], (time, x, y, heading).
+
+    Raises:
+        ValueError: Most poses face up or down. This happens if the poses describe a robot frame (x
+            forward) instead of a camera's optical axis.
+    """
+    rows = []
+    for line, row in read_rows(file, 8):
+        numbers = [number(word, file, line) for word in row[:8]]
+        pose = plan_pose(numbers[1], numbers[2], numbers[4:], (0.0, 0.0, 1.0))
+        rows.append((numbers[0], *pose))
+    if not rows:
+        raise ValueError(f"{file} has no pose. Add poses, or delete it to read without poses.")
+    invalid = sum(math.isnan(row[3]) for row in rows)
+    if 2 * invalid > len(rows):
+        raise ValueError(
+            f"{file}: {invalid} of {len(rows)} poses face up or down, or are not rotations. Poses "
+            "must be of the camera's optical axis (z ahead, x right, y down), with z up in the "
+            "room. Convert poses of a robot (x ahead), or delete the file to read without poses."
+        )
+    return np.array(sorted(rows))
