@@ -280,6 +280,7 @@ def test_wrong_option_is_explained_in_one_paragraph(monkeypatch, capsys, option,
         assert word in text
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("options", "words"),
     [

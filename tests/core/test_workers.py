@@ -173,6 +173,7 @@ print("ended by", ending.number)
 """
 
 
+@pytest.mark.slow
 def test_signal_to_all_processes_is_handled_by_the_parent(tmp_path):
     """SLURM and ``timeout`` send SIGTERM to all processes; killed workers once looked like a lack
     of memory."""

@@ -205,6 +205,7 @@ def test_instruction_without_a_word_is_rejected(text, name):
         corrupt_instruction(text, name, 0.5, KEY)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", SPOKEN)
 def test_long_instruction_with_emoji_and_controls_is_corrupted(name):
     text = "Turn left 🙂 at the\x07 sofa and go\u200b on. " * 1100

@@ -310,6 +310,7 @@ def test_white_box_is_not_applicable_without_prompt():
     assert prompted["**PRS-SR (Instruction)**"][0].startswith("**0.56**")
 
 
+@pytest.mark.slow
 def test_pictures_show_what_was_measured(tmp_path):
     records = column(8, ALL, 0.3) + column(8, ALL, 0.6) + column(6, ALL, 0.6, **HARD)
     records = [r for r in records if r["corruption"] != "multipath"]

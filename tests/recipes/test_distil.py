@@ -133,6 +133,7 @@ def test_teacher_and_student_answer_over_the_same_candidates(recipe, batch):
     )
 
 
+@pytest.mark.slow
 def test_loss_without_teacher_terms_is_imitation(teacher, tmp_path):
     shas = []
     for kind in ("imitation", "distillation"):

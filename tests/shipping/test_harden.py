@@ -259,6 +259,7 @@ def test_harden_names_frames_that_were_lost(tmp_path):
         mitigate.harden(trained(), world, listed=FEW, out=tmp_path, **SHORT)
 
 
+@pytest.mark.slow
 def test_harden_rejects_another_policy_in_the_folder(tmp_path):
     mitigate.harden(trained(), world, listed=FEW, out=tmp_path, **SHORT)
     other = trained()
@@ -279,6 +280,7 @@ def test_harden_rejects_another_world_in_the_folder(tmp_path):
         )
 
 
+@pytest.mark.slow
 def test_harden_leaves_out_corruptions_of_sensors_that_are_not_read(tmp_path, capsys):
     options = SHORT | {"suite": ["low_light", "missing_data"]}
     result = mitigate.harden(trained(), world, listed=FEW, out=tmp_path, **options)

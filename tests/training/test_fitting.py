@@ -54,6 +54,7 @@ def refusal(folder, *options: str) -> str:
     return str(caught.value)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("recipe", "agent", "words"),
     [
