@@ -57,6 +57,8 @@ class Agent:
             these attributes, and all attributes that a new agent lacks.
         own_config_only: constructor arguments that name code or files. A config that comes with
             weights must not set these arguments.
+        brings_weights: whether the constructor loads pretrained weights, so that the agent can be
+            evaluated without a checkpoint.
     """
 
     views: int | None = None
@@ -72,6 +74,7 @@ class Agent:
     plain_walks: bool = True
     run_state: Sequence[str] = ()
     own_config_only: Sequence[str] = ()
+    brings_weights: bool = False
 
     def reset(self, instruction: str) -> None:
         """Start an episode."""
@@ -104,6 +107,14 @@ class Agent:
             metres: distance moved forward.
             radians: angle turned to the left.
         """
+
+    def episode_figures(self, memory: Any) -> Mapping[str, float]:
+        """Return additional numbers for the row of a finished episode, by name.
+
+        Args:
+            memory: the episode's memory from ``begin``, or None for the episode of ``reset``.
+        """
+        return {}
 
     def remembering(self) -> AbstractContextManager:
         """Return a context in which identical frames are encoded only once; actions do not

@@ -22,8 +22,7 @@ from mitigate.core.contracts import read
 from mitigate.core.files import find
 from mitigate.core.names import unknown
 from mitigate.core.options import values
-
-LORA = "adapter_model.safetensors"  # PEFT's name
+from mitigate.core.pretrained import PEFT_WEIGHTS
 
 
 def build_agent(
@@ -116,8 +115,8 @@ def stored_settings(node: Mapping[str, Any], weights: str) -> dict[str, Any]:
             a value that the agent does not accept.
     """
     place = find(weights)
-    if (place / LORA).is_file() and hasattr(locate(node["_target_"]), "load"):
-        return {}  # only language models have load(), which checks the LoRA adapter
+    if (place / PEFT_WEIGHTS).is_file() and not hasattr(locate(node["_target_"]), "act"):
+        return {}  # load() of the safeguard's language model checks the LoRA adapter
     file = loading.config_of(place)
     if not file.is_file():
         return {}

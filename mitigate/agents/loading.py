@@ -29,6 +29,7 @@ from mitigate.core.contracts import read
 from mitigate.core.files import find, places, sha256
 from mitigate.core.json_files import read_object
 from mitigate.core.names import short
+from mitigate.core.pretrained import PEFT_WEIGHTS
 
 FORMAT = 2  # format number of a card; format 1 can also be read (core/older_folders.py)
 CARD, README = "card.json", "README.md"
@@ -85,7 +86,7 @@ def load(folder: str | Path, *, agent: Any = None) -> Any:
     folders.check(config.parent)
     with torch.random.fork_rng(devices=[]):  # this keeps the caller's random state unchanged
         if agent is None:
-            _check_size(config, checkpoint.weights_file(place))
+            _check_size(config, _weights_of(place))
         filled = _agent_to_fill(agent, config, _RUN)
         checkpoint.load_agent(filled, place)
     if config.is_file():
@@ -209,13 +210,18 @@ def config_of(weights: Path) -> Path:
         FileNotFoundError: There are no weights.
         ValueError: ``weights`` is a file inside a hardened folder; the folder itself must be named.
     """
-    if is_hardened(weights):
+    if is_hardened(weights) or (weights / PEFT_WEIGHTS).is_file():
         return weights / CONFIG
     if weights.is_file() and is_hardened(weights.parent):
         raise ValueError(
             f"{weights} belongs to a hardened folder. Name the folder, {weights.parent}."
         )
     return checkpoint.weights_file(weights).with_name(CONFIG)
+
+
+def _weights_of(place: Path) -> Path:
+    lora = place / PEFT_WEIGHTS
+    return lora if lora.is_file() else checkpoint.weights_file(place)
 
 
 def reject_other_models(run: Path) -> None:

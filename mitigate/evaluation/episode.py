@@ -54,7 +54,7 @@ def run_episode(
                     rollout.step(action_of(agent.act(rollout.observation), agent, rollout.space))
             except ValueError as error:
                 raise rollout.failed(error) from error
-        return rollout.measures()
+        return {**rollout.measures(), **as_agent(agent).episode_figures(None)}
 
 
 def _name(episode: Episode, corruption: Corruption) -> str:
@@ -120,9 +120,10 @@ def run_side_by_side(
                     running[started] = _Rollout(world, *job, guards), world, memory
             ended = [key for key, (rollout, _, _) in running.items() if rollout.done]
             for key in ended:
-                rollout, world, _ = running.pop(key)
+                rollout, world, memory = running.pop(key)
                 with _no_exit(rollout.name):
-                    measured[key] = rollout.measures()
+                    figures = as_agent(agent).episode_figures(memory)
+                    measured[key] = {**rollout.measures(), **figures}
                 free.append(world)
             if not ended:
                 rollouts, _, memories = zip(*running.values(), strict=True)

@@ -146,12 +146,13 @@ def load(
         ValueError: The weights do not match the agent, or the agent needs weights.
     """
     from mitigate.agents import building
+    from mitigate.agents.agent import as_agent
 
     settings = node if weights is None else building.settings_of(node, weights, overrides)
     agent = building.build_agent(settings, weights=weights, seed=seed)
     if missing_members(agent, ("state_dict",)):
         return agent
-    if weights is None:
+    if weights is None and not as_agent(agent).brings_weights:
         raise ValueError(
             "checkpoint is not set, and no weights are shipped for this agent. Name a run's agent "
             "folder (checkpoint=runs/.../agent) or a .safetensors file of its weights, or choose "

@@ -31,6 +31,7 @@ from mitigate.agents.topological import TopologicalAgent
 from mitigate.core import checkpoint, folders, older_folders, settings
 from mitigate.core.files import find, last_lines, put_folder, write_text
 from mitigate.core.output import output_folder
+from mitigate.core.pretrained import PEFT_WEIGHTS
 from mitigate.corruptions import CLEAN
 from mitigate.evaluation import rows as result_rows
 from mitigate.evaluation.episode import run_episode
@@ -135,6 +136,11 @@ def finished(run: Path, walks: Walks | None = None) -> tuple[dict[str, Any], Any
     """
     weights, config = run / "agent" / checkpoint.WEIGHTS, run / loading.CONFIG
     loading.reject_other_models(run)
+    if (run / "agent" / PEFT_WEIGHTS).is_file():
+        raise ValueError(
+            f"{run / 'agent'} needs no export: it is a PEFT folder, which mitigate and PEFT load "
+            "together with the base model (docs/vlm.md)."
+        )
     if not (weights.is_file() and config.is_file()):
         inside = run.name == "agent" and (run / checkpoint.WEIGHTS).is_file()
         raise FileNotFoundError(

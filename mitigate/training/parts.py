@@ -16,6 +16,7 @@ from mitigate.core import checkpoint
 from mitigate.core.contracts import missing_members
 from mitigate.core.files import find
 from mitigate.core.names import unknown
+from mitigate.core.pretrained import LORA
 
 ADAPTERS = "adapters"  # name of the part that contains all adapters of the agent
 POLICY = "policy"  # value that means all parts except the encoders, instead of a list of parts
@@ -68,7 +69,8 @@ def train_only(agent: nn.Module, parts: Iterable[str] | str | None) -> None:
     if ADAPTERS in parts:
         refuse_gates(agent)
     for name, module in modules.items():
-        module.requires_grad_(name in parts)
+        for parameter in module.parameters():  # quantised weights cannot have gradients
+            parameter.requires_grad_(name in parts and parameter.is_floating_point())
     freeze(agent)
     for parameter in adapter_parameters(agent):
         parameter.requires_grad_(ADAPTERS in parts)
@@ -87,10 +89,11 @@ def refuse_gates(module: nn.Module) -> None:
 
 
 def freeze(agent: nn.Module) -> None:
-    """Freeze the modules that an agent lists in ``frozen``, except their adapters."""
+    """Freeze the modules that an agent lists in ``frozen``, except their adapters and LoRA."""
     for name in as_agent(agent).frozen:
         module = agent.get_submodule(name)
         adapters = {id(p) for p in adapter_parameters(module)}
+        adapters |= {id(p) for place, p in module.named_parameters() if LORA in place}
         for parameter in module.parameters():
             if id(parameter) not in adapters:
                 parameter.requires_grad_(False)
@@ -143,7 +146,7 @@ def load_teacher(agent: nn.Module, weights: str | None) -> nn.Module:
     teacher = as_agent(agent).as_teacher()
     if weights != START:
         try:
-            checkpoint.load_weights(teacher, find(weights))
+            checkpoint.load_agent(teacher, find(weights))
         except FileNotFoundError as error:
             raise FileNotFoundError(
                 f"There is no teacher at {weights}. Train a teacher with `make train "

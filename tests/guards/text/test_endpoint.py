@@ -235,7 +235,7 @@ def test_endpoint_reads_no_huge_answer(server, length):
         "Kindly stroll past the sofa, my dear, and hang a left."
     )
     assert decision.text == decision.original and time.monotonic() - began < 2
-    assert "bytes" in client.failures[0] or "times as long" in client.failures[0]
+    assert "more than" in client.failures[0]
 
 
 SECRETS = [

@@ -17,6 +17,7 @@ from typing import Any
 import torch
 from torch import Tensor, nn
 
+from mitigate.core.pretrained import keep_lora_only
 from mitigate.core.progress import Progress
 from mitigate.guards.text.language_models.adapter_folder import (
     adapter_tensors,
@@ -69,8 +70,7 @@ class LanguageModel(nn.Module):
             progress.advance()
         network.requires_grad_(False)
         self.network: Any = network if lora is None else _with_lora(network, lora)
-        self.register_state_dict_post_hook(_keep_adapter)
-        self.register_load_state_dict_post_hook(_forgive_base)
+        keep_lora_only(self)
 
     @property
     def device(self) -> torch.device:
@@ -270,15 +270,6 @@ def _with_lora(network: nn.Module, lora: dict[str, Any]) -> nn.Module:
             f"agent.lora.targets={list(lora['targets'])} name no module of this model. Choose of: "
             f"{', '.join(sorted(n for n in names if n.endswith('proj')))}."
         ) from error
-
-
-def _keep_adapter(module: nn.Module, state: dict, prefix: str, _: Any) -> None:
-    for name in [n for n in state if n.startswith(prefix + "network.") and "lora_" not in n]:
-        del state[name]
-
-
-def _forgive_base(module: nn.Module, keys: Any) -> None:
-    keys.missing_keys[:] = [name for name in keys.missing_keys if "lora_" in name]
 
 
 def _misfit(folder: str | Path, cause: str) -> str:

@@ -1,0 +1,6 @@
+"""Vision-language agents: a local model with LoRA, and a served one."""
+
+from mitigate.agents.vlm.agent import VLMAgent
+from mitigate.agents.vlm.remote import RemoteAgent
+
+__all__ = ["RemoteAgent", "VLMAgent"]

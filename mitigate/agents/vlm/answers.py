@@ -1,0 +1,71 @@
+"""Define the answers that a vision-language agent may give, and read them from text.
+
+An answer such as "forward 75 cm" stands for one low-level action that is taken several times, as in
+NaVid (Zhang et al., RSS 2024). The step sizes are those of VLN-CE: 25 cm and 15 degrees.
+"""
+
+from __future__ import annotations
+
+import re
+from typing import NamedTuple
+
+from mitigate.core.names import unknown
+from mitigate.core.observation import FORWARD, FORWARD_METRES, LEFT, RIGHT, STOP, TURN_DEGREES
+
+MOST = 3  # most low-level actions of an answer: 75 cm and 45 degrees, as in NaVid
+LONGEST = 200  # characters of an answer that are read (heuristic); the longest answer has 22
+
+
+class Answer(NamedTuple):
+    """An answer of the model: ``text``, and the low-level ``action`` that it repeats."""
+
+    text: str
+    action: int
+    repeats: int
+
+
+def _amounts(words: str, action: int, step: float, unit: str) -> list[Answer]:
+    counts = range(1, MOST + 1)
+    return [Answer(f"{words} {round(step * count)} {unit}", action, count) for count in counts]
+
+
+ANSWERS: dict[str, tuple[Answer, ...]] = {
+    "actions": (
+        Answer("stop", STOP, 1),
+        Answer("forward", FORWARD, 1),
+        Answer("left", LEFT, 1),
+        Answer("right", RIGHT, 1),
+    ),
+    "navid": (
+        Answer("stop", STOP, 1),
+        *_amounts("forward", FORWARD, 100 * FORWARD_METRES, "cm"),
+        *_amounts("turn left", LEFT, TURN_DEGREES, "degrees"),
+        *_amounts("turn right", RIGHT, TURN_DEGREES, "degrees"),
+    ),
+}
+
+
+def answers_of(style: str) -> tuple[Answer, ...]:
+    """Return the answers of ``style``, of which "stop" is the first.
+
+    Raises ValueError for an unknown style.
+    """
+    if style not in ANSWERS:
+        raise ValueError(unknown("style of answers (agent.answers)", style, ANSWERS))
+    return ANSWERS[style]
+
+
+def read_answer(text: str, answers: tuple[Answer, ...]) -> Answer | None:
+    """Return the answer that ``text`` consists of, or None if it is not exactly one of ``answers``.
+
+    Case, spaces, and a full stop at the end do not matter. Everything else does: a sentence that
+    contains an answer is not an answer, and neither is a distance that is not in ``answers``.
+    """
+    words = re.sub(r"(?<=\d)(?=[a-z])", " ", text.lower().strip().removesuffix("."))  # "75cm"
+    return {answer.text: answer for answer in answers}.get(" ".join(words.split()))
+
+
+def answer_for(action: int, repeats: int, answers: tuple[Answer, ...]) -> int:
+    """Return the index of the longest answer with ``action`` and at most ``repeats`` actions."""
+    fitting = [i for i, a in enumerate(answers) if a.action == action and a.repeats <= repeats]
+    return max(fitting, key=lambda index: answers[index].repeats)

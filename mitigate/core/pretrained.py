@@ -1,0 +1,115 @@
+"""Load pretrained networks in Hugging Face's format, optionally in 8 or 4 bits.
+
+A folder or hub id may come from an untrusted source: no code in it is run, and its weights must be
+safetensors files. Every failure raises an error with the cause and a command that fixes it.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import logging
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import torch
+from torch import nn
+
+PRECISIONS = ("fp32", "bf16", "int8", "nf4")
+LORA = "lora_"  # text that is part of the name of every LoRA tensor (PEFT)
+PEFT_WEIGHTS = "adapter_model.safetensors"  # file of LoRA weights (PEFT)
+
+
+def load_network(auto: Any, place: str, precision: str, **options: Any) -> nn.Module:
+    """Return the network at ``place``, built by a class such as ``AutoModelForCausalLM``.
+
+    Args:
+        auto: the class of transformers that builds it.
+        place: a folder or hub id.
+        precision: precision of the weights: "fp32", "bf16", "int8" (bitsandbytes LLM.int8) or
+            "nf4" (bitsandbytes, 4-bit NormalFloat, computed in bf16).
+        options: further arguments of ``from_pretrained``.
+    """
+    dtype = torch.bfloat16 if precision in ("bf16", "nf4") else torch.float32
+    if precision in ("int8", "nf4"):
+        from transformers import BitsAndBytesConfig
+
+        # hides a warning that would be repeated for every product, which is always in float16
+        logging.getLogger("bitsandbytes").setLevel(logging.ERROR)
+        quantised = {"load_in_8bit": True}
+        if precision == "nf4":
+            quantised = {"load_in_4bit": True, "bnb_4bit_quant_type": "nf4",
+                         "bnb_4bit_compute_dtype": torch.bfloat16}  # fmt: skip
+        options["quantization_config"] = BitsAndBytesConfig(**quantised)
+    safe = {"use_safetensors": True, "trust_remote_code": False}
+    return auto.from_pretrained(place, dtype=dtype, **{**safe, **options})
+
+
+def check_place(base: str, example: str) -> None:
+    """Raise FileNotFoundError unless ``base`` is a folder or has the form of a hub id."""
+    if not Path(base).is_dir() and (base.count("/") != 1 or base.startswith((".", "/", "~"))):
+        raise FileNotFoundError(
+            f"There is no model folder {base}. Name {example}, a folder that holds config.json, "
+            "tokenizer and *.safetensors, or a hub id such as meta-llama/Llama-3.2-1B-Instruct."
+        )
+
+
+def local_folder(base: str) -> str:
+    """Return the folder of a model; the files of a hub id are downloaded, without pickles."""
+    if Path(base).is_dir():
+        return base
+    from huggingface_hub import snapshot_download
+
+    return snapshot_download(base, allow_patterns=["*.json", "*.jinja", "*.safetensors", "*.model"])
+
+
+@contextmanager
+def explained(base: str, precision: str, install: str) -> Iterator[None]:
+    """Convert errors of transformers to errors with a one-paragraph message.
+
+    Args:
+        base: name of the model.
+        precision: precision of its weights.
+        install: command that installs missing packages.
+    """
+    try:
+        yield
+    except ImportError as error:
+        cause = str(error).strip().splitlines()[0]
+        raise ValueError(
+            f"Loading {base} in {precision} needs a package that is not installed ({cause}): run "
+            f"{install}."
+        ) from error
+    except (OSError, ValueError) as error:
+        cause = " ".join(str(error).split())[:300]
+        fix = "Check the name and the connection, or download it and name the folder."
+        if any(word in cause.lower() for word in ("gated", "401", "403")):
+            fix = "Accept its licence on the hub and give your token: `hf auth login`."
+        raise ValueError(f"The model {base} cannot be loaded: {cause} {fix}") from error
+
+
+def files_sha256(place: str, pattern: str = "*.safetensors") -> str:
+    """Return the sha256 of the weights in a folder (files in order of name), or of a hub id."""
+    files = sorted(Path(place).glob(pattern))
+    sha = hashlib.sha256()
+    for file in files:
+        with open(file, "rb") as opened:
+            while chunk := opened.read(1 << 22):
+                sha.update(chunk)
+    return sha.hexdigest() if files else hashlib.sha256(place.encode()).hexdigest()
+
+
+def keep_lora_only(module: nn.Module) -> None:
+    """Exclude the frozen base in ``module.network`` from the state dicts of ``module``."""
+    module.register_state_dict_post_hook(_keep_lora)
+    module.register_load_state_dict_post_hook(_allow_missing_base)
+
+
+def _keep_lora(module: nn.Module, state: dict, prefix: str, _: Any) -> None:
+    for name in [n for n in state if n.startswith(prefix + "network.") and LORA not in n]:
+        del state[name]
+
+
+def _allow_missing_base(module: nn.Module, keys: Any) -> None:
+    keys.missing_keys[:] = [n for n in keys.missing_keys if "network." not in n or LORA in n]

@@ -1,0 +1,68 @@
+"""Tests of the commands that train and evaluate vision-language agents."""
+
+from __future__ import annotations
+
+import json
+import sys
+
+import pytest
+
+from mitigate.evaluation import evaluate
+from mitigate.shipping import export_command
+from mitigate.training import train
+from tests.agents.vlm.tiny_models import write_model
+
+SMALL = ["agent=vlm", "debug=smoke", "env.size=28", "workers=0", "rollouts=1"]
+SMALL += ["agent.lora.r=2", "agent.lora.language=[q_proj]", "agent.history=1"]
+
+
+@pytest.fixture(scope="module")
+def model(tmp_path_factory) -> str:
+    return write_model(tmp_path_factory.mktemp("vlm"), "idefics3")
+
+
+def run(monkeypatch, command, *options: str) -> None:
+    monkeypatch.setattr(sys, "argv", ["mitigate", *options])
+    command.main()
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("recipe", ["da_per_episode", "ts_distill", "self_distill", "dagger"])
+def test_recipes_train_and_evaluate_a_vision_language_agent(model, recipe, monkeypatch, tmp_path):
+    options = [*SMALL, f"recipe={recipe}", f"agent.model={model}", f"folder={tmp_path / 'run'}"]
+    options += [] if recipe == "ts_distill" else ["evaluation.enabled=false"]
+    options += ["teacher=start"] if recipe == "ts_distill" else []
+    options += ["evaluation.episodes=1", "evaluation.workers=1", "suite.conditions=[clean,flare]"]
+    run(monkeypatch, train, *options)
+    agent = tmp_path / "run/agent"
+    assert {file.name for file in agent.iterdir()} >= {"adapter_config.json", "config.yaml"}
+    assert "model:" not in (agent / "config.yaml").read_text("utf-8")
+    if recipe == "ts_distill":
+        lines = next((tmp_path / "run").rglob("rows.jsonl")).read_text("utf-8").splitlines()
+        assert len({json.loads(line)["corruption"] for line in lines}) == 2
+        first = [
+            "agent=vlm",
+            f"agent.model={model}",
+            f"checkpoint={agent}",
+            f"out={tmp_path / 'a'}",
+        ]
+        first += ["env.size=28", "episodes=1", "conditions=[clean]", "workers=1"]
+        run(monkeypatch, evaluate, *first)  # history and LoRA are read from the folder
+        with pytest.raises(SystemExit, match="needs no export: it is a PEFT folder"):
+            run(monkeypatch, export_command, str(tmp_path / "run"), "name", f"--out={tmp_path}")
+
+
+@pytest.mark.slow
+def test_model_without_a_checkpoint_is_evaluated_as_it_is(model, monkeypatch, tmp_path):
+    options = ["agent=vlm", f"agent.model={model}", "agent.lora=null", f"out={tmp_path / 'a'}"]
+    options += ["env.size=28", "episodes=1", "conditions=[clean]", "workers=1"]
+    run(monkeypatch, evaluate, *options)
+    assert len((tmp_path / "a/rows.jsonl").read_text("utf-8").splitlines()) == 1
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("recipe", ["harden", "conv_adapter", "stacked"])
+def test_recipes_with_encoder_adapters_are_explained(model, recipe, monkeypatch, tmp_path):
+    options = [*SMALL, f"recipe={recipe}", f"agent.model={model}", f"folder={tmp_path / 'run'}"]
+    with pytest.raises(SystemExit, match="recipe=harden, conv_adapter and stacked do not fit"):
+        run(monkeypatch, train, *options)

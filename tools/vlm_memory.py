@@ -1,0 +1,111 @@
+"""Estimate the peak memory of training a vision-language agent: ``python -m tools.vlm_memory``.
+
+The language model is built without memory for its weights (torch's meta device), and one decision
+runs through it. The tensors that autograd keeps for the backward pass are counted exactly. The
+image encoder is frozen, so it keeps none; its weights are added. Memory of the CUDA context, of
+temporary tensors and of fragmentation is not included. Nothing is measured on a GPU.
+"""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Sequence
+
+import torch
+from torch import nn
+
+from mitigate.agents.vlm.agent import likelihoods
+
+# language model (Qwen2 or Llama layout) and other weights, from the config.json of each model
+MODELS = {
+    # name: layers, hidden, intermediate, heads, key-value heads, vocabulary, other weights
+    "SmolVLM-256M": (30, 576, 1536, 9, 3, 49280, 93e6 + 7e6),
+    "LLaVA-OneVision-0.5B": (24, 896, 4864, 14, 2, 152000, 400e6),
+    "Qwen2.5-VL-3B": (36, 2048, 11008, 16, 2, 151936, 668e6),
+    "Qwen2.5-VL-7B": (28, 3584, 18944, 28, 4, 152064, 676e6),
+}
+BYTES = {"fp32": 4.0, "bf16": 2.0, "int8": 1.0, "nf4": 0.53}  # per weight of a linear layer
+GIB = 2**30
+TARGETS = ["q_proj", "k_proj", "v_proj", "o_proj"]
+
+
+def language_model(name: str, rank: int) -> nn.Module:
+    """Return the language model of ``name`` with LoRA, on the meta device."""
+    from peft import LoraConfig, get_peft_model
+    from transformers import Qwen2Config, Qwen2ForCausalLM
+
+    layers, hidden, intermediate, heads, kv_heads, vocabulary, _ = MODELS[name]
+    config = Qwen2Config(
+        num_hidden_layers=layers,
+        hidden_size=hidden,
+        intermediate_size=intermediate,
+        num_attention_heads=heads,
+        num_key_value_heads=kv_heads,
+        vocab_size=vocabulary,
+        tie_word_embeddings=True,
+    )
+    with torch.device("meta"):
+        network = Qwen2ForCausalLM(config).to(torch.bfloat16).requires_grad_(False)
+        return get_peft_model(network, LoraConfig(r=rank, target_modules=TARGETS))
+
+
+def kept_bytes(network: nn.Module, prompt: int, answers: int, length: int) -> int:
+    """Return the bytes that autograd keeps for one decision.
+
+    Args:
+        network: a language model on the meta device.
+        prompt: number of tokens of the prompt, with images.
+        answers: number of answers.
+        length: number of tokens of the longest answer.
+    """
+    weights = {parameter.untyped_storage()._cdata for parameter in network.parameters()}
+    kept: dict[int, torch.UntypedStorage] = {}
+
+    def count(tensor: torch.Tensor) -> torch.Tensor:
+        storage = tensor.untyped_storage()
+        if storage._cdata not in weights:
+            kept[storage._cdata] = storage  # it stays alive, so that no later one has its key
+        return tensor
+
+    ids = torch.zeros(1, prompt, dtype=torch.long, device="meta")
+    texts = torch.zeros(answers, length, dtype=torch.long, device="meta")
+    mask = torch.ones(answers, length, dtype=torch.bool, device="meta")
+    with torch.autograd.graph.saved_tensors_hooks(count, lambda tensor: tensor):
+        likelihoods(network, {"input_ids": ids}, texts, mask)
+    return sum(storage.nbytes() for storage in kept.values())
+
+
+def estimate(name: str, precision: str, prompt: int, rank: int = 16) -> dict[str, float]:
+    """Return the estimated memory in GiB by part."""
+    network = language_model(name, rank)
+    lora = sum(p.numel() for p in network.parameters() if p.requires_grad)
+    tables = network.get_input_embeddings().weight.numel()
+    linear = sum(p.numel() for p in network.parameters()) - lora - tables + MODELS[name][-1]
+    wide = max(2.0, BYTES[precision]) if precision != "fp32" else 4.0
+    activations = kept_bytes(network, prompt, answers=10, length=7)
+    if precision == "fp32":
+        activations *= 2
+    parts = {
+        "weights": linear * BYTES[precision] + tables * wide,
+        "lora": lora * 16.0,  # fp32 weights, gradients and two moments of AdamW
+        "decision": float(activations),
+    }
+    return {part: size / GIB for part, size in parts.items()}
+
+
+def main(arguments: Sequence[str] | None = None) -> None:
+    """Print the table of docs/vlm.md."""
+    parser = argparse.ArgumentParser(description="Estimate the memory of training agent=vlm.")
+    parser.add_argument("--prompt", type=int, default=1600, help="tokens of a prompt with images")
+    options = parser.parse_args(arguments)
+    print("| Model | Weights in | Weights | LoRA, AdamW | One decision | Sum |")
+    print("|---|---|---|---|---|---|")
+    for name in MODELS:
+        for precision in ("bf16", "nf4"):
+            parts = estimate(name, precision, options.prompt)
+            cells = " | ".join(f"{size:.1f}" for size in (*parts.values(), sum(parts.values())))
+            print(f"| {name} | {precision} | {cells} |")
+
+
+if __name__ == "__main__":
+    main()
