@@ -21,7 +21,7 @@ LORA = "lora_"  # text that is part of the name of every LoRA tensor (PEFT)
 PEFT_WEIGHTS = "adapter_model.safetensors"  # file of LoRA weights (PEFT)
 
 
-def load_network(auto: Any, place: str, precision: str, **options: Any) -> nn.Module:
+def load_network(auto: Any, place: str, precision: str, **options: Any) -> Any:
     """Return the network at ``place``, built by a class such as ``AutoModelForCausalLM``.
 
     Args:
@@ -37,13 +37,19 @@ def load_network(auto: Any, place: str, precision: str, **options: Any) -> nn.Mo
 
         # hides a warning that would be repeated for every product, which is always in float16
         logging.getLogger("bitsandbytes").setLevel(logging.ERROR)
-        quantised = {"load_in_8bit": True}
+        quantised: dict[str, Any] = {"load_in_8bit": True}
         if precision == "nf4":
             quantised = {"load_in_4bit": True, "bnb_4bit_quant_type": "nf4",
                          "bnb_4bit_compute_dtype": torch.bfloat16}  # fmt: skip
         options["quantization_config"] = BitsAndBytesConfig(**quantised)
     safe = {"use_safetensors": True, "trust_remote_code": False}
-    return auto.from_pretrained(place, dtype=dtype, **{**safe, **options})
+    network = auto.from_pretrained(place, dtype=dtype, **{**safe, **options})
+    for module in network.modules():
+        # on CPUs with AVX512-BF16, bitsandbytes repacks 4-bit weights in eval mode, and the
+        # repacked layers then give no gradients in training
+        if "support_avx512bf16_for_cpu" in vars(module):
+            module.support_avx512bf16_for_cpu = False
+    return network
 
 
 def check_place(base: str, example: str) -> None:

@@ -81,6 +81,9 @@ class VLMAgent(AnsweringAgent, nn.Module):
     frozen = ("network",)
     own_config_only = ("model",)
     brings_weights = True
+    base_sha256: Tensor  # uint8 [32], of the model's weights
+    _answer_ids: Tensor  # [n, L]
+    _is_answer: Tensor  # bool [n, L]
 
     def __init__(
         self,
@@ -371,11 +374,11 @@ def likelihoods(network: Any, inputs: Mapping[str, Tensor], ids: Tensor, mask: T
         mask: bool [n, L], False for padding.
     """
     prompt = network(**inputs, use_cache=True, logits_to_keep=1)
-    cache = prompt.past_key_values
-    cache.batch_repeat_interleave(len(ids))
+    name = "cache" if "cache" in prompt else "past_key_values"  # transformers 5.24 renamed it
+    prompt[name].batch_repeat_interleave(len(ids))
     logits = prompt.logits[:, -1:].expand(len(ids), -1, -1)
     if ids.shape[1] > 1:
-        rest = network(input_ids=ids[:, :-1], past_key_values=cache, use_cache=True)
+        rest = network(input_ids=ids[:, :-1], use_cache=True, **{name: prompt[name]})
         logits = torch.cat([logits, rest.logits], 1)
     each = logits.float().log_softmax(-1).gather(-1, ids[..., None])[..., 0]
     for module in network.modules():  # state of Qwen's models, which depends on the last prompt

@@ -165,7 +165,8 @@ def test_request_holds_the_conversation_and_exact_frames(server):
             (text, None)
             for text in (
                 "", ".", "forward", "forward 80 cm", "forward 7 5 cm", "forward -75 cm",
-                "stop stop", "turn left 75 cm", "do not stop", "forward 75 cm and stop", "forward 75.0 cm",
+                "stop stop", "turn left 75 cm", "do not stop",
+                "forward 75 cm and stop", "forward 75.0 cm",
             )
         ],
     ],

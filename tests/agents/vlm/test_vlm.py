@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import copy
 import json
 import pickle
 import shutil
+from functools import cache
 
 import numpy as np
 import pytest
@@ -35,15 +35,15 @@ FRAME = Corridor().reset(episode(2, 5))["rgb"]
 
 
 @pytest.fixture(scope="session")
-def models(tmp_path_factory) -> dict[str, str]:
-    """The folder of a model of each architecture."""
+def folder_of(tmp_path_factory):
+    """Function that returns the folder of a model of an architecture."""
     folder = tmp_path_factory.mktemp("vlm")
-    return {name: write_model(folder / name, name) for name in ARCHITECTURES}
+    return cache(lambda name: write_model(folder / name, name))
 
 
 @pytest.fixture
-def model(models) -> str:
-    return models["idefics3"]
+def model(folder_of) -> str:
+    return folder_of("idefics3")
 
 
 def build(model: str, **settings) -> VLMAgent:
@@ -79,9 +79,11 @@ def train(agent, folder, steps: int, stop: int | None = None, kind=Imitate, **ar
     return agent.eval()
 
 
-@pytest.mark.parametrize("name", ARCHITECTURES)
-def test_likelihoods_equal_those_of_separate_forward_passes(models, name):
-    agent = build(models[name])
+@pytest.mark.parametrize(
+    "name", [pytest.param(n, marks=[pytest.mark.slow] * (n != "idefics3")) for n in ARCHITECTURES]
+)
+def test_likelihoods_equal_those_of_separate_forward_passes(folder_of, name):
+    agent = build(folder_of(name))
     inputs = agent._inputs("Go.", None, memory(3).frames)
     with torch.no_grad():
         fast = agent._likelihoods(inputs)
@@ -99,14 +101,14 @@ def test_likelihoods_equal_those_of_separate_forward_passes(models, name):
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", ARCHITECTURES)
-def test_vlm_trains_only_lora_and_reloads_to_the_same_outputs(models, name, tmp_path):
-    agent = build(models[name])
+def test_vlm_trains_only_lora_and_reloads_to_the_same_outputs(folder_of, name, tmp_path):
+    agent = build(folder_of(name))
     before = {n: p.detach().clone() for n, p in agent.named_parameters()}
     train(agent, tmp_path / "run", 2)
     moved = {n for n, p in agent.named_parameters() if not torch.equal(p, before[n])}
     assert moved and all("lora_" in name for name in moved)
     checkpoint.save_agent(agent, tmp_path / "agent", "agent: {}\n")
-    again = build(models[name])
+    again = build(folder_of(name))
     checkpoint.load_agent(again, tmp_path / "agent")
     with torch.no_grad():
         assert torch.equal(again.logits(memory(3)), agent.logits(memory(3)))
@@ -114,29 +116,31 @@ def test_vlm_trains_only_lora_and_reloads_to_the_same_outputs(models, name, tmp_
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", ARCHITECTURES)
-def test_saved_folder_gives_the_same_answers_in_plain_transformers_and_peft(models, name, tmp_path):
+def test_saved_folder_gives_the_same_outputs_in_plain_transformers(folder_of, name, tmp_path):
     from peft import PeftModel
     from transformers import AutoModelForImageTextToText
 
-    agent = build(models[name])
+    agent = build(folder_of(name))
     train(agent, tmp_path / "run", 2)
     agent.save(tmp_path / "agent")
-    plain = AutoModelForImageTextToText.from_pretrained(models[name], dtype=torch.float32)
+    plain = AutoModelForImageTextToText.from_pretrained(agent.model, dtype=torch.float32)
     plain = PeftModel.from_pretrained(plain, tmp_path / "agent").eval()
     inputs = agent._inputs("Go.", None, memory(3).frames)
     with torch.no_grad():
         ours = agent.network(**inputs).logits
         assert torch.equal(plain(**inputs).logits, ours)
-        untrained = AutoModelForImageTextToText.from_pretrained(models[name], dtype=torch.float32)
+        untrained = AutoModelForImageTextToText.from_pretrained(
+            folder_of(name), dtype=torch.float32
+        )
         assert not torch.equal(untrained.eval()(**inputs).logits, ours)
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", ARCHITECTURES)
-def test_resumed_training_gives_the_same_bits(models, name, tmp_path):
-    whole = train(build(models[name]), tmp_path / "whole", 2)
-    train(build(models[name]), tmp_path / "parts", 2, stop=1)
-    resumed = train(build(models[name]), tmp_path / "parts", 2)
+def test_resumed_training_gives_the_same_bits(folder_of, name, tmp_path):
+    whole = train(build(folder_of(name)), tmp_path / "whole", 2)
+    train(build(folder_of(name)), tmp_path / "parts", 2, stop=1)
+    resumed = train(build(folder_of(name)), tmp_path / "parts", 2)
     assert checkpoint.weights_sha(resumed) == checkpoint.weights_sha(whole)
 
 
@@ -174,7 +178,7 @@ def test_vlm_is_trainable_and_survives_a_copy_to_a_worker(model):
         assert torch.equal(copied.logits(memory()), agent.logits(memory()))
 
 
-def test_base_is_part_of_the_fingerprint_and_acting_is_not(models, model, tmp_path):
+def test_base_is_part_of_the_fingerprint_and_acting_is_not(folder_of, model, tmp_path):
     agent = build(model)
     before = contents(agent)
     assert not before.unreadable
@@ -248,15 +252,15 @@ def test_views_spread_over_the_episode_and_end_with_the_current(count, expected)
     assert views_of(count, 0) == [count - 1]
 
 
-def test_load_rejects_adapters_of_another_base_or_other_modules(models, model, tmp_path):
+def test_load_rejects_adapters_of_another_base_or_other_modules(folder_of, model, tmp_path):
     agent = build(model)
     agent.save(tmp_path)
     with pytest.raises(ValueError, match="with another sha256"):
-        build(models["llava_onevision"]).load(tmp_path)
+        build(folder_of("llava_onevision")).load(tmp_path)
     (tmp_path / "base.json").unlink()
     folders.seal(tmp_path, "agent")
     with pytest.raises(ValueError, match="does not fit agent.lora"):
-        build(models["llava_onevision"]).load(tmp_path)
+        build(folder_of("llava_onevision")).load(tmp_path)
     with pytest.raises(FileNotFoundError, match="no LoRA adapter"):
         agent.load(tmp_path / "nothing")
     file = tmp_path / "adapter_model.safetensors"
@@ -348,10 +352,11 @@ def test_template_without_a_system_prompt_is_explained(model, tmp_path):
 def test_quantised_base_trains_only_lora(model, precision, tmp_path):
     pytest.importorskip("bitsandbytes", reason="needs bitsandbytes: pip install -e '.[vlm]'")
     agent = build(model, precision=precision)
-    before = {n: copy.deepcopy(p.data) for n, p in agent.named_parameters()}
-    assert any(not p.is_floating_point() for p in agent.parameters())
+    before = {n: p.data.clone() for n, p in agent.named_parameters() if p.is_floating_point()}
+    assert len(before) < len(list(agent.parameters()))  # bitsandbytes may repack the others
     train(agent, tmp_path, 1)
-    moved = {n for n, p in agent.named_parameters() if not torch.equal(p, before[n])}
+    trained = dict(agent.named_parameters())
+    moved = {name for name, value in before.items() if not torch.equal(value, trained[name])}
     assert moved and all("lora_" in name for name in moved)
 
 

@@ -1,7 +1,7 @@
 """Randomly initialised vision-language models of three architectures, built without a network.
 
-Each has a few thousand weights. Its processor consists of a tokenizer that is trained here and an
-image processor of transformers that needs only Pillow.
+Layer widths are multiples of 64, as bitsandbytes needs on some CPUs. The processor consists of a
+tokenizer that is trained here and an image processor of transformers that needs only Pillow.
 """
 
 from __future__ import annotations
@@ -19,11 +19,11 @@ SYSTEM_TEMPLATE = (
     "{% if add_generation_prompt %}<|im_start|>assistant\n{% endif %}"
 )
 LANGUAGE = {
-    "hidden_size": 32,
-    "intermediate_size": 48,
+    "hidden_size": 64,
+    "intermediate_size": 64,
     "num_hidden_layers": 2,
     "num_attention_heads": 4,
-    "num_key_value_heads": 2,
+    "num_key_value_heads": 4,
     "max_position_embeddings": 4096,
 }
 ARCHITECTURES = ("qwen2_5_vl", "llava_onevision", "idefics3")
@@ -71,11 +71,11 @@ def _qwen2_5_vl():
     words = tokenizer(special)
     ids = dict(zip(special, words.convert_tokens_to_ids(special), strict=True))
     vision = {
-        "depth": 2, "hidden_size": 16, "intermediate_size": 24, "num_heads": 2, "patch_size": 7,
-        "window_size": 28, "out_hidden_size": 32, "fullatt_block_indexes": [1],
+        "depth": 2, "hidden_size": 64, "intermediate_size": 64, "num_heads": 2, "patch_size": 7,
+        "window_size": 28, "out_hidden_size": 64, "fullatt_block_indexes": [1],
     }  # fmt: skip
     text = {**LANGUAGE, "vocab_size": len(words), "bos_token_id": None, "eos_token_id": 1}
-    text["rope_parameters"] = {"rope_type": "default", "mrope_section": [1, 1, 2]}
+    text["rope_parameters"] = {"rope_type": "default", "mrope_section": [2, 3, 3]}
     config = Qwen2_5_VLConfig(
         text_config=text,
         vision_config=vision,
@@ -94,7 +94,7 @@ def _qwen2_5_vl():
 
 def _siglip() -> dict:
     return {
-        "model_type": "siglip_vision_model", "hidden_size": 16, "intermediate_size": 24,
+        "model_type": "siglip_vision_model", "hidden_size": 64, "intermediate_size": 64,
         "num_hidden_layers": 2, "num_attention_heads": 2, "image_size": SIDE, "patch_size": 7,
     }  # fmt: skip
 
