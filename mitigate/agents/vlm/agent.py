@@ -292,9 +292,9 @@ class VLMAgent(AnsweringAgent, nn.Module):
         return Output(logits, figures=stop_figures(logits, decisions.target))
 
     def as_teacher(self) -> VLMAgent:
-        """Return a copy of the agent that shares the frozen weights."""
-        shared = [p for name, p in self.network.named_parameters() if LORA not in name]
-        return copy.deepcopy(self, {id(parameter): parameter for parameter in shared})
+        """Return a copy of the agent that shares the frozen weights and the processor."""
+        frozen = [p for name, p in self.network.named_parameters() if LORA not in name]
+        return copy.deepcopy(self, {id(shared): shared for shared in (self.processor, *frozen)})
 
     # files ------------------------------------------------------------------------------------
 

@@ -10,6 +10,7 @@ import pytest
 from mitigate.evaluation import evaluate
 from mitigate.shipping import export_command
 from mitigate.training import train
+from tests.agents.vlm.test_remote import server  # noqa: F401
 from tests.agents.vlm.tiny_models import write_model
 
 SMALL = ["agent=vlm", "debug=smoke", "env.size=28", "workers=0", "rollouts=1"]
@@ -32,6 +33,7 @@ def test_recipes_train_and_evaluate_a_vision_language_agent(model, recipe, monke
     options = [*SMALL, f"recipe={recipe}", f"agent.model={model}", f"folder={tmp_path / 'run'}"]
     options += [] if recipe == "ts_distill" else ["evaluation.enabled=false"]
     options += ["teacher=start"] if recipe == "ts_distill" else []
+    options += ["trainer.steps=1"]
     options += ["evaluation.episodes=1", "evaluation.workers=1", "suite.conditions=[clean,flare]"]
     run(monkeypatch, train, *options)
     agent = tmp_path / "run/agent"
@@ -66,3 +68,13 @@ def test_recipes_with_encoder_adapters_are_explained(model, recipe, monkeypatch,
     options = [*SMALL, f"recipe={recipe}", f"agent.model={model}", f"folder={tmp_path / 'run'}"]
     with pytest.raises(SystemExit, match="recipe=harden, conv_adapter and stacked do not fit"):
         run(monkeypatch, train, *options)
+
+
+@pytest.mark.slow
+def test_served_agent_runs_episodes_of_the_apartments_at_once(server, monkeypatch, tmp_path):  # noqa: F811
+    server.reply = lambda number, body: (200, "stop" if number > 40 else "forward 25 cm", 0)
+    options = ["agent=remote", "agent.model=navid", f"agent.url={server.url}", "episodes=4"]
+    options += ["env.size=28", "conditions=[clean]", "workers=1", f"out={tmp_path / 'a'}"]
+    run(monkeypatch, evaluate, *options)
+    lines = (tmp_path / "a/rows.jsonl").read_text("utf-8").splitlines()
+    assert len(lines) == 4 and all('"unreadable_answers": 0' in line for line in lines)

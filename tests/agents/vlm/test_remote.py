@@ -16,6 +16,7 @@ import pytest
 from mitigate.agents.fingerprint import contents
 from mitigate.agents.vlm import RemoteAgent
 from mitigate.agents.vlm.answers import ANSWERS, answer_for, read_answer
+from mitigate.agents.vlm.conversation import SYSTEM
 from mitigate.core.observation import FORWARD, LEFT, STOP
 from mitigate.corruptions import CLEAN, Corruption
 from mitigate.evaluation import rows as result_rows
@@ -98,16 +99,16 @@ def rows(agent, tmp_path, count: int = 16, conditions=(CLEAN,)):
 
 def test_remote_loses_no_row_to_delays_and_faults(server, tmp_path):
     faults = {3: (503, "", 0), 7: (0, "", 0), 11: (200, None, 0), 14: (429, "", 0)}
-    faults[20] = (200, "late", 0.9)
+    faults[20] = (200, "late", 0.6)
     together = threading.Barrier(16)
 
     def reply(number, body):
         if number < 16:  # the requests of the 16 episodes run at the same time
             together.wait(5)
-        return faults.get(number % 24) or (200, expert(body), 0.01 * (number % 5))
+        return faults.get(number % 24) or (200, expert(body), 0.005 * (number % 4))
 
     server.reply = reply
-    found = rows(remote(server, timeout=0.8), tmp_path)
+    found = rows(remote(server), tmp_path)
     assert len(found) == 16 and all(row["success"] for row in found)
     assert not together.broken and next(server.counter) > 32
     assert all(row["unreadable_answers"] == 0 for row in found)
@@ -152,6 +153,14 @@ def test_request_holds_the_conversation_and_exact_frames(server):
     assert system["role"] == "system" and 'Go to "{answers}".' in user["content"][-1]["text"]
     assert seen[0]["temperature"] == 0 and seen[0]["model"] == "navid"
     assert frame.shape == (PIXELS, PIXELS, 3)
+
+
+def test_white_box_attack_reaches_the_system_prompt(server, tmp_path):
+    prompts = []
+    server.reply = lambda number, body: (prompts.append(body["messages"][0]), (200, "stop", 0))[1]
+    rows(remote(server), tmp_path, 1, (CLEAN, Corruption("white_box", 1.0)))
+    clean, attacked = (prompt["content"][0]["text"] for prompt in prompts)
+    assert clean == SYSTEM and attacked != SYSTEM and SYSTEM in attacked
 
 
 @pytest.mark.parametrize(
