@@ -67,7 +67,9 @@ def local_folder(base: str) -> str:
         return base
     from huggingface_hub import snapshot_download
 
-    return snapshot_download(base, allow_patterns=["*.json", "*.jinja", "*.safetensors", "*.model"])
+    return snapshot_download(
+        base, allow_patterns=["*.json", "*.jinja", "*.txt", "*.model", "*.safetensors"]
+    )
 
 
 @contextmanager

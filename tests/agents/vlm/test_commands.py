@@ -63,7 +63,7 @@ def test_model_without_a_checkpoint_is_evaluated_as_it_is(model, monkeypatch, tm
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("recipe", ["harden", "conv_adapter", "stacked"])
+@pytest.mark.parametrize("recipe", ["harden", "stacked"])
 def test_recipes_with_encoder_adapters_are_explained(model, recipe, monkeypatch, tmp_path):
     options = [*SMALL, f"recipe={recipe}", f"agent.model={model}", f"folder={tmp_path / 'run'}"]
     with pytest.raises(SystemExit, match="recipe=harden, conv_adapter and stacked do not fit"):
