@@ -121,7 +121,6 @@ class VLMAgent(AnsweringAgent, nn.Module):
             "task": self.task,
             "system_prompt": system_prompt,
             "images": dict(images) if images else None,
-            "checkpointing": checkpointing,
         }
         self.model = model
         self.images = dict(images or {})
@@ -142,7 +141,10 @@ class VLMAgent(AnsweringAgent, nn.Module):
         self._read_template()
 
     def settings(self) -> dict[str, Any]:
-        """Return the constructor's arguments without ``model``; ``base_sha256`` identifies it."""
+        """Return the constructor's arguments that determine the answers, without ``model``.
+
+        ``base_sha256`` identifies the model.
+        """
         return dict(self._settings)
 
     @property
