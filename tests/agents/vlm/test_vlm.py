@@ -180,6 +180,7 @@ def test_teacher_shares_the_frozen_weights_but_not_lora(model):
     assert all((mine is other) == ("lora_" not in name) for (name, mine), (_, other) in pairs)
 
 
+@pytest.mark.slow
 def test_vlm_is_trainable_and_survives_a_copy_to_a_worker(model):
     agent = build(model)
     assert isinstance(agent, Trainable)
@@ -188,6 +189,7 @@ def test_vlm_is_trainable_and_survives_a_copy_to_a_worker(model):
         assert torch.equal(copied.logits(memory()), agent.logits(memory()))
 
 
+@pytest.mark.slow
 def test_base_is_part_of_the_fingerprint_and_acting_is_not(folder_of, model, tmp_path):
     agent = build(model)
     before = contents(agent)
@@ -226,6 +228,7 @@ def test_collect_labels_a_deviation_with_the_shortest_answer(model, monkeypatch)
     assert {agent.answers[index].text for index in piece["targets"]} == {"forward 25 cm"}
 
 
+@pytest.mark.slow
 def test_decide_uses_clean_frames_for_the_teacher(model):
     agent = build(model)
     decisions = agent.join([collected(agent, clean=True), collected(agent, clean=True)])
@@ -262,6 +265,7 @@ def test_views_spread_over_the_episode_and_end_with_the_current(count, expected)
     assert views_of(count, 0) == [count - 1]
 
 
+@pytest.mark.slow
 def test_load_rejects_adapters_of_another_base_or_other_modules(folder_of, model, tmp_path):
     agent = build(model)
     agent.save(tmp_path)
@@ -279,6 +283,7 @@ def test_load_rejects_adapters_of_another_base_or_other_modules(folder_of, model
         agent.load(tmp_path)
 
 
+@pytest.mark.slow
 def test_load_fills_an_agent_of_python_and_explains_a_missing_one(model, tmp_path):
     agent = build(model)
     with torch.no_grad():
@@ -336,6 +341,7 @@ def test_vision_modules_can_be_adapted(model):
     assert names and all("vision_model" in name for name in names)
 
 
+@pytest.mark.slow
 def test_answers_are_scored_with_a_template_that_writes_turns_differently(model, tmp_path):
     folder = shutil.copytree(model, tmp_path / "model")
     file = folder / "chat_template.jinja"  # in LLaVA-OneVision, only the prompt has this line break
@@ -344,6 +350,7 @@ def test_answers_are_scored_with_a_template_that_writes_turns_differently(model,
     assert torch.equal(build(str(folder))._answer_ids, build(model)._answer_ids)
 
 
+@pytest.mark.slow
 def test_template_without_a_system_prompt_is_explained(model, tmp_path):
     folder = shutil.copytree(model, tmp_path / "model")
     file = folder / "chat_template.jinja"
