@@ -16,7 +16,7 @@ from torch import nn
 
 from mitigate.agents.vlm.agent import likelihoods
 
-# language model (Qwen2 or Llama layout) and other weights, from the config.json of each model
+# published sizes of the language models; the other weights (image encoder, projector) are rounded
 MODELS = {
     # name: layers, hidden, intermediate, heads, key-value heads, vocabulary, other weights
     "SmolVLM-256M": (30, 576, 1536, 9, 3, 49280, 93e6 + 7e6),

@@ -307,6 +307,7 @@ class VLMAgent(AnsweringAgent, nn.Module):
         """
         with folders.write_folder(folder, "agent") as draft:
             tensors = {name: value.cpu().clone() for name, value in self._adapter().items()}
+            self.network.peft_config["default"].base_model_name_or_path = self.model
             self.network.save_pretrained(draft, state_dict=tensors, save_embedding_layers=False)
             for file in draft.iterdir():
                 if file.name not in (CONFIG, PEFT_WEIGHTS):

@@ -269,6 +269,9 @@ def test_views_spread_over_the_episode_and_end_with_the_current(count, expected)
 def test_load_rejects_adapters_of_another_base_or_other_modules(folder_of, model, tmp_path):
     agent = build(model)
     agent.save(tmp_path)
+    assert json.loads((tmp_path / "adapter_config.json").read_text("utf-8"))[
+        "base_model_name_or_path"
+    ] == str(model)
     with pytest.raises(ValueError, match="with another sha256"):
         build(folder_of("llava_onevision")).load(tmp_path)
     (tmp_path / "base.json").unlink()
