@@ -42,6 +42,7 @@ class Progress:
         self.done = start
         self.note = ""
         self._began = time.monotonic()
+        self._first: tuple[int, float] | None = None  # units done and time after the first advance
         self._bar: tqdm | None = None
 
     def __enter__(self) -> Progress:
@@ -78,6 +79,8 @@ class Progress:
         """
         self.done += count
         self.note = note or self.note
+        if count and self._first is None:
+            self._first = self.done, time.monotonic()
         if self._bar is not None:
             if note:
                 self._bar.set_postfix_str(note, refresh=False)
@@ -93,18 +96,27 @@ class Progress:
         """Return a line such as ``train: step 120/700, 3.1 steps/s, 3 min 10 s left,
         loss 0.31``.
         """
-        elapsed = time.monotonic() - self._began
-        now = self.done - self.start
-        if now <= 0:
-            return self._line(f"{duration(elapsed)} so far")
-        rate = _rate(now / max(elapsed, 1e-9), self.unit)
-        return self._line(f"{rate}, {duration(self.left())} left")
+        pace = self._pace()
+        if pace is None:
+            return self._line(f"{duration(time.monotonic() - self._began)} so far")
+        return self._line(f"{_rate(1 / pace, self.unit)}, {duration(self.left())} left")
 
     def left(self) -> float:
-        """Return the seconds left at the mean speed so far, or infinity before the first unit."""
-        now = self.done - self.start
-        pace = (time.monotonic() - self._began) / now if now > 0 else math.inf
-        return (self.total - self.done) * pace if self.done < self.total else 0.0
+        """Return the seconds left at the mean speed so far, or infinity if that is unknown."""
+        pace = self._pace()
+        if self.done >= self.total:
+            return 0.0
+        return math.inf if pace is None else (self.total - self.done) * pace
+
+    def _pace(self) -> float | None:
+        """Return the mean seconds per unit, or None while it is unknown.
+
+        The first units are not counted, because they also compile code and open files.
+        """
+        if self._first is None or self.done <= self._first[0]:
+            return None
+        count, since = self._first
+        return max(time.monotonic() - since, 1e-9) / (self.done - count)
 
     def _line(self, pace: str) -> str:
         note = f", {self.note}" if self.note else ""

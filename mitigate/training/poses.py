@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from inspect import signature
 from typing import Any, ClassVar
 
 import numpy as np
@@ -16,7 +17,9 @@ from mitigate.core.observation import RGB, VIEWS
 from mitigate.core.pictures import side_by_side
 from mitigate.core.seeding import generator
 from mitigate.corruptions import Schedule, corrupt_observation
-from mitigate.training.objective import Objective
+from mitigate.corruptions.faults.camera import random_mount
+from mitigate.corruptions.keying import Key, digest, uniform
+from mitigate.training.objective import Objective, check_share
 from mitigate.training.parts import OWN, SEEING
 from mitigate.training.success import DrawsBySuccess
 from mitigate.worlds.episodes import share_of
@@ -46,9 +49,13 @@ class Poses(DrawsBySuccess):
         refresh_episodes: episodes per corruption when success rates are measured.
         own: whether to sample only corruptions of this sensor; otherwise corruptions of other
             sensors leave its frames clean.
+        camera_share: fraction of panoramas that a displaced camera sees (``random_mount`` in
+            ``corruptions/faults/camera.py``). Their clean frames and labels are those of the
+            camera in its place.
 
     Raises:
-        ValueError: The sensor is unknown, there are no panoramas, or the world has no random poses.
+        ValueError: The sensor is unknown, there are no panoramas, the world has no random poses, or
+            ``camera_share`` is invalid or above 0 in a world that cannot displace its camera.
     """
 
     agent: Any
@@ -60,11 +67,13 @@ class Poses(DrawsBySuccess):
     seed: int = 0
     refresh_episodes: int = 8
     own: bool = False
+    camera_share: float = 0.0
 
     def __post_init__(self) -> None:
         if self.modality not in ("rgb", "depth"):
             raise ValueError(f"modality must be 'rgb' or 'depth', got {self.modality!r}.")
         check_panoramas(self.panoramas)
+        check_share("camera_share", self.camera_share)
         self.sensor = self.modality
         self.schedule = self.schedule or Schedule("clean", 0.0)
         if self.own:
@@ -99,6 +108,11 @@ class Poses(DrawsBySuccess):
                     "it "
                     "cannot train encoders on them. Leave out those stages (stages.NAME=null), or "
                     "add these methods to the world (docs/bring-your-own.md)."
+                )
+            if self.camera_share and "mount" not in signature(world.put).parameters:
+                raise ValueError(
+                    f"camera_share must be 0 in {type(world).__name__}, whose put() has no argument "
+                    f"mount, so it cannot render a displaced camera, got {self.camera_share}."
                 )
             self._placed = world
         return self._placed
@@ -154,13 +168,13 @@ class Poses(DrawsBySuccess):
         heading = float(rng.uniform(-np.pi, np.pi))
         first = int(rng.integers(self.every)) if self.every > 1 else 0
         views = list(range(first, VIEWS, self.every))
-        clean, truth = self.placed.put(xy, heading, views=views, rgb=self.sensor == RGB)
+        clean, seen, truth = self._put(xy, heading, views, Key(self.seed, name, 0))
         # A corruption may replace a view by a different view, so views that were not rendered are
         # filled with copies of rendered views.
         sources = [views[(view - first) // self.every % len(views)] for view in range(VIEWS)]
-        clean = {**clean, self.sensor: clean[self.sensor][sources]}
+        seen = {**seen, self.sensor: seen[self.sensor][sources]}
         corruptions = self.schedule.draw(self.seed, name, 0)
-        frames = corrupt_observation(clean, *corruptions, depth_sensor(self.placed.sensors))
+        frames = corrupt_observation(seen, *corruptions, depth_sensor(self.placed.sensors))
         target = self._target(truth)
         target = target[views] if len(target) == VIEWS else target
         return frames[self.sensor][views], clean[self.sensor][views], target
@@ -170,10 +184,22 @@ class Poses(DrawsBySuccess):
     ) -> tuple[np.ndarray, ...]:
         """Return the result of :meth:`_panorama` for one view of a single camera."""
         heading = float(rng.uniform(-np.pi, np.pi))
-        clean, truth = self.placed.put(xy, heading, views=None, rgb=self.sensor == RGB)
+        clean, seen, truth = self._put(xy, heading, None, Key(self.seed, f"{name}-{number}", 0))
         corruptions = self.schedule.draw(self.seed, name, number)
-        frames = corrupt_observation(clean, *corruptions, depth_sensor(self.placed.sensors))
+        frames = corrupt_observation(seen, *corruptions, depth_sensor(self.placed.sensors))
         return frames[self.sensor], clean[self.sensor], self._target(truth)
+
+    def _put(
+        self, xy: np.ndarray, heading: float, views: list[int] | None, key: Key
+    ) -> tuple[dict[str, np.ndarray], dict[str, np.ndarray], Mapping[str, np.ndarray]]:
+        """Return the frames of the camera in its place and of this instant's camera, and labels."""
+        rgb = self.sensor == RGB
+        clean, truth = self.placed.put(xy, heading, views=views, rgb=rgb)
+        if uniform(digest(key, "camera_share")) >= self.camera_share:
+            return clean, clean, truth
+        world: Any = self.placed
+        seen, _ = world.put(xy, heading, views=views, rgb=rgb, mount=random_mount(key))
+        return clean, seen, truth
 
     def _target(self, truth: Mapping[str, np.ndarray]) -> np.ndarray:
         return np.zeros(0, np.float32) if self.label is None else truth[self.label]

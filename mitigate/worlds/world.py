@@ -162,6 +162,9 @@ class Placeable(Protocol):
     ) -> tuple[dict[str, np.ndarray], Mapping[str, np.ndarray]]:
         """Render from a pose.
 
+        A world that renders displaced cameras also takes ``mount``
+        (``corruptions/faults/camera.py``), for ``camera_share`` of ``training/poses.py``.
+
         Args:
             xy: Plan position [2], metres.
             heading: Radians, counter-clockwise.

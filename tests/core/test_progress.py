@@ -51,12 +51,16 @@ def test_line_reports_pace_time_left_and_latest_note(monkeypatch):
     monkeypatch.setattr(progress.time, "monotonic", lambda: now[0])
     bar = Progress("perception_rgb", 700, start=100)
     assert bar.line() == "perception_rgb: step 100/700, 0 s so far" and bar.left() == float("inf")
+    now[0] += 60  # the first step compiles, so the pace is measured after it
+    bar.advance()
+    assert bar.line() == "perception_rgb: step 101/700, 1 min 00 s so far"
+    assert bar.left() == float("inf")
     now[0] += 10
     bar.advance(20, note="loss 0.31")
-    assert bar.line() == ("perception_rgb: step 120/700, 2 steps/s, 4 min 50 s left, loss 0.31")
+    assert bar.line() == "perception_rgb: step 121/700, 2 steps/s, 4 min 50 s left, loss 0.31"
     now[0] += 190
     bar.advance(0, note="loss 0.3")
-    assert bar.line() == "perception_rgb: step 120/700, 10 s per step, 1 h 36 min left, loss 0.3"
+    assert bar.line() == "perception_rgb: step 121/700, 10 s per step, 1 h 36 min left, loss 0.3"
     bar.unit = "episode"
     assert "10 s per episode" in bar.line()
     now[0] += 3600

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
+from dataclasses import astuple, replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -25,7 +25,16 @@ from mitigate.corruptions import (
     frame_files,
     registry,
 )
-from mitigate.corruptions.faults.camera import Mount, warp
+from mitigate.corruptions.faults.camera import (
+    FOV,
+    HEIGHT,
+    PITCH,
+    ROLL,
+    YAW,
+    Mount,
+    random_mount,
+    warp,
+)
 from mitigate.corruptions.folders import Settings
 from mitigate.corruptions.stream import mount_of
 from mitigate.worlds.apartments.apartment import Apartment
@@ -234,3 +243,13 @@ def test_wrappers_take_the_field_of_view(clean):
     assert np.array_equal(observation, expected)
     with pytest.raises(ValueError, match="Pass hfov=DEGREES"):
         CorruptObservation(Env(), corruption, 3).reset(seed=5)
+
+
+def test_random_mounts_have_one_or_two_faults_within_their_ranges():
+    mounts = [random_mount(Key(0, f"e{i}", 0)) for i in range(400)]
+    sizes = [sum(value != 0 for value in astuple(mount)) for mount in mounts]
+    assert set(sizes) == {1, 2} and 0.2 < sizes.count(2) / len(sizes) < 0.4
+    largest = np.abs([astuple(mount) for mount in mounts]).max(0)
+    limits = np.array([HEIGHT, PITCH, ROLL, YAW, FOV])
+    assert (largest <= limits).all() and (largest > 0.9 * limits).all()
+    assert random_mount(Key(0, "e1", 0)) == mounts[1]

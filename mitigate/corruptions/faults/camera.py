@@ -199,6 +199,19 @@ def camera_fov(severity: float, key: Key) -> Mount:
     return Mount(fov=severity * FOV * _sign(key, "camera_fov"))
 
 
+def random_mount(key: Key) -> Mount:
+    """Return a random displacement for training: one or two faults, each with its own severity."""
+    value = digest(key, "camera")
+    first = int(uniform(value, 0) * len(DRAWS))
+    second = (first + 1 + int(uniform(value, 1) * (len(DRAWS) - 1))) % len(DRAWS)
+    chosen = [first, second][: 1 + (uniform(value, 2) < TWO_FAULTS)]
+    return total(DRAWS[place](uniform(value, 3 + place), key) for place in chosen)
+
+
+DRAWS = (camera_height, camera_pitch, camera_roll, camera_yaw, camera_fov)
+TWO_FAULTS = 0.3  # probability of a second fault in training (heuristic)
+
+
 _record = partial(
     Record, modality=FRAMES, apply=None, family=CAMERA, source="heuristic", version="1"
 )

@@ -274,6 +274,7 @@ class ApartmentsWorld(World):
         *,
         views: Sequence[int] | None = None,
         rgb: bool = True,
+        mount: Mount = LEVEL,
     ) -> tuple[dict[str, np.ndarray], Mapping[str, np.ndarray]]:
         """Return the frames with the pose, and the labels except "goal".
 
@@ -283,7 +284,8 @@ class ApartmentsWorld(World):
         renderer = shared_renderer(self.size)
         renderer.load(apartment)
         selected = range(self.views) if views is None or self.views == 1 else views
-        rendered = renderer.render(float(xy[0]), float(xy[1]), heading, views=selected, rgb=rgb)
+        place = float(xy[0]), float(xy[1]), heading
+        rendered = renderer.render(*place, views=selected, rgb=rgb, mount=mount)
         frames, depth, ids = (part[: self.views] for part in rendered)
         pose = np.array([*xy, heading], np.float32)
         truth = Labels(apartment, xy, heading, ids, depth)
