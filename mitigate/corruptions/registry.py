@@ -1,9 +1,9 @@
-"""All corruptions: the standard suite, unseen corruptions, faults, and plugins (packages).
+"""All corruptions: the standard suite, unseen ones, named cameras, faults, and plugins (packages).
 
-Every result row contains the version of the suite. Unseen corruptions, faults and plugins have
-separate versions, and are used only where they are named. Two corruptions at once are
-a pair, such as ``low_light+missing_data``: the first one is applied first, and each uses the same
-random numbers as when it is applied alone.
+Every result row contains the version of the suite. All other corruptions have separate versions,
+and are used only where they are named. Two corruptions at once are a pair, such as
+``low_light+missing_data``: the first one is applied first, and each uses the same random numbers as
+when it is applied alone.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from functools import lru_cache, partial
 from importlib.metadata import entry_points
 
 from mitigate.core.names import unknown
-from mitigate.corruptions import broad, depth, faults, rgb, unseen
+from mitigate.corruptions import broad, depth, faults, rgb, sensors, unseen
 from mitigate.corruptions.record import ACTION, FRAMES, MODALITIES, TEST, VALIDATION, Record
 
 _record = partial(
@@ -40,9 +40,12 @@ UNSEEN = {
         unseen.RECORDS, key=lambda r: (MODALITIES.index(r.modality), HALVES.index(r.half))
     )
 }
+# depth errors of named cameras
+SENSORS = {record.name: record for record in sensors.RECORDS}
 # names of the random compositions for training
 BROAD = {record.name: record for record in broad.RECORDS}
 FAULTS = {record.name: record for record in faults.RECORDS}
+INCLUDED = {**SUITE, **UNSEEN, **SENSORS, **FAULTS, **BROAD}
 AND = "+"  # separator between the names of a pair
 HEAD = ("name", "corrupts", "severity s", "per episode", "per frame", "source", "suite")
 
@@ -58,7 +61,9 @@ def plugin_records() -> dict[str, Record]:
     for point in entry_points(group=GROUP):
         try:
             record = point.load()
-            problem = _problem(record, {"clean", *SUITE, *UNSEEN, *BROAD, *FAULTS, *records})
+            problem = _problem(
+                record, {"clean", *SUITE, *UNSEEN, *SENSORS, *BROAD, *FAULTS, *records}
+            )
         except Exception as error:  # code of an installed package may raise any error
             problem = f"cannot be imported ({type(error).__name__}: {error})"
         if problem:
@@ -106,8 +111,8 @@ def unseen_names(*modalities: str, half: str = "") -> tuple[str, ...]:
 
 
 def known(*modalities: str) -> tuple[str, ...]:
-    """Return all corruption names of ``modalities``, including unseen, broad and packages' ones."""
-    others = {**BROAD, **plugin_records()}.items()
+    """Return all corruption names of ``modalities``, including those outside the suite."""
+    others = {**SENSORS, **BROAD, **plugin_records()}.items()
     fixed = names(*modalities) + unseen_names(*modalities)
     return fixed + tuple(n for n, r in others if r.modality in modalities)
 
@@ -129,10 +134,7 @@ def broad_name(modality: str) -> str:
 
 def record(name: str) -> Record:
     """Return the record of a corruption; KeyError if it is unknown."""
-    for records in (SUITE, UNSEEN, FAULTS, BROAD):
-        if name in records:
-            return records[name]
-    return plugin_records()[name]
+    return INCLUDED[name] if name in INCLUDED else plugin_records()[name]
 
 
 def parts(name: str) -> tuple[str, ...]:
@@ -144,7 +146,7 @@ def title(name: str) -> str:
     """Return the title of a corruption in tables; the corruption need not be installed."""
     if AND in name:
         return f" {AND} ".join(map(title, parts(name)))
-    if name in {**SUITE, **UNSEEN, **FAULTS, **BROAD} or name in plugin_records():
+    if name in INCLUDED or name in plugin_records():
         return record(name).title
     return name.replace("_", " ").capitalize()
 
@@ -181,4 +183,8 @@ def _sensor(record: Record) -> str:
 def _suite(record: Record) -> str:
     """Return the smallest suite in ``conf/suite`` that contains a corruption, or "-"."""
     short = {VALIDATION: "unseen_val", TEST: "unseen_test"}
-    return "full" if record.name in SUITE else record.family or short.get(record.half, "-")
+    if record.name in SUITE:
+        return "full"
+    if record.name in SENSORS:
+        return "sensors"
+    return record.family or short.get(record.half, "-")

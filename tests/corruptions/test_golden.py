@@ -19,10 +19,10 @@ import numpy as np
 import pytest
 
 from mitigate.corruptions import NAMES, SUITE_VERSION, Key, corrupt
-from mitigate.corruptions.registry import BROAD, modality, record, unseen_names
+from mitigate.corruptions.registry import BROAD, SENSORS, modality, record, unseen_names
 
 GOLDEN = Path(__file__).with_name("golden.json")
-UNSEEN = unseen_names("rgb", "depth")
+UNSEEN = (*unseen_names("rgb", "depth"), *SENSORS)
 SEVERITIES = (0.05, 0.5, 0.6, 1.0)
 
 

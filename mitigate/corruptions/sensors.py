@@ -1,0 +1,179 @@
+"""Depth errors of named cameras, from published models and datasheets.
+
+At severity 0.5 a frame has the errors that the source reports; at severity s they are 2 s times as
+large. A profile has up to five errors, in the order of their effect: a wrong scale of the whole
+episode, pixels that read a neighbour (lateral noise), axial noise, rounding of disparity, and a
+limited range. Functions have the same arguments and results as in ``corruptions/depth.py``, and
+treat invalid pixels in the same way.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+from numba import njit
+
+from mitigate.corruptions.depth_sensor import NEAREST, DepthSensor, is_valid
+from mitigate.corruptions.keying import Key, digest, mix, normal_table, uniform, view_streams
+from mitigate.corruptions.record import Record
+
+PUBLISHED = 0.5  # severity at which the errors have the published size
+
+
+@dataclass(frozen=True)
+class Profile:
+    """The errors of a depth camera.
+
+    Attributes:
+        sd: Coefficients (a, b, c) of the standard deviation a + b d + c d^2 in metres.
+        origin: The depth in metres from which d is measured: d = z - origin.
+        lateral: Standard deviation of the sideways error as a fraction of the image width.
+        disparity: Disparity steps times metres: depth has the values disparity / n for whole
+            numbers n; 0 means no rounding.
+        offset: Largest systematic error in metres.
+        scale: Largest systematic error as a fraction of the depth.
+        far: The largest depth that is measured, in metres.
+    """
+
+    sd: tuple[float, float, float]
+    far: float
+    origin: float = 0.0
+    lateral: float = 0.0
+    disparity: float = 0.0
+    offset: float = 0.0
+    scale: float = 0.0
+
+
+# Axial and lateral noise: Nguyen, Izadi and Lovell 2012, surfaces that face the camera, with images
+# 640 pixels wide. Steps of 1/8 pixel: Barron and Malik 2013. Range: datasheet.
+KINECT_V1 = Profile(
+    sd=(0.0012, 0.0, 0.0019), origin=0.4, lateral=0.8 / 640, disparity=351.3, far=4.0
+)
+# RMS error z^2 e / (f B) with e = 0.08 pixels, baseline B = 0.05 m and f of images that are 848 pixels
+# and 90 degrees wide: Grunnet-Jepsen, Sweetser and Woodfill 2018. Steps of 1/32 pixel and range:
+# datasheet.
+REALSENSE_D435 = Profile(sd=(0.0, 0.0, 0.08 / (424 * 0.05)), disparity=32 * 424 * 0.05, far=10.0)
+# Standard deviation 2.5 mm at 1 m and 15.5 mm at 9 m, mean error 5 and 14 mm: datasheet, indoors.
+REALSENSE_L515 = Profile(
+    sd=(0.0025, 0.001625, 0.0), origin=1.0, offset=0.0039, scale=0.0011, far=9.0
+)
+# Standard deviation up to 17 mm, systematic error up to 11 mm + 0.1 %, range of the narrow mode:
+# datasheet, confirmed by Tolgyessy et al. 2021.
+AZURE_KINECT = Profile(sd=(0.017, 0.0, 0.0), offset=0.011, scale=0.001, far=3.86)
+
+_U = np.uint64
+
+
+@njit(cache=True)
+def _measure(views, streams, sd, origin, lateral, steps, bias, limits, missing, table, out):
+    """Write the measured depth of each pixel to ``out``.
+
+    ``bias`` is (offset, scale), and ``limits`` is (far, z_max).
+    """
+    count, height, width = views.shape
+    for v in range(count):
+        for y in range(height):
+            for x in range(width):
+                out[v, y, x] = views[v, y, x]
+                if not is_valid(views[v, y, x]):
+                    continue
+                word = mix(streams[v], _U(y * width + x))
+                across = table[(word >> _U(4)) & _U(0xFFF)]
+                down = table[(word >> _U(20)) & _U(0xFFF)]
+                column = min(max(x + int(np.rint(lateral * width * across)), 0), width - 1)
+                row = min(max(y + int(np.rint(lateral * width * down)), 0), height - 1)
+                z = views[v, row, column]
+                if not is_valid(z):
+                    z = views[v, y, x]
+                far = max(z - origin, 0.0)
+                z += bias[0] + bias[1] * z
+                z += (sd[0] + sd[1] * far + sd[2] * far * far) * table[(word >> _U(36)) & _U(0xFFF)]
+                if steps > 0 and z > 0:
+                    z = steps / max(np.rint(steps / z), 1.0)
+                if z > limits[0]:
+                    out[v, y, x] = missing
+                else:
+                    out[v, y, x] = min(max(np.float32(z), NEAREST), limits[1])
+
+
+def measured(
+    views: np.ndarray, profile: Profile, name: str, severity: float, key: Key, sensor: DepthSensor
+) -> np.ndarray:
+    """Return depth as a camera with the errors of ``profile`` measures it.
+
+    All errors are ``severity / PUBLISHED`` times as large as published, and the range is as many
+    times smaller.
+    """
+    factor = severity / PUBLISHED
+    sign = 2.0 * uniform(digest(key, name)) - 1.0
+    bias = np.array([profile.offset, profile.scale]) * factor * sign
+    far = profile.far / factor if profile.far < factor * sensor.z_max else math.inf
+    out = np.empty_like(views)
+    _measure(
+        views,
+        view_streams(key, name, len(views)),
+        np.array(profile.sd) * factor,
+        profile.origin,
+        profile.lateral * factor,
+        profile.disparity / factor,
+        bias,
+        np.array([far, sensor.z_max], np.float32),
+        np.float32(sensor.missing),
+        normal_table(),
+        out,
+    )
+    return out
+
+
+def kinect_v1(views: np.ndarray, severity: float, key: Key, sensor: DepthSensor) -> np.ndarray:
+    """Measure depth with structured light as a Kinect for Xbox 360 does."""
+    return measured(views, KINECT_V1, "kinect_v1", severity, key, sensor)
+
+
+def realsense_d435(views: np.ndarray, severity: float, key: Key, sensor: DepthSensor) -> np.ndarray:
+    """Measure depth with active stereo as a RealSense D435 does."""
+    return measured(views, REALSENSE_D435, "realsense_d435", severity, key, sensor)
+
+
+def realsense_l515(views: np.ndarray, severity: float, key: Key, sensor: DepthSensor) -> np.ndarray:
+    """Measure depth with a scanning laser as a RealSense L515 does."""
+    return measured(views, REALSENSE_L515, "realsense_l515", severity, key, sensor)
+
+
+def azure_kinect(views: np.ndarray, severity: float, key: Key, sensor: DepthSensor) -> np.ndarray:
+    """Measure depth by time of flight as an Azure Kinect does."""
+    return measured(views, AZURE_KINECT, "azure_kinect", severity, key, sensor)
+
+
+_record = partial(Record.of, "depth", version="1", frame="noise")
+RECORDS = (
+    _record(
+        kinect_v1,
+        severity="2 s times the errors of the camera",
+        label="Kinect v1",
+        source="Nguyen 2012, Barron & Malik 2013",
+    ),
+    _record(
+        realsense_d435,
+        severity="2 s times the errors of the camera",
+        label="RealSense D435",
+        source="Grunnet-Jepsen 2018",
+    ),
+    _record(
+        realsense_l515,
+        severity="2 s times the errors of the camera",
+        label="RealSense L515",
+        source="datasheet",
+        episode="systematic error",
+    ),
+    _record(
+        azure_kinect,
+        severity="2 s times the errors of the camera",
+        label="Azure Kinect",
+        source="Tolgyessy 2021, datasheet",
+        episode="systematic error",
+    ),
+)
