@@ -52,9 +52,9 @@ class Profile:
 KINECT_V1 = Profile(
     sd=(0.0012, 0.0, 0.0019), origin=0.4, lateral=0.8 / 640, disparity=351.3, far=4.0
 )
-# RMS error z^2 e / (f B) with e = 0.08 pixels, baseline B = 0.05 m and f of images that are 848 pixels
-# and 90 degrees wide: Grunnet-Jepsen, Sweetser and Woodfill 2018. Steps of 1/32 pixel and range:
-# datasheet.
+# RMS error z^2 e / (f B) with e = 0.08 pixels, baseline B = 0.05 m and f of images that are 848
+# pixels and 90 degrees wide: Grunnet-Jepsen, Sweetser and Woodfill 2018. Steps of 1/32 pixel and
+# range: datasheet.
 REALSENSE_D435 = Profile(sd=(0.0, 0.0, 0.08 / (424 * 0.05)), disparity=32 * 424 * 0.05, far=10.0)
 # Standard deviation 2.5 mm at 1 m and 15.5 mm at 9 m, mean error 5 and 14 mm: datasheet, indoors.
 REALSENSE_L515 = Profile(

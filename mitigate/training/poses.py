@@ -111,8 +111,8 @@ class Poses(DrawsBySuccess):
                 )
             if self.camera_share and "mount" not in signature(world.put).parameters:
                 raise ValueError(
-                    f"camera_share must be 0 in {type(world).__name__}, got {self.camera_share}: its "
-                    "put() has no argument mount, so it cannot render a displaced camera."
+                    f"camera_share must be 0 in {type(world).__name__}, got {self.camera_share}: "
+                    "its put() has no argument mount, so it cannot render a displaced camera."
                 )
             self._placed = world
         return self._placed
