@@ -45,7 +45,9 @@ def estimate(config: TrainConfig, folder: Path) -> float:
     episode = times(EPISODE_COST / (config.evaluation.workers or cores()), config.cost.evaluation)
     costs.append((_episodes(config), episode))
     seconds = sum(count * (math.nan if cost is None else cost) for count, cost in costs if count)
-    return seconds * precision.probe() / precision.REFERENCE
+    # a machine with faster matrix products does not render faster: with bf16, 6 minutes were
+    # estimated for a run that took 13
+    return seconds * max(1.0, precision.probe() / precision.REFERENCE)
 
 
 def _steps(config: TrainConfig) -> dict[str, int]:

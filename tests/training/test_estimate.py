@@ -86,6 +86,14 @@ def test_estimate_scales_by_the_machines_probe(monkeypatch, reference, tmp_path)
     assert estimate.estimate(cfg, tmp_path) == pytest.approx(3 * here)
 
 
+def test_estimate_of_a_faster_machine_is_that_of_the_reference(monkeypatch, reference, tmp_path):
+    """Rendering takes as long on a machine with faster matrix products."""
+    cfg = training("conv_adapter", "recurrent")
+    here = estimate.estimate(cfg, tmp_path)
+    monkeypatch.setattr(precision, "probe", lambda: 0.5 * precision.REFERENCE)
+    assert estimate.estimate(cfg, tmp_path) == here
+
+
 def test_base_without_evaluation_is_not_counted(tmp_path):
     """swap_encoder starts from parts of an agent, which are not a complete agent."""
     cfg = read(conf.load_config("train", ["recipe=swap_encoder"]))
