@@ -26,6 +26,7 @@ class GymWorld(SeededWorld):
         rule: See ``SeededWorld``.
         score: See ``SeededWorld``.
         extra: See ``SeededWorld``.
+        hfov: See ``SeededWorld``.
 
     Raises:
         ValueError: The action space is not supported by ``core/spaces.py``, or an error of
@@ -43,6 +44,7 @@ class GymWorld(SeededWorld):
         rule: str | None = None,
         score: str = "success",
         extra: Sequence[str] = (),
+        hfov: float | None = None,
     ) -> None:
         spaces = _by_name(env.observation_space)
         default = {n: n for n in (RGB, DEPTH, POSE) if n in spaces}
@@ -64,6 +66,7 @@ class GymWorld(SeededWorld):
             rule,
             score,
             extra,
+            hfov,
         )
 
     def _reset_env(self, seed: int) -> dict[str, Any]:

@@ -152,6 +152,7 @@ class SeededWorld(World):
             (``evaluation/comparison.py``).
         extra: Additional entries that the environment reports at the end of an episode, to be
             stored as measures.
+        hfov: Horizontal field of view of the cameras in degrees, which camera faults need.
 
     Attributes:
         native: Converts frames to the environment's own observation (:class:`NativeFormat`).
@@ -182,11 +183,14 @@ class SeededWorld(World):
         rule: str | None,
         score: str = "success",
         extra: Sequence[str] = (),
+        hfov: float | None = None,
     ) -> None:
         if score not in SCORES:
             raise ValueError(f"score must be one of {', '.join(SCORES)}, got {score!r:.80}.")
         if score == RETURN and (success is not None or rule is not None):
             raise ValueError("score='return' takes no success and no rule. Leave them out.")
+        if hfov is not None and not 0 < hfov < 180:
+            raise ValueError(f"hfov must be above 0 and below 180 degrees, got {hfov!r:.80}.")
         if limit is not None and (type(limit) is not int or limit < 1):
             raise ValueError(
                 f"limit must be a whole number of steps >= 1 or None, got {limit!r}. None lets the "
@@ -215,9 +219,11 @@ class SeededWorld(World):
                 _check_format(name, entry, tuple(shape), dtype)
             if name == DEPTH:
                 _check_unit(entry, dtype, high, unit)
-                self.sensors[name] = Sensor(name, tuple(shape), dtype, "m", high=high * self.unit)
+                metres = high * self.unit
+                self.sensors[name] = Sensor(name, tuple(shape), dtype, "m", hfov, high=metres)
             else:
-                self.sensors[name] = Sensor(name, tuple(shape), dtype)
+                width = hfov if name == RGB else None
+                self.sensors[name] = Sensor(name, tuple(shape), dtype, hfov=width)
 
         self.native = NativeFormat(
             dict(self.entries),

@@ -162,6 +162,9 @@ class EnvWorld(SeededWorld):
         unit: See :class:`~mitigate.worlds.seeded.SeededWorld`.
         limit: See ``SeededWorld``.
         rule: See ``SeededWorld``.
+        score: See ``SeededWorld``.
+        extra: See ``SeededWorld``.
+        hfov: See ``SeededWorld``.
 
     Raises:
         ValueError: The environment is batched, its actions are not supported (``core/spaces.py``),
@@ -179,6 +182,7 @@ class EnvWorld(SeededWorld):
         rule: str | None = None,
         score: str = "success",
         extra: Sequence[str] = (),
+        hfov: float | None = None,
     ) -> None:
         if env.batch_size.numel() != 1:
             raise ValueError(
@@ -198,7 +202,7 @@ class EnvWorld(SeededWorld):
         default = {name: name for name in (RGB, DEPTH, POSE) if name in specs}
         arrays = {name: _describe(spec) for name, spec in specs.items()}
         super().__init__(
-            env, space, arrays, entries or default, success, unit, limit, rule, score, extra
+            env, space, arrays, entries or default, success, unit, limit, rule, score, extra, hfov
         )
 
     def _reset_env(self, seed: int) -> dict[str, Any]:

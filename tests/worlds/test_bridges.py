@@ -520,3 +520,21 @@ def test_env_world_runs_the_same_episode_as_gym_world():
     ):
         frames.append([world.reset(start)["rgb"], world.step(1)["rgb"]])
     np.testing.assert_array_equal(*frames)
+
+
+def test_hfov_of_a_world_lets_camera_faults_warp_its_frames():
+    from mitigate.worlds.gym import GymWorld
+
+    fault = Corruption("camera_roll", 0.6)
+
+    def first(world) -> np.ndarray:
+        return np.array(Corrupted(world, fault, 0).reset(episode(2))[RGB])
+
+    frame = first(GymWorld(Room(), **BY_REWARD, hfov=90))
+    assert (frame == 0).any() and (frame == 200).any(), "corners that the camera did not see are 0"
+    env = WorldEnv(GymWorld(Room("rgb"), **BY_REWARD), [episode(2)])
+    assert np.array_equal(first(EnvWorld(env, success="reward", hfov=90)), frame)
+    with pytest.raises(ValueError, match="needs the horizontal field of view"):
+        first(GymWorld(Room(), **BY_REWARD))
+    with pytest.raises(ValueError, match="hfov must be above 0 and below 180 degrees, got 200"):
+        GymWorld(Room(), hfov=200)
