@@ -138,7 +138,7 @@ def record(name: str) -> Record:
 
 
 def parts(name: str) -> tuple[str, ...]:
-    """Return the names in a pair in order, or a tuple with the single name."""
+    """Split the name of a pair into its two names; a single name gives a tuple of one."""
     return tuple(name.split(AND))
 
 

@@ -436,7 +436,9 @@ def changed_entries(obs: Mapping[str, Any], part: Corruption) -> tuple[str, ...]
         ValueError: The observation has none of the frames.
     """
     modalities = registry.record(part.name).modalities
-    entries = tuple(name for name in modalities if name in obs)  # entries are named as modalities
+    entries = tuple(
+        name for name in modalities if name in obs
+    )  # each entry has the name of its modality
     if not entries:
         raise ValueError(
             f"{part.name!r} needs the entry {' or '.join(map(repr, modalities))}, which the "

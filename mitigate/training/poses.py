@@ -51,7 +51,7 @@ class Poses(DrawsBySuccess):
             sensors leave its frames clean.
         camera_share: fraction of panoramas that a displaced camera sees (``random_mount`` in
             ``corruptions/faults/camera.py``). Their clean frames and labels are those of the
-            camera in its place.
+            undisplaced camera.
 
     Raises:
         ValueError: The sensor is unknown, there are no panoramas, the world has no random poses, or

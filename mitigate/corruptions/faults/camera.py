@@ -83,7 +83,7 @@ def total(mounts: Iterable[Mount]) -> Mount:
 def warp(
     views: np.ndarray, mount: Mount, hfov: float, sensor: DepthSensor | None = None
 ) -> np.ndarray:
-    """Return what displaced cameras see of the frames of the original ones.
+    """Return the frames of displaced cameras, computed from those of the original cameras.
 
     Args:
         views: RGB uint8 [V, H, W, 3], or depth float32 metres [V, H, W]. View k has yaw -30 k

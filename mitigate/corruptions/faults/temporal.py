@@ -98,7 +98,10 @@ def exposure_flicker(
 
 
 def is_active(severity: float, key: Key) -> bool:
-    """Return whether the second of a pair with ``intermittent`` acts, at any severity."""
+    """Return whether the second corruption of a pair with ``intermittent`` is active now.
+
+    The severity does not matter.
+    """
     return _frames_inside(GATE, ACTIVE_PERIOD, ACTIVE, ACTIVE, key) > 0
 
 
