@@ -31,8 +31,8 @@ class Profile:
         sd: Coefficients (a, b, c) of the standard deviation a + b d + c d^2 in metres.
         origin: The depth in metres from which d is measured: d = z - origin.
         lateral: Standard deviation of the sideways error as a fraction of the image width.
-                disparity: Depth takes only the values disparity / n metres for whole numbers n; 0 means no
-            rounding.
+        disparity: Depth takes only the values disparity / n metres for whole numbers n; 0 means
+            no rounding.
         offset: Largest systematic error in metres.
         scale: Largest systematic error as a fraction of the depth.
         far: The largest depth that is measured, in metres.
