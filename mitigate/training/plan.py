@@ -107,7 +107,8 @@ def check(config: TrainConfig) -> None:
     if other is not None:
         raise ValueError(
             f"The recipe {name} has no stage {other!r}; its stages are {', '.join(complete)}. "
-            "Remove options of other stages (experiment=frozen fits only imitation and da_*)."
+            "Remove options of other stages (experiment=frozen fits only imitation and da_*, "
+            "experiment=camera only harden, ts_distill, stacked and self_distill)."
         )
     listed = config.report == REPORT or env.episodes
     if config.evaluation.enabled and listed:  # this finds mistakes before training starts

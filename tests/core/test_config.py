@@ -398,3 +398,13 @@ def test_missing_arguments_of_a_recipe_are_named(option, message):
 def test_message_imports_no_class_of_other_packages(monkeypatch):
     monkeypatch.setattr(conf, "get_object", lambda target: pytest.fail(f"{target} was imported"))
     assert not conf._arguments(OmegaConf.create({"_target_": "mine.Recipe", "a": 1}))
+
+
+@pytest.mark.parametrize("recipe", ["harden", "ts_distill", "stacked", "self_distill"])
+def test_experiment_camera_displaces_the_camera_in_view_stages(recipe):
+    composed = conf.load_config("train", [f"recipe={recipe}", "experiment=camera"])
+    for stage in ("views_rgb", "views_depth"):
+        assert composed.stages[stage].recipe.camera_share == 0.4
+    check([f"recipe={recipe}", "experiment=camera"])
+    with pytest.raises(ValueError, match="has no stage 'views_rgb'"):
+        check(["recipe=da_per_episode", "experiment=camera"])
